@@ -1,0 +1,41 @@
+"""Rolling-bearing mechanics in JAX: one energy, differentiated.
+
+SI units everywhere (m, N, rad, kg, s, Pa). float64 is the working precision; turn it
+on before the first array is made:
+
+    import jax
+    jax.config.update("jax_enable_x64", True)
+"""
+
+from importlib.metadata import version as _version
+
+from .contact import ISO16281 as ISO16281
+from .contact import LineConstant as LineConstant
+from .contact import Palmgren as Palmgren
+from .design import CircularCrown as CircularCrown
+from .design import CrownedEnds as CrownedEnds
+from .design import CylindricalRollerBearing as CylindricalRollerBearing
+from .design import FujiwaraKawase as FujiwaraKawase
+from .design import JohnsGohar as JohnsGohar
+from .design import Logarithmic as Logarithmic
+from .design import Material as Material
+from .design import NeedleRollerBearing as NeedleRollerBearing
+from .design import Rib as Rib
+from .design import Ribs as Ribs
+from .design import Straight as Straight
+from .design import Tabulated as Tabulated
+from .design import TaperedRollerBearing as TaperedRollerBearing
+from .element import BearingElement as BearingElement
+from .element import Finite as Finite
+from .element import Linearised as Linearised
+from .element import Speed as Speed
+from .numerics import BFGS as BFGS
+from .numerics import ContactMapped as ContactMapped
+from .numerics import Midpoint as Midpoint
+from .numerics import Result as Result
+from .numerics import SolveError as SolveError
+from .numerics import TrustRegionNewton as TrustRegionNewton
+from .statics import Solution as Solution
+from .statics import solve_load as solve_load
+
+__version__ = _version("bearingjax")

@@ -1,0 +1,13 @@
+"""Two bodies, one contact: line contact laws, Hertz point contact, pressures."""
+
+from .hertz import sphere_constant as sphere_constant
+from .hertz import sphere_peak_pressure as sphere_peak_pressure
+from .line import AbstractLineLaw as AbstractLineLaw
+from .line import ISO16281 as ISO16281
+from .line import LineConstant as LineConstant
+from .line import Palmgren as Palmgren
+from .line import half_width as half_width
+from .line import peak_pressure as peak_pressure
+from .line import relative_radius as relative_radius
+from .line_contact import LineContact as LineContact
+from .line_contact import response as response

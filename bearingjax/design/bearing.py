@@ -1,0 +1,270 @@
+"""Roller bearings as they stand on the drawing: dimensions, checked, no solving."""
+
+import warnings
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..numerics.types import Scalar, as_real
+from .checks import check, count, in_range, is_traced, number, positive
+from .material import Material
+from .profile import AbstractProfile, Straight
+from .rib import Ribs
+
+
+class AbstractRollerBearing(eqx.Module):
+    """What every single-row roller bearing has.
+
+    Attributes:
+        n_rollers: Number of rollers.
+        pitch_diameter: Diameter of the circle of the roller centres, D_pw [m].
+        roller_diameter: Mean roller diameter, D_we [m].
+        roller_length: Effective contact length along the generator, L_we [m].
+        radial_internal_clearance: Diametral play; unloaded and centred a quarter of
+            it stands at each raceway, along the contact normal. Negative is
+            preload [m].
+        first_azimuth: Azimuth of roller 0, from +x towards +y [rad].
+        roller_profile: Profile of the rollers.
+        outer_raceway_profile: Profile of the outer raceway.
+        inner_raceway_profile: Profile of the inner raceway.
+        ribs: The ribs.
+        material: Material of the rollers.
+        ring_material: Material of the rings; `None`: as the rollers.
+    """
+
+    n_rollers: int = eqx.field(static=True)
+    pitch_diameter: Scalar = eqx.field(converter=as_real)
+    roller_diameter: Scalar = eqx.field(converter=as_real)
+    roller_length: Scalar = eqx.field(converter=as_real)
+    radial_internal_clearance: Scalar = eqx.field(
+        converter=as_real, default=0.0, kw_only=True
+    )
+    first_azimuth: Scalar = eqx.field(converter=as_real, default=0.0, kw_only=True)
+    roller_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
+    outer_raceway_profile: AbstractProfile = eqx.field(
+        default_factory=Straight, kw_only=True
+    )
+    inner_raceway_profile: AbstractProfile = eqx.field(
+        default_factory=Straight, kw_only=True
+    )
+    ribs: Ribs = eqx.field(default_factory=Ribs, kw_only=True)
+    material: Material = eqx.field(default_factory=Material, kw_only=True)
+    ring_material: Material | None = eqx.field(default=None, kw_only=True)
+
+    @property
+    def axis_angle(self) -> Scalar:
+        """Angle of the roller axis to the bearing axis [rad]."""
+        return jnp.zeros_like(self.pitch_diameter)
+
+    @property
+    def half_angle(self) -> Scalar:
+        """Half cone angle of the roller [rad]."""
+        return jnp.zeros_like(self.pitch_diameter)
+
+    @property
+    def rings(self) -> Material:
+        """Material of the rings."""
+        return self.material if self.ring_material is None else self.ring_material
+
+    def __check_init__(self):
+        count(self, "n_rollers", self.n_rollers)
+        for name in ("pitch_diameter", "roller_diameter", "roller_length"):
+            positive(self, name, getattr(self, name), "m")
+        number(self, "radial_internal_clearance", self.radial_internal_clearance, "m")
+        number(self, "first_azimuth", self.first_azimuth, "rad")
+        self._check_parts()
+        self._check_row()
+
+    def _check_parts(self):
+        kinds = {
+            "roller_profile": AbstractProfile,
+            "outer_raceway_profile": AbstractProfile,
+            "inner_raceway_profile": AbstractProfile,
+            "ribs": Ribs,
+            "material": Material,
+        }
+        owner = type(self).__name__
+        for name, kind in kinds.items():
+            value = getattr(self, name)
+            if not isinstance(value, kind):
+                raise TypeError(
+                    f"{owner}: `{name}` is a {type(value).__name__}; it must be a"
+                    f" {kind.__name__.removeprefix('Abstract')}."
+                )
+        if not isinstance(self.ring_material, Material | None):
+            raise TypeError(
+                f"{owner}: `ring_material` is a {type(self.ring_material).__name__};"
+                " it must be a Material or None."
+            )
+        for name in list(kinds)[:3]:
+            getattr(self, name).check(self.roller_length, self.roller_diameter)
+        for name in self.ribs.present:
+            rib = getattr(self.ribs, name)
+            height = self.roller_diameter
+            check(
+                self,
+                f"ribs.{name}.contact_height",
+                rib.contact_height,
+                "m",
+                rib.contact_height < height,
+                f"below the roller diameter of {_show(height)} m",
+            )
+            check(
+                self,
+                f"ribs.{name}.end_radius",
+                rib.end_radius,
+                "m",
+                rib.end_radius > 0.5 * self.roller_diameter,
+                f"above half the roller diameter, {_show(0.5 * height)} m",
+            )
+
+    def _check_row(self):
+        axis, half = self.axis_angle, self.half_angle
+        reach = 0.5 * self.roller_length * jnp.cos(half)
+        # Both ends of the roller: radius of the disc, and of the circle it runs on.
+        for side in (-1.0, 1.0):
+            radius = 0.5 * self.roller_diameter - side * reach * jnp.tan(half)
+            circle = 0.5 * self.pitch_diameter - side * reach * jnp.sin(axis)
+            check(
+                self,
+                "roller_diameter",
+                self.roller_diameter,
+                "m",
+                circle - radius * jnp.cos(axis) > 0,
+                "small enough to leave an inner raceway inside the pitch circle of"
+                f" {_show(self.pitch_diameter)} m",
+            )
+            if self.n_rollers > 1:
+                room = circle * jnp.sin(jnp.pi / self.n_rollers)
+                check(
+                    self,
+                    "n_rollers",
+                    as_real(self.n_rollers),
+                    "rollers",
+                    radius < room,
+                    "low enough that rollers do not overlap around the pitch circle"
+                    f" (at most {_most(circle, radius)} of this size)",
+                )
+        clearance = self.radial_internal_clearance
+        check(
+            self,
+            "radial_internal_clearance",
+            clearance,
+            "m",
+            jnp.abs(clearance) < self.roller_diameter,
+            "smaller in size than the roller diameter (metres meant?)",
+        )
+
+
+class CylindricalRollerBearing(AbstractRollerBearing):
+    """Cylindrical roller bearing, any arrangement of ribs.
+
+    Attributes are those of `AbstractRollerBearing`. The usual types by name:
+    `ribs=Ribs.arrangement("NUP", Rib(...), axial_internal_clearance)`.
+
+    Traced: all fields but `n_rollers`.
+    """
+
+
+class NeedleRollerBearing(AbstractRollerBearing):
+    """Needle roller bearing: long thin rollers, mostly without ribs.
+
+    Attributes are those of `AbstractRollerBearing`; the roller length must be at
+    least 2.5 roller diameters.
+
+    Traced: all fields but `n_rollers`.
+    """
+
+    def __check_init__(self):
+        check(
+            self,
+            "roller_length",
+            self.roller_length,
+            "m",
+            self.roller_length >= 2.5 * self.roller_diameter,
+            f"at least 2.5 roller diameters, {_show(2.5 * self.roller_diameter)} m,"
+            " for a needle",
+        )
+
+
+class TaperedRollerBearing(AbstractRollerBearing):
+    """Single-row tapered roller bearing.
+
+    The large roller ends lie at -z; an inner-ring load along +z closes the bearing.
+    A roller with a half cone angle needs the large rib (`ribs.inner_minus`): without
+    it nothing frictionless holds the roller.
+
+    Attributes are those of `AbstractRollerBearing`, and
+        roller_axis_angle: Angle of the roller axis to the bearing axis [rad].
+        roller_half_angle: Half cone angle of the roller [rad].
+
+    Traced: all fields but `n_rollers`.
+    """
+
+    roller_axis_angle: Scalar = eqx.field(
+        converter=as_real, kw_only=True, default=jnp.nan
+    )
+    roller_half_angle: Scalar = eqx.field(converter=as_real, kw_only=True, default=0.0)
+
+    @property
+    def axis_angle(self) -> Scalar:
+        return self.roller_axis_angle
+
+    @property
+    def half_angle(self) -> Scalar:
+        return self.roller_half_angle
+
+    def __check_init__(self):
+        in_range(
+            self, "roller_axis_angle", self.roller_axis_angle, "rad", 0.0, 0.5 * jnp.pi
+        )
+        in_range(
+            self,
+            "roller_half_angle",
+            self.roller_half_angle,
+            "rad",
+            0.0,
+            self.roller_axis_angle,
+            include_low=True,
+        )
+        self._warn_of_apexes()
+
+    def apexes(self) -> tuple[Scalar, Scalar, Scalar]:
+        """Where outer raceway, roller axis and inner raceway meet the bearing axis.
+
+        Returns:
+            z of the three apexes from the roller centre [m]; all equal when
+            tan(half angle) = (D/2) sin(axis angle)/(pitch radius).
+        """
+        radius, half = 0.5 * self.roller_diameter, self.roller_half_angle
+        axis, pitch = self.roller_axis_angle, 0.5 * self.pitch_diameter
+        z, r = radius * jnp.sin(axis), radius * jnp.cos(axis)
+        return (
+            z + (pitch + r) / jnp.tan(axis + half),
+            pitch / jnp.tan(axis),
+            -z + (pitch - r) / jnp.tan(axis - half),
+        )
+
+    def _warn_of_apexes(self):
+        apexes = self.apexes()
+        if any(is_traced(a) for a in apexes) or float(self.roller_half_angle) == 0.0:
+            return
+        outer, roller, inner = (float(a) for a in apexes)
+        if max(abs(outer - roller), abs(inner - roller)) > 0.01 * abs(roller):
+            warnings.warn(
+                "TaperedRollerBearing: the apexes of outer raceway, roller axis and"
+                f" inner raceway lie at z = {1e3 * outer:.4g}, {1e3 * roller:.4g} and"
+                f" {1e3 * inner:.4g} mm; they differ by more than 1 %, so the rollers"
+                " cannot roll without sliding.",
+                stacklevel=4,
+            )
+
+
+def _show(value) -> str:
+    return "?" if is_traced(value) else f"{float(value):.6g}"
+
+
+def _most(circle, radius) -> str:
+    if is_traced(circle) or is_traced(radius) or float(radius) >= float(circle):
+        return "?"
+    return str(int(jnp.pi / jnp.arcsin(radius / circle)))

@@ -1,0 +1,100 @@
+"""Ribs: what stands against the roller ends."""
+
+import equinox as eqx
+
+from ..numerics.types import Scalar, as_real
+from .checks import non_negative, number, positive
+
+RIB_NAMES = ("outer_minus", "outer_plus", "inner_minus", "inner_plus")
+"""Order of the ribs wherever they are an axis: ring, then side (-z, +z)."""
+
+ARRANGEMENTS = {
+    "N": ("inner_minus", "inner_plus"),
+    "NU": ("outer_minus", "outer_plus"),
+    "NJ": ("outer_minus", "outer_plus", "inner_minus"),
+    "NUP": ("outer_minus", "outer_plus", "inner_minus", "inner_plus"),
+}
+"""Ribs of the cylindrical roller bearing types; NJ carries inner-ring load to +z."""
+
+
+class Rib(eqx.Module):
+    """A rib that is straight in the axial section, against a spherical roller end.
+
+    The rib's normal passes through the centre of the sphere, so the height of the
+    contact fixes the small opening angle of the rib.
+
+    Attributes:
+        end_radius: Radius of the sphere of the roller end; its pole lies on the
+            roller axis at the end of the roller length [m].
+        contact_height: Height of the contact along the rib, from the end of the
+            raceway generator that the rib stands on [m].
+        axial_gap: Gap between sphere and rib along the rib normal, unloaded and
+            centred; negative is interference [m].
+
+    Traced: all fields.
+    """
+
+    end_radius: Scalar = eqx.field(converter=as_real)
+    contact_height: Scalar = eqx.field(converter=as_real)
+    axial_gap: Scalar = eqx.field(converter=as_real, default=0.0)
+
+    def __check_init__(self):
+        positive(self, "end_radius", self.end_radius, "m")
+        non_negative(self, "contact_height", self.contact_height, "m")
+        number(self, "axial_gap", self.axial_gap, "m")
+
+
+class Ribs(eqx.Module):
+    """The ribs of a bearing; an absent one is `None` and costs nothing.
+
+    Attributes:
+        outer_minus: Rib of the outer ring at the -z end of the rollers.
+        outer_plus: Rib of the outer ring at the +z end.
+        inner_minus: Rib of the inner ring at the -z end.
+        inner_plus: Rib of the inner ring at the +z end.
+
+    Traced: all real numbers of the ribs. Static: which ribs exist.
+    """
+
+    outer_minus: Rib | None = None
+    outer_plus: Rib | None = None
+    inner_minus: Rib | None = None
+    inner_plus: Rib | None = None
+
+    @classmethod
+    def arrangement(cls, name: str, rib: Rib, axial_internal_clearance=None) -> "Ribs":
+        """Ribs of a cylindrical roller bearing by the name of its type.
+
+        Args:
+            name: "N", "NU", "NJ" or "NUP".
+            rib: Common data of the ribs.
+            axial_internal_clearance: Total axial play of one ring against the other
+                between the ribs; a quarter of it stands at each rib [m]. `None`
+                keeps the rib's own gap.
+
+        Raises:
+            ValueError: If the name is unknown.
+        """
+        if name not in ARRANGEMENTS:
+            raise ValueError(
+                f"Ribs: `arrangement` is {name!r}; it must be one of"
+                f" {', '.join(ARRANGEMENTS)}."
+            )
+        if axial_internal_clearance is not None:
+            gap = 0.25 * as_real(axial_internal_clearance)
+            rib = Rib(rib.end_radius, rib.contact_height, gap)
+        return cls(**dict.fromkeys(ARRANGEMENTS[name], rib))
+
+    @property
+    def present(self) -> tuple[str, ...]:
+        """Names of the ribs that exist, in the fixed order."""
+        return tuple(n for n in RIB_NAMES if getattr(self, n) is not None)
+
+    def __check_init__(self):
+        for name in RIB_NAMES:
+            rib = getattr(self, name)
+            if rib is not None and not isinstance(rib, Rib):
+                raise TypeError(
+                    f"Ribs: `{name}` is a {type(rib).__name__}; it must be a Rib or"
+                    " None."
+                )

@@ -1,0 +1,199 @@
+"""From the drawing to the numbers that the contacts of one roller need.
+
+Everything stands in the roller's own axes: t along the roller axis, m across it
+(outwards), origin at the roller centre.
+"""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..contact.hertz import sphere_constant
+from ..contact.line import AbstractLineLaw, relative_radius
+from ..contact.line_contact import LineContact, table
+from ..design.bearing import AbstractRollerBearing
+from ..design.material import contact_modulus
+from ..numerics.quadrature import AbstractQuadrature
+from ..numerics.types import Scalar, as_real
+
+# The guide spring, relative to the stiffness of a raceway contact (about 1e-6 N/m). It
+# keeps a direction regular in which nothing else holds the roller. A roller that is
+# held by no more than the guide is loose and passes nothing (`equilibrium.is_loose`).
+GUIDE = 1e-14
+
+
+class RibContacts(eqx.Module):
+    """The ribs that exist, stacked in their fixed order.
+
+    Attributes:
+        constant: c of Q = c approach^(3/2) (rib,) [N/m^(3/2)].
+        gap: Gap along the normal, unloaded (rib,) [m].
+        normal: Unit normal from roller to rib in (t, m) (rib, 2).
+        centre: Centre of the end sphere in (t, m) (rib, 2) [m].
+        point: Contact point on the rib in (t, m) (rib, 2) [m].
+        names: Which ribs these are.
+
+    Static: names.
+    """
+
+    constant: Float[Array, " rib"]
+    gap: Float[Array, " rib"]
+    normal: Float[Array, "rib 2"]
+    centre: Float[Array, "rib 2"]
+    point: Float[Array, "rib 2"]
+    names: tuple[str, ...] = eqx.field(static=True)
+
+    @property
+    def on_outer(self) -> tuple[bool, ...]:
+        """Whether each rib belongs to the outer ring."""
+        return tuple(name.startswith("outer") for name in self.names)
+
+
+class ContactConstants(eqx.Module):
+    """All contacts of one roller of a bearing.
+
+    Attributes:
+        lines: Contact with the outer and with the inner raceway.
+        tables: Quadrature tables of both.
+        ribs: Rib contacts, or `None`.
+        axis_angle: Angle of the roller axis to the bearing axis [rad].
+        half_angle: Half cone angle of the roller [rad].
+        pitch_radius: Radius of the circle of roller centres [m].
+        diameter: Mean roller diameter [m].
+        half_length: Half the roller length [m].
+        gap: Gap at each raceway, unloaded and centred [m].
+        guide: Guide spring constant [N/m].
+        density: Density of the roller [kg/m³].
+        modulus: Contact modulus E* of roller and ring [Pa].
+    """
+
+    lines: tuple[LineContact, LineContact]
+    tables: tuple
+    ribs: RibContacts | None
+    axis_angle: Scalar
+    half_angle: Scalar
+    pitch_radius: Scalar
+    diameter: Scalar
+    half_length: Scalar
+    gap: Scalar
+    guide: Scalar
+    density: Scalar
+    modulus: Scalar
+
+
+def contact_constants(
+    bearing: AbstractRollerBearing,
+    line_law: AbstractLineLaw,
+    quadrature: AbstractQuadrature,
+) -> ContactConstants:
+    """Constants of every contact of a roller.
+
+    Args:
+        bearing: The design.
+        line_law: Law that gives the line constant.
+        quadrature: Rule whose tables are wanted.
+
+    Returns:
+        Constants, differentiable with respect to every real number of the design.
+    """
+    length, diameter = bearing.roller_length, bearing.roller_diameter
+    constant = line_law.constant(bearing.material, bearing.rings, length)
+    lines = tuple(
+        LineContact(constant, length, diameter, bearing.roller_profile, profile)
+        for profile in (bearing.outer_raceway_profile, bearing.inner_raceway_profile)
+    )
+    # Stiffness of a contact pressed by a ten-thousandth of the roller diameter.
+    stiffness = constant * length * (1e-4 * diameter) ** (1.0 / 9.0)
+    return ContactConstants(
+        lines=lines,
+        tables=tuple(table(line, quadrature) for line in lines),
+        ribs=_rib_contacts(bearing),
+        axis_angle=bearing.axis_angle,
+        half_angle=bearing.half_angle,
+        pitch_radius=0.5 * bearing.pitch_diameter,
+        diameter=diameter,
+        half_length=0.5 * length,
+        gap=0.25 * bearing.radial_internal_clearance,
+        guide=GUIDE * stiffness,
+        density=bearing.material.density,
+        modulus=contact_modulus(bearing.material, bearing.rings),
+    )
+
+
+def _rib_contacts(bearing):
+    names = bearing.ribs.present
+    if not names:
+        return None
+    modulus = contact_modulus(bearing.material, bearing.rings)
+    parts = [_rib_geometry(bearing, name) for name in names]
+    normal, centre, point = (jnp.stack(part) for part in zip(*parts, strict=True))
+    ribs = [getattr(bearing.ribs, name) for name in names]
+    return RibContacts(
+        constant=jnp.stack([sphere_constant(r.end_radius, modulus) for r in ribs]),
+        gap=jnp.stack([r.axial_gap for r in ribs]),
+        normal=normal,
+        centre=centre,
+        point=point,
+        names=names,
+    )
+
+
+def _rib_geometry(bearing, name):
+    """Normal, sphere centre and contact point of one rib in (t, m).
+
+    With S the centre of the sphere, E the end of the raceway generator and ρ the
+    direction of the rib, the height of the contact above E is (S - E)·ρ, because the
+    normal through S is square to ρ. That equation gives the angle of ρ.
+    """
+    rib = getattr(bearing.ribs, name)
+    side = -1.0 if name.endswith("minus") else 1.0
+    ring = 1.0 if name.startswith("outer") else -1.0
+    half = bearing.half_angle
+    s = 0.5 * side * bearing.roller_length
+    along = s * jnp.cos(half)
+    radius = 0.5 * bearing.roller_diameter - s * jnp.sin(half)
+    centre = jnp.stack([along - side * rib.end_radius, jnp.zeros_like(along)])
+    edge = jnp.stack([along, ring * radius])
+    # From the edge to the sphere centre: `inwards` into the row, `up` along m.
+    inwards = side * (edge[0] - centre[0])
+    up = ring * (edge[1] - centre[1])
+    # ρ = (ring-side coordinates) leaves the raceway towards the roller axis:
+    # -ring m turned by `angle`, so that (S - E)·ρ = up cos + inwards sin.
+    reach = jnp.sqrt(inwards**2 + up**2)
+    angle = jnp.arcsin(rib.contact_height / reach) - jnp.arctan2(up, inwards)
+    normal = jnp.stack([side * jnp.cos(angle), -ring * jnp.sin(angle)])
+    point = centre + (rib.end_radius + rib.axial_gap) * normal
+    return normal, centre, point
+
+
+def relative_radii(
+    constants: ContactConstants, position: Float[Array, " point"]
+) -> Float[Array, "2 point"]:
+    """Radius of relative curvature along both raceway contacts.
+
+    Args:
+        constants: From `contact_constants`.
+        position: Positions s along the generator [m].
+
+    Returns:
+        ρ at the outer and the inner raceway [m]; the sections of a taper are taken
+        square to the generator.
+    """
+    c = constants
+    roller = 0.5 * c.diameter - position * jnp.sin(c.half_angle)
+    along = position * jnp.cos(c.half_angle)
+    radii = []
+    for ring in (1.0, -1.0):
+        angle = c.axis_angle + ring * c.half_angle
+        race = (
+            c.pitch_radius
+            - along * jnp.sin(c.axis_angle)
+            + ring * roller * jnp.cos(c.axis_angle)
+        )
+        race_radius = race / jnp.cos(angle)
+        radii.append(
+            relative_radius(roller / jnp.cos(c.half_angle), -ring * race_radius)
+        )
+    return jnp.stack(radii)
+
+

@@ -1,0 +1,104 @@
+"""The one home of axes, freedoms and their order.
+
+z is the bearing axis, right-handed; azimuth from +x towards +y. Twelve freedoms:
+(ux uy uz gx gy gz) of the outer ring, then of the inner ring, in m and rad, all at the
+origin on the axis in the middle of the row. In the axial section at azimuth φ a body
+has (u axial, v radial, θ about e_t turning +z towards +r).
+"""
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..numerics.types import Ring, Scalar
+
+FREEDOMS = ("ux", "uy", "uz", "gx", "gy", "gz")
+LOADS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+RINGS = ("outer", "inner")
+
+
+def section_matrix(azimuth: Scalar) -> Float[Array, "3 6"]:
+    """Section freedoms (u, v, θ) from the six freedoms of a ring.
+
+    Args:
+        azimuth: Azimuth of the section [rad].
+
+    Returns:
+        Matrix A with (u, v, θ) = A (ux, uy, uz, gx, gy, gz).
+
+    Source: Sorokin, Zhang, Ivannikov (2018), eq. (8), first row restored.
+    """
+    c, s = jnp.cos(azimuth), jnp.sin(azimuth)
+    o, i = jnp.zeros_like(c), jnp.ones_like(c)
+    return jnp.stack(
+        [
+            jnp.stack([o, o, i, o, o, o]),
+            jnp.stack([c, s, o, o, o, o]),
+            jnp.stack([o, o, o, -s, c, o]),
+        ]
+    )
+
+
+def to_roller_axes(axis_angle: Scalar, pitch_radius: Scalar) -> Float[Array, "3 3"]:
+    """Motion of the roller centre's point of a body, along and across the roller.
+
+    (x_t, x_m, θ) = T (u, v, θ): displacement of the point (z, r) = (0, R_m) along
+    the roller axis t and across it (m, outwards), and the rotation.
+
+    Args:
+        axis_angle: Angle of the roller axis to the bearing axis [rad].
+        pitch_radius: R_m [m].
+
+    Returns:
+        T, of determinant 1.
+    """
+    # t = (cos β, sin β) with β = -axis_angle; m = (-sin β, cos β).
+    c, s = jnp.cos(axis_angle), jnp.sin(axis_angle)
+    o, i = jnp.zeros_like(c), jnp.ones_like(c)
+    return jnp.stack(
+        [
+            jnp.stack([c, -s, -c * pitch_radius]),
+            jnp.stack([s, c, -s * pitch_radius]),
+            jnp.stack([o, o, i]),
+        ]
+    )
+
+
+def from_roller_axes(axis_angle: Scalar, pitch_radius: Scalar) -> Float[Array, "3 3"]:
+    """Inverse of `to_roller_axes`."""
+    c, s = jnp.cos(axis_angle), jnp.sin(axis_angle)
+    o, i = jnp.zeros_like(c), jnp.ones_like(c)
+    return jnp.stack(
+        [
+            jnp.stack([c, s, i * pitch_radius]),
+            jnp.stack([-s, c, o]),
+            jnp.stack([o, o, i]),
+        ]
+    )
+
+
+def roll_ratio(
+    roller_diameter: Scalar, pitch_diameter: Scalar, axis_angle: Scalar
+) -> Scalar:
+    """G = D cos α / d_m of the rolling kinematics [1]."""
+    return roller_diameter * jnp.cos(axis_angle) / pitch_diameter
+
+
+def roller_azimuth(
+    first_azimuth: Scalar, n_rollers: int, ratio: Scalar, q: Ring
+) -> Float[Array, " roller"]:
+    """Azimuth of every roller after the rings have turned.
+
+    Args:
+        first_azimuth: Azimuth of roller 0 for unturned rings [rad].
+        n_rollers: Number of rollers.
+        ratio: G of `roll_ratio` [1].
+        q: Ring freedoms [m, rad]; only both gz count.
+
+    Returns:
+        Azimuths [rad].
+
+    Source: rolling without slip, φ = φ0 + ½[(1 - G) g_zi + (1 + G) g_ze].
+    """
+    turn = 0.5 * ((1.0 - ratio) * q[11] + (1.0 + ratio) * q[5])
+    pitch = 2.0 * jnp.pi / n_rollers
+    return first_azimuth + turn + pitch * jnp.arange(n_rollers, dtype=q.dtype)

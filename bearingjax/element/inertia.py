@@ -1,0 +1,99 @@
+"""Inertia of a roller that is carried round at given ring speeds."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..design.checks import number
+from ..numerics.types import Scalar, as_real
+from .constants import ContactConstants
+from .frame import roll_ratio
+
+
+class Speed(eqx.Module):
+    """Speeds of the rings about the bearing axis, positive from x towards y.
+
+    Attributes:
+        inner: Speed of the inner ring [rad/s].
+        outer: Speed of the outer ring [rad/s].
+
+    Traced: all fields.
+    """
+
+    inner: Scalar = eqx.field(converter=as_real, default=0.0)
+    outer: Scalar = eqx.field(converter=as_real, default=0.0)
+
+    def __check_init__(self):
+        number(self, "inner", self.inner, "rad/s")
+        number(self, "outer", self.outer, "rad/s")
+
+
+def roller_speeds(constants: ContactConstants, speed: Speed) -> tuple[Scalar, Scalar]:
+    """Orbital speed of the rollers and their spin relative to the cage frame.
+
+    Args:
+        constants: From `contact_constants`.
+        speed: Ring speeds.
+
+    Returns:
+        Orbital speed [rad/s], spin about the roller's own axis [rad/s] (opposite in
+        sense to the inner ring).
+
+    Source: rolling without slip at both raceways; Harris, Rolling Bearing Analysis.
+    """
+    c = constants
+    ratio = roll_ratio(c.diameter, 2.0 * c.pitch_radius, c.axis_angle)
+    orbit = 0.5 * ((1.0 - ratio) * speed.inner + (1.0 + ratio) * speed.outer)
+    difference = speed.inner - speed.outer
+    spin = -c.pitch_radius / c.diameter * (1.0 - ratio**2) * difference
+    return orbit, spin
+
+
+def mass_and_inertia(constants: ContactConstants) -> tuple[Scalar, Scalar, Scalar]:
+    """Mass of a roller and its moments of inertia, profile neglected.
+
+    Args:
+        constants: From `contact_constants`.
+
+    Returns:
+        Mass [kg], moment about its axis and about a cross axis through the roller
+        centre [kg m²], of a cone frustum (cylinder for a half angle of zero).
+    """
+    c = constants
+    height = 2.0 * c.half_length * jnp.cos(c.half_angle)
+    r2 = (0.5 * c.diameter) ** 2
+    g2 = (jnp.tan(c.half_angle) * height) ** 2
+    # Integrals over the axis of r², r⁴ and r² z² with r = D/2 - z tan(half angle).
+    second = height * (r2 + g2 / 12.0)
+    fourth = height * (r2**2 + 0.5 * r2 * g2 + g2**2 / 80.0)
+    spread = height**3 * (r2 / 12.0 + g2 / 80.0)
+    factor = jnp.pi * c.density
+    return factor * second, 0.5 * factor * fourth, factor * (0.25 * fourth + spread)
+
+
+def inertia_force(
+    constants: ContactConstants, speed: Speed
+) -> Float[Array, "3"]:
+    """Inertia force and gyroscopic moment on a roller, in roller axes.
+
+    Centrifugal force m R_m ω_c² through the roller centre, outwards, and the
+    gyroscopic moment -ω_c sin β [Ia ω_s + (Ia - It) ω_c cos β], β = -axis angle. Both
+    are constant, so they have the potential -F·y.
+
+    Args:
+        constants: From `contact_constants`.
+        speed: Ring speeds.
+
+    Returns:
+        Force along t and m [N] and moment turning z towards r [N m].
+
+    Source: angular momentum H = Ia (ω_c cos β + ω_s) t + It ω_c (e_z - cos β t),
+        F = -dH/dt; the mass centre is taken at the roller centre.
+    """
+    c = constants
+    orbit, spin = roller_speeds(c, speed)
+    mass, axial, cross = mass_and_inertia(c)
+    sin, cos = jnp.sin(c.axis_angle), jnp.cos(c.axis_angle)
+    force = mass * c.pitch_radius * orbit**2
+    moment = orbit * sin * (axial * spin + (axial - cross) * orbit * cos)
+    return jnp.stack([-sin * force, cos * force, moment])

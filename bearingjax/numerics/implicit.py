@@ -1,0 +1,88 @@
+"""Derivatives through a solved system, without differentiating the iterations.
+
+The implicit function theorem, written as a recursive derivative rule: right at every
+order, forward and reverse, under `jit` and `vmap`, with no host callback.
+"""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax import lax
+
+from .linear import solve_symmetric
+
+
+def attach(residual, solution, args):
+    """Attach to a solution of residual(y, args) = 0 its dependence on `args`.
+
+    The value returned is `solution`; its derivative is
+    dy = -(∂residual/∂y)⁻¹ ∂residual/∂args · dargs. The rule calls itself for the
+    point of evaluation, so second and higher derivatives are exact as well.
+
+    Args:
+        residual: Function (y, args) -> array like `y`, with symmetric Jacobian in
+            y (the gradient of an energy).
+        solution: Solved y (n,); its own derivative is ignored.
+        args: Any pytree; what is not a floating array is static.
+
+    Returns:
+        `solution`, differentiable with respect to `args`.
+
+    Source: implicit function theorem; a rule that makes one differentiable Newton
+        step instead would be wrong in the second derivative.
+    """
+
+    def correction(of_y, y, change):
+        return -solve_symmetric(jax.jacfwd(of_y)(y), change)
+
+    return _attach(residual, solution, args, correction)
+
+
+def attach_roots(residual, solution, args):
+    """`attach` for independent scalar roots, element by element, any sign of slope.
+
+    Args:
+        residual: Function (y, args) -> array like `y`, element k of the result
+            depending on element k of y only.
+        solution: Roots, any shape; their own derivative is ignored.
+        args: As in `attach`.
+
+    Returns:
+        `solution`, differentiable; where the slope is zero (the root has just
+        vanished) the derivative is zero.
+    """
+
+    def correction(of_y, y, change):
+        _, slope = jax.jvp(of_y, (y,), (jnp.ones_like(y),))
+        flat = slope == 0
+        return jnp.where(flat, 0.0, -change / jnp.where(flat, 1.0, slope))
+
+    return _attach(residual, solution, args, correction)
+
+
+def _attach(residual, solution, args, correction):
+    traced, static = eqx.partition(args, eqx.is_inexact_array)
+
+    def bound(y, traced):
+        return residual(y, eqx.combine(traced, static))
+
+    @jax.custom_jvp
+    def attached(y, traced):
+        return y
+
+    @attached.defjvp
+    def _rule(primals, tangents):
+        y0, traced = primals
+        _, dtraced = tangents
+        y = attached(y0, traced)
+        _, change = jax.jvp(lambda t: bound(y, t), (traced,), (dtraced,))
+        return y, correction(lambda v: bound(v, traced), y, change)
+
+    return attached(lax.stop_gradient(solution), traced)
+
+
+def stop(tree):
+    """`lax.stop_gradient` on every floating array of a pytree."""
+    return jax.tree.map(
+        lambda x: lax.stop_gradient(x) if eqx.is_inexact_array(x) else x, tree
+    )

@@ -1,0 +1,64 @@
+"""Result codes of solvers, and the one place where they become exceptions."""
+
+import enum
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Int
+
+
+class Result(enum.IntEnum):
+    """How a solve ended; ordered, so that the worst of many is their maximum."""
+
+    CONVERGED = 0
+    STEP_LIMIT = 1
+    SADDLE = 2
+    NO_LOAD_PATH = 3
+    NON_FINITE = 4
+
+    @property
+    def label(self) -> str:
+        """Lower-case name, as files and messages write it."""
+        return self.name.lower()
+
+
+class SolveError(RuntimeError):
+    """A solve did not converge; the message names cause and cure."""
+
+
+def code(result: Result) -> Int[Array, ""]:
+    """Result code as a traced integer."""
+    return jnp.asarray(int(result), dtype=jnp.int32)
+
+
+def worst(codes: Int[Array, "..."]) -> Int[Array, ""]:
+    """The worst code of many."""
+    return jnp.max(codes).astype(jnp.int32)
+
+
+def raise_unless_converged(tree, result: Int[Array, "..."], message):
+    """Return `tree`, or raise if `result` is not `CONVERGED`.
+
+    Outside `jit` a `SolveError`; under `jit` Equinox's run-time error, through the
+    one host callback that the package ever makes.
+
+    Args:
+        tree: Anything with arrays, returned as it is.
+        result: Result codes, any shape.
+        message: Called without arguments outside `jit` for the text; it may read
+            concrete values.
+
+    Raises:
+        SolveError: If a code is not `CONVERGED` (outside `jit`).
+    """
+    if isinstance(result, jax.core.Tracer):
+        return eqx.error_if(
+            tree,
+            jnp.any(result != Result.CONVERGED),
+            "bearingjax: the solve did not converge; call with throw=False and read"
+            " `result`.",
+        )
+    if bool(jnp.any(result != Result.CONVERGED)):
+        raise SolveError(message())
+    return tree

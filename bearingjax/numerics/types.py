@@ -1,0 +1,29 @@
+"""Number types shared by every layer."""
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, Int
+
+Scalar = Float[Array, ""]
+Count = Int[Array, ""]
+Flag = Bool[Array, ""]
+Ring = Float[Array, "12"]
+RingStiffness = Float[Array, "12 12"]
+
+
+def as_real(value) -> Array:
+    """Converter of every real field: a floating array, never a Python float.
+
+    A Python float in a Module would be static under `jit`: a new value would
+    compile anew and have no gradient.
+
+    Args:
+        value: Number or array-like [any unit].
+
+    Returns:
+        float64 array when JAX has 64 bit enabled, float32 otherwise; arrays that
+        are floating already keep their dtype.
+    """
+    if isinstance(value, jax.Array) and jnp.issubdtype(value.dtype, jnp.floating):
+        return value
+    return jnp.asarray(value, dtype=float)

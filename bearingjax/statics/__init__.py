@@ -1,0 +1,8 @@
+"""Load solves and what they return."""
+
+from .load import restrained_freedoms as restrained_freedoms
+from .load import solve_load as solve_load
+from .solution import Solution as Solution
+from .solution import Stats as Stats
+from .solution import message as message
+from .solution import warnings as warnings

@@ -1,0 +1,244 @@
+"""Where the rings go under load.
+
+Minimises V(q) - load·q over the free freedoms of the moving ring. With linearised
+kinematics this is convex, so the trust-region Newton method on the exact V, V′, V″
+converges from anywhere, or runs away where nothing holds the load, and says so.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design.bearing import AbstractRollerBearing, TaperedRollerBearing
+from ..element.bearing_element import BearingElement
+from ..element.frame import FREEDOMS, LOADS, RINGS
+from ..element.inertia import Speed
+from ..numerics.implicit import attach, stop
+from ..numerics.minimise import Evaluation, TrustRegionNewton
+from ..numerics.result import Result, raise_unless_converged
+from .solution import Solution, Stats, describe, message
+
+DEFAULT_TOLERANCE = {"float64": 1e-11, "float32": 1e-4}
+
+
+def restrained_freedoms(bearing: AbstractRollerBearing) -> tuple[str, ...]:
+    """Freedoms that the bearing can hold at all, against a load of the right sense.
+
+    Never gz; uz only for tapers and where a pair of ribs passes axial load from ring
+    to ring.
+
+    Args:
+        bearing: The design.
+    """
+    ribs = bearing.ribs.present
+    axial = isinstance(bearing, TaperedRollerBearing) or any(
+        set(pair) <= set(ribs)
+        for pair in (("outer_minus", "inner_plus"), ("outer_plus", "inner_minus"))
+    )
+    return ("ux", "uy", "uz", "gx", "gy") if axial else ("ux", "uy", "gx", "gy")
+
+
+def solve_load(
+    element: BearingElement,
+    load: Float[Array, "6"] | Sequence[float] | None = None,
+    *,
+    prescribed: Mapping[str, float] | None = None,
+    free: Sequence[str] | None = None,
+    fixed_ring: str = "outer",
+    fixed_displacement: Float[Array, "6"] | Sequence[float] | None = None,
+    speed: Speed | None = None,
+    points: int = 101,
+    tolerance: float | None = None,
+    max_steps: int = 200,
+    throw: bool = True,
+) -> Solution:
+    """Equilibrium of a bearing under any mix of loads and displacements.
+
+    Args:
+        element: The bearing.
+        load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring at the origin [N, N m];
+            `None` is no load. A load on a freedom that neither is free nor
+            prescribed goes into the support.
+        prescribed: Displacements given instead of loads, by freedom name [m, rad];
+            gz turns the set of rollers.
+        free: Freedoms of the moving ring that may move. Default: all that the
+            bearing can restrain and that are not prescribed; a load on any other is
+            then "no load path". The others stay at zero.
+        fixed_ring: "outer" or "inner".
+        fixed_displacement: Displacement of the fixed ring (6,) [m, rad]; default 0.
+        speed: Ring speeds; `None`: no inertia.
+        points: Positions along the rollers at which loads are reported.
+        tolerance: Relative residual at which the solve ends; default 1e-11 in
+            float64, 1e-4 in float32. Static.
+        max_steps: Step limit of the load solve. Static.
+        throw: Raise if the solve fails, outside or under `jit`; otherwise read
+            `solution.result`.
+
+    Returns:
+        Solution, differentiable with respect to design, load, prescribed values and
+        speeds (implicit function theorem).
+
+    Raises:
+        ValueError: For unknown names, contradictory choices or non-finite input.
+        SolveError: If the solve did not converge and `throw` is set.
+
+    Fails: `STEP_LIMIT`, `NO_LOAD_PATH` (freedom in `solution.unrestrained`),
+        `NON_FINITE`, `SADDLE` (finite kinematics).
+    """
+    if fixed_ring not in RINGS:
+        raise ValueError(
+            f"solve_load: `fixed_ring` is {fixed_ring!r}; it must be 'outer' or 'inner'."
+        )
+    dtype = element.bearing.pitch_diameter.dtype
+    load = _six("load", load, dtype)
+    fixed = _six("fixed_displacement", fixed_displacement, dtype)
+    prescribed = {} if prescribed is None else dict(prescribed)
+    _check_names("prescribed", prescribed)
+    given = jnp.stack(
+        [jnp.asarray(prescribed.get(name, 0.0), dtype=dtype) for name in FREEDOMS]
+    )
+    default_free = free is None
+    if free is None:
+        free = [f for f in restrained_freedoms(element.bearing) if f not in prescribed]
+    _check_names("free", free)
+    both = sorted(set(free) & set(prescribed))
+    if both:
+        raise ValueError(
+            f"solve_load: {', '.join(both)} is both free and prescribed; choose one."
+        )
+    if "gz" in free:
+        raise ValueError(
+            "solve_load: `free` contains gz, which no rolling bearing restrains; it"
+            " is operating data (prescribe it to turn the set of rollers)."
+        )
+    is_free = tuple(name in free for name in FREEDOMS)
+    # With the default choice a load that nothing can carry is an error of the scene.
+    held = tuple(name in prescribed or not default_free for name in FREEDOMS)
+    if tolerance is None:
+        tolerance = DEFAULT_TOLERANCE[str(dtype)]
+    solution = _solve(
+        element, load, given, fixed, speed, is_free, held, fixed_ring, points,
+        tolerance, max_steps,
+    )
+    if throw:
+        moving = RINGS[1 - RINGS.index(fixed_ring)]
+        solution = raise_unless_converged(
+            solution, solution.result, lambda: message(solution, moving)
+        )
+    return solution
+
+
+@eqx.filter_jit
+def _solve(
+    element, load, given, fixed, speed, is_free, held, fixed_ring, points, tolerance,
+    max_steps,
+):
+    bearing = element.bearing
+    radius = 0.5 * bearing.pitch_diameter
+    one = jnp.ones_like(radius)
+    # Metres for every unknown: rotations times the pitch radius.
+    scale = jnp.concatenate([jnp.tile(one, 3), jnp.tile(1.0 / radius, 3)])
+    free = jnp.asarray(np.array(is_free, dtype=float), dtype=load.dtype)
+    moving = slice(6, 12) if fixed_ring == "outer" else slice(0, 6)
+    start = (1.0 - free) * given / scale
+
+    def ring_freedoms(y, scale, fixed):
+        mine = scale * y
+        pair = [fixed, mine] if fixed_ring == "outer" else [mine, fixed]
+        return jnp.concatenate(pair)
+
+    args = (element, load, given, fixed, speed, scale)
+    frozen = stop(args)
+
+    def function(y, with_hessian):
+        element, load, _, fixed, speed, scale = frozen
+        e = element.evaluate(ring_freedoms(y, scale, fixed), speed)
+        pull = free * scale * load
+        g = free * (scale * e.force[moving]) - pull
+        h = jnp.outer(free * scale, free * scale) * e.stiffness[moving, moving]
+        trace = jnp.trace(h)
+        h = h + jnp.diag(1.0 - free)
+        size = jnp.sqrt(pull @ pull)
+        eps = jnp.finfo(load.dtype).eps
+        # Round-off of forces that cancel, and of positions in a stiff bearing.
+        noise = eps * (e.magnitude + trace * jnp.sqrt(y @ y))
+        reference = jnp.where(size > 0, size, e.magnitude)
+        return Evaluation(e.energy - pull @ y, g, h, reference, noise)
+
+    pull = free * stop(scale) * stop(load)
+    size = jnp.sqrt(pull @ pull)
+    direction = pull / jnp.where(size > 0, size, 1.0)
+    clearance = 0.25 * jnp.abs(stop(bearing.radial_internal_clearance))
+    first_radius = 1e-7 * stop(radius) + clearance
+    solver = TrustRegionNewton(tolerance=tolerance, max_steps=max_steps)
+    minimum = solver.search(
+        function, stop(start), first_radius, direction, 8.0 * stop(radius)
+    )
+
+    def residual(y, args):
+        element, load, given, fixed, speed, scale = args
+        force = element.force(ring_freedoms(y, scale, fixed), speed)[moving]
+        # A held freedom follows what is prescribed for it.
+        return free * scale * (force - load) + (1.0 - free) * (y - given / scale)
+
+    y = attach(residual, minimum.x, args)
+    q = ring_freedoms(y, scale, fixed)
+    fields, evaluated = describe(element, q, speed, points)
+
+    out = free * scale * (fields["force"][moving] - load)
+    reference = jnp.where(size > 0, size, evaluated.magnitude)
+    tiny = jnp.finfo(load.dtype).tiny
+    final = jnp.sqrt(stop(out) @ stop(out)) / jnp.maximum(reference, tiny)
+    stats = Stats(final, minimum.steps, evaluated.residual, evaluated.steps)
+
+    result = jnp.maximum(minimum.result, evaluated.result)
+    # A load on a freedom that the type of bearing cannot restrain.
+    adrift = np.array([not (f or h) for f, h in zip(is_free, held, strict=True)])
+    loaded = jnp.asarray(adrift) & ~(load == 0)
+    result = jnp.where(
+        jnp.any(loaded) & (result != Result.NON_FINITE),
+        int(Result.NO_LOAD_PATH),
+        result,
+    )
+    runaway = _runaway(minimum.x, free)
+    unrestrained = jnp.where(jnp.any(loaded), jnp.argmax(loaded), runaway)
+    inputs = jnp.concatenate([load, given, fixed])
+    bad = ~jnp.all(jnp.isfinite(inputs)) | ~jnp.all(jnp.isfinite(fields["force"]))
+    result = jnp.where(bad, int(Result.NON_FINITE), result).astype(jnp.int32)
+    unrestrained = jnp.where(result == Result.NO_LOAD_PATH, unrestrained, -1)
+    return Solution(
+        **fields,
+        result=result,
+        unrestrained=unrestrained.astype(jnp.int32),
+        stats=stats,
+    )
+
+
+def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Array:
+    """Freedom that runs away: the axial one if it takes part, else the largest."""
+    size = jnp.abs(y) * free
+    return jnp.where(size[2] > 0.1 * jnp.max(size), 2, jnp.argmax(size))
+
+
+def _six(name, value, dtype):
+    array = jnp.zeros(6, dtype) if value is None else jnp.asarray(value, dtype=dtype)
+    if array.shape != (6,):
+        order = LOADS if name == "load" else FREEDOMS
+        raise ValueError(
+            f"solve_load: `{name}` has shape {array.shape}; it must be (6,):"
+            f" {' '.join(order)}."
+        )
+    return array
+
+
+def _check_names(what, names):
+    unknown = [n for n in names if n not in FREEDOMS]
+    if unknown:
+        raise ValueError(
+            f"solve_load: `{what}` names {', '.join(map(repr, unknown))}; freedoms are"
+            f" {', '.join(FREEDOMS)}."
+        )
+

@@ -1,0 +1,161 @@
+"""Does the equilibrium of a roller ever fail? A million random rollers per solver.
+
+Ring motions: approach between the rings log-uniform from 1e-9 mm to 0.3 mm (half of
+the rollers pulled apart instead: loose), tilts of the rings against each other up to
+10 mrad, axial shifts up to 0.1 mm, four designs. Counted: result codes, and rollers
+whose residual, evaluated afresh, is above the tolerance that the solver claims.
+
+Run: python benchmarks/robust_rollers.py [--count 1000000] [--solver newton|bfgs|plain]
+"""
+
+import argparse
+import json
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+from bearingjax.element.energy import RollerModel, derivatives  # noqa: E402
+from bearingjax.element.equilibrium import is_loose, solve_roller  # noqa: E402
+from bearingjax.numerics.linear import solve_symmetric  # noqa: E402
+from bearingjax.numerics.minimise import AbstractMinimiser, Minimum  # noqa: E402
+
+CHUNK = 5000
+
+
+class PlainNewton(AbstractMinimiser):
+    """Newton's method without safeguards: what DESIGN warns of, for comparison."""
+
+    def minimise(self, function, start, radius):
+        def body(_, x):
+            e = function(x, True)
+            return x - solve_symmetric(e.hessian, e.gradient)
+
+        x = jax.lax.fori_loop(0, 60, body, start)
+        e = function(x, True)
+        size = jnp.sqrt(e.gradient @ e.gradient)
+        good = size <= 1e-9 * e.scale + 10 * e.noise
+        code = jnp.where(good, 0, 1).astype(jnp.int32)
+        return Minimum(x, size / (e.scale + 1e-300), jnp.asarray(60), code, radius)
+
+
+SOLVERS = {
+    "newton": bj.TrustRegionNewton(),
+    "bfgs": bj.BFGS(),
+    "plain": PlainNewton(),
+}
+
+
+def designs():
+    """Four bearings that differ in everything that matters to the solver."""
+    rib = bj.Rib(0.3, 1.5e-3)
+    common = dict(radial_internal_clearance=20e-6)
+    angle = np.deg2rad
+    return {
+        "crowned on crowned, no ribs": bj.CylindricalRollerBearing(
+            12, 0.0725, 0.014, 0.01372,
+            roller_profile=bj.CrownedEnds(0.009, 1.0),
+            inner_raceway_profile=bj.CircularCrown(4.0), **common,
+        ),
+        "logarithmic, NUP": bj.CylindricalRollerBearing(
+            14, 0.065, 0.010, 0.010, roller_profile=bj.Logarithmic(),
+            ribs=bj.Ribs.arrangement("NUP", rib, 60e-6), **common,
+        ),
+        "straight needle": bj.NeedleRollerBearing(24, 0.03, 0.003, 0.015, **common),
+        "taper, large rib": bj.TaperedRollerBearing(
+            17, 0.052, 0.0082, 0.0115, roller_profile=bj.Logarithmic(),
+            roller_axis_angle=angle(11), roller_half_angle=angle(1.7235),
+            ribs=bj.Ribs(inner_minus=bj.Rib(0.09, 1.2e-3)),
+        ),
+    }  # fmt: skip
+
+
+def random_rings(rng, count, clearance):
+    """Motions of outer and inner ring in roller axes (count, 6) [m, rad].
+
+    The approach is counted from where an untilted roller just touches both rings.
+    """
+    size = 10.0 ** rng.uniform(-12, np.log10(0.3e-3), count)
+    loose = rng.random(count) < 0.5
+    across = np.where(loose, size, -size) - 0.5 * clearance
+    tilt = rng.uniform(-10e-3, 10e-3, count) * 10.0 ** rng.uniform(-4, 0, count)
+    along = rng.uniform(-1e-4, 1e-4, count) * 10.0 ** rng.uniform(-3, 0, count)
+    between = np.stack([along, across, tilt], axis=1)
+    common = rng.uniform(-1e-5, 1e-5, (count, 3))
+    return np.concatenate([common + 0.5 * between, common - 0.5 * between], axis=1)
+
+
+def run(count, solver, seed=0):
+    """One row per design: counts of codes, worst residual, steps."""
+    minimiser = SOLVERS[solver]
+    rows = []
+    for index, (name, bearing) in enumerate(designs().items()):
+        element = bj.BearingElement(bearing)
+        constants = element.constants()
+        kinematics = element.kinematics
+        model = RollerModel(
+            constants, kinematics.prepare(constants), kinematics, element.quadrature
+        )
+
+        @eqx.filter_jit
+        def solve(model, rings):
+            def one(rings):
+                magnitude = jnp.max(jnp.abs(rings[jnp.array([0, 1, 3, 4])]))
+                state = solve_roller(model, rings, None, magnitude, minimiser)
+                d = derivatives(model, rings, state.x)
+                loads = jnp.sum(d.raceway_load) + jnp.sum(d.rib_load)
+                out = jnp.sqrt(jnp.sum(d.gradient[6:] ** 2))
+                # Round-off of the approach in this contact, times its stiffness.
+                eps = jnp.finfo(rings.dtype).eps
+                place = magnitude + jnp.abs(model.constants.gap)
+                place = place + jnp.sqrt(state.x @ state.x)
+                floor = 8 * eps * jnp.trace(d.hessian[6:, 6:]) * place
+                floor = floor + 1e-6 * model.constants.guide * place
+                balanced = out <= 1e-9 * loads + floor
+                loose = is_loose(model, state.x, magnitude, loads, d.gradient[6:])
+                wrong = ~(balanced | loose)
+                return state.result, state.steps, wrong, loads > 1e-6
+
+            return jax.vmap(one)(rings)
+
+        clearance = float(bearing.radial_internal_clearance)
+        rng = np.random.default_rng([seed, index])
+        share = max(count // 4, 1)
+        chunk = min(CHUNK, share)
+        bad = silent = loaded = done = worst_steps = 0
+        total_steps = 0.0
+        while done < share:
+            rings = jnp.asarray(random_rings(rng, chunk, clearance))
+            code, steps, wrong, has_load = map(np.asarray, solve(model, rings))
+            bad += int((code != 0).sum())
+            silent += int((wrong & (code == 0)).sum())
+            loaded += int(has_load.sum())
+            worst_steps = max(worst_steps, int(steps.max()))
+            total_steps += float(steps.sum())
+            done += chunk
+        rows.append(
+            dict(design=name, solver=solver, rollers=done, loaded=loaded,
+                 unconverged=bad, silently_wrong=silent, most_steps=worst_steps,
+                 mean_steps=round(total_steps / done, 2))
+        )  # fmt: skip
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=1_000_000)
+    parser.add_argument("--solver", choices=SOLVERS, default="newton")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--smoke", action="store_true", help="a few hundred rollers")
+    args = parser.parse_args()
+    for row in run(400 if args.smoke else args.count, args.solver, args.seed):
+        print(json.dumps(row))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+"""Every registered design runs every identity: add a line, and it is tested."""
+
+import numpy as np
+
+import bearingjax as bj
+
+_RIB = bj.Rib(0.3, 1.5e-3)
+_DEG = np.pi / 180
+_SPEED = bj.Speed(inner=3000 * 2 * np.pi / 60)
+
+
+def taper(n=6, **change):
+    values = dict(
+        roller_axis_angle=11 * _DEG,
+        roller_half_angle=1.7235 * _DEG,
+        roller_profile=bj.Logarithmic(),
+        ribs=bj.Ribs(inner_minus=bj.Rib(0.09, 1.2e-3)),
+    )
+    return bj.TaperedRollerBearing(n, 0.052, 0.0082, 0.0115, **(values | change))
+
+
+def bearings():
+    """Name to bearing, small ones: 5 to 7 rollers."""
+    cylinder = bj.CylindricalRollerBearing
+    return {
+        "cylindrical, crowned ends": cylinder(
+            7, 0.0725, 0.014, 0.01372, roller_profile=bj.CrownedEnds(0.009, 1.0)
+        ),
+        "cylindrical NUP, logarithmic": cylinder(
+            6,
+            0.065,
+            0.010,
+            0.010,
+            roller_profile=bj.Logarithmic(),
+            ribs=bj.Ribs.arrangement("NUP", _RIB, 2e-6),
+            radial_internal_clearance=10e-6,
+        ),
+        "needle, crowned, preloaded": bj.NeedleRollerBearing(
+            7,
+            0.03,
+            0.003,
+            0.012,
+            roller_profile=bj.CircularCrown(4.0),
+            inner_raceway_profile=bj.CircularCrown(8.0),
+            radial_internal_clearance=-4e-6,
+        ),
+        "taper, large rib": taper(),
+        "taper, half angle zero": taper(roller_half_angle=0.0, ribs=bj.Ribs()),
+    }
+
+
+def quadratures():
+    return {"midpoint": bj.Midpoint(20), "contact_mapped": bj.ContactMapped(24)}
+
+
+def speeds():
+    return {"still": None, "turning": _SPEED}
+
+
+def motion(seed=0, size=1.0):
+    """Ring freedoms that load some rollers and leave others loose (12,)."""
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(-1, 1, 12) * np.tile(np.repeat([4e-6, 2e-4], 3), 2) * size
+    q[7] -= 18e-6 * size
+    # Axially outer against inner: closes tapers, and the ribs of an NUP.
+    q[8] += 25e-6 * size
+    q[[5, 11]] = 0.0
+    return q
