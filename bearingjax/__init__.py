@@ -26,6 +26,7 @@ from .design import Straight as Straight
 from .design import Tabulated as Tabulated
 from .design import TaperedRollerBearing as TaperedRollerBearing
 from .element import BearingElement as BearingElement
+from .element import FREEDOMS as FREEDOMS
 from .element import Finite as Finite
 from .element import Linearised as Linearised
 from .element import Speed as Speed
@@ -36,6 +37,7 @@ from .numerics import Result as Result
 from .numerics import SolveError as SolveError
 from .numerics import TrustRegionNewton as TrustRegionNewton
 from .statics import Solution as Solution
+from .statics import restrained_freedoms as restrained_freedoms
 from .statics import solve_load as solve_load
 
 __version__ = _version("bearingjax")

@@ -63,7 +63,8 @@ def solve_roller(
         State whose `x` is differentiable, to every order, with respect to the
         design, the ring motion and the inertia force.
 
-    Fails: `STEP_LIMIT`, `NON_FINITE`; `SADDLE` with finite kinematics.
+    Fails: `STEP_LIMIT`, `NON_FINITE`; `NO_LOAD_PATH` if inertia throws the roller off,
+        because no contact holds it; `SADDLE` with finite kinematics.
     """
     fixed = stop((model, rings, inertia, magnitude))
     state = _solve(*fixed, minimiser)
@@ -162,6 +163,11 @@ def _solve(model, rings, inertia, magnitude, minimiser):
         h = derivatives(model, rings, minimum.x).hessian[6:, 6:]
         saddle = (smallest_pivot(h) < -1e-9) & (result == Result.CONVERGED)
         result = jnp.where(saddle, int(Result.SADDLE), result)
+    if f is not None:
+        # Thrown off: inertia along a direction that only the guide holds.
+        away = jnp.sqrt(minimum.x @ minimum.x) > 10.0 * c.diameter
+        lost = away & (result != int(Result.NON_FINITE))
+        result = jnp.where(lost, int(Result.NO_LOAD_PATH), result)
     return RollerState(
         minimum.x, minimum.residual, minimum.steps, result.astype(jnp.int32)
     )

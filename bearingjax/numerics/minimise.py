@@ -108,13 +108,15 @@ class TrustRegionNewton(AbstractMinimiser):
     max_steps: int = eqx.field(static=True, default=100)
 
     def minimise(self, function, start, radius):
-        return self.search(function, start, radius, None, None)
+        tolerance = _tolerance(self.tolerance, start.dtype)
+        return self.search(function, start, radius, tolerance, None, None)
 
     def search(
         self,
         function: Function,
         start: Float[Array, " n"],
         radius: Float[Array, ""],
+        tolerance: Float[Array, ""] | float,
         direction: Float[Array, " n"] | None,
         limit: Float[Array, ""] | None,
     ) -> Minimum:
@@ -122,6 +124,7 @@ class TrustRegionNewton(AbstractMinimiser):
 
         Args:
             function, start, radius: As in `minimise`.
+            tolerance: |gradient| / scale at which the search ends; may be traced.
             direction: Unit vector (n,), or zero. If the function falls along it and
                 too little curvature is felt within `radius` to end the fall, it is
                 first followed in growing steps until the function rises: Newton's
@@ -131,7 +134,6 @@ class TrustRegionNewton(AbstractMinimiser):
 
         Fails: as `minimise`, and `NO_LOAD_PATH`.
         """
-        tolerance = _tolerance(self.tolerance, start.dtype)
         eps = jnp.finfo(start.dtype).eps
         n = start.shape[0]
         identity = jnp.eye(n, dtype=start.dtype)
@@ -171,7 +173,11 @@ class TrustRegionNewton(AbstractMinimiser):
             accept = accept | (new_size <= 0.5 * size)
             good = (actual <= 0.7 * predicted) | (new_size <= 0.25 * size)
             grown = jnp.where(good, jnp.maximum(state.radius, 6.0 * length), state.radius)
-            radius = jnp.where(accept, grown, 0.25 * length)
+            # A step too long has met a stiff contact: Newton along the step, from its
+            # far end, says where.
+            bend = jnp.maximum(p @ new.hessian @ p, tiny)
+            shorter = jnp.clip(1.0 - (new.gradient @ p) / bend, 0.1, 0.9)
+            radius = jnp.where(accept, grown, shorter * length)
             reach = state.reach
             if direction is not None:
                 fall = -(new.gradient @ direction)

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
+from jax import lax
 from jaxtyping import Array, Float
 
 from ..design.bearing import AbstractRollerBearing, TaperedRollerBearing
@@ -17,8 +18,9 @@ from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..element.inertia import Speed
 from ..numerics.implicit import attach, stop
-from ..numerics.minimise import Evaluation, TrustRegionNewton
+from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
+from ..numerics.types import Scalar
 from .solution import Solution, Stats, describe, message
 
 DEFAULT_TOLERANCE = {"float64": 1e-11, "float32": 1e-4}
@@ -153,10 +155,10 @@ def _solve(
     args = (element, load, given, fixed, speed, scale)
     frozen = stop(args)
 
-    def function(y, with_hessian):
+    def function(y, factor):
         element, load, _, fixed, speed, scale = frozen
         e = element.evaluate(ring_freedoms(y, scale, fixed), speed)
-        pull = free * scale * load
+        pull = factor * free * scale * load
         g = free * (scale * e.force[moving]) - pull
         h = jnp.outer(free * scale, free * scale) * e.stiffness[moving, moving]
         trace = jnp.trace(h)
@@ -171,12 +173,36 @@ def _solve(
     pull = free * stop(scale) * stop(load)
     size = jnp.sqrt(pull @ pull)
     direction = pull / jnp.where(size > 0, size, 1.0)
-    clearance = 0.25 * jnp.abs(stop(bearing.radial_internal_clearance))
-    first_radius = 1e-7 * stop(radius) + clearance
-    solver = TrustRegionNewton(tolerance=tolerance, max_steps=max_steps)
-    minimum = solver.search(
-        function, stop(start), first_radius, direction, 8.0 * stop(radius)
-    )
+    play = _play(frozen[0])
+    first_radius = 1e-7 * stop(radius) + play
+    solver = TrustRegionNewton(max_steps=max_steps)
+    # A load that presses the contacts by far less than the play that it takes up is
+    # approached from a larger one, by tens: with it, as with a barrier method, all
+    # contacts that matter are found early and Newton's method stays on their side.
+    pressing = _load_for(frozen[0], play)
+    factor = jnp.where(size > 0, jnp.maximum(1.0, pressing / size), 1.0)
+
+    def unfinished(state):
+        minimum, factor, _ = state
+        return (factor > 0) & (minimum.result == Result.CONVERGED)
+
+    def at_factor(state):
+        minimum, factor, steps = state
+        new = solver.search(
+            lambda y, _: function(y, factor),
+            minimum.x,
+            first_radius,
+            jnp.where(factor > 1.0, jnp.maximum(tolerance, 1e-2), tolerance),
+            direction,
+            8.0 * stop(radius),
+        )
+        lower = jnp.where(factor > 1.0, jnp.maximum(0.1 * factor, 1.0), 0.0)
+        return new, lower, steps + new.steps
+
+    zero = jnp.zeros((), load.dtype)
+    none = jnp.zeros((), jnp.int32)
+    begin = Minimum(stop(start), zero, none, none, first_radius)
+    minimum, _, steps = lax.while_loop(unfinished, at_factor, (begin, factor, none))
 
     def residual(y, args):
         element, load, given, fixed, speed, scale = args
@@ -192,7 +218,7 @@ def _solve(
     reference = jnp.where(size > 0, size, evaluated.magnitude)
     tiny = jnp.finfo(load.dtype).tiny
     final = jnp.sqrt(stop(out) @ stop(out)) / jnp.maximum(reference, tiny)
-    stats = Stats(final, minimum.steps, evaluated.residual, evaluated.steps)
+    stats = Stats(final, steps, evaluated.residual, evaluated.steps)
 
     result = jnp.maximum(minimum.result, evaluated.result)
     # A load on a freedom that the type of bearing cannot restrain.
@@ -208,13 +234,30 @@ def _solve(
     inputs = jnp.concatenate([load, given, fixed])
     bad = ~jnp.all(jnp.isfinite(inputs)) | ~jnp.all(jnp.isfinite(fields["force"]))
     result = jnp.where(bad, int(Result.NON_FINITE), result).astype(jnp.int32)
-    unrestrained = jnp.where(result == Result.NO_LOAD_PATH, unrestrained, -1)
+    of_ring = jnp.any(loaded) | (minimum.result == Result.NO_LOAD_PATH)
+    unrestrained = jnp.where(
+        of_ring & (result == Result.NO_LOAD_PATH), unrestrained, -1
+    )
     return Solution(
         **fields,
         result=result,
         unrestrained=unrestrained.astype(jnp.int32),
         stats=stats,
     )
+
+
+def _play(element: BearingElement) -> Scalar:
+    """Largest play between the rings, radial or axial [m]."""
+    bearing = element.bearing
+    gaps = [getattr(bearing.ribs, name).axial_gap for name in bearing.ribs.present]
+    play = jnp.stack([0.5 * bearing.radial_internal_clearance, *(2 * g for g in gaps)])
+    return jnp.maximum(jnp.max(play), 0.0)
+
+
+def _load_for(element: BearingElement, approach: Scalar) -> Scalar:
+    """Load of one raceway contact pressed by `approach` [N]."""
+    line = element.constants().lines[0]
+    return line.length * line.line_load(approach)
 
 
 def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Array:

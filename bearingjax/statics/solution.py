@@ -56,7 +56,8 @@ class Solution(eqx.Module):
             at -L/2 and +L/2.
         result: `Result` code.
         unrestrained: Index of the freedom of the moving ring that no contact holds
-            against the load, if the result is `NO_LOAD_PATH`; otherwise -1.
+            against the load, if the result is `NO_LOAD_PATH`; otherwise -1 (also if
+            it is a roller that nothing holds).
         stats: How the solve went.
     """
 
@@ -94,6 +95,11 @@ def message(solution: Solution, moving_ring: str) -> str:
     if result is Result.CONVERGED:
         return "converged"
     if result is Result.NO_LOAD_PATH:
+        if int(solution.unrestrained) < 0:
+            return (
+                "No load path for a roller: inertia throws it off, because no rib"
+                " holds it along its axis. Add the rib, or lower the speed."
+            )
         freedom = FREEDOMS[int(solution.unrestrained)]
         return (
             f"No load path in {freedom} of the {moving_ring} ring: the bearing does"

@@ -1,0 +1,139 @@
+"""Does a load solve ever fail, or answer wrongly? 2000 loads per decade.
+
+Loads from 1e-3 N to 1e7 N in random directions that the bearing can carry, with and
+without clearance, on a crowned cylindrical bearing, an NUP and a taper; then loads
+that nothing can carry (a taper pulled apart, axial load on an NU), each of which must
+be named. Every answer is checked by the residual of a fresh evaluation.
+
+Run: python benchmarks/robust_loads.py [--count 2000] [--smoke]
+"""
+
+import argparse
+import json
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+DECADES = range(-3, 7)
+CLEARANCES = (0.0, 20e-6, -5e-6)
+
+
+def designs():
+    angle = np.deg2rad
+    rib = bj.Rib(0.3, 1.5e-3)
+    return {
+        "NU, crowned": lambda c: bj.CylindricalRollerBearing(
+            12, 0.0725, 0.014, 0.01372, radial_internal_clearance=c,
+            roller_profile=bj.CrownedEnds(0.009, 1.0),
+        ),
+        "NUP, logarithmic": lambda c: bj.CylindricalRollerBearing(
+            14, 0.065, 0.010, 0.010, radial_internal_clearance=c,
+            roller_profile=bj.Logarithmic(),
+            ribs=bj.Ribs.arrangement("NUP", rib, 60e-6),
+        ),
+        "taper": lambda c: bj.TaperedRollerBearing(
+            17, 0.052, 0.0082, 0.0115, radial_internal_clearance=c,
+            roller_profile=bj.Logarithmic(),
+            roller_axis_angle=angle(11), roller_half_angle=angle(1.7235),
+            ribs=bj.Ribs(inner_minus=bj.Rib(0.09, 1.2e-3)),
+        ),
+    }  # fmt: skip
+
+
+def random_loads(rng, name, decade, count):
+    """Loads on the inner ring (count, 6) that the bearing can carry [N, N m]."""
+    size = 10.0 ** rng.uniform(decade, decade + 1, count)
+    way = rng.uniform(0, 2 * np.pi, count)
+    radial, axial = np.ones(count), np.zeros(count)
+    if name == "NUP, logarithmic":
+        axial = rng.uniform(-0.1, 0.1, count)
+    if name == "taper":
+        # Enough axial load to hold the cone against the radial load and moment.
+        radial, axial = rng.uniform(0, 1, count), rng.uniform(0.6, 1, count)
+    arm = rng.uniform(-1, 1, (2, count)) * 1e-3
+    zero = np.zeros(count)
+    loads = [radial * np.cos(way), radial * np.sin(way), axial, *arm, zero]
+    return np.stack(loads, axis=1) * size[:, None]
+
+
+def uncarried_loads(rng, name, decade, count):
+    loads = random_loads(rng, name, decade, count)
+    if name == "taper":
+        loads[:, 2] *= -1.0
+    else:
+        loads[:, 2] = rng.choice([-1.0, 1.0], count) * np.abs(loads[:, 0])
+    return loads
+
+
+@eqx.filter_jit
+def solve(element, loads):
+    def one(load):
+        s = bj.solve_load(element, load, throw=False, points=3)
+        free = jnp.asarray(
+            [n in bj.restrained_freedoms(element.bearing) for n in bj.FREEDOMS]
+        )
+        scale = jnp.where(jnp.arange(6) < 3, 1.0, 2.0 / element.bearing.pitch_diameter)
+        fresh = element.force(s.displacement)[6:]
+        out = jnp.where(free, scale * (fresh - load), 0.0)
+        size = jnp.sqrt(jnp.sum((scale * jnp.where(free, load, 0.0)) ** 2))
+        residual = jnp.sqrt(jnp.sum(out**2)) / size
+        return s.result, s.unrestrained, residual, s.stats.iterations
+
+    return jax.lax.map(one, loads, batch_size=50)
+
+
+def run(count, seed=0):
+    rows = []
+    for index, (name, build) in enumerate(designs().items()):
+        for clearance in CLEARANCES:
+            element = bj.BearingElement(build(clearance))
+            rng = np.random.default_rng([seed, index])
+            for decade in DECADES:
+                loads = jnp.asarray(random_loads(rng, name, decade, count))
+                code, _, residual, steps = map(np.asarray, solve(element, loads))
+                good = code == bj.Result.CONVERGED
+                rows.append(
+                    dict(design=name, clearance_um=1e6 * clearance, decade=decade,
+                         loads=count, failed=int((~good).sum()),
+                         codes=sorted(set(code[~good].tolist())),
+                         silently_wrong=int((good & ~(residual < 1e-8)).sum()),
+                         worst_residual=float(residual[good].max(initial=0.0)),
+                         most_steps=int(steps.max()),
+                         mean_steps=round(float(steps.mean()), 1))
+                )  # fmt: skip
+    for index, name in enumerate(("taper", "NU, crowned")):
+        element = bj.BearingElement(designs()[name](20e-6))
+        rng = np.random.default_rng([seed, 10 + index])
+        share = [
+            uncarried_loads(rng, name, d, max(count // 2 // len(DECADES), 1))
+            for d in DECADES
+        ]
+        loads = jnp.asarray(np.concatenate(share))
+        code, freedom, _, steps = map(np.asarray, solve(element, loads))
+        named = (code == bj.Result.NO_LOAD_PATH) & (freedom == 2)
+        rows.append(
+            dict(design=name, uncarried_loads=len(loads), named_uz=int(named.sum()),
+                 codes=np.unique(code).tolist(), most_steps=int(steps.max()))
+        )  # fmt: skip
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=2000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--smoke", action="store_true", help="three loads per decade")
+    args = parser.parse_args()
+    for row in run(3 if args.smoke else args.count, args.seed):
+        print(json.dumps(row), flush=True)
+
+
+if __name__ == "__main__":
+    main()
