@@ -18,6 +18,7 @@ from .design import CylindricalRollerBearing as CylindricalRollerBearing
 from .design import FujiwaraKawase as FujiwaraKawase
 from .design import JohnsGohar as JohnsGohar
 from .design import Logarithmic as Logarithmic
+from .design import Lundberg as Lundberg
 from .design import Material as Material
 from .design import NeedleRollerBearing as NeedleRollerBearing
 from .design import Rib as Rib
@@ -25,8 +26,8 @@ from .design import Ribs as Ribs
 from .design import Straight as Straight
 from .design import Tabulated as Tabulated
 from .design import TaperedRollerBearing as TaperedRollerBearing
-from .element import BearingElement as BearingElement
 from .element import FREEDOMS as FREEDOMS
+from .element import BearingElement as BearingElement
 from .element import Finite as Finite
 from .element import Linearised as Linearised
 from .element import Speed as Speed

@@ -2,8 +2,8 @@
 
 from .hertz import sphere_constant as sphere_constant
 from .hertz import sphere_peak_pressure as sphere_peak_pressure
-from .line import AbstractLineLaw as AbstractLineLaw
 from .line import ISO16281 as ISO16281
+from .line import AbstractLineLaw as AbstractLineLaw
 from .line import LineConstant as LineConstant
 from .line import Palmgren as Palmgren
 from .line import half_width as half_width

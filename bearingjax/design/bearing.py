@@ -109,14 +109,22 @@ class AbstractRollerBearing(eqx.Module):
                 rib.contact_height < height,
                 f"below the roller diameter of {_show(height)} m",
             )
+            end_radius = self._end_disc(name)
             check(
                 self,
                 f"ribs.{name}.end_radius",
                 rib.end_radius,
                 "m",
-                rib.end_radius > 0.5 * self.roller_diameter,
-                f"above half the roller diameter, {_show(0.5 * height)} m",
+                rib.end_radius > end_radius,
+                f"above the radius of the roller end, {_show(end_radius)} m",
             )
+
+    def _end_disc(self, rib_name: str) -> Scalar:
+        """Radius of the roller's end face that meets a rib [m]."""
+        side = -1.0 if rib_name.endswith("minus") else 1.0
+        return 0.5 * (
+            self.roller_diameter - side * self.roller_length * jnp.sin(self.half_angle)
+        )
 
     def _check_row(self):
         axis, half = self.axis_angle, self.half_angle

@@ -1,24 +1,399 @@
-"""STUB"""
-import equinox as eqx, jax.numpy as jnp
-from ..numerics.types import as_real
+"""Profiles: how much material is removed along a roller or a raceway.
+
+`drop` ≥ 0 is material removed, at the position s along the generator, s = 0 in the
+middle. Roller and raceway take profiles of the same family; their drops add up in the
+gap. Derivatives in s are finite everywhere, roller ends and kinks included.
+"""
+
+import abc
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..numerics.types import Scalar, as_real
+from .checks import check, in_range, is_traced, number, positive
+
+STEEL_MODULUS = 206e9 / (2.0 * (1.0 - 0.3**2))
+"""Contact modulus E* of steel on steel [Pa]."""
+
+
 class AbstractProfile(eqx.Module):
-    def check(self,l,d): pass
-    def kinks(self,l): return ()
+    """Profile of a roller or a raceway."""
+
+    @abc.abstractmethod
+    def drop(
+        self, position: Float[Array, "..."], length: Scalar, diameter: Scalar
+    ) -> Float[Array, "..."]:
+        """Material removed, measured along the normal of the straight generator.
+
+        Args:
+            position: s from the middle of the roller, |s| ≤ length/2 [m].
+            length: Effective contact length L [m].
+            diameter: Mean roller diameter D [m].
+
+        Returns:
+            Drop ≥ 0 [m], shape of `position`.
+        """
+
+    def kinks(self, length: Scalar) -> tuple[Scalar, ...]:
+        """Interior positions where a derivative of the drop jumps, ascending [m]."""
+        return ()
+
+    def check(self, length: Scalar, diameter: Scalar) -> None:
+        """Raise ValueError unless the profile fits a roller of this size [m]."""
+        self._check_against(length, diameter)
+        near_end = 0.4995 * length
+        for side in (-1.0, 1.0):
+            crown_drop = self.drop(side * near_end, length, diameter)
+            check(
+                self,
+                "crown_drop",
+                crown_drop,
+                "m",
+                (crown_drop >= 0) & (crown_drop < 0.5 * diameter),
+                f"at least 0 and below half the roller diameter, {_show(0.5 * diameter)}"
+                " m",
+            )
+
+    def _check_against(self, length: Scalar, diameter: Scalar) -> None:
+        """What a profile has to check of its own."""
+
+
 class Straight(AbstractProfile):
-    def drop(self,s,l,d): return 0*s
+    """No profile: the drop is zero."""
+
+    def drop(self, position, length, diameter):
+        return jnp.zeros_like(position)
+
+
 class CircularCrown(AbstractProfile):
-    crown_radius: object = eqx.field(converter=as_real)
-    def drop(self,s,l,d): return s**2/(self.crown_radius+jnp.sqrt(self.crown_radius**2-s**2))
+    """A full circular crown: one arc over the whole length.
+
+    Attributes:
+        crown_radius: Radius of the arc [m].
+
+    Traced: all fields.
+    Source: geometry, drop = R - sqrt(R² - s²).
+    """
+
+    crown_radius: Scalar = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        positive(self, "crown_radius", self.crown_radius, "m")
+
+    def drop(self, position, length, diameter):
+        return _arc(position, self.crown_radius)
+
+    def _check_against(self, length, diameter):
+        _check_radius(self, "crown_radius", self.crown_radius, 0.5 * length)
+
+
 class CrownedEnds(AbstractProfile):
-    straight_length: object = eqx.field(converter=as_real)
-    crown_radius: object = eqx.field(converter=as_real)
-    def drop(self,s,l,d):
-        x=jnp.maximum(jnp.abs(s)-self.straight_length/2,0)
-        return x**2/(self.crown_radius+jnp.sqrt(self.crown_radius**2-x**2))
-    def kinks(self,l): return (-self.straight_length/2,self.straight_length/2)
+    """A straight middle with an arc tangent to it at either end, and a dub-off.
+
+    The dub-off is a sharper arc over the last part of the roller, tangent to the
+    crown where it begins.
+
+    Attributes:
+        straight_length: Length of the straight middle [m].
+        crown_radius: Radius of the arcs [m].
+        dub_off_length: Length of the dub-off at either end, or `None` [m].
+        dub_off_radius: Its radius, or `None` [m].
+
+    Traced: all fields. Static: whether there is a dub-off.
+    Source: geometry of tangent arcs.
+    """
+
+    straight_length: Scalar = eqx.field(converter=as_real)
+    crown_radius: Scalar = eqx.field(converter=as_real)
+    dub_off_length: Scalar | None = eqx.field(
+        converter=lambda x: None if x is None else as_real(x), default=None
+    )
+    dub_off_radius: Scalar | None = eqx.field(
+        converter=lambda x: None if x is None else as_real(x), default=None
+    )
+
+    def __check_init__(self):
+        positive(self, "straight_length", self.straight_length, "m")
+        positive(self, "crown_radius", self.crown_radius, "m")
+        if (self.dub_off_length is None) != (self.dub_off_radius is None):
+            raise ValueError(
+                "CrownedEnds: `dub_off_length` and `dub_off_radius` go together; one of"
+                " them is missing."
+            )
+        if self.dub_off_length is not None:
+            positive(self, "dub_off_length", self.dub_off_length, "m")
+            positive(self, "dub_off_radius", self.dub_off_radius, "m")
+
+    def drop(self, position, length, diameter):
+        out = jnp.maximum(jnp.abs(position) - 0.5 * self.straight_length, 0.0)
+        if self.dub_off_length is None or self.dub_off_radius is None:
+            return _arc(out, self.crown_radius)
+        begin = 0.5 * (length - self.straight_length) - self.dub_off_length
+        crown = _arc(jnp.minimum(out, begin), self.crown_radius)
+        # The same slope on the sharper circle is met at `offset` from its top.
+        offset = self.dub_off_radius * begin / self.crown_radius
+        beyond = jnp.maximum(out - begin, 0.0)
+        top = _arc(offset, self.dub_off_radius)
+        return crown + _arc(offset + beyond, self.dub_off_radius) - top
+
+    def kinks(self, length):
+        inner = 0.5 * self.straight_length
+        if self.dub_off_length is None:
+            return (-inner, inner)
+        outer = 0.5 * length - self.dub_off_length
+        return (-outer, -inner, inner, outer)
+
+    def _check_against(self, length, diameter):
+        in_range(self, "straight_length", self.straight_length, "m", 0.0, length)
+        reach = 0.5 * (length - self.straight_length)
+        _check_radius(self, "crown_radius", self.crown_radius, reach)
+        if self.dub_off_length is None or self.dub_off_radius is None:
+            return
+        in_range(self, "dub_off_length", self.dub_off_length, "m", 0.0, reach)
+        begin = reach - self.dub_off_length
+        offset = self.dub_off_radius * begin / self.crown_radius
+        _check_radius(
+            self, "dub_off_radius", self.dub_off_radius, offset + self.dub_off_length
+        )
+        check(
+            self,
+            "dub_off_radius",
+            self.dub_off_radius,
+            "m",
+            self.dub_off_radius <= self.crown_radius,
+            f"at most the crown radius, {_show(self.crown_radius)} m",
+        )
+
+
 class Logarithmic(AbstractProfile):
-    coefficient: object = eqx.field(converter=as_real, default=0.00035)
-    def drop(self,s,l,d):
-        x=2*s/l; g=(1-x)*(1+x); t=1e-300
-        return -self.coefficient*d*jnp.log(jnp.where(g<t,t,g))
-FujiwaraKawase=JohnsGohar=Tabulated=Straight
+    """Logarithmic profile of ISO/TS 16281, 0.00035 D ln(1/(1 - (2s/L)²)).
+
+    Infinite at the very end; here limited to some 350 times coefficient times D,
+    which no load reaches.
+
+    Attributes:
+        coefficient: 0.00035 in the standard [1].
+
+    Traced: all fields.
+    Source: ISO/TS 16281:2008, reference geometry of rollers.
+    """
+
+    coefficient: Scalar = eqx.field(converter=as_real, default=0.00035)
+
+    def __check_init__(self):
+        positive(self, "coefficient", self.coefficient, "")
+
+    def drop(self, position, length, diameter):
+        return self.coefficient * diameter * _log_one_over(2.0 * position / length, 1.0)
+
+
+class Lundberg(AbstractProfile):
+    """Lundberg's profile: even pressure along the roller at the design load.
+
+    Drop Q/(π L E*) ln(1/(1 - (2s/L)²)), infinite at the very end and limited there as
+    in `Logarithmic`. It is the drop of roller and raceway together: put it on one.
+
+    Attributes:
+        design_load: Load Q of the contact for which it is made [N].
+        contact_modulus: E* of the pair [Pa].
+
+    Traced: all fields.
+    Source: Lundberg (1939); in the form of Fujiwara and Kawase (2007).
+    """
+
+    design_load: Scalar = eqx.field(converter=as_real)
+    contact_modulus: Scalar = eqx.field(converter=as_real, default=STEEL_MODULUS)
+
+    def __check_init__(self):
+        positive(self, "design_load", self.design_load, "N")
+        positive(self, "contact_modulus", self.contact_modulus, "Pa")
+
+    def drop(self, position, length, diameter):
+        unit = self.design_load / (jnp.pi * length * self.contact_modulus)
+        return unit * _log_one_over(2.0 * position / length, 1.0)
+
+
+class JohnsGohar(AbstractProfile):
+    """Johns and Gohar's profile: Lundberg's with a finite end.
+
+    Drop Q/(π L E*) ln(1/(1 - (1 - 0.3033 b/a)(2s/L)²)) with a = L/2.
+
+    Attributes:
+        design_load: Load Q of the contact for which it is made [N].
+        half_width: Hertz half width b of the contact at that load, from
+            `contact.half_width(Q/L, relative radius, E*)` [m].
+        contact_modulus: E* of the pair [Pa].
+
+    Traced: all fields.
+    Source: Johns and Gohar (1981); in the form of Fujiwara and Kawase (2007).
+    """
+
+    design_load: Scalar = eqx.field(converter=as_real)
+    half_width: Scalar = eqx.field(converter=as_real)
+    contact_modulus: Scalar = eqx.field(converter=as_real, default=STEEL_MODULUS)
+
+    def __check_init__(self):
+        positive(self, "design_load", self.design_load, "N")
+        positive(self, "half_width", self.half_width, "m")
+        positive(self, "contact_modulus", self.contact_modulus, "Pa")
+
+    def drop(self, position, length, diameter):
+        unit = self.design_load / (jnp.pi * length * self.contact_modulus)
+        part = 1.0 - 0.3033 * self.half_width / (0.5 * length)
+        return unit * _log_one_over(2.0 * position / length, part)
+
+    def _check_against(self, length, diameter):
+        in_range(self, "half_width", self.half_width, "m", 0.0, 0.5 * length)
+
+
+class FujiwaraKawase(AbstractProfile):
+    """Fujiwara and Kawase's modified logarithmic profile, three design parameters.
+
+    With A = K1 Q/(π L E*) and x running from 0 where the crowning begins to 1 at the
+    end of the roller, drop = A ln(1/(1 - (1 - exp(-zm/A)) x²)); the middle is straight.
+
+    Attributes:
+        design_load: Load Q of the contact [N].
+        load_factor: K1, factor on the design load [1].
+        crowned_fraction: K2, crowned part of the length, 0 < K2 ≤ 1 [1].
+        end_drop: zm, drop at the very end [m].
+        contact_modulus: E* of the pair [Pa].
+
+    Traced: all fields.
+    Source: Fujiwara and Kawase, NTN Technical Review 75 (2007), their E' = 2 E*.
+    """
+
+    design_load: Scalar = eqx.field(converter=as_real)
+    load_factor: Scalar = eqx.field(converter=as_real)
+    crowned_fraction: Scalar = eqx.field(converter=as_real)
+    end_drop: Scalar = eqx.field(converter=as_real)
+    contact_modulus: Scalar = eqx.field(converter=as_real, default=STEEL_MODULUS)
+
+    def __check_init__(self):
+        positive(self, "design_load", self.design_load, "N")
+        positive(self, "load_factor", self.load_factor, "")
+        positive(self, "crowned_fraction", self.crowned_fraction, "")
+        fraction = self.crowned_fraction
+        allowed = "above 0 and at most 1"
+        check(self, "crowned_fraction", fraction, "", fraction <= 1.0, allowed)
+        positive(self, "end_drop", self.end_drop, "m")
+        positive(self, "contact_modulus", self.contact_modulus, "Pa")
+
+    def drop(self, position, length, diameter):
+        load = self.load_factor * self.design_load
+        unit = load / (jnp.pi * length * self.contact_modulus)
+        begin = 0.5 * length * (1.0 - self.crowned_fraction)
+        out = jnp.maximum(jnp.abs(position) - begin, 0.0)
+        x = out / (0.5 * length * self.crowned_fraction)
+        return -unit * jnp.log1p(jnp.expm1(-self.end_drop / unit) * x * x)
+
+    def kinks(self, length):
+        begin = 0.5 * length * (1.0 - self.crowned_fraction)
+        return (-begin, begin)
+
+
+class Tabulated(AbstractProfile):
+    """A measured profile: between the points, blended parabolas.
+
+    Through each point and its neighbours goes a parabola; from one point to the next
+    their weight passes smoothly, so that the second derivative is continuous and a
+    parabolic crown is met exactly.
+
+    Attributes:
+        positions: s, ascending, from one roller end to the other or beyond (n,) [m].
+        drops: Drop there, at least 0 (n,) [m].
+
+    Traced: all fields. Static: the number of points.
+    """
+
+    positions: Float[Array, " table"] = eqx.field(converter=as_real)
+    drops: Float[Array, " table"] = eqx.field(converter=as_real)
+
+    def __check_init__(self):
+        shape = jnp.shape(self.positions)
+        if len(shape) != 1 or shape[0] < 3 or jnp.shape(self.drops) != shape:
+            raise ValueError(
+                f"Tabulated: `positions` and `drops` have shapes {shape} and"
+                f" {jnp.shape(self.drops)}; they must be two lists of the same length,"
+                " at least 3."
+            )
+        for name in ("positions", "drops"):
+            values = getattr(self, name)
+            check(self, name, values, "m", jnp.isfinite(values), "finite numbers")
+        rising = jnp.diff(self.positions) > 0
+        check(self, "positions", self.positions, "m", rising, "ascending")
+        check(self, "drops", self.drops, "m", self.drops >= 0, "at least 0 m")
+
+    def drop(self, position, length, diameter):
+        s, d = self.positions, self.drops
+        last = s.shape[0] - 1
+        k = jnp.clip(jnp.searchsorted(s, position, side="right") - 1, 0, last - 1)
+        t = jnp.clip((position - s[k]) / (s[k + 1] - s[k]), 0.0, 1.0)
+        blend = t**3 * (10.0 + t * (-15.0 + 6.0 * t))
+
+        def parabola(middle):
+            i = jnp.clip(middle, 1, last - 1)
+            left, right = s[i] - s[i - 1], s[i + 1] - s[i]
+            first, second = (d[i] - d[i - 1]) / left, (d[i + 1] - d[i]) / right
+            bend = (second - first) / (left + right)
+            x = position - s[i]
+            return d[i] + x * (first + bend * (x + left))
+
+        return (1.0 - blend) * parabola(k) + blend * parabola(k + 1)
+
+    def _check_against(self, length, diameter):
+        ends = jnp.stack([-self.positions[0], self.positions[-1]])
+        check(
+            self,
+            "positions",
+            self.positions,
+            "m",
+            ends >= 0.5 * length * (1.0 - 1e-9),
+            f"a table that covers the roller, from {_show(-0.5 * length)} to"
+            f" {_show(0.5 * length)} m",
+        )
+
+
+PROFILES = {
+    "straight": Straight,
+    "circular_crown": CircularCrown,
+    "crowned_ends": CrownedEnds,
+    "logarithmic": Logarithmic,
+    "lundberg": Lundberg,
+    "johns_gohar": JohnsGohar,
+    "fujiwara_kawase": FujiwaraKawase,
+    "tabulated": Tabulated,
+}
+"""Profiles by the names that scene files use."""
+
+
+def _arc(x, radius):
+    """Drop of a circle, R - sqrt(R² - x²), without cancellation."""
+    return x * x / (radius + jnp.sqrt(radius * radius - x * x))
+
+
+def _log_one_over(x, part):
+    """ln(1/(1 - part x²)), limited where the argument vanishes."""
+    root = jnp.sqrt(part)
+    rest = (1.0 - root * x) * (1.0 + root * x)
+    # The root of the smallest number keeps first and second derivatives in range.
+    floor = jnp.sqrt(jnp.finfo(x.dtype).tiny)
+    return -jnp.log(jnp.maximum(rest, floor))
+
+
+def _check_radius(owner, name, radius, reach):
+    number(owner, name, radius, "m")
+    check(
+        owner,
+        name,
+        radius,
+        "m",
+        radius > reach,
+        f"above {_show(reach)} m, so that the arc spans its part of the roller",
+    )
+
+
+def _show(value) -> str:
+    return "?" if is_traced(value) else f"{float(value):.6g}"

@@ -21,8 +21,8 @@ from .equilibrium import (
     condensed_energy,
     condensed_force,
     condensed_stiffness,
-    solved_derivatives,
     solve_roller,
+    solved_derivatives,
 )
 from .frame import (
     from_roller_axes,
@@ -190,7 +190,9 @@ class BearingElement(eqx.Module):
             )
         constants = self.constants()
         model = RollerModel(
-            constants, self.kinematics.prepare(constants), self.kinematics,
+            constants,
+            self.kinematics.prepare(constants),
+            self.kinematics,
             self.quadrature,
         )
         inertia = None if speed is None else inertia_force(constants, speed)

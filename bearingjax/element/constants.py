@@ -14,7 +14,7 @@ from ..contact.line_contact import LineContact, table
 from ..design.bearing import AbstractRollerBearing
 from ..design.material import contact_modulus
 from ..numerics.quadrature import AbstractQuadrature
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Scalar
 
 # The guide spring, relative to the stiffness of a raceway contact (about 1e-6 N/m). It
 # keeps a direction regular in which nothing else holds the roller. A roller that is
@@ -195,5 +195,3 @@ def relative_radii(
             relative_radius(roller / jnp.cos(c.half_angle), -ring * race_radius)
         )
     return jnp.stack(radii)
-
-

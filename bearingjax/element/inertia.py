@@ -71,9 +71,7 @@ def mass_and_inertia(constants: ContactConstants) -> tuple[Scalar, Scalar, Scala
     return factor * second, 0.5 * factor * fourth, factor * (0.25 * fourth + spread)
 
 
-def inertia_force(
-    constants: ContactConstants, speed: Speed
-) -> Float[Array, "3"]:
+def inertia_force(constants: ContactConstants, speed: Speed) -> Float[Array, "3"]:
     """Inertia force and gyroscopic moment on a roller, in roller axes.
 
     Centrifugal force m R_m ω_c² through the roller centre, outwards, and the

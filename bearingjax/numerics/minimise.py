@@ -172,7 +172,9 @@ class TrustRegionNewton(AbstractMinimiser):
             accept = first | searching | (actual <= 1e-4 * slope)
             accept = accept | (new_size <= 0.5 * size)
             good = (actual <= 0.7 * predicted) | (new_size <= 0.25 * size)
-            grown = jnp.where(good, jnp.maximum(state.radius, 6.0 * length), state.radius)
+            grown = jnp.where(
+                good, jnp.maximum(state.radius, 6.0 * length), state.radius
+            )
             # A step too long has met a stiff contact: Newton along the step, from its
             # far end, says where.
             bend = jnp.maximum(p @ new.hessian @ p, tiny)

@@ -122,8 +122,17 @@ def solve_load(
     if tolerance is None:
         tolerance = DEFAULT_TOLERANCE[str(dtype)]
     solution = _solve(
-        element, load, given, fixed, speed, is_free, held, fixed_ring, points,
-        tolerance, max_steps,
+        element,
+        load,
+        given,
+        fixed,
+        speed,
+        is_free,
+        held,
+        fixed_ring,
+        points,
+        tolerance,
+        max_steps,
     )
     if throw:
         moving = RINGS[1 - RINGS.index(fixed_ring)]
@@ -135,7 +144,16 @@ def solve_load(
 
 @eqx.filter_jit
 def _solve(
-    element, load, given, fixed, speed, is_free, held, fixed_ring, points, tolerance,
+    element,
+    load,
+    given,
+    fixed,
+    speed,
+    is_free,
+    held,
+    fixed_ring,
+    points,
+    tolerance,
     max_steps,
 ):
     bearing = element.bearing
@@ -284,4 +302,3 @@ def _check_names(what, names):
             f"solve_load: `{what}` names {', '.join(map(repr, unknown))}; freedoms are"
             f" {', '.join(FREEDOMS)}."
         )
-

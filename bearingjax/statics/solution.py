@@ -140,9 +140,7 @@ def warnings(solution: Solution) -> list[str]:
     return out
 
 
-def distribution(
-    row: Row, points: int
-) -> tuple[Array, Array, Array, Array]:
+def distribution(row: Row, points: int) -> tuple[Array, Array, Array, Array]:
     """Line load, pressure and half width along every roller.
 
     Args:
@@ -172,7 +170,9 @@ def distribution(
     )
 
 
-def contact_loads(row: Row) -> tuple[Float[Array, "roller 2"], Float[Array, "roller 4"]]:
+def contact_loads(
+    row: Row,
+) -> tuple[Float[Array, "roller 2"], Float[Array, "roller 4"]]:
     """Load of every roller on both raceways and on the four ribs [N]."""
     raceways, ribs = row.solved.raceway_load, row.solved.rib_load
     all_ribs = jnp.zeros((raceways.shape[0], len(RIB_NAMES)), raceways.dtype)
