@@ -7,7 +7,6 @@ from .bearing import TaperedRollerBearing as TaperedRollerBearing
 from .material import MATERIALS as MATERIALS
 from .material import Material as Material
 from .material import contact_modulus as contact_modulus
-from .profile import PROFILES as PROFILES
 from .profile import AbstractProfile as AbstractProfile
 from .profile import CircularCrown as CircularCrown
 from .profile import CrownedEnds as CrownedEnds

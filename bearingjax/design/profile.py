@@ -52,8 +52,8 @@ class AbstractProfile(eqx.Module):
                 crown_drop,
                 "m",
                 (crown_drop >= 0) & (crown_drop < 0.5 * diameter),
-                f"at least 0 and below half the roller diameter, {_show(0.5 * diameter)}"
-                " m",
+                "at least 0 and below half the roller diameter,"
+                f" {_show(0.5 * diameter)} m",
             )
 
     def _check_against(self, length: Scalar, diameter: Scalar) -> None:
@@ -354,19 +354,6 @@ class Tabulated(AbstractProfile):
             f"a table that covers the roller, from {_show(-0.5 * length)} to"
             f" {_show(0.5 * length)} m",
         )
-
-
-PROFILES = {
-    "straight": Straight,
-    "circular_crown": CircularCrown,
-    "crowned_ends": CrownedEnds,
-    "logarithmic": Logarithmic,
-    "lundberg": Lundberg,
-    "johns_gohar": JohnsGohar,
-    "fujiwara_kawase": FujiwaraKawase,
-    "tabulated": Tabulated,
-}
-"""Profiles by the names that scene files use."""
 
 
 def _arc(x, radius):

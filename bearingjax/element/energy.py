@@ -1,8 +1,8 @@
 """The strain energy of one roller between its rings: the physics, written once.
 
-U(rings, x) = Σ_raceways W(a, b) + Σ_ribs 2/5 c approach₊^(5/2) + guide/2 |x|². Force and
-stiffness are its derivatives: the contacts' by their own rule (`contact.line_contact`),
-the motions' by the chain rule of the kinematics.
+U(rings, x) = Σ_raceways W(a, b) + Σ_ribs 2/5 c approach₊^(5/2) + guide/2 |x|². Force
+and stiffness are its derivatives: the contacts' by their own rule
+(`contact.line_contact`), the motions' by the chain rule of the kinematics.
 """
 
 from typing import NamedTuple

@@ -1,0 +1,11 @@
+"""Scene files: reading, running, reporting."""
+
+from .output import as_dict as as_dict
+from .output import write_json as write_json
+from .quantity import SceneError as SceneError
+from .read import Scene as Scene
+from .read import load_bearing as load_bearing
+from .read import read_scene as read_scene
+from .read import shipped_scenes as shipped_scenes
+from .report import report as report
+from .run import run_scene as run_scene

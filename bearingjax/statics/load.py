@@ -92,7 +92,8 @@ def solve_load(
     """
     if fixed_ring not in RINGS:
         raise ValueError(
-            f"solve_load: `fixed_ring` is {fixed_ring!r}; it must be 'outer' or 'inner'."
+            f"solve_load: `fixed_ring` is {fixed_ring!r}; it must be 'outer' or"
+            " 'inner'."
         )
     dtype = element.bearing.pitch_diameter.dtype
     load = _six("load", load, dtype)

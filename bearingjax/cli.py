@@ -1,0 +1,126 @@
+"""The command line: `bearingjax solve SCENE.toml`."""
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
+"""Exit status."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Args:
+        arguments: Without the program's name; default: those of the process.
+
+    Returns:
+        Exit status: 0 solved, 2 bad input, 3 not solved.
+    """
+    options = _parser().parse_args(arguments)
+    _configure_jax()
+    from .scene import SceneError
+
+    try:
+        return _solve(options)
+    except SceneError as error:
+        print(f"bearingjax: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except BrokenPipeError:
+        # The reader of the report has seen enough.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return SOLVED
+
+
+def _parser():
+    from importlib.metadata import version
+
+    parser = argparse.ArgumentParser(
+        prog="bearingjax", description="Rolling-bearing mechanics."
+    )
+    parser.add_argument("--version", action="version", version=version("bearingjax"))
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    solve = commands.add_parser(
+        "solve",
+        help="where the rings go under load",
+        description="Solve the bearing of a scene file and print a report.",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
+    )
+    solve.add_argument("scene", metavar="SCENE", help=".toml file or a shipped scene")
+    solve.add_argument("--json", metavar="OUT", type=Path, help="write numbers in SI")
+    solve.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
+    solve.add_argument(
+        "--set",
+        metavar="KEY=VALUE",
+        action="append",
+        default=[],
+        help='change the scene, such as "operating.load.Fz=-6 kN"; may be repeated',
+    )
+    return parser
+
+
+def _configure_jax():
+    """float64, and compiled programs kept from one run to the next."""
+    import jax
+
+    # XLA prints a page of false alarms about CPU features when it loads a kept program.
+    jax.config.update("jax_logging_level", "CRITICAL")
+
+    jax.config.update("jax_enable_x64", True)
+    if jax.config.jax_compilation_cache_dir is None:
+        base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+        cache = Path(base) / "bearingjax" / "jax"
+        jax.config.update("jax_compilation_cache_dir", str(cache))
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
+    jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)
+
+
+def _solve(options) -> int:
+    from .numerics import Result
+    from .scene import read_scene, report, run_scene, write_json
+    from .statics.solution import message
+
+    for path in (options.json, options.plot):
+        _check_writable(path)
+    if options.plot is not None:
+        _check_plot(options.plot)
+    scene = read_scene(options.scene, options.set)
+    solution = run_scene(scene)
+    result = Result(int(solution.result))
+    if options.json is not None:
+        write_json(options.json, scene, solution)
+    if result is not Result.CONVERGED:
+        text = message(solution, scene.moving_ring)
+        print(f"bearingjax: {result.label}: {text}", file=sys.stderr)
+        return NOT_SOLVED
+    print(report(scene, solution))
+    if options.plot is not None:
+        from .plot import overview
+
+        figure = overview(scene.element.bearing, solution, title=scene.name)
+        figure.savefig(options.plot, dpi=150)
+    return SOLVED
+
+
+def _check_writable(path: Path | None) -> None:
+    from .scene import SceneError
+
+    if path is not None and not path.absolute().parent.is_dir():
+        raise SceneError(f"{path}: its folder does not exist")
+
+
+def _check_plot(path: Path) -> None:
+    from .scene import SceneError
+
+    try:
+        import matplotlib
+    except ImportError as error:
+        problem = 'pictures need matplotlib: pip install "bearingjax[plot]"'
+        raise SceneError(problem) from error
+    matplotlib.use("Agg")
+    if path.suffix not in (".png", ".pdf", ".svg"):
+        raise SceneError(f"{path}: a picture ends in .png, .pdf or .svg")

@@ -1,0 +1,134 @@
+"""A solution as text for people: µm, mrad, kN, N m, MPa."""
+
+import numpy as np
+
+from ..design import TaperedRollerBearing
+from ..element.frame import FREEDOMS, LOADS, RINGS
+from ..statics.solution import Solution, warnings
+from .read import Scene
+
+_RULE = "-" * 78
+
+
+def report(scene: Scene, solution: Solution) -> str:
+    """Readable report of a solved scene.
+
+    Args:
+        scene: What was solved.
+        solution: Its solution, converged.
+    """
+    parts = [
+        _bearing(scene),
+        _motion(scene, solution),
+        _stiffness(scene, solution),
+        _rollers(solution),
+        _ending(scene, solution),
+    ]
+    return f"\n{_RULE}\n".join(parts)
+
+
+def _bearing(scene):
+    bearing = scene.element.bearing
+    size = [bearing.pitch_diameter, bearing.roller_diameter, bearing.roller_length]
+    pitch, diameter, length = (1e3 * float(x) for x in size)
+    kind = type(bearing).__name__.removesuffix("RollerBearing").lower()
+    clearance = 1e6 * float(bearing.radial_internal_clearance)
+    ribs = ", ".join(bearing.ribs.present) or "none"
+    lines = [
+        f"{scene.name}: {kind} roller bearing, {bearing.n_rollers} rollers"
+        f" {diameter:.4g} x {length:.4g} mm on a pitch circle of {pitch:.4g} mm",
+        f"radial internal clearance {clearance:.4g} µm; ribs: {ribs};"
+        f" roller profile: {type(bearing.roller_profile).__name__}",
+    ]
+    if isinstance(bearing, TaperedRollerBearing):
+        axis, half = bearing.roller_axis_angle, bearing.roller_half_angle
+        raceways = [float(np.rad2deg(axis + half)), float(np.rad2deg(axis - half))]
+        lines.append(
+            f"contact angle: outer {raceways[0]:.4g}, inner {raceways[1]:.4g} deg"
+        )
+    return "\n".join(lines)
+
+
+def _ring(scene):
+    index = RINGS.index(scene.moving_ring)
+    return slice(6 * index, 6 * index + 6)
+
+
+def _motion(scene, solution):
+    moving = _ring(scene)
+    displacement = np.asarray(solution.displacement)[moving]
+    force = np.asarray(solution.force)[moving]
+    lines = [f"{scene.moving_ring} ring ({scene.fixed_ring} ring fixed)"]
+    units = ["µm"] * 3 + ["mrad"] * 3
+    load_units = ["kN"] * 3 + ["N m"] * 3
+    scales, load_scales = np.repeat([1e6, 1e3], 3), np.repeat([1e-3, 1.0], 3)
+    motion, loads = scales * _clean(displacement), load_scales * _clean(force)
+    for i in range(6):
+        lines.append(
+            f"  {FREEDOMS[i]} {motion[i]:12.5g} {units[i]:<5}"
+            f"   {LOADS[i]} {loads[i]:12.5g} {load_units[i]}"
+        )
+    return "\n".join(lines)
+
+
+def _stiffness(scene, solution):
+    moving = _ring(scene)
+    k = np.asarray(solution.stiffness)[moving, moving]
+    lines = [
+        f"stiffness of the {scene.moving_ring} ring (kN/mm, kN/mrad, N m/mrad)",
+        "     " + "".join(f"{name:>12}" for name in FREEDOMS[:5]),
+    ]
+    # N/m, N/rad and N m/rad in the units of the heading.
+    scale = np.full((5, 5), 1e-6)
+    scale[3:, 3:] = 1e-3
+    shown = scale * _clean(k[:5, :5])
+    for i in range(5):
+        lines.append(f"  {FREEDOMS[i]:<3}" + "".join(f"{v:12.5g}" for v in shown[i]))
+    return "\n".join(lines)
+
+
+def _clean(values):
+    """Round-off of what cancels is shown as zero."""
+    return np.where(np.abs(values) < 1e-11 * np.abs(values).max(), 0.0, values)
+
+
+def _rollers(solution):
+    load = np.asarray(solution.roller_load)
+    rib = np.asarray(solution.rib_load)
+    touching = 1e-9 * max(load.max(), rib.max())
+    pressure = 1e-6 * np.asarray(solution.contact_pressure).max(axis=2)
+    edge = np.asarray(solution.edge_loaded).any(axis=(1, 2))
+    ribs = rib.any()
+    head = (
+        " roller azimuth   outer load  inner load   outer pmax  inner pmax"
+        + ("    ribs" if ribs else "")
+        + "\n"
+        + "            deg           kN          kN          MPa         MPa"
+        + ("       N" if ribs else "")
+    )
+    lines = [head]
+    angles = np.rad2deg(np.asarray(solution.azimuth)) % 360.0
+    for i in range(load.shape[0]):
+        if max(load[i].max(), rib[i].max()) <= touching:
+            continue
+        line = (
+            f" {i:6d} {angles[i]:7.1f}  {1e-3 * load[i, 0]:11.4f} "
+            f"{1e-3 * load[i, 1]:11.4f}  {pressure[i, 0]:11.1f} {pressure[i, 1]:11.1f}"
+        )
+        if ribs:
+            line += f" {rib[i].sum():7.1f}"
+        lines.append(line + ("  edge-loaded" if edge[i] else ""))
+    loose = load.shape[0] - (len(lines) - 1)
+    if loose:
+        lines.append(f" {loose} of {load.shape[0]} rollers are out of contact")
+    return "\n".join(lines)
+
+
+def _ending(scene, solution):
+    stats = solution.stats
+    lines = [
+        f"converged in {int(stats.iterations)} steps, residual"
+        f" {float(stats.residual):.1e} of the load"
+    ]
+    lines += [f"warning: {w}" for w in (*scene.warnings, *warnings(solution))]
+    return "\n".join(lines)

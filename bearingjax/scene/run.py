@@ -1,0 +1,29 @@
+"""Running what a scene asks for."""
+
+from ..statics.load import solve_load
+from ..statics.solution import Solution
+from .read import Scene
+
+
+def run_scene(scene: Scene) -> Solution:
+    """Solve the bearing of a scene.
+
+    Args:
+        scene: From `read_scene`.
+
+    Returns:
+        Solution with its result code; nothing is raised for a failed solve.
+
+    Fails: as `solve_load`.
+    """
+    return solve_load(
+        scene.element,
+        scene.load,
+        prescribed=scene.prescribed,
+        free=scene.free,
+        fixed_ring=scene.fixed_ring,
+        speed=scene.speed,
+        points=scene.points,
+        tolerance=scene.tolerance,
+        throw=False,
+    )

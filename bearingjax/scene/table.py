@@ -1,0 +1,167 @@
+"""Strict reading of nested tables: every key is asked for, or it is an error."""
+
+import contextlib
+import difflib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .quantity import SceneError, to_si
+
+_MISSING: Any = object()
+
+
+class Table:
+    """One table of a scene file that remembers which of its keys were asked for.
+
+    Args:
+        data: The table as parsed.
+        file: File name, for messages.
+        path: Dotted path of the table in the file; empty at the top.
+    """
+
+    def __init__(self, data: Mapping[str, Any], file: str, path: str = ""):
+        self._data = data
+        self._file = file
+        self._path = path
+        self._asked: list[str] = []
+        self._children: list[Table] = []
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._data
+
+    def error(self, key: str, problem: object) -> SceneError:
+        """Error that names file and key."""
+        return SceneError(f"{self._file}: `{self._full(key)}`: {problem}")
+
+    def quantity(self, key: str, kind: str, default: Any = _MISSING) -> Any:
+        """Number in SI of a quantity with a unit.
+
+        Args:
+            key: Key in this table.
+            kind: Kind of quantity, see `quantity.KINDS`.
+            default: If absent; without a default the key is required.
+        """
+        value = self._get(key, default, f"a {kind}, a text with its unit")
+        if key not in self._data:
+            return value
+        try:
+            return to_si(value, kind)
+        except SceneError as error:
+            raise self.error(key, error) from error
+
+    def quantities(self, key: str, kind: str) -> list[float]:
+        """List of numbers in SI, each with a unit."""
+        values = self._get(key, _MISSING, f"a list of quantities ({kind})")
+        if not isinstance(values, list):
+            raise self.error(key, f"{values!r} is not a list of quantities ({kind})")
+        try:
+            return [to_si(value, kind) for value in values]
+        except SceneError as error:
+            raise self.error(key, error) from error
+
+    def number(self, key: str, default: Any = _MISSING) -> Any:
+        """Dimensionless number, bare."""
+        value = self._get(key, default, "a bare number")
+        if key not in self._data:
+            return value
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self.error(key, f"{value!r} is not a bare number (no unit, no text)")
+        return float(value)
+
+    def integer(self, key: str, default: Any = _MISSING, least: int = 1) -> Any:
+        """Whole number of at least `least`."""
+        value = self._get(key, default, "a whole number")
+        if key not in self._data:
+            return value
+        if isinstance(value, bool) or not isinstance(value, int) or value < least:
+            allowed = f"a whole number of at least {least}"
+            raise self.error(key, f"{value!r} is not {allowed}")
+        return value
+
+    def choice(self, key: str, choices: Sequence[str], default: Any = _MISSING) -> Any:
+        """One of several words."""
+        value = self._get(key, default, f"one of {', '.join(choices)}")
+        if key in self._data and value not in choices:
+            raise self.error(key, _not_among(value, choices))
+        return value
+
+    def word(self, key: str) -> str | None:
+        """The text at a key as it stands, or `None` if it is not text."""
+        value = self._data.get(key)
+        return value if isinstance(value, str) else None
+
+    def words(self, key: str, choices: Sequence[str]) -> tuple[str, ...] | None:
+        """List of distinct words, or `None` if absent."""
+        value = self._get(key, None, "")
+        if value is None:
+            return None
+        if not isinstance(value, list):
+            raise self.error(key, f"{value!r} is not a list of words")
+        for word in value:
+            if word not in choices:
+                raise self.error(key, _not_among(word, choices))
+        if len(set(value)) < len(value):
+            raise self.error(key, f"{value!r} names something twice")
+        return tuple(value)
+
+    def table(self, key: str, required: bool = False) -> "Table":
+        """Sub-table; empty if absent and not required."""
+        value = self._get(key, _MISSING if required else {}, "a table")
+        if not isinstance(value, Mapping):
+            raise self.error(key, f"{value!r} is not a table")
+        child = Table(value, self._file, self._full(key))
+        self._children.append(child)
+        return child
+
+    def table_or_word(self, key: str, choices: Sequence[str]) -> "Table | str | None":
+        """Sub-table, one of several words, or `None` if absent."""
+        if self.word(key) is not None:
+            return self.choice(key, choices)
+        return self.table(key) if key in self else None
+
+    @contextlib.contextmanager
+    def building(self):
+        """Turns the complaint of a constructor into one that names file and table."""
+        try:
+            yield
+        except SceneError:
+            raise
+        except (ValueError, TypeError) as error:
+            where = f"[{self._path}]" if self._path else "top level"
+            raise SceneError(f"{self._file}: {where}: {error}") from error
+
+    def finish(self) -> None:
+        """Raise SceneError for keys that nobody asked for, here and below."""
+        for key in self._data:
+            if key not in self._asked:
+                known = ", ".join(sorted(set(self._asked)))
+                hint = _suggest(key, self._asked)
+                where = f"in [{self._path}]" if self._path else "at the top level"
+                raise self.error(key, f"unknown key{hint}; known {where}: {known}")
+        for child in self._children:
+            child.finish()
+
+    def _get(self, key, default, wanted):
+        self._asked.append(key)
+        if key in self._data:
+            return self._data[key]
+        if default is _MISSING:
+            # A misspelt key is more likely than a forgotten one.
+            strange = [k for k in self._data if k not in self._asked]
+            close = difflib.get_close_matches(key, strange, 1, 0.7)
+            hint = f" (`{close[0]}` is there instead)" if close else ""
+            raise self.error(key, f"is missing{hint}; it must be {wanted}")
+        return default
+
+    def _full(self, key):
+        return f"{self._path}.{key}" if self._path else key
+
+
+def _not_among(value, choices):
+    hint = _suggest(value, choices) if isinstance(value, str) else ""
+    return f"{value!r} is not known{hint}; it must be one of {', '.join(choices)}"
+
+
+def _suggest(word, known):
+    close = difflib.get_close_matches(word, known, 1, 0.6)
+    return f" (did you mean `{close[0]}`?)" if close else ""
