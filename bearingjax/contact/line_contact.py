@@ -124,12 +124,12 @@ class Response(NamedTuple):
     Attributes:
         energy: W [J].
         load: (∂W/∂a, ∂W/∂b) (2,) [N]; the first is the contact load.
-        stiffness: Second derivatives (2, 2) [N/m].
+        stiffness: Second derivatives (aa, ab, bb) (3,) [N/m].
     """
 
     energy: Scalar
     load: Float[Array, "2"]
-    stiffness: Float[Array, "2 2"]
+    stiffness: Float[Array, "3"]
 
 
 def response(
@@ -162,10 +162,7 @@ def response(
         line, table = eqx.combine(traced, static)
         nodes = quadrature.nodes(_offset, line, table, a, b)
         m = _moments(line, nodes, quadrature)
-        stiffness = jnp.stack(
-            [jnp.stack([m[2, 0], m[2, 1]]), jnp.stack([m[2, 1], m[2, 2]])]
-        )
-        return Response(m[0, 0], m[1, :2], stiffness)
+        return Response(m[0, 0], m[1, :2], m[2])
 
     with_rule = jax.custom_jvp(plain)
 
@@ -174,8 +171,8 @@ def response(
         *dab, dtraced = tangents
         value = with_rule(a, b, traced)
         da, db = (jnp.zeros_like(a) if _is_zero(d) else d for d in dab)
-        energy = value.load @ jnp.stack([da, db])
-        load = value.stiffness @ jnp.stack([da, db])
+        energy = value.load[0] * da + value.load[1] * db
+        load = value.stiffness[:2] * da + value.stiffness[1:] * db
         _, stiffness = jax.jvp(
             lambda a, b: plain(a, b, traced).stiffness, (a, b), (da, db)
         )

@@ -110,6 +110,7 @@ class BearingElement(eqx.Module):
     equilibrium: AbstractMinimiser = eqx.field(default_factory=TrustRegionNewton)
     cage_torque: bool = eqx.field(static=True, default=False)
 
+    @eqx.filter_jit
     def energy(self, q: Ring, speed: Speed | None = None) -> Scalar:
         """Condensed strain energy V(q) [J].
 
@@ -122,6 +123,7 @@ class BearingElement(eqx.Module):
         """
         return _energy(self.row(q, speed))
 
+    @eqx.filter_jit
     def force(self, q: Ring, speed: Speed | None = None) -> Ring:
         """External load that holds the rings where they are, dV/dq [N, N m].
 
@@ -134,6 +136,7 @@ class BearingElement(eqx.Module):
         row = self.row(q, speed)
         return _sum_forces(row, _roller_forces(row))
 
+    @eqx.filter_jit
     def stiffness(self, q: Ring, speed: Speed | None = None) -> RingStiffness:
         """Tangent stiffness d(force)/dq by static condensation [N/m, N, N m].
 
@@ -145,10 +148,12 @@ class BearingElement(eqx.Module):
             return jax.hessian(self.energy)(q, speed)
         return _stiffness(self.row(q, speed))
 
+    @eqx.filter_jit
     def evaluate(self, q: Ring, speed: Speed | None = None) -> Evaluated:
         """Energy, force and stiffness from one solve of the rollers, with its code."""
         return self.evaluate_row(self.row(q, speed), q, speed)
 
+    @eqx.filter_jit
     def evaluate_row(self, row: Row, q: Ring, speed: Speed | None = None) -> Evaluated:
         """`evaluate` for rollers that are already solved at `q`."""
         shares = _roller_forces(row)
@@ -170,6 +175,7 @@ class BearingElement(eqx.Module):
         """Contact constants of one roller."""
         return contact_constants(self.bearing, self.line_law, self.quadrature)
 
+    @eqx.filter_jit
     def row(self, q: Ring, speed: Speed | None = None) -> Row:
         """Solve every roller at given ring freedoms.
 

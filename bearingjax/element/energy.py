@@ -10,10 +10,12 @@ from typing import NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ..contact import line_contact
 from ..contact.hertz import EXPONENT
+from ..numerics.linear import dot
 from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Scalar
@@ -44,15 +46,15 @@ class Derivatives(NamedTuple):
 
     Attributes:
         energy: U [J].
-        gradient: (9,) [N, N m].
-        hessian: (9, 9) [N/m, N, N m].
+        gradient: (9,), or (3,) with respect to x alone [N, N m].
+        hessian: (9, 9), or (3, 3) likewise [N/m, N, N m].
         raceway_load: Contact load on each raceway (2,) [N].
         rib_load: Load on each rib that exists (rib,) [N].
     """
 
     energy: Scalar
-    gradient: Float[Array, "9"]
-    hessian: Float[Array, "9 9"]
+    gradient: Float[Array, " n"]
+    hessian: Float[Array, "n n"]
     raceway_load: Float[Array, "2"]
     rib_load: Float[Array, " rib"]
 
@@ -68,7 +70,9 @@ def energy(model: RollerModel, rings: Rings, x: Unknowns) -> Scalar:
     return derivatives(model, rings, x).energy
 
 
-def derivatives(model: RollerModel, rings: Rings, x: Unknowns) -> Derivatives:
+def derivatives(
+    model: RollerModel, rings: Rings, x: Unknowns, of_roller: bool = False
+) -> Derivatives:
     """Energy of one roller, its gradient and Hessian, from one pass over the nodes.
 
     All are differentiable; what is not used of them is not computed under `jit`.
@@ -77,6 +81,7 @@ def derivatives(model: RollerModel, rings: Rings, x: Unknowns) -> Derivatives:
         model: The roller.
         rings: Motion of both rings in roller axes (6,) [m, rad].
         x: The roller's unknowns [m].
+        of_roller: Derivatives with respect to x alone, (3,) and (3, 3).
     """
     kinematics, prepared, c = model.kinematics, model.prepared, model.constants
     approaches = kinematics.approaches(prepared, rings, x)
@@ -87,21 +92,47 @@ def derivatives(model: RollerModel, rings: Rings, x: Unknowns) -> Derivatives:
         c,
         approaches,
     )
-    total, forces = jnp.sum(raceways.energy), raceways.load.reshape(-1)
-    ribs = [jnp.zeros((0,), approaches.dtype)] * 3
+    energies, forces = raceways.energy, raceways.load.reshape(-1)
+    stiffness = raceways.stiffness.reshape(-1)
+    rib_load = jnp.zeros((0,), approaches.dtype)
     if c.ribs is not None:
         ribs = [rib_density(c, approaches, order) for order in range(3)]
-        total, forces = total + jnp.sum(ribs[0]), jnp.concatenate([forces, ribs[1]])
-    jacobian = kinematics.jacobian(prepared, rings, x)
-    pull = jnp.sum(jacobian * forces[:, None], axis=0)
+        rib_load = ribs[1]
+        energies = jnp.concatenate([energies, ribs[0]])
+        forces = jnp.concatenate([forces, rib_load])
+        stiffness = jnp.concatenate([stiffness, ribs[2]])
+    first = 6 if of_roller else 0
+    jacobian = kinematics.jacobian(prepared, rings, x)[:, first:]
+    size = 9 - first
+    hessian = (stiffness @ _squares(jacobian)).reshape(size, size)
     curvature = kinematics.curvature(prepared, rings, x, forces)
+    if curvature is not None:
+        hessian = hessian + curvature[first:, first:]
+    # The guide acts on x, which stands last.
+    guided = np.arange(size) >= size - 3
     return Derivatives(
-        energy=total + 0.5 * c.guide * jnp.sum(x * x),
-        gradient=pull.at[6:].add(c.guide * x),
-        hessian=_assemble(model, jacobian, raceways.stiffness, ribs[2], curvature),
+        energy=jnp.sum(energies) + 0.5 * c.guide * dot(x, x),
+        gradient=forces @ jacobian + c.guide * jnp.pad(x, (size - 3, 0)),
+        hessian=hessian + c.guide * jnp.asarray(np.diag(guided), x.dtype),
         raceway_load=raceways.load[:, 0],
-        rib_load=ribs[1],
+        rib_load=rib_load,
     )
+
+
+def _squares(jacobian):
+    """Products of rows that go with (aa, ab, bb) of both raceways, and ribs.
+
+    Returns:
+        (term, n n): the Hessian is Σ stiffness · these.
+    """
+
+    def product(i, j):
+        outer = jacobian[i][:, None] * jacobian[j][None, :]
+        return (outer if i == j else outer + outer.T).reshape(-1)
+
+    pairs = [(0, 0), (0, 1), (1, 1), (2, 2), (2, 3), (3, 3)]
+    pairs += [(k, k) for k in range(4, jacobian.shape[0])]
+    return jnp.stack([product(i, j) for i, j in pairs])
 
 
 def rib_density(
@@ -122,23 +153,6 @@ def rib_density(
     factor = (_D / (_N + _D), 1.0, _N / _D)[order]
     power = positive_power(approaches[4:], _N + (1 - order) * _D, _D)
     return factor * constants.ribs.constant * power
-
-
-def _assemble(model, jacobian, blocks, ribs, curvature):
-    """Jᵀ K J with 2 x 2 blocks of the raceways and a diagonal of the ribs."""
-    raceway = jacobian[:4].reshape(2, 2, 9)
-    # Broadcast sums: for such small sizes far cheaper under vmap than batched dots.
-    half = jnp.sum(blocks[:, :, :, None] * raceway[:, None, :, :], axis=2)
-    total = jnp.sum(raceway[:, :, :, None] * half[:, :, None, :], axis=(0, 1))
-    if ribs.shape[0]:
-        rows = jacobian[4:]
-        total = total + jnp.sum(
-            rows[:, :, None] * (ribs[:, None] * rows)[:, None, :], axis=0
-        )
-    if curvature is not None:
-        total = total + curvature
-    index = jnp.arange(6, 9)
-    return total.at[index, index].add(model.constants.guide)
 
 
 def _per_raceway(function, constants, approaches):

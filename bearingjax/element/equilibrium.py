@@ -11,7 +11,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
 from ..numerics.implicit import attach, stop
-from ..numerics.linear import smallest_pivot, solve_symmetric
+from ..numerics.linear import dot, norm, smallest_pivot, solve_symmetric, trace
 from ..numerics.minimise import AbstractMinimiser, Evaluation
 from ..numerics.result import Result
 from ..numerics.types import Scalar
@@ -70,7 +70,7 @@ def solve_roller(
 
     def residual(x, args):
         model, rings, inertia = args
-        g = derivatives(model, rings, x).gradient[6:]
+        g = derivatives(model, rings, x, of_roller=True).gradient
         return g if inertia is None else g - _inertia_on_unknowns(model, inertia)
 
     x = attach(residual, state.x, (model, rings, inertia))
@@ -98,12 +98,12 @@ def is_loose(
     """
     guide = model.constants.guide
     contacts = pull - guide * x
-    unbalanced = jnp.sum(contacts * contacts) >= (0.03 * load) ** 2
+    unbalanced = dot(contacts, contacts) >= (0.03 * load) ** 2
     return unbalanced & (load <= 1e3 * guide * _size(model, x, magnitude))
 
 
 def _size(model, x, magnitude):
-    return magnitude + jnp.abs(model.constants.gap) + jnp.sqrt(jnp.sum(x * x))
+    return magnitude + jnp.abs(model.constants.gap) + norm(x)
 
 
 def solved_derivatives(
@@ -136,18 +136,17 @@ def _solve(model, rings, inertia, magnitude, minimiser):
     eps = jnp.finfo(rings.dtype).eps
 
     def function(x, with_hessian):
-        d = derivatives(model, rings, x)
-        value, g = d.energy, d.gradient[6:]
+        d = derivatives(model, rings, x, of_roller=True)
+        value, g, h = d.energy, d.gradient, d.hessian
         scale = jnp.sum(d.raceway_load) + jnp.sum(d.rib_load)
-        h = d.hessian[6:, 6:]
         if f is not None:
-            value, g = value - f @ x, g - f
-            scale = scale + jnp.sqrt(f @ f)
+            value, g = value - dot(f, x), g - f
+            scale = scale + norm(f)
         # Round-off of positions, and what is small against the guide's own force.
-        noise = _size(model, x, magnitude) * (eps * jnp.trace(h) + 1e-6 * c.guide)
+        noise = _size(model, x, magnitude) * (eps * trace(h) + 1e-6 * c.guide)
         # A loose roller need not be placed: its solve is over.
         loose = is_loose(model, x, magnitude, scale, g)
-        noise = jnp.where(loose, jnp.sqrt(g @ g), noise)
+        noise = jnp.where(loose, norm(g), noise)
         scale = jnp.where(loose, jnp.inf, scale)
         return Evaluation(value, g, h if with_hessian else None, scale, noise)
 
@@ -159,12 +158,12 @@ def _solve(model, rings, inertia, magnitude, minimiser):
     minimum = minimiser.minimise(function, start, radius)
     result = minimum.result
     if not isinstance(model.kinematics, Linearised):
-        h = derivatives(model, rings, minimum.x).hessian[6:, 6:]
+        h = derivatives(model, rings, minimum.x, of_roller=True).hessian
         saddle = (smallest_pivot(h) < -1e-9) & (result == Result.CONVERGED)
         result = jnp.where(saddle, int(Result.SADDLE), result)
     if f is not None:
         # Thrown off: inertia along a direction that only the guide holds.
-        away = jnp.sqrt(minimum.x @ minimum.x) > 10.0 * c.diameter
+        away = norm(minimum.x) > 10.0 * c.diameter
         lost = away & (result != int(Result.NON_FINITE))
         result = jnp.where(lost, int(Result.NO_LOAD_PATH), result)
     return RollerState(

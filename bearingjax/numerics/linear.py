@@ -8,6 +8,30 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 
+def dot(a: Float[Array, " n"], b: Float[Array, " n"]) -> Float[Array, ""]:
+    """a · b, written out: under `vmap` it fuses with what surrounds it.
+
+    Args:
+        a, b: Vectors of a few components (n,) [any unit].
+    """
+    return sum(a[i] * b[i] for i in range(a.shape[0]))
+
+
+def norm(a: Float[Array, " n"]) -> Float[Array, ""]:
+    """|a|, written out [unit of a]."""
+    return jnp.sqrt(dot(a, a))
+
+
+def quadratic(matrix: Float[Array, "n n"], a: Float[Array, " n"]) -> Float[Array, ""]:
+    """aᵀ M a, written out."""
+    return sum(a[i] * dot(matrix[i], a) for i in range(a.shape[0]))
+
+
+def trace(matrix: Float[Array, "n n"]) -> Float[Array, ""]:
+    """Sum of the diagonal, written out."""
+    return sum(matrix[i, i] for i in range(matrix.shape[0]))
+
+
 def solve_symmetric(
     matrix: Float[Array, "n n"], rhs: Float[Array, "n ..."]
 ) -> Float[Array, "n ..."]:
@@ -59,7 +83,7 @@ def _scale(diagonal):
 def _factorise(matrix):
     n = matrix.shape[-1]
     floor = 8 * jnp.finfo(matrix.dtype).eps
-    scale = _scale(jnp.diagonal(matrix))
+    scale = _scale(jnp.stack([matrix[i, i] for i in range(n)]))
     a = [[matrix[i, j] * (scale[i] * scale[j]) for j in range(i + 1)] for i in range(n)]
     lower = [[None] * n for _ in range(n)]
     pivots = []

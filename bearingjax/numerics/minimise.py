@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Float, Int
 
-from .linear import solve_symmetric
+from .linear import dot, norm, quadratic, solve_symmetric, trace
 from .result import Result
 
 
@@ -87,6 +87,28 @@ class _State(NamedTuple):
     reach: Array
 
 
+def _pack(state: _State) -> Array:
+    """All of a state in one array, so that a pass ends in one kernel, not in ten."""
+    now = state.now
+    parts = [state.x, now.gradient]
+    if now.hessian is not None:
+        parts.append(now.hessian.reshape(-1))
+    scalars = [now.value, now.scale, now.noise, *state[2:]]
+    return jnp.concatenate(
+        [*parts, jnp.stack([v.astype(now.value.dtype) for v in scalars])]
+    )
+
+
+def _unpack(packed: Array, n: int, with_hessian: bool = True) -> _State:
+    x, g, rest = packed[:n], packed[n : 2 * n], packed[2 * n :]
+    h = None
+    if with_hessian:
+        h, rest = rest[: n * n].reshape(n, n), rest[n * n :]
+    value, scale, noise, radius, steps, stalled, reach = (rest[i] for i in range(7))
+    now = Evaluation(value, g, h, scale, noise)
+    return _State(x, now, radius, steps, stalled > 0, reach)
+
+
 class TrustRegionNewton(AbstractMinimiser):
     """Newton's method on H + |g|/radius, with the radius adapted.
 
@@ -135,83 +157,73 @@ class TrustRegionNewton(AbstractMinimiser):
         Fails: as `minimise`, and `NO_LOAD_PATH`.
         """
         eps = jnp.finfo(start.dtype).eps
+        tiny = jnp.finfo(start.dtype).tiny
         n = start.shape[0]
         identity = jnp.eye(n, dtype=start.dtype)
         radius = jnp.asarray(radius, dtype=start.dtype)
 
-        def unfinished(state):
-            size = _norm(state.now.gradient)
+        def unfinished(packed):
+            state = _unpack(packed, n)
+            size = norm(state.now.gradient)
             goal = tolerance * state.now.scale + state.now.noise
             # NaN compares false: the loop ends at once and the code says why.
             going = (size > goal) & (state.steps < self.max_steps) & ~state.stalled
             if limit is not None:
-                going = going & (_norm(state.x) < limit)
+                going = going & (norm(state.x) < limit)
             return going | (state.steps < 0)
 
-        def step(state):
+        def step(packed):
             # The first pass (steps = -1) only evaluates the start: one copy of
             # `function` in the compiled loop instead of two.
-            first = state.steps < 0
-            now = state.now
-            size = _norm(now.gradient)
-            shift = size / state.radius + eps * jnp.trace(now.hessian) / n
+            state = _unpack(packed, n)
+            now, first = state.now, state.steps < 0
+            size = norm(now.gradient)
+            shift = size / state.radius + eps * trace(now.hessian) / n
             p = -solve_symmetric(now.hessian + shift * identity, now.gradient)
             # An indefinite Hessian (finite kinematics) may still give a long step.
-            tiny = jnp.finfo(start.dtype).tiny
-            p = p * jnp.minimum(1.0, state.radius / jnp.maximum(_norm(p), tiny))
+            p = p * jnp.minimum(1.0, state.radius / jnp.maximum(norm(p), tiny))
             searching = state.reach > 0
             if direction is not None:
                 p = jnp.where(searching, state.reach * direction, p)
             p = jnp.where(first, 0.0, p)
-            length = _norm(p)
+            length = norm(p)
             new = function(state.x + p, True)
-            slope = now.gradient @ p
-            predicted = slope + 0.5 * (p @ now.hessian @ p)
+            slope = dot(now.gradient, p)
+            predicted = slope + 0.5 * quadratic(now.hessian, p)
             actual = new.value - now.value
-            new_size = _norm(new.gradient)
+            new_size = norm(new.gradient)
             accept = first | searching | (actual <= 1e-4 * slope)
             accept = accept | (new_size <= 0.5 * size)
             good = (actual <= 0.7 * predicted) | (new_size <= 0.25 * size)
-            grown = jnp.where(
-                good, jnp.maximum(state.radius, 6.0 * length), state.radius
-            )
+            longer = jnp.maximum(state.radius, 6.0 * length)
+            grown = jnp.where(good, longer, state.radius)
             # A step too long has met a stiff contact: Newton along the step, from its
             # far end, says where.
-            bend = jnp.maximum(p @ new.hessian @ p, tiny)
-            shorter = jnp.clip(1.0 - (new.gradient @ p) / bend, 0.1, 0.9)
+            bend = jnp.maximum(quadratic(new.hessian, p), tiny)
+            shorter = jnp.clip(1.0 - dot(new.gradient, p) / bend, 0.1, 0.9)
             radius = jnp.where(accept, grown, shorter * length)
             reach = state.reach
             if direction is not None:
-                fall = -(new.gradient @ direction)
-                bend = direction @ new.hessian @ direction
+                fall = -dot(new.gradient, direction)
+                bend = quadratic(new.hessian, direction)
                 begin = (fall > 0) & (bend * state.radius < fall)
                 reach = jnp.where(
                     first,
                     jnp.where(begin, state.radius, 0.0),
                     jnp.where(searching & (fall > 0), 4.0 * reach, 0.0),
                 )
-            now = Evaluation(
-                *(jnp.where(accept, a, b) for a, b in zip(new, now, strict=True))
-            )
-            return _State(
-                x=jnp.where(accept, state.x + p, state.x),
-                now=now,
-                radius=jnp.where(first, state.radius, radius),
-                steps=state.steps + 1,
-                stalled=~accept & (length <= 4 * eps * _norm(state.x)),
-                reach=reach,
-            )
+            radius = jnp.where(first, state.radius, radius)
+            stalled = ~accept & (length <= 4 * eps * norm(state.x))
+            rest = (radius, state.steps + 1.0, stalled, reach)
+            taken = _pack(_State(state.x + p, new, *rest))
+            stayed = _pack(_State(state.x, now, *rest))
+            return jnp.where(accept, taken, stayed)
 
         zero = jnp.zeros((), start.dtype)
-        state = _State(
-            x=start,
-            now=Evaluation(zero, 0.0 * start, identity, zero, zero),
-            radius=radius,
-            steps=jnp.asarray(-1, dtype=jnp.int32),
-            stalled=jnp.asarray(False),
-            reach=zero,
-        )
-        return _finish(lax.while_loop(unfinished, step, state), tolerance, limit)
+        begin = Evaluation(zero, 0.0 * start, identity, zero, zero)
+        packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero))
+        state = _unpack(lax.while_loop(unfinished, step, packed), n)
+        return _finish(state, tolerance, limit)
 
 
 class BFGS(AbstractMinimiser):
@@ -238,64 +250,54 @@ class BFGS(AbstractMinimiser):
         tolerance = default if self.tolerance is None else self.tolerance
         eps = jnp.finfo(start.dtype).eps
         tiny = jnp.finfo(start.dtype).tiny
-        identity = jnp.eye(start.shape[0], dtype=start.dtype)
+        n = start.shape[0]
+        identity = jnp.eye(n, dtype=start.dtype)
         radius = jnp.asarray(radius, dtype=start.dtype)
 
         def unfinished(carry):
-            state = carry[0]
-            size = _norm(state.now.gradient)
+            state = _unpack(carry[0], n, False)
+            size = norm(state.now.gradient)
             goal = tolerance * state.now.scale + state.now.noise
             going = (size > goal) & (state.steps < self.max_steps) & ~state.stalled
             return going | (state.steps < 0)
 
         def step(carry):
-            state, inverse, fraction = carry
+            packed, inverse, fraction = carry
+            state = _unpack(packed, n, False)
             first = state.steps < 0
             now = state.now
             direction = -inverse @ now.gradient
             direction = direction * jnp.minimum(
-                1.0, state.radius / jnp.maximum(_norm(direction), tiny)
+                1.0, state.radius / jnp.maximum(norm(direction), tiny)
             )
             s = jnp.where(first, 0.0, fraction * direction)
             new = function(state.x + s, False)
             accept = (new.value - now.value <= 1e-4 * (now.gradient @ s)) | (
-                _norm(new.gradient) <= 0.5 * _norm(now.gradient)
+                norm(new.gradient) <= 0.5 * norm(now.gradient)
             )
             accept = accept | first
             updated = inverse_update(inverse, s, new.gradient - now.gradient)
             # First metric: down the gradient, as long as the radius.
-            steep = identity * radius / jnp.maximum(_norm(new.gradient), tiny)
+            steep = identity * radius / jnp.maximum(norm(new.gradient), tiny)
             updated = jnp.where(first, steep, updated)
             full = accept & (fraction == 1.0)
-            longer = jnp.maximum(state.radius, 4.0 * _norm(s))
-            state = _State(
-                x=jnp.where(accept, state.x + s, state.x),
-                now=Evaluation(
-                    jnp.where(accept, new.value, now.value),
-                    jnp.where(accept, new.gradient, now.gradient),
-                    None,
-                    jnp.where(accept, new.scale, now.scale),
-                    jnp.where(accept, new.noise, now.noise),
-                ),
-                radius=jnp.where(full, longer, state.radius),
-                steps=state.steps + 1,
-                stalled=~accept & (_norm(s) <= 4 * eps * _norm(state.x)),
-                reach=state.reach,
-            )
+            longer = jnp.maximum(state.radius, 4.0 * norm(s))
+            radius_now = jnp.where(full, longer, state.radius)
+            stalled = ~accept & (norm(s) <= 4 * eps * norm(state.x))
+            rest = (radius_now, state.steps + 1.0, stalled, state.reach)
+            new = new._replace(hessian=None)
+            taken = _pack(_State(state.x + s, new, *rest))
+            stayed = _pack(_State(state.x, now, *rest))
+            packed = jnp.where(accept, taken, stayed)
             inverse = jnp.where(accept, updated, inverse)
-            return state, inverse, jnp.where(accept, 1.0, 0.3 * fraction)
+            return packed, inverse, jnp.where(accept, 1.0, 0.3 * fraction)
 
         zero = jnp.zeros((), start.dtype)
-        state = _State(
-            x=start,
-            now=Evaluation(zero, 0.0 * start, None, zero, zero),
-            radius=radius,
-            steps=jnp.asarray(-1, dtype=jnp.int32),
-            stalled=jnp.asarray(False),
-            reach=zero,
-        )
-        carry = (state, identity, jnp.ones((), start.dtype))
-        return _finish(lax.while_loop(unfinished, step, carry)[0], tolerance, None)
+        begin = Evaluation(zero, 0.0 * start, None, zero, zero)
+        packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero))
+        carry = (packed, identity, jnp.ones((), start.dtype))
+        packed, _, _ = lax.while_loop(unfinished, step, carry)
+        return _finish(_unpack(packed, n, False), tolerance, None)
 
 
 def inverse_update(
@@ -325,19 +327,15 @@ def _tolerance(tolerance, dtype):
     return 1e-13 if dtype == jnp.float64 else 1e-5
 
 
-def _norm(x):
-    return jnp.sqrt(jnp.sum(x * x))
-
-
 def _finish(state, tolerance, limit):
     now = state.now
-    size = _norm(now.gradient)
+    size = norm(now.gradient)
     # A stall at round-off is as good as it gets; anything above is a failure.
     slack = jnp.where(state.stalled, 1e3, 1.0)
     done = size <= slack * (tolerance * now.scale + now.noise)
     result = jnp.where(done, int(Result.CONVERGED), int(Result.STEP_LIMIT))
     if limit is not None:
-        away = ~done & (_norm(state.x) >= limit)
+        away = ~done & (norm(state.x) >= limit)
         result = jnp.where(away, int(Result.NO_LOAD_PATH), result)
     finite = jnp.isfinite(size) & jnp.all(jnp.isfinite(state.x))
     result = jnp.where(finite, result, int(Result.NON_FINITE))
@@ -345,7 +343,7 @@ def _finish(state, tolerance, limit):
     return Minimum(
         x=state.x,
         residual=size / jnp.maximum(now.scale, floor),
-        steps=state.steps,
+        steps=state.steps.astype(jnp.int32),
         result=result.astype(jnp.int32),
         radius=state.radius,
     )

@@ -25,6 +25,10 @@ from .implicit import attach_roots, stop
 
 Offset = Callable[[Array], Array]
 
+# Steps that find a zone edge from its scan interval: to 1e-14 on crowns, to 1e-8 on the
+# singular end of a logarithm, where less than that is in error in the integrals.
+_REFINEMENTS = 5
+
 
 class Nodes(NamedTuple):
     """Quadrature nodes of one integral.
@@ -98,7 +102,7 @@ class ContactMapped(AbstractQuadrature):
 
     [-1, 1] is cut into panels at the kinks of h. In each panel the interval from
     the first to the last positive argument is found (a scan over fixed points, the
-    maximum and the two ends refined by safeguarded Newton steps) and mapped with a
+    two ends refined by safeguarded steps of third order) and mapped with a
     polynomial substitution of power 3 at both ends, which resolves the powers 1/9
     and 10/9 at a zone edge. Where h is convex, the loaded part of a panel is one
     interval and the rule is spectrally accurate; for other shapes (measured
@@ -115,7 +119,7 @@ class ContactMapped(AbstractQuadrature):
     """
 
     points: int = eqx.field(static=True, default=32)
-    scan: int = eqx.field(static=True, default=25)
+    scan: int = eqx.field(static=True, default=32)
 
     def __check_init__(self):
         _check_points(self.points)
@@ -130,19 +134,17 @@ class ContactMapped(AbstractQuadrature):
     def table(self, offset, kinks, dtype):
         one = jnp.ones((), dtype=dtype)
         ends = jnp.stack([-one, *kinks, one])
-        start, stop_ = ends[:-1], ends[1:]
-        grid = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, self.scan))
-        grid[0], grid[-1] = 0.0, 1.0
-        grid = jnp.asarray(grid, dtype=dtype)[None, :]
-        # Both ends exactly, so that "loaded at the end" is decided at the end.
-        at = start[:, None] * (1.0 - grid) + stop_[:, None] * grid
-        at = lax.stop_gradient(at)
-        return start, stop_, at, lax.stop_gradient(offset(at))
+        start, end = ends[:-1], ends[1:]
+        index = jnp.arange(self.scan, dtype=dtype)[None, :]
+        at = stop(_scan_point(index, start[:, None], end[:, None], self.scan))
+        fixed, slope = jax.jvp(offset, (at,), (jnp.ones_like(at),))
+        return start, end, at, stop(fixed), stop(slope)
 
     def nodes(self, offset, args, table, a, b):
-        start, end, at, fixed = table
-        edges = stop((start, end, at, fixed, a, b))
-        left, right, inner = _loaded_interval(lambda x: offset(stop(args), x), *edges)
+        start, end, *_ = table
+        left, right, inner = _loaded_interval(
+            lambda x: offset(stop(args), x), *stop((*table, a, b))
+        )
 
         def argument(x, traced):
             a, b, args = traced
@@ -157,85 +159,78 @@ class ContactMapped(AbstractQuadrature):
         return Nodes(middle, half, argument(position, (a, b, args)))
 
 
-def _loaded_interval(offset, start, end, at, fixed, a, b):
+def _scan_point(index, start, end, count):
+    """Scan points of a panel, ends included, crowded towards both: profiles may end in
+    a logarithm."""
+    t = index / (count - 1)
+    left, right = t**5, (1.0 - t) ** 5
+    return (start * right + end * left) / (left + right)
+
+
+def _loaded_interval(offset, start, end, at, fixed, slope, a, b):
     """First and last zero of a + b ξ - h in each panel, and which are inside.
 
     Args:
         offset: h, elementwise.
         start, end: Panel ends (panel,).
-        at, fixed: Scan points and h there (panel, scan).
+        at, fixed, slope: Scan points, h and its derivative there (panel, scan).
         a, b: Scalars.
 
     Returns:
-        left, right (panel,), and inner (2, panel): the edge is a root inside the
-        panel rather than the panel's end.
+        left, right (panel,), right ≥ left, and inner (2, panel): the edge is a root
+        inside the panel rather than the panel's end.
     """
-
-    def value_and_slope(x):
-        h, slope = jax.jvp(offset, (x,), (jnp.ones_like(x),))
-        return a + b * x - h, b - slope
-
-    def slope_and_curvature(x):
-        return jax.jvp(lambda y: value_and_slope(y)[1], (x,), (jnp.ones_like(x),))
-
+    count = at.shape[1]
     f = a + b * at - fixed
-    peak_value = jnp.max(f, axis=1, keepdims=True)
-    peak = jnp.max(jnp.where(f >= peak_value, at, start[:, None]), axis=1)
-    peak_value = peak_value[:, 0]
-
-    # The maximum, because a lightly loaded zone may lie between two scan points.
-    # Loops, not unrolled: one fused kernel of all of this takes XLA 10 s to compile.
-    lo = jnp.max(jnp.where(at < peak[:, None], at, start[:, None]), axis=1)
-    hi = jnp.min(jnp.where(at > peak[:, None], at, end[:, None]), axis=1)
-
-    def climb(_, top):
-        slope, curvature = slope_and_curvature(top)
-        convex = curvature < 0
-        newton = top - slope / jnp.where(convex, curvature, -1.0)
-        return jnp.clip(jnp.where(convex, newton, top), lo, hi)
-
-    top = lax.fori_loop(0, 4, climb, peak)
-    top_value = value_and_slope(top)[0]
-    peak = jnp.where(top_value > peak_value, top, peak)
-    peak_value = jnp.maximum(top_value, peak_value)
-
-    # Brackets of both edges: the outermost positive scan points (or the maximum)
-    # and their open neighbours outside.
-    somewhere = jnp.where(f > 0, at, peak[:, None])
-    first = jnp.minimum(peak, jnp.min(somewhere, axis=1))
-    final = jnp.maximum(peak, jnp.max(somewhere, axis=1))
-    below = jnp.max(jnp.where(at < first[:, None], at, start[:, None]), axis=1)
-    above = jnp.min(jnp.where(at > final[:, None], at, end[:, None]), axis=1)
-    # First guess: the parabola through the maximum, exact for a crown.
-    _, curvature = slope_and_curvature(peak)
-    width = jnp.sqrt(
-        jnp.maximum(2.0 * peak_value, 0.0) / jnp.where(curvature < 0, -curvature, 1.0)
+    index = jnp.arange(count, dtype=a.dtype)[None, :]
+    positive = f > 0
+    first = jnp.min(jnp.where(positive, index, 1.0 * count), axis=1)
+    final = jnp.max(jnp.where(positive, index, -1.0), axis=1)
+    # A lightly loaded zone may lie between two scan points: on both sides of the top.
+    top = jnp.sum(jnp.where(b - slope > 0, 1.0, 0.0), axis=1)
+    some = final >= 0
+    inside = jnp.stack([jnp.where(some, first, top), jnp.where(some, final, top - 1)])
+    outside = jnp.stack(
+        [jnp.where(some, first, top) - 1, jnp.where(some, final + 1, top)]
     )
-    inside, outside = jnp.stack([first, final]), jnp.stack([below, above])
-    guess = jnp.stack([peak - width, peak + width])
+    inside, outside = (
+        _scan_point(jnp.clip(i, 0.0, count - 1.0), start, end, count)
+        for i in (inside, outside)
+    )
+    # Which root of the local parabola: the left edge on rising ground, the right one
+    # on falling.
+    side = jnp.asarray([[1.0], [-1.0]], dtype=a.dtype)
+    one = jnp.ones_like(outside)
 
-    def bracketed(x, inside, outside):
-        between = (x - inside) * (x - outside) <= 0
-        return jnp.where(between, x, 0.5 * (inside + outside))
+    def slope_of(x):
+        return jax.jvp(offset, (x,), (one,))
 
     def refine(_, packed):
         x, inside, outside = packed
-        x = bracketed(x, inside, outside)
-        value, slope = value_and_slope(x)
-        positive = value > 0
-        newton = x - value / jnp.where(slope == 0, 1.0, slope)
-        return jnp.stack(
-            [newton, jnp.where(positive, x, inside), jnp.where(positive, outside, x)]
-        )
+        (h, h1), (_, h2) = jax.jvp(slope_of, (x,), (one,))
+        value, first, second = a + b * x - h, b - h1, -h2
+        inside = jnp.where(value > 0, x, inside)
+        outside = jnp.where(value > 0, outside, x)
+        # Root of the local parabola (exact for a crown, else of third order). If it has
+        # none: its top, or Newton's step where that is longer (a steep profile end).
+        square = first * first - 2.0 * value * second
+        base = first + side * jnp.sqrt(jnp.maximum(square, 0.0))
+        root = -2.0 * value / jnp.where(base == 0, 1.0, base)
+        crest = -first / jnp.where(second < 0, second, -1.0)
+        newton = -value / jnp.where(first == 0, 1.0, first)
+        longer = jnp.where(jnp.abs(newton) > jnp.abs(crest), newton, crest)
+        new = x + jnp.where(square < 0, longer, root)
+        between = (new - inside) * (new - outside) <= 0
+        new = jnp.where(between, new, 0.5 * (inside + outside))
+        return jnp.stack([new, inside, outside])
 
-    x, inside, outside = lax.fori_loop(
-        0, 6, refine, jnp.stack([guess, inside, outside])
+    x, _, _ = lax.fori_loop(
+        0, _REFINEMENTS, refine, jnp.stack([outside, inside, outside])
     )
-    between = (x - inside) * (x - outside) <= 0
-    x = jnp.where(between, x, outside)
-    empty = peak_value <= 0
-    left, right = jnp.where(empty, peak, x[0]), jnp.where(empty, peak, x[1])
-    return left, right, jnp.stack([(f[:, 0] <= 0) | empty, (f[:, -1] <= 0) | empty])
+    inner = jnp.stack([f[:, 0] <= 0, f[:, -1] <= 0])
+    left = jnp.where(inner[0], x[0], start)
+    right = jnp.where(inner[1], x[1], end)
+    return left, jnp.maximum(left, right), inner
 
 
 def _check_points(points):

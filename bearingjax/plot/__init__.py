@@ -1,0 +1,9 @@
+"""Plots of bearings and solutions; matplotlib is imported at the first plot."""
+
+from .load import load_displacement as load_displacement
+from .load import load_zone as load_zone
+from .page import overview as overview
+from .pressure import pressure_map as pressure_map
+from .pressure import pressure_profiles as pressure_profiles
+from .profiles import profile as profile
+from .section import cross_section as cross_section

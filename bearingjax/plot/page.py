@@ -1,0 +1,87 @@
+"""One page on a solved bearing."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..design.bearing import AbstractRollerBearing
+from ..numerics.result import Result
+from ..statics.solution import Solution, warnings
+from .load import load_zone
+from .pressure import pressure_map, pressure_profiles
+from .section import cross_section
+from .style import degrees, force_text, pyplot
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+
+
+def overview(
+    bearing: AbstractRollerBearing, solution: Solution, title: str = ""
+) -> "matplotlib.figure.Figure":
+    """Section, load zone, pressures and the main results on one page.
+
+    Args:
+        bearing: The design.
+        solution: Its single solution.
+        title: Head of the page; the kind of bearing if empty.
+
+    Returns:
+        The figure, 12 by 9 inches.
+    """
+    figure = pyplot().figure(figsize=(12.0, 9.0), layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08)
+    axes = figure.subplot_mosaic(
+        [["section", "zone"], ["profiles", "map"], ["text", "text"]],
+        height_ratios=[1.15, 1.0, 0.13],
+        per_subplot_kw={"zone": {"projection": "polar"}},
+    )
+    cross_section(bearing, axes["section"])
+    load_zone(solution, axes["zone"])
+    raceway = _busier_raceway(solution)
+    pressure_profiles(solution, axes["profiles"], raceway=raceway)
+    pressure_map(solution, axes["map"], raceway=raceway)
+    axes["text"].set_axis_off()
+    axes["text"].text(
+        0.5,
+        0.5,
+        "\n".join(_results(solution)),
+        ha="center",
+        va="center",
+        fontsize=10,
+        linespacing=1.5,
+        transform=axes["text"].transAxes,
+        in_layout=False,
+    )
+    figure.suptitle(title or type(bearing).__name__, fontsize=14, fontweight="bold")
+    return figure
+
+
+def _busier_raceway(solution):
+    """The raceway with the higher pressure; the inner one if they are equal."""
+    outer, inner = np.max(np.asarray(solution.contact_pressure), axis=(0, 2))
+    return "outer" if outer > inner else "inner"
+
+
+def _results(solution):
+    """Two lines: displacement, largest load and pressure, state."""
+    q = np.asarray(solution.displacement)
+    shift, tilt = np.split(q[6:] - q[:6], 2)
+    load = np.asarray(solution.roller_load)
+    pressure = np.asarray(solution.contact_pressure)
+    roller, ring = np.unravel_index(np.argmax(load), load.shape)
+    azimuth = degrees(solution.azimuth)[roller]
+    result = Result(int(solution.result)).label.replace("_", " ")
+    count = len(warnings(solution))
+    return (
+        "inner against outer ring:  "
+        f"u = ({_three(1e6 * shift)}) µm,  γ = ({_three(1e3 * tilt)}) mrad",
+        f"largest roller load {force_text(load[roller, ring])} at {azimuth:.4g}°,  "
+        f"largest pressure {1e-6 * pressure.max():.4g} MPa,  "
+        f"{np.count_nonzero(np.asarray(solution.load_zone))} of {len(load)} rollers"
+        f" loaded,  {result},  {count} warning{'' if count == 1 else 's'}",
+    )
+
+
+def _three(values):
+    return ", ".join(f"{v:.4g}" for v in np.where(np.abs(values) < 5e-7, 0.0, values))

@@ -1,0 +1,179 @@
+"""Contact pressure along the rollers."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..statics.solution import Solution
+from .style import (
+    COLOURS,
+    RACEWAYS,
+    SMALL,
+    axes_or_new,
+    degrees,
+    force_text,
+    pyplot,
+    raceway_index,
+)
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+_LINES = {"outer": "--", "inner": "-"}
+
+
+def pressure_profiles(
+    solution: Solution,
+    ax: "matplotlib.axes.Axes | None" = None,
+    count: int = 3,
+    raceway: str = "inner",
+) -> "matplotlib.axes.Axes":
+    """Contact pressure [MPa] along the most loaded rollers.
+
+    A triangle marks a roller end that carries load: there the line contact knows no
+    end pressure peak.
+
+    Args:
+        solution: A single solution.
+        ax: Axes; a new figure if `None`.
+        count: Number of rollers, most loaded first.
+        raceway: "inner", "outer" or "both".
+
+    Returns:
+        The axes.
+
+    Raises:
+        ValueError: If `count` is below 1 or `raceway` is unknown.
+    """
+    if count < 1:
+        raise ValueError(f"`count` is {count}; it must be at least 1.")
+    names = ("inner", "outer") if raceway == "both" else (raceway,)
+    rings = [raceway_index(name) for name in names]
+    ax = axes_or_new(ax)
+    position = 1e3 * np.asarray(solution.position)
+    pressure = 1e-6 * np.asarray(solution.contact_pressure)
+    load = np.asarray(solution.roller_load)
+    angle = degrees(solution.azimuth)
+    edges = np.asarray(solution.edge_loaded)
+    # Equal loads (to 1 ppm) by azimuth.
+    total = load[:, rings].sum(axis=1)
+    scale = np.max(total, initial=0.0) or 1.0
+    rollers = np.lexsort((angle, -np.round(total / scale, 6)))[:count]
+    for name, ring in zip(names, rings, strict=True):
+        for rank, roller in enumerate(rollers):
+            fade = 0.65 * rank / max(len(rollers) - 1, 1)
+            colour = _towards_white(COLOURS[name], fade)
+            label = f"{angle[roller]:.4g}°: {force_text(load[roller, ring])}"
+            ax.plot(
+                position,
+                pressure[roller, ring],
+                color=colour,
+                linestyle=_LINES[name],
+                # The most loaded roller on top of wider, paler lines.
+                linewidth=1.6 + 2.4 * fade,
+                zorder=3 - 0.01 * rank,
+                label=label if len(names) == 1 else f"{name}, {label}",
+            )
+            ends = np.flatnonzero(edges[roller, ring])
+            ax.plot(
+                position[[0, -1]][ends],
+                pressure[roller, ring][[0, -1]][ends],
+                linestyle="none",
+                marker="^",
+                markersize=7,
+                color=colour,
+                markeredgecolor="black",
+                markeredgewidth=0.6,
+                label="_edge",
+                zorder=4,
+                clip_on=False,
+                in_layout=False,
+            )
+    ax.set_xlim(position[0], position[-1])
+    top = np.nanmax(pressure[np.ix_(rollers, rings)], initial=0.0)
+    ax.set_ylim(0.0, 1.08 * top if top > 0 else 1.0)
+    ax.grid(color="0.9")
+    ax.set_axisbelow(True)
+    ax.set_xlabel("position along the roller [mm]")
+    ax.set_ylabel("contact pressure [MPa]")
+    which = "both raceways" if raceway == "both" else f"{raceway} raceway"
+    ax.set_title(f"Pressure along the most loaded rollers, {which}")
+    title = "azimuth: load"
+    if np.any(edges[np.ix_(rollers, rings)]):
+        title += "\n▲ loaded roller end"
+    ax.legend(title=title, fontsize=SMALL, title_fontsize=SMALL, loc="best")
+    return ax
+
+
+def pressure_map(
+    solution: Solution,
+    ax: "matplotlib.axes.Axes | None" = None,
+    raceway: str = "inner",
+) -> "matplotlib.axes.Axes":
+    """Contact pressure [MPa] of all rollers: azimuth by position along the roller.
+
+    White is no contact.
+
+    Args:
+        solution: A single solution.
+        ax: Axes; a new figure if `None`.
+        raceway: "inner" or "outer".
+
+    Returns:
+        The axes; the colour bar stands beside it.
+
+    Raises:
+        ValueError: If `raceway` is unknown.
+    """
+    ring = raceway_index(raceway)
+    ax = axes_or_new(ax, (8.0, 4.5))
+    angle = degrees(solution.azimuth)
+    order = np.argsort(angle, kind="stable")
+    pressure = 1e-6 * np.asarray(solution.contact_pressure)[order, ring]
+    position = 1e3 * np.asarray(solution.position)
+    top = np.nanmax(pressure, initial=0.0)
+    image = ax.pcolormesh(
+        _edges(angle[order], 360.0 / len(angle)),
+        _edges(position, 1.0),
+        np.ma.masked_where(~(pressure > 0.0), pressure).T,
+        cmap=pyplot().get_cmap(
+            "Oranges" if ring == RACEWAYS.index("inner") else "Blues"
+        ),
+        vmin=0.0,
+        vmax=top if top > 0 else 1.0,
+        rasterized=True,
+    )
+    if len(angle) <= 40:
+        ax.vlines(
+            _edges(angle[order], 360.0 / len(angle)),
+            position[0],
+            position[-1],
+            color="0.85",
+            linewidth=0.6,
+        )
+    bar = ax.figure.colorbar(image, ax=ax, pad=0.02)
+    bar.set_label("contact pressure [MPa]")
+    ax.set_xticks(np.arange(0.0, 361.0, 45.0))
+    ax.set_ylim(position[0], position[-1])
+    half = 180.0 / len(angle)
+    ax.set_xlim(min(angle[order][0] - half, 0.0), max(angle[order][-1] + half, 360.0))
+    ax.set_xlabel("azimuth of the roller [°]")
+    ax.set_ylabel("position along the roller [mm]")
+    ax.set_title(f"Contact pressure, {raceway} raceway")
+    return ax
+
+
+def _edges(centres, single):
+    """Edges of cells around ascending centres; `single` is the width of one alone."""
+    if len(centres) == 1:
+        return centres[0] + single * np.array([-0.5, 0.5])
+    middle = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate(
+        [[2.0 * centres[0] - middle[0]], middle, [2.0 * centres[-1] - middle[-1]]]
+    )
+
+
+def _towards_white(colour, share):
+    from matplotlib.colors import to_rgb
+
+    return tuple(c + share * (1.0 - c) for c in to_rgb(colour))

@@ -1,0 +1,57 @@
+"""Profiles of rollers and raceways."""
+
+from typing import TYPE_CHECKING
+
+import jax.numpy as jnp
+import numpy as np
+
+from ..design.bearing import AbstractRollerBearing
+from .style import COLOURS, ROLLER, SMALL, axes_or_new
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+
+def profile(
+    bearing: AbstractRollerBearing, ax: "matplotlib.axes.Axes | None" = None
+) -> "matplotlib.axes.Axes":
+    """Drop [µm] of the roller and of both raceways along the roller.
+
+    The drop points downwards, as the material falls away. Profiles that grow without
+    limit at their very end are cut there.
+
+    Args:
+        bearing: The design.
+        ax: Axes; a new figure if `None`.
+
+    Returns:
+        The axes.
+    """
+    ax = axes_or_new(ax)
+    length, diameter = bearing.roller_length, bearing.roller_diameter
+    # Points gather at the ends, where profiles are steep.
+    turn = jnp.linspace(0.0, jnp.pi, 801, dtype=length.dtype)
+    position = -0.5 * length * jnp.cos(turn)
+    x = 1e3 * np.asarray(position)
+    near_end = np.abs(x) <= 0.95 * x[-1]
+    lines = {
+        "roller": (bearing.roller_profile, ROLLER, "-", 2.0),
+        "outer raceway": (bearing.outer_raceway_profile, COLOURS["outer"], "--", 1.8),
+        "inner raceway": (bearing.inner_raceway_profile, COLOURS["inner"], ":", 2.4),
+    }
+    limit = 0.0
+    for name, (shape, colour, style, width) in lines.items():
+        drop = 1e6 * np.asarray(shape.drop(position, length, diameter))
+        ax.plot(x, drop, color=colour, linestyle=style, linewidth=width, label=name)
+        full = float(np.max(drop, initial=0.0, where=np.isfinite(drop)))
+        inside = float(np.max(drop[near_end], initial=0.0))
+        limit = max(limit, min(full, 3.0 * inside) if inside > 0 else full)
+    limit = limit or 1.0
+    ax.set_ylim(1.1 * limit, -0.1 * limit)
+    ax.set_xlim(x[0], x[-1])
+    ax.grid(color="0.9")
+    ax.set_xlabel("position along the roller [mm]")
+    ax.set_ylabel("drop [µm]")
+    ax.set_title("Profiles")
+    ax.legend(fontsize=SMALL, loc="lower center")
+    return ax

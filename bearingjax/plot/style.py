@@ -1,0 +1,90 @@
+"""What all plots share: matplotlib on demand, colours, labels."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+OUTER = "#0072B2"
+"""Colour of the outer ring and its raceway (Okabe and Ito, colour-blind safe)."""
+INNER = "#D55E00"
+"""Colour of the inner ring and its raceway."""
+ROLLER = "#009E73"
+"""Colour of the rollers."""
+GREY = "#595959"
+"""Colour of lines that are not data."""
+SMALL = 9.0
+"""Smallest font size [pt]."""
+
+RACEWAYS = ("outer", "inner")
+COLOURS = {"outer": OUTER, "inner": INNER}
+
+
+def pyplot():
+    """`matplotlib.pyplot`, imported at the first plot.
+
+    Raises:
+        ImportError: If matplotlib is not installed.
+    """
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as error:
+        raise ImportError(
+            'plots need matplotlib: pip install "bearingjax[plot]"'
+        ) from error
+    return plt
+
+
+def axes_or_new(
+    ax: "matplotlib.axes.Axes | None", size=(7.0, 5.0), polar: bool = False
+) -> "matplotlib.axes.Axes":
+    """The given axes, or those of a new figure.
+
+    Args:
+        ax: Axes or `None`.
+        size: Width and height of a new figure [inch].
+        polar: Whether the plot needs polar axes.
+
+    Raises:
+        ValueError: If a polar plot is given other axes.
+    """
+    if ax is None:
+        figure = pyplot().figure(figsize=size, layout="constrained")
+        return figure.add_subplot(projection="polar" if polar else None)
+    if polar and ax.name != "polar":
+        raise ValueError('load_zone needs polar axes: subplot(projection="polar").')
+    return ax
+
+
+def raceway_index(raceway: str) -> int:
+    """Place of a raceway on the ring axis of a solution.
+
+    Raises:
+        ValueError: If it is neither "outer" nor "inner".
+    """
+    if raceway not in RACEWAYS:
+        raise ValueError(f"`raceway` is {raceway!r}; it must be 'outer' or 'inner'.")
+    return RACEWAYS.index(raceway)
+
+
+def degrees(azimuth) -> np.ndarray:
+    """Azimuth from 0 up to 360 degrees, without rounding noise at the seam.
+
+    Args:
+        azimuth: Angle [rad].
+    """
+    angle = np.round(np.rad2deg(np.asarray(azimuth, dtype=float)), 6) % 360.0
+    return angle + 0.0
+
+
+def force_text(force: float) -> str:
+    """A force with its unit, N below 1 kN.
+
+    Args:
+        force: Force [N].
+    """
+    if abs(force) < 1e3:
+        return f"{force:.3g} N"
+    return f"{1e-3 * force:.3g} kN"

@@ -1,0 +1,310 @@
+"""How far is one call (force and stiffness) from a C loop of the same algorithm?
+
+A cylindrical roller bearing with 14 crowned rollers, 32 nodes per raceway contact:
+under a radial load; under the same load with the rings out of line; and that again with
+crowned raceways, outer and inner unlike. Between equal raceways a roller without
+inertia stands midway from the start, so that only the third case takes Newton steps.
+
+`c_loop.c` is compiled on demand; its result is checked against JAX, then all variants
+are timed in shuffled order: hot (the same call in a block) and cold (one call after
+64 MB of other memory). Only ratios within one run count.
+
+Variants: the C loop by its own clock (the base of the ratios) and through `ctypes`, as
+Python calls it (the base of the ratio "call", for the cold call); `filter_jit` with the
+element as an argument, so that any design may come; and `jit` with the element closed
+over (constants folded), as is and compiled ahead of time.
+
+Run: python benchmarks/c_loop.py [--json] [--smoke]
+"""
+
+import argparse
+import ctypes
+import json
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+SOURCE = Path(__file__).with_name("c_loop.c")
+FLAGS = (
+    "-std=c99 -O3 -march=native -fopenmp-simd -fno-math-errno -fno-trapping-math"
+    " -shared -fPIC"
+).split()
+GOAL = {"hot": 5.0, "cold": 8.0}
+AGREEMENT = {"force": 1e-9, "stiffness": 1e-8}
+NUMBERS = (
+    "n_rollers constant half_length diameter crown_radius gap guide pitch_radius ratio"
+    " first_azimuth outer_radius inner_radius"
+).split()
+RADIAL_LOAD = 4e3  # N
+TILT = 1.5e-3  # rad
+C_LOOP, C_CALL = "C loop", "C through ctypes"
+
+
+def element(**profiles):
+    """The bearing that is measured, with profiles of the raceways if wanted."""
+    return bj.BearingElement(
+        bj.CylindricalRollerBearing(
+            14, 0.065, 0.010, 0.010,
+            radial_internal_clearance=25e-6,
+            roller_profile=bj.CircularCrown(1.0),
+            **profiles,
+        )
+    )  # fmt: skip
+
+
+def cases():
+    """Name -> element and ring freedoms (12,) [m, rad]."""
+    load = jnp.array([RADIAL_LOAD, 0.0, 0.0, 0.0, 0.0, 0.0])
+    tilted = {"gx": 0.3 * TILT, "gy": TILT}
+    plain = element()
+    uneven = element(
+        outer_raceway_profile=bj.CircularCrown(2.0),
+        inner_raceway_profile=bj.CircularCrown(6.0),
+    )
+    return {
+        "radial": (plain, bj.solve_load(plain, load).displacement),
+        "misaligned": (
+            plain,
+            bj.solve_load(plain, load, prescribed=tilted).displacement,
+        ),
+        "misaligned, raceways unlike": (
+            uneven,
+            bj.solve_load(uneven, load, prescribed=tilted).displacement,
+        ),
+    }
+
+
+class CLoop:
+    """The compiled C loop with the numbers of one element."""
+
+    def __init__(self, library, el):
+        constants, quadrature, b = el.constants(), el.quadrature, el.bearing
+        line, table = constants.lines[0], constants.tables[0]
+        numbers = {
+            "n_rollers": b.n_rollers,
+            "constant": line.constant,
+            "half_length": constants.half_length,
+            "diameter": constants.diameter,
+            "crown_radius": b.roller_profile.crown_radius,
+            "gap": constants.gap,
+            "guide": constants.guide,
+            "pitch_radius": constants.pitch_radius,
+            "ratio": b.roller_diameter / b.pitch_diameter,
+            "first_azimuth": b.first_azimuth,
+            "outer_radius": getattr(b.outer_raceway_profile, "crown_radius", 0.0),
+            "inner_radius": getattr(b.inner_raceway_profile, "crown_radius", 0.0),
+        }
+        self.force, self.stiffness = np.zeros(12), np.zeros((12, 12))
+        self.steps = ctypes.c_int()
+        self.library = library
+        library.repeat.restype = ctypes.c_double
+        self.design = ctypes.create_string_buffer(library.design_size())
+        library.prepare(
+            _pointer(np.array([float(numbers[name]) for name in NUMBERS])),
+            *(_pointer(x) for x in quadrature.reference()),
+            _pointer(np.asarray(table[2])[0]),
+            self.design,
+        )
+
+    def arguments(self, q):
+        """What a C call takes; results land in `force` and `stiffness`."""
+        self.q = np.array(q)
+        out = (_pointer(self.force), _pointer(self.stiffness))
+        return self.design, _pointer(self.q), *out, ctypes.byref(self.steps)
+
+    def results(self, q):
+        """Force [N, N m], stiffness and most steps of a roller."""
+        self.library.force_stiffness(*self.arguments(q))
+        return self.force.copy(), self.stiffness.copy(), self.steps.value
+
+
+def _pointer(array):
+    array = np.ascontiguousarray(array, dtype=np.float64)
+    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+
+
+def compile_c(folder, el):
+    """Shared library from `c_loop.c`, or `None` without a compiler."""
+    compiler = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
+    if compiler is None:
+        return None
+    scan = el.constants().tables[0][2].shape[1]
+    sizes = [f"-DPOINTS={el.quadrature.points}", f"-DSCAN={scan}"]
+    target = os.path.join(folder, "c_loop.so")
+    command = [compiler, *FLAGS, *sizes, "-o", target, str(SOURCE), "-lm"]
+    subprocess.run(command, check=True)
+    return ctypes.CDLL(target)
+
+
+def jax_calls(el, q):
+    """The JAX variants: name -> function of q."""
+
+    def both(el, q):
+        e = el.evaluate(q)
+        return e.force, e.stiffness
+
+    filtered = eqx.filter_jit(both)
+    closed = jax.jit(lambda q: both(el, q))
+    return {
+        "filter_jit(element, q)": lambda q: filtered(el, q),
+        "jit(q), element closed over": closed,
+        "the same, ahead of time": closed.lower(q).compile(),
+    }
+
+
+def disagreement(el, reference, result):
+    """Relative error of force and stiffness, with moments over the pitch radius."""
+    arm = 0.5 * float(el.bearing.pitch_diameter)
+    unit = np.tile([1.0, 1.0, 1.0, 1.0 / arm, 1.0 / arm, 1.0 / arm], 2)
+    errors = {}
+    for name, weight, want, got in zip(
+        AGREEMENT, (unit, unit[:, None] * unit), reference, result, strict=False
+    ):
+        change = np.abs(weight * (np.asarray(got) - want))
+        errors[name] = float(change.max() / np.abs(weight * want).max())
+    return errors
+
+
+def timers(c, calls, q):
+    """Name -> (seconds per call for n calls in a block, seconds of one call)."""
+    arguments = c.arguments(q)
+    repeat, single = c.library.repeat, c.library.force_stiffness
+
+    def own(n):
+        return repeat(n, *arguments) / n
+
+    def timed(call, ready):
+        def block(n):
+            begin = time.perf_counter()
+            for _ in range(n):
+                ready(call())
+            return (time.perf_counter() - begin) / n
+
+        return block
+
+    out = {C_LOOP: own, C_CALL: timed(lambda: single(*arguments), lambda _: None)}
+    for name, call in calls.items():
+        out[name] = timed(lambda call=call: call(q), jax.block_until_ready)
+    return out
+
+
+def measure(timers, rounds, block):
+    """Seconds per call: name -> hot and cold lists, in shuffled order."""
+    rng = random.Random(0)
+    other = np.zeros(8_000_000)
+    figures = {name: {"hot": [], "cold": []} for name in timers}
+    tasks = [(name, kind) for name in timers for kind in GOAL]
+    for _ in range(rounds):
+        rng.shuffle(tasks)
+        for name, kind in tasks:
+            run = timers[name]
+            if kind == "hot":
+                run(max(1, block // 10))
+                figures[name][kind].append(run(block))
+            else:
+                np.add(other, 1.0, out=other)
+                figures[name][kind].append(run(1))
+    return figures
+
+
+def summary(figures):
+    """Minimum and median [µs] and ratios of medians to the C loop and the C call."""
+    base = {kind: np.median(figures[C_LOOP][kind]) for kind in GOAL}
+    called = np.median(figures[C_CALL]["cold"])
+    rows = {}
+    for name, times in figures.items():
+        rows[name] = {}
+        for kind, t in times.items():
+            rows[name][f"{kind}_min_us"] = 1e6 * float(np.min(t))
+            rows[name][f"{kind}_median_us"] = 1e6 * float(np.median(t))
+            rows[name][f"{kind}_ratio"] = float(np.median(t) / base[kind])
+        rows[name]["cold_ratio_to_call"] = float(np.median(times["cold"]) / called)
+    return rows
+
+
+def study(c, el, q, rounds, block):
+    """Agreement and times of one case."""
+    *reference, steps = c.results(q)
+    calls = jax_calls(el, q)
+    errors = {name: disagreement(el, reference, f(q)) for name, f in calls.items()}
+    rows = summary(measure(timers(c, calls, q), rounds, block))
+    for name, error in errors.items():
+        rows[name] |= {f"error_{key}": value for key, value in error.items()}
+    return {"steps": steps, "jax_steps": int(el.evaluate(q).steps), "rows": rows}
+
+
+def show(case, result):
+    print(f"\n{case}: most steps {result['steps']} (JAX {result['jax_steps']})")
+    print(
+        f"{'':28}{'hot, µs':>16}{'cold, µs':>17}{'ratio to C':>19}{'error to C':>17}\n"
+        f"{'':28}{'min':>8}{'median':>8}{'min':>9}{'median':>8}"
+        f"{'hot':>7}{'cold':>6}{'call':>6}{'force':>9}{'stiff.':>8}"
+    )
+    for name, r in result["rows"].items():
+        times = (
+            f"{r['hot_min_us']:8.1f}{r['hot_median_us']:8.1f}"
+            f"{r['cold_min_us']:9.1f}{r['cold_median_us']:8.1f}"
+        )
+        ratios = (
+            f"{r['hot_ratio']:7.1f}{r['cold_ratio']:6.1f}{r['cold_ratio_to_call']:6.1f}"
+        )
+        error = ""
+        if "error_force" in r:
+            error = f"{r['error_force']:9.0e}{r['error_stiffness']:8.0e}"
+        print(f"{name:28}{times}{ratios}{error}")
+
+
+def agrees(results):
+    """Whether every JAX variant gives what C gives."""
+    return all(
+        row.get(f"error_{key}", 0.0) <= bound
+        for result in results.values()
+        for row in result["rows"].values()
+        for key, bound in AGREEMENT.items()
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line of figures")
+    parser.add_argument("--smoke", action="store_true", help="few repeats")
+    args = parser.parse_args()
+    rounds, block = (5, 20) if args.smoke else (40, 100)
+    with tempfile.TemporaryDirectory() as folder:
+        library = compile_c(folder, element())
+        if library is None:
+            print("c_loop: no C compiler (cc, gcc, clang); skipped.", file=sys.stderr)
+            return 0
+        results = {
+            case: study(CLoop(library, el), el, q, rounds, block)
+            for case, (el, q) in cases().items()
+        }
+    if args.json:
+        print(json.dumps({"goal": GOAL, "agrees": agrees(results), "cases": results}))
+    else:
+        for case, result in results.items():
+            show(case, result)
+        print(f"\ngoal: hot ≤ {GOAL['hot']:g}, cold ≤ {GOAL['cold']:g}")
+    if not agrees(results):
+        print("c_loop: C and JAX disagree.", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
