@@ -10,6 +10,7 @@ and φ'' (line stiffness). Each order is discretised as the integral that it is,
 the derivative rule leads from one order to the next.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import equinox as eqx
@@ -156,41 +157,44 @@ def response(
     Returns:
         Energy, load and stiffness.
     """
-    traced, static = eqx.partition((line, table), eqx.is_inexact_array)
+    numbers, structure = jax.tree.flatten((line, table))
+    return _response((structure, quadrature), a, b, numbers)
 
-    def plain(a, b, traced):
-        line, table = eqx.combine(traced, static)
-        nodes = quadrature.nodes(_offset, line, table, a, b)
-        m = _moments(line, nodes, quadrature)
-        return Response(m[0, 0], m[1, :2], m[2])
 
-    with_rule = jax.custom_jvp(plain)
+@partial(jax.jit, static_argnums=0)
+def _plain(static, a, b, numbers) -> Response:
+    structure, quadrature = static
+    line, table = jax.tree.unflatten(structure, numbers)
+    nodes = quadrature.nodes(_offset, line, table, a, b)
+    m = _moments(line, nodes, quadrature)
+    return Response(m[0, 0], m[1, :2], m[2])
 
-    def rule(primals, tangents):
-        a, b, traced = primals
-        *dab, dtraced = tangents
-        value = with_rule(a, b, traced)
-        da, db = (jnp.zeros_like(a) if _is_zero(d) else d for d in dab)
-        energy = value.load[0] * da + value.load[1] * db
-        load = value.stiffness[:2] * da + value.stiffness[1:] * db
-        _, stiffness = jax.jvp(
-            lambda a, b: plain(a, b, traced).stiffness, (a, b), (da, db)
-        )
-        change = Response(energy, load, stiffness)
-        zeros = [_is_zero(d) for d in jax.tree.leaves(dtraced, is_leaf=_is_zero)]
-        if not all(zeros):
-            dtraced = jax.tree.map(
-                lambda d, x: jnp.zeros_like(x) if _is_zero(d) else d,
-                dtraced,
-                traced,
-                is_leaf=_is_zero,
-            )
-            _, design = jax.jvp(lambda t: plain(a, b, t), (traced,), (dtraced,))
-            change = jax.tree.map(jnp.add, change, design)
-        return value, change
 
-    with_rule.defjvp(rule, symbolic_zeros=True)
-    return with_rule(a, b, traced)
+@partial(jax.custom_jvp, nondiff_argnums=(0,))
+def _response(static, a, b, numbers) -> Response:
+    return _plain(static, a, b, numbers)
+
+
+@partial(_response.defjvp, symbolic_zeros=True)
+def _response_rule(static, primals, tangents):
+    a, b, numbers = primals
+    *dab, dnumbers = tangents
+    value = _response(static, a, b, numbers)
+    da, db = (jnp.zeros_like(a) if _is_zero(d) else d for d in dab)
+    energy = value.load[0] * da + value.load[1] * db
+    load = value.stiffness[:2] * da + value.stiffness[1:] * db
+    _, stiffness = jax.jvp(
+        lambda a, b: _plain(static, a, b, numbers).stiffness, (a, b), (da, db)
+    )
+    change = Response(energy, load, stiffness)
+    if not all(_is_zero(d) for d in dnumbers):
+        dnumbers = [
+            jnp.zeros_like(x) if _is_zero(d) else d
+            for d, x in zip(dnumbers, numbers, strict=True)
+        ]
+        _, design = jax.jvp(lambda n: _plain(static, a, b, n), (numbers,), (dnumbers,))
+        change = jax.tree.map(jnp.add, change, design)
+    return value, change
 
 
 def _is_zero(x):

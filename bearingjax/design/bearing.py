@@ -1,12 +1,14 @@
 """Roller bearings as they stand on the drawing: dimensions, checked, no solving."""
 
+import math
 import warnings
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 
 from ..numerics.types import Scalar, as_real
-from .checks import check, count, in_range, is_traced, number, positive
+from .checks import check, concrete, count, in_range, number, positive
 from .material import Material
 from .profile import AbstractProfile, Straight
 from .rib import Ribs
@@ -99,69 +101,65 @@ class AbstractRollerBearing(eqx.Module):
         for name in list(kinds)[:3]:
             getattr(self, name).check(self.roller_length, self.roller_diameter)
         for name in self.ribs.present:
-            rib = getattr(self.ribs, name)
-            height = self.roller_diameter
-            check(
-                self,
-                f"ribs.{name}.contact_height",
-                rib.contact_height,
-                "m",
-                rib.contact_height < height,
-                f"below the roller diameter of {_show(height)} m",
-            )
-            end_radius = self._end_disc(name)
-            check(
-                self,
-                f"ribs.{name}.end_radius",
-                rib.end_radius,
-                "m",
-                rib.end_radius > end_radius,
-                f"above the radius of the roller end, {_show(end_radius)} m",
-            )
+            self._check_rib(name)
 
-    def _end_disc(self, rib_name: str) -> Scalar:
-        """Radius of the roller's end face that meets a rib [m]."""
-        side = -1.0 if rib_name.endswith("minus") else 1.0
-        return 0.5 * (
-            self.roller_diameter - side * self.roller_length * jnp.sin(self.half_angle)
+    def _check_rib(self, name):
+        rib = getattr(self.ribs, name)
+        numbers = concrete(
+            rib.contact_height,
+            rib.end_radius,
+            self.roller_diameter,
+            self.roller_length,
+            self.half_angle,
+        )
+        if numbers is None:
+            return
+        height, end_radius, diameter, length, half = numbers
+        side = -1.0 if name.endswith("minus") else 1.0
+        disc = 0.5 * (diameter - side * length * math.sin(half))
+        allowed = f"below the diameter of the roller end, {2 * disc:.6g} m"
+        key = f"ribs.{name}.contact_height"
+        check(self, key, height, "m", height < 2 * disc, allowed)
+        allowed = f"above the radius of the roller end, {disc:.6g} m"
+        check(
+            self, f"ribs.{name}.end_radius", end_radius, "m", end_radius > disc, allowed
         )
 
     def _check_row(self):
-        axis, half = self.axis_angle, self.half_angle
-        reach = 0.5 * self.roller_length * jnp.cos(half)
+        numbers = concrete(
+            self.pitch_diameter,
+            self.roller_diameter,
+            self.roller_length,
+            self.axis_angle,
+            self.half_angle,
+            self.radial_internal_clearance,
+        )
+        if numbers is None:
+            return
+        pitch, diameter, length, axis, half, clearance = numbers
         # Both ends of the roller: radius of the disc, and of the circle it runs on.
         for side in (-1.0, 1.0):
-            radius = 0.5 * self.roller_diameter - side * reach * jnp.tan(half)
-            circle = 0.5 * self.pitch_diameter - side * reach * jnp.sin(axis)
-            check(
-                self,
-                "roller_diameter",
-                self.roller_diameter,
-                "m",
-                circle - radius * jnp.cos(axis) > 0,
+            along = 0.5 * side * length * math.cos(half)
+            radius = 0.5 * diameter - along * math.tan(half)
+            circle = 0.5 * pitch - along * math.sin(axis)
+            allowed = (
                 "small enough to leave an inner raceway inside the pitch circle of"
-                f" {_show(self.pitch_diameter)} m",
+                f" {pitch:.6g} m"
             )
-            if self.n_rollers > 1:
-                room = circle * jnp.sin(jnp.pi / self.n_rollers)
-                check(
-                    self,
-                    "n_rollers",
-                    as_real(self.n_rollers),
-                    "rollers",
-                    radius < room,
-                    "low enough that rollers do not overlap around the pitch circle"
-                    f" (at most {_most(circle, radius)} of this size)",
-                )
-        clearance = self.radial_internal_clearance
-        check(
-            self,
-            "radial_internal_clearance",
-            clearance,
-            "m",
-            jnp.abs(clearance) < self.roller_diameter,
-            "smaller in size than the roller diameter (metres meant?)",
-        )
+            fits = radius > 0 and circle > radius * math.cos(axis)
+            check(self, "roller_diameter", diameter, "m", fits, allowed)
+            most = int(math.pi / math.asin(min(1.0, radius / circle)))
+            allowed = (
+                "low enough that rollers do not overlap around the pitch circle (at"
+                f" most {most} of this size)"
+            )
+            apart = self.n_rollers == 1 or radius < circle * math.sin(
+                math.pi / self.n_rollers
+            )
+            check(self, "n_rollers", self.n_rollers, "rollers", apart, allowed)
+        allowed = "smaller in size than the roller diameter (metres meant?)"
+        small = abs(clearance) < diameter
+        check(self, "radial_internal_clearance", clearance, "m", small, allowed)
 
 
 class CylindricalRollerBearing(AbstractRollerBearing):
@@ -184,15 +182,11 @@ class NeedleRollerBearing(AbstractRollerBearing):
     """
 
     def __check_init__(self):
-        check(
-            self,
-            "roller_length",
-            self.roller_length,
-            "m",
-            self.roller_length >= 2.5 * self.roller_diameter,
-            f"at least 2.5 roller diameters, {_show(2.5 * self.roller_diameter)} m,"
-            " for a needle",
-        )
+        numbers = concrete(self.roller_length, self.roller_diameter)
+        if numbers is not None:
+            length, least = numbers[0], 2.5 * numbers[1]
+            allowed = f"at least 2.5 roller diameters, {least:.6g} m, for a needle"
+            check(self, "roller_length", length, "m", length >= least, allowed)
 
 
 class TaperedRollerBearing(AbstractRollerBearing):
@@ -244,20 +238,13 @@ class TaperedRollerBearing(AbstractRollerBearing):
             z of the three apexes from the roller centre [m]; all equal when
             tan(half angle) = (D/2) sin(axis angle)/(pitch radius).
         """
-        radius, half = 0.5 * self.roller_diameter, self.roller_half_angle
-        axis, pitch = self.roller_axis_angle, 0.5 * self.pitch_diameter
-        z, r = radius * jnp.sin(axis), radius * jnp.cos(axis)
-        return (
-            z + (pitch + r) / jnp.tan(axis + half),
-            pitch / jnp.tan(axis),
-            -z + (pitch - r) / jnp.tan(axis - half),
-        )
+        return _apexes(*_angles_and_size(self), jnp)
 
     def _warn_of_apexes(self):
-        apexes = self.apexes()
-        if any(is_traced(a) for a in apexes) or float(self.roller_half_angle) == 0.0:
+        numbers = concrete(*jax.tree.leaves(_angles_and_size(self)))
+        if numbers is None or numbers[1] == 0.0:
             return
-        outer, roller, inner = (float(a) for a in apexes)
+        outer, roller, inner = _apexes(*numbers, math)
         if max(abs(outer - roller), abs(inner - roller)) > 0.01 * abs(roller):
             warnings.warn(
                 "TaperedRollerBearing: the apexes of outer raceway, roller axis and"
@@ -268,11 +255,21 @@ class TaperedRollerBearing(AbstractRollerBearing):
             )
 
 
-def _show(value) -> str:
-    return "?" if is_traced(value) else f"{float(value):.6g}"
+def _angles_and_size(taper):
+    return (
+        taper.roller_axis_angle,
+        taper.roller_half_angle,
+        taper.pitch_diameter,
+        taper.roller_diameter,
+    )
 
 
-def _most(circle, radius) -> str:
-    if is_traced(circle) or is_traced(radius) or float(radius) >= float(circle):
-        return "?"
-    return str(int(jnp.pi / jnp.arcsin(radius / circle)))
+def _apexes(axis, half, pitch_diameter, diameter, m):
+    """The three apexes, with the functions of module `m` (NumPy's names)."""
+    pitch = 0.5 * pitch_diameter
+    z, r = 0.5 * diameter * m.sin(axis), 0.5 * diameter * m.cos(axis)
+    return (
+        z + (pitch + r) / m.tan(axis + half),
+        pitch / m.tan(axis),
+        -z + (pitch - r) / m.tan(axis - half),
+    )

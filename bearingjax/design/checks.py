@@ -2,16 +2,23 @@
 
 Checks act on concrete numbers and let traced ones through: under `jit` or `grad` a
 design was checked when it was made, and a bad traced number ends in a result code.
+They compute with NumPy: an eager JAX operation would be compiled for nothing.
 """
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 
 def is_traced(value) -> bool:
     """Whether a value is being traced, and has no number to look at."""
     return isinstance(value, jax.core.Tracer)
+
+
+def concrete(*values) -> list[float] | None:
+    """Numbers as Python floats, or `None` if one is traced (or no number at all)."""
+    if any(is_traced(v) or isinstance(v, str | bytes | None) for v in values):
+        return None
+    return [float(v) for v in values]
 
 
 def check(owner, name: str, value, unit: str, ok, allowed: str) -> None:
@@ -39,27 +46,38 @@ def number(owner, name: str, value, unit: str) -> None:
     """A single finite number [`unit`].
 
     Raises:
+        TypeError: If it is text or nothing at all.
         ValueError: If it is an array, NaN or infinite.
     """
-    if jnp.shape(value) != ():
-        title = type(owner).__name__
+    title = type(owner).__name__
+    if value is None or isinstance(value, str | bytes):
+        raise TypeError(
+            f"{title}: `{name}` is {value!r}; it must be a number"
+            f"{f' in {unit}' if unit else ''} (units belong in scene files)."
+        )
+    if np.shape(value) != ():
         raise ValueError(
-            f"{title}: `{name}` has shape {jnp.shape(value)}; it must be one number"
+            f"{title}: `{name}` has shape {np.shape(value)}; it must be one number"
             f"{f' in {unit}' if unit else ''}."
         )
-    check(owner, name, value, unit, jnp.isfinite(value), "a finite number")
+    if not is_traced(value):
+        check(owner, name, value, unit, np.isfinite(value), "a finite number")
 
 
 def positive(owner, name: str, value, unit: str) -> None:
     """A finite number above zero [`unit`]."""
     number(owner, name, value, unit)
-    check(owner, name, value, unit, value > 0, _with_unit("above 0", unit))
+    if not is_traced(value):
+        above = float(value) > 0
+        check(owner, name, value, unit, above, _with_unit("above 0", unit))
 
 
 def non_negative(owner, name: str, value, unit: str) -> None:
     """A finite number of at least zero [`unit`]."""
     number(owner, name, value, unit)
-    check(owner, name, value, unit, value >= 0, _with_unit("at least 0", unit))
+    if not is_traced(value):
+        enough = float(value) >= 0
+        check(owner, name, value, unit, enough, _with_unit("at least 0", unit))
 
 
 def in_range(
@@ -73,16 +91,13 @@ def in_range(
         include_low: Whether `low` itself is allowed.
     """
     number(owner, name, value, unit)
-    above = (value >= low) if include_low else (value > low)
-    words = f"{'at least' if include_low else 'above'} {_show(low)} and below"
-    check(
-        owner,
-        name,
-        value,
-        unit,
-        above & (value < high),
-        _with_unit(f"{words} {_show(high)}", unit),
-    )
+    numbers = concrete(value, low, high)
+    if numbers is None:
+        return
+    v, least, most = numbers
+    inside = (v >= least if include_low else v > least) and v < most
+    words = f"{'at least' if include_low else 'above'} {least:.6g} and below {most:.6g}"
+    check(owner, name, value, unit, inside, _with_unit(words, unit))
 
 
 def count(owner, name: str, value) -> None:

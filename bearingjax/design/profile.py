@@ -8,11 +8,13 @@ gap. Derivatives in s are finite everywhere, roller ends and kinks included.
 import abc
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_real
-from .checks import check, in_range, is_traced, number, positive
+from .checks import check, concrete, in_range, is_traced, positive
 
 STEEL_MODULUS = 206e9 / (2.0 * (1.0 - 0.3**2))
 """Contact modulus E* of steel on steel [Pa]."""
@@ -42,22 +44,29 @@ class AbstractProfile(eqx.Module):
 
     def check(self, length: Scalar, diameter: Scalar) -> None:
         """Raise ValueError unless the profile fits a roller of this size [m]."""
-        self._check_against(length, diameter)
-        near_end = 0.4995 * length
-        for side in (-1.0, 1.0):
-            crown_drop = self.drop(side * near_end, length, diameter)
-            check(
-                self,
-                "crown_drop",
-                crown_drop,
-                "m",
-                (crown_drop >= 0) & (crown_drop < 0.5 * diameter),
-                "at least 0 and below half the roller diameter,"
-                f" {_show(0.5 * diameter)} m",
-            )
+        if any(is_traced(x) for x in (*jax.tree.leaves(self), length, diameter)):
+            return
+        self._check_against(float(length), float(diameter))
+        near_ends = 0.4995 * np.asarray(length) * np.array([-1.0, 1.0])
+        drops = np.asarray(_drop(self, near_ends, length, diameter))
+        fits = (drops >= 0) & (drops < 0.5 * float(diameter))
+        check(
+            self,
+            "crown_drop",
+            drops.max(),
+            "m",
+            fits,
+            "at least 0 and below half the roller diameter,"
+            f" {0.5 * float(diameter):.6g} m",
+        )
 
-    def _check_against(self, length: Scalar, diameter: Scalar) -> None:
-        """What a profile has to check of its own."""
+    def _check_against(self, length: float, diameter: float) -> None:
+        """What a profile has to check of its own, if all numbers are concrete."""
+
+
+@eqx.filter_jit
+def _drop(profile, position, length, diameter):
+    return profile.drop(position, length, diameter)
 
 
 class Straight(AbstractProfile):
@@ -147,24 +156,17 @@ class CrownedEnds(AbstractProfile):
 
     def _check_against(self, length, diameter):
         in_range(self, "straight_length", self.straight_length, "m", 0.0, length)
-        reach = 0.5 * (length - self.straight_length)
+        straight, crown = float(self.straight_length), float(self.crown_radius)
+        reach = 0.5 * (length - straight)
         _check_radius(self, "crown_radius", self.crown_radius, reach)
         if self.dub_off_length is None or self.dub_off_radius is None:
             return
         in_range(self, "dub_off_length", self.dub_off_length, "m", 0.0, reach)
-        begin = reach - self.dub_off_length
-        offset = self.dub_off_radius * begin / self.crown_radius
-        _check_radius(
-            self, "dub_off_radius", self.dub_off_radius, offset + self.dub_off_length
-        )
-        check(
-            self,
-            "dub_off_radius",
-            self.dub_off_radius,
-            "m",
-            self.dub_off_radius <= self.crown_radius,
-            f"at most the crown radius, {_show(self.crown_radius)} m",
-        )
+        ending, radius = float(self.dub_off_length), float(self.dub_off_radius)
+        offset = radius * (reach - ending) / crown
+        _check_radius(self, "dub_off_radius", self.dub_off_radius, offset + ending)
+        allowed = f"at most the crown radius, {crown:.6g} m"
+        check(self, "dub_off_radius", radius, "m", radius <= crown, allowed)
 
 
 class Logarithmic(AbstractProfile):
@@ -275,9 +277,10 @@ class FujiwaraKawase(AbstractProfile):
         positive(self, "design_load", self.design_load, "N")
         positive(self, "load_factor", self.load_factor, "")
         positive(self, "crowned_fraction", self.crowned_fraction, "")
-        fraction = self.crowned_fraction
-        allowed = "above 0 and at most 1"
-        check(self, "crowned_fraction", fraction, "", fraction <= 1.0, allowed)
+        fraction = concrete(self.crowned_fraction)
+        if fraction is not None:
+            allowed = "above 0 and at most 1"
+            check(self, "crowned_fraction", fraction, "", fraction[0] <= 1.0, allowed)
         positive(self, "end_drop", self.end_drop, "m")
         positive(self, "contact_modulus", self.contact_modulus, "Pa")
 
@@ -319,12 +322,13 @@ class Tabulated(AbstractProfile):
                 f" {jnp.shape(self.drops)}; they must be two lists of the same length,"
                 " at least 3."
             )
-        for name in ("positions", "drops"):
-            values = getattr(self, name)
-            check(self, name, values, "m", jnp.isfinite(values), "finite numbers")
-        rising = jnp.diff(self.positions) > 0
-        check(self, "positions", self.positions, "m", rising, "ascending")
-        check(self, "drops", self.drops, "m", self.drops >= 0, "at least 0 m")
+        if is_traced(self.positions) or is_traced(self.drops):
+            return
+        positions, drops = np.asarray(self.positions), np.asarray(self.drops)
+        for name, values in (("positions", positions), ("drops", drops)):
+            check(self, name, values, "m", np.isfinite(values), "finite numbers")
+        check(self, "positions", positions, "m", np.diff(positions) > 0, "ascending")
+        check(self, "drops", drops, "m", drops >= 0, "at least 0 m")
 
     def drop(self, position, length, diameter):
         s, d = self.positions, self.drops
@@ -344,16 +348,10 @@ class Tabulated(AbstractProfile):
         return (1.0 - blend) * parabola(k) + blend * parabola(k + 1)
 
     def _check_against(self, length, diameter):
-        ends = jnp.stack([-self.positions[0], self.positions[-1]])
-        check(
-            self,
-            "positions",
-            self.positions,
-            "m",
-            ends >= 0.5 * length * (1.0 - 1e-9),
-            f"a table that covers the roller, from {_show(-0.5 * length)} to"
-            f" {_show(0.5 * length)} m",
-        )
+        positions, end = np.asarray(self.positions), 0.5 * length
+        covers = min(-positions[0], positions[-1]) >= end * (1.0 - 1e-9)
+        allowed = f"a table that covers the roller, from {-end:.6g} to {end:.6g} m"
+        check(self, "positions", positions, "m", covers, allowed)
 
 
 def _arc(x, radius):
@@ -371,16 +369,5 @@ def _log_one_over(x, part):
 
 
 def _check_radius(owner, name, radius, reach):
-    number(owner, name, radius, "m")
-    check(
-        owner,
-        name,
-        radius,
-        "m",
-        radius > reach,
-        f"above {_show(reach)} m, so that the arc spans its part of the roller",
-    )
-
-
-def _show(value) -> str:
-    return "?" if is_traced(value) else f"{float(value):.6g}"
+    allowed = f"above {reach:.6g} m, so that the arc spans its part of the roller"
+    check(owner, name, radius, "m", float(radius) > reach, allowed)

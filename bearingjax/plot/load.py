@@ -34,9 +34,10 @@ def load_zone(
     top = float(np.max(load, initial=0.0, where=np.isfinite(load)))
     step = 2.0 * np.pi / len(azimuth)
     width = min(0.36 * step, 0.08)
+    handles = []
     for ring, name in enumerate(RACEWAYS):
         side = 0.5 if name == "outer" else -0.5
-        ax.bar(
+        bars = ax.bar(
             azimuth + side * width,
             load[:, ring],
             width=width,
@@ -44,7 +45,8 @@ def load_zone(
             label=f"{name} raceway",
             zorder=2,
         )
-    ax.plot(
+        handles.append(bars)
+    (unloaded,) = ax.plot(
         azimuth[~zone],
         np.zeros(np.count_nonzero(~zone)),
         linestyle="none",
@@ -66,6 +68,7 @@ def load_zone(
     _radial_labels(ax, azimuth, load.sum(axis=1), top, limit)
     ax.set_title("Roller loads [kN]")
     ax.legend(
+        handles=handles if zone.all() else [*handles, unloaded],
         loc="upper center",
         bbox_to_anchor=(0.5, -0.06),
         ncols=3,
@@ -91,7 +94,8 @@ def _radial_labels(ax, azimuth, load, top, limit):
     # Text is wide and low: it fits best between rollers to the right or to the left.
     score = beside / (top or 1.0) + 0.3 * np.abs(np.sin(between))
     where = between[np.argmin(score)]
-    for tick in ticks:
+    # The outermost would meet the labels of the azimuth.
+    for tick in ticks[ticks <= 0.88 * limit]:
         ax.text(
             where,
             tick,

@@ -7,7 +7,6 @@ import numpy as np
 from ..statics.solution import Solution
 from .style import (
     COLOURS,
-    RACEWAYS,
     SMALL,
     axes_or_new,
     degrees,
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
     import matplotlib.axes
 
 _LINES = {"outer": "--", "inner": "-"}
+_MAPS = {"outer": "Blues", "inner": "Oranges"}
 
 
 def pressure_profiles(
@@ -61,7 +61,7 @@ def pressure_profiles(
     rollers = np.lexsort((angle, -np.round(total / scale, 6)))[:count]
     for name, ring in zip(names, rings, strict=True):
         for rank, roller in enumerate(rollers):
-            fade = 0.65 * rank / max(len(rollers) - 1, 1)
+            fade = 0.6 * rank / max(len(rollers) - 1, 1)
             colour = _towards_white(COLOURS[name], fade)
             label = f"{angle[roller]:.4g}°: {force_text(load[roller, ring])}"
             ax.plot(
@@ -129,44 +129,38 @@ def pressure_map(
     ax = axes_or_new(ax, (8.0, 4.5))
     angle = degrees(solution.azimuth)
     order = np.argsort(angle, kind="stable")
-    pressure = 1e-6 * np.asarray(solution.contact_pressure)[order, ring]
+    pressure = 1e-6 * np.asarray(solution.contact_pressure)[:, ring]
     position = 1e3 * np.asarray(solution.position)
     top = np.nanmax(pressure, initial=0.0)
+    # Last and first roller stand on both sides of the seam at 0°.
+    around = np.concatenate([order[-1:], order, order[:1]])
+    turns = np.concatenate([[-360.0], np.zeros(len(order)), [360.0]])
+    across, along = _edges(angle[around] + turns), _edges(position)
+    shown = pressure[around].T
     image = ax.pcolormesh(
-        _edges(angle[order], 360.0 / len(angle)),
-        _edges(position, 1.0),
-        np.ma.masked_where(~(pressure > 0.0), pressure).T,
-        cmap=pyplot().get_cmap(
-            "Oranges" if ring == RACEWAYS.index("inner") else "Blues"
-        ),
+        across,
+        along,
+        np.ma.masked_where(~(shown > 0.0), shown),
+        cmap=pyplot().get_cmap(_MAPS[raceway]),
         vmin=0.0,
         vmax=top if top > 0 else 1.0,
         rasterized=True,
     )
     if len(angle) <= 40:
-        ax.vlines(
-            _edges(angle[order], 360.0 / len(angle)),
-            position[0],
-            position[-1],
-            color="0.85",
-            linewidth=0.6,
-        )
+        ax.vlines(across, position[0], position[-1], color="0.85", linewidth=0.6)
     bar = ax.figure.colorbar(image, ax=ax, pad=0.02)
     bar.set_label("contact pressure [MPa]")
     ax.set_xticks(np.arange(0.0, 361.0, 45.0))
+    ax.set_xlim(0.0, 360.0)
     ax.set_ylim(position[0], position[-1])
-    half = 180.0 / len(angle)
-    ax.set_xlim(min(angle[order][0] - half, 0.0), max(angle[order][-1] + half, 360.0))
     ax.set_xlabel("azimuth of the roller [°]")
     ax.set_ylabel("position along the roller [mm]")
     ax.set_title(f"Contact pressure, {raceway} raceway")
     return ax
 
 
-def _edges(centres, single):
-    """Edges of cells around ascending centres; `single` is the width of one alone."""
-    if len(centres) == 1:
-        return centres[0] + single * np.array([-0.5, 0.5])
+def _edges(centres):
+    """Edges of the cells around ascending centres."""
     middle = 0.5 * (centres[1:] + centres[:-1])
     return np.concatenate(
         [[2.0 * centres[0] - middle[0]], middle, [2.0 * centres[-1] - middle[-1]]]

@@ -333,8 +333,8 @@ def _dimensions(ax, bearing, parts, left, right, high, height):
         ax.plot(*np.stack([parts.axis[0] - over, parts.axis[1] + over]).T, **dash)
     turn = np.rad2deg(np.arctan2(along[1], along[0]))
     half = float(bearing.half_angle)
-    # Roller diameter, across the roller at a quarter of its length.
-    at = -0.3 * parts.length
+    # Roller diameter, across the roller towards its -z end.
+    at = -0.36 * parts.length
     radius = 0.5 * parts.diameter
     spot = centre + at * along
     wide = radius - at * np.sin(half)
@@ -344,16 +344,16 @@ def _dimensions(ax, bearing, parts, left, right, high, height):
         spot + 0.5 * radius * across + 0.06 * parts.length * along,
         f"$D$ = {_mm(bearing.roller_diameter)}",
         turn,
-        ha="left",
+        "left",
     )
     below = -0.5 * radius * across
     _arrow(ax, parts.axis[0] + below, parts.axis[1] + below)
     _label(
         ax,
-        centre + below + 0.12 * parts.length * along,
+        centre + below + 0.05 * parts.length * along,
         f"$L$ = {_mm(bearing.roller_length)}",
         turn,
-        box=True,
+        "center",
     )
     ax.annotate(
         "",
@@ -392,8 +392,8 @@ def _contact_angle(ax, parts, centre, contact, high, height):
     ax.plot(*arc.T, **thin)
     ax.annotate(
         f"contact angle $α$ = {np.rad2deg(contact):.4g}°",
-        arc[-1],
-        (8, 0),
+        ends[1],
+        (6, 0),
         textcoords="offset points",
         fontsize=SMALL,
         va="center",
@@ -414,7 +414,7 @@ def _arrow(ax, start, stop):
     ax.annotate("", tuple(stop), tuple(start), arrowprops=_ARROW, zorder=6)
 
 
-def _label(ax, at, text, turn, ha="center", box=False):
+def _label(ax, at, text, turn, ha):
     ax.text(
         *at,
         text,
@@ -424,7 +424,7 @@ def _label(ax, at, text, turn, ha="center", box=False):
         ha=ha,
         va="center",
         zorder=7,
-        bbox={"facecolor": "#DDF1EA", "edgecolor": "none", "pad": 0.6} if box else None,
+        bbox={"facecolor": "#DDF1EA", "edgecolor": "none", "pad": 0.6},
     )
 
 

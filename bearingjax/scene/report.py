@@ -41,8 +41,9 @@ def _bearing(scene):
         f" roller profile: {type(bearing.roller_profile).__name__}",
     ]
     if isinstance(bearing, TaperedRollerBearing):
-        axis, half = bearing.roller_axis_angle, bearing.roller_half_angle
-        raceways = [float(np.rad2deg(axis + half)), float(np.rad2deg(axis - half))]
+        angles = (bearing.roller_axis_angle, bearing.roller_half_angle)
+        axis, half = (float(np.rad2deg(float(angle))) for angle in angles)
+        raceways = [axis + half, axis - half]
         lines.append(
             f"contact angle: outer {raceways[0]:.4g}, inner {raceways[1]:.4g} deg"
         )

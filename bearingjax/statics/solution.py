@@ -3,6 +3,7 @@
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from ..contact.line import half_width, peak_pressure
@@ -128,8 +129,8 @@ def warnings(solution: Solution) -> list[str]:
     """Physics warnings of a concrete, single solution, one sentence each."""
     out = []
     for ring, name in enumerate(("outer", "inner")):
-        edges = jnp.any(solution.edge_loaded[:, ring], axis=1)
-        rollers = [int(i) for i in jnp.flatnonzero(edges)]
+        edges = np.asarray(solution.edge_loaded)[:, ring].any(axis=1)
+        rollers = [int(i) for i in np.flatnonzero(edges)]
         if rollers:
             listed = ", ".join(map(str, rollers))
             out.append(
