@@ -186,15 +186,16 @@ def _loaded_interval(offset, start, end, at, fixed, slope, a, b):
     positive = f > 0
     first = jnp.min(jnp.where(positive, index, 1.0 * count), axis=1)
     final = jnp.max(jnp.where(positive, index, -1.0), axis=1)
-    # A lightly loaded zone may lie between two scan points: on both sides of the top.
-    top = jnp.sum(jnp.where(b - slope > 0, 1.0, 0.0), axis=1)
+    # A lightly loaded zone may lie between two scan points: on both sides of the top,
+    # which is not beyond the ends (where the slope of a limited logarithm is lost).
+    top = 1.0 + jnp.sum(jnp.where(b - slope[:, 1:-1] > 0, 1.0, 0.0), axis=1)
     some = final >= 0
     inside = jnp.stack([jnp.where(some, first, top), jnp.where(some, final, top - 1)])
     outside = jnp.stack(
         [jnp.where(some, first, top) - 1, jnp.where(some, final + 1, top)]
     )
     inside, outside = (
-        _scan_point(jnp.clip(i, 0.0, count - 1.0), start, end, count)
+        _scan_point(jnp.clip(i, 0.0, count - 1.0), start[None, :], end[None, :], count)
         for i in (inside, outside)
     )
     # Which root of the local parabola: the left edge on rising ground, the right one

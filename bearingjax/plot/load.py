@@ -1,6 +1,6 @@
 """Loads of the rollers, and displacement against load."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,7 +31,8 @@ def load_zone(
     azimuth = np.asarray(solution.azimuth, dtype=float)
     load = 1e-3 * np.asarray(solution.roller_load, dtype=float)
     zone = np.asarray(solution.load_zone)
-    top = float(np.max(load, initial=0.0, where=np.isfinite(load)))
+    load = np.where(np.isfinite(load), load, 0.0)
+    top = float(np.max(load, initial=0.0))
     step = 2.0 * np.pi / len(azimuth)
     width = min(0.36 * step, 0.08)
     handles = []
@@ -60,12 +61,13 @@ def load_zone(
         in_layout=False,
     )
     limit = 1.08 * top if top > 0 else 1.0
-    ax.set_rlim(0.0, limit)
-    ax.set_rorigin(-0.3 * limit)
+    polar: Any = ax
+    polar.set_rlim(0.0, limit)
+    polar.set_rorigin(-0.3 * limit)
     ax.tick_params(labelsize=SMALL)
     ax.grid(color="0.85")
     ax.set_axisbelow(True)
-    _radial_labels(ax, azimuth, load.sum(axis=1), top, limit)
+    _radial_labels(polar, azimuth, load.sum(axis=1), top, limit)
     ax.set_title("Roller loads [kN]")
     ax.legend(
         handles=handles if zone.all() else [*handles, unloaded],
@@ -84,7 +86,7 @@ def _radial_labels(ax, azimuth, load, top, limit):
     """Tick labels between two rollers, where the least load stands in the way."""
     from matplotlib.ticker import MaxNLocator
 
-    ticks = MaxNLocator(4).tick_values(0.0, limit)
+    ticks = np.asarray(MaxNLocator(4).tick_values(0.0, limit))
     ticks = ticks[(ticks > 0.0) & (ticks <= limit)]
     ax.set_rticks(ticks, [""] * len(ticks))
     order = np.argsort(azimuth % (2.0 * np.pi))

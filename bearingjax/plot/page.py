@@ -29,8 +29,8 @@ def overview(
     Returns:
         The figure, 12 by 9 inches.
     """
-    figure = pyplot().figure(figsize=(12.0, 9.0), layout="constrained")
-    figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08)
+    figure = pyplot().figure(figsize=(12.0, 9.0))
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
     axes = figure.subplot_mosaic(
         [["section", "zone"], ["profiles", "map"], ["text", "text"]],
         height_ratios=[1.15, 1.0, 0.13],

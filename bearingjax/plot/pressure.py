@@ -48,7 +48,7 @@ def pressure_profiles(
     if count < 1:
         raise ValueError(f"`count` is {count}; it must be at least 1.")
     names = ("inner", "outer") if raceway == "both" else (raceway,)
-    rings = [raceway_index(name) for name in names]
+    rings = np.array([raceway_index(name) for name in names])
     ax = axes_or_new(ax)
     position = 1e3 * np.asarray(solution.position)
     pressure = 1e-6 * np.asarray(solution.contact_pressure)
@@ -63,7 +63,7 @@ def pressure_profiles(
         for rank, roller in enumerate(rollers):
             fade = 0.6 * rank / max(len(rollers) - 1, 1)
             colour = _towards_white(COLOURS[name], fade)
-            label = f"{angle[roller]:.4g}°: {force_text(load[roller, ring])}"
+            label = f"{angle[roller]:.4g}°: {force_text(float(load[roller, ring]))}"
             ax.plot(
                 position,
                 pressure[roller, ring],

@@ -90,13 +90,13 @@ def section(bearing: AbstractRollerBearing) -> Section:
         corners[:, 0].min() - _BESIDE * diameter,
         corners[:, 0].max() + _BESIDE * diameter,
     )
-    rings = tuple(
+    outer, inner = (
         _ring_outline(name, raceways[i], lines, faces, _BODY * diameter)
         for i, name in enumerate(RACEWAYS)
     )
     return Section(
         roller=roller,
-        rings=rings,
+        rings=(outer, inner),
         raceways=raceways,
         axis=to_plane(np.stack([ends * reach, np.zeros(2)], axis=1)),
         generators=generators,
