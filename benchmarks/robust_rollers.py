@@ -29,7 +29,7 @@ CHUNK = 5000
 
 
 class PlainNewton(AbstractMinimiser):
-    """Newton's method without safeguards: what DESIGN warns of, for comparison."""
+    """Newton's method without safeguards, for comparison."""
 
     def minimise(self, function, start, radius):
         def body(_, x):

@@ -112,7 +112,7 @@ def pressure_map(
 ) -> "matplotlib.axes.Axes":
     """Contact pressure [MPa] of all rollers: azimuth by position along the roller.
 
-    White is no contact.
+    White is no contact, or less than a thousandth of the highest pressure.
 
     Args:
         solution: A single solution.
@@ -140,7 +140,7 @@ def pressure_map(
     image = ax.pcolormesh(
         across,
         along,
-        np.ma.masked_where(~(shown > 0.0), shown),
+        np.ma.masked_where(~(shown > 1e-3 * top), shown),
         cmap=pyplot().get_cmap(_MAPS[raceway]),
         vmin=0.0,
         vmax=top if top > 0 else 1.0,

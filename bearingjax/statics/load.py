@@ -23,6 +23,9 @@ from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from .solution import Solution, Stats, describe, message
 
+Vector = Float[Array | np.ndarray, "6"] | Sequence[float | int]
+"""Six numbers."""
+
 DEFAULT_TOLERANCE = {"float64": 1e-11, "float32": 1e-4}
 
 
@@ -45,12 +48,12 @@ def restrained_freedoms(bearing: AbstractRollerBearing) -> tuple[str, ...]:
 
 def solve_load(
     element: BearingElement,
-    load: Float[Array, "6"] | Sequence[float] | None = None,
+    load: Vector | None = None,
     *,
-    prescribed: Mapping[str, float] | None = None,
+    prescribed: Mapping[str, float | int | Array] | None = None,
     free: Sequence[str] | None = None,
     fixed_ring: str = "outer",
-    fixed_displacement: Float[Array, "6"] | Sequence[float] | None = None,
+    fixed_displacement: Vector | None = None,
     speed: Speed | None = None,
     points: int = 101,
     tolerance: float | None = None,

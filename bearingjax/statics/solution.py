@@ -80,8 +80,9 @@ class Solution(eqx.Module):
 
     @property
     def load_zone(self) -> Bool[Array, " roller"]:
-        """Which rollers carry load between the raceways."""
-        return jnp.all(self.roller_load > 0, axis=1)
+        """Which rollers carry load between the raceways, more than round-off."""
+        least = 1e-9 * jnp.max(self.roller_load)
+        return jnp.all(self.roller_load > least, axis=1)
 
     @property
     def converged(self) -> Bool[Array, ""]:
