@@ -9,6 +9,13 @@ on before the first array is made:
 
 from importlib.metadata import version as _version
 
+from . import contact as contact
+from . import design as design
+from . import element as element
+from . import numerics as numerics
+from . import plot as plot
+from . import scene as scene
+from . import statics as statics
 from .contact import ISO16281 as ISO16281
 from .contact import LineConstant as LineConstant
 from .contact import Palmgren as Palmgren
@@ -37,6 +44,10 @@ from .numerics import Midpoint as Midpoint
 from .numerics import Result as Result
 from .numerics import SolveError as SolveError
 from .numerics import TrustRegionNewton as TrustRegionNewton
+from .scene import SceneError as SceneError
+from .scene import load_bearing as load_bearing
+from .scene import read_scene as read_scene
+from .scene import run_scene as run_scene
 from .statics import Solution as Solution
 from .statics import restrained_freedoms as restrained_freedoms
 from .statics import solve_load as solve_load

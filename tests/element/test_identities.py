@@ -11,7 +11,10 @@ from tolerances import DIFFERENCE, ROUNDING, SOLVER
 import bearingjax as bj
 
 CASES = [
-    (name, rule, speed) for name in bearings() for rule in quadratures() for speed in speeds()
+    (name, rule, speed)
+    for name in bearings()
+    for rule in quadratures()
+    for speed in speeds()
 ]
 
 
@@ -93,11 +96,16 @@ def test_differences_are_v_shaped(case):
     bend = np.asarray(exact.stiffness @ way)
     errors = []
     for step in 10.0 ** -np.arange(6.0, 12.5, 1.0):
-        far = [evaluate(element, jnp.asarray(q + s * step * way), speed) for s in (1, -1)]
+        far = [
+            evaluate(element, jnp.asarray(q + s * step * way), speed) for s in (1, -1)
+        ]
         energy = (float(far[0].energy) - float(far[1].energy)) / (2 * step)
         force = (np.asarray(far[0].force) - np.asarray(far[1].force)) / (2 * step)
         errors.append(
-            [abs(energy - slope) / abs(slope), np.abs(force - bend).max() / np.abs(bend).max()]
+            [
+                abs(energy - slope) / abs(slope),
+                np.abs(force - bend).max() / np.abs(bend).max(),
+            ]
         )
     errors = np.array(errors)
     for column in errors.T:
@@ -205,4 +213,7 @@ def test_one_trace_for_ten_designs():
 
     for i in range(10):
         bearing = taper(5, radial_internal_clearance=1e-6 * i)
-        force(bj.BearingElement(bearing, quadrature=bj.Midpoint(4)), jnp.asarray(motion(i)))
+        force(
+            bj.BearingElement(bearing, quadrature=bj.Midpoint(4)),
+            jnp.asarray(motion(i)),
+        )

@@ -1,0 +1,225 @@
+"""What does a node buy? Error of force and stiffness against nodes.
+
+Random bearings of the test oracle, cylindrical and tapered, reduced to three rollers:
+crowned, logarithmic, and flat and arc (its kinks make three panels); rings tilted, and
+at least one loaded roller touches on less than 95 % of a raceway. The reference is the
+oracle's own: Gauss-Legendre nodes graded to the ends of every loaded interval.
+
+Errors: of the force relative to the largest force (moments: to the largest moment); of
+the stiffness entries K_ij relative to sqrt(K_ii K_jj). Time: one jitted call of
+`evaluate`, minimum of repeats, mean over the kinds of bearing. Nodes count per panel.
+
+Run: python benchmarks/quadrature.py [--json] [--smoke] [--plot OUT]
+"""
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+import oracle  # noqa: E402
+from from_oracle import bearing  # noqa: E402
+from test_against_oracle import errors  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+PROFILES = {
+    "circular": "crowned",
+    "logarithmic": "logarithmic",
+    "crowned_ends": "flat and arc",
+}
+KINDS = ("cylindrical", "tapered")
+NODES = {
+    "midpoint": (10, 20, 30, 100, 300, 1000, 20000),
+    "contact mapped": (8, 12, 16, 24, 32, 48),
+}
+SMOKE = {"midpoint": (20, 300), "contact mapped": (16, 32)}
+RULES = {"midpoint": bj.Midpoint, "contact mapped": bj.ContactMapped}
+COLORS = {"midpoint": "#c2571a", "contact mapped": "#1f5fa8"}
+ROLLERS = 3
+PARTLY = 0.95  # share of the length below which a contact is partly loaded
+
+
+def loaded_share(truth, q, motions):
+    """Smallest share of a raceway's length that touches, of the contacts that do."""
+    s, _ = oracle.midpoint_slices(truth.roller_length, 1000)
+    shares = [1.0]
+    for roller, y in enumerate(motions):
+        azimuth = truth.first_azimuth + 2 * np.pi * roller / truth.n_rollers
+        cos, sin = np.cos(azimuth), np.sin(azimuth)
+        for ring, drop in enumerate((truth.drop_outer, truth.drop_inner)):
+            ux, uy, uz, gx, gy, _ = q[6 * ring : 6 * ring + 6]
+            rings = np.array([uz, ux * cos + uy * sin, gy * cos - gx * sin])
+            moved = oracle.rows(*oracle.raceway(truth, ring, s)) @ (rings - y)
+            touching = np.mean(0.25 * truth.clearance + drop(s) + moved < 0)
+            shares.append(touching or 1.0)
+    return min(shares)
+
+
+def cases(count, kinds):
+    """(kind, profile) -> list of (info, q, reference), all of them partly loaded."""
+    groups = {(kind, profile): [] for kind in kinds for profile in PROFILES}
+    seed = -1
+    while any(len(group) < count for group in groups.values()):
+        seed += 1
+        _, q, info = oracle.random_case(seed)
+        group = groups.get((info["kind"], info["profile"]["type"]))
+        if group is None or len(group) == count:
+            continue
+        info = {**info, "n_rollers": ROLLERS}
+        truth = oracle.build(info)
+        want = oracle.evaluate(truth, q, oracle.graded(truth))
+        if not np.any(want["roller_load"] > 0):
+            continue
+        if loaded_share(truth, q, want["roller_motion"]) < PARTLY:
+            group.append((info, q, want))
+    return groups
+
+
+def element(info, quadrature):
+    law = bj.LineConstant(info["line_constant"])
+    return bj.BearingElement(bearing(info, True), law, quadrature=quadrature)
+
+
+def shortest(call, repeats):
+    """Shortest time of a call [s]."""
+    times = []
+    for _ in range(repeats):
+        begin = time.perf_counter()
+        jax.block_until_ready(call())
+        times.append(time.perf_counter() - begin)
+    return min(times)
+
+
+def study(group, quadrature, repeats):
+    """Errors (case, force and stiffness) and mean time [s] of one kind and rule."""
+    found, times = [], []
+    for info, q, want in group:
+        el, q = element(info, quadrature), jnp.asarray(q)
+        got = el.evaluate(q)
+        if int(got.result) != bj.Result.CONVERGED:
+            raise RuntimeError(f"not converged: {info}")
+        found.append(errors(got, want))
+        times.append(shortest(lambda el=el, q=q: el.evaluate(q), repeats))
+    return np.array(found), float(np.mean(times))
+
+
+def row(rule, nodes, profile, found, seconds):
+    """One line of results."""
+    (force, stiffness) = found.T
+    return {
+        "rule": rule,
+        "nodes": nodes,
+        "profile": profile,
+        "bearings": len(found),
+        "force_worst": float(force.max()),
+        "force_median": float(np.median(force)),
+        "stiffness_worst": float(stiffness.max()),
+        "stiffness_median": float(np.median(stiffness)),
+        "time_us": 1e6 * seconds,
+    }
+
+
+def measure(groups, nodes, repeats):
+    """A row for every rule, count of nodes and profile, and over all profiles."""
+    rows = []
+    for rule, counts in nodes.items():
+        for count in counts:
+            quadrature = RULES[rule](count)
+            parts = {k: study(g, quadrature, repeats) for k, g in groups.items()}
+            for profile, label in [*PROFILES.items(), (None, "all")]:
+                mine = [p for k, p in parts.items() if profile in (k[1], None)]
+                found = np.concatenate([p[0] for p in mine])
+                seconds = float(np.mean([p[1] for p in mine]))
+                rows.append(row(rule, count, label, found, seconds))
+    return rows
+
+
+def show(rows):
+    print(
+        f"{'':14}{'':>6} {'all: force':^17} {'stiffness':^17}"
+        f"{'worst stiffness of':^24}{'time':>8}\n"
+        f"{'rule':14}{'nodes':>6} {'worst':>8} {'median':>8} {'worst':>8} {'median':>8}"
+        f"{'crowned':>8}{'log.':>8}{'flat':>8}{'µs':>8}"
+    )
+    for r in rows:
+        if r["profile"] != "all":
+            continue
+        same = [
+            p["stiffness_worst"]
+            for p in rows
+            if (p["rule"], p["nodes"]) == (r["rule"], r["nodes"]) and p is not r
+        ]
+        print(
+            f"{r['rule']:14}{r['nodes']:6d} {r['force_worst']:8.0e}"
+            f" {r['force_median']:8.0e} {r['stiffness_worst']:8.0e}"
+            f" {r['stiffness_median']:8.0e}"
+            + "".join(f"{x:8.0e}" for x in same)
+            + f"{r['time_us']:8.0f}"
+        )
+    print(f"\n{rows[-1]['bearings']} bearings")
+
+
+def plot(rows, target):
+    """Error against nodes, both rules, worst and median."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(1, 2, figsize=(9, 4), sharey=True)
+    for axis, quantity in zip(axes, ("force", "stiffness"), strict=True):
+        for rule, color in COLORS.items():
+            mine = [r for r in rows if r["rule"] == rule and r["profile"] == "all"]
+            for which, style in (("worst", "o-"), ("median", "o--")):
+                axis.loglog(
+                    [r["nodes"] for r in mine],
+                    [r[f"{quantity}_{which}"] for r in mine],
+                    style,
+                    color=color,
+                    markersize=4,
+                    markerfacecolor=color if which == "worst" else "white",
+                    label=f"{rule}, {which}",
+                )
+        axis.set_title(f"Error of the {quantity}", loc="left")
+        axis.set_xlabel("nodes per panel")
+        axis.grid(alpha=0.3)
+        axis.spines[["top", "right"]].set_visible(False)
+    axes[0].set_ylabel("relative error")
+    axes[0].legend(frameon=False)
+    figure.tight_layout()
+    figure.savefig(target, dpi=150)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line per result")
+    parser.add_argument("--smoke", action="store_true", help="few bearings and nodes")
+    parser.add_argument("--count", type=int, default=6, help="bearings of each kind")
+    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
+    args = parser.parse_args()
+    if args.smoke:
+        groups = cases(1, KINDS[:1])
+        rows = measure(groups, SMOKE, 3)
+    else:
+        rows = measure(cases(args.count, KINDS), NODES, 20)
+    if args.json:
+        for r in rows:
+            print(json.dumps(r))
+    else:
+        show(rows)
+    if args.plot:
+        plot(rows, args.plot)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

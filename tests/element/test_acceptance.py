@@ -1,0 +1,207 @@
+"""Acceptance facts of the energy model of a roller bearing.
+
+Source: Sorokin, Zhang, Ivannikov (2018) and the surrogate bearing worked out from it:
+12 rollers 14 x 13.72 mm between raceways of 29.25 and 43.25 mm radius, zero clearance,
+no ribs, straight middle of 9 mm, crown radius 1 m, 20 equal slices. Numbers carry the
+digits that were printed; tolerances are half a unit of the last one. (Facts 1, 2 and 5,
+the slice law and the inverse update, are tests of `contact` and `numerics`; 9 to 11 and
+the whole table run through a scene file in `scene`.)
+"""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tolerances import ROUNDING, SOLVER
+
+import bearingjax as bj
+from bearingjax.element.energy import RollerModel, derivatives
+from bearingjax.element.equilibrium import (
+    condensed_force,
+    condensed_stiffness,
+    solve_roller,
+    solved_derivatives,
+)
+
+
+def surrogate(points=20, equilibrium=None, **change):
+    values = dict(first_azimuth=np.pi / 2, roller_profile=bj.CrownedEnds(0.009, 1.0))
+    bearing = bj.CylindricalRollerBearing(
+        12, 0.0725, 0.014, 0.01372, **(values | change)
+    )
+    return bj.BearingElement(
+        bearing,
+        quadrature=bj.Midpoint(points),
+        equilibrium=equilibrium or bj.TrustRegionNewton(),
+    )
+
+
+def loaded(element, force, moment):
+    """Outer ring loaded by (-force, moment), inner ring fixed: um, mrad, solution."""
+    s = bj.solve_load(
+        element, [0.0, -force, 0.0, moment, 0.0, 0.0], fixed_ring="inner", points=41
+    )
+    return 1e6 * float(s.displacement[1]), 1e3 * float(s.displacement[3]), s
+
+
+@pytest.fixture(scope="module")
+def roller():
+    """Model of one roller of the surrogate, and the paper's ring motion."""
+    element = surrogate()
+    constants = element.constants()
+    model = RollerModel(
+        constants,
+        element.kinematics.prepare(constants),
+        element.kinematics,
+        element.quadrature,
+    )
+    # Node on the axis to roller centre: x_m = v, x_t = u - R_m θ, θ.
+    lever = 0.5 * 0.0725
+    rings = jnp.asarray([-lever * 5e-4, -0.03e-3, 5e-4, 0.0, 0.0, 0.0])
+    return model, rings
+
+
+def test_fact_3_gradient_of_the_energy(roller):
+    model, rings = roller
+    x = jnp.asarray([1e-6, 2e-6, -1e-6])
+    d = derivatives(model, rings, x)
+    z = np.concatenate([rings, x])
+
+    @jax.jit
+    def energy(z):
+        return derivatives(model, z[:6], z[6:]).energy
+
+    step = np.array([1e-8, 1e-8, 1e-6] * 2 + [1e-8] * 3)
+    slopes = [
+        float(energy(z + e) - energy(z - e)) / (2 * h)
+        for e, h in zip(np.diag(step), step, strict=True)
+    ]
+    gradient = np.asarray(d.gradient)
+    scale = np.abs(gradient * step).max()
+    assert np.abs((slopes - gradient) * step).max() < 1e-8 * scale
+
+
+@pytest.mark.parametrize("solver", [bj.BFGS(), bj.TrustRegionNewton()])
+def test_fact_4_quasi_newton_reaches_the_newton_point(roller, solver):
+    """By symmetry half of the ring's motion, from the paper's start at rest."""
+    model, rings = roller
+    half_length = 0.5 * 0.01372
+    # x counts from the mean of the rings; the roller at rest is minus that.
+    rest = -0.5 * rings[:3] * jnp.asarray([1.0, 1.0, half_length])
+
+    def function(x, with_hessian):
+        d = derivatives(model, rings, x, of_roller=True)
+        scale = jnp.sum(d.raceway_load)
+        hessian = d.hessian if with_hessian else None
+        noise = 1e-9 * jnp.ones_like(scale)
+        return bj.numerics.Evaluation(d.energy, d.gradient, hessian, scale, noise)
+
+    minimum = jax.jit(lambda s: solver.minimise(function, s, jnp.asarray(3e-5)))(rest)
+    assert int(minimum.result) == bj.Result.CONVERGED
+    v = -0.015e-3 + float(minimum.x[1])
+    tilt = 2.5e-4 + float(minimum.x[2]) / half_length
+    assert abs(v + 0.015e-3) < SOLVER * 0.015e-3
+    assert abs(tilt - 2.5e-4) < 1e3 * SOLVER * 2.5e-4  # BFGS stops at 1e-9 of the load
+    assert int(minimum.steps) <= 30  # the paper's code took 10
+
+
+def test_fact_6_condensed_stiffness_is_the_derivative_of_the_force(roller):
+    model, rings = roller
+    solver = bj.TrustRegionNewton()
+    magnitude = jnp.asarray(1e-4)
+
+    @jax.jit
+    def both(rings):
+        state = solve_roller(model, rings, None, magnitude, solver)
+        d = solved_derivatives(model, rings, None, magnitude, state.x)
+        return condensed_force(None, d), condensed_stiffness(d.hessian)
+
+    # An unsymmetric state: the inner ring tilts too.
+    rings = rings.at[5].set(-1e-4)
+    force, stiffness = map(np.asarray, both(rings))
+    step = np.array([1e-8, 1e-8, 1e-6] * 2)
+    columns = [
+        (both(rings + e)[0] - both(rings - e)[0]) / (2 * h)
+        for e, h in zip(np.diag(step), step, strict=True)
+    ]
+    difference = np.abs((np.stack(columns, axis=1) - stiffness) * step)
+    assert difference.max() < 1e-7 * np.abs(stiffness * step).max()
+    assert float(np.abs(force).max()) > 1000.0
+
+
+def test_fact_7_kernel_of_the_whole_bearing():
+    element = surrogate()
+    _, _, s = loaded(element, 10600.0, -2.0)
+    k, force = np.asarray(s.stiffness), np.asarray(s.force)
+    size = np.abs(k).max()
+    assert np.abs(k - k.T).max() <= ROUNDING * size
+    assert not k[[5, 11]].any() and not k[:, [5, 11]].any()
+    assert np.abs(force[:6] + force[6:]).max() < ROUNDING * np.abs(force).max()
+    common = np.vstack([np.eye(6), np.eye(6)])[:, :5]
+    assert np.abs(k @ common).max() < ROUNDING * size
+    # No ribs: the axial freedom is free as well.
+    scale = np.tile([1, 1, 1, 30.0, 30.0, 30.0], 2)
+    rank = np.linalg.matrix_rank(k * scale * scale[:, None], rtol=1e-10)
+    assert rank == 4
+
+
+def test_fact_8_orbit_of_the_rollers():
+    element = surrogate(first_azimuth=0.0)
+    turned = element.azimuth(jnp.zeros(12).at[11].set(1.0))
+    assert abs(float(turned[0]) - 0.403448) < 5e-7
+    harris = 0.5 * (1.0 - 14.0 / 72.5)
+    assert abs(float(turned[0]) - harris) < ROUNDING
+    both = element.azimuth(jnp.zeros(12).at[jnp.array([5, 11])].set(0.3))
+    assert abs(float(both[0]) - 0.3) < ROUNDING
+
+
+def test_facts_10_and_11_moment_turns_but_hardly_moves():
+    element = surrogate()
+    cases = [loaded(element, 20600.0, m) for m in (0.440, -4.0, -12.53)]
+    u = np.array([c[0] for c in cases])
+    tilt = np.array([c[1] for c in cases])
+    assert u.min() == pytest.approx(-28.139, abs=6e-4)
+    assert u.max() == pytest.approx(-28.108, abs=6e-4)
+    assert np.ptp(u) / abs(u.mean()) == pytest.approx(0.0011, abs=6e-5)
+    assert tilt == pytest.approx([0.0338, -0.3073, -0.9634], abs=6e-5)
+    assert abs(loaded(element, 600.0, 0.0)[1]) < 1e-6
+
+
+def test_fact_12_twenty_slices():
+    printed = {20: (-15.8122, -0.16507), 40: (-15.8234, -0.16484)}
+    found = {n: loaded(surrogate(n), 10600.0, -2.0)[:2] for n in (5, 20, 40)}
+    for n, (u, g) in printed.items():
+        assert found[n][0] == pytest.approx(u, abs=6e-5)
+        assert found[n][1] == pytest.approx(g, abs=6e-6)
+    error = np.abs(np.array(found[5]) / np.array(found[40]) - 1.0)
+    assert error == pytest.approx([0.018, 0.034], abs=1e-3)  # two printed digits
+
+
+def test_fact_13_top_roller():
+    _, _, s = loaded(surrogate(), 20600.0, -12.53)
+    slices = slice(1, None, 2)  # the middles of 20 slices among 41 positions
+    q = 1e-3 * np.asarray(s.line_load)[0, 1, slices]
+    pressure = 1e-6 * np.asarray(s.contact_pressure)[0, 1, slices]
+    assert float(s.roller_load[0, 1]) == pytest.approx(7049.9, abs=0.06)
+    ends = sorted([q[0], q[-1]], reverse=True)
+    assert ends == pytest.approx([572.3, 315.9], abs=0.06)
+    assert q.max() == pytest.approx(621.4, abs=0.06)
+    assert min(q.argmax(), 19 - q.argmax()) == 2
+    assert pressure.max() == pytest.approx(1991.0, abs=0.6)
+
+
+def test_fact_14_free_roller():
+    """Clearance and no load: P* = 0, K* = 0, no NaN in any derivative."""
+    element = surrogate(radial_internal_clearance=20e-6)
+
+    @eqx.filter_jit
+    def all_of(element, q):
+        e = element.evaluate(q)
+        return e, jax.grad(element.energy)(q), jax.hessian(element.energy)(q)
+
+    for q in (np.zeros(12), np.eye(12)[6] * 3e-6):
+        e, gradient, hessian = all_of(element, jnp.asarray(q))
+        assert float(e.energy) == 0.0
+        for number in (e.force, e.stiffness, gradient, hessian):
+            assert np.all(np.asarray(number) == 0.0)
