@@ -16,6 +16,7 @@ import argparse
 import json
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import jax
@@ -23,6 +24,7 @@ import jax
 jax.config.update("jax_enable_x64", True)
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
+import equinox as eqx  # noqa: E402
 import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
 import oracle  # noqa: E402
@@ -43,7 +45,8 @@ NODES = {
 }
 SMOKE = {"midpoint": (20, 300), "contact mapped": (16, 32)}
 RULES = {"midpoint": bj.Midpoint, "contact mapped": bj.ContactMapped}
-COLORS = {"midpoint": "#c2571a", "contact mapped": "#1f5fa8"}
+COLORS = {"midpoint": "#D55E00", "contact mapped": "#0072B2"}
+WHICH = ("worst", "median")
 ROLLERS = 3
 PARTLY = 0.95  # share of the length below which a contact is partly loaded
 
@@ -64,9 +67,9 @@ def loaded_share(truth, q, motions):
     return min(shares)
 
 
-def cases(count, kinds):
+def cases(count, kinds, profiles):
     """(kind, profile) -> list of (info, q, reference), all of them partly loaded."""
-    groups = {(kind, profile): [] for kind in kinds for profile in PROFILES}
+    groups = {(kind, profile): [] for kind in kinds for profile in profiles}
     seed = -1
     while any(len(group) < count for group in groups.values()):
         seed += 1
@@ -101,14 +104,17 @@ def shortest(call, repeats):
 
 def study(group, quadrature, repeats):
     """Errors (case, force and stiffness) and mean time [s] of one kind and rule."""
-    found, times = [], []
+    found, times, call = [], [], None
     for info, q, want in group:
-        el, q = element(info, quadrature), jnp.asarray(q)
-        got = el.evaluate(q)
+        numbers, static = eqx.partition(element(info, quadrature), eqx.is_array)
+        if call is None:
+            call = jax.jit(lambda x, q, rest=static: eqx.combine(x, rest).evaluate(q))
+        call_now = partial(call, numbers, jnp.asarray(q))
+        got = call_now()
         if int(got.result) != bj.Result.CONVERGED:
             raise RuntimeError(f"not converged: {info}")
         found.append(errors(got, want))
-        times.append(shortest(lambda el=el, q=q: el.evaluate(q), repeats))
+        times.append(shortest(call_now, repeats))
     return np.array(found), float(np.mean(times))
 
 
@@ -137,6 +143,8 @@ def measure(groups, nodes, repeats):
             parts = {k: study(g, quadrature, repeats) for k, g in groups.items()}
             for profile, label in [*PROFILES.items(), (None, "all")]:
                 mine = [p for k, p in parts.items() if profile in (k[1], None)]
+                if not mine:
+                    continue
                 found = np.concatenate([p[0] for p in mine])
                 seconds = float(np.mean([p[1] for p in mine]))
                 rows.append(row(rule, count, label, found, seconds))
@@ -144,28 +152,37 @@ def measure(groups, nodes, repeats):
 
 
 def show(rows):
+    labels = [label for label in PROFILES.values() if _rows_of(rows, label)]
     print(
-        f"{'':14}{'':>6} {'all: force':^17} {'stiffness':^17}"
-        f"{'worst stiffness of':^24}{'time':>8}\n"
-        f"{'rule':14}{'nodes':>6} {'worst':>8} {'median':>8} {'worst':>8} {'median':>8}"
-        f"{'crowned':>8}{'log.':>8}{'flat':>8}{'µs':>8}"
+        f"{'':20}{'force':^16}{'stiffness':^16}{'worst stiffness, by kind':>27}\n"
+        f"{'rule':15}{'nodes':>5}{'worst':>8}{'median':>8}{'worst':>8}{'median':>8}"
+        + "".join(f"{label.split()[0]:>9}"[:9] for label in labels)
+        + f"{'time, µs':>9}"
     )
-    for r in rows:
-        if r["profile"] != "all":
-            continue
-        same = [
-            p["stiffness_worst"]
-            for p in rows
-            if (p["rule"], p["nodes"]) == (r["rule"], r["nodes"]) and p is not r
-        ]
+    for r in _rows_of(rows, "all"):
+        same = [x for x in rows if (x["rule"], x["nodes"]) == (r["rule"], r["nodes"])]
+        errors = [r[f"{x}_{y}"] for x in ("force", "stiffness") for y in WHICH]
+        kinds = [_rows_of(same, label)[0]["stiffness_worst"] for label in labels]
         print(
-            f"{r['rule']:14}{r['nodes']:6d} {r['force_worst']:8.0e}"
-            f" {r['force_median']:8.0e} {r['stiffness_worst']:8.0e}"
-            f" {r['stiffness_median']:8.0e}"
-            + "".join(f"{x:8.0e}" for x in same)
-            + f"{r['time_us']:8.0f}"
+            f"{r['rule']:15}{r['nodes']:5d}"
+            + "".join(f"{x:8.0e}" for x in errors)
+            + "".join(f"{x:9.0e}" for x in kinds)
+            + f"{r['time_us']:9.0f}"
         )
-    print(f"\n{rows[-1]['bearings']} bearings")
+    print(f"\n{rows[-1]['bearings']} bearings of {ROLLERS} rollers; {processor()}")
+
+
+def _rows_of(rows, label):
+    return [r for r in rows if r["profile"] == label]
+
+
+def processor():
+    """Model of the processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return "processor unknown"
+    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
 
 
 def plot(rows, target):
@@ -207,10 +224,10 @@ def main():
     parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
     args = parser.parse_args()
     if args.smoke:
-        groups = cases(1, KINDS[:1])
-        rows = measure(groups, SMOKE, 3)
+        groups = cases(2, KINDS[:1], ["circular"])
+        rows = measure(groups, SMOKE, 5)
     else:
-        rows = measure(cases(args.count, KINDS), NODES, 20)
+        rows = measure(cases(args.count, KINDS, PROFILES), NODES, 30)
     if args.json:
         for r in rows:
             print(json.dumps(r))

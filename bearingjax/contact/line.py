@@ -59,9 +59,10 @@ class ISO16281(AbstractLineLaw):
     def constant(self, roller, ring, length):
         steel = Material()
         ratio = _compliance(steel, steel) / _compliance(roller, ring)
-        per_contact = 35948.0 * 2.0 ** (10.0 / 9.0) * (1e3) ** (19.0 / 9.0)
-        in_metres = per_contact * 1e-3 ** (-1.0 / 9.0)
-        return in_metres * ratio * length ** (-1.0 / 9.0)
+        per_contact = 35948.0 * 2.0 ** (10.0 / 9.0)
+        # N/mm^(19/9) with the length in mm.
+        constant = per_contact * (1e3 * length) ** (-1.0 / 9.0)
+        return 1e3 ** (19.0 / 9.0) * ratio * constant
 
 
 class LineConstant(AbstractLineLaw):

@@ -1,0 +1,145 @@
+"""Is the ninth root worth its code?
+
+`ninth_root` against x**(1/9), exp(log(x)/9) and cbrt(cbrt(x)), alone and inside the
+three powers of the line contact (x^(19/9), x^(10/9) and x^(1/9) from one root). Time per
+element: shortest of the repeats, variants in shuffled order. Error: largest relative
+one over [1e-12, 1] against NumPy's longdouble power.
+
+Run: python benchmarks/power.py [--json] [--smoke]
+"""
+
+import argparse
+import json
+import random
+import sys
+import time
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+
+from bearingjax.numerics import ninth_root  # noqa: E402
+
+ROOTS = {
+    "ninth_root": ninth_root,
+    "x ** (1/9)": lambda x: x ** (1.0 / 9.0),
+    "exp(log(x)/9)": lambda x: jnp.exp(jnp.log(x) * (1.0 / 9.0)),
+    "cbrt(cbrt(x))": lambda x: jnp.cbrt(jnp.cbrt(x)),
+}
+SIZES = (10_000, 1_000_000)
+TYPES = ("float64", "float32")
+
+
+def three_powers(root):
+    """What a line contact needs: the sum of x^(19/9), x^(10/9) and x^(1/9)."""
+
+    def powers(x):
+        r = root(x)
+        return r + x * r + x * x * r
+
+    return powers
+
+
+def numbers(count, dtype):
+    """Positive numbers over twelve decades (count,)."""
+    return (10.0 ** np.random.default_rng(0).uniform(-12, 0, count)).astype(dtype)
+
+
+def error(root, x):
+    """Largest relative error of a root."""
+    want = x.astype(np.longdouble) ** (np.longdouble(1) / 9)
+    got = np.asarray(jax.jit(root)(jnp.asarray(x))).astype(np.longdouble)
+    return float(np.max(np.abs(got - want) / want))
+
+
+def seconds(call, x, block):
+    begin = time.perf_counter()
+    for _ in range(block):
+        call(x).block_until_ready()
+    return (time.perf_counter() - begin) / block
+
+
+def times(x, repeats):
+    """(variant, what) -> shortest time per element [ns]."""
+    calls = {(name, "root"): jax.jit(f) for name, f in ROOTS.items()}
+    calls |= {(k, "powers"): jax.jit(three_powers(f)) for k, f in ROOTS.items()}
+    block = max(1, 200_000 // x.size)
+    found = {key: [] for key in calls}
+    for call in calls.values():
+        call(x).block_until_ready()
+    order = list(calls)
+    for _ in range(repeats):
+        random.shuffle(order)
+        for key in order:
+            found[key].append(seconds(calls[key], x, block))
+    return {key: 1e9 * min(t) / x.size for key, t in found.items()}
+
+
+def measure(sizes, repeats):
+    """A row for every type, size and variant."""
+    rows = []
+    for dtype in TYPES:
+        for size in sizes:
+            x = numbers(size, dtype)
+            found = times(jnp.asarray(x), repeats)
+            rows += [
+                {
+                    "root": name,
+                    "dtype": dtype,
+                    "size": size,
+                    "root_ns": found[name, "root"],
+                    "powers_ns": found[name, "powers"],
+                    "error": error(f, x),
+                }
+                for name, f in ROOTS.items()
+            ]
+    return rows
+
+
+def show(rows):
+    print(
+        f"{'':16}{'':9}{'':>9}{'ns per element':^20}{'ratio to ninth_root':^20}\n"
+        f"{'root':16}{'type':9}{'size':>9}{'root':>10}{'powers':>10}"
+        f"{'root':>10}{'powers':>10}{'error':>10}"
+    )
+    for r in rows:
+        if r["root"] == "ninth_root":
+            base = r
+        ratios = [r[k] / base[k] for k in ("root_ns", "powers_ns")]
+        print(
+            f"{r['root']:16}{r['dtype']:9}{r['size']:9d}"
+            f"{r['root_ns']:10.2f}{r['powers_ns']:10.2f}"
+            f"{ratios[0]:10.1f}{ratios[1]:10.1f}{r['error']:10.0e}"
+        )
+    print(f"\n{processor()}")
+
+
+def processor():
+    """Model of the processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return "processor unknown"
+    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line per result")
+    parser.add_argument("--smoke", action="store_true", help="small, few repeats")
+    args = parser.parse_args()
+    rows = measure(SIZES[:1], 5) if args.smoke else measure(SIZES, 60)
+    if args.json:
+        for r in rows:
+            print(json.dumps(r))
+    else:
+        show(rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
