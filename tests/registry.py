@@ -66,3 +66,8 @@ def motion(seed=0, size=1.0):
     q[8] += 25e-6 * size
     q[[5, 11]] = 0.0
     return q
+
+
+def holds(name, speed):
+    """Whether the bearing can run so: without its rib a turning taper cannot."""
+    return not (name == "taper, half angle zero" and speed == "turning")

@@ -1,0 +1,152 @@
+"""How long until the first answer?
+
+Fresh processes, one at a time: import of the package; a bearing of 14 rollers and its
+element; first force and stiffness (compiled anew, no cache on disk), all by the clock
+of the process itself, counted from the start of the import; and the command line as a
+whole, by the clock outside: once with an empty cache of compiled programs, then twice
+again. Medians of the repeats.
+
+Run: python benchmarks/first_call.py [--json] [--smoke] [--repeats N]
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+GOALS = {
+    "first force and stiffness": 4.0,
+    "solve, first": 10.0,
+    "solve, second": 2.5,
+    "solve, third": 2.5,
+}
+SCENES = ("cylindrical_rig", "cylindrical_ribs", "tapered")
+LIBRARY = """
+import json, time
+marks = [time.perf_counter()]
+mark = lambda: marks.append(time.perf_counter())
+import jax
+jax.config.update("jax_enable_x64", True)
+mark()
+import bearingjax as bj
+mark()
+element = bj.BearingElement(
+    bj.CylindricalRollerBearing(
+        14, 0.065, 0.010, 0.010,
+        radial_internal_clearance=25e-6,
+        roller_profile=bj.CircularCrown(1.0),
+    )
+)
+mark()
+import jax.numpy as jnp
+e = element.evaluate(jnp.array([0.0] * 6 + [3e-5, 0.0, 0.0, 0.0, 1e-3, 0.0]))
+e.stiffness.block_until_ready()
+mark()
+e = element.evaluate(jnp.array([0.0] * 6 + [4e-5, 0.0, 0.0, 0.0, 2e-3, 0.0]))
+e.stiffness.block_until_ready()
+mark()
+print(json.dumps([b - a for a, b in zip(marks, marks[1:])]))
+"""
+STEPS = ("import jax", "import bearingjax", "bearing and element", "evaluate", "again")
+COMMAND = "import sys; from bearingjax.cli import main; sys.exit(main())"
+
+
+def run(arguments, cache):
+    """Output and wall time [s] of a fresh process with its own cache folder."""
+    dropped = ("JAX_COMPILATION_CACHE_DIR", "JAX_ENABLE_COMPILATION_CACHE")
+    environment = {k: v for k, v in os.environ.items() if k not in dropped}
+    begin = time.perf_counter()
+    done = subprocess.run(
+        [sys.executable, "-c", *arguments],
+        env=environment | {"XDG_CACHE_HOME": cache},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    return done.stdout, time.perf_counter() - begin
+
+
+def library():
+    """Seconds of every step in one process, and up to the first result."""
+    with tempfile.TemporaryDirectory() as cache:
+        output, _ = run([LIBRARY], cache)
+    steps = dict(zip(STEPS, json.loads(output), strict=True))
+    total = sum(seconds for name, seconds in steps.items() if name != "again")
+    return steps | {"first force and stiffness": total}
+
+
+def command_line(scene):
+    """Seconds of a first, second and third solve with one cache."""
+    with tempfile.TemporaryDirectory() as cache:
+        times = [run([COMMAND, "solve", scene], cache)[1] for _ in range(3)]
+    names = ("solve, first", "solve, second", "solve, third")
+    return dict(zip(names, times, strict=True))
+
+
+def measure(scenes, repeats):
+    """A row for every step: median, shortest and longest of the repeats."""
+    found = {}
+    for _ in range(repeats):
+        for what, seconds in library().items():
+            found.setdefault((what, ""), []).append(seconds)
+        for scene in scenes:
+            for what, seconds in command_line(scene).items():
+                found.setdefault((what, scene), []).append(seconds)
+    return [
+        {
+            "what": what,
+            "scene": scene,
+            "median_s": float(np.median(times)),
+            "min_s": min(times),
+            "max_s": max(times),
+            "goal_s": GOALS.get(what),
+        }
+        for (what, scene), times in found.items()
+    ]
+
+
+def show(rows, repeats):
+    print(f"{'seconds':27}{'scene':18}{'median':>8}{'min':>8}{'max':>8}{'goal':>8}")
+    for r in rows:
+        goal = "" if r["goal_s"] is None else f"{r['goal_s']:8.1f}"
+        missed = r["goal_s"] is not None and r["median_s"] > r["goal_s"]
+        print(
+            f"{r['what']:27}{r['scene']:18}{r['median_s']:8.3f}{r['min_s']:8.3f}"
+            f"{r['max_s']:8.3f}{goal}{'  missed' if missed else ''}"
+        )
+    print(f"\n{repeats} repeats; {processor()}, {os.cpu_count()} cores")
+
+
+def processor():
+    """Model of the processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return "processor unknown"
+    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line per result")
+    parser.add_argument("--smoke", action="store_true", help="the library alone, once")
+    parser.add_argument("--repeats", type=int, default=5)
+    args = parser.parse_args()
+    repeats = 1 if args.smoke else args.repeats
+    rows = measure(() if args.smoke else SCENES, repeats)
+    if args.json:
+        for r in rows:
+            print(json.dumps(r))
+    else:
+        show(rows, repeats)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

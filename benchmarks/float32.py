@@ -1,0 +1,159 @@
+"""What does float32 cost in accuracy?
+
+Bearings of the test registry, cast to float32 and evaluated with x64 switched off, at
+20 random motions, against float64. Errors as in the oracle tests: of the force relative
+to the largest force (moments: to the largest moment), of the stiffness entries K_ij
+relative to sqrt(K_ii K_jj). "Input" is what remains if only design and motion are
+rounded to float32 and everything is computed in float64: no code can do better.
+
+Run: python benchmarks/float32.py [--json] [--smoke]
+"""
+
+import argparse
+import collections
+import json
+import sys
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+import registry  # noqa: E402
+from test_against_oracle import errors  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+MOTIONS = 20
+SMOKE = ("cylindrical, crowned ends",)
+
+
+def cast(tree, dtype):
+    """The same tree with all real numbers in another precision."""
+
+    def one(x):
+        return x.astype(dtype) if jnp.issubdtype(x.dtype, jnp.floating) else x
+
+    return jax.tree.map(one, tree)
+
+
+def numbers(evaluated):
+    """What is compared, in NumPy float64."""
+    return {
+        "force": np.asarray(evaluated.force, np.float64),
+        "stiffness": np.asarray(evaluated.stiffness, np.float64),
+    }
+
+
+def evaluate_single(element, q):
+    """Evaluation in float32, without x64 as a user of float32 runs it."""
+    with jax.enable_x64(False):
+        return cast(element, jnp.float32).evaluate(jnp.asarray(q, jnp.float32))
+
+
+def evaluate_rounded(element, q):
+    """Evaluation in float64 of a bearing and a motion rounded to float32."""
+    rounded = cast(cast(element, jnp.float32), jnp.float64)
+    return rounded.evaluate(jnp.asarray(np.float32(q), jnp.float64))
+
+
+def one(element, q):
+    """Errors and course of one evaluation, or `None` if nothing is loaded."""
+    truth = element.evaluate(jnp.asarray(q))
+    want = numbers(truth)
+    if not np.any(want["force"]):
+        return None
+    got, rounded = evaluate_single(element, q), evaluate_rounded(element, q)
+    if got.force.dtype != jnp.float32 or got.stiffness.dtype != jnp.float32:
+        raise TypeError(f"float32 became {got.force.dtype}, {got.stiffness.dtype}")
+    return {
+        "single": errors(got, want),
+        "rounded": errors(rounded, want),
+        "result": bj.Result(int(got.result)).label,
+        "steps": (int(got.steps), int(truth.steps)),
+        "residual": float(got.residual),
+    }
+
+
+def study(element, motions):
+    """Worst of several motions."""
+    found = [one(element, registry.motion(seed)) for seed in range(motions)]
+    found = [x for x in found if x is not None]
+    single = np.array([x["single"] for x in found])
+    rounded = np.array([x["rounded"] for x in found])
+    steps = np.max([x["steps"] for x in found], axis=0)
+    return {
+        "motions": len(found),
+        "force_worst": float(single[:, 0].max()),
+        "force_median": float(np.median(single[:, 0])),
+        "stiffness_worst": float(single[:, 1].max()),
+        "stiffness_median": float(np.median(single[:, 1])),
+        "rounding_force": float(rounded[:, 0].max()),
+        "rounding_stiffness": float(rounded[:, 1].max()),
+        "results": dict(collections.Counter(x["result"] for x in found)),
+        "steps": int(steps[0]),
+        "steps_float64": int(steps[1]),
+        "residual": max(x["residual"] for x in found),
+    }
+
+
+def show(rows):
+    print(
+        f"{'':39}{'force':^16}{'stiffness':^16}{'steps':^8}\n"
+        f"{'bearing':30}{'rule':9}{'float32':>8}{'input':>8}{'float32':>8}"
+        f"{'input':>8}{'32':>4}{'64':>4}  results"
+    )
+    for r in rows:
+        results = ", ".join(f"{n} {label}" for label, n in r["results"].items())
+        print(
+            f"{r['bearing']:30}{r['quadrature'].split()[0]:9}"
+            f"{r['force_worst']:8.0e}{r['rounding_force']:8.0e}"
+            f"{r['stiffness_worst']:8.0e}{r['rounding_stiffness']:8.0e}"
+            f"{r['steps']:4d}{r['steps_float64']:4d}  {results}"
+        )
+    print(f"\nworst of up to {MOTIONS} motions; {processor()}")
+
+
+def processor():
+    """Model of the processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return "processor unknown"
+    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
+
+
+def measure(bearings, quadratures, motions):
+    """A row for every bearing and rule."""
+    rows = []
+    for rule, quadrature in quadratures.items():
+        for name, bearing in bearings.items():
+            element = bj.BearingElement(bearing, quadrature=quadrature)
+            row = {"bearing": name, "quadrature": rule.replace("_", " ")}
+            rows.append(row | study(element, motions))
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line per result")
+    parser.add_argument("--smoke", action="store_true", help="one bearing, 3 motions")
+    args = parser.parse_args()
+    bearings, quadratures = registry.bearings(), registry.quadratures()
+    if args.smoke:
+        bearings = {name: bearings[name] for name in SMOKE}
+        quadratures = {"midpoint": quadratures["midpoint"]}
+    rows = measure(bearings, quadratures, 3 if args.smoke else MOTIONS)
+    if args.json:
+        for r in rows:
+            print(json.dumps(r))
+    else:
+        show(rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

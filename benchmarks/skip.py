@@ -1,0 +1,230 @@
+"""What does a scene pay for what it does not have?
+
+A cylindrical roller bearing with 14 crowned rollers between crowned raceways, outer and
+inner unlike (so that every roller takes Newton steps), rings out of line. From the full
+variant (force and stiffness, four ribs far off, speed, all rollers loaded) parts are
+taken away, one by one.
+
+Hot: the same compiled call in a block, shortest of the rounds, in shuffled order; only
+ratios within one run count. Kernels: instructions of the compiled program outside of
+fusions, a loop's body counted once. Trace and compile: shortest of the repeats, nothing
+kept. Steps: most Newton steps of a roller.
+
+Run: python benchmarks/skip.py [--json] [--smoke]
+"""
+
+import argparse
+import json
+import random
+import re
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+FAR_RIB = bj.Rib(0.3, 1.5e-3, 1e-3)
+SPEED = bj.Speed(inner=3000 * 2 * np.pi / 60)
+CLEARANCE = {"all": -20e-6, "few": 60e-6}
+FREE = {"parameter", "constant", "get-tuple-element", "tuple", "bitcast"}
+FULL = "full"
+
+
+class Variant(NamedTuple):
+    """What is asked of which bearing."""
+
+    wanted: str = "force and stiffness"
+    ribs: bool = True
+    speed: bool = True
+    loaded: str = "all"
+
+
+VARIANTS = {
+    FULL: Variant(),
+    "no speed": Variant(speed=False),
+    "no ribs": Variant(ribs=False),
+    "no speed, no ribs": Variant(speed=False, ribs=False),
+    "  and few rollers loaded": Variant(speed=False, ribs=False, loaded="few"),
+    "  and force only": Variant("force", ribs=False, speed=False),
+    "  and energy only": Variant("energy", ribs=False, speed=False),
+    "force only": Variant("force"),
+    "energy only": Variant("energy"),
+}
+SMOKE = (FULL, "no speed, no ribs")
+
+
+def element(variant):
+    ribs = bj.Ribs.arrangement("NUP", FAR_RIB) if variant.ribs else bj.Ribs()
+    return bj.BearingElement(
+        bj.CylindricalRollerBearing(
+            14, 0.065, 0.010, 0.010,
+            radial_internal_clearance=CLEARANCE[variant.loaded],
+            roller_profile=bj.CircularCrown(1.0),
+            outer_raceway_profile=bj.CircularCrown(2.0),
+            inner_raceway_profile=bj.CircularCrown(6.0),
+            ribs=ribs,
+        )
+    )  # fmt: skip
+
+
+def motion(variant):
+    """Ring freedoms (12,): the inner ring moves and tilts."""
+    shift = {"all": 5e-6, "few": 35e-6}[variant.loaded]
+    return jnp.zeros(12).at[6].set(shift).at[9].set(2e-4).at[10].set(6e-4)
+
+
+class Case:
+    """One variant, ready to be compiled and called."""
+
+    def __init__(self, variant):
+        self.element = element(variant)
+        speed = SPEED if variant.speed else None
+        numbers, static = eqx.partition(self.element, eqx.is_array)
+        self.arguments = numbers, motion(variant), speed
+
+        def wanted(numbers, q, speed):
+            el = eqx.combine(numbers, static)
+            if variant.wanted == "energy":
+                return el.energy(q, speed)
+            if variant.wanted == "force":
+                return el.force(q, speed)
+            e = el.evaluate(q, speed)
+            return e.force, e.stiffness
+
+        self.wanted = wanted
+
+    def compile(self):
+        """Trace and compile anew; seconds of both."""
+        jax.clear_caches()
+        marks = [time.perf_counter()]
+        lowered = jax.jit(self.wanted).lower(*self.arguments)
+        marks.append(time.perf_counter())
+        self.compiled = lowered.compile()
+        marks.append(time.perf_counter())
+        return marks[1] - marks[0], marks[2] - marks[1]
+
+    def block(self, count):
+        """Seconds per call."""
+        begin = time.perf_counter()
+        for _ in range(count):
+            jax.block_until_ready(self.compiled(*self.arguments))
+        return (time.perf_counter() - begin) / count
+
+    def course(self):
+        """Most steps, loaded rollers, and how the solve ended."""
+        _, q, speed = self.arguments
+        row = self.element.row(q, speed)
+        loads = np.asarray(row.solved.raceway_load).max(axis=1)
+        result = bj.Result(int(row.state.result.max())).label
+        return int(row.state.steps.max()), int(np.sum(loads > 0)), result
+
+
+def kernels(text):
+    """Instructions of a compiled program that are not inside a fusion or reduction."""
+    inner = set(re.findall(r"(?:calls|to_apply)=%?([\w.\-]+)", text))
+    # What a `call` runs is a part of the program like any other.
+    inner -= set(re.findall(r" call\(.*?to_apply=%?([\w.\-]+)", text))
+    count, skip = 0, True
+    for line in text.splitlines():
+        if line.endswith("{") and not line.startswith(" "):
+            name = re.match(r"(?:ENTRY )?%?([\w.\-]+)", line)
+            skip = line.startswith("HloModule") or name is None or name[1] in inner
+        found = re.match(r"\s+(?:ROOT )?%?[\w.\-]+ = .*? ([a-z][\w\-]*)\(", line)
+        if found and not skip and found[1] not in FREE:
+            count += 1
+    return count
+
+
+def measure(names, rounds, block, repeats):
+    """A row for every variant."""
+    cases = {name: Case(VARIANTS[name]) for name in names}
+    built = {name: [] for name in names}
+    times = {name: [] for name in names}
+    order = list(names)
+    cases[FULL].compile()  # JAX itself warms up
+    for _ in range(repeats):
+        random.shuffle(order)
+        for name in order:
+            built[name].append(cases[name].compile())
+    for _ in range(rounds):
+        random.shuffle(order)
+        for name in order:
+            cases[name].block(max(1, block // 10))
+            times[name].append(cases[name].block(block))
+    return [row(n, cases[n], built[n], times[n], times[FULL]) for n in names]
+
+
+def row(name, case, built, times, full):
+    steps, loaded, result = case.course()
+    trace, compile_ = np.min(built, axis=0)
+    return {
+        "variant": name,
+        **VARIANTS[name]._asdict(),
+        "steps": steps,
+        "loaded_rollers": loaded,
+        "result": result,
+        "hot_us": 1e6 * min(times),
+        "median_us": 1e6 * float(np.median(times)),
+        "ratio": min(times) / min(full),
+        "kernels": kernels(case.compiled.as_text()),
+        "trace_s": float(trace),
+        "compile_s": float(compile_),
+    }
+
+
+def show(rows):
+    print(
+        f"{'':27}{'loaded':>7}{'':>6}{'hot, µs':^16}{'ratio':>6}{'':>8}"
+        f"{'trace':>8}{'compile':>8}\n"
+        f"{'variant':27}{'rollers':>7}{'steps':>6}{'min':>8}{'median':>8}"
+        f"{'':>6}{'kernels':>8}{'s':>8}{'s':>8}"
+    )
+    for r in rows:
+        print(
+            f"{r['variant']:27}{r['loaded_rollers']:7d}{r['steps']:6d}"
+            f"{r['hot_us']:8.0f}{r['median_us']:8.0f}{r['ratio']:6.2f}"
+            f"{r['kernels']:8d}{r['trace_s']:8.2f}{r['compile_s']:8.2f}"
+        )
+    print(f"\n{processor()}")
+
+
+def processor():
+    """Model of the processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return "processor unknown"
+    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line per result")
+    parser.add_argument("--smoke", action="store_true", help="two variants")
+    args = parser.parse_args()
+    if args.smoke:
+        rows = measure(SMOKE, rounds=5, block=20, repeats=1)
+    else:
+        rows = measure(tuple(VARIANTS), rounds=40, block=50, repeats=3)
+    if args.json:
+        for r in rows:
+            print(json.dumps(r))
+    else:
+        show(rows)
+    if any(r["result"] != "converged" for r in rows):
+        print("skip: a variant did not converge.", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
