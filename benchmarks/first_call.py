@@ -111,7 +111,7 @@ def measure(scenes, repeats):
     ]
 
 
-def show(rows, repeats):
+def show(rows, repeats, load):
     print(f"{'seconds':27}{'scene':18}{'median':>8}{'min':>8}{'max':>8}{'goal':>8}")
     for r in rows:
         goal = "" if r["goal_s"] is None else f"{r['goal_s']:8.1f}"
@@ -120,7 +120,10 @@ def show(rows, repeats):
             f"{r['what']:27}{r['scene']:18}{r['median_s']:8.3f}{r['min_s']:8.3f}"
             f"{r['max_s']:8.3f}{goal}{'  missed' if missed else ''}"
         )
-    print(f"\n{repeats} repeats; {processor()}, {os.cpu_count()} cores")
+    print(
+        f"\n{repeats} repeats; {processor()}, {os.cpu_count()} cores,"
+        f" load average before {load:.1f}"
+    )
 
 
 def processor():
@@ -139,12 +142,13 @@ def main():
     parser.add_argument("--repeats", type=int, default=5)
     args = parser.parse_args()
     repeats = 1 if args.smoke else args.repeats
+    load = os.getloadavg()[0]
     rows = measure(() if args.smoke else SCENES, repeats)
     if args.json:
         for r in rows:
             print(json.dumps(r))
     else:
-        show(rows, repeats)
+        show(rows, repeats, load)
     return 0
 
 

@@ -90,9 +90,12 @@ def solve(element, loads):
     return jax.lax.map(one, loads, batch_size=50)
 
 
-def run(count, seed=0):
+def run(count, seed=0, only=None):
+    """Rows of figures; `only` limits the loads that can be carried to some designs."""
     rows = []
     for index, (name, build) in enumerate(designs().items()):
+        if only is not None and name not in only:
+            continue
         for clearance in CLEARANCES:
             element = bj.BearingElement(build(clearance))
             rng = np.random.default_rng([seed, index])

@@ -174,11 +174,13 @@ def _solve(
         pair = [fixed, mine] if fixed_ring == "outer" else [mine, fixed]
         return jnp.concatenate(pair)
 
-    args = (element, load, given, fixed, speed, scale)
+    # All that depends on the trace goes through the arguments: a derivative rule must
+    # not close over it.
+    args = (element, load, given, fixed, speed, scale, free)
     frozen = stop(args)
 
     def function(y, factor):
-        element, load, _, fixed, speed, scale = frozen
+        element, load, _, fixed, speed, scale, free = frozen
         e = element.evaluate(ring_freedoms(y, scale, fixed), speed)
         pull = factor * free * scale * load
         g = free * (scale * e.force[moving]) - pull
@@ -227,7 +229,7 @@ def _solve(
     minimum, _, steps = lax.while_loop(unfinished, at_factor, (begin, factor, none))
 
     def residual(y, args):
-        element, load, given, fixed, speed, scale = args
+        element, load, given, fixed, speed, scale, free = args
         force = element.force(ring_freedoms(y, scale, fixed), speed)[moving]
         # A held freedom follows what is prescribed for it.
         return free * scale * (force - load) + (1.0 - free) * (y - given / scale)

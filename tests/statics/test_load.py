@@ -1,0 +1,246 @@
+"""The load solve: loads and displacements mixed, result codes, derivatives."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+import robust_loads
+from registry import bearings, taper
+from tolerances import SOLVER
+
+import bearingjax as bj
+
+RADIAL = [0.0, -4000.0, 0.0, 1.0, 0.0, 0.0]
+FREE = ["ux", "uy", "gx", "gy"]
+
+
+@pytest.fixture(scope="module")
+def crowned():
+    return bj.BearingElement(bearings()["cylindrical, crowned ends"])
+
+
+@pytest.fixture(scope="module")
+def tapered():
+    return bj.BearingElement(taper())
+
+
+def loads_of(s, ring):
+    return np.asarray(s.force)[6:] if ring == "inner" else np.asarray(s.force)[:6]
+
+
+def test_either_ring_may_be_fixed(crowned):
+    inner = bj.solve_load(crowned, RADIAL)
+    outer = bj.solve_load(crowned, [-x for x in RADIAL], fixed_ring="inner")
+    assert np.allclose(
+        inner.displacement[6:], -outer.displacement[:6], rtol=1e-7, atol=1e-15
+    )
+    assert np.allclose(
+        loads_of(inner, "inner")[[0, 1, 3, 4]], [0, -4000, 1, 0], atol=1e-6
+    )
+    assert np.all(np.asarray(inner.displacement)[:6] == 0)
+
+
+def test_fixed_ring_may_stand_anywhere(crowned):
+    """Common rigid motion changes nothing."""
+    at = [3e-5, -2e-5, 1e-5, 2e-4, -1e-4, 0.0]
+    a = bj.solve_load(crowned, RADIAL, fixed_displacement=at)
+    b = bj.solve_load(crowned, RADIAL)
+    # Without ribs the axial freedom stays where it was put: at zero, not at 1e-5.
+    difference = np.asarray(a.displacement - b.displacement)[[6, 7, 9, 10]]
+    assert np.allclose(difference, np.array(at)[[0, 1, 3, 4]], rtol=1e-6, atol=1e-12)
+
+
+def test_loads_and_displacements_mixed(tapered):
+    s = bj.solve_load(
+        tapered,
+        [2000.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        prescribed={"uz": 40e-6, "gx": 2e-4, "gz": 0.3},
+    )
+    q, force = np.asarray(s.displacement), np.asarray(s.force)
+    assert np.allclose(q[[8, 9, 11]], [40e-6, 2e-4, 0.3], rtol=1e-15)
+    assert np.allclose(force[[6, 7, 10]], [2000.0, 0.0, 0.0], atol=1e-6)
+    assert force[8] > 1000.0  # the axial preload that this takes
+    # gz turned the set of rollers.
+    turned = tapered.azimuth(jnp.asarray(q)) - tapered.azimuth(jnp.zeros(12))
+    assert np.allclose(turned, 0.5 * 0.3 * (1 - 8.2 * np.cos(np.deg2rad(11)) / 52))
+
+
+def test_everything_prescribed_is_no_solve(crowned):
+    at = {"ux": 1e-5, "uy": -2e-5, "uz": 0.0, "gx": 0.0, "gy": 1e-4}
+    s = bj.solve_load(crowned, None, prescribed=at, free=[])
+    q = np.asarray(s.displacement)
+    assert np.allclose(q[6:11], list(at.values()))
+    assert np.allclose(s.force, crowned.force(jnp.asarray(q)), rtol=SOLVER, atol=1e-9)
+    assert int(s.stats.iterations) == 0
+
+
+def test_solution_hangs_together(tapered):
+    s = bj.solve_load(
+        tapered, [1000.0, 0, 6000.0, 0, 0, 0], speed=bj.Speed(inner=300.0), points=1001
+    )
+    length = 0.0115
+    x = np.asarray(s.position)
+    assert np.allclose([x[0], x[-1]], [-length / 2, length / 2])
+    # The line load integrates to the load of the roller.
+    total = np.trapezoid(np.asarray(s.line_load), x, axis=-1)
+    assert np.allclose(total, s.roller_load, rtol=1e-3)  # trapezoids of a steep end
+    assert np.asarray(s.rib_load)[:, [0, 1, 3]].max() == 0.0
+    assert np.asarray(s.rib_load)[:, 2].min() > 0.0
+    # Axial balance: outer raceways carry the axial load.
+    angle = np.deg2rad(11 + 1.7235)
+    axial = float(jnp.sum(s.roller_load[:, 0])) * np.sin(angle)
+    assert axial == pytest.approx(6000.0, rel=1e-9)
+    # p = 2 q/(π b)
+    q, p, b = (
+        np.asarray(v) for v in (s.line_load, s.contact_pressure, s.contact_half_width)
+    )
+    loaded = q > 1.0
+    assert np.allclose(p[loaded], 2 * q[loaded] / (np.pi * b[loaded]), rtol=1e-12)
+    assert not np.asarray(s.edge_loaded).any()
+    assert s.load_zone.all() and bool(s.converged)
+
+
+def test_edge_loaded_rollers_are_warned_of(crowned):
+    s = bj.solve_load(crowned, [0.0, -20e3, 0, 0, 0, 0])
+    assert np.asarray(s.edge_loaded).any()
+    text = bj.statics.warnings(s)
+    assert text and all("edge-loaded" in line for line in text)
+
+
+@pytest.mark.parametrize(
+    "load, name",
+    [([0, 0, -6000.0, 0, 0, 0], "uz"), ([3000.0, 0, 0, 0, 0, 0], "uz")],
+)
+def test_taper_without_axial_load_has_no_path(tapered, load, name):
+    with pytest.raises(bj.SolveError, match=f"No load path in {name} of the inner"):
+        bj.solve_load(tapered, load)
+    s = bj.solve_load(tapered, load, throw=False)
+    assert int(s.result) == bj.Result.NO_LOAD_PATH
+    assert bj.FREEDOMS[int(s.unrestrained)] == name
+
+
+def test_axial_load_on_nu_and_moment_about_the_axis(crowned):
+    for load, name in (
+        ([0, -1e3, 5.0, 0, 0, 0], "uz"),
+        ([0, -1e3, 0, 0, 0, 1.0], "gz"),
+    ):
+        s = bj.solve_load(crowned, load, throw=False)
+        assert int(s.result) == bj.Result.NO_LOAD_PATH
+        assert bj.FREEDOMS[int(s.unrestrained)] == name
+
+
+def test_step_limit_says_so(tapered):
+    with pytest.raises(bj.SolveError, match="Step limit reached after 2 steps"):
+        bj.solve_load(tapered, [0, 0, 6000.0, 0, 0, 0], max_steps=2)
+
+
+def test_non_finite_input(crowned):
+    load = [0.0, np.nan, 0.0, 0.0, 0.0, 0.0]
+    assert int(bj.solve_load(crowned, load, throw=False).result) == bj.Result.NON_FINITE
+    s = bj.solve_load(crowned, RADIAL, prescribed={"ux": np.inf}, throw=False)
+    assert int(s.result) == bj.Result.NON_FINITE
+
+
+def test_throw_under_jit(tapered):
+    @jax.jit
+    def push(axial):
+        return bj.solve_load(tapered, axial * jnp.eye(6)[2]).displacement
+
+    assert float(push(6000.0)[8]) > 0
+    with pytest.raises(Exception, match="No load path|no load path|did not converge"):
+        jax.block_until_ready(push(-6000.0))
+
+
+def test_bad_case_stays_alone_in_a_batch(tapered):
+    loads = jnp.asarray([[0, 0, f, 0, 0, 0] for f in (6e3, -6e3, np.nan, 3e3)])
+    s = jax.vmap(lambda load: bj.solve_load(tapered, load, throw=False))(loads)
+    codes = [bj.Result(int(c)).label for c in s.result]
+    assert codes == ["converged", "no_load_path", "non_finite", "converged"]
+    alone = bj.solve_load(tapered, loads[3])
+    assert np.allclose(s.displacement[3], alone.displacement, rtol=1e-7, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    "call, text",
+    [
+        (dict(load=[1.0, 2.0]), r"`load` has shape \(2,\).*Fx Fy Fz Mx My Mz"),
+        (dict(load=RADIAL, fixed_ring="left"), "`fixed_ring` is 'left'.*'outer'"),
+        (dict(load=RADIAL, free=["vx"]), "`free` names 'vx'; freedoms are ux"),
+        (dict(load=RADIAL, prescribed={"rz": 0.0}), "`prescribed` names 'rz'"),
+        (dict(load=RADIAL, free=["ux"], prescribed={"ux": 0.0}), "both free and presc"),
+        (dict(load=RADIAL, free=["gz"]), "gz, which no rolling bearing restrains"),
+        (dict(load=RADIAL, fixed_displacement=[0.0]), "`fixed_displacement` has shape"),
+    ],
+)
+def test_wrong_calls(crowned, call, text):
+    with pytest.raises(ValueError, match=text):
+        bj.solve_load(crowned, **call)
+
+
+def fall(bearing, load):
+    """A response whose derivatives are asked for: sag and stiffness."""
+    s = bj.solve_load(bj.BearingElement(bearing), load)
+    return jnp.stack([1e6 * s.displacement[7], 1e-8 * s.stiffness[7, 7]])
+
+
+DESIGN = {
+    "length": (lambda b: b.roller_length, 1e-6),
+    "straight part": (lambda b: b.roller_profile.straight_length, 1e-6),
+    "crown radius": (lambda b: b.roller_profile.crown_radius, 1e-4),
+    "clearance": (lambda b: b.radial_internal_clearance, 1e-9),
+    "elastic modulus": (lambda b: b.material.elastic_modulus, 1e6),
+}
+
+
+def test_design_gradients_of_displacement_and_stiffness():
+    """Forward, reverse and differences, with rollers loaded to their ends."""
+    load = jnp.asarray([300.0, -20e3, 0.0, 5.0, 0.0, 0.0])
+    bearing = bearings()["cylindrical, crowned ends"]
+    assert np.asarray(bj.solve_load(bj.BearingElement(bearing), load).edge_loaded).any()
+    getters = [get for get, _ in DESIGN.values()]
+
+    @jax.jit
+    def of(values):
+        changed = eqx.tree_at(lambda b: [g(b) for g in getters], bearing, list(values))
+        return fall(changed, load)
+
+    at = jnp.stack([get(bearing) for get in getters])
+    forward, reverse = jax.jacfwd(of)(at), jax.jacrev(of)(at)
+    assert np.allclose(forward, reverse, rtol=1e-8, atol=0)
+    for k, (name, (_, step)) in enumerate(DESIGN.items()):
+        move = jnp.zeros_like(at).at[k].set(step)
+        slope = np.asarray(of(at + move) - of(at - move)) / (2 * step)
+        # Differences of solves that end at 1e-11 of the load.
+        assert np.allclose(forward[:, k], slope, rtol=1e-5), name
+
+
+def test_gradient_with_respect_to_load_is_the_compliance(tapered):
+    load = jnp.asarray([1000.0, 300.0, 5000.0, 2.0, -1.0, 0.0])
+    of = jax.jit(lambda f: bj.solve_load(tapered, f).displacement[6:11])
+    compliance = np.asarray(jax.jacfwd(of)(load))[:, :5]
+    stiffness = np.asarray(bj.solve_load(tapered, load).stiffness)[6:11, 6:11]
+    assert np.allclose(compliance @ stiffness, np.eye(5), atol=1e-7)
+
+
+def test_second_derivative_of_the_displacement():
+    """The curvature of sag against load, by the implicit rule and by differences."""
+    element = bj.BearingElement(taper(5), quadrature=bj.Midpoint(8))
+
+    def sag(factor):
+        load = factor * jnp.asarray([500.0, 0.0, 4000.0, 0.0, 0.0, 0.0])
+        return 1e6 * bj.solve_load(element, load).displacement[8]
+
+    slope = jax.jit(jax.grad(sag))
+    bend = float(jax.jit(jax.grad(jax.grad(sag)))(1.0))
+    difference = float(slope(1.0 + 1e-4) - slope(1.0 - 1e-4)) / 2e-4
+    assert bend == pytest.approx(difference, rel=1e-5)
+    assert bend < 0.0  # a contact hardens
+
+
+def test_small_robustness_run():
+    """Seeded, small version of benchmarks/robust_loads.py."""
+    for row in robust_loads.run(2, seed=1, only=["NUP, logarithmic"]):
+        assert row.get("failed", 0) == 0 and row.get("silently_wrong", 0) == 0, row
+        if "named_uz" in row:
+            assert row["named_uz"] == row["uncarried_loads"], row
