@@ -1,0 +1,164 @@
+"""Derivatives through solved systems, against closed forms, at first and second order.
+
+The cubic y³ + y = p has y' = 1/(3y² + 1) and y'' = -6y y'³. The system is the gradient
+of ½ yᵀS y + ¼ Σ y⁴ - pᵀy: y' = J⁻¹ with J = S + 3 diag(y²), and the second derivative
+along v is -J⁻¹ (6 y (J⁻¹v)²).
+"""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tolerances import ROUNDING
+
+from bearingjax.numerics import attach, attach_roots
+from bearingjax.numerics.implicit import stop
+
+STIFFNESS = jnp.asarray([[2.0, 0.5, -0.3], [0.5, 1.5, 0.2], [-0.3, 0.2, 1.0]])
+
+
+def cubic(y, p):
+    return y**3 + y - p
+
+
+def real_root(p):
+    """The real root of y³ + y = p (Cardano), polished by one Newton step."""
+    half = 0.5 * p
+    root = jnp.sqrt(half * half + 1.0 / 27.0)
+    y = jnp.cbrt(half + root) + jnp.cbrt(half - root)
+    return y - cubic(y, p) / (3.0 * y * y + 1.0)
+
+
+def energy_gradient(y, args):
+    stiffness, p = args
+    return stiffness @ y + y**3 - p
+
+
+def system(p):
+    """Solved by plain Newton; the derivative is the attached one."""
+    y = jnp.zeros(3)
+    for _ in range(12):
+        jacobian = STIFFNESS + 3.0 * jnp.diag(y * y)
+        y = y - jnp.linalg.solve(jacobian, energy_gradient(y, (STIFFNESS, p)))
+    return attach(energy_gradient, y, (STIFFNESS, p))
+
+
+def root_of(p):
+    """Both ways to the cubic: as a root by itself, as a system of one unknown."""
+    alone = attach_roots(cubic, real_root(p), p)
+    as_system = attach(lambda y, q: cubic(y, q), real_root(p)[None], p)[0]
+    return jnp.stack([alone, as_system])
+
+
+P = np.linspace(-3.0, 3.0, 7)
+
+
+@pytest.mark.parametrize("derivative", [jax.jacfwd, jax.jacrev])
+def test_cubic_first_and_second(derivative):
+    first = derivative(root_of)
+    second = jax.jacfwd(first)
+    value, first, second = jax.jit(
+        jax.vmap(lambda p: (root_of(p), first(p), second(p)))
+    )(jnp.asarray(P))
+    y = np.asarray(value)
+    slope = 1.0 / (3.0 * y * y + 1.0)
+    np.testing.assert_allclose(y**3 + y, P[:, None] + 0 * y, atol=ROUNDING)
+    np.testing.assert_allclose(first, slope, rtol=ROUNDING)
+    np.testing.assert_allclose(second, -6.0 * y * slope**3, rtol=ROUNDING)
+
+
+def test_cubic_third():
+    """The rule calls itself: y''' = y'⁵ (108 y² - 6(3y² + 1)) / ... at order three."""
+
+    def root(p):
+        return attach_roots(cubic, real_root(p), p)
+
+    third = jax.grad(jax.grad(jax.grad(root)))(jnp.asarray(1.3))
+    y = float(real_root(jnp.asarray(1.3)))
+    slope = 1.0 / (3.0 * y * y + 1.0)
+    # d/dp of -6 y s³ with ds/dp = -6 y s³.
+    want = -6.0 * slope**4 + 108.0 * y * y * slope**5
+    np.testing.assert_allclose(third, want, rtol=ROUNDING)
+
+
+@pytest.mark.parametrize("modes", ["forward", "reverse", "mixed"])
+def test_system_first_and_second(modes):
+    outer, inner = {
+        "forward": (jax.jacfwd, jax.jacfwd),
+        "reverse": (jax.jacrev, jax.jacrev),
+        "mixed": (jax.jacfwd, jax.jacrev),
+    }[modes]
+    ps = jnp.asarray(np.random.default_rng(0).normal(size=(5, 3)))
+    call = jax.jit(
+        jax.vmap(lambda p: (system(p), inner(system)(p), outer(inner(system))(p)))
+    )
+    for y, first, second in zip(*map(np.asarray, call(ps)), strict=True):
+        inverse = np.linalg.inv(np.asarray(STIFFNESS) + 3.0 * np.diag(y * y))
+        np.testing.assert_allclose(first, inverse, rtol=ROUNDING, atol=ROUNDING)
+        want = -np.einsum("im,m,mj,mk->ijk", inverse, 6.0 * y, inverse, inverse)
+        np.testing.assert_allclose(second, want, rtol=ROUNDING, atol=ROUNDING)
+
+
+def test_every_argument_is_differentiated():
+    """dy/dS through the pytree of arguments, next to what is not a number."""
+
+    def last(stiffness, p):
+        def residual(y, args):
+            assert args["name"] == "static"
+            return args["count"] * energy_gradient(y, args["numbers"])
+
+        args = {"numbers": (stiffness, p), "name": "static", "count": 2}
+        return attach(residual, solution, args)[2]
+
+    p = jnp.asarray([0.4, -1.0, 2.0])
+    solution = system(p)
+    got = jax.grad(last)(STIFFNESS, p)
+    y = np.asarray(solution)
+    inverse = np.linalg.inv(np.asarray(STIFFNESS) + 3.0 * np.diag(y * y))
+    np.testing.assert_allclose(got, -np.outer(inverse[2], y), rtol=ROUNDING)
+
+
+def test_value_is_the_solution_and_its_own_derivative_is_ignored():
+    def off(p):
+        return attach_roots(cubic, 7.0 * p, p)
+
+    value, slope = jax.value_and_grad(off)(jnp.asarray(0.1))
+    assert value == 7.0 * 0.1
+    np.testing.assert_allclose(slope, 1.0 / (3.0 * 0.7**2 + 1.0), rtol=ROUNDING)
+
+
+def test_roots_of_either_slope_and_none():
+    """y² = p has roots of both signs of slope; at p = 0 the derivative is zero."""
+
+    def roots(p):
+        return attach_roots(lambda y, q: y * y - q, at, p)
+
+    at = jnp.asarray([-2.0, 2.0, 0.0])
+    first = jax.jacfwd(roots)(jnp.asarray(4.0))
+    np.testing.assert_allclose(first, [-0.25, 0.25, 0.0], rtol=ROUNDING)
+    back = jax.jacrev(roots)(jnp.asarray(4.0))
+    np.testing.assert_array_equal(back, first)
+
+
+def test_no_host_callback():
+    def both(p):
+        return jnp.sum(system(p)) + attach_roots(cubic, real_root(p[0]), p[0])
+
+    text = str(jax.make_jaxpr(jax.hessian(both))(jnp.ones(3)))
+    assert "callback" not in text
+    # What the search would find: a callback does show up in a jaxpr.
+    with_callback = jax.make_jaxpr(
+        lambda x: jax.pure_callback(lambda y: y, jax.ShapeDtypeStruct((), x.dtype), x)
+    )(jnp.asarray(1.0))
+    assert "callback" in str(with_callback)
+
+
+def test_stop():
+    tree = {"x": jnp.asarray(2.0), "n": 3, "k": jnp.asarray(4)}
+    kept = stop(tree)
+    assert kept["n"] == 3 and kept["k"] == 4
+
+    def through(x):
+        return x * stop({"x": x, "n": 3})["x"]
+
+    assert jax.grad(through)(jnp.asarray(2.0)) == 2.0
