@@ -71,7 +71,7 @@ def _configure_jax():
     jax.config.update("jax_logging_level", "CRITICAL")
 
     jax.config.update("jax_enable_x64", True)
-    if jax.config.jax_compilation_cache_dir is None:
+    if getattr(jax.config, "jax_compilation_cache_dir", None) is None:
         base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         cache = Path(base) / "bearingjax" / "jax"
         jax.config.update("jax_compilation_cache_dir", str(cache))

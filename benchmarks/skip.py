@@ -35,7 +35,9 @@ import bearingjax as bj  # noqa: E402
 FAR_RIB = bj.Rib(0.3, 1.5e-3, 1e-3)
 SPEED = bj.Speed(inner=3000 * 2 * np.pi / 60)
 CLEARANCE = {"all": -20e-6, "few": 60e-6}
-FREE = {"parameter", "constant", "get-tuple-element", "tuple", "bitcast"}
+FREE = (
+    "parameter constant get-tuple-element tuple bitcast call while conditional".split()
+)
 FULL = "full"
 
 
@@ -129,7 +131,7 @@ class Case:
 
 
 def kernels(text):
-    """Instructions of a compiled program that are not inside a fusion or reduction."""
+    """Instructions of a program that run by themselves, not free, not in a fusion."""
     inner = set(re.findall(r"(?:calls|to_apply)=%?([\w.\-]+)", text))
     # What a `call` runs is a part of the program like any other.
     inner -= set(re.findall(r" call\(.*?to_apply=%?([\w.\-]+)", text))

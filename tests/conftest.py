@@ -1,4 +1,4 @@
-"""Strict JAX for every test: float64, no silent rank or dtype promotion, typed calls."""
+"""Strict JAX for every test: float64, no silent promotion, typed calls."""
 
 import jax
 from jaxtyping import install_import_hook

@@ -148,7 +148,8 @@ def contacts(bearing, slices, rings, y) -> Contacts:
             moved = rows(*raceway(bearing, ring, s)) @ (rings[ring] - y)
             return -(0.25 * bearing.clearance + drop(s) + moved)
 
-        s, w = rule(approach) if callable(rule) else rule
+        nodes = rule(approach) if callable(rule) else rule
+        s, w = nodes  # pyright: ignore[reportGeneralTypeIssues]
         s, w = np.asarray(s, dtype=float), np.asarray(w, dtype=float)
         lever = rows(*raceway(bearing, ring, s))
         one = np.ones_like(s)

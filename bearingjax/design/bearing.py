@@ -244,7 +244,8 @@ class TaperedRollerBearing(AbstractRollerBearing):
         numbers = concrete(*jax.tree.leaves(_angles_and_size(self)))
         if numbers is None or numbers[1] == 0.0:
             return
-        outer, roller, inner = _apexes(*numbers, math)
+        axis, half, pitch, diameter = numbers
+        outer, roller, inner = _apexes(axis, half, pitch, diameter, math)
         if max(abs(outer - roller), abs(inner - roller)) > 0.01 * abs(roller):
             warnings.warn(
                 "TaperedRollerBearing: the apexes of outer raceway, roller axis and"

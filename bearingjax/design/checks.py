@@ -5,13 +5,13 @@ design was checked when it was made, and a bad traced number ends in a result co
 They compute with NumPy: an eager JAX operation would be compiled for nothing.
 """
 
-import jax
 import numpy as np
+from jax.core import Tracer
 
 
 def is_traced(value) -> bool:
     """Whether a value is being traced, and has no number to look at."""
-    return isinstance(value, jax.core.Tracer)
+    return isinstance(value, Tracer)
 
 
 def concrete(*values) -> list[float] | None:

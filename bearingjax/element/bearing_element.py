@@ -1,5 +1,6 @@
 """The bearing as a finite element of twelve freedoms."""
 
+import warnings
 from typing import NamedTuple
 
 import equinox as eqx
@@ -109,6 +110,20 @@ class BearingElement(eqx.Module):
     quadrature: AbstractQuadrature = eqx.field(default_factory=ContactMapped)
     equilibrium: AbstractMinimiser = eqx.field(default_factory=TrustRegionNewton)
     cage_torque: bool = eqx.field(static=True, default=False)
+
+    def __check_init__(self):
+        if not isinstance(self.bearing, AbstractRollerBearing):
+            raise TypeError(
+                f"BearingElement: `bearing` is a {type(self.bearing).__name__}; it must"
+                " be a roller bearing, such as CylindricalRollerBearing."
+            )
+        if jax.dtypes.canonicalize_dtype(float) != jnp.float64:
+            warnings.warn(
+                "BearingElement: float64 is off and float32 solves only coarsely. Turn"
+                ' it on before anything else: jax.config.update("jax_enable_x64",'
+                " True).",
+                stacklevel=4,
+            )
 
     @eqx.filter_jit
     def energy(self, q: Ring, speed: Speed | None = None) -> Scalar:

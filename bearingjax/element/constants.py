@@ -98,10 +98,13 @@ def contact_constants(
     """
     length, diameter = bearing.roller_length, bearing.roller_diameter
     constant = line_law.constant(bearing.material, bearing.rings, length)
-    lines = tuple(
-        LineContact(constant, length, diameter, bearing.roller_profile, profile)
-        for profile in (bearing.outer_raceway_profile, bearing.inner_raceway_profile)
-    )
+
+    def line(raceway_profile):
+        return LineContact(
+            constant, length, diameter, bearing.roller_profile, raceway_profile
+        )
+
+    lines = line(bearing.outer_raceway_profile), line(bearing.inner_raceway_profile)
     # Stiffness of a contact pressed by a ten-thousandth of the roller diameter.
     stiffness = constant * length * (1e-4 * diameter) ** (1.0 / 9.0)
     return ContactConstants(

@@ -5,7 +5,7 @@ and stiffness are its derivatives: the contacts' by their own rule
 (`contact.line_contact`), the motions' by the chain rule of the kinematics.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -36,7 +36,7 @@ class RollerModel(eqx.Module):
     """
 
     constants: ContactConstants
-    prepared: tuple | ContactConstants
+    prepared: Any
     kinematics: AbstractKinematics
     quadrature: AbstractQuadrature
 
@@ -152,6 +152,8 @@ def rib_density(
     """
     factor = (_D / (_N + _D), 1.0, _N / _D)[order]
     power = positive_power(approaches[4:], _N + (1 - order) * _D, _D)
+    if constants.ribs is None:
+        return power
     return factor * constants.ribs.constant * power
 
 

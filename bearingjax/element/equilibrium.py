@@ -65,8 +65,7 @@ def solve_roller(
     Fails: `STEP_LIMIT`, `NON_FINITE`; `NO_LOAD_PATH` if inertia throws the roller off,
         because no contact holds it; `SADDLE` with finite kinematics.
     """
-    fixed = stop((model, rings, inertia, magnitude))
-    state = _solve(*fixed, minimiser)
+    state = _solve(stop(model), stop(rings), stop(inertia), stop(magnitude), minimiser)
 
     def residual(x, args):
         model, rings, inertia = args
@@ -148,7 +147,7 @@ def _solve(model, rings, inertia, magnitude, minimiser):
         loose = is_loose(model, x, magnitude, scale, g)
         noise = jnp.where(loose, norm(g), noise)
         scale = jnp.where(loose, jnp.inf, scale)
-        return Evaluation(value, g, h if with_hessian else None, scale, noise)
+        return Evaluation(value, g, h if with_hessian else h[:0], scale, noise)
 
     between = rings[:3] - rings[3:]
     reach = jnp.abs(between[0]) + jnp.abs(between[1])

@@ -135,7 +135,9 @@ class Finite(AbstractKinematics):
             turned = _turn(ring[2], direction) - _turn(roller[2], direction)
             out += [-c.gap - normal @ moved, -c.half_length * (normal @ turned)]
         ribs = c.ribs
-        for k, on_outer in enumerate(ribs.on_outer if ribs is not None else ()):
+        if ribs is None:
+            return jnp.stack(out)
+        for k, on_outer in enumerate(ribs.on_outer):
             ring = outer if on_outer else inner
             moved = _displacement(ring, place + axes @ ribs.point[k]) - _displacement(
                 roller, place + axes @ ribs.centre[k]

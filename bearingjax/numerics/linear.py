@@ -14,7 +14,10 @@ def dot(a: Float[Array, " n"], b: Float[Array, " n"]) -> Float[Array, ""]:
     Args:
         a, b: Vectors of a few components (n,) [any unit].
     """
-    return sum(a[i] * b[i] for i in range(a.shape[0]))
+    total = a[0] * b[0]
+    for i in range(1, a.shape[0]):
+        total = total + a[i] * b[i]
+    return total
 
 
 def norm(a: Float[Array, " n"]) -> Float[Array, ""]:
@@ -24,12 +27,15 @@ def norm(a: Float[Array, " n"]) -> Float[Array, ""]:
 
 def quadratic(matrix: Float[Array, "n n"], a: Float[Array, " n"]) -> Float[Array, ""]:
     """aᵀ M a, written out."""
-    return sum(a[i] * dot(matrix[i], a) for i in range(a.shape[0]))
+    return dot(a, jnp.stack([dot(row, a) for row in matrix]))
 
 
 def trace(matrix: Float[Array, "n n"]) -> Float[Array, ""]:
     """Sum of the diagonal, written out."""
-    return sum(matrix[i, i] for i in range(matrix.shape[0]))
+    total = matrix[0, 0]
+    for i in range(1, matrix.shape[0]):
+        total = total + matrix[i, i]
+    return total
 
 
 def solve_symmetric(

@@ -23,7 +23,7 @@ class Evaluation(NamedTuple):
     Attributes:
         value: Function value [J].
         gradient: First derivative (n,) [J/unit of x].
-        hessian: Second derivative (n, n), or `None` if it was not asked for.
+        hessian: Second derivative (n, n); empty if it was not asked for.
         scale: What the gradient is measured against, for example the sum of the
             forces that cancel in it.
         noise: Absolute round-off floor of the gradient's norm.
@@ -31,7 +31,7 @@ class Evaluation(NamedTuple):
 
     value: Float[Array, ""]
     gradient: Float[Array, " n"]
-    hessian: Float[Array, "n n"] | None
+    hessian: Float[Array, "..."]
     scale: Float[Array, ""]
     noise: Float[Array, ""]
 
@@ -90,9 +90,7 @@ class _State(NamedTuple):
 def _pack(state: _State) -> Array:
     """All of a state in one array, so that a pass ends in one kernel, not in ten."""
     now = state.now
-    parts = [state.x, now.gradient]
-    if now.hessian is not None:
-        parts.append(now.hessian.reshape(-1))
+    parts = [state.x, now.gradient, now.hessian.reshape(-1)]
     scalars = [now.value, now.scale, now.noise, *state[2:]]
     return jnp.concatenate(
         [*parts, jnp.stack([v.astype(now.value.dtype) for v in scalars])]
@@ -101,7 +99,7 @@ def _pack(state: _State) -> Array:
 
 def _unpack(packed: Array, n: int, with_hessian: bool = True) -> _State:
     x, g, rest = packed[:n], packed[n : 2 * n], packed[2 * n :]
-    h = None
+    h = jnp.zeros((0,), packed.dtype)
     if with_hessian:
         h, rest = rest[: n * n].reshape(n, n), rest[n * n :]
     value, scale, noise, radius, steps, stalled, reach = (rest[i] for i in range(7))
@@ -285,7 +283,7 @@ class BFGS(AbstractMinimiser):
             radius_now = jnp.where(full, longer, state.radius)
             stalled = ~accept & (norm(s) <= 4 * eps * norm(state.x))
             rest = (radius_now, state.steps + 1.0, stalled, state.reach)
-            new = new._replace(hessian=None)
+            new = new._replace(hessian=now.hessian)
             taken = _pack(_State(state.x + s, new, *rest))
             stayed = _pack(_State(state.x, now, *rest))
             packed = jnp.where(accept, taken, stayed)
@@ -293,7 +291,8 @@ class BFGS(AbstractMinimiser):
             return packed, inverse, jnp.where(accept, 1.0, 0.3 * fraction)
 
         zero = jnp.zeros((), start.dtype)
-        begin = Evaluation(zero, 0.0 * start, None, zero, zero)
+        nothing = jnp.zeros((0,), start.dtype)
+        begin = Evaluation(zero, 0.0 * start, nothing, zero, zero)
         packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero))
         carry = (packed, identity, jnp.ones((), start.dtype))
         packed, _, _ = lax.while_loop(unfinished, step, carry)

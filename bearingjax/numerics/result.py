@@ -3,8 +3,8 @@
 import enum
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
+from jax.core import Tracer
 from jaxtyping import Array, Int
 
 
@@ -52,7 +52,7 @@ def raise_unless_converged(tree, result: Int[Array, "..."], message):
     Raises:
         SolveError: If a code is not `CONVERGED` (outside `jit`).
     """
-    if isinstance(result, jax.core.Tracer):
+    if isinstance(result, Tracer):
         return eqx.error_if(
             tree,
             jnp.any(result != Result.CONVERGED),

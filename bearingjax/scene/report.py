@@ -98,7 +98,7 @@ def _rollers(solution):
     rib = np.asarray(solution.rib_load)
     touching = 1e-9 * max(load.max(), rib.max())
     pressure = 1e-6 * np.asarray(solution.contact_pressure).max(axis=2)
-    edge = np.asarray(solution.edge_loaded).any(axis=(1, 2))
+    edge = np.any(np.asarray(solution.edge_loaded), axis=(1, 2))
     ribs = rib.any()
     head = (
         " roller azimuth   outer load  inner load   outer pmax  inner pmax"

@@ -117,7 +117,7 @@ def test_209_constants_are_those_of_the_laws():
 
 
 KUMAR = [
-    # Fa [N], Kxx, Kzz published (3 digits), Kxx, Kzz computed [MN/mm], delta [mm], Q [N]
+    # Fa [N], Kxx, Kzz published, Kxx, Kzz computed [MN/mm], delta [mm], Q [N]
     (4000, 3.84, 2.80, 3.84050, 2.80127, 0.0008202, 386.8833),
     (20000, None, 3.29, 4.51112, 3.29043, 0.0034913, 1934.4166),  # misprint of Kxx
     (40000, 4.83, 3.53, 4.83490, 3.52659, 0.0065150, 3868.8333),

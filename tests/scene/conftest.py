@@ -1,0 +1,27 @@
+"""The command line in this process, without touching JAX's settings."""
+
+from typing import NamedTuple
+
+import pytest
+
+from bearingjax import cli
+
+
+class Run(NamedTuple):
+    """What one call of the command line did."""
+
+    status: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Call `bearingjax` with arguments."""
+    monkeypatch.setattr(cli, "_configure_jax", lambda: None)
+
+    def call(*arguments):
+        status = cli.main([str(a) for a in arguments])
+        return Run(status, *capsys.readouterr())
+
+    return call

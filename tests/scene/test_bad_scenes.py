@@ -1,0 +1,664 @@
+"""Wrong scenes: one line that names file, key, fault and remedy; exit status 2."""
+
+import re
+
+import pytest
+
+from bearingjax import SceneError, read_scene
+from bearingjax.scene import shipped_scenes
+
+TAPER = """
+[bearing]
+type = "tapered_roller"
+n_rollers = 17
+pitch_diameter = "52 mm"
+roller_diameter = "8.2 mm"
+roller_length = "11.5 mm"
+roller_axis_angle = "11 deg"
+roller_half_angle = "1.7235 deg"
+"""
+
+KNOWN_BEARINGS = "cylindrical_roller, needle_roller, tapered_roller"
+WHOLE = "is not a whole number of at least 1"
+NO_UNIT = 'has no unit; a length with its unit is wanted, such as "5 mm"'
+RIB = '{end_radius = "300 mm", contact_height = "1.5 mm"}'
+
+# Scene, setting, text of the message after "file: ".
+SETTINGS = {
+    # Keys.
+    "unknown table": (
+        "cylindrical_rig",
+        "bearings.n_rollers=3",
+        "`bearings`: unknown key (did you mean `bearing`?); known at the top level:"
+        " bearing, contact, numerics, operating, output",
+    ),
+    "unknown key in bearing": (
+        "cylindrical_rig",
+        "bearing.rolerdiameter=14 mm",
+        "`bearing.rolerdiameter`: unknown key (did you mean `roller_diameter`?);"
+        " known in [bearing]: first_azimuth, ",
+    ),
+    "unknown key in a nested table": (
+        "cylindrical_rig",
+        "bearing.roller_profile.crown_radus=1 m",
+        "`bearing.roller_profile.crown_radus`: unknown key (did you mean"
+        " `crown_radius`?); known in [bearing.roller_profile]: crown_radius,",
+    ),
+    "unknown key beside the points": (
+        "tapered",
+        "output.point=7",
+        "`output.point`: unknown key (did you mean `points`?); known in [output]:"
+        " points",
+    ),
+    "misspelt load": (
+        "cylindrical_rig",
+        "operating.load.fy=-1 kN",
+        "`operating.load.fy`: unknown key (did you mean `Fy`?); known in"
+        " [operating.load]: Fx, Fy, Fz, Mx, My, Mz",
+    ),
+    "no such load": (
+        "cylindrical_rig",
+        "operating.load.radial=-1 kN",
+        "`operating.load.radial`: unknown key; known in [operating.load]: Fx, Fy,",
+    ),
+    "misspelt prescribed": (
+        "cylindrical_rig",
+        "operating.prescribed.u_z=1 um",
+        "`operating.prescribed.u_z`: unknown key (did you mean `uz`?); known in",
+    ),
+    "angle of a taper in a cylinder": (
+        "cylindrical_rig",
+        "bearing.roller_axis_angle=11 deg",
+        "`bearing.roller_axis_angle`: unknown key",
+    ),
+    "raceway that is not there": (
+        "needle",
+        "bearing.raceway_profile.outr.type=straight",
+        "`bearing.raceway_profile.outr`: unknown key (did you mean `outer`?)",
+    ),
+    # Quantities.
+    "bare number": (
+        "cylindrical_rig",
+        "bearing.pitch_diameter=72.5",
+        f"`bearing.pitch_diameter`: 72.5 {NO_UNIT}",
+    ),
+    "text without unit": (
+        "cylindrical_rig",
+        'bearing.pitch_diameter="72.5"',
+        f"`bearing.pitch_diameter`: '72.5' {NO_UNIT}",
+    ),
+    "bare speed": (
+        "tapered",
+        "operating.inner_speed=3000",
+        "`operating.inner_speed`: 3000 has no unit; a speed with its unit is wanted,"
+        ' such as "5 rpm"',
+    ),
+    "force as length": (
+        "cylindrical_rig",
+        "bearing.roller_length=5 N",
+        "`bearing.roller_length`: '5 N' is not a length; a length with its unit",
+    ),
+    "length as force": (
+        "cylindrical_rig",
+        "operating.load.Fy=5 mm",
+        "`operating.load.Fy`: '5 mm' is not a force; a force with its unit",
+    ),
+    "force as moment": (
+        "cylindrical_rig",
+        "operating.load.Mx=3 kN",
+        "`operating.load.Mx`: '3 kN' is not a moment; a moment with its unit is"
+        ' wanted, such as "5 N m"',
+    ),
+    "moment as force": (
+        "cylindrical_rig",
+        "operating.load.Fz=3 N m",
+        "`operating.load.Fz`: '3 N m' is not a force",
+    ),
+    "angle as prescribed length": (
+        "cylindrical_rig",
+        "operating.prescribed.uz=1 mrad",
+        "`operating.prescribed.uz`: '1 mrad' is not a length",
+    ),
+    "length as angle": (
+        "tapered",
+        "bearing.roller_axis_angle=11 mm",
+        "`bearing.roller_axis_angle`: '11 mm' is not a",
+    ),
+    "density without volume": (
+        "cylindrical_rig",
+        "bearing.material.density=7850 kg",
+        "`bearing.material.density`: '7850 kg' is not a density; a density",
+    ),
+    "unknown unit": (
+        "cylindrical_rig",
+        "bearing.pitch_diameter=5 furlogs",
+        "`bearing.pitch_diameter`: '5 furlogs' has the unknown unit 'furlogs'; a",
+    ),
+    "sum of units": (
+        "cylindrical_rig",
+        "bearing.pitch_diameter=5 mm+mm",
+        "`bearing.pitch_diameter`: '5 mm+mm' has the unknown unit 'mm+mm'",
+    ),
+    "decimal comma": (
+        "cylindrical_rig",
+        "bearing.pitch_diameter=72,5 mm",
+        "`bearing.pitch_diameter`: '72,5 mm' has the unknown unit ',5 mm'",
+    ),
+    "nan": (
+        "cylindrical_rig",
+        "bearing.pitch_diameter=nan mm",
+        "`bearing.pitch_diameter`: 'nan mm' does not begin with a finite number;",
+    ),
+    "infinite": (
+        "cylindrical_rig",
+        "operating.load.Fy=-inf kN",
+        "`operating.load.Fy`: '-inf kN' does not begin with a finite number;",
+    ),
+    "beyond float64": (
+        "cylindrical_rig",
+        "operating.load.Fy=1e400 N",
+        "`operating.load.Fy`: '1e400 N' is out of range;",
+    ),
+    "empty": (
+        "cylindrical_rig",
+        "bearing.pitch_diameter=",
+        "`bearing.pitch_diameter`: '' does not begin with a finite number;",
+    ),
+    "boolean as quantity": (
+        "cylindrical_rig",
+        "operating.load.Fy=true",
+        "`operating.load.Fy`: True is not a quantity; a force with its unit",
+    ),
+    "date as quantity": (
+        "cylindrical_rig",
+        "operating.load.Fy=2020-01-01",
+        "`operating.load.Fy`: datetime.date(2020, 1, 1) is not a quantity;",
+    ),
+    "hertz": (
+        "tapered",
+        "operating.inner_speed=50 Hz",
+        "`operating.inner_speed`: '50 Hz' is a frequency; give rpm, deg/s or rad/s",
+    ),
+    "kilohertz": (
+        "tapered",
+        "operating.outer_speed=0.05 kHz",
+        "`operating.outer_speed`: '0.05 kHz' is a frequency; give rpm,",
+    ),
+    "poisson ratio with unit": (
+        "cylindrical_rig",
+        "bearing.material.poisson_ratio=0.3 mm",
+        "`bearing.material.poisson_ratio`: '0.3 mm' is not a bare number (no unit",
+    ),
+    "poisson ratio as text": (
+        "cylindrical_rig",
+        'bearing.material.poisson_ratio="0.3"',
+        "`bearing.material.poisson_ratio`: '0.3' is not a bare number",
+    ),
+    # Counts.
+    "text as count": (
+        "cylindrical_rig",
+        'bearing.n_rollers="12"',
+        f"`bearing.n_rollers`: '12' {WHOLE}",
+    ),
+    "half a roller": (
+        "cylindrical_rig",
+        "bearing.n_rollers=12.5",
+        f"`bearing.n_rollers`: 12.5 {WHOLE}",
+    ),
+    "true rollers": (
+        "cylindrical_rig",
+        "bearing.n_rollers=true",
+        f"`bearing.n_rollers`: True {WHOLE}",
+    ),
+    "no rollers": (
+        "cylindrical_rig",
+        "bearing.n_rollers=0",
+        f"`bearing.n_rollers`: 0 {WHOLE}",
+    ),
+    "no quadrature points": (
+        "cylindrical_rig",
+        "numerics.points=0",
+        f"`numerics.points`: 0 {WHOLE}",
+    ),
+    "broken quadrature points": (
+        "cylindrical_rig",
+        "numerics.points=20.5",
+        f"`numerics.points`: 20.5 {WHOLE}",
+    ),
+    "one position": (
+        "cylindrical_rig",
+        "output.points=1",
+        "`output.points`: 1 is not a whole number of at least 2",
+    ),
+    # Dimensions that do not fit.
+    "negative length": (
+        "cylindrical_rig",
+        "bearing.roller_length=-5 mm",
+        "[bearing]: CylindricalRollerBearing: `roller_length` is -0.005 m; it must be"
+        " above 0 m.",
+    ),
+    "overlap": (
+        "cylindrical_rig",
+        "bearing.n_rollers=17",
+        "[bearing]: CylindricalRollerBearing: `n_rollers` is 17 rollers; it must be"
+        " low enough that rollers do not overlap around the pitch circle (at most 16",
+    ),
+    "roller as large as the bearing": (
+        "cylindrical_rig",
+        "bearing.roller_diameter=80 mm",
+        "[bearing]: CylindricalRollerBearing: `roller_diameter` is 0.08 m; it must be"
+        " small enough to leave an inner raceway",
+    ),
+    "clearance in metres": (
+        "cylindrical_rig",
+        "bearing.radial_internal_clearance=25 m",
+        "[bearing]: CylindricalRollerBearing: `radial_internal_clearance` is 25 m; it"
+        " must be smaller",
+    ),
+    "stout needle": (
+        "needle",
+        "bearing.roller_length=6 mm",
+        "[bearing]: NeedleRollerBearing: `roller_length` is 0.006 m; it must be at"
+        " least 2.5 roller diameters",
+    ),
+    "taper past upright": (
+        "tapered",
+        "bearing.roller_axis_angle=95 deg",
+        "[bearing]: TaperedRollerBearing: `roller_axis_angle` is 1.65806 rad; it must"
+        " be above 0 and below",
+    ),
+    "half angle above axis angle": (
+        "tapered",
+        "bearing.roller_half_angle=12 deg",
+        "[bearing]: TaperedRollerBearing: `roller_half_angle` is 0.20944 rad; it must"
+        " be at least 0 and below",
+    ),
+    "crown radius too small": (
+        "cylindrical_rig",
+        "bearing.roller_profile.crown_radius=1 mm",
+        "[bearing]: CrownedEnds: `crown_radius` is 0.001 m; it must be above 0.00236"
+        " m, so that the arc spans",
+    ),
+    "rib above the roller end": (
+        "cylindrical_ribs",
+        "bearing.rib.contact_height=12 mm",
+        "[bearing]: CylindricalRollerBearing: `ribs.outer_minus.contact_height` is"
+        " 0.012 m; it must be below",
+    ),
+    "poisson ratio of no material": (
+        "cylindrical_rig",
+        "bearing.material.poisson_ratio=0.6",
+        "[bearing.material]: Material: `poisson_ratio` is 0.6; it must be above -1"
+        " and below 0.5.",
+    ),
+    "negative modulus of the rings": (
+        "cylindrical_rig",
+        "bearing.ring_material.elastic_modulus=-1 GPa",
+        "[bearing.ring_material]: Material: `elastic_modulus` is -1e+09 Pa; it must",
+    ),
+    # Names.
+    "ball bearing": (
+        "cylindrical_rig",
+        "bearing.type=deep_groove_ball",
+        "`bearing.type`: 'deep_groove_ball' is not known; it must be one of"
+        f" {KNOWN_BEARINGS}",
+    ),
+    "misspelt bearing type": (
+        "cylindrical_rig",
+        "bearing.type=cylindrical_rolller",
+        "`bearing.type`: 'cylindrical_rolller' is not known (did you mean"
+        f" `cylindrical_roller`?); it must be one of {KNOWN_BEARINGS}",
+    ),
+    "unknown profile": (
+        "cylindrical_rig",
+        "bearing.roller_profile.type=logarithmc",
+        "`bearing.roller_profile.type`: 'logarithmc' is not known (did you mean"
+        " `logarithmic`?); it must be one of straight, circular_crown, crowned_ends,",
+    ),
+    "parameter of another profile": (
+        "cylindrical_rig",
+        "bearing.roller_profile.type=circular_crown",
+        "`bearing.roller_profile.straight_length`: unknown key; known in"
+        " [bearing.roller_profile]: crown_radius, type",
+    ),
+    "profile without its parameter": (
+        "cylindrical_rig",
+        'bearing.roller_profile={type="crowned_ends",straight_length="9 mm"}',
+        "`bearing.roller_profile.crown_radius`: is missing; it must be a length",
+    ),
+    "half a dub-off": (
+        "cylindrical_rig",
+        "bearing.roller_profile.dub_off_length=1 mm",
+        "[bearing.roller_profile]: CrownedEnds: `dub_off_length` and `dub_off_radius`"
+        " go together",
+    ),
+    "table of one quantity": (
+        "cylindrical_rig",
+        'bearing.roller_profile={type="tabulated",positions="1 mm",drops=["0 um"]}',
+        "`bearing.roller_profile.positions`: '1 mm' is not a list of quantities",
+    ),
+    "table with a bare number": (
+        "cylindrical_rig",
+        'bearing.roller_profile={type="tabulated",positions=["-7 mm",0,"7 mm"],'
+        'drops=["9 um","0 um","9 um"]}',
+        f"`bearing.roller_profile.positions`: 0 {NO_UNIT}",
+    ),
+    "short table": (
+        "cylindrical_rig",
+        'bearing.roller_profile={type="tabulated",positions=["-5 mm","0 mm","5 mm"],'
+        'drops=["9 um","0 um","9 um"]}',
+        "[bearing]: Tabulated: `positions` is [-0.005  0.     0.005] m; it must be a"
+        " table that covers the roller",
+    ),
+    "unknown material": (
+        "cylindrical_rig",
+        "bearing.material=stel",
+        "`bearing.material`: 'stel' is not known (did you mean `steel`?); it must be"
+        " one of steel, silicon_nitride, zirconia",
+    ),
+    "unknown ring material": (
+        "hybrid_spindle",
+        "bearing.ring_material=brass",
+        "`bearing.ring_material`: 'brass' is not known; it must be one of steel,",
+    ),
+    "unknown quadrature": (
+        "cylindrical_rig",
+        "numerics.quadrature=gauss",
+        "`numerics.quadrature`: 'gauss' is not known; it must be one of"
+        " contact_mapped, midpoint",
+    ),
+    "unknown kinematics": (
+        "cylindrical_rig",
+        "numerics.kinematics=linear",
+        "`numerics.kinematics`: 'linear' is not known (did you mean `linearised`?);"
+        " it must be one of linearised, finite",
+    ),
+    "unknown equilibrium": (
+        "cylindrical_rig",
+        "numerics.equilibrium=bfsg",
+        "`numerics.equilibrium`: 'bfsg' is not known (did you mean `bfgs`?); it must"
+        " be one of newton, bfgs",
+    ),
+    "unknown line law": (
+        "cylindrical_rig",
+        "contact.line_law=harris",
+        "`contact.line_law`: 'harris' is not known; it must be one of palmgren,"
+        " iso16281",
+    ),
+    "unknown ring": (
+        "cylindrical_rig",
+        "operating.fixed_ring=left",
+        "`operating.fixed_ring`: 'left' is not known; it must be one of outer, inner",
+    ),
+    "line constant of another law": (
+        "cylindrical_rig",
+        "contact.line_constant=8e10 N/m^(10/9)",
+        "`contact.line_constant`: '8e10 N/m^(10/9)' is not a line constant; a line"
+        ' constant with its unit is wanted, such as "5 N/m^(19/9)"',
+    ),
+    "negative line constant": (
+        "cylindrical_rig",
+        "contact.line_constant=-1e11 N/m^(19/9)",
+        "[contact]: LineConstant: `value` is -1e+11 N/m^(19/9); it must be above 0",
+    ),
+    "tolerance too large": (
+        "cylindrical_rig",
+        "numerics.tolerance=0.5",
+        "`numerics.tolerance`: 0.5 is not allowed; from 1e-14 to below 0.01",
+    ),
+    "tolerance too small": (
+        "cylindrical_rig",
+        "numerics.tolerance=0.0",
+        "`numerics.tolerance`: 0 is not allowed; from 1e-14",
+    ),
+    "tolerance nan": (
+        "cylindrical_rig",
+        "numerics.tolerance=nan",
+        "`numerics.tolerance`: nan is not allowed; from 1e-14",
+    ),
+    # Ribs.
+    "arrangement and ribs": (
+        "cylindrical_ribs",
+        f"bearing.ribs.inner_minus={RIB}",
+        "`bearing.ribs`: give either `arrangement` or `ribs`, not both",
+    ),
+    "arrangement without rib": (
+        "cylindrical_rig",
+        "bearing.arrangement=NU",
+        "`bearing.rib`: is missing; it must be a table",
+    ),
+    "rib without arrangement": (
+        "cylindrical_rig",
+        f"bearing.rib={RIB}",
+        "`bearing.rib`: belongs to an `arrangement`, which is missing",
+    ),
+    "axial clearance without arrangement": (
+        "cylindrical_rig",
+        "bearing.axial_internal_clearance=60 um",
+        "`bearing.axial_internal_clearance`: belongs to an `arrangement`, which is",
+    ),
+    "axial clearance twice": (
+        "cylindrical_ribs",
+        "bearing.rib.axial_gap=15 um",
+        "`bearing.axial_internal_clearance`: give either `rib.axial_gap` or this,",
+    ),
+    "unknown arrangement": (
+        "cylindrical_ribs",
+        "bearing.arrangement=NH",
+        "`bearing.arrangement`: 'NH' is not known (did you mean `N`?); it must be one"
+        " of N, NU, NJ, NUP",
+    ),
+    "unknown rib": (
+        "tapered",
+        f"bearing.ribs.inner_left={RIB}",
+        "`bearing.ribs.inner_left`: unknown key (did you mean `inner_plus`?); known"
+        " in [bearing.ribs]: inner_minus, inner_plus, outer_minus, outer_plus",
+    ),
+    "flat rib of a taper": (
+        "tapered",
+        "bearing.ribs.inner_minus.end_radius=flat",
+        "`bearing.ribs.inner_minus.end_radius`: flat ends have no point contact; give"
+        " the radius of the end sphere",
+    ),
+    "flat rib": (
+        "cylindrical_ribs",
+        "bearing.rib.end_radius=flat",
+        "`bearing.rib.end_radius`: flat ends have no point contact; give the radius",
+    ),
+    # Freedoms.
+    "free and prescribed": (
+        "cylindrical_rig",
+        "operating.prescribed.ux=1 um",
+        "`operating.free`: ux is both free and prescribed; choose one",
+    ),
+    "gz free": (
+        "cylindrical_rig",
+        'operating.free=["ux", "gz"]',
+        "`operating.free`: 'gz' is not known; it must be one of ux, uy, uz, gx, gy",
+    ),
+    "unknown freedom": (
+        "cylindrical_rig",
+        'operating.free=["rx"]',
+        "`operating.free`: 'rx' is not known; it must be one of ux, uy, uz, gx, gy",
+    ),
+    "freedom twice": (
+        "cylindrical_rig",
+        'operating.free=["ux", "ux"]',
+        "`operating.free`: ['ux', 'ux'] names something twice",
+    ),
+    "freedoms as text": (
+        "cylindrical_rig",
+        "operating.free=ux uy",
+        "`operating.free`: 'ux uy' is not a list of words",
+    ),
+    # Kinds of values.
+    "table where a count is expected": (
+        "cylindrical_rig",
+        "bearing.n_rollers={value = 12}",
+        f"`bearing.n_rollers`: {{'value': 12}} {WHOLE}",
+    ),
+    "table where a length is expected": (
+        "cylindrical_rig",
+        'bearing.pitch_diameter={value = 72.5, unit = "mm"}',
+        "`bearing.pitch_diameter`: {'value': 72.5, 'unit': 'mm'} is not a quantity;",
+    ),
+    "table where a word is expected": (
+        "cylindrical_rig",
+        "numerics.quadrature={points = 20}",
+        "`numerics.quadrature`: {'points': 20} is not known; it must be one of",
+    ),
+    "list where text is expected": (
+        "cylindrical_rig",
+        'bearing.type=["cylindrical_roller"]',
+        "`bearing.type`: ['cylindrical_roller'] is not known; it must be one of"
+        f" {KNOWN_BEARINGS}",
+    ),
+    "list where a length is expected": (
+        "cylindrical_rig",
+        "bearing.pitch_diameter=[72.5]",
+        "`bearing.pitch_diameter`: [72.5] is not a quantity; a length with its unit",
+    ),
+    "number where a table is expected": (
+        "cylindrical_rig",
+        "bearing.material=206",
+        "`bearing.material`: 206 is not a table",
+    ),
+    "load without component": (
+        "cylindrical_rig",
+        "operating.load=5 kN",
+        "`operating.load`: '5 kN' is not a table",
+    ),
+    "bearing as text": (
+        "cylindrical_rig",
+        "bearing=NU210",
+        "`bearing`: 'NU210' is not a table",
+    ),
+    "setting below a value": (
+        "cylindrical_rig",
+        "bearing.type.name=x",
+        "`bearing.type` is not a table, so 'bearing.type.name' fails",
+    ),
+}
+
+
+def one_line(run):
+    """The message of a refused run: nothing else is said."""
+    assert run.status == 2
+    assert run.out == ""
+    assert run.err.startswith("bearingjax: ") and run.err.count("\n") == 1
+    assert "Traceback" not in run.err
+    return run.err.removeprefix("bearingjax: ").rstrip("\n")
+
+
+def a_file(folder, text):
+    path = folder / "bad.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("name", SETTINGS)
+def test_wrong_setting(run, name):
+    scene, setting, text = SETTINGS[name]
+    message = one_line(run("solve", scene, "--set", setting))
+    assert message.startswith(f"{scene}.toml: {text}")
+
+
+def without(key):
+    """The taper with one line left out."""
+    return re.sub(rf"(?m)^{key} = .*\n", "", TAPER)
+
+
+TEXTS = {
+    "nothing at all": ("", "`bearing`: is missing; it must be a table"),
+    "no type": (
+        without("type"),
+        f"`bearing.type`: is missing; it must be one of {KNOWN_BEARINGS}",
+    ),
+    "no count": (
+        without("n_rollers"),
+        "`bearing.n_rollers`: is missing; it must be a whole number",
+    ),
+    "no pitch diameter": (
+        without("pitch_diameter"),
+        "`bearing.pitch_diameter`: is missing; it must be a length, a text with its"
+        " unit",
+    ),
+    "misspelt pitch diameter": (
+        TAPER.replace("pitch_diameter", "pitch_diametre"),
+        "`bearing.pitch_diameter`: is missing (`pitch_diametre` is there instead); it"
+        " must be a length",
+    ),
+    "no axis angle": (
+        without("roller_axis_angle"),
+        "`bearing.roller_axis_angle`: is missing",
+    ),
+    "arrangement of a taper": (
+        TAPER + f'arrangement = "NJ"\nrib = {RIB}',
+        "`bearing.arrangement`: is for cylindrical and needle rollers; a taper names"
+        " its `ribs`",
+    ),
+    "rib without height": (
+        TAPER + '[bearing.ribs.inner_minus]\nend_radius = "90 mm"',
+        "`bearing.ribs.inner_minus.contact_height`: is missing; it must be a length",
+    ),
+    "broken TOML": (
+        TAPER + "[bearing",
+        "cannot be read as TOML: Expected ']' at the end of a table declaration",
+    ),
+    "unquoted quantity": (
+        "[bearing]\npitch_diameter = 52 mm",
+        "cannot be read as TOML: Expected newline or end of document after a"
+        " statement (at line 2, column 21)",
+    ),
+    "key twice": (
+        TAPER + "n_rollers = 17",
+        "cannot be read as TOML: Cannot overwrite a value",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_wrong_file(run, tmp_path, name):
+    text, expected = TEXTS[name]
+    message = one_line(run("solve", a_file(tmp_path, text)))
+    assert message.startswith(f"bad.toml: {expected}")
+
+
+def test_file_that_is_not_text(run, tmp_path):
+    path = tmp_path / "bad.toml"
+    path.write_bytes(b"[bearing]\nname = '\xff'")
+    message = one_line(run("solve", path))
+    assert message.startswith("bad.toml: cannot be read as TOML: 'utf-8' codec")
+
+
+def test_missing_file(run, tmp_path):
+    path = tmp_path / "none.toml"
+    assert one_line(run("solve", path)) == f"{path}: no such file"
+
+
+def test_folder_in_place_of_a_file(run, tmp_path):
+    assert one_line(run("solve", tmp_path)).startswith(f"{tmp_path}: neither a .toml")
+
+
+def test_name_of_no_scene(run):
+    shipped = ", ".join(shipped_scenes())
+    assert (
+        one_line(run("solve", "cylindrical_rigg"))
+        == f"cylindrical_rigg: neither a .toml file nor a shipped scene ({shipped})"
+    )
+
+
+@pytest.mark.parametrize("setting", ["operating.load.Fy", "=3", "a..b=3", "a b=3"])
+def test_what_is_not_a_setting(run, setting):
+    message = one_line(run("solve", "cylindrical_rig", "--set", setting))
+    assert message.startswith(f"{setting!r} is not a setting; write key=value, such as")
+
+
+def test_reader_raises_what_the_command_line_prints():
+    with pytest.raises(SceneError, match=r"^tapered\.toml: `bearing\.n_rollers`: 0 is"):
+        read_scene("tapered", ["bearing.n_rollers=0"])
+
+
+def test_errors_are_value_errors():
+    with pytest.raises(ValueError, match="no such file"):
+        read_scene("none.toml")

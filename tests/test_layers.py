@@ -1,0 +1,97 @@
+"""The shape of the package: who may import whom, what is public, what is documented."""
+
+import ast
+import importlib
+import inspect
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import bearingjax as bj
+
+PACKAGE = Path(bj.__file__).parent
+LAYERS = ["numerics", "design", "contact", "element", "statics", "scene", "plot", "cli"]
+# What the plots show is what statics and below provide; scene and plot stand side by
+# side, and only the command line and the top level see both.
+NOT_SEEN = {"plot": {"scene"}, "scene": {"plot"}}
+
+
+def modules():
+    return sorted(p for p in PACKAGE.rglob("*.py") if p.parent != PACKAGE)
+
+
+def imported_layers(path):
+    """Folders of the package that a module imports, lazily or not."""
+    package = ("bearingjax", *path.relative_to(PACKAGE).with_suffix("").parts[:-1])
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            base = package[: len(package) - node.level + 1]
+            whole = [*base, *(node.module or "").split(".")]
+            names = [n.name for n in node.names] if len(base) == 1 else []
+            yield from whole[1:2] if node.module or len(base) > 1 else names
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith(
+            "bearingjax"
+        ):
+            yield (node.module or "").split(".")[1]
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_a_file_imports_only_its_own_layer_and_those_before(path):
+    own = path.relative_to(PACKAGE).parts[0]
+    allowed = set(LAYERS[: LAYERS.index(own) + 1]) - NOT_SEEN.get(own, set())
+    foreign = set(imported_layers(path)) & set(LAYERS) - allowed
+    assert not foreign, f"{path.name} imports {foreign}"
+
+
+def public_objects():
+    for info in pkgutil.walk_packages(bj.__path__, "bearingjax."):
+        module = importlib.import_module(info.name)
+        for name, value in vars(module).items():
+            mine = getattr(value, "__module__", None) == info.name
+            if mine and not name.startswith("_") and callable(value):
+                yield f"{info.name}.{name}", value
+
+
+def test_every_public_object_has_a_docstring():
+    bare = [name for name, value in public_objects() if not inspect.getdoc(value)]
+    assert not bare
+
+
+def test_everyday_names():
+    names = (
+        "BearingElement CylindricalRollerBearing TaperedRollerBearing solve_load"
+        " NeedleRollerBearing Material Rib Ribs Speed load_bearing plot Result"
+    )
+    for name in names.split():
+        assert hasattr(bj, name), name
+    assert bj.__version__
+
+
+def test_no_star_imports():
+    for path in PACKAGE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom):
+                assert all(alias.name != "*" for alias in node.names), path
+
+
+def test_import_leaves_jax_and_matplotlib_alone():
+    code = (
+        "import sys, jax; before = dict(jax.config.values); import bearingjax;"
+        "assert all(jax.config.values[k] == v for k, v in before.items());"
+        "assert 'matplotlib' not in sys.modules and 'pint' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+
+
+def test_float64_is_asked_for():
+    code = (
+        "import warnings, bearingjax as bj\n"
+        "with warnings.catch_warnings(record=True) as seen:\n"
+        "    warnings.simplefilter('always')\n"
+        "    bj.BearingElement(bj.CylindricalRollerBearing(9, 0.06, 0.01, 0.01))\n"
+        "assert any('jax_enable_x64' in str(w.message) for w in seen)\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)

@@ -1,0 +1,37 @@
+"""What the README shows is true."""
+
+import re
+from pathlib import Path
+
+import bearingjax as bj
+
+README = (Path(__file__).parent.parent / "README.md").read_text()
+
+
+def test_python_examples(capsys):
+    blocks = re.findall(r"```python\n(.*?)```", README, re.S)
+    assert len(blocks) == 2
+    names: dict = {}
+    for block in blocks:
+        exec(block, names)
+    assert bool(names["solution"].converged)
+    lines = capsys.readouterr().out.splitlines()
+    assert -0.7 < float(lines[-1]) < -0.5  # d(displacement)/d(clearance)
+
+
+def test_two_commands_and_their_scene():
+    quick_start = README.split("## Quick start")[1].split("\n## ")[0]
+    blocks = re.findall(r"```bash\n(.*?)```", quick_start, re.S)
+    assert len(blocks) == 2
+    scene = re.search(r"bearingjax solve (\S+\.toml)", blocks[0])
+    assert scene and (Path(__file__).parent.parent / scene[1]).is_file()
+    assert "pytest" in blocks[1]
+
+
+def test_picture_and_folders_exist():
+    root = Path(__file__).parent.parent
+    for target in re.findall(r"\]\((?!http)([^)]+)\)", README):
+        assert (root / target).exists(), target
+    for folder in re.findall(r"^(bearingjax/\w+/|tests/|benchmarks/) ", README, re.M):
+        assert (root / folder).is_dir(), folder
+    assert len(bj.scene.shipped_scenes()) == 6
