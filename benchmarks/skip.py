@@ -11,6 +11,22 @@ fusions, a loop's body counted once. Trace and compile: shortest of the repeats,
 kept. Steps: most Newton steps of a roller.
 
 Run: python benchmarks/skip.py [--json] [--smoke]
+
+Last run:
+
+                            loaded          hot, µs      ratio           trace compile
+variant                    rollers steps     min  median       kernels       s       s
+full                            14     4     411     470  1.00     204    0.80    3.54
+no speed                        14     4     404     474  0.98     200    0.85    3.42
+no ribs                         14     4     397     454  0.97     170    0.73    2.87
+no speed, no ribs               14     4     384     449  0.93     166    0.69    3.06
+  and few rollers loaded         3     3     335     394  0.82     166    0.73    2.68
+  and force only                14     4     362     429  0.88     145    0.72    2.41
+  and energy only               14     4     361     417  0.88     143    0.63    2.49
+force only                      14     4     380     441  0.92     172    0.82    2.94
+energy only                     14     4     380     447  0.92     172    0.74    2.92
+
+AMD EPYC
 """
 
 import argparse

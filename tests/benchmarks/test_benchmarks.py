@@ -1,0 +1,45 @@
+"""Benchmarks keep running, and what they claim of robustness holds in small."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import robust_rollers
+
+FOLDER = Path(__file__).parent.parent.parent / "benchmarks"
+SCRIPTS = sorted(p.name for p in FOLDER.glob("*.py"))
+
+
+def test_rollers_always_find_their_equilibrium():
+    """A seeded, small version of the run over a million rollers."""
+    for row in robust_rollers.run(4000, "newton", seed=3):
+        assert row["unconverged"] == 0 and row["silently_wrong"] == 0, row
+        assert row["loaded"] > 0.3 * row["rollers"], row
+
+
+def test_the_papers_method_says_when_it_fails():
+    """BFGS misses some barely held rollers; none of them silently."""
+    rows = robust_rollers.run(2000, "bfgs", seed=3)
+    assert sum(row["unconverged"] for row in rows) > 0
+    assert all(row["silently_wrong"] == 0 for row in rows)
+
+
+@pytest.mark.parametrize("script", SCRIPTS)
+def test_script_asks_a_question_and_explains_itself(script):
+    first = (FOLDER / script).read_text().splitlines()[0]
+    assert first.startswith('"""') and "?" in first
+    command = [sys.executable, str(FOLDER / script), "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0 and "usage" in done.stdout
+
+
+@pytest.mark.parametrize("script", ["power.py", "c_loop.py"])
+def test_smoke(script):
+    if script == "c_loop.py" and not any(map(shutil.which, ("cc", "gcc", "clang"))):
+        pytest.skip("no C compiler")
+    command = [sys.executable, str(FOLDER / script), "--smoke", "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert done.stdout.strip().startswith("{")

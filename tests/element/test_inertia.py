@@ -1,0 +1,148 @@
+"""Inertia of the rollers against a brute-force sum over their volume."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from registry import bearings, taper
+from tolerances import DIFFERENCE, ROUNDING, SOLVER
+
+import bearingjax as bj
+from bearingjax.element import inertia_force, mass_and_inertia, roller_speeds
+
+SPEED = bj.Speed(inner=300.0, outer=-120.0)
+
+
+def volume(diameter, length, half, density):
+    """Points (axial, across, across) of a frustum from its middle, and their masses."""
+    x, wx = np.polynomial.legendre.leggauss(12)
+    height = length * np.cos(half)
+    z = 0.5 * height * x
+    angle = np.arange(24) * 2 * np.pi / 24
+    share, ws = 0.5 * (x + 1), 0.5 * wx
+    radius = 0.5 * diameter - z * np.tan(half)
+    r = radius[:, None, None] * share[None, :, None]
+    mass = (
+        density
+        * (0.5 * height * wx)[:, None, None]
+        * (radius[:, None, None] ** 2 * (share * ws)[None, :, None])
+        * np.full((1, 1, 24), 2 * np.pi / 24)
+    )
+    points = np.stack(
+        np.broadcast_arrays(z[:, None, None], r * np.cos(angle), r * np.sin(angle))
+    )
+    return points.reshape(3, -1), mass.ravel()
+
+
+def brute_force(bearing, orbit, spin):
+    """Force along t and m and moment about the centre that inertia exerts."""
+    axis, half = float(bearing.axis_angle), float(bearing.half_angle)
+    points, mass = volume(
+        float(bearing.roller_diameter),
+        float(bearing.roller_length),
+        half,
+        float(bearing.material.density),
+    )
+    # Axes z, r, tangential (e_z x e_r); t along the roller, m across.
+    t = np.array([np.cos(axis), -np.sin(axis), 0.0])
+    m = np.array([np.sin(axis), np.cos(axis), 0.0])
+    k = np.array([0.0, 0.0, 1.0])
+    arm = np.stack([t, m, k], axis=1) @ points
+    e_z = np.array([1.0, 0.0, 0.0])
+    turn = orbit * e_z + spin * t
+    change = orbit * spin * np.cross(e_z, t)
+    acceleration = (
+        np.cross(turn, np.cross(turn, arm.T)) + np.cross(change, arm.T)
+    ) - orbit**2 * 0.5 * float(bearing.pitch_diameter) * np.array([0.0, 1.0, 0.0])
+    # The model puts the mass centre at the roller centre.
+    centred = arm.T - (mass @ arm.T) / mass.sum()
+    force = -(mass @ acceleration)
+    moment = -(mass @ np.cross(centred, acceleration))
+    return mass, points, np.array([force @ t, force @ m, moment @ k])
+
+
+@pytest.mark.parametrize("name", ["cylinder", "steep taper without cone", "taper"])
+def test_against_the_sum_over_the_volume(name):
+    bearing = {
+        "cylinder": bearings()["cylindrical, crowned ends"],
+        "steep taper without cone": taper(roller_half_angle=0.0, roller_axis_angle=0.5),
+        "taper": taper(),
+    }[name]
+    constants = bj.BearingElement(bearing).constants()
+    orbit, spin = map(float, roller_speeds(constants, SPEED))
+    mass, points, want = brute_force(bearing, orbit, spin)
+    got = np.asarray(inertia_force(constants, SPEED))
+    total, axial, cross = map(float, mass_and_inertia(constants))
+    assert total == pytest.approx(mass.sum(), rel=ROUNDING * 100)
+    assert axial == pytest.approx(mass @ (points[1] ** 2 + points[2] ** 2), rel=1e-10)
+    assert cross == pytest.approx(mass @ (points[0] ** 2 + points[1] ** 2), rel=1e-10)
+    size = np.abs(want).max()
+    # A cone's own mass centre lies off the middle of the generator by less than 1 %
+    # of the length: that share of the force and of the moment is left out.
+    tolerance = 1e-3 if name == "taper" else 1e-9
+    assert np.abs(got[:2] - want[:2]).max() < tolerance * size
+    assert abs(got[2] - want[2]) < 10 * tolerance * max(abs(want[2]), 1e-6 * size)
+
+
+def test_rolling_without_slip():
+    """Surface speeds of roller and raceways agree at both contacts."""
+    bearing = bearings()["cylindrical, crowned ends"]
+    constants = bj.BearingElement(bearing).constants()
+    orbit, spin = map(float, roller_speeds(constants, SPEED))
+    radius, pitch = 0.007, 0.03625
+    assert orbit * pitch + (orbit + spin) * radius == pytest.approx(
+        -120.0 * (pitch + radius)
+    )
+    assert orbit * pitch - (orbit + spin) * radius == pytest.approx(
+        300.0 * (pitch - radius)
+    )
+
+
+def test_centrifugal_force_loads_the_outer_raceway():
+    bearing = bj.CylindricalRollerBearing(
+        8, 0.0725, 0.014, 0.01372, radial_internal_clearance=20e-6
+    )
+    element = bj.BearingElement(bearing)
+    speed = bj.Speed(inner=1000.0)
+    row = element.row(jnp.zeros(12), speed)
+    mass, _, _ = mass_and_inertia(element.constants())
+    orbit, _ = roller_speeds(element.constants(), speed)
+    expected = float(mass * 0.03625 * orbit**2)
+    load = np.asarray(row.solved.raceway_load)
+    assert np.allclose(load[:, 0], expected, rtol=SOLVER)
+    assert np.all(load[:, 1] == 0.0)
+    # Quasi-static: by symmetry the rings feel no resultant.
+    assert (
+        np.abs(np.asarray(element.force(jnp.zeros(12), speed))).max() < 1e-8 * expected
+    )
+
+
+def test_gradient_with_respect_to_speed():
+    element = bj.BearingElement(taper())
+    q = jnp.zeros(12).at[8].set(30e-6)
+
+    @jax.jit
+    def axial(speed):
+        return element.force(q, bj.Speed(inner=speed))[8]
+
+    slope = float(jax.grad(axial)(800.0))
+    difference = float(axial(800.5) - axial(799.5))
+    assert abs(slope) > 0.0
+    assert slope == pytest.approx(difference, rel=DIFFERENCE)
+
+
+def test_cage_torque_is_the_derivative_through_the_azimuth():
+    """A loaded, turned set of few rollers wants to turn on; held constant by default."""
+    bearing = bj.CylindricalRollerBearing(7, 0.0725, 0.014, 0.01372)
+    q = jnp.zeros(12).at[jnp.array([7, 11])].set(jnp.asarray([-30e-6, 0.1]))
+    plain = bj.BearingElement(bearing)
+    through = bj.BearingElement(bearing, cage_torque=True)
+    assert float(plain.force(q)[11]) == 0.0
+    step = 1e-5
+    ends = [plain.energy(q.at[11].add(s * step)) for s in (1, -1)]
+    torque = float(ends[0] - ends[1]) / (2 * step)
+    assert abs(torque) > 1e-6
+    assert float(through.force(q)[11]) == pytest.approx(torque, rel=1e-6)
+    assert np.allclose(through.force(q)[:5], plain.force(q)[:5], rtol=1e-10, atol=1e-9)
+    k = np.asarray(through.stiffness(q))
+    assert abs(k[11, 11]) > 0.0 and np.allclose(k, k.T, rtol=1e-9, atol=1e-3)
