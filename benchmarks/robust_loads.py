@@ -92,7 +92,6 @@ def solve(element, loads):
 
 def run(count, seed=0, only=None):
     """Rows of figures; `only` limits the loads that can be carried to some designs."""
-    rows = []
     for index, (name, build) in enumerate(designs().items()):
         if only is not None and name not in only:
             continue
@@ -103,7 +102,7 @@ def run(count, seed=0, only=None):
                 loads = jnp.asarray(random_loads(rng, name, decade, count))
                 code, _, residual, steps = map(np.asarray, solve(element, loads))
                 good = code == bj.Result.CONVERGED
-                rows.append(
+                yield (
                     dict(design=name, clearance_um=1e6 * clearance, decade=decade,
                          loads=count, failed=int((~good).sum()),
                          codes=sorted(set(code[~good].tolist())),
@@ -122,11 +121,10 @@ def run(count, seed=0, only=None):
         loads = jnp.asarray(np.concatenate(share))
         code, freedom, _, steps = map(np.asarray, solve(element, loads))
         named = (code == bj.Result.NO_LOAD_PATH) & (freedom == 2)
-        rows.append(
+        yield (
             dict(design=name, uncarried_loads=len(loads), named_uz=int(named.sum()),
                  codes=np.unique(code).tolist(), most_steps=int(steps.max()))
         )  # fmt: skip
-    return rows
 
 
 def main():

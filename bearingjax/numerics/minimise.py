@@ -41,7 +41,7 @@ class Minimum(NamedTuple):
 
     Attributes:
         x: Minimiser (n,).
-        residual: |gradient| / scale [1].
+        residual: |gradient| / scale, zero below the round-off floor [1].
         steps: Evaluations after the first.
         result: `Result` code.
         radius: Last trust radius, unit of x.
@@ -117,7 +117,7 @@ class TrustRegionNewton(AbstractMinimiser):
 
     Attributes:
         tolerance: |gradient| / scale at which the solve ends; `None` picks
-            1e-13 in float64 and 1e-5 in float32.
+            1e-13 in float64 and 1e-6 in float32.
         max_steps: Step limit.
 
     Static: all fields.
@@ -323,7 +323,7 @@ def inverse_update(
 def _tolerance(tolerance, dtype):
     if tolerance is not None:
         return tolerance
-    return 1e-13 if dtype == jnp.float64 else 1e-5
+    return 1e-13 if dtype == jnp.float64 else 1e-6
 
 
 def _finish(state, tolerance, limit):
@@ -339,9 +339,10 @@ def _finish(state, tolerance, limit):
     finite = jnp.isfinite(size) & jnp.all(jnp.isfinite(state.x))
     result = jnp.where(finite, result, int(Result.NON_FINITE))
     floor = jnp.finfo(size.dtype).tiny
+    relative = size / jnp.maximum(now.scale, floor)
     return Minimum(
         x=state.x,
-        residual=size / jnp.maximum(now.scale, floor),
+        residual=jnp.where(size <= now.noise, 0.0, relative),
         steps=state.steps.astype(jnp.int32),
         result=result.astype(jnp.int32),
         radius=state.radius,

@@ -42,7 +42,7 @@ def _inverse_root_seed(x: Array) -> Array:
 
 
 def ninth_root(x: Float[Array, "..."]) -> Float[Array, "..."]:
-    """Ninth root of positive normal numbers, relative error about 1e-15 (1e-7).
+    """Ninth root of positive normal numbers, to 3e-15 (float32: 1.5e-6) relative.
 
     Two steps of the series (1 - e)^(-1/9) on y ≈ x^(-1/9) with e = 1 - x y⁹, then
     x^(1/9) = x y⁸.

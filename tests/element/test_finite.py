@@ -1,8 +1,8 @@
-"""Finite kinematics, formula (3) with undeformed normals: what holds and what does not.
+"""Finite kinematics, formula (3), undeformed normals: what holds and what does not.
 
 Source: Sorokin, Zhang, Ivannikov (2018), eq. (3); its consequences (saddle, moments
-that do not balance) worked out for the surrogate roller: raceway radii 29.25 and 43.25 mm,
-D = 14 mm, l = 13.72 mm, 20 slices.
+that do not balance) worked out for the surrogate roller: raceway radii 29.25 and
+43.25 mm, D = 14 mm, l = 13.72 mm, 20 slices.
 """
 
 import equinox as eqx

@@ -77,9 +77,9 @@ def test_against_the_sum_over_the_volume(name):
     assert axial == pytest.approx(mass @ (points[1] ** 2 + points[2] ** 2), rel=1e-10)
     assert cross == pytest.approx(mass @ (points[0] ** 2 + points[1] ** 2), rel=1e-10)
     size = np.abs(want).max()
-    # A cone's own mass centre lies off the middle of the generator by less than 1 %
-    # of the length: that share of the force and of the moment is left out.
-    tolerance = 1e-3 if name == "taper" else 1e-9
+    # A cone's own mass centre lies tan(γ) h²/(3 D) = 0.16 mm off the middle of its
+    # axis: 0.12 % of the pitch radius, left out of the force.
+    tolerance = 1.5e-3 if name == "taper" else 1e-9
     assert np.abs(got[:2] - want[:2]).max() < tolerance * size
     assert abs(got[2] - want[2]) < 10 * tolerance * max(abs(want[2]), 1e-6 * size)
 

@@ -77,7 +77,9 @@ def test_taper_rib_load_follows_from_balance():
     axis, half = np.deg2rad(11), np.deg2rad(1.7235)
     outer, inner = np.asarray(row.solved.raceway_load)[0]
     rib = float(row.solved.rib_load[0, 0])
-    t_m = np.asarray(element.constants().ribs.normal[0])
+    ribs = element.constants().ribs
+    assert ribs is not None
+    t_m = np.asarray(ribs.normal[0])
     # Forces on the roller along t and across it.
     along = -outer * np.sin(half) - inner * np.sin(half) - rib * t_m[0]
     across = -outer * np.cos(half) + inner * np.cos(half) - rib * t_m[1]
