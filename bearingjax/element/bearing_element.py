@@ -120,7 +120,7 @@ class BearingElement(eqx.Module):
         if jax.dtypes.canonicalize_dtype(float) != jnp.float64:
             warnings.warn(
                 "BearingElement: float64 is off; in float32 forces are good to 1e-5 at"
-                ' best. Before anything else: jax.config.update("jax_enable_x64", True)',
+                ' best. Before all else: jax.config.update("jax_enable_x64", True)',
                 stacklevel=4,
             )
 

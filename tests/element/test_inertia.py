@@ -132,7 +132,7 @@ def test_gradient_with_respect_to_speed():
 
 
 def test_cage_torque_is_the_derivative_through_the_azimuth():
-    """A loaded, turned set of few rollers wants to turn on; held constant by default."""
+    """A loaded, turned set of few rollers wants to turn on; held by default."""
     bearing = bj.CylindricalRollerBearing(7, 0.0725, 0.014, 0.01372)
     q = jnp.zeros(12).at[jnp.array([7, 11])].set(jnp.asarray([-30e-6, 0.1]))
     plain = bj.BearingElement(bearing)
