@@ -81,7 +81,7 @@ def _configure_jax():
 
 def _solve(options) -> int:
     from .numerics import Result
-    from .scene import read_scene, report, run_scene, write_json
+    from .scene import SceneError, read_scene, report, run_scene, write_json
     from .statics.solution import message
 
     for path in (options.json, options.plot):
@@ -91,26 +91,33 @@ def _solve(options) -> int:
     scene = read_scene(options.scene, options.set)
     solution = run_scene(scene)
     result = Result(int(solution.result))
-    if options.json is not None:
-        write_json(options.json, scene, solution)
+    try:
+        if options.json is not None:
+            write_json(options.json, scene, solution)
+        if options.plot is not None and result is Result.CONVERGED:
+            from .plot import overview
+
+            figure = overview(scene.element.bearing, solution, title=scene.name)
+            figure.savefig(options.plot, dpi=150)
+    except OSError as error:
+        raise SceneError(f"{error.filename}: cannot be written: {error}") from error
     if result is not Result.CONVERGED:
         text = message(solution, scene.moving_ring)
         print(f"bearingjax: {result.label}: {text}", file=sys.stderr)
         return NOT_SOLVED
-    print(report(scene, solution))
-    if options.plot is not None:
-        from .plot import overview
-
-        figure = overview(scene.element.bearing, solution, title=scene.name)
-        figure.savefig(options.plot, dpi=150)
+    print(report(scene, solution), flush=True)
     return SOLVED
 
 
 def _check_writable(path: Path | None) -> None:
     from .scene import SceneError
 
-    if path is not None and not path.absolute().parent.is_dir():
+    if path is None:
+        return
+    if not path.absolute().parent.is_dir():
         raise SceneError(f"{path}: its folder does not exist")
+    if path.is_dir():
+        raise SceneError(f"{path}: is a folder; name a file")
 
 
 def _check_plot(path: Path) -> None:

@@ -12,7 +12,8 @@ are timed in shuffled order: hot (the same call in a block) and cold (one call a
 Variants: the C loop by its own clock (the base of the ratios) and through `ctypes`, as
 Python calls it (the base of the ratio "call", for the cold call); `filter_jit` with the
 element as an argument, so that any design may come; and `jit` with the element closed
-over (constants folded), as is and compiled ahead of time.
+over (constants folded), as is and compiled ahead of time; and one bearing's share of a
+call with 256 motions, in chunks of 32, where the overhead of a call is shared.
 
 Run: python benchmarks/c_loop.py [--json] [--smoke]
 """
@@ -53,6 +54,8 @@ NUMBERS = (
 RADIAL_LOAD = 4e3  # N
 TILT = 1.5e-3  # rad
 C_LOOP, C_CALL = "C loop", "C through ctypes"
+BATCH, CHUNK = 256, 32
+IN_BATCH = f"one of {BATCH} in a call"
 
 
 def element(**profiles):
@@ -167,6 +170,18 @@ def jax_calls(el, q):
     }
 
 
+def batch_call(el, q):
+    """Force and stiffness of many motions near q in one call, in chunks."""
+    qs = q * jnp.linspace(0.97, 1.03, BATCH)[:, None]
+
+    def both(q):
+        e = el.evaluate(q)
+        return e.force, e.stiffness
+
+    batched = jax.jit(lambda qs: jax.lax.map(both, qs, batch_size=CHUNK))
+    return lambda: batched(qs)
+
+
 def disagreement(el, reference, result):
     """Relative error of force and stiffness, with moments over the pitch radius."""
     arm = 0.5 * float(el.bearing.pitch_diameter)
@@ -180,7 +195,7 @@ def disagreement(el, reference, result):
     return errors
 
 
-def timers(c, calls, q):
+def timers(c, calls, batch, q):
     """Name -> (seconds per call for n calls in a block, seconds of one call)."""
     arguments = c.arguments(q)
     repeat, single = c.library.repeat, c.library.force_stiffness
@@ -200,6 +215,8 @@ def timers(c, calls, q):
     out = {C_LOOP: own, C_CALL: timed(lambda: single(*arguments), lambda _: None)}
     for name, call in calls.items():
         out[name] = timed(lambda call=call: call(q), jax.block_until_ready)
+    whole = timed(batch, jax.block_until_ready)
+    out[IN_BATCH] = lambda n: whole(max(1, n // BATCH)) / BATCH
     return out
 
 
@@ -242,7 +259,8 @@ def study(c, el, q, rounds, block):
     *reference, steps = c.results(q)
     calls = jax_calls(el, q)
     errors = {name: disagreement(el, reference, f(q)) for name, f in calls.items()}
-    rows = summary(measure(timers(c, calls, q), rounds, block))
+    every = timers(c, calls, batch_call(el, q), q)
+    rows = summary(measure(every, rounds, block))
     for name, error in errors.items():
         rows[name] |= {f"error_{key}": value for key, value in error.items()}
     return {"steps": steps, "jax_steps": int(el.evaluate(q).steps), "rows": rows}

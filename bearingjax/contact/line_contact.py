@@ -25,7 +25,11 @@ from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Scalar
 from .line import EXPONENT
 
+# φ = C/(n+1) x₊^(n+1), φ' = C x₊^n, φ'' = n C x₊^(n-1), n = 10/9: the powers differ by
+# factors of x, so that one root serves all three.
+# Source: Sorokin, Zhang, Ivannikov (2018), eq. (1), (2), (4).
 _N, _D = EXPONENT
+_FACTORS = (_D / (_N + _D), 1.0, _N / _D)
 
 
 class LineContact(eqx.Module):
@@ -68,28 +72,7 @@ class LineContact(eqx.Module):
 
     def line_load(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
         """Load per length at a given approach [N/m]."""
-        return density(self.constant, approach, 1)
-
-
-def density(
-    constant: Scalar, approach: Float[Array, "..."], order: int
-) -> Float[Array, "..."]:
-    """Energy per length (order 0), or its first or second derivative.
-
-    φ = C/(n+1) x₊^(n+1), φ' = C x₊^n, φ'' = n C x₊^(n-1), n = 10/9.
-
-    Args:
-        constant: Line constant C [N/m^(19/9)].
-        approach: Approach x [m].
-        order: 0, 1 or 2.
-
-    Returns:
-        [J/m], [N/m] or [N/m²].
-
-    Source: Sorokin, Zhang, Ivannikov (2018), eq. (1), (2), (4).
-    """
-    factor = (_D / (_N + _D), 1.0, _N / _D)[order]
-    return factor * constant * positive_power(approach, _N + (1 - order) * _D, _D)
+        return self.constant * positive_power(approach, _N, _D)
 
 
 def _offset(line, xi):
@@ -100,23 +83,6 @@ def table(line: LineContact, quadrature: AbstractQuadrature) -> tuple:
     """What the quadrature needs of the profile alone, once per design."""
     kinks = line.kinks()
     return quadrature.table(line.drop, kinks, line.length.dtype)
-
-
-def _moments(line, nodes, quadrature):
-    """∫ φ^(k) ξ^j ds for k, j = 0..2: (3, 3)."""
-    stacked = jnp.stack([density(line.constant, nodes.argument, k) for k in range(3)])
-    local = stacked @ quadrature.basis(line.length.dtype)
-    middle, half = nodes.middle[None, :], nodes.half[None, :]
-    m0, m1, m2 = local[..., 0], local[..., 1], local[..., 2]
-    moments = jnp.stack(
-        [
-            m0,
-            middle * m0 + half * m1,
-            middle**2 * m0 + 2.0 * middle * half * m1 + half**2 * m2,
-        ],
-        axis=-1,
-    )
-    return 0.5 * line.length * jnp.sum(half[..., None] * moments, axis=1)
 
 
 class Response(NamedTuple):
@@ -131,6 +97,35 @@ class Response(NamedTuple):
     energy: Scalar
     load: Float[Array, "2"]
     stiffness: Float[Array, "3"]
+
+
+def _integrals(line, nodes, quadrature) -> Response:
+    """∫ φ ds, ∫ φ' (1, ξ) ds, ∫ φ'' (1, ξ, ξ²) ds with one root per node."""
+    x = nodes.argument
+    root = positive_power(x, _N - _D, _D)
+    basis = quadrature.basis(x.dtype)
+    # Three products, not one of a stack: XLA joins arrays element by element.
+    stiffness, load, energy = root @ basis, (x * root) @ basis, (x * x * root) @ basis
+    middle, half = nodes.middle, nodes.half
+    scale = 0.5 * line.length * line.constant
+
+    def zeroth(m):
+        return scale * jnp.sum(half * m[:, 0])
+
+    def first(m):
+        return scale * jnp.sum(half * (middle * m[:, 0] + half * m[:, 1]))
+
+    def second(m):
+        inner = middle**2 * m[:, 0] + 2.0 * middle * half * m[:, 1] + half**2 * m[:, 2]
+        return scale * jnp.sum(half * inner)
+
+    energy_factor, load_factor, stiffness_factor = _FACTORS
+    return Response(
+        energy_factor * zeroth(energy),
+        load_factor * jnp.stack([zeroth(load), first(load)]),
+        stiffness_factor
+        * jnp.stack([zeroth(stiffness), first(stiffness), second(stiffness)]),
+    )
 
 
 def response(
@@ -166,8 +161,7 @@ def _plain(static, a, b, numbers) -> Response:
     structure, quadrature = static
     line, table = jax.tree.unflatten(structure, numbers)
     nodes = quadrature.nodes(_offset, line, table, a, b)
-    m = _moments(line, nodes, quadrature)
-    return Response(m[0, 0], m[1, :2], m[2])
+    return _integrals(line, nodes, quadrature)
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(0,))

@@ -7,7 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Scalar, as_count, as_real
 from .checks import check, concrete, count, in_range, number, positive
 from .material import Material
 from .profile import AbstractProfile, Straight
@@ -34,7 +34,7 @@ class AbstractRollerBearing(eqx.Module):
         ring_material: Material of the rings; `None`: as the rollers.
     """
 
-    n_rollers: int = eqx.field(static=True)
+    n_rollers: int = eqx.field(static=True, converter=as_count)
     pitch_diameter: Scalar = eqx.field(converter=as_real)
     roller_diameter: Scalar = eqx.field(converter=as_real)
     roller_length: Scalar = eqx.field(converter=as_real)

@@ -16,7 +16,7 @@ def is_traced(value) -> bool:
 
 def concrete(*values) -> list[float] | None:
     """Numbers as Python floats, or `None` if one is traced (or no number at all)."""
-    if any(is_traced(v) or isinstance(v, str | bytes | None) for v in values):
+    if any(is_traced(v) or isinstance(v, str | bytes | bool | None) for v in values):
         return None
     return [float(v) for v in values]
 
@@ -46,11 +46,11 @@ def number(owner, name: str, value, unit: str) -> None:
     """A single finite number [`unit`].
 
     Raises:
-        TypeError: If it is text or nothing at all.
+        TypeError: If it is text, a bool or nothing at all.
         ValueError: If it is an array, NaN or infinite.
     """
     title = type(owner).__name__
-    if value is None or isinstance(value, str | bytes):
+    if value is None or isinstance(value, str | bytes | bool):
         raise TypeError(
             f"{title}: `{name}` is {value!r}; it must be a number"
             f"{f' in {unit}' if unit else ''} (units belong in scene files)."

@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_real
-from .checks import check, concrete, in_range, is_traced, positive
+from .checks import check, in_range, is_traced, positive
 
 STEEL_MODULUS = 206e9 / (2.0 * (1.0 - 0.3**2))
 """Contact modulus E* of steel on steel [Pa]."""
@@ -47,8 +47,8 @@ class AbstractProfile(eqx.Module):
         if any(is_traced(x) for x in (*jax.tree.leaves(self), length, diameter)):
             return
         self._check_against(float(length), float(diameter))
-        near_ends = 0.4995 * np.asarray(length) * np.array([-1.0, 1.0])
-        drops = np.asarray(_drop(self, near_ends, length, diameter))
+        ends = 0.5 * np.asarray(length) * np.array([-1.0, -0.999, 0.999, 1.0])
+        drops = np.asarray(_drop(self, ends, length, diameter))
         fits = (drops >= 0) & (drops < 0.5 * float(diameter))
         check(
             self,
@@ -277,10 +277,9 @@ class FujiwaraKawase(AbstractProfile):
         positive(self, "design_load", self.design_load, "N")
         positive(self, "load_factor", self.load_factor, "")
         positive(self, "crowned_fraction", self.crowned_fraction, "")
-        fraction = concrete(self.crowned_fraction)
-        if fraction is not None:
-            allowed = "above 0 and at most 1"
-            check(self, "crowned_fraction", fraction, "", fraction[0] <= 1.0, allowed)
+        if not is_traced(self.crowned_fraction):
+            fraction, allowed = float(self.crowned_fraction), "above 0 and at most 1"
+            check(self, "crowned_fraction", fraction, "", fraction <= 1.0, allowed)
         positive(self, "end_drop", self.end_drop, "m")
         positive(self, "contact_modulus", self.contact_modulus, "Pa")
 

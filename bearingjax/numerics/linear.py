@@ -44,8 +44,8 @@ def solve_symmetric(
     """Solve a symmetric positive (semi)definite system, L D Lᵀ with unit scaling.
 
     Rows are scaled to a unit diagonal. A pivot below round-off marks a direction
-    that the matrix does not hold (its coupling is round-off too); it is lifted to
-    round-off, so that the answer stays finite.
+    that the matrix does not hold: it is lifted to round-off and its coupling, which
+    is round-off too, dropped, so that the answer stays finite.
 
     Args:
         matrix: Symmetric, n ≤ 6 in this package [any unit].
@@ -98,12 +98,13 @@ def _factorise(matrix):
         for k in range(j):
             pivot = pivot - lower[j][k] * lower[j][k] * pivots[k]
         # "not above" would swallow NaN: a NaN pivot stays NaN.
-        pivots.append(jnp.where(pivot < floor, floor, pivot))
+        lifted = pivot < floor
+        pivots.append(jnp.where(lifted, floor, pivot))
         for i in range(j + 1, n):
             entry = a[i][j]
             for k in range(j):
                 entry = entry - lower[i][k] * lower[j][k] * pivots[k]
-            lower[i][j] = entry / pivots[j]
+            lower[i][j] = jnp.where(lifted, 0.0, entry / pivots[j])
     return lower, pivots, scale
 
 

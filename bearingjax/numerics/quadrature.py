@@ -28,6 +28,7 @@ Offset = Callable[[Array], Array]
 # Steps that find a zone edge from its scan interval: to 1e-14 on crowns, to 1e-8 on the
 # singular end of a logarithm, where less than that is in error in the integrals.
 _REFINEMENTS = 5
+_SETTLED = 1e-9
 
 
 class Nodes(NamedTuple):
@@ -123,6 +124,10 @@ class ContactMapped(AbstractQuadrature):
 
     def __check_init__(self):
         _check_points(self.points)
+        if not isinstance(self.scan, int) or self.scan < 3:
+            raise ValueError(
+                f"`scan` is {self.scan!r}; it must be a whole number of at least 3."
+            )
 
     def reference(self):
         x, w = np.polynomial.legendre.leggauss(self.points)
@@ -221,8 +226,13 @@ def _loaded_interval(offset, start, end, at, fixed, slope, a, b):
         newton = -value / jnp.where(first == 0, 1.0, first)
         longer = jnp.where(jnp.abs(newton) > jnp.abs(crest), newton, crest)
         new = x + jnp.where(square < 0, longer, root)
+        # A step of round-off may leave the bracket: its ends come from other roundings.
         between = (new - inside) * (new - outside) <= 0
-        new = jnp.where(between, new, 0.5 * (inside + outside))
+        between = between | (jnp.abs(new - x) <= _SETTLED)
+        # Past a point that is known to be positive: go on from there.
+        past = some[None, :] & ((new - inside) * (inside - outside) > 0)
+        safe = jnp.where(past, inside, 0.5 * (inside + outside))
+        new = jnp.where(between, new, safe)
         return jnp.stack([new, inside, outside])
 
     x, _, _ = lax.fori_loop(

@@ -2,6 +2,7 @@
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 Scalar = Float[Array, ""]
@@ -22,11 +23,21 @@ def as_real(value) -> Array:
 
     Returns:
         float64 array when JAX has 64 bit enabled, float32 otherwise; arrays that
-        are floating already keep their dtype. Text and `None` come back unchanged:
-        the check of the field then names it.
+        are floating already keep their dtype. Text, bools and `None` come back
+        unchanged: the check of the field then names them.
     """
     if isinstance(value, jax.Array) and jnp.issubdtype(value.dtype, jnp.floating):
         return value
-    if value is None or isinstance(value, str | bytes):
+    if value is None or isinstance(value, str | bytes | bool):
         return value  # type: ignore[return-value]
     return jnp.asarray(value, dtype=float)
+
+
+def as_count(value):
+    """Converter of every count: a Python integer, which is static under `jit`.
+
+    Args:
+        value: Whole number; NumPy's become Python's, all else comes back unchanged
+            for the check of the field to name.
+    """
+    return int(value) if isinstance(value, np.integer) else value

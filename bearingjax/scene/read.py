@@ -150,7 +150,8 @@ def _find(source):
 def _parse(path):
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError) as error:
+    except (ValueError, OSError) as error:
+        # TOML syntax, encoding, and numbers too long to convert are all ValueErrors.
         raise SceneError(f"{path.name}: cannot be read as TOML: {error}") from error
 
 
@@ -159,7 +160,7 @@ def _set(data: dict, setting: str, file: str) -> None:
     parts = [part.strip() for part in key.split(".")]
     if not equals or not all(re.fullmatch(r"[A-Za-z0-9_-]+", p) for p in parts):
         raise SceneError(
-            f"{setting!r} is not a setting; write key=value, such as"
+            f"{file}: {setting!r} is not a setting; write key=value, such as"
             ' "operating.load.Fy=-4 kN"'
         )
     for depth, part in enumerate(parts[:-1]):
@@ -169,7 +170,7 @@ def _set(data: dict, setting: str, file: str) -> None:
             raise SceneError(f"{file}: `{inner}` is not a table, so {key!r} fails")
     try:
         data[parts[-1]] = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except ValueError:
         data[parts[-1]] = text.strip()
 
 

@@ -2,12 +2,16 @@
 
 import contextlib
 import difflib
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from .quantity import SceneError, to_si
 
 _MISSING: Any = object()
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+LARGEST = 1e9
+"""Largest bare number that a scene may hold."""
 
 
 class Table:
@@ -24,9 +28,12 @@ class Table:
         self._file = file
         self._path = path
         self._asked: list[str] = []
+        # Keys that may stand here, asked for or only looked for.
+        self._known: list[str] = []
         self._children: list[Table] = []
 
     def __contains__(self, key: str) -> bool:
+        self._known.append(key)
         return key in self._data
 
     def error(self, key: str, problem: object) -> SceneError:
@@ -66,6 +73,8 @@ class Table:
             return value
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise self.error(key, f"{value!r} is not a bare number (no unit, no text)")
+        if abs(value) > LARGEST:
+            raise self.error(key, f"is out of range; at most {LARGEST:g} in size")
         return float(value)
 
     def integer(self, key: str, default: Any = _MISSING, least: int = 1) -> Any:
@@ -76,6 +85,8 @@ class Table:
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             allowed = f"a whole number of at least {least}"
             raise self.error(key, f"{value!r} is not {allowed}")
+        if value > LARGEST:
+            raise self.error(key, f"is out of range; at most {LARGEST:g}")
         return value
 
     def choice(self, key: str, choices: Sequence[str], default: Any = _MISSING) -> Any:
@@ -87,6 +98,7 @@ class Table:
 
     def word(self, key: str) -> str | None:
         """The text at a key as it stands, or `None` if it is not text."""
+        self._known.append(key)
         value = self._data.get(key)
         return value if isinstance(value, str) else None
 
@@ -96,7 +108,8 @@ class Table:
         if value is None:
             return None
         if not isinstance(value, list):
-            raise self.error(key, f"{value!r} is not a list of words")
+            words = ", ".join(choices)
+            raise self.error(key, f"{value!r} is not a list of words out of {words}")
         for word in value:
             if word not in choices:
                 raise self.error(key, _not_among(word, choices))
@@ -117,6 +130,10 @@ class Table:
         """Sub-table, one of several words, or `None` if absent."""
         if self.word(key) is not None:
             return self.choice(key, choices)
+        if key in self and not isinstance(self._data[key], Mapping):
+            names = ", ".join(choices)
+            problem = f"{self._data[key]!r} is not a table, nor one of {names}"
+            raise self.error(key, problem)
         return self.table(key) if key in self else None
 
     @contextlib.contextmanager
@@ -134,8 +151,8 @@ class Table:
         """Raise SceneError for keys that nobody asked for, here and below."""
         for key in self._data:
             if key not in self._asked:
-                known = ", ".join(sorted(set(self._asked)))
-                hint = _suggest(key, self._asked)
+                known = ", ".join(sorted(set(self._known)))
+                hint = _suggest(key, self._known)
                 where = f"in [{self._path}]" if self._path else "at the top level"
                 raise self.error(key, f"unknown key{hint}; known {where}: {known}")
         for child in self._children:
@@ -143,6 +160,7 @@ class Table:
 
     def _get(self, key, default, wanted):
         self._asked.append(key)
+        self._known.append(key)
         if key in self._data:
             return self._data[key]
         if default is _MISSING:
@@ -154,7 +172,8 @@ class Table:
         return default
 
     def _full(self, key):
-        return f"{self._path}.{key}" if self._path else key
+        shown = key if _BARE.fullmatch(key) else repr(key)
+        return f"{self._path}.{shown}" if self._path else shown
 
 
 def _not_among(value, choices):
@@ -163,5 +182,6 @@ def _not_among(value, choices):
 
 
 def _suggest(word, known):
-    close = difflib.get_close_matches(word, known, 1, 0.6)
-    return f" (did you mean `{close[0]}`?)" if close else ""
+    by_lower = {name.lower(): name for name in known}
+    close = difflib.get_close_matches(word.lower(), by_lower, 1, 0.6)
+    return f" (did you mean `{by_lower[close[0]]}`?)" if close else ""

@@ -36,7 +36,7 @@ SETTINGS = {
         "cylindrical_rig",
         "bearing.rolerdiameter=14 mm",
         "`bearing.rolerdiameter`: unknown key (did you mean `roller_diameter`?);"
-        " known in [bearing]: first_azimuth, ",
+        " known in [bearing]: arrangement, ",
     ),
     "unknown key in a nested table": (
         "cylindrical_rig",
@@ -52,8 +52,8 @@ SETTINGS = {
     ),
     "misspelt load": (
         "cylindrical_rig",
-        "operating.load.fy=-1 kN",
-        "`operating.load.fy`: unknown key (did you mean `Fy`?); known in"
+        "operating.load.F_y=-1 kN",
+        "`operating.load.F_y`: unknown key (did you mean `Fy`?); known in"
         " [operating.load]: Fx, Fy, Fz, Mx, My, Mz",
     ),
     "no such load": (
@@ -602,7 +602,7 @@ TEXTS = {
         "`bearing.ribs.inner_minus.contact_height`: is missing; it must be a length",
     ),
     "broken TOML": (
-        TAPER + "[bearing",
+        TAPER + "[operating",
         "cannot be read as TOML: Expected ']' at the end of a table declaration",
     ),
     "unquoted quantity": (
@@ -651,7 +651,8 @@ def test_name_of_no_scene(run):
 @pytest.mark.parametrize("setting", ["operating.load.Fy", "=3", "a..b=3", "a b=3"])
 def test_what_is_not_a_setting(run, setting):
     message = one_line(run("solve", "cylindrical_rig", "--set", setting))
-    assert message.startswith(f"{setting!r} is not a setting; write key=value, such as")
+    start = f"cylindrical_rig.toml: {setting!r} is not a setting; write key=value, "
+    assert message.startswith(start)
 
 
 def test_reader_raises_what_the_command_line_prints():
@@ -662,3 +663,82 @@ def test_reader_raises_what_the_command_line_prints():
 def test_errors_are_value_errors():
     with pytest.raises(ValueError, match="no such file"):
         read_scene("none.toml")
+
+
+BAD_UNITS = [
+    # pint ends in its tokenizer's errors, assertions and divisions by zero
+    "bearing.pitch_diameter=72.5 (mm",
+    "bearing.pitch_diameter=72.5 mm/",
+    "bearing.pitch_diameter=72.5 mm^",
+    "bearing.pitch_diameter=72.5 $",
+    "bearing.pitch_diameter='72.5 #'",
+    "bearing.pitch_diameter=72.5 mm^(1/0)",
+    """bearing.pitch_diameter="5 '\"""",
+    # pint counts 1/min, Bq and baud as rad/s, 2 pi from what is meant
+    "operating.inner_speed=1500 1/min",
+    "operating.inner_speed=25 s^-1",
+    "operating.inner_speed=25 Bq",
+    "operating.inner_speed=25 baud",
+    # to pint every dimensionless unit is an angle
+    "bearing.first_azimuth=5 percent",
+    "bearing.first_azimuth=5 count",
+    "bearing.first_azimuth=5 bit",
+    "bearing.first_azimuth=5 sr",
+    # pint drops what it cannot read: '1 mm', '!', '{}', '#'
+    "bearing.pitch_diameter=72.5 1 mm",
+    "bearing.pitch_diameter=72.5 mm!",
+    "bearing.pitch_diameter=72.5 {mm}",
+]
+
+
+@pytest.mark.parametrize("setting", BAD_UNITS)
+def test_unit_that_is_none(setting):
+    with pytest.raises(SceneError, match=setting.split("=")[0].replace(".", r"\.")):
+        read_scene("cylindrical_rig", [setting])
+
+
+@pytest.mark.parametrize(
+    "key, meant",
+    [
+        ("arangement", "arrangement"),
+        ("ring_materal", "ring_material"),
+        ("axial_internal_clearence", "axial_internal_clearance"),
+    ],
+)
+def test_key_of_a_choice_is_suggested(key, meant):
+    with pytest.raises(SceneError, match=rf"did you mean `{meant}`"):
+        read_scene("cylindrical_rig", [f"bearing.{key}=x"])
+
+
+def test_wrong_case_is_suggested():
+    with pytest.raises(SceneError, match="did you mean `Fy`"):
+        read_scene("cylindrical_rig", ["operating.load.fy=-1 kN"])
+
+
+def test_key_of_two_lines_makes_one_line(run, tmp_path):
+    text = TAPER + '"two\\nlines" = 1'
+    assert "unknown key" in one_line(run("solve", a_file(tmp_path, text)))
+
+
+@pytest.mark.parametrize(
+    "key, digits",
+    [("n_rollers", 400), ("material.poisson_ratio", 400), ("n_rollers", 5000)],
+)
+def test_huge_integer(run, key, digits):
+    setting = f"bearing.{key}={'9' * digits}"
+    one_line(run("solve", "cylindrical_rig", "--set", setting))
+
+
+def test_article_of_an_angle():
+    with pytest.raises(SceneError, match="; an angle with its unit is wanted"):
+        read_scene("cylindrical_rig", ["bearing.first_azimuth=90"])
+
+
+def test_number_for_a_material_names_the_materials():
+    with pytest.raises(SceneError, match="steel, silicon_nitride, zirconia"):
+        read_scene("cylindrical_rig", ["bearing.material=206"])
+
+
+def test_text_for_freedoms_names_the_freedoms():
+    with pytest.raises(SceneError, match="ux, uy, uz, gx, gy"):
+        read_scene("cylindrical_rig", ["operating.free=ux uy"])

@@ -1,0 +1,147 @@
+"""Line constants against the numbers of the literature, per contact and in series.
+
+Source of the numbers: Palmgren's steel form 3.84e-5 Q^0.9/l^0.8 (mm, N), the general
+form with E = 206 GPa and ν = 0.3, and ISO/TS 16281. Tolerances are half a unit of the
+last printed digit.
+"""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tolerances import ROUNDING
+
+from bearingjax.contact import ISO16281, LineConstant, LineContact, Palmgren, response
+from bearingjax.contact.line_contact import table
+from bearingjax.design import Material, Straight
+from bearingjax.numerics import Midpoint
+
+STEEL = Material()
+UNIT = 10.0 ** (19 / 3)  # one N/mm^(19/9) in N/m^(19/9)
+RATIO = 2.0 ** (10 / 9)  # one contact to two in series
+FAMILIAR = 3.84e-5 ** (-10 / 9)  # N/mm^(10/9) at 1 mm, one contact
+
+
+def constant(law, millimetres, roller=STEEL, ring=STEEL):
+    """C in N/mm^(19/9)."""
+    return float(law.constant(roller, ring, jnp.asarray(1e-3 * millimetres))) / UNIT
+
+
+def test_numbers_of_the_literature():
+    """What the other tests lean on, worked out once more."""
+    assert abs(FAMILIAR - 80593.2445) < 5e-5
+    assert abs(RATIO - 2.16011948) < 5e-9
+    assert abs(FAMILIAR / RATIO - 37309.6235) < 5e-5
+    assert abs(35948.0 * RATIO - 77651.975) < 5e-4
+    assert abs(1e3 ** (19 / 9) / UNIT - 1.0) < ROUNDING
+
+
+@pytest.mark.parametrize(
+    "length, printed",
+    [(1.0, 8.04403e4), (10.0, 6.22820e4), (13.72, 6.01313e4), (15.0, 5.95383e4)],
+)
+def test_palmgren(length, printed):
+    assert abs(constant(Palmgren(), length) - printed) < 0.05
+
+
+@pytest.mark.parametrize("length", [1.0, 13.72, 80.0])
+def test_iso(length):
+    """35948 l^(8/9) of both contacts: spread over l, and twice as near per contact."""
+    both = 35948.0 * length ** (8 / 9) / length
+    np.testing.assert_allclose(constant(ISO16281(), length), RATIO * both, rtol=1e-12)
+
+
+def test_approach_of_a_loaded_contact():
+    """1000 N on 10 mm: 3.0554 um, and 3.0502 um in the familiar form, 0.17 % apart."""
+    line_load = 1000.0 / 10.0
+    got = 1e3 * (line_load / constant(Palmgren(), 10.0)) ** 0.9
+    assert abs(got - 3.0554) < 5e-5
+    familiar = 1e3 * 3.84e-5 * 1000.0**0.9 / 10.0**0.8
+    assert abs(familiar - 3.0502) < 5e-5
+    assert abs(got / familiar - 1.0017) < 5e-5
+
+
+def test_two_laws_do_not_mix():
+    """At the same approach Palmgren's familiar form carries 3.8 % more than ISO.
+
+    Both per contact: a constant of the sum taken for one contact would be off by the
+    factor 2.16.
+    """
+    familiar, iso = FAMILIAR, constant(ISO16281(), 1.0)
+    assert abs(familiar / iso - 1.038) < 5e-4
+    assert abs(constant(Palmgren(), 1.0) / iso - 1.036) < 5e-4
+
+
+def test_laws_of_other_materials():
+    """Both laws scale with the contact modulus; steel of 206 GPa is the reference."""
+    ceramic = Material.silicon_nitride()
+    modulus = 1.0 / ((1 - 0.3**2) / 206e9 + (1 - 0.26**2) / 310e9)
+    want = modulus / (206e9 / (2 * (1 - 0.3**2)))
+    for law in (Palmgren(), ISO16281()):
+        got = constant(law, 10.0, roller=ceramic) / constant(law, 10.0)
+        np.testing.assert_allclose(got, want, rtol=ROUNDING)
+        swapped = constant(law, 10.0, ring=ceramic) / constant(law, 10.0)
+        np.testing.assert_allclose(swapped, want, rtol=ROUNDING)
+
+
+def test_palmgren_in_any_unit():
+    """(3.81 compliance^0.9)^(-10/9) l^(-1/9), in millimetres and newtons."""
+    compliance = 2 * (1 - 0.3**2) / (np.pi * 206e3)
+    want = (3.81 * compliance**0.9) ** (-10 / 9) * 13.72 ** (-1 / 9)
+    np.testing.assert_allclose(constant(Palmgren(), 13.72), want, rtol=ROUNDING)
+
+
+def test_given_constant():
+    law = LineConstant(6e4 * UNIT)
+    assert constant(law, 1.0) == pytest.approx(6e4, rel=ROUNDING)
+    assert constant(law, 50.0, Material.zirconia()) == constant(law, 1.0)
+    for bad, words in ((0.0, "is 0 "), (-1.0, "is -1 "), (np.nan, "is nan ")):
+        with pytest.raises(ValueError, match=rf"`value` {words}N/m\^\(19/9\)"):
+            LineConstant(bad)
+
+
+def test_derivative_by_the_length():
+    """length^(-1/9), so that l C'/C is -1/9 for both laws."""
+    for law in (Palmgren(), ISO16281()):
+        got = jax.jit(
+            jax.grad(lambda x, law=law: jnp.log(law.constant(STEEL, STEEL, x)))
+        )
+        slope = got(jnp.asarray(0.01372)) * 0.01372
+        np.testing.assert_allclose(slope, -1 / 9, rtol=ROUNDING)
+
+
+def slice_of(depth):
+    """Energy, load and stiffness per length of an even contact 13.72 mm long."""
+    length = jnp.asarray(0.01372)
+    c = Palmgren().constant(STEEL, STEEL, length)
+    line = LineContact(c, length, jnp.asarray(0.014), Straight(), Straight())
+    rule = Midpoint(1)
+    zero = jnp.zeros_like(depth)
+    r = response(line, table(line, rule), rule, depth, zero)
+    return r.energy / length, r.load[0] / length, r.stiffness[0] / length
+
+
+def test_slice():
+    """13.72 mm long, 10 um deep: 360.5 N/mm and 1.7075 N mm per mm."""
+    energy, load, _ = slice_of(jnp.asarray(1e-5))
+    assert abs(1e-3 * float(load) - 360.5) < 0.05
+    assert abs(float(energy) - 1.7075) < 5e-5
+
+
+def test_densities_follow_from_each_other():
+    """Load is the derivative of the energy, stiffness that of the load; zero apart."""
+    depth = jnp.asarray([1e-9, 1e-7, 1e-5, 1e-4, 0.0, -1e-5])
+    densities = jax.vmap(slice_of)(depth)
+    for order in (0, 1):
+        slope = jax.vmap(jax.grad(lambda x, n=order: slice_of(x)[n]))(depth)
+        np.testing.assert_allclose(slope, densities[order + 1], rtol=1e-10)
+    for value in densities:
+        np.testing.assert_array_equal(value[4:], 0.0)
+    # Against differences, because the slope follows a rule of its own.
+    step = 1e-4 * depth[:4]
+    ends = [jax.vmap(slice_of)(depth[:4] + s * step)[0] for s in (1, -1)]
+    slope = (ends[0] - ends[1]) / (2 * step)
+    np.testing.assert_allclose(slope, densities[1][:4], rtol=1e-8)
+    c = float(Palmgren().constant(STEEL, STEEL, jnp.asarray(0.01372)))
+    expected = c * np.asarray(depth[:4]) ** (10 / 9)
+    np.testing.assert_allclose(densities[1][:4], expected, rtol=ROUNDING)

@@ -1,0 +1,267 @@
+"""The command line: report, JSON, picture, exit status."""
+
+import json
+import os
+import re
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from tolerances import SOLVER
+
+import bearingjax as bj
+from bearingjax import cli
+
+POINTS = 21
+TAPER = ("solve", "tapered", "--set", f"output.points={POINTS}")
+PULLED = (*TAPER, "--set", "operating.load.Fz=-6 kN")
+
+FIELDS = {
+    "displacement",
+    "force",
+    "stiffness",
+    "roller_load",
+    "rib_load",
+    "roller_motion",
+    "azimuth",
+    "position",
+    "line_load",
+    "contact_pressure",
+    "result",
+    "message",
+    "residual",
+    "iterations",
+    "warnings",
+    "version",
+}
+WORDS = {"result", "message", "residual", "iterations", "warnings", "version"}
+
+
+@pytest.fixture
+def no_solve(monkeypatch):
+    """Whatever is refused is refused before anything is solved."""
+
+    def refuse(scene):
+        raise AssertionError("solved a scene")
+
+    monkeypatch.setattr(bj.scene, "run_scene", refuse)
+
+
+@pytest.fixture(autouse=True)
+def close_figures():
+    yield
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
+
+
+def read(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def size_of_png(path):
+    """Width and height in pixels."""
+    head = path.read_bytes()[:24]
+    assert head[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", head[16:24])
+
+
+def test_solved(run, tmp_path):
+    out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    done = run("solve", "cylindrical_rig", "--json", out, "--plot", picture)
+    assert done.status == 0 and done.err == ""
+    numbers = read(out)
+    assert set(numbers) == FIELDS
+    assert numbers["result"] == "converged"
+    assert numbers["version"] == bj.__version__
+    # The report says the same.
+    assert "\nouter ring (inner ring fixed)\n" in done.out
+    (uy,) = re.findall(r"(?m)^  uy +(\S+) µm +Fy +-10\.6 kN$", done.out)
+    uy_json = numbers["displacement"][1]
+    assert 1e-6 * float(uy) == pytest.approx(uy_json, rel=1e-4)
+    load = np.max(numbers["roller_load"], axis=1)
+    loaded = int(np.sum(load > 1e-9 * load.max()))
+    assert len(re.findall(r"(?m)^ +\d+ +\d+\.\d  ", done.out)) == loaded == 5
+    # Its warnings too.
+    assert len(numbers["warnings"]) == 2
+    for warning in numbers["warnings"]:
+        assert warning.startswith("edge-loaded roller")
+        assert f"warning: {warning}\n" in done.out
+    width, height = size_of_png(picture)
+    assert width > 800 and height > 500
+    assert picture.stat().st_size > 50_000
+
+
+def test_numbers_of_the_taper(run, tmp_path):
+    done = run(*TAPER, "--json", tmp_path / "out.json")
+    assert done.status == 0 and done.err == ""
+    numbers = read(tmp_path / "out.json")
+    assert set(numbers) == FIELDS
+    shapes = {k: np.shape(numbers[k]) for k in FIELDS - WORDS}
+    assert shapes == {
+        "displacement": (12,),
+        "force": (12,),
+        "stiffness": (12, 12),
+        "roller_load": (17, 2),
+        "rib_load": (17, 4),
+        "roller_motion": (17, 3),
+        "azimuth": (17,),
+        "position": (POINTS,),
+        "line_load": (17, 2, POINTS),
+        "contact_pressure": (17, 2, POINTS),
+    }
+    assert all(np.all(np.isfinite(numbers[name])) for name in shapes)
+    k = np.array(numbers["stiffness"])
+    assert np.allclose(k, k.T, rtol=0.0, atol=SOLVER * np.abs(k).max())
+    force = np.array(numbers["force"])[6:11]
+    assert np.allclose(force, [5e3, 0, 6e3, 0, 0], rtol=0.0, atol=6e3 * SOLVER)
+    ends = np.linspace(-0.5 * 11.5e-3, 0.5 * 11.5e-3, POINTS)
+    assert np.allclose(numbers["position"], ends, rtol=0.0, atol=1e-15)
+    assert np.all(np.array(numbers["line_load"])[:, :, [0, -1]] == 0.0)
+    assert numbers["warnings"] == []
+
+
+def test_setting_changes_the_load(run, tmp_path):
+    change = ("--set", "operating.load.Fx=-2 kN", "--set", "operating.load.My=3 N m")
+    assert run(*TAPER, *change, "--json", tmp_path / "out.json").status == 0
+    force = np.array(read(tmp_path / "out.json")["force"])[6:11]
+    assert np.allclose(force, [-2e3, 0, 6e3, 0, 3], rtol=0.0, atol=6e3 * SOLVER)
+
+
+def test_pulled_apart(run, tmp_path):
+    out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    done = run(*PULLED, "--json", out, "--plot", picture)
+    assert done.status == 3
+    assert done.out == ""
+    assert done.err.startswith("bearingjax: no_load_path: No load path in uz of the")
+    assert done.err.count("\n") == 1
+    numbers = read(out)
+    assert set(numbers) == WORDS
+    assert numbers["result"] == "no_load_path"
+    assert "uz" in numbers["message"]
+    assert not picture.exists()
+
+
+def test_scene_of_ones_own(run, tmp_path):
+    """A file is named as it is given; its name heads the report."""
+    path = tmp_path / "my taper.toml"
+    shipped = bj.scene.shipped_scenes()["tapered"].read_text(encoding="utf-8")
+    path.write_text(f"{shipped}\n[output]\npoints = {POINTS}\n", encoding="utf-8")
+    done = run("solve", path)
+    assert done.status == 0
+    assert done.out.startswith("my taper: tapered roller bearing, 17 rollers")
+
+
+@pytest.mark.parametrize("ending", ["pdf", "svg"])
+def test_pictures_of_lines(run, tmp_path, ending):
+    path = tmp_path / f"out.{ending}"
+    assert run(*TAPER, "--plot", path).status == 0
+    head = {"pdf": b"%PDF", "svg": b"<?xml"}[ending]
+    assert path.read_bytes().startswith(head)
+
+
+def test_version(capsys):
+    with pytest.raises(SystemExit) as stop:
+        cli.main(["--version"])
+    assert stop.value.code == 0
+    assert capsys.readouterr().out == f"{bj.__version__}\n"
+
+
+@pytest.mark.parametrize("arguments", [[], ["solve"], ["dissolve", "tapered"]])
+def test_wrong_usage(capsys, arguments):
+    with pytest.raises(SystemExit) as stop:
+        cli.main(arguments)
+    assert stop.value.code == 2
+    shown = capsys.readouterr()
+    assert shown.out == "" and shown.err.startswith("usage: bearingjax")
+
+
+def test_help_tells_the_exit_status(capsys):
+    with pytest.raises(SystemExit) as stop:
+        cli.main(["solve", "--help"])
+    assert stop.value.code == 0
+    assert (
+        "Exit status: 0 solved, 2 bad input, 3 not solved." in capsys.readouterr().out
+    )
+
+
+@pytest.mark.usefixtures("no_solve")
+@pytest.mark.parametrize("option", ["--json", "--plot"])
+def test_no_folder_to_write_to(run, tmp_path, option):
+    path = tmp_path / "none" / "out.png"
+    done = run("solve", "tapered", option, path)
+    assert done == (2, "", f"bearingjax: {path}: its folder does not exist\n")
+    assert not path.parent.exists()
+
+
+@pytest.mark.usefixtures("no_solve")
+@pytest.mark.parametrize("option", ["--json", "--plot"])
+def test_folder_to_write_to(run, tmp_path, option):
+    path = tmp_path / "out.png"
+    path.mkdir()
+    done = run("solve", "tapered", option, path)
+    assert done.status == 2 and done.out == ""
+    assert str(path) in done.err and done.err.count("\n") == 1
+
+
+def test_reader_that_left(monkeypatch):
+    """As in `bearingjax solve tapered | true`."""
+    monkeypatch.setattr(cli, "_configure_jax", lambda: None)
+    back, front = os.pipe()
+    os.close(back)
+    out = os.fdopen(front, "w")
+    try:
+        with monkeypatch.context() as patch:
+            patch.setattr(sys, "stdout", out)
+            assert cli.main(TAPER) == 0
+        out.flush()
+    finally:
+        # What is left in the buffer goes nowhere.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), out.fileno())
+        out.close()
+
+
+@pytest.mark.usefixtures("no_solve")
+@pytest.mark.parametrize("name", ["out.gif", "out", "out.png.txt"])
+def test_unknown_picture(run, tmp_path, name):
+    path = tmp_path / name
+    done = run("solve", "tapered", "--plot", path)
+    ending = "a picture ends in .png, .pdf or .svg"
+    assert done == (2, "", f"bearingjax: {path}: {ending}\n")
+
+
+@pytest.mark.usefixtures("no_solve")
+def test_picture_without_matplotlib(run, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    done = run("solve", "tapered", "--plot", tmp_path / "out.png")
+    assert done.status == 2 and done.out == ""
+    assert 'pip install "bearingjax[plot]"' in done.err and done.err.count("\n") == 1
+
+
+@pytest.mark.usefixtures("no_solve")
+def test_bad_scene_writes_nothing(run, tmp_path):
+    out = tmp_path / "out.json"
+    bad = ("--set", "bearing.n_rollers=0")
+    assert run("solve", "tapered", *bad, "--json", out).status == 2
+    assert not out.exists()
+
+
+def test_as_a_program_of_its_own(tmp_path):
+    """Float64, the cache of compiled programs, nothing on standard error."""
+    program = "import sys; from bearingjax.cli import main; sys.exit(main())"
+    hidden = ("JAX_", "XLA_", "PYTHONWARNINGS")
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(hidden)}
+    out = tmp_path / "out.json"
+    done = subprocess.run(
+        [sys.executable, "-c", program, "solve", "cylindrical_rig", "--json", out],
+        env={**clean, "XDG_CACHE_HOME": str(tmp_path / "cache")},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("cylindrical_rig: cylindrical roller bearing")
+    assert read(out)["residual"] < SOLVER
+    cache = tmp_path / "cache" / "bearingjax" / "jax"
+    assert any(cache.iterdir())

@@ -1,0 +1,288 @@
+"""A solved scene as JSON and as a report: the same numbers, or none at all."""
+
+import dataclasses
+import json
+import re
+
+import numpy as np
+import pytest
+from tolerances import ROUNDING, SOLVER
+
+import bearingjax as bj
+from bearingjax.scene import as_dict, report, write_json
+
+POINTS = 21
+TAPER = f"output.points={POINTS}"
+
+NUMBERS = (
+    "displacement",
+    "force",
+    "stiffness",
+    "roller_load",
+    "rib_load",
+    "roller_motion",
+    "azimuth",
+    "position",
+    "line_load",
+    "contact_pressure",
+)
+WORDS = ("result", "message", "residual", "iterations", "warnings", "version")
+
+
+@dataclasses.dataclass(frozen=True)
+class Solved:
+    """A scene, its solution, and what is written of them."""
+
+    scene: bj.scene.Scene
+    solution: bj.Solution
+    numbers: dict
+
+    def __getitem__(self, name):
+        return np.asarray(self.numbers[name])
+
+    @property
+    def moving(self):
+        return slice(0, 6) if self.scene.moving_ring == "outer" else slice(6, 12)
+
+
+def solve(name, *settings):
+    scene = bj.read_scene(name, settings)
+    solution = bj.run_scene(scene)
+    return Solved(scene, solution, as_dict(scene, solution))
+
+
+# Two structures are compiled; all else differs from them in numbers only.
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return solve("cylindrical_rig")
+
+
+@pytest.fixture(scope="module")
+def taper():
+    return solve("tapered", TAPER)
+
+
+@pytest.fixture(scope="module")
+def pulled():
+    return solve("tapered", TAPER, "operating.load.Fz=-6 kN")
+
+
+@pytest.fixture(params=["rig", "taper"])
+def solved(request):
+    return request.getfixturevalue(request.param)
+
+
+def test_fields_and_shapes(solved):
+    assert tuple(solved.numbers) == NUMBERS + WORDS
+    n, points = solved.scene.element.bearing.n_rollers, solved.scene.points
+    shapes = {name: solved[name].shape for name in NUMBERS}
+    assert shapes == {
+        "displacement": (12,),
+        "force": (12,),
+        "stiffness": (12, 12),
+        "roller_load": (n, 2),
+        "rib_load": (n, 4),
+        "roller_motion": (n, 3),
+        "azimuth": (n,),
+        "position": (points,),
+        "line_load": (n, 2, points),
+        "contact_pressure": (n, 2, points),
+    }
+    assert all(np.all(np.isfinite(solved[name])) for name in NUMBERS)
+    assert solved.numbers["result"] == solved.numbers["message"] == "converged"
+    assert solved.numbers["residual"] < SOLVER
+    assert solved.numbers["iterations"] > 0
+    assert solved.numbers["version"] == bj.__version__
+
+
+def test_stiffness_is_symmetric_without_rows_of_the_set(solved):
+    k = solved["stiffness"]
+    assert np.allclose(k, k.T, rtol=0.0, atol=ROUNDING * np.abs(k).max())
+    assert np.all(k[[5, 11]] == 0.0) and np.all(k[:, [5, 11]] == 0.0)
+
+
+def test_force_is_the_load_and_stands_in_balance(solved):
+    force, load = solved["force"], np.asarray(solved.scene.load)
+    mine = force[solved.moving]
+    free = [0, 1, 2, 3, 4] if solved.scene.free is None else [0, 1, 3, 4]
+    atol = SOLVER * np.abs(load).max()
+    assert np.allclose(mine[free], load[free], rtol=0.0, atol=atol)
+    # No inertia acts along the axis or on the whole set, and moments are at the origin.
+    assert np.allclose(force[:6] + force[6:], 0.0, rtol=0.0, atol=atol)
+
+
+def test_the_fixed_ring_stands(solved):
+    q = solved["displacement"].copy()
+    q[solved.moving] = 0.0
+    assert np.all(q == 0.0)
+
+
+def test_positions_run_from_end_to_end(solved):
+    half = 0.5 * float(solved.scene.element.bearing.roller_length)
+    expected = np.linspace(-half, half, solved.scene.points)
+    assert np.allclose(solved["position"], expected, rtol=0.0, atol=ROUNDING * half)
+
+
+def test_azimuths_are_those_of_the_drawing(solved):
+    bearing = solved.scene.element.bearing
+    step = 2.0 * np.pi / bearing.n_rollers
+    expected = float(bearing.first_azimuth) + step * np.arange(bearing.n_rollers)
+    assert np.allclose(solved["azimuth"], expected, rtol=ROUNDING, atol=0.0)
+
+
+def test_pressure_stands_where_load_does(solved):
+    load, pressure = solved["line_load"], solved["contact_pressure"]
+    assert load.min() == 0.0 and pressure.min() == 0.0
+    assert np.array_equal(load > 0.0, pressure > 0.0)
+    assert 1e8 < pressure.max() < 5e9
+
+
+def test_line_load_adds_up_to_the_roller_load(rig):
+    sums = np.trapezoid(rig["line_load"], rig["position"], axis=2)
+    # The solver's 20 slices against 100 trapezia; the load zone ends between them.
+    assert np.allclose(sums, rig["roller_load"], rtol=5e-3, atol=1.0)
+
+
+def test_logarithmic_rollers_are_unloaded_at_their_ends(taper):
+    load = taper["line_load"]
+    assert np.all(load[:, :, [0, -1]] == 0.0)
+    assert load[:, :, POINTS // 2].min() > 0.0
+    assert taper.numbers["warnings"] == []
+
+
+def test_only_the_rib_that_is_there_is_loaded(rig, taper):
+    assert np.all(rig["rib_load"] == 0.0)
+    ribs = taper["rib_load"]
+    assert np.all(ribs[:, [0, 1, 3]] == 0.0) and np.all(ribs[:, 2] > 0.0)
+
+
+def test_edge_load_is_a_warning(rig):
+    warnings = rig.numbers["warnings"]
+    assert len(warnings) == 2
+    for name, text in zip(("outer", "inner"), warnings, strict=True):
+        assert text.startswith("edge-loaded roller:")
+        assert f"{name} raceway (rollers 0, 1, 2, 10, 11)" in text
+    assert rig["line_load"][0, :, 0].min() > 0.0
+
+
+def test_json_is_the_dictionary(taper, tmp_path):
+    path = tmp_path / "out.json"
+    write_json(path, taper.scene, taper.solution)
+    text = path.read_text(encoding="utf-8")
+    assert text.endswith("}\n")
+    assert json.loads(text) == taper.numbers
+
+
+def test_json_of_no_solution_has_no_numbers(pulled, tmp_path):
+    assert tuple(pulled.numbers) == WORDS
+    assert pulled.numbers["result"] == "no_load_path"
+    assert pulled.numbers["message"].startswith("No load path in uz of the inner ring")
+    assert pulled.numbers["warnings"] == []
+    write_json(tmp_path / "out.json", pulled.scene, pulled.solution)
+    read = json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))
+    assert read == pulled.numbers
+
+
+def test_json_knows_no_nan(tmp_path):
+    solved = solve("cylindrical_rig", "operating.load.Fy=1e300 N")
+    assert tuple(solved.numbers) == WORDS
+    assert solved.numbers["result"] == "non_finite"
+    assert solved.numbers["residual"] is None
+    write_json(tmp_path / "out.json", solved.scene, solved.solution)
+
+
+ROW = re.compile(r"^ +(\d+) +(-?[\d.]+) +([\d.]+) +([\d.]+) +([\d.]+) +([\d.]+)(.*)$")
+
+
+def rows(text):
+    """Rows of the table of rollers: its numbers, and what stands behind them."""
+    found = [ROW.match(line) for line in text.splitlines()]
+    return [([float(x) for x in m.groups()[:6]], m[7]) for m in found if m]
+
+
+def motion(text):
+    """Displacements and loads of the report by name."""
+    pattern = r"^  ([ug][xyz]) +(\S+) (µm|mrad) +([FM][xyz]) +(\S+) (kN|N m)$"
+    found = re.findall(pattern, text, re.MULTILINE)
+    scale = {"µm": 1e-6, "mrad": 1e-3, "kN": 1e3, "N m": 1.0}
+    shift = {f: float(v) * scale[unit] for f, v, unit, *_ in found}
+    load = {f: float(v) * scale[unit] for *_, f, v, unit in found}
+    return shift, load
+
+
+def test_report_tells_the_motion_of_the_loaded_ring(solved):
+    text = report(solved.scene, solved.solution)
+    moving, fixed = solved.scene.moving_ring, solved.scene.fixed_ring
+    assert f"\n{moving} ring ({fixed} ring fixed)\n" in text
+    assert f"\nstiffness of the {moving} ring (" in text
+    shift, load = motion(text)
+    assert list(shift) == list(bj.FREEDOMS)
+    assert list(load) == ["Fx", "Fy", "Fz", "Mx", "My", "Mz"]
+    # Five digits; round-off of what cancels is shown as zero.
+    q, force = solved["displacement"][solved.moving], solved["force"][solved.moving]
+    assert np.allclose(list(shift.values()), q, rtol=1e-4, atol=1e-12)
+    assert np.allclose(list(load.values()), force, rtol=1e-4, atol=1e-6)
+
+
+def test_report_tells_the_stiffness(solved):
+    text = report(solved.scene, solved.solution)
+    shown = re.findall(r"^  [ug][xyz]((?: +[-+.e\d]+){5})$", text, re.MULTILINE)
+    shown = np.array([[float(x) for x in line.split()] for line in shown])
+    # kN/mm, kN/mrad, N m/mrad
+    unit = np.full((5, 5), 1e6)
+    unit[3:, 3:] = 1e3
+    k = solved["stiffness"][solved.moving, solved.moving][:5, :5]
+    assert np.allclose(unit * shown, k, rtol=1e-4, atol=1e-10 * np.abs(k).max())
+
+
+def test_report_has_a_row_for_each_loaded_roller(solved):
+    table = rows(report(solved.scene, solved.solution))
+    loads, pressure = solved["roller_load"], solved["contact_pressure"].max(axis=2)
+    loaded = np.flatnonzero(loads.max(axis=1) > 1e-9 * loads.max())
+    assert [int(numbers[0]) for numbers, _ in table] == list(loaded)
+    degrees = np.rad2deg(solved["azimuth"][loaded]) % 360.0
+    shown = np.array([numbers[1:] for numbers, _ in table])
+    assert np.allclose(shown[:, 0], degrees, rtol=0.0, atol=0.051)
+    assert np.allclose(1e3 * shown[:, 1:3], loads[loaded], rtol=0.0, atol=0.051)
+    assert np.allclose(1e6 * shown[:, 3:], pressure[loaded], rtol=0.0, atol=0.051e6)
+
+
+def test_report_of_the_rig(rig):
+    text = report(rig.scene, rig.solution)
+    assert text.startswith(
+        "cylindrical_rig: cylindrical roller bearing, 12 rollers 14 x 13.72 mm on a"
+        " pitch circle of 72.5 mm\n"
+        "radial internal clearance 0 µm; ribs: none; roller profile: CrownedEnds\n"
+    )
+    assert all(behind == "  edge-loaded" for _, behind in rows(text))
+    assert "\n 7 of 12 rollers are out of contact\n" in text
+    assert len(re.findall(r"(?m)^warning: edge-loaded roller", text)) == 2
+    assert "converged in " in text and "contact angle" not in text
+
+
+def test_report_of_the_taper(taper):
+    text = report(taper.scene, taper.solution)
+    assert "; ribs: inner_minus; roller profile: Logarithmic\n" in text
+    assert "\ncontact angle: outer 12.72, inner 9.277 deg\n" in text
+    shown = [float(behind) for _, behind in rows(text)]
+    ribs = taper["rib_load"].sum(axis=1)
+    assert np.allclose(shown, ribs, rtol=0.0, atol=0.051)
+    assert "out of contact" not in text and "warning" not in text
+
+
+def test_a_warning_of_the_drawing_is_told_with_the_solution():
+    solved = solve("tapered", TAPER, "bearing.roller_half_angle=1.6 deg")
+    (text,) = solved.numbers["warnings"]
+    assert text.startswith("TaperedRollerBearing: the apexes of outer raceway")
+    assert f"\nwarning: {text}" in report(solved.scene, solved.solution)
+
+
+def test_no_load_is_no_contact():
+    solved = solve("cylindrical_rig", "operating.load={}")
+    text = report(solved.scene, solved.solution)
+    assert rows(text) == []
+    assert "\n 12 of 12 rollers are out of contact\n" in text
+    assert np.all(solved["roller_load"] == 0.0)
+    assert solved.numbers["warnings"] == []

@@ -1,0 +1,438 @@
+"""Scene files say what they say: every value in its place, in SI."""
+
+import tomllib
+
+import jax
+import numpy as np
+import pytest
+from tolerances import PUBLISHED, ROUNDING
+
+import bearingjax as bj
+from bearingjax.scene import shipped_scenes
+
+DEG = np.pi / 180.0
+RPM = 2.0 * np.pi / 60.0
+
+SHIPPED = (
+    "cylindrical_ribs",
+    "cylindrical_rig",
+    "hybrid_spindle",
+    "needle",
+    "nj_axial",
+    "tapered",
+)
+
+
+def near(value):
+    return pytest.approx(value, rel=ROUNDING, abs=0.0)
+
+
+def fields(module):
+    """Names of the numbers of a module and their values."""
+    return {k: float(v) for k, v in vars(module).items() if v is not None}
+
+
+def steel():
+    return near({"elastic_modulus": 206e9, "poisson_ratio": 0.3, "density": 7850.0})
+
+
+def read_text(folder, text, settings=()):
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return bj.read_scene(path, settings)
+
+
+def test_shipped_scenes_are_these():
+    assert tuple(shipped_scenes()) == SHIPPED
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_shipped_scene_reads(name):
+    scene = bj.read_scene(name)
+    raw = tomllib.loads(shipped_scenes()[name].read_text(encoding="utf-8"))
+    assert scene.name == name
+    assert scene.warnings == ()
+    assert scene.element.bearing.n_rollers == raw["bearing"]["n_rollers"]
+    assert scene.points == 101 and scene.tolerance is None
+    assert any(scene.load)
+
+
+@pytest.mark.parametrize("name", ["needle", "tapered"])
+def test_bearing_alone_and_by_path(name):
+    scene = bj.read_scene(shipped_scenes()[name])
+    expected = jax.tree.flatten(scene.element.bearing)
+    alone = jax.tree.flatten(bj.load_bearing(name))
+    assert alone == expected
+
+
+def test_cylindrical_rig():
+    scene = bj.read_scene("cylindrical_rig")
+    bearing = scene.element.bearing
+    assert type(bearing) is bj.CylindricalRollerBearing
+    assert bearing.n_rollers == 12
+    assert float(bearing.pitch_diameter) == near(0.0725)
+    assert float(bearing.roller_diameter) == near(0.014)
+    assert float(bearing.roller_length) == near(0.01372)
+    assert float(bearing.radial_internal_clearance) == 0.0
+    assert float(bearing.first_azimuth) == near(90.0 * DEG)
+    assert type(bearing.roller_profile) is bj.CrownedEnds
+    profile = {"straight_length": 9e-3, "crown_radius": 1.0}
+    assert fields(bearing.roller_profile) == near(profile)
+    assert type(bearing.outer_raceway_profile) is bj.Straight
+    assert type(bearing.inner_raceway_profile) is bj.Straight
+    assert bearing.ribs.present == ()
+    assert fields(bearing.material) == steel()
+    assert bearing.ring_material is None
+    assert type(scene.element.line_law) is bj.Palmgren
+    assert type(scene.element.kinematics) is bj.Linearised
+    assert scene.element.quadrature == bj.Midpoint(20)
+    assert type(scene.element.equilibrium) is bj.TrustRegionNewton
+    assert scene.load == near((0.0, -10600.0, 0.0, -2.0, 0.0, 0.0))
+    assert scene.free == ("ux", "uy", "gx", "gy")
+    assert scene.prescribed == {}
+    assert (scene.fixed_ring, scene.moving_ring) == ("inner", "outer")
+    assert scene.speed is None
+
+
+def test_cylindrical_ribs():
+    scene = bj.read_scene("cylindrical_ribs")
+    bearing = scene.element.bearing
+    assert type(bearing) is bj.CylindricalRollerBearing
+    assert bearing.n_rollers == 14
+    assert float(bearing.radial_internal_clearance) == near(25e-6)
+    assert float(bearing.first_azimuth) == 0.0
+    assert type(bearing.roller_profile) is bj.Logarithmic
+    assert fields(bearing.roller_profile) == near({"coefficient": 0.00035})
+    names = ("outer_minus", "outer_plus", "inner_minus", "inner_plus")
+    assert bearing.ribs.present == names
+    # A quarter of the axial play at each rib.
+    rib = {"end_radius": 0.3, "contact_height": 1.5e-3, "axial_gap": 15e-6}
+    for name in names:
+        assert fields(getattr(bearing.ribs, name)) == near(rib)
+    assert fields(bearing.material) == steel()
+    assert scene.element.quadrature == bj.ContactMapped(32)
+    assert type(scene.element.equilibrium) is bj.TrustRegionNewton
+    assert scene.load == near((0.0, -4000.0, 300.0, 0.0, 0.0, 0.0))
+    assert scene.free is None
+    assert (scene.fixed_ring, scene.moving_ring) == ("outer", "inner")
+    assert float(scene.speed.inner) == near(1500.0 * RPM)
+    assert float(scene.speed.outer) == 0.0
+
+
+def test_a_quarter_of_the_radial_play_stands_at_each_raceway():
+    constants = bj.read_scene("cylindrical_ribs").element.constants()
+    assert float(constants.gap) == near(25e-6 / 4.0)
+
+
+def test_tapered():
+    scene = bj.read_scene("tapered")
+    bearing = scene.element.bearing
+    assert type(bearing) is bj.TaperedRollerBearing
+    assert bearing.n_rollers == 17
+    assert float(bearing.pitch_diameter) == near(0.052)
+    assert float(bearing.roller_diameter) == near(0.0082)
+    assert float(bearing.roller_length) == near(0.0115)
+    assert float(bearing.roller_axis_angle) == near(11.0 * DEG)
+    assert float(bearing.roller_half_angle) == near(1.7235 * DEG)
+    assert float(bearing.radial_internal_clearance) == 0.0
+    assert type(bearing.roller_profile) is bj.Logarithmic
+    assert bearing.ribs.present == ("inner_minus",)
+    rib = {"end_radius": 0.09, "contact_height": 1.2e-3, "axial_gap": 0.0}
+    assert fields(bearing.ribs.inner_minus) == near(rib)
+    assert scene.load == near((5000.0, 0.0, 6000.0, 0.0, 0.0, 0.0))
+    assert scene.fixed_ring == "outer"
+    assert float(scene.speed.inner) == near(3000.0 * RPM)
+
+
+def test_hybrid_spindle():
+    bearing = bj.load_bearing("hybrid_spindle")
+    ceramic = {"elastic_modulus": 310e9, "poisson_ratio": 0.26, "density": 3200.0}
+    assert fields(bearing.material) == near(ceramic)
+    assert fields(bearing.ring_material) == steel()
+    assert float(bearing.radial_internal_clearance) == near(-3e-6)
+    assert bearing.ribs.present == ("inner_minus", "inner_plus")
+    assert type(bearing.roller_profile) is bj.JohnsGohar
+    assert float(bearing.roller_profile.design_load) == near(1500.0)
+    assert float(bearing.roller_profile.half_width) == near(60e-6)
+
+
+def test_needle():
+    scene = bj.read_scene("needle")
+    assert type(scene.element.bearing) is bj.NeedleRollerBearing
+    assert fields(scene.element.bearing.roller_profile) == near(
+        {
+            "straight_length": 8e-3,
+            "crown_radius": 0.6,
+            "dub_off_length": 0.4e-3,
+            "dub_off_radius": 0.02,
+        }
+    )
+    assert scene.load == near((0.0, -8000.0, 0.0, 3.0, 0.0, 0.0))
+    assert scene.speed is None
+
+
+def test_nj_axial():
+    bearing = bj.load_bearing("nj_axial")
+    assert bearing.ribs.present == ("outer_minus", "outer_plus", "inner_minus")
+    assert float(bearing.ribs.outer_plus.axial_gap) == near(20e-6)
+    profile = bearing.roller_profile
+    assert type(profile) is bj.FujiwaraKawase
+    assert float(profile.design_load) == near(8000.0)
+    assert float(profile.load_factor) == near(1.5)
+    assert float(profile.crowned_fraction) == near(0.6)
+    assert float(profile.end_drop) == near(15e-6)
+
+
+EVERYTHING = """
+[bearing]
+type = "tapered_roller"
+n_rollers = 9
+pitch_diameter = "2 in"
+roller_diameter = "0.8 cm"
+roller_length = "11500 µm"
+radial_internal_clearance = "-1.5e-3 mm"
+roller_axis_angle = "0.2 rad"
+roller_half_angle = "0.02 rad"
+first_azimuth = "-30 deg"
+material = "zirconia"
+ring_material = { elastic_modulus = "200 kN/mm^2", density = "7.7 g/cm^3" }
+
+[bearing.roller_profile]
+type = "lundberg"
+design_load = "2 kN"
+contact_modulus = "1e5 MPa"
+
+[bearing.raceway_profile]
+outer = { type = "circular_crown", crown_radius = "4 m" }
+
+[bearing.raceway_profile.inner]
+type = "tabulated"
+positions = ["-6 mm", "0 mm", "6 mm"]
+drops = ["4 um", "0 um", "5 um"]
+
+[bearing.ribs]
+inner_minus = { end_radius = "90 mm", contact_height = "1.2 mm", axial_gap = "-2 um" }
+outer_plus = { end_radius = "80 mm", contact_height = "1 mm" }
+
+[contact]
+line_law = "iso16281"
+
+[operating]
+fixed_ring = "inner"
+prescribed = { gz = "0.5 deg", gx = "-2 mrad", uy = "7 um" }
+free = ["uz", "ux"]
+inner_speed = "180 deg/s"
+outer_speed = "-60 rpm"
+
+[operating.load]
+Fx = "1 N"
+Fy = "2 kN"
+Fz = "-3e3 N"
+Mx = "4 N m"
+My = "5 N mm"
+Mz = "6 kN m"
+
+[numerics]
+quadrature = "contact_mapped"
+points = 12
+kinematics = "finite"
+equilibrium = "bfgs"
+tolerance = 1e-8
+
+[output]
+points = 33
+"""
+
+
+@pytest.fixture(scope="module")
+def everything(tmp_path_factory):
+    return read_text(tmp_path_factory.mktemp("scene"), EVERYTHING)
+
+
+def test_units_of_every_kind(everything):
+    bearing = everything.element.bearing
+    assert float(bearing.pitch_diameter) == near(0.0508)
+    assert float(bearing.roller_diameter) == near(0.008)
+    assert float(bearing.roller_length) == near(0.0115)
+    assert float(bearing.radial_internal_clearance) == near(-1.5e-6)
+    assert float(bearing.roller_axis_angle) == near(0.2)
+    assert float(bearing.roller_half_angle) == near(0.02)
+    assert float(bearing.first_azimuth) == near(-30.0 * DEG)
+    ceramic = {"elastic_modulus": 205e9, "poisson_ratio": 0.3, "density": 6050.0}
+    assert fields(bearing.material) == near(ceramic)
+    # What is not said of a material is that of steel.
+    rings = {"elastic_modulus": 200e9, "poisson_ratio": 0.3, "density": 7700.0}
+    assert fields(bearing.ring_material) == near(rings)
+    assert float(everything.speed.inner) == near(np.pi)
+    assert float(everything.speed.outer) == near(-2.0 * np.pi)
+
+
+def test_profiles_of_roller_and_raceways(everything):
+    bearing = everything.element.bearing
+    assert type(bearing.roller_profile) is bj.scene.read.Lundberg
+    lundberg = {"design_load": 2000.0, "contact_modulus": 1e11}
+    assert fields(bearing.roller_profile) == near(lundberg)
+    assert type(bearing.outer_raceway_profile) is bj.CircularCrown
+    assert fields(bearing.outer_raceway_profile) == near({"crown_radius": 4.0})
+    table = bearing.inner_raceway_profile
+    assert type(table) is bj.Tabulated
+    assert np.asarray(table.positions) == near(np.array([-6e-3, 0.0, 6e-3]))
+    assert np.asarray(table.drops) == near(np.array([4e-6, 0.0, 5e-6]))
+
+
+def test_ribs_one_by_one(everything):
+    ribs = everything.element.bearing.ribs
+    assert ribs.present == ("outer_plus", "inner_minus")
+    inner = {"end_radius": 0.09, "contact_height": 1.2e-3, "axial_gap": -2e-6}
+    outer = {"end_radius": 0.08, "contact_height": 1e-3, "axial_gap": 0.0}
+    assert fields(ribs.inner_minus) == near(inner)
+    assert fields(ribs.outer_plus) == near(outer)
+
+
+def test_operation_and_numerics(everything):
+    assert everything.name == "mine"
+    assert everything.load == near((1.0, 2000.0, -3000.0, 4.0, 5e-3, 6000.0))
+    prescribed = {"uy": 7e-6, "gx": -2e-3, "gz": 0.5 * DEG}
+    assert everything.prescribed == near(prescribed)
+    assert everything.free == ("uz", "ux")
+    assert (everything.fixed_ring, everything.moving_ring) == ("inner", "outer")
+    assert everything.tolerance == 1e-8
+    assert everything.points == 33
+    element = everything.element
+    assert type(element.line_law) is bj.ISO16281
+    assert type(element.kinematics) is bj.Finite
+    assert element.quadrature == bj.ContactMapped(12)
+    assert type(element.equilibrium) is bj.BFGS
+
+
+def test_apexes_apart_are_a_warning_of_the_scene(everything):
+    assert len(everything.warnings) == 1
+    assert "apexes" in everything.warnings[0]
+
+
+def test_line_constant_overrides_the_law():
+    setting = "contact.line_constant=35948 N/mm^(19/9)"
+    law = bj.read_scene("cylindrical_rig", [setting]).element.line_law
+    assert type(law) is bj.LineConstant
+    assert float(law.value) == near(35948.0 * 1e3 ** (19.0 / 9.0))
+
+
+@pytest.mark.parametrize(
+    "arrangement, present",
+    [
+        ("N", ("inner_minus", "inner_plus")),
+        ("NU", ("outer_minus", "outer_plus")),
+        ("NJ", ("outer_minus", "outer_plus", "inner_minus")),
+    ],
+)
+def test_arrangements(arrangement, present):
+    settings = [f"bearing.arrangement={arrangement}"]
+    ribs = bj.read_scene("cylindrical_ribs", settings).element.bearing.ribs
+    assert ribs.present == present
+
+
+def test_settings_are_toml_or_bare_text():
+    settings = [
+        "operating.load.Fy=-6 kN",
+        'operating.load.Mx = "3 N m"',
+        "operating.load.Fy=-7 kN",
+        "operating.prescribed={uz='2 um'}",
+        'operating.free=["ux", "uy"]',
+        "numerics.points=40",
+        "numerics.tolerance=1e-6",
+        "bearing.first_azimuth=0 deg",
+    ]
+    scene = bj.read_scene("cylindrical_rig", settings)
+    # The last word counts, the other components stay.
+    assert scene.load == near((0.0, -7000.0, 0.0, 3.0, 0.0, 0.0))
+    assert scene.prescribed == near({"uz": 2e-6})
+    assert scene.free == ("ux", "uy")
+    assert scene.element.quadrature == bj.Midpoint(40)
+    assert scene.tolerance == 1e-6
+    assert float(scene.element.bearing.first_azimuth) == 0.0
+    # The shipped scene is as it was.
+    assert bj.read_scene("cylindrical_rig").load[1] == -10600.0
+
+
+def test_speeds_of_zero_are_no_speed():
+    assert bj.read_scene("tapered", ["operating.inner_speed=0 rpm"]).speed is None
+
+
+def test_comments_and_least_scene(tmp_path):
+    text = """
+    [bearing] # all the rest by default
+    type = "cylindrical_roller"
+    n_rollers = 1
+    pitch_diameter = "40 mm"
+    roller_diameter = "5 mm"
+    roller_length = "5 mm"
+    """
+    scene = read_text(tmp_path, text)
+    assert scene.load == (0.0,) * 6
+    assert type(scene.element.bearing.roller_profile) is bj.Straight
+    assert scene.free is None and scene.prescribed == {}
+
+
+def test_reading_needs_float64():
+    with jax.enable_x64(False), pytest.raises(bj.SceneError, match="float64"):
+        bj.read_scene("cylindrical_rig")
+
+
+# The published rig: force on the outer ring [N], then for each of three moments at
+# 600 N [N mm]: moment [N mm], displacement [um], tilt [mrad].
+STARTS = (4440, 0, -8530)
+TABLE = {
+    600: ((4440, -1.026, 0.7606), (0, -1.451, 0.0), (-8530, -0.938, -1.1882)),
+    2600: ((4040, -4.774, 0.4640), (-400, -4.930, -0.0422), (-8930, -4.114, -1.1414)),
+    6600: (
+        (3240, -10.573, 0.2830),
+        (-1200, -10.580, -0.1047),
+        (-9730, -10.475, -0.8653),
+    ),
+    10600: (
+        (2440, -15.811, 0.2014),
+        (-2000, -15.812, -0.1651),
+        (-10530, -15.764, -0.8715),
+    ),
+    14600: (
+        (1640, -20.843, 0.1307),
+        (-2800, -20.841, -0.2231),
+        (-11330, -20.805, -0.9042),
+    ),
+    20600: (
+        (440, -28.139, 0.0338),
+        (-4000, -28.136, -0.3073),
+        (-12530, -28.108, -0.9634),
+    ),
+}
+LOADS = [(force, *row) for force, rows in TABLE.items() for row in rows]
+HALF_DIGIT = {"um": 0.5e-3, "mrad": 0.5e-4}
+
+
+def test_moment_of_the_published_loads():
+    """The force acts 0.2 mm off the middle of the row."""
+    for force, rows in TABLE.items():
+        assert [row[0] for row in rows] == [m - (force - 600) // 5 for m in STARTS]
+
+
+@pytest.mark.parametrize("force, moment, uy, gx", LOADS)
+def test_published_displacements(force, moment, uy, gx):
+    """The paper's numerics: midpoint slices and BFGS."""
+    scene = bj.read_scene(
+        "cylindrical_rig",
+        [
+            "numerics.quadrature=midpoint",
+            "numerics.points=20",
+            "numerics.equilibrium=bfgs",
+            f'operating.load={{Fy = "{-force} N", Mx = "{moment} N mm"}}',
+        ],
+    )
+    assert scene.load == near((0.0, -force, 0.0, 1e-3 * moment, 0.0, 0.0))
+    solution = bj.run_scene(scene)
+    assert bool(solution.converged)
+    motion = np.asarray(solution.displacement)
+    assert np.all(motion[6:] == 0.0)
+    allowed = PUBLISHED * abs(uy) + HALF_DIGIT["um"]
+    assert 1e6 * motion[1] == pytest.approx(uy, rel=0.0, abs=allowed)
+    allowed = PUBLISHED * abs(gx) + HALF_DIGIT["mrad"] if gx else 1e-6
+    assert 1e3 * motion[3] == pytest.approx(gx, rel=0.0, abs=allowed)
