@@ -214,8 +214,8 @@ def test_nan_is_not_apart(solved):
 
 
 def line_of(roller, raceway):
-    numbers = (jnp.asarray(v) for v in (1.3e11, 0.01372, 0.014))
-    return LineContact(*numbers, roller, raceway)
+    constant, length, diameter = (jnp.asarray(v) for v in (1.3e11, 0.01372, 0.014))
+    return LineContact(constant, length, diameter, roller, raceway)
 
 
 def test_drops_add_up():
