@@ -126,13 +126,12 @@ def _squares(jacobian):
         (term, n n): the Hessian is Σ stiffness · these.
     """
 
-    def product(i, j):
-        outer = jacobian[i][:, None] * jacobian[j][None, :]
-        return (outer if i == j else outer + outer.T).reshape(-1)
-
-    pairs = [(0, 0), (0, 1), (1, 1), (2, 2), (2, 3), (3, 3)]
-    pairs += [(k, k) for k in range(4, jacobian.shape[0])]
-    return jnp.stack([product(i, j) for i, j in pairs])
+    first, second = [0, 0, 1, 2, 2, 3], [0, 1, 1, 2, 3, 3]
+    ribs = list(range(4, jacobian.shape[0]))
+    twice = jnp.asarray(np.not_equal(first + ribs, second + ribs) + 1.0, jacobian.dtype)
+    rows = [jnp.stack([jacobian[i] for i in order + ribs]) for order in (first, second)]
+    outer = twice[:, None, None] * rows[0][:, :, None] * rows[1][:, None, :]
+    return (0.5 * (outer + outer.transpose(0, 2, 1))).reshape(outer.shape[0], -1)
 
 
 def rib_density(

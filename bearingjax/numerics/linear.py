@@ -9,33 +9,39 @@ from jaxtyping import Array, Float
 
 
 def dot(a: Float[Array, " n"], b: Float[Array, " n"]) -> Float[Array, ""]:
-    """a · b, written out: under `vmap` it fuses with what surrounds it.
+    """a · b.
 
     Args:
         a, b: Vectors of a few components (n,) [any unit].
     """
-    total = a[0] * b[0]
-    for i in range(1, a.shape[0]):
-        total = total + a[i] * b[i]
-    return total
+    return _sum(a * b)
 
 
 def norm(a: Float[Array, " n"]) -> Float[Array, ""]:
-    """|a|, written out [unit of a]."""
+    """|a| [unit of a]."""
     return jnp.sqrt(dot(a, a))
 
 
 def quadratic(matrix: Float[Array, "n n"], a: Float[Array, " n"]) -> Float[Array, ""]:
-    """aᵀ M a, written out."""
-    return dot(a, jnp.stack([dot(row, a) for row in matrix]))
+    """aᵀ M a, for a symmetric M."""
+    return dot(a, _sum(matrix * a[:, None]))
 
 
 def trace(matrix: Float[Array, "n n"]) -> Float[Array, ""]:
-    """Sum of the diagonal, written out."""
-    total = matrix[0, 0]
-    for i in range(1, matrix.shape[0]):
-        total = total + matrix[i, i]
-    return total
+    """Sum of the diagonal."""
+    return _sum(_diagonal(matrix))
+
+
+def _sum(terms: Float[Array, "n ..."]) -> Float[Array, "..."]:
+    """Sum over the first axis; up to three terms written out, so that it fuses."""
+    n = terms.shape[0]
+    if n > 3:
+        return jnp.sum(terms, axis=0)
+    return sum((terms[i] for i in range(1, n)), start=terms[0])
+
+
+def _diagonal(matrix: Float[Array, "n n"]) -> Float[Array, " n"]:
+    return jnp.stack([matrix[i, i] for i in range(matrix.shape[0])])
 
 
 def solve_symmetric(
@@ -64,7 +70,7 @@ def smallest_pivot(matrix: Float[Array, "n n"]) -> Float[Array, ""]:
     Negative beyond round-off: the matrix is indefinite.
     """
     n = matrix.shape[-1]
-    diagonal = jnp.diagonal(matrix)
+    diagonal = _diagonal(matrix)
     negative = jnp.any(diagonal < 0)
     scale = _scale(diagonal)
     scaled = matrix * scale[:, None] * scale[None, :]
@@ -89,8 +95,9 @@ def _scale(diagonal):
 def _factorise(matrix):
     n = matrix.shape[-1]
     floor = 8 * jnp.finfo(matrix.dtype).eps
-    scale = _scale(jnp.stack([matrix[i, i] for i in range(n)]))
-    a = [[matrix[i, j] * (scale[i] * scale[j]) for j in range(i + 1)] for i in range(n)]
+    scale = _scale(_diagonal(matrix))
+    scaled = matrix * (scale[:, None] * scale[None, :])
+    a = [[scaled[i, j] for j in range(i + 1)] for i in range(n)]
     lower = [[None] * n for _ in range(n)]
     pivots = []
     for j in range(n):

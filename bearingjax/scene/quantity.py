@@ -30,7 +30,11 @@ class SceneError(ValueError):
 def _units():
     import pint
 
-    return pint.UnitRegistry()
+    try:
+        # Read definitions are kept in pint's own cache folder: a third of the time.
+        return pint.UnitRegistry(cache_folder=":auto:")
+    except OSError:
+        return pint.UnitRegistry()
 
 
 def to_si(text: object, kind: str) -> float:
