@@ -30,7 +30,21 @@ def as_real(value) -> Array:
         return value
     if value is None or isinstance(value, str | bytes | bool):
         return value  # type: ignore[return-value]
-    return jnp.asarray(value, dtype=float)
+    return as_array(value, jax.dtypes.canonicalize_dtype(float))
+
+
+def as_array(value, dtype) -> Array:
+    """`jnp.asarray`; what holds no JAX array is cast by NumPy, which compiles nothing.
+
+    Args:
+        value: Number or array-like [any unit].
+        dtype: Of the result.
+    """
+    if not any(isinstance(leaf, jax.Array) for leaf in jax.tree.leaves(value)):
+        value = np.asarray(value)
+        if value.dtype.kind in "iuf":
+            value = value.astype(dtype)
+    return jnp.asarray(value, dtype=dtype)
 
 
 def as_count(value):

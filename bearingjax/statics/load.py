@@ -20,7 +20,7 @@ from ..element.inertia import Speed
 from ..numerics.implicit import attach, stop
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
-from ..numerics.types import Scalar
+from ..numerics.types import Scalar, as_array
 from .solution import Solution, Stats, describe, message
 
 Vector = Float[Array | np.ndarray, "6"] | Sequence[float | int]
@@ -103,9 +103,7 @@ def solve_load(
     fixed = _six("fixed_displacement", fixed_displacement, dtype)
     prescribed = {} if prescribed is None else dict(prescribed)
     _check_names("prescribed", prescribed)
-    given = jnp.stack(
-        [jnp.asarray(prescribed.get(name, 0.0), dtype=dtype) for name in FREEDOMS]
-    )
+    given = _six("prescribed", [prescribed.get(f, 0.0) for f in FREEDOMS], dtype)
     default_free = free is None
     if free is None:
         free = [f for f in restrained_freedoms(element.bearing) if f not in prescribed]
@@ -291,7 +289,7 @@ def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Array:
 
 
 def _six(name, value, dtype):
-    array = jnp.zeros(6, dtype) if value is None else jnp.asarray(value, dtype=dtype)
+    array = as_array(np.zeros(6) if value is None else value, dtype)
     if array.shape != (6,):
         order = LOADS if name == "load" else FREEDOMS
         raise ValueError(
