@@ -81,7 +81,7 @@ class Ribs(eqx.Module):
                 f" {', '.join(ARRANGEMENTS)}."
             )
         if axial_internal_clearance is not None:
-            gap = 0.25 * as_real(axial_internal_clearance)
+            gap = as_real(0.25 * axial_internal_clearance)
             rib = Rib(rib.end_radius, rib.contact_height, gap)
         return cls(**dict.fromkeys(ARRANGEMENTS[name], rib))
 
