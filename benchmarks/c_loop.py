@@ -16,6 +16,42 @@ over (constants folded), as is and compiled ahead of time; and one bearing's sha
 call with 256 motions, in chunks of 32, where the overhead of a call is shared.
 
 Run: python benchmarks/c_loop.py [--json] [--smoke]
+
+Last run:
+
+radial: most steps 0 (JAX 0)
+                                     hot, µs         cold, µs         ratio to C
+                                 min  median      min  median    hot  cold  call
+C loop                           4.3     4.3      9.4    11.1    1.0   1.0   0.3
+C through ctypes                 4.6     4.7     18.4    38.2    1.1   3.5   1.0
+filter_jit(element, q)         213.8   247.4    803.1  2083.6   57.7 188.4  54.6
+jit(q), element closed over    169.4   216.0    391.8   624.8   50.3  56.5  16.4
+the same, ahead of time        188.7   209.8    343.1   588.4   48.9  53.2  15.4
+one of 256 in a call            45.1    49.1     46.7    51.8   11.4   4.7   1.4
+
+misaligned: most steps 0 (JAX 0)
+                                     hot, µs         cold, µs         ratio to C
+                                 min  median      min  median    hot  cold  call
+C loop                           4.2     4.2      7.2    10.3    1.0   1.0   0.3
+C through ctypes                 4.5     4.5     15.8    34.7    1.1   3.4   1.0
+filter_jit(element, q)         211.5   247.9    795.8  2140.7   59.3 207.2  61.8
+jit(q), element closed over    156.2   207.4    352.0   514.1   49.6  49.8  14.8
+the same, ahead of time        172.2   206.6    309.7   556.4   49.4  53.9  16.1
+one of 256 in a call            44.9    46.5     45.5    47.9   11.1   4.6   1.4
+
+misaligned, raceways unlike: most steps 4 (JAX 4)
+                                     hot, µs         cold, µs         ratio to C
+                                 min  median      min  median    hot  cold  call
+C loop                          18.1    18.7     22.7    25.3    1.0   1.0   0.5
+C through ctypes                18.5    19.4     34.3    53.1    1.0   2.1   1.0
+filter_jit(element, q)         419.1   504.2   1055.2  2486.4   27.0  98.1  46.8
+jit(q), element closed over    317.9   399.1    596.2   927.7   21.3  36.6  17.5
+the same, ahead of time        328.2   382.6    562.7   818.5   20.5  32.3  15.4
+one of 256 in a call           162.3   180.9    161.3   191.2    9.7   7.5   3.6
+
+goal: hot ≤ 5, cold ≤ 8
+
+force and stiffness equal those of the C loop to 3e-16; AMD EPYC, 2 cores; one core used
 """
 
 import argparse

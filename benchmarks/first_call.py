@@ -12,23 +12,23 @@ Run: python benchmarks/first_call.py [--json] [--smoke] [--repeats N]
 Last run:
 
 seconds                    scene             median    min    max    CPU  goal
-import jax                                     0.53   0.46   0.74   0.56
-import bearingjax                              0.38   0.26   0.42   0.29
-bearing and element                            0.12   0.10   0.13   0.10
-evaluate                                       2.87   2.53   3.98   3.97
+import jax                                     0.41   0.39   0.53   0.51
+import bearingjax                              0.28   0.24   0.31   0.28
+bearing and element                            0.10   0.09   0.12   0.10
+evaluate                                       2.46   2.13   2.66   3.68
 again                                          0.00   0.00   0.00   0.00
-first force and stiffness                      3.69   3.58   5.26   4.92   4.0
-solve, first               cylindrical_rig     8.73   6.56  14.18   8.93  10.0
-solve, second              cylindrical_rig     2.68   2.61   4.78   2.68   2.5  missed
-solve, third               cylindrical_rig     3.23   3.08   4.40   3.06   2.5  missed
-solve, first               cylindrical_ribs   13.63  12.17  15.52  12.83  10.0  missed
-solve, second              cylindrical_ribs    3.30   3.24   5.74   3.25   2.5  missed
-solve, third               cylindrical_ribs    3.41   3.10   5.87   3.41   2.5  missed
-solve, first               tapered             8.68   8.17  19.79  11.22  10.0
-solve, second              tapered             3.32   3.13   3.47   3.29   2.5  missed
-solve, third               tapered             3.52   3.34   3.65   3.64   2.5  missed
+first force and stiffness                      3.27   2.85   3.62   4.58   4.0
+solve, first               cylindrical_rig     5.50   4.81   6.58   7.99  10.0
+solve, second              cylindrical_rig     2.04   1.83   2.63   2.14   2.5
+solve, third               cylindrical_rig     2.11   1.88   2.44   2.21   2.5
+solve, first               cylindrical_ribs    6.75   6.29   7.66   9.37  10.0
+solve, second              cylindrical_ribs    2.41   2.35   2.86   2.54   2.5
+solve, third               cylindrical_ribs    2.53   2.34   2.67   2.62   2.5  missed
+solve, first               tapered             7.22   6.65   7.39  10.32  10.0
+solve, second              tapered             2.44   2.31   2.71   2.55   2.5
+solve, third               tapered             2.46   2.44   2.51   2.57   2.5
 
-3 repeats; AMD EPYC, 2 cores, load average before 2.8
+5 repeats; AMD EPYC, 2 cores, load average before 1.0
 """
 
 import argparse

@@ -1,6 +1,9 @@
 """Strict JAX for every test: float64, no silent promotion, typed calls."""
 
+import gc
+
 import jax
+import pytest
 from jaxtyping import install_import_hook
 
 jax.config.update("jax_enable_x64", True)
@@ -9,3 +12,12 @@ jax.config.update("jax_numpy_dtype_promotion", "strict")
 
 # Shapes and dtypes of annotated functions are checked at every call of the tests.
 install_import_hook("bearingjax", "beartype.beartype").__enter__()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _drop_compiled_programs():
+    """Every compiled program holds memory maps, of which Linux grants 65 530 a process;
+    beyond them the compiler dies of a segmentation fault."""
+    yield
+    jax.clear_caches()
+    gc.collect()

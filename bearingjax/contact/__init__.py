@@ -1,5 +1,10 @@
 """Two bodies, one contact: line contact laws, Hertz point contact, pressures."""
 
+from .hertz import Ellipse as Ellipse
+from .hertz import Shear as Shear
+from .hertz import axis_stress as axis_stress
+from .hertz import ellipse as ellipse
+from .hertz import shear_below as shear_below
 from .hertz import sphere_constant as sphere_constant
 from .hertz import sphere_peak_pressure as sphere_peak_pressure
 from .line import ISO16281 as ISO16281

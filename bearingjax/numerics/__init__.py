@@ -1,5 +1,7 @@
-"""Numerical tools without bearing words: powers, quadrature, minimisers."""
+"""Numerical tools without bearing words: powers, quadrature, minimisers and more."""
 
+from .elliptic import carlson_rd as carlson_rd
+from .elliptic import complete as complete
 from .implicit import attach as attach
 from .implicit import attach_roots as attach_roots
 from .linear import smallest_pivot as smallest_pivot

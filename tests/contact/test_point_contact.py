@@ -1,0 +1,326 @@
+"""Elliptic Hertz contact: exact tables, limits, derivatives, brute-force stresses."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tolerances import DIFFERENCE, ROUNDING
+
+from bearingjax.contact import (
+    axis_stress,
+    ellipse,
+    shear_below,
+    sphere_constant,
+    sphere_peak_pressure,
+)
+
+# F(ρ), a*, b*, δ*, κ: exact columns to nine decimals, computed with SciPy's integrals;
+# the table itself is 6.1 of Harris & Kotzalas, Essential Concepts (2006).
+EXACT = np.array(
+    [
+        [0.0, 1.0, 1.0, 1.0, 1.0],
+        [0.1075, 1.075967508, 0.931799060, 0.997419492, 1.154720535],
+        [0.3204, 1.262318840, 0.811434216, 0.976146427, 1.555663805],
+        [0.4795, 1.455518248, 0.727808621, 0.943197870, 1.999863984],
+        [0.5916, 1.643970620, 0.668648399, 0.907673730, 2.458647358],
+        [0.6716, 1.825782678, 0.624468567, 0.873287205, 2.923738318],
+        [0.7332, 2.011441657, 0.588065652, 0.839411393, 3.420437243],
+        [0.7948, 2.265459948, 0.547984324, 0.796052272, 4.134169260],
+        [0.83495, 2.494344271, 0.518604456, 0.760205630, 4.809723947],
+        [0.87366, 2.800317230, 0.486269448, 0.716885953, 5.758776834],
+        [0.90999, 3.232727882, 0.449902995, 0.663629203, 7.185388674],
+        [0.93657, 3.737768514, 0.416644474, 0.611174649, 8.971122250],
+        [0.95738, 4.394429221, 0.383020176, 0.555095767, 11.473101157],
+        [0.9729, 5.266708418, 0.349046210, 0.496035264, 15.088857187],
+        [0.983797, 6.447488185, 0.314959731, 0.435176163, 20.470833417],
+        [0.990902, 8.062339765, 0.281364883, 0.374497087, 28.654392359],
+        [0.995112, 10.221504308, 0.249735638, 0.317562505, 40.929297799],
+        [0.9973, 12.788797101, 0.223197002, 0.270546646, 57.298247667],
+        [0.9981847, 14.838749826, 0.207181298, 0.242739219, 71.622052469],
+        [0.9989156, 17.974224441, 0.188226085, 0.210579891, 95.492739241],
+        [0.9994785, 23.552169716, 0.164420346, 0.171666251, 143.243645175],
+        [0.9998527, 37.383163018, 0.130500056, 0.119954950, 286.460896852],
+    ]
+)
+# Radius ratio Ry/Rx and exact κ: Brewe & Hamrock's cases, computed with SciPy.
+RADII = np.array(
+    [
+        [1.0001, 1.00006667],
+        [1.5, 1.31010296],
+        [2.0, 1.58580212],
+        [3.0, 2.07199013],
+        [5.0, 2.89018104],
+        [8.0, 3.90652895],
+        [10.0, 4.49944730],
+        [15.0, 5.79964974],
+        [20.0, 6.92868096],
+        [30.0, 8.87618309],
+        [50.0, 12.07114678],
+        [70.0, 14.74297369],
+        [100.0, 18.18710300],
+    ]
+)
+MODULUS = jnp.asarray(113.2e9)
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_exact_table(swapped):
+    """Table 6.1 with its exact columns, whichever axis is the long one."""
+    difference, long, short, approach, kappa = EXACT.T
+    total = 120.0
+    curvatures = 0.5 * total * np.stack([1.0 + difference, 1.0 - difference])
+    if swapped:
+        curvatures = curvatures[::-1]
+    contact = ellipse(*jnp.asarray(curvatures), MODULUS)
+    load = jnp.asarray(2.0 / 3.0 * MODULUS * total * 1e-9)  # 3Q/(2 E* Σρ) = 1 mm³
+    axes = contact.semi_axes(load)
+    a, b = axes if swapped else axes[::-1]
+    # Nine printed decimals.
+    np.testing.assert_allclose(a / 1e-3, long, rtol=1e-8)
+    np.testing.assert_allclose(b / 1e-3, short, rtol=1e-8)
+    got = contact.approach(load) / (0.5e-6 * total)
+    np.testing.assert_allclose(got, approach, rtol=1e-8)
+    np.testing.assert_allclose(a / b, kappa, rtol=1e-8)
+    peak = contact.peak_pressure(load)
+    np.testing.assert_allclose(peak, 1.5 * load / (np.pi * a * b), rtol=ROUNDING)
+
+
+def test_radius_ratios():
+    """Ellipticity for Brewe & Hamrock's ratios of radii."""
+    ratio, kappa = RADII.T
+    got = 1.0 / ellipse(jnp.asarray(ratio), jnp.asarray(1.0), MODULUS).ratio
+    # Eight printed decimals.
+    np.testing.assert_allclose(got, kappa, atol=6e-9, rtol=0)
+
+
+def test_sphere():
+    """Equal curvatures: the closed form of the sphere, no 0/0."""
+    radius = jnp.asarray([1e-3, 0.2, 3.0])
+    contact = ellipse(1.0 / radius, 1.0 / radius, MODULUS)
+    want = sphere_constant(radius, MODULUS)
+    np.testing.assert_allclose(contact.constant, want, rtol=ROUNDING)
+    np.testing.assert_allclose(contact.ratio, 1.0, rtol=ROUNDING)
+    load = jnp.asarray(700.0)
+    np.testing.assert_allclose(
+        contact.peak_pressure(load),
+        sphere_peak_pressure(load, radius, MODULUS),
+        rtol=ROUNDING,
+    )
+    np.testing.assert_allclose(contact.load(contact.approach(load)), load, rtol=1e-12)
+
+
+def test_mirror():
+    """The other axis first: the same contact, over twelve decades of curvature."""
+    curvature, one = jnp.asarray(np.geomspace(1e-6, 1e6, 41)), jnp.ones(41)
+    soft = jnp.asarray(1.0)
+    first, second = ellipse(curvature, one, soft), ellipse(one, curvature, soft)
+    np.testing.assert_allclose(first.constant, second.constant, rtol=ROUNDING)
+    np.testing.assert_allclose(first.rolling, second.transverse, rtol=ROUNDING)
+    np.testing.assert_allclose(first.ratio * second.ratio, 1.0, rtol=ROUNDING)
+
+
+def test_line_limit():
+    """A long ellipse has the pressure of the line contact under its middle.
+
+    Per length 3Q/(4a)·... the Hertz strip: b² = 4 q/(π E* ρ) with q = π b p0/2.
+    """
+    contact = ellipse(jnp.asarray(100.0), jnp.asarray(1e-6), MODULUS)
+    load = jnp.asarray(1e4)
+    b, _ = contact.semi_axes(load)
+    peak = contact.peak_pressure(load)
+    strip = MODULUS * b * 100.0 / 2.0
+    # The ellipse is 2e5 times longer than wide: the strip but for its square.
+    np.testing.assert_allclose(peak, strip, rtol=1e-6)
+
+
+def test_derivatives_with_radii():
+    """Every output against central differences, exactly at the sphere as well."""
+
+    def outputs(curvatures):
+        contact = ellipse(curvatures[0], curvatures[1], MODULUS)
+        return jnp.log(jnp.stack(contact))
+
+    for point in ([80.0, 80.0], [80.0, 79.999999], [80.0, 5.0], [3.0, 90.0]):
+        x = jnp.asarray(point)
+        forward, reverse = jax.jacfwd(outputs)(x), jax.jacrev(outputs)(x)
+        np.testing.assert_allclose(forward, reverse, rtol=ROUNDING, atol=ROUNDING)
+        second = jax.hessian(outputs)(x)
+        for k in range(2):
+            h = 1e-5 * point[k] * np.eye(2)[k]
+            rate = (outputs(x + h) - outputs(x - h)) / (2e-5 * point[k])
+            np.testing.assert_allclose(forward[:, k], rate, rtol=1e-8, atol=1e-12)
+            jacobian = jax.jacfwd(outputs)
+            rate = (jacobian(x + h) - jacobian(x - h)) / (2e-5 * point[k])
+            np.testing.assert_allclose(
+                second[:, :, k], rate, rtol=DIFFERENCE, atol=1e-10
+            )
+
+
+def test_homogeneous():
+    """Euler: scaling both curvatures by s scales K_h by s^(-1/2), E* linearly."""
+
+    def constant(s, e):
+        return ellipse(70.0 * s, 4.0 * s, e).constant
+
+    one, e = jnp.asarray(1.0), MODULUS
+    value = constant(one, e)
+    slopes = jax.grad(constant, argnums=(0, 1))(one, e)
+    np.testing.assert_allclose(slopes[0], -0.5 * value, rtol=ROUNDING)
+    np.testing.assert_allclose(slopes[1] * e, value, rtol=ROUNDING)
+
+
+def test_open_and_impossible():
+    """No load: zeros with zero slopes. Too tight a groove: NaN, and NaN stays NaN."""
+    contact = ellipse(jnp.asarray(70.0), jnp.asarray(4.0), MODULUS)
+    for quantity in (contact.approach, contact.load, contact.peak_pressure):
+        value, slope = jax.value_and_grad(quantity)(jnp.asarray(0.0))
+        assert value == 0.0 and slope == 0.0
+        assert np.isnan(quantity(jnp.asarray(jnp.nan)))
+    for rolling, transverse in ((70.0, 0.0), (70.0, -1.0), (-1.0, 4.0), (np.nan, 4.0)):
+        bad = ellipse(jnp.asarray(rolling), jnp.asarray(transverse), MODULUS)
+        assert all(np.isnan(x) for x in bad)
+
+
+def test_jit_vmap():
+    """One program for many contacts gives what one contact gives."""
+    rolling, transverse = jnp.asarray([[60.0, 90.0, 5.0], [60.0, 3.0, 80.0]])
+    together = jax.jit(ellipse)(rolling, transverse, MODULUS)
+    batched = jax.vmap(lambda x, y: ellipse(x, y, MODULUS))(rolling, transverse)
+    for k in range(3):
+        alone = ellipse(rolling[k], transverse[k], MODULUS)
+        for a, b, c in zip(together, batched, alone, strict=True):
+            np.testing.assert_allclose([a[k], b[k]], c, rtol=ROUNDING)
+
+
+def test_axis_stress_circle():
+    """Johnson (3.45): below a circle, closed form."""
+    depth = np.linspace(0.0, 4.0, 41)
+    depth[0] = 1e-12
+    for poisson in (0.0, 0.28, 0.5):
+        x, y, z = axis_stress(jnp.ones(41), jnp.asarray(depth), jnp.asarray(poisson))
+        radial = -(1 + poisson) * (1 - depth * np.arctan(1 / depth))
+        radial += 0.5 / (1 + depth**2)
+        np.testing.assert_allclose(x, radial, atol=ROUNDING)
+        np.testing.assert_allclose(y, radial, atol=ROUNDING)
+        np.testing.assert_allclose(z, -1 / (1 + depth**2), rtol=ROUNDING)
+
+
+def test_axis_stress_line():
+    """Below a long ellipse: the Hertz strip (Johnson 4.46), plane strain along it."""
+    ratio, poisson = 1e-9, 0.3
+    depth = np.array([0.2, 0.786, 2.0])
+    x, y, z = axis_stress(
+        jnp.asarray(ratio), jnp.asarray(ratio * depth), jnp.asarray(poisson)
+    )
+    root = np.sqrt(1 + depth**2)
+    across = -((1 + 2 * depth**2) / root - 2 * depth)
+    np.testing.assert_allclose(x, across, rtol=1e-8)
+    np.testing.assert_allclose(z, -1 / root, rtol=1e-8)
+    np.testing.assert_allclose(y, poisson * (across - 1 / root), rtol=1e-8)
+
+
+def test_axis_stress_surface():
+    """In the surface: σx = -2ν - (1 - 2ν) a/(a + b) (Johnson 3.68); axes swapped."""
+    ratio, poisson = jnp.asarray([0.1, 0.7, 1.0, 4.0]), jnp.asarray(0.3)
+    x, y, z = axis_stress(ratio, jnp.zeros(4), poisson)
+    np.testing.assert_allclose(x, -(0.6 + 0.4 / (1 + ratio)), rtol=ROUNDING)
+    np.testing.assert_allclose(y, -(0.6 + 0.4 * ratio / (1 + ratio)), rtol=ROUNDING)
+    np.testing.assert_allclose(z, -1.0, rtol=ROUNDING)
+    depth = jnp.asarray([0.2, 0.5, 1.0, 3.0])
+    there = axis_stress(ratio, depth, poisson)
+    swapped = axis_stress(1 / ratio, depth / ratio, poisson)
+    np.testing.assert_allclose(there[0], swapped[1], atol=ROUNDING)
+    np.testing.assert_allclose(there[1], swapped[0], atol=ROUNDING)
+
+
+def test_greatest_shear():
+    """0.310 p0 at 0.481 a below a circle, 0.300 p0 at 0.786 b below a line, and a scan.
+
+    Johnson (1985), sections 3.4, 4.2 (ν = 0.3).
+    """
+    ratio = jnp.asarray([1e-5, 0.05, 0.2, 0.5, 0.8, 1.0, 1.6, 12.0])
+    for poisson in (0.25, 0.3, 0.5):
+        shear = shear_below(ratio, jnp.asarray(poisson))
+        narrow = np.minimum(np.asarray(ratio), 1 / np.asarray(ratio))
+        depth = np.linspace(0.01, 2.0, 20001)
+        for k, r in enumerate(narrow):
+            stress = axis_stress(
+                jnp.asarray(r), jnp.asarray(r * depth), jnp.asarray(poisson)
+            )
+            x, y, z = map(np.asarray, stress)
+            tau = 0.5 * (np.maximum(np.maximum(x, y), z) - np.minimum(z, y))
+            best = tau.argmax()
+            # A maximum: quadratic in the spacing of the scan.
+            np.testing.assert_allclose(shear.greatest[k], tau[best], rtol=1e-7)
+            assert abs(shear.depth[k] - depth[best]) < 1.1e-4
+    shear = shear_below(ratio, jnp.asarray(0.3))
+    np.testing.assert_allclose(shear.greatest[5], 0.310, atol=5e-4)
+    np.testing.assert_allclose(shear.depth[5], 0.481, atol=5e-4)
+    np.testing.assert_allclose(shear.greatest[0], 0.300, atol=5e-4)
+    np.testing.assert_allclose(shear.depth[0], 0.786, atol=5e-4)
+
+
+def _orthogonal(ratio, x, z):
+    """τ_xz/p0 at (x, 0, z) by Boussinesq's τ = -3 P z² x/(2π r⁵), brute force.
+
+    Semi-axes: `ratio` along x (the rolling direction), 1 along y.
+    """
+    u, w = np.polynomial.legendre.leggauss(240)
+    # s = sin v: the edge of the ellipse, a square root, becomes smooth.
+    v = 0.5 * np.pi * u
+    s, weight = np.sin(v), 0.5 * np.pi * w * np.cos(v)
+    across = np.cos(v)[:, None] * s[None, :]
+    pressure = np.cos(v)[:, None] * np.cos(v)[None, :]
+    dx = x - ratio * s[:, None]
+    r5 = (dx**2 + across**2 + z * z) ** 2.5
+    area = ratio * weight[:, None] * (np.cos(v)[:, None] * weight[None, :])
+    return float(np.sum(area * pressure * 1.5 / np.pi * z * z * dx / r5))
+
+
+@pytest.mark.parametrize("ratio", [0.15, 0.6, 1.0, 2.0])
+def test_orthogonal_shear(ratio):
+    """Lundberg & Palmgren's closed form is the largest τ_xz of the whole section."""
+    scipy_optimize = pytest.importorskip("scipy.optimize")
+    shear = shear_below(jnp.asarray(ratio), jnp.asarray(0.3))
+    found = scipy_optimize.minimize(
+        lambda p: -abs(_orthogonal(ratio, ratio * p[0], ratio * p[1])),
+        [0.9, float(shear.orthogonal_depth) * 1.1],
+        method="Nelder-Mead",
+        options={"xatol": 1e-7, "fatol": 1e-12},
+    )
+    np.testing.assert_allclose(shear.orthogonal, -found.fun, rtol=1e-8)
+    # A maximum is flat: its place is good to the root of its value.
+    np.testing.assert_allclose(shear.orthogonal_depth, found.x[1], rtol=1e-3)
+
+
+def test_orthogonal_shear_by_hand():
+    """0.25 p0 at b/2 below a line, 0.214 p0 at 0.35 b below a circle."""
+    shear = shear_below(jnp.asarray([1e-7, 1.0]), jnp.asarray(0.3))
+    np.testing.assert_allclose(shear.orthogonal, [0.25, 0.2139], atol=5e-5)
+    np.testing.assert_allclose(shear.orthogonal_depth, [0.5, 0.3509], atol=5e-5)
+
+
+def test_shear_derivatives():
+    """Derivatives of the shear stresses with the ratio, by central differences."""
+
+    def outputs(ratio):
+        return jnp.stack(shear_below(ratio, jnp.asarray(0.3)))
+
+    for point in (0.1, 0.7, 3.0):
+        x = jnp.asarray(point)
+        rate = (outputs(x * 1.00001) - outputs(x * 0.99999)) / (2e-5 * point)
+        got = jax.jacfwd(outputs)(x)
+        np.testing.assert_allclose(got, rate, rtol=1e-7, atol=1e-10)
+    assert np.isfinite(jax.jacfwd(outputs)(jnp.asarray(1.0))).all()
+
+
+def test_float32():
+    """Single precision stays within a few of its roundings."""
+    rolling = jnp.asarray([70.0, 60.0, 3.0], jnp.float32)
+    transverse = jnp.asarray([4.0, 60.0, 80.0], jnp.float32)
+    modulus = MODULUS.astype(jnp.float32)
+    got = ellipse(rolling, transverse, modulus)
+    want = ellipse(rolling.astype(float), transverse.astype(float), MODULUS)
+    for a, b in zip(got, want, strict=True):
+        assert a.dtype == jnp.float32
+        np.testing.assert_allclose(a, b, rtol=5e-6)
