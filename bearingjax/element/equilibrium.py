@@ -98,7 +98,7 @@ def is_loose(
     guide = model.constants.guide
     contacts = pull - guide * x
     unbalanced = dot(contacts, contacts) >= (0.03 * load) ** 2
-    return unbalanced & (load <= 1e3 * guide * _size(model, x, magnitude))
+    return unbalanced & (load <= 100.0 * guide * _size(model, x, magnitude))
 
 
 def _size(model, x, magnitude):

@@ -112,8 +112,8 @@ class TrustRegionNewton(AbstractMinimiser):
 
     The shift bounds the step by the radius and vanishes with the gradient, so the
     end is quadratic; singular Hessians (open contacts) do no harm. A step is taken
-    if it lowers the energy, or at least halves the gradient where the energy is
-    lost in round-off.
+    if it lowers the energy, or still falls at its far end or at least halves the
+    gradient, where the energy is lost in round-off.
 
     Attributes:
         tolerance: |gradient| / scale at which the solve ends; `None` picks
@@ -190,9 +190,12 @@ class TrustRegionNewton(AbstractMinimiser):
             predicted = slope + 0.5 * quadratic(now.hessian, p)
             actual = new.value - now.value
             new_size = norm(new.gradient)
-            accept = first | searching | (actual <= 1e-4 * slope)
+            # Of a convex function: actual ≤ slope at the far end, where no round-off
+            # of the value can hide it.
+            fall = jnp.minimum(actual, dot(new.gradient, p))
+            accept = first | searching | (fall <= 1e-4 * slope)
             accept = accept | (new_size <= 0.5 * size)
-            good = (actual <= 0.7 * predicted) | (new_size <= 0.25 * size)
+            good = (fall <= 0.7 * predicted) | (new_size <= 0.25 * size)
             longer = jnp.maximum(state.radius, 6.0 * length)
             grown = jnp.where(good, longer, state.radius)
             # A step too long has met a stiff contact: Newton along the step, from its
