@@ -98,6 +98,8 @@ def is_loose(
     guide = model.constants.guide
     contacts = pull - guide * x
     unbalanced = dot(contacts, contacts) >= (0.03 * load) ** 2
+    # About 1e-8 N. With ten times this, rollers jump that matter to loads of 1e-3 N;
+    # with a tenth, some loose rollers do not come to rest (benchmarks/robust_*.py).
     return unbalanced & (load <= 100.0 * guide * _size(model, x, magnitude))
 
 
