@@ -192,10 +192,10 @@ class TrustRegionNewton(AbstractMinimiser):
             new_size = norm(new.gradient)
             # Of a convex function: actual ≤ slope at the far end, where no round-off
             # of the value can hide it.
-            fall = jnp.minimum(actual, dot(new.gradient, p))
-            accept = first | searching | (fall <= 1e-4 * slope)
+            change = jnp.minimum(actual, dot(new.gradient, p))
+            accept = first | searching | (change <= 1e-4 * slope)
             accept = accept | (new_size <= 0.5 * size)
-            good = (fall <= 0.7 * predicted) | (new_size <= 0.25 * size)
+            good = (change <= 0.7 * predicted) | (new_size <= 0.25 * size)
             longer = jnp.maximum(state.radius, 6.0 * length)
             grown = jnp.where(good, longer, state.radius)
             # A step too long has met a stiff contact: Newton along the step, from its
@@ -214,7 +214,9 @@ class TrustRegionNewton(AbstractMinimiser):
                     jnp.where(searching & (fall > 0), 4.0 * reach, 0.0),
                 )
             radius = jnp.where(first, state.radius, radius)
-            stalled = ~accept & (length <= 4 * eps * norm(state.x))
+            # Steps of round-off that no longer help.
+            settled = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
+            stalled = settled & ~first & ~searching
             rest = (radius, state.steps + 1.0, stalled, reach)
             taken = _pack(_State(state.x + p, new, *rest))
             stayed = _pack(_State(state.x, now, *rest))
