@@ -24,7 +24,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     _configure_jax()
     from .scene import SceneError
 
-    # Tracing makes many small objects; searching them for cycles takes a tenth of the
+    # Tracing makes many small objects; searching them for cycles takes a seventh of the
     # time of a command that ends before memory matters.
     collecting = gc.isenabled()
     gc.disable()

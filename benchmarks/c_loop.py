@@ -150,7 +150,7 @@ class CLoop:
         }
         self.force, self.stiffness = np.zeros(12), np.zeros((12, 12))
         self.steps = ctypes.c_int()
-        self.library = library
+        self.loop = library
         library.repeat.restype = ctypes.c_double
         self.design = ctypes.create_string_buffer(library.design_size())
         library.prepare(
@@ -168,7 +168,7 @@ class CLoop:
 
     def results(self, q):
         """Force [N, N m], stiffness and most steps of a roller."""
-        self.library.force_stiffness(*self.arguments(q))
+        self.loop.force_stiffness(*self.arguments(q))
         return self.force.copy(), self.stiffness.copy(), self.steps.value
 
 
@@ -234,7 +234,7 @@ def disagreement(el, reference, result):
 def timers(c, calls, batch, q):
     """Name -> (seconds per call for n calls in a block, seconds of one call)."""
     arguments = c.arguments(q)
-    repeat, single = c.library.repeat, c.library.force_stiffness
+    repeat, single = c.loop.repeat, c.loop.force_stiffness
 
     def own(n):
         return repeat(n, *arguments) / n

@@ -130,7 +130,7 @@ def axis_stress(
     Returns:
         σx, σy, σz over the peak pressure [1], compression negative.
 
-    Source: Johnson (1985), eq. (3.69) (Thomas & Hoersch 1930), with the factor 1/e²
+    Source: Thomas & Hoersch (1930) as in Johnson (1985), with the factor 1/e²
         divided out, incomplete integrals as Carlson's R_D.
     """
     z2, b2 = depth * depth, ratio * ratio

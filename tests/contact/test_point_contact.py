@@ -122,7 +122,7 @@ def test_mirror():
 def test_line_limit():
     """A long ellipse has the pressure of the line contact under its middle.
 
-    Per length 3Q/(4a)·... the Hertz strip: b² = 4 q/(π E* ρ) with q = π b p0/2.
+    The Hertz strip: p0 = E* b ρ/2, from b² = 4 q/(π E* ρ) and q = π b p0/2.
     """
     contact = ellipse(jnp.asarray(100.0), jnp.asarray(1e-6), MODULUS)
     load = jnp.asarray(1e4)
@@ -193,7 +193,7 @@ def test_jit_vmap():
 
 
 def test_axis_stress_circle():
-    """Johnson (3.45): below a circle, closed form."""
+    """Johnson (1985): below a circle, closed form."""
     depth = np.linspace(0.0, 4.0, 41)
     depth[0] = 1e-12
     for poisson in (0.0, 0.28, 0.5):
@@ -206,7 +206,7 @@ def test_axis_stress_circle():
 
 
 def test_axis_stress_line():
-    """Below a long ellipse: the Hertz strip (Johnson 4.46), plane strain along it."""
+    """Below a long ellipse: the Hertz strip (Johnson), plane strain along it."""
     ratio, poisson = 1e-10, 0.3
     depth = np.array([0.2, 0.786, 2.0])
     x, y, z = axis_stress(
@@ -220,7 +220,7 @@ def test_axis_stress_line():
 
 
 def test_axis_stress_surface():
-    """In the surface: σx = -2ν - (1 - 2ν) a/(a + b) (Johnson 3.68); axes swapped."""
+    """In the surface: σx = -2ν - (1 - 2ν) a/(a + b) (Johnson); axes swapped."""
     ratio, poisson = jnp.asarray([0.1, 0.7, 1.0, 4.0]), jnp.asarray(0.3)
     x, y, z = axis_stress(ratio, jnp.zeros(4), poisson)
     np.testing.assert_allclose(x, -(0.6 + 0.4 / (1 + ratio)), rtol=ROUNDING)
@@ -236,7 +236,7 @@ def test_axis_stress_surface():
 def test_greatest_shear():
     """0.310 p0 at 0.481 a below a circle, 0.300 p0 at 0.786 b below a line, and a scan.
 
-    Johnson (1985), sections 3.4, 4.2 (ν = 0.3).
+    Johnson (1985), ν = 0.3.
     """
     ratio = jnp.asarray([1e-5, 0.05, 0.2, 0.5, 0.8, 1.0, 1.6, 12.0])
     for poisson in (0.25, 0.3, 0.5):
