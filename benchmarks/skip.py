@@ -16,15 +16,15 @@ Last run:
 
                             loaded          hot, µs      ratio           trace compile
 variant                    rollers steps     min  median       kernels       s       s
-full                            14     4     411     470  1.00     204    0.80    3.54
-no speed                        14     4     404     474  0.98     200    0.85    3.42
-no ribs                         14     4     397     454  0.97     170    0.73    2.87
-no speed, no ribs               14     4     384     449  0.93     166    0.69    3.06
-  and few rollers loaded         3     3     335     394  0.82     166    0.73    2.68
-  and force only                14     4     362     429  0.88     145    0.72    2.41
-  and energy only               14     4     361     417  0.88     143    0.63    2.49
-force only                      14     4     380     441  0.92     172    0.82    2.94
-energy only                     14     4     380     447  0.92     172    0.74    2.92
+full                            14     4     376     429  1.00     199    0.80    2.16
+no speed                        14     4     372     418  0.99     195    0.73    2.35
+no ribs                         14     4     371     447  0.99     185    0.91    1.99
+no speed, no ribs               14     4     370     422  0.98     181    0.76    2.08
+  and few rollers loaded         3     3     323     383  0.86     181    0.87    2.17
+  and force only                14     4     354     380  0.94     155    0.69    1.62
+  and energy only               14     4     352     406  0.94     157    0.74    1.79
+force only                      14     4     373     420  0.99     172    0.74    1.92
+energy only                     14     4     383     433  1.02     175    0.78    1.95
 
 AMD EPYC
 """
