@@ -20,8 +20,7 @@ import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.element.energy import RollerModel, derivatives  # noqa: E402
-from bearingjax.element.equilibrium import is_loose, solve_roller  # noqa: E402
+from bearingjax.element.equilibrium import is_loose, solve_element  # noqa: E402
 from bearingjax.numerics.linear import solve_symmetric  # noqa: E402
 from bearingjax.numerics.minimise import AbstractMinimiser, Minimum  # noqa: E402
 
@@ -96,26 +95,22 @@ def run(count, solver, seed=0):
     rows = []
     for index, (name, bearing) in enumerate(designs().items()):
         element = bj.BearingElement(bearing)
-        constants = element.constants()
-        kinematics = element.kinematics
-        model = RollerModel(
-            constants, kinematics.prepare(constants), kinematics, element.quadrature
-        )
+        (model,) = element.models()
 
         @eqx.filter_jit
         def solve(model, rings):
             def one(rings):
                 magnitude = jnp.max(jnp.abs(rings[jnp.array([0, 1, 3, 4])]))
-                state = solve_roller(model, rings, None, magnitude, minimiser)
-                d = derivatives(model, rings, state.x)
-                loads = jnp.sum(d.raceway_load) + jnp.sum(d.rib_load)
+                state = solve_element(model, rings, magnitude, minimiser)
+                d = model.derivatives(rings, state.x)
+                loads = jnp.sum(d.contact_load)
                 out = jnp.sqrt(jnp.sum(d.gradient[6:] ** 2))
                 # Round-off of the approach in this contact, times its stiffness.
                 eps = jnp.finfo(rings.dtype).eps
-                place = magnitude + jnp.abs(model.constants.gap)
+                place = magnitude + model.gap
                 place = place + jnp.sqrt(state.x @ state.x)
                 floor = 8 * eps * jnp.trace(d.hessian[6:, 6:]) * place
-                floor = floor + 1e-6 * model.constants.guide * place
+                floor = floor + 1e-6 * model.guide * place
                 balanced = out <= 1e-9 * loads + floor
                 loose = is_loose(model, state.x, magnitude, loads, d.gradient[6:])
                 wrong = ~(balanced | loose)

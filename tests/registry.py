@@ -49,6 +49,59 @@ def bearings():
     }
 
 
+def balls(n=6, kind=bj.AngularContactBallBearing, **change):
+    values = dict(outer_osculation=0.53, inner_osculation=0.52)
+    if kind is bj.AngularContactBallBearing:
+        values["contact_angle"] = 25 * _DEG
+    return kind(n, 0.052, 0.0095, **(values | change))
+
+
+def ball_elements():
+    """Name to element of balls, or of a set: all that an identity may meet."""
+    element = bj.BearingElement
+    angular = balls()
+    return {
+        "deep groove, clearance": element(
+            balls(7, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6)
+        ),
+        "angular contact, outer control": element(angular),
+        "angular contact, operating angle": element(
+            angular,
+            point_law=bj.OperatingAngle(),
+            raceway_control=bj.CentrifugalOnly(),
+        ),
+        "four-point, unlike balls, load share": element(
+            balls(
+                6,
+                bj.FourPointBallBearing,
+                shim_angle=20 * _DEG,
+                radial_internal_clearance=-3e-6,
+                ball_deviation=[0.0, 2e-6, -1e-6, 0.0, 1e-6, 0.0],
+            ),
+            raceway_control=bj.LoadShare(),
+        ),
+        "thrust": element(balls(7, bj.ThrustBallBearing)),
+        "ball pair, O": element(
+            bj.BearingSet.back_to_back(angular, 0.02, 20e-6),
+            raceway_control=bj.CentrifugalOnly(),
+        ),
+        "triple, unlike rows": element(
+            bj.BearingSet(
+                (
+                    bj.SetRow(angular, -0.02, inner_offset=4e-6),
+                    bj.SetRow(balls(7, contact_angle=15 * _DEG), 0.003),
+                    bj.SetRow(angular, 0.02, mirrored=True, inner_offset=-30e-6),
+                )
+            ),
+            raceway_control=bj.FrictionLimited(0.06),
+        ),
+        "taper pair, X": element(
+            bj.BearingSet.face_to_face(taper(5), 0.03, 30e-6),
+            quadrature=bj.ContactMapped(24),
+        ),
+    }
+
+
 def quadratures():
     return {"midpoint": bj.Midpoint(20), "contact_mapped": bj.ContactMapped(24)}
 

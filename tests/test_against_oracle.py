@@ -22,7 +22,7 @@ ROLLERS = 5  # fewer than drawn: one compilation per kind and profile
 
 @eqx.filter_jit
 def evaluate(element, q):
-    row = element.row(q)
+    row = element.rows(q)[0]
     return element.evaluate_row(row, q), row.solved
 
 

@@ -16,3 +16,10 @@ from .line import peak_pressure as peak_pressure
 from .line import relative_radius as relative_radius
 from .line_contact import LineContact as LineContact
 from .line_contact import response as response
+from .point_law import AbstractPointLaw as AbstractPointLaw
+from .point_law import FreeAngle as FreeAngle
+from .point_law import OperatingAngle as OperatingAngle
+from .point_law import PointConstant as PointConstant
+from .point_law import ZeroAngle as ZeroAngle
+from .point_law import ball_ellipses as ball_ellipses
+from .point_law import balls_of as balls_of

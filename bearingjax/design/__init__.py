@@ -1,9 +1,22 @@
 """What stands on the drawing: materials, profiles, ribs, bearings. Data, no solving."""
 
+from .ball import AbstractBallBearing as AbstractBallBearing
+from .ball import AngularContactBallBearing as AngularContactBallBearing
+from .ball import DeepGrooveBallBearing as DeepGrooveBallBearing
+from .ball import FourPointBallBearing as FourPointBallBearing
+from .ball import Groove as Groove
+from .ball import ThrustBallBearing as ThrustBallBearing
 from .bearing import AbstractRollerBearing as AbstractRollerBearing
 from .bearing import CylindricalRollerBearing as CylindricalRollerBearing
 from .bearing import NeedleRollerBearing as NeedleRollerBearing
 from .bearing import TaperedRollerBearing as TaperedRollerBearing
+from .bearing_set import Bearing as Bearing
+from .bearing_set import BearingSet as BearingSet
+from .bearing_set import SetRow as SetRow
+from .bearing_set import is_ball as is_ball
+from .bearing_set import n_elements as n_elements
+from .bearing_set import pitch_radius as pitch_radius
+from .bearing_set import rows_of as rows_of
 from .material import MATERIALS as MATERIALS
 from .material import Material as Material
 from .material import contact_modulus as contact_modulus

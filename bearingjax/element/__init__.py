@@ -1,8 +1,20 @@
 """The bearing as an element: one energy, its equilibrium and its derivatives."""
 
+from .ball_speed import AbstractRacewayControl as AbstractRacewayControl
+from .ball_speed import BallKinematics as BallKinematics
+from .ball_speed import CentrifugalOnly as CentrifugalOnly
+from .ball_speed import EqualShare as EqualShare
+from .ball_speed import FrictionLimited as FrictionLimited
+from .ball_speed import InnerControl as InnerControl
+from .ball_speed import LoadShare as LoadShare
+from .ball_speed import OuterControl as OuterControl
+from .ball_speed import ball_kinematics as ball_kinematics
+from .ball_speed import ball_mass as ball_mass
 from .bearing_element import BearingElement as BearingElement
 from .bearing_element import Evaluated as Evaluated
 from .bearing_element import Row as Row
+from .bearing_element import azimuths as azimuths
+from .bearing_element import inertia_load as inertia_load
 from .constants import ContactConstants as ContactConstants
 from .constants import contact_constants as contact_constants
 from .frame import FREEDOMS as FREEDOMS

@@ -1,7 +1,8 @@
 """The bearing as a finite element of twelve freedoms."""
 
 import warnings
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -10,65 +11,92 @@ from jax import lax
 from jaxtyping import Array, Float, Int
 
 from ..contact.line import AbstractLineLaw, Palmgren
-from ..design.bearing import AbstractRollerBearing
+from ..contact.point_law import AbstractPointLaw, FreeAngle
+from ..design import (
+    AbstractBallBearing,
+    AbstractRollerBearing,
+    Bearing,
+    BearingSet,
+    SetRow,
+    is_ball,
+    n_elements,
+    rows_of,
+)
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.result import worst
 from ..numerics.types import Ring, RingStiffness, Scalar
-from .constants import ContactConstants, contact_constants
-from .energy import Derivatives, RollerModel
+from .ball import ball_model
+from .ball_speed import AbstractRacewayControl, OuterControl
+from .constants import contact_constants
 from .equilibrium import (
-    RollerState,
-    condensed_energy,
+    LocalState,
     condensed_force,
     condensed_stiffness,
-    solve_roller,
+    solve_element,
     solved_derivatives,
 )
-from .frame import (
-    from_roller_axes,
-    roll_ratio,
-    roller_azimuth,
-    section_matrix,
-    to_roller_axes,
-)
+from .frame import placement, roll_ratio, roller_azimuth, section_matrix
 from .inertia import Speed, inertia_force
-from .kinematics import AbstractKinematics, Linearised, roller_motion
+from .kinematics import AbstractKinematics, Linearised
+from .model import AbstractModel, Derivatives
+from .roller import RollerModel
 
 
-class Row(NamedTuple):
-    """All rollers of a bearing at given ring freedoms.
+class Row(eqx.Module):
+    """All rolling elements of a row at given ring freedoms.
 
     Attributes:
-        model: The roller, common to all.
-        inertia: Inertia force in roller axes, or `None`.
-        azimuth: (roller,) [rad].
-        transform: Ring motions in roller axes from q (roller, 6, 12).
-        rings: Ring motions in roller axes (roller, 6).
-        state: Solved rollers, leading axis roller.
-        solved: Derivatives of their energies there, leading axis roller.
+        part: The row and its place.
+        local: Ring freedoms at the row's origin, mirrored with it (12,) [m, rad].
+        model: One element, common to all; of unlike elements, with a leading axis.
+        azimuth: (element,) [rad].
+        transform: Ring motions in an element's axes from q (element, r, 12).
+        rings: Ring motions in an element's axes (element, r).
+        state: Solved elements, leading axis element.
+        solved: Their energies, forces and derivatives there, likewise.
+        unlike: Whether `model` has a leading axis. Static.
     """
 
-    model: RollerModel
-    inertia: Float[Array, "3"] | None
-    azimuth: Float[Array, " roller"]
-    transform: Float[Array, "roller 6 12"]
-    rings: Float[Array, "roller 6"]
-    state: RollerState
+    part: SetRow
+    local: Ring
+    model: AbstractModel
+    azimuth: Float[Array, " element"]
+    transform: Float[Array, "element r 12"]
+    rings: Float[Array, "element r"]
+    state: LocalState
     solved: Derivatives
+    unlike: bool = eqx.field(static=True)
+
+    def each(self, function: Callable, *arrays) -> Any:
+        """Apply function(model, rings, x, *arrays) to every element.
+
+        Args:
+            function: Of one element.
+            *arrays: More arguments, with leading axis element.
+        """
+        return each(
+            self.model, self.unlike, function, self.rings, self.state.x, *arrays
+        )
+
+
+def each(model: AbstractModel, unlike: bool, function: Callable, *arrays) -> Any:
+    """Apply function(model, *arrays) to every element of a row."""
+    axes = (0 if unlike else None,) + (0,) * len(arrays)
+    return jax.vmap(function, in_axes=axes)(model, *arrays)
 
 
 class Evaluated(NamedTuple):
-    """Energy, force and stiffness of the bearing, and how the rollers fared.
+    """Energy, force and stiffness of the bearing, and how its elements fared.
 
     Attributes:
         energy: V [J].
-        force: dV/dq (12,) [N, N m].
-        stiffness: d²V/dq² (12, 12).
-        result: Worst `Result` code of the rollers.
-        steps: Most steps that a roller took.
-        residual: Largest relative residual of a roller [1].
-        magnitude: Sum of the sizes of what the rollers pass to the rings, in which
+        force: External load that holds the rings (12,) [N, N m].
+        stiffness: d(force)/dq (12, 12).
+        result: Worst `Result` code of the rolling elements.
+        steps: Most steps that one took.
+        residual: Largest relative residual of one [1].
+        magnitude: Sum of the sizes of what the elements pass to the rings, in which
             the ring force may cancel [N].
     """
 
@@ -82,47 +110,109 @@ class Evaluated(NamedTuple):
 
 
 class BearingElement(eqx.Module):
-    """A roller bearing between two ring nodes, with 12 freedoms.
+    """A rolling bearing, or a set of bearings, between two ring nodes: 12 freedoms.
 
-    V(q) = Σ_rollers min_y [U(q, y) - F·y]; `force` is its gradient, `stiffness` its
+    V(q) = Σ_elements min_x [U(q, x) - F·y]; `force` is its gradient, `stiffness` its
     Hessian. All three are differentiable, to any order, with respect to q, every real
-    number of the design, the line law and the speeds. The ring rotations gz move the
-    set of rollers (rolling without slip) but are operating data: force and stiffness
-    hold them constant unless `cage_torque` is set.
+    number of the design, the contact law and the speeds. The ring rotations gz move
+    the set of rolling elements (rolling without slip) but are operating data: force
+    and stiffness hold them constant unless `cage_torque` is set.
 
-    A roller that did not converge makes the numbers NaN-free but untrue: `evaluate`
+    Where part of the forces has no potential (`has_potential`), `force` is the
+    balance of all forces, `stiffness` its exact Jacobian, slightly unsymmetric, and
+    `energy` the strain energy alone.
+
+    An element that did not converge makes the numbers NaN-free but untrue: `evaluate`
     returns the code; `solve_load` passes it on.
 
     Attributes:
-        bearing: The design.
-        line_law: Law of the raceway contacts.
-        kinematics: `Linearised()` or `Finite()`.
-        quadrature: `ContactMapped(points)` or `Midpoint(points)`.
+        bearing: The design, or a `BearingSet`.
+        line_law: Law of the raceway contacts of rollers; `Palmgren()`.
+        kinematics: `Linearised()` or, for rollers, `Finite()`.
+        quadrature: Of roller contacts, `ContactMapped(points)` or `Midpoint(points)`.
         equilibrium: Local solver, `TrustRegionNewton()` or `BFGS()`.
-        cage_torque: Differentiate through the azimuth of the rollers.
+        cage_torque: Differentiate through the azimuth of the rolling elements.
+        point_law: Constants of ball contacts: `FreeAngle()`, `ZeroAngle()`,
+            `OperatingAngle()` or `PointConstant(outer, inner)`.
+        raceway_control: Of turning balls: `OuterControl()`, `InnerControl()`,
+            `EqualShare()`, `LoadShare()`, `FrictionLimited(friction)`, or
+            `CentrifugalOnly()`.
 
     Traced: all real numbers. Static: the classes, and `cage_torque`.
     """
 
-    bearing: AbstractRollerBearing
-    line_law: AbstractLineLaw = eqx.field(default_factory=Palmgren)
-    kinematics: AbstractKinematics = eqx.field(default_factory=Linearised)
-    quadrature: AbstractQuadrature = eqx.field(default_factory=ContactMapped)
-    equilibrium: AbstractMinimiser = eqx.field(default_factory=TrustRegionNewton)
-    cage_torque: bool = eqx.field(static=True, default=False)
+    bearing: Bearing | BearingSet
+    line_law: AbstractLineLaw | None
+    kinematics: AbstractKinematics
+    quadrature: AbstractQuadrature | None
+    equilibrium: AbstractMinimiser
+    cage_torque: bool = eqx.field(static=True)
+    point_law: AbstractPointLaw | None
+    raceway_control: AbstractRacewayControl | None
 
-    def __check_init__(self):
-        if not isinstance(self.bearing, AbstractRollerBearing):
+    def __init__(
+        self,
+        bearing: Bearing | BearingSet,
+        line_law: AbstractLineLaw | None = None,
+        kinematics: AbstractKinematics | None = None,
+        quadrature: AbstractQuadrature | None = None,
+        equilibrium: AbstractMinimiser | None = None,
+        cage_torque: bool = False,
+        *,
+        point_law: AbstractPointLaw | None = None,
+        raceway_control: AbstractRacewayControl | None = None,
+    ):
+        """Defaults as above; what the rolling elements have no use for is an error.
+
+        Raises:
+            TypeError: If `bearing` is no bearing.
+            ValueError: For a choice that the rolling elements have no use for.
+        """
+        if not isinstance(bearing, Bearing | BearingSet):
             raise TypeError(
-                f"BearingElement: `bearing` is a {type(self.bearing).__name__}; it must"
-                " be a roller bearing, such as CylindricalRollerBearing."
+                f"BearingElement: `bearing` is a {type(bearing).__name__}; it must be"
+                " a roller bearing, a ball bearing or a BearingSet."
             )
+        balls = is_ball(bearing)
+        wrong = {
+            "line_law": balls and line_law,
+            "quadrature": balls and quadrature,
+            "kinematics": balls and not isinstance(kinematics, Linearised | None),
+            "point_law": not balls and point_law,
+            "raceway_control": not balls and raceway_control,
+        }
+        for name, given in wrong.items():
+            if given:
+                raise ValueError(
+                    f"BearingElement: `{name}` is for"
+                    f" {'rollers' if balls else 'balls'}, but the bearing is a"
+                    f" {type(bearing).__name__}."
+                )
+        self.bearing = bearing
+        self.line_law = None if balls else line_law or Palmgren()
+        self.kinematics = kinematics or Linearised()
+        self.quadrature = None if balls else quadrature or ContactMapped()
+        self.equilibrium = equilibrium or TrustRegionNewton()
+        self.cage_torque = cage_torque
+        self.point_law = (point_law or FreeAngle()) if balls else None
+        self.raceway_control = (raceway_control or OuterControl()) if balls else None
         if jax.dtypes.canonicalize_dtype(float) != jnp.float64:
             warnings.warn(
                 "BearingElement: float64 is off; in float32 forces are good to 1e-5 at"
                 ' best. Before all else: jax.config.update("jax_enable_x64", True)',
-                stacklevel=4,
+                stacklevel=3,
             )
+
+    def has_potential(self, speed: Speed | None = None) -> bool:
+        """Whether all forces derive from `energy`, so that `stiffness` is symmetric.
+
+        Args:
+            speed: Ring speeds or `None`.
+        """
+        if self.point_law is None:
+            return True
+        gyroscopic = speed is not None and self.raceway_control.has_reaction
+        return not (self.point_law.follows_angle or gyroscopic)
 
     @eqx.filter_jit
     def energy(self, q: Ring, speed: Speed | None = None) -> Scalar:
@@ -135,11 +225,11 @@ class BearingElement(eqx.Module):
         Raises:
             ValueError: If `q` is not of shape (12,).
         """
-        return _energy(self.row(q, speed))
+        return _energy(self.rows(q, speed))
 
     @eqx.filter_jit
     def force(self, q: Ring, speed: Speed | None = None) -> Ring:
-        """External load that holds the rings where they are, dV/dq [N, N m].
+        """External load that holds the rings where they are [N, N m].
 
         Args:
             q: Ring freedoms, outer then inner [m, rad].
@@ -147,8 +237,7 @@ class BearingElement(eqx.Module):
         """
         if self.cage_torque:
             return jax.grad(self.energy)(q, speed)
-        row = self.row(q, speed)
-        return _sum_forces(row, _roller_forces(row))
+        return sum(_sum_forces(row, _forces(row)) for row in self.rows(q, speed))
 
     @eqx.filter_jit
     def stiffness(self, q: Ring, speed: Speed | None = None) -> RingStiffness:
@@ -160,44 +249,74 @@ class BearingElement(eqx.Module):
         """
         if self.cage_torque:
             return jax.hessian(self.energy)(q, speed)
-        return _stiffness(self.row(q, speed))
+        return sum(_stiffness(row) for row in self.rows(q, speed))
 
     @eqx.filter_jit
     def evaluate(self, q: Ring, speed: Speed | None = None) -> Evaluated:
-        """Energy, force and stiffness from one solve of the rollers, with its code."""
-        return self.evaluate_row(self.row(q, speed), q, speed)
+        """Energy, force and stiffness from one solve of the elements, with its code."""
+        return self.evaluate_rows(self.rows(q, speed), q, speed)
 
     @eqx.filter_jit
-    def evaluate_row(self, row: Row, q: Ring, speed: Speed | None = None) -> Evaluated:
-        """`evaluate` for rollers that are already solved at `q`."""
-        shares = _roller_forces(row)
+    def evaluate_rows(
+        self, rows: tuple[Row, ...], q: Ring, speed: Speed | None = None
+    ) -> Evaluated:
+        """`evaluate` for rolling elements that are already solved at `q`."""
+        shares = [_forces(row) for row in rows]
         if self.cage_torque:
             force, stiffness = self.force(q, speed), self.stiffness(q, speed)
         else:
-            force, stiffness = _sum_forces(row, shares), _stiffness(row)
+            pairs = zip(rows, shares, strict=True)
+            force = sum(_sum_forces(row, share) for row, share in pairs)
+            stiffness = sum(_stiffness(row) for row in rows)
+        states = [row.state for row in rows]
         return Evaluated(
-            energy=_energy(row),
+            energy=_energy(rows),
             force=force,
             stiffness=stiffness,
-            result=worst(row.state.result),
-            steps=jnp.max(row.state.steps),
-            residual=jnp.max(row.state.residual),
-            magnitude=jnp.sum(jnp.abs(shares[:, :2])),
+            result=worst(jnp.concatenate([s.result for s in states])),
+            steps=jnp.max(jnp.concatenate([s.steps for s in states])),
+            residual=jnp.max(jnp.concatenate([s.residual for s in states])),
+            magnitude=sum(jnp.sum(jnp.abs(share[:, :2])) for share in shares),
         )
 
-    def constants(self) -> ContactConstants:
-        """Contact constants of one roller."""
-        return contact_constants(self.bearing, self.line_law, self.quadrature)
+    def models(self, speed: Speed | None = None) -> tuple[AbstractModel, ...]:
+        """One rolling element of each row, a ball of the common diameter.
+
+        Args:
+            speed: Ring speeds or `None`.
+        """
+        return tuple(self._model(row.bearing, speed) for row in rows_of(self.bearing))
+
+    def _model(self, bearing, speed, deviation=None) -> AbstractModel:
+        if isinstance(bearing, AbstractBallBearing):
+            assert self.point_law is not None and self.raceway_control is not None
+            law, control = self.point_law, self.raceway_control
+            return ball_model(bearing, law, speed, control, deviation)
+        assert self.line_law is not None and self.quadrature is not None
+        constants = contact_constants(bearing, self.line_law, self.quadrature)
+        body_force = None if speed is None else inertia_force(constants, speed)
+        return RollerModel(
+            constants,
+            self.kinematics.prepare(constants),
+            self.kinematics,
+            self.quadrature,
+            body_force,
+        )
 
     @eqx.filter_jit
-    def row(self, q: Ring, speed: Speed | None = None) -> Row:
-        """Solve every roller at given ring freedoms.
+    def rows(self, q: Ring, speed: Speed | None = None) -> tuple[Row, ...]:
+        """Solve every rolling element at given ring freedoms.
 
         Args:
             q: Ring freedoms, outer then inner [m, rad].
             speed: Ring speeds or `None`.
+
+        Raises:
+            ValueError: If `q` is not of shape (12,).
+            TypeError: If `speed` is not a `Speed`.
         """
-        q = jnp.asarray(q, dtype=self.bearing.pitch_diameter.dtype)
+        parts = rows_of(self.bearing)
+        q = jnp.asarray(q, dtype=parts[0].bearing.pitch_diameter.dtype)
         if q.shape != (12,):
             raise ValueError(
                 f"BearingElement: `q` has shape {q.shape}; it must be (12,): outer"
@@ -208,70 +327,114 @@ class BearingElement(eqx.Module):
                 f"BearingElement: `speed` is a {type(speed).__name__}; it must be a"
                 " Speed(inner, outer) in rad/s, or None."
             )
-        constants = self.constants()
-        model = RollerModel(
-            constants,
-            self.kinematics.prepare(constants),
-            self.kinematics,
-            self.quadrature,
-        )
-        inertia = None if speed is None else inertia_force(constants, speed)
+        if not isinstance(self.bearing, BearingSet):
+            return (self._row(parts[0], q, None, speed),)
+        rows = []
+        for part in parts:
+            place = placement(part.position, part.mirrored)
+            zero = jnp.zeros_like(place)
+            both = jnp.block([[place, zero], [zero, place]])
+            rows.append(self._row(part, q, both, speed))
+        return tuple(rows)
+
+    def _row(self, part: SetRow, q, place, speed) -> Row:
+        bearing = part.bearing
+        deviation = getattr(bearing, "ball_deviation", None)
+        unlike = deviation is not None
+        if unlike:
+            model = jax.vmap(lambda d: self._model(bearing, speed, d))(deviation)
+        else:
+            model = self._model(bearing, speed)
         turned = q if self.cage_torque else lax.stop_gradient(q)
-        azimuth = self.azimuth(turned)
-        axes = to_roller_axes(constants.axis_angle, constants.pitch_radius)
-        transform = jax.vmap(lambda phi: _ring_transform(axes, phi))(azimuth)
-        # gz moves the rollers only through the azimuth: its columns are zero.
-        rings = transform @ q
-        magnitude = jnp.max(jnp.abs(q[jnp.array([0, 1, 2, 6, 7, 8])]))
-        tilt = jnp.max(jnp.abs(q[jnp.array([3, 4, 9, 10])]))
-        magnitude = magnitude + constants.pitch_radius * tilt
-        state = jax.vmap(
-            lambda r: solve_roller(model, r, inertia, magnitude, self.equilibrium)
-        )(rings)
-        solved = jax.vmap(
-            lambda r, x: solved_derivatives(model, r, inertia, magnitude, x)
-        )(rings, state.x)
-        return Row(model, inertia, azimuth, transform, rings, state, solved)
-
-    def azimuth(self, q: Ring) -> Float[Array, " roller"]:
-        """Azimuth of every roller for given ring rotations gz [rad]."""
-        b = self.bearing
-        ratio = roll_ratio(b.roller_diameter, b.pitch_diameter, b.axis_angle)
-        return roller_azimuth(b.first_azimuth, b.n_rollers, ratio, q)
-
-
-def roller_motions(row: Row) -> Float[Array, "roller 3"]:
-    """Section motion (u, v, θ) of every roller at the node on the axis [m, rad]."""
-    c = row.model.constants
-    back = from_roller_axes(c.axis_angle, c.pitch_radius)
-    local = jax.vmap(lambda r, x: roller_motion(c, r, x))(row.rings, row.state.x)
-    return local @ back.T
-
-
-def _ring_transform(axes, azimuth):
-    section = axes @ section_matrix(azimuth)
-    zero = jnp.zeros_like(section)
-    return jnp.block([[section, zero], [zero, section]])
-
-
-def _energy(row: Row) -> Scalar:
-    return jnp.sum(
-        jax.vmap(lambda r, x, d: condensed_energy(row.model, r, row.inertia, x, d))(
-            row.rings, row.state.x, row.solved
+        azimuth = azimuths(bearing, turned)
+        transform = each(model, unlike, lambda m, phi: m.transform(phi), azimuth)
+        local = q
+        if place is not None:
+            offset = -part.inner_offset if part.mirrored else part.inner_offset
+            local = (place @ q).at[8].add(offset)
+        # gz moves the elements only through the azimuth: its columns are zero.
+        rings = transform @ local
+        if place is not None:
+            transform = transform @ place
+        magnitude = jnp.max(jnp.abs(local[jnp.array([0, 1, 2, 6, 7, 8])]))
+        tilt = jnp.max(jnp.abs(local[jnp.array([3, 4, 9, 10])]))
+        magnitude = magnitude + 0.5 * bearing.pitch_diameter * tilt
+        state = each(
+            model,
+            unlike,
+            lambda m, r: solve_element(m, r, magnitude, self.equilibrium),
+            rings,
         )
-    )
+        solved = each(
+            model,
+            unlike,
+            lambda m, r, x: solved_derivatives(m, r, magnitude, x),
+            rings,
+            state.x,
+        )
+        return Row(part, local, model, azimuth, transform, rings, state, solved, unlike)
 
 
-def _roller_forces(row: Row) -> Float[Array, "roller 6"]:
-    """What each roller passes to the rings, in roller axes [N, N m]."""
-    return jax.vmap(lambda d: condensed_force(row.inertia, d))(row.solved)
+def azimuths(bearing: Bearing, q: Ring) -> Float[Array, " element"]:
+    """Azimuth of every rolling element for given ring rotations gz [rad].
+
+    Args:
+        bearing: A single row.
+        q: Ring freedoms [m, rad]; only both gz count.
+    """
+    if isinstance(bearing, AbstractRollerBearing):
+        diameter, cosine = bearing.roller_diameter, jnp.cos(bearing.axis_angle)
+    else:
+        diameter, cosine = bearing.ball_diameter, bearing.free_cosine
+    ratio = roll_ratio(diameter, bearing.pitch_diameter, cosine)
+    return roller_azimuth(bearing.first_azimuth, n_elements(bearing), ratio, q)
 
 
-def _sum_forces(row: Row, shares: Float[Array, "roller 6"]) -> Ring:
+def motions(row: Row) -> Float[Array, "element 3"]:
+    """Section motion (u, v, θ) of every element at the node on the axis [m, rad]."""
+
+    def one(model, rings, x, azimuth):
+        outer = section_matrix(azimuth) @ row.local[:6]
+        u, v, theta = model.motion(rings, x, outer)
+        if row.part.mirrored:
+            u, theta = -u, -theta
+        return jnp.stack([u, v - row.part.position * theta, theta])
+
+    return row.each(one, row.azimuth)
+
+
+def inertia_load(rows: tuple[Row, ...]) -> Float[Array, "6"]:
+    """What inertia does to all rolling elements, at the node [N, N m].
+
+    The forces that hold both rings add up to minus this.
+
+    Args:
+        rows: Solved rows.
+    """
+    total = jnp.zeros((6,), rows[0].local.dtype)
+    for row in rows:
+        parts = row.each(lambda m, r, x: m.inertia(r, x))
+        if parts is not None:
+            section = jax.vmap(section_matrix)(row.azimuth)
+            place = placement(row.part.position, row.part.mirrored)
+            total = total + jnp.einsum("lai,la->i", section, parts) @ place
+    return total
+
+
+def _energy(rows) -> Scalar:
+    return sum(jnp.sum(row.solved.energy) for row in rows)
+
+
+def _forces(row: Row) -> Float[Array, "element r"]:
+    """What each element passes to the rings, in its axes [N, N m]."""
+    return jax.vmap(lambda d: condensed_force(row.model, d))(row.solved)
+
+
+def _sum_forces(row: Row, shares: Float[Array, "element r"]) -> Ring:
     return jnp.einsum("lai,la->i", row.transform, shares)
 
 
 def _stiffness(row: Row) -> RingStiffness:
-    blocks = jax.vmap(condensed_stiffness)(row.solved.hessian)
+    blocks = jax.vmap(lambda h: condensed_stiffness(row.model, h))(row.solved.hessian)
     half = jnp.einsum("lab,lbj->laj", blocks, row.transform)
     return jnp.einsum("lai,laj->ij", row.transform, half)

@@ -1,7 +1,7 @@
-"""Equilibrium of one roller between given rings, and its condensation.
+"""Equilibrium of one rolling element between given rings, and its condensation.
 
-The roller's three freedoms are those that minimise U(rings, x) - F·y, a convex problem
-with linearised kinematics; F is the constant inertia force and y the roller's motion.
+Its own unknowns are those that minimise its energy, a convex problem with linearised
+kinematics; where part of the forces has no potential, those that balance them.
 """
 
 from typing import NamedTuple
@@ -11,19 +11,18 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
 from ..numerics.implicit import attach, stop
-from ..numerics.linear import dot, norm, smallest_pivot, solve_symmetric, trace
-from ..numerics.minimise import AbstractMinimiser, Evaluation
+from ..numerics.linear import dot, norm, smallest_pivot, solve, trace
+from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
 from ..numerics.result import Result
 from ..numerics.types import Scalar
-from .energy import Derivatives, RollerModel, derivatives
-from .kinematics import Linearised, Rings, Unknowns, roller_motion
+from .model import AbstractModel, Derivatives, Rings, Unknowns
 
 
-class RollerState(NamedTuple):
-    """Solved state of one roller.
+class LocalState(NamedTuple):
+    """Solved state of one rolling element.
 
     Attributes:
-        x: The roller's unknowns (3,) [m].
+        x: Its unknowns (n,) [m].
         residual: Force that is out of balance, relative to the contact loads [1].
         steps: Evaluations that the solve took.
         result: `Result` code.
@@ -35,67 +34,69 @@ class RollerState(NamedTuple):
     result: Int[Array, ""]
 
 
-def _inertia_on_unknowns(model, inertia):
-    """Generalised force on x: the tilt unknown is θ·L/2."""
-    one = jnp.ones_like(model.constants.half_length)
-    return inertia * jnp.stack([one, one, 1.0 / model.constants.half_length])
-
-
-def solve_roller(
-    model: RollerModel,
+def solve_element(
+    model: AbstractModel,
     rings: Rings,
-    inertia: Float[Array, "3"] | None,
     magnitude: Scalar,
     minimiser: AbstractMinimiser,
-) -> RollerState:
-    """Minimise the energy of one roller over its own freedoms.
+) -> LocalState:
+    """Equilibrium of one rolling element in its own unknowns.
 
     Args:
-        model: The roller.
-        rings: Motion of both rings in roller axes (6,) [m, rad].
-        inertia: Inertia force in roller axes (3,) [N, N, N m], or `None`.
+        model: The rolling element.
+        rings: Motion of both rings in its axes (r,) [m, rad].
         magnitude: Size of the displacements from which `rings` was computed, for
             the round-off floor of the residual [m].
         minimiser: Local solver.
 
     Returns:
-        State whose `x` is differentiable, to every order, with respect to the
-        design, the ring motion and the inertia force.
+        State whose `x` is differentiable, to every order, with respect to the model
+        (design and speeds) and the ring motion.
 
-    Fails: `STEP_LIMIT`, `NON_FINITE`; `NO_LOAD_PATH` if inertia throws the roller off,
-        because no contact holds it; `SADDLE` with finite kinematics.
+    Raises:
+        TypeError: If the solver needs a potential that the forces do not have.
+
+    Fails: `STEP_LIMIT`, `NON_FINITE`; `NO_LOAD_PATH` if inertia throws the element
+        off, because no contact holds it; `SADDLE` with finite kinematics.
     """
-    state = _solve(stop(model), stop(rings), stop(inertia), stop(magnitude), minimiser)
+    if not model.has_potential:
+        if not isinstance(minimiser, TrustRegionNewton):
+            raise TypeError(
+                f"BearingElement: `equilibrium` is {type(minimiser).__name__}(), which"
+                " minimises an energy; gyroscopic moments and contact constants at the"
+                " operating angle have none. Use TrustRegionNewton()."
+            )
+        minimiser = TrustRegionNewton(minimiser.tolerance, minimiser.max_steps, False)
+    state = _solve(stop(model), stop(rings), stop(magnitude), minimiser)
 
     def residual(x, args):
-        model, rings, inertia = args
-        g = derivatives(model, rings, x, of_roller=True).gradient
-        return g if inertia is None else g - _inertia_on_unknowns(model, inertia)
+        model, rings = args
+        return model.derivatives(rings, x, of_own=True).gradient
 
-    x = attach(residual, state.x, (model, rings, inertia))
+    x = attach(residual, state.x, (model, rings), model.has_potential)
     return state._replace(x=x)
 
 
 def is_loose(
-    model: RollerModel, x: Unknowns, magnitude: Scalar, load: Scalar, pull: Unknowns
+    model: AbstractModel, x: Unknowns, magnitude: Scalar, load: Scalar, pull: Unknowns
 ) -> Bool[Array, ""]:
-    """Whether a roller is held by no more than the guide spring.
+    """Whether a rolling element is held by no more than the guide spring.
 
-    Its contacts then carry next to nothing, and what they carry does not balance on
-    the roller, as a real squeeze between the rings does. The energy being convex, the
-    load left out is bounded by the small one found here.
+    Its contacts then carry next to nothing, and what they carry does not balance, as
+    a real squeeze between the rings does. The energy being convex, the load left out
+    is bounded by the small one found here.
 
     Args:
-        model: The roller.
-        x: The roller's unknowns [m].
+        model: The rolling element.
+        x: Its unknowns [m].
         magnitude: Size of the displacements of the rings [m].
         load: Sum of the sizes of contact loads and inertia force [N].
-        pull: Derivative of the energy with respect to x, less inertia [N].
+        pull: Derivative of the energy with respect to x [N].
 
     Returns:
         False for NaN, which must not pass for an open contact.
     """
-    guide = model.constants.guide
+    guide = model.guide
     contacts = pull - guide * x
     unbalanced = dot(contacts, contacts) >= (0.03 * load) ** 2
     # About 1e-8 N. With ten times this, rollers jump that matter to loads of 1e-3 N;
@@ -104,118 +105,89 @@ def is_loose(
 
 
 def _size(model, x, magnitude):
-    return magnitude + jnp.abs(model.constants.gap) + norm(x)
+    return magnitude + model.gap + norm(x)
+
+
+def _load(model, derivatives):
+    load = jnp.sum(derivatives.contact_load)
+    inertia = model.inertia_size()
+    return load if inertia is None else load + inertia
 
 
 def solved_derivatives(
-    model: RollerModel,
-    rings: Rings,
-    inertia: Float[Array, "3"] | None,
-    magnitude: Scalar,
-    x: Unknowns,
+    model: AbstractModel, rings: Rings, magnitude: Scalar, x: Unknowns
 ) -> Derivatives:
-    """Energy and derivatives of a solved roller; all zero if it is loose.
+    """Energy and derivatives of a solved rolling element; all zero if it is loose.
 
-    Without this a roller that the guide spring leans on two rings would pass the
-    stiffness of that contact, which falls only with the tenth root of its load.
+    Without this an element that the guide spring leans on two rings would pass the
+    stiffness of that contact, which falls only with the tenth root of its load (of a
+    ball, the third).
 
     Args:
-        model, rings, inertia, magnitude: As in `solve_roller`.
+        model, rings, magnitude: As in `solve_element`.
         x: The solved unknowns [m].
     """
-    d = derivatives(model, rings, x)
-    load = jnp.sum(d.raceway_load) + jnp.sum(d.rib_load)
-    if inertia is not None:
-        load = load + jnp.sum(jnp.abs(_inertia_on_unknowns(model, inertia)))
-    loose = is_loose(*stop((model, x, magnitude, load, d.gradient[6:])))
+    d = model.derivatives(rings, x)
+    load = _load(model, d)
+    pull = d.gradient[-model.n_unknowns :]
+    loose = is_loose(*stop((model, x, magnitude, load, pull)))
     return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), d)
 
 
-def _solve(model, rings, inertia, magnitude, minimiser):
-    c = model.constants
-    f = None if inertia is None else _inertia_on_unknowns(model, inertia)
+def _solve(model, rings, magnitude, minimiser):
     eps = jnp.finfo(rings.dtype).eps
 
     def function(x, with_hessian):
-        d = derivatives(model, rings, x, of_roller=True)
-        value, g, h = d.energy, d.gradient, d.hessian
-        scale = jnp.sum(d.raceway_load) + jnp.sum(d.rib_load)
-        if f is not None:
-            value, g = value - dot(f, x), g - f
-            scale = scale + norm(f)
+        d = model.derivatives(rings, x, of_own=True)
+        g, h = d.gradient, d.hessian
+        scale = _load(model, d)
         # Round-off of positions, and what is small against the guide's own force.
-        noise = _size(model, x, magnitude) * (eps * trace(h) + 1e-6 * c.guide)
-        # A loose roller need not be placed: its solve is over.
+        noise = _size(model, x, magnitude) * (eps * trace(h) + 1e-6 * model.guide)
+        # A loose element need not be placed: its solve is over.
         loose = is_loose(model, x, magnitude, scale, g)
         noise = jnp.where(loose, norm(g), noise)
         scale = jnp.where(loose, jnp.inf, scale)
+        value = d.energy if model.has_potential else jnp.full_like(d.energy, jnp.nan)
         return Evaluation(value, g, h if with_hessian else h[:0], scale, noise)
 
-    between = rings[:3] - rings[3:]
-    reach = jnp.abs(between[0]) + jnp.abs(between[1])
-    reach = reach + jnp.abs(between[2]) * c.half_length
-    radius = reach + jnp.abs(c.gap) + 1e-6 * c.diameter
-    start = jnp.zeros((3,), rings.dtype)
+    radius = model.reach(rings) + model.gap + 1e-6 * model.diameter
+    start = jnp.zeros((model.n_unknowns,), rings.dtype)
     minimum = minimiser.minimise(function, start, radius)
     result = minimum.result
-    if not isinstance(model.kinematics, Linearised):
-        h = derivatives(model, rings, minimum.x, of_roller=True).hessian
+    if not model.is_convex:
+        h = model.derivatives(rings, minimum.x, of_own=True).hessian
         saddle = (smallest_pivot(h) < -1e-9) & (result == Result.CONVERGED)
         result = jnp.where(saddle, int(Result.SADDLE), result)
-    if f is not None:
+    if model.inertia_size() is not None:
         # Thrown off: inertia along a direction that only the guide holds.
-        away = norm(minimum.x) > 10.0 * c.diameter
+        away = norm(minimum.x) > 10.0 * model.diameter
         lost = away & (result != int(Result.NON_FINITE))
         result = jnp.where(lost, int(Result.NO_LOAD_PATH), result)
-    return RollerState(
+    return LocalState(
         minimum.x, minimum.residual, minimum.steps, result.astype(jnp.int32)
     )
 
 
-def condensed_energy(
-    model: RollerModel,
-    rings: Rings,
-    inertia: Float[Array, "3"] | None,
-    x: Unknowns,
-    solved: Derivatives,
-) -> Scalar:
-    """V = U - F·y at the solved state [J].
+def condensed_force(model: AbstractModel, solved: Derivatives) -> Rings:
+    """Forces on the rings at the solved state, in the element's axes [N, N m]."""
+    return solved.gradient[: -model.n_unknowns]
+
+
+def condensed_stiffness(
+    model: AbstractModel, hessian: Float[Array, "m m"]
+) -> Float[Array, "r r"]:
+    """K_rr - K_rx K_xx⁻¹ K_xr; symmetric to round-off if there is a potential.
 
     Args:
-        model: The roller.
-        rings: Motion of both rings in roller axes (6,) [m, rad].
-        inertia: Inertia force in roller axes [N, N, N m], or `None`.
-        x: The solved unknowns [m].
-        solved: Derivatives of the energy there.
-    """
-    if inertia is None:
-        return solved.energy
-    return solved.energy - inertia @ roller_motion(model.constants, rings, x)
-
-
-def condensed_force(
-    inertia: Float[Array, "3"] | None, solved: Derivatives
-) -> Float[Array, "6"]:
-    """dV/d(rings) at the solved state, in roller axes [N, N m].
-
-    x counts from the mean of the rings, so half of the inertia force acts on each
-    in these coordinates.
-    """
-    force = solved.gradient[:6]
-    if inertia is None:
-        return force
-    return force - 0.5 * jnp.concatenate([inertia, inertia])
-
-
-def condensed_stiffness(hessian: Float[Array, "9 9"]) -> Float[Array, "6 6"]:
-    """K_rr - K_rx K_xx⁻¹ K_xr, symmetric to round-off.
-
-    Args:
-        hessian: Of the energy with respect to (rings, x).
+        model: The rolling element.
+        hessian: Derivatives of its forces with respect to (rings, x).
 
     Source: static condensation 9 to 6, Sorokin, Zhang, Ivannikov (2018).
     """
-    coupling = hessian[6:, :6]
-    moved = solve_symmetric(hessian[6:, 6:], coupling)
-    k = hessian[:6, :6] - jnp.sum(coupling[:, :, None] * moved[:, None, :], axis=0)
-    return 0.5 * (k + k.T)
+    n = model.n_unknowns
+    coupling, back = hessian[-n:, :-n], hessian[:-n, -n:]
+    symmetric = model.has_potential
+    moved = solve(hessian[-n:, -n:], coupling, symmetric)
+    left = coupling if symmetric else back.T
+    k = hessian[:-n, :-n] - jnp.sum(left[:, :, None] * moved[:, None, :], axis=0)
+    return 0.5 * (k + k.T) if symmetric else k

@@ -38,6 +38,21 @@ def section_matrix(azimuth: Scalar) -> Float[Array, "3 6"]:
     )
 
 
+def placement(position: Scalar, mirrored: bool) -> Float[Array, "6 6"]:
+    """Ring freedoms at the origin of a row, from those of its set.
+
+    A mirrored row sees z reversed: uz and the tilts change their sign.
+
+    Args:
+        position: z of the row's origin in the set [m].
+        mirrored: Whether the row is turned round. Static.
+    """
+    sign = -1.0 if mirrored else 1.0
+    p = jnp.diag(jnp.asarray([1.0, 1.0, sign, sign, sign, 1.0], position.dtype))
+    # Displacement of the point (0, 0, position): u + g x r.
+    return p.at[0, 4].add(position).at[1, 3].add(-position)
+
+
 def to_roller_axes(axis_angle: Scalar, pitch_radius: Scalar) -> Float[Array, "3 3"]:
     """Motion of the roller centre's point of a body, along and across the roller.
 
@@ -76,11 +91,9 @@ def from_roller_axes(axis_angle: Scalar, pitch_radius: Scalar) -> Float[Array, "
     )
 
 
-def roll_ratio(
-    roller_diameter: Scalar, pitch_diameter: Scalar, axis_angle: Scalar
-) -> Scalar:
+def roll_ratio(diameter: Scalar, pitch_diameter: Scalar, cosine: Scalar) -> Scalar:
     """G = D cos α / d_m of the rolling kinematics [1]."""
-    return roller_diameter * jnp.cos(axis_angle) / pitch_diameter
+    return diameter * cosine / pitch_diameter
 
 
 def roller_azimuth(

@@ -42,7 +42,7 @@ def roller_speeds(constants: ContactConstants, speed: Speed) -> tuple[Scalar, Sc
     Source: rolling without slip at both raceways; Harris, Rolling Bearing Analysis.
     """
     c = constants
-    ratio = roll_ratio(c.diameter, 2.0 * c.pitch_radius, c.axis_angle)
+    ratio = roll_ratio(c.diameter, 2.0 * c.pitch_radius, jnp.cos(c.axis_angle))
     orbit = 0.5 * ((1.0 - ratio) * speed.inner + (1.0 + ratio) * speed.outer)
     difference = speed.inner - speed.outer
     spin = -c.pitch_radius / c.diameter * (1.0 - ratio**2) * difference

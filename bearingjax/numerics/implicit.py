@@ -9,10 +9,10 @@ import jax
 import jax.numpy as jnp
 from jax import lax
 
-from .linear import solve_symmetric
+from .linear import solve
 
 
-def attach(residual, solution, args):
+def attach(residual, solution, args, symmetric: bool = True):
     """Attach to a solution of residual(y, args) = 0 its dependence on `args`.
 
     The value returned is `solution`; its derivative is
@@ -20,10 +20,12 @@ def attach(residual, solution, args):
     point of evaluation, so second and higher derivatives are exact as well.
 
     Args:
-        residual: Function (y, args) -> array like `y`, with symmetric Jacobian in
-            y (the gradient of an energy).
+        residual: Function (y, args) -> array like `y`, with a positive
+            (semi)definite Jacobian in y.
         solution: Solved y (n,); its own derivative is ignored.
         args: Any pytree; what is not a floating array is static.
+        symmetric: Whether the Jacobian is symmetric: `residual` is the gradient of
+            an energy. Static.
 
     Returns:
         `solution`, differentiable with respect to `args`.
@@ -33,7 +35,7 @@ def attach(residual, solution, args):
     """
 
     def correction(of_y, y, change):
-        return -solve_symmetric(jax.jacfwd(of_y)(y), change)
+        return -solve(jax.jacfwd(of_y)(y), change, symmetric)
 
     return _attach(residual, solution, args, correction)
 

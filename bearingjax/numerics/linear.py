@@ -1,4 +1,4 @@
-"""Symmetric systems of a few unknowns, written out so that they batch.
+"""Linear systems of a few unknowns, written out so that they batch.
 
 LAPACK is called once per matrix; for 3 to 6 unknowns under `vmap` the unrolled
 factorisation is many times faster and has no foreign call in it.
@@ -62,6 +62,53 @@ def solve_symmetric(
     """
     lower, pivots, scale = _factorise(matrix)
     return _substitute(lower, pivots, scale, rhs)
+
+
+def solve(
+    matrix: Float[Array, "n n"], rhs: Float[Array, "n ..."], symmetric: bool = True
+) -> Float[Array, "n ..."]:
+    """`solve_symmetric`, or elimination without pivoting for a tangent beside it.
+
+    A tangent with a part that has no potential is a positive (semi)definite matrix
+    but for a few per cent: its pivots need no search, and a pivot below round-off is
+    treated as in `solve_symmetric`.
+
+    Args:
+        matrix: n ≤ 6 in this package, with a positive diagonal where it holds
+            anything [any unit].
+        rhs: One or more right-hand sides.
+        symmetric: Whether the matrix is symmetric. Static.
+
+    Returns:
+        Solution, shape of `rhs`.
+    """
+    if symmetric:
+        return solve_symmetric(matrix, rhs)
+    n = matrix.shape[-1]
+    floor = 8 * jnp.finfo(matrix.dtype).eps
+    scale = _scale(_diagonal(matrix))
+    scaled = matrix * (scale[:, None] * scale[None, :])
+    a = [[scaled[i, j] for j in range(n)] for i in range(n)]
+    b = [rhs[i] * scale[i] for i in range(n)]
+    for k in range(n):
+        # "not above" would swallow NaN: a NaN pivot stays NaN.
+        lifted = a[k][k] < floor
+        pivot = jnp.where(lifted, floor, a[k][k])
+        a[k][k] = pivot
+        for i in range(k + 1, n):
+            factor = jnp.where(lifted, 0.0, a[i][k] / pivot)
+            for j in range(k + 1, n):
+                a[i][j] = a[i][j] - factor * a[k][j]
+            b[i] = b[i] - factor * b[k]
+        for j in range(k + 1, n):
+            a[k][j] = jnp.where(lifted, 0.0, a[k][j])
+    x = [None] * n
+    for i in reversed(range(n)):
+        value = b[i]
+        for j in range(i + 1, n):
+            value = value - a[i][j] * x[j]
+        x[i] = value / a[i][i]
+    return jnp.stack([x[i] * scale[i] for i in range(n)])
 
 
 def smallest_pivot(matrix: Float[Array, "n n"]) -> Float[Array, ""]:

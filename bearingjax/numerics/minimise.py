@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Float, Int
 
-from .linear import dot, norm, quadratic, solve_symmetric, trace
+from .linear import dot, norm, quadratic, solve, trace
 from .result import Result
 
 
@@ -21,8 +21,9 @@ class Evaluation(NamedTuple):
     """One evaluation of the function to be minimised.
 
     Attributes:
-        value: Function value [J].
-        gradient: First derivative (n,) [J/unit of x].
+        value: Function value [J]; NaN if there is none, because not all forces have
+            a potential: steps are then judged by forces alone.
+        gradient: First derivative, or the forces themselves (n,) [J/unit of x].
         hessian: Second derivative (n, n); empty if it was not asked for.
         scale: What the gradient is measured against, for example the sum of the
             forces that cancel in it.
@@ -119,6 +120,8 @@ class TrustRegionNewton(AbstractMinimiser):
         tolerance: |gradient| / scale at which the solve ends; `None` picks
             1e-13 in float64 and 1e-6 in float32.
         max_steps: Step limit.
+        symmetric: Whether the Hessian is symmetric; false where part of the forces
+            has no potential.
 
     Static: all fields.
     Source: gradient-regularised Newton, e.g. Ueda and Yamashita (2010).
@@ -126,6 +129,7 @@ class TrustRegionNewton(AbstractMinimiser):
 
     tolerance: float | None = eqx.field(static=True, default=None)
     max_steps: int = eqx.field(static=True, default=100)
+    symmetric: bool = eqx.field(static=True, default=True)
 
     def minimise(self, function, start, radius):
         tolerance = _tolerance(self.tolerance, start.dtype)
@@ -177,7 +181,8 @@ class TrustRegionNewton(AbstractMinimiser):
             now, first = state.now, state.steps < 0
             size = norm(now.gradient)
             shift = size / state.radius + eps * trace(now.hessian) / n
-            p = -solve_symmetric(now.hessian + shift * identity, now.gradient)
+            shifted = now.hessian + shift * identity
+            p = -solve(shifted, now.gradient, self.symmetric)
             # An indefinite Hessian (finite kinematics) may still give a long step.
             p = p * jnp.minimum(1.0, state.radius / jnp.maximum(norm(p), tiny))
             searching = state.reach > 0
@@ -192,7 +197,8 @@ class TrustRegionNewton(AbstractMinimiser):
             new_size = norm(new.gradient)
             # Of a convex function: actual ≤ slope at the far end, where no round-off
             # of the value can hide it.
-            change = jnp.minimum(actual, dot(new.gradient, p))
+            end = dot(new.gradient, p)
+            change = jnp.where(jnp.isnan(actual), end, jnp.minimum(actual, end))
             accept = first | searching | (change <= 1e-4 * slope)
             accept = accept | (new_size <= 0.5 * size)
             good = (change <= 0.7 * predicted) | (new_size <= 0.25 * size)

@@ -1,5 +1,7 @@
 """Number types shared by every layer."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -12,7 +14,7 @@ Ring = Float[Array, "12"]
 RingStiffness = Float[Array, "12 12"]
 
 
-def as_real(value) -> Array:
+def as_real(value) -> Any:
     """Converter of every real field: a floating array, never a Python float.
 
     A Python float in a Module would be static under `jit`: a new value would
@@ -29,7 +31,7 @@ def as_real(value) -> Array:
     if isinstance(value, jax.Array) and jnp.issubdtype(value.dtype, jnp.floating):
         return value
     if value is None or isinstance(value, str | bytes | bool):
-        return value  # type: ignore[return-value]
+        return value
     return as_array(value, jax.dtypes.canonicalize_dtype(float))
 
 

@@ -2,6 +2,8 @@
 
 from .load import restrained_freedoms as restrained_freedoms
 from .load import solve_load as solve_load
+from .solution import BallSolution as BallSolution
+from .solution import RollerSolution as RollerSolution
 from .solution import Solution as Solution
 from .solution import Stats as Stats
 from .solution import message as message

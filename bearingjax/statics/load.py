@@ -13,7 +13,14 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
-from ..design.bearing import AbstractRollerBearing, TaperedRollerBearing
+from ..design import (
+    Bearing,
+    BearingSet,
+    TaperedRollerBearing,
+    is_ball,
+    pitch_radius,
+    rows_of,
+)
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..element.inertia import Speed
@@ -21,7 +28,7 @@ from ..numerics.implicit import attach, stop
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_array
-from .solution import Solution, Stats, describe, message
+from .solution import BallSolution, RollerSolution, Solution, Stats, describe, message
 
 Vector = Float[Array | np.ndarray, "6"] | Sequence[float | int]
 """Six numbers."""
@@ -29,21 +36,25 @@ Vector = Float[Array | np.ndarray, "6"] | Sequence[float | int]
 DEFAULT_TOLERANCE = {"float64": 1e-11, "float32": 1e-4}
 
 
-def restrained_freedoms(bearing: AbstractRollerBearing) -> tuple[str, ...]:
+def restrained_freedoms(bearing: Bearing | BearingSet) -> tuple[str, ...]:
     """Freedoms that the bearing can hold at all, against a load of the right sense.
 
-    Never gz; uz only for tapers and where a pair of ribs passes axial load from ring
-    to ring.
+    Never gz; uz for balls and tapers, and where a pair of ribs passes axial load from
+    ring to ring.
 
     Args:
         bearing: The design.
     """
+    axial = is_ball(bearing) or any(_ribs_hold(row.bearing) for row in rows_of(bearing))
+    return ("ux", "uy", "uz", "gx", "gy") if axial else ("ux", "uy", "gx", "gy")
+
+
+def _ribs_hold(bearing):
     ribs = bearing.ribs.present
-    axial = isinstance(bearing, TaperedRollerBearing) or any(
+    return isinstance(bearing, TaperedRollerBearing) or any(
         set(pair) <= set(ribs)
         for pair in (("outer_minus", "inner_plus"), ("outer_plus", "inner_minus"))
     )
-    return ("ux", "uy", "uz", "gx", "gy") if axial else ("ux", "uy", "gx", "gy")
 
 
 def solve_load(
@@ -98,7 +109,7 @@ def solve_load(
             f"solve_load: `fixed_ring` is {fixed_ring!r}; it must be 'outer' or"
             " 'inner'."
         )
-    dtype = element.bearing.pitch_diameter.dtype
+    dtype = pitch_radius(element.bearing).dtype
     load = _six("load", load, dtype)
     fixed = _six("fixed_displacement", fixed_displacement, dtype)
     prescribed = {} if prescribed is None else dict(prescribed)
@@ -158,8 +169,7 @@ def _solve(
     tolerance,
     max_steps,
 ):
-    bearing = element.bearing
-    radius = 0.5 * bearing.pitch_diameter
+    radius = pitch_radius(element.bearing)
     one = jnp.ones_like(radius)
     # Metres for every unknown: rotations times the pitch radius.
     scale = jnp.concatenate([jnp.tile(one, 3), jnp.tile(1.0 / radius, 3)])
@@ -176,6 +186,7 @@ def _solve(
     # not close over it.
     args = (element, load, given, fixed, speed, scale, free)
     frozen = stop(args)
+    symmetric = element.has_potential(speed)
 
     def function(y, factor):
         element, load, _, fixed, speed, scale, free = frozen
@@ -190,14 +201,15 @@ def _solve(
         # Round-off of forces that cancel, and of positions in a stiff bearing.
         noise = eps * (e.magnitude + trace * jnp.sqrt(y @ y))
         reference = jnp.where(size > 0, size, e.magnitude)
-        return Evaluation(e.energy - pull @ y, g, h, reference, noise)
+        value = e.energy - pull @ y if symmetric else jnp.full_like(size, jnp.nan)
+        return Evaluation(value, g, h, reference, noise)
 
     pull = free * stop(scale) * stop(load)
     size = jnp.sqrt(pull @ pull)
     direction = pull / jnp.where(size > 0, size, 1.0)
     play = _play(frozen[0])
     first_radius = 1e-7 * stop(radius) + play
-    solver = TrustRegionNewton(max_steps=max_steps)
+    solver = TrustRegionNewton(max_steps=max_steps, symmetric=symmetric)
     # A load that presses the contacts by far less than the play that it takes up is
     # approached from a larger one, by tens: with it, as with a barrier method, all
     # contacts that matter are found early and Newton's method stays on their side.
@@ -232,7 +244,7 @@ def _solve(
         # A held freedom follows what is prescribed for it.
         return free * scale * (force - load) + (1.0 - free) * (y - given / scale)
 
-    y = attach(residual, minimum.x, args)
+    y = attach(residual, minimum.x, args, symmetric)
     q = ring_freedoms(y, scale, fixed)
     fields, evaluated = describe(element, q, speed, points)
 
@@ -260,7 +272,8 @@ def _solve(
     unrestrained = jnp.where(
         of_ring & (result == Result.NO_LOAD_PATH), unrestrained, -1
     )
-    return Solution(
+    kind = BallSolution if is_ball(element.bearing) else RollerSolution
+    return kind(
         **fields,
         result=result,
         unrestrained=unrestrained.astype(jnp.int32),
@@ -270,16 +283,29 @@ def _solve(
 
 def _play(element: BearingElement) -> Scalar:
     """Largest play between the rings, radial or axial [m]."""
-    bearing = element.bearing
+    plays = [_play_of(row) for row in rows_of(element.bearing)]
+    return jnp.maximum(jnp.max(jnp.stack(plays)), 0.0)
+
+
+def _play_of(row) -> Scalar:
+    bearing = row.bearing
+    offset = jnp.abs(row.inner_offset)
+    if is_ball(bearing):
+        axial = bearing.centre_distance * jnp.sin(bearing.free_contact_angle)
+        radial = 0.5 * bearing.clearance
+        # At the free angle a ball bearing of one side touches without play.
+        play = jnp.zeros_like(axial) if bearing.is_one_sided else 2.0 * axial
+        radial = jnp.zeros_like(axial) if bearing.is_one_sided else radial
+        return jnp.maximum(play, radial) + offset
     gaps = [getattr(bearing.ribs, name).axial_gap for name in bearing.ribs.present]
-    play = jnp.stack([0.5 * bearing.radial_internal_clearance, *(2 * g for g in gaps)])
-    return jnp.maximum(jnp.max(play), 0.0)
+    gaps = [0.5 * bearing.radial_internal_clearance, *(2 * g for g in gaps)]
+    return jnp.max(jnp.stack(gaps)) + offset
 
 
 def _load_for(element: BearingElement, approach: Scalar) -> Scalar:
     """Load of one raceway contact pressed by `approach` [N]."""
-    line = element.constants().lines[0]
-    return line.length * line.line_load(approach)
+    loads = [model.pressed(approach) for model in element.models()]
+    return jnp.max(jnp.stack(loads))
 
 
 def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Array:

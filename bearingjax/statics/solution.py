@@ -1,19 +1,16 @@
 """What a solved bearing is: everything that a designer asks of it."""
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from ..contact.line import half_width, peak_pressure
-from ..design.rib import RIB_NAMES
-from ..element.bearing_element import BearingElement, Evaluated, Row, roller_motions
-from ..element.constants import relative_radii
+from ..element.bearing_element import BearingElement, Evaluated, motions
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
+from .balls import BallResults, ball_results, ball_warnings
+from .rollers import RollerResults, roller_results, roller_warnings
 
 
 class Stats(eqx.Module):
@@ -34,7 +31,8 @@ class Stats(eqx.Module):
 
 
 class Solution(eqx.Module):
-    """A solved bearing. Axes: raceway and ring (outer, inner); ribs by `RIB_NAMES`.
+    """A solved bearing. Axes: element is every roller or ball, of a set row by row;
+    raceway and ring are (outer, inner).
 
     If `result` is not `CONVERGED` the numbers are those of the last step, not an
     answer.
@@ -42,45 +40,32 @@ class Solution(eqx.Module):
     Attributes:
         displacement: Ring freedoms (12,) [m, rad].
         force: External load that holds the rings (12,) [N, N m].
-        stiffness: Tangent stiffness (12, 12) [N/m, N, N m].
-        roller_load: Load of each roller on each raceway (roller, 2) [N].
-        rib_load: Load of each roller on each rib (roller, 4), 0 where there is no
-            rib [N].
-        roller_motion: (u, v, θ) of each roller in its section, at the node on the
-            axis (roller, 3) [m, m, rad].
-        azimuth: Azimuth of each roller [rad].
-        position: Uniform positions along the roller, end to end (point,) [m].
-        line_load: Load per length (roller, 2, point) [N/m].
-        contact_pressure: Hertz peak pressure (roller, 2, point) [Pa].
-        contact_half_width: Hertz half width (roller, 2, point) [m].
-        edge_loaded: Line load above zero at the roller end (roller, 2, end), ends
-            at -L/2 and +L/2.
+        stiffness: Tangent stiffness (12, 12) [N/m, N, N m]; not quite symmetric if
+            gyroscopic moments act or contact constants follow the operating angle.
+        roller_load: Load of each roller or ball on each raceway (element, 2) [N].
+        roller_motion: (u, v, θ) of each roller or ball in its section, at the node on
+            the axis (element, 3) [m, m, rad].
+        azimuth: Azimuth of each roller or ball [rad].
         result: `Result` code.
         unrestrained: Index of the freedom of the moving ring that no contact holds
             against the load, if the result is `NO_LOAD_PATH`; otherwise -1 (also if
-            it is a roller that nothing holds).
+            it is a rolling element that nothing holds).
         stats: How the solve went.
     """
 
     displacement: Ring
     force: Ring
     stiffness: RingStiffness
-    roller_load: Float[Array, "roller 2"]
-    rib_load: Float[Array, "roller 4"]
-    roller_motion: Float[Array, "roller 3"]
-    azimuth: Float[Array, " roller"]
-    position: Float[Array, " point"]
-    line_load: Float[Array, "roller 2 point"]
-    contact_pressure: Float[Array, "roller 2 point"]
-    contact_half_width: Float[Array, "roller 2 point"]
-    edge_loaded: Bool[Array, "roller 2 2"]
+    roller_load: Float[Array, "element 2"]
+    roller_motion: Float[Array, "element 3"]
+    azimuth: Float[Array, " element"]
     result: Int[Array, ""]
     unrestrained: Int[Array, ""]
     stats: Stats
 
     @property
-    def load_zone(self) -> Bool[Array, " roller"]:
-        """Which rollers carry load between the raceways, more than round-off."""
+    def load_zone(self) -> Bool[Array, " element"]:
+        """Which rolling elements carry load between the raceways, above round-off."""
         least = 1e-9 * jnp.max(self.roller_load)
         return jnp.all(self.roller_load > least, axis=1)
 
@@ -88,6 +73,14 @@ class Solution(eqx.Module):
     def converged(self) -> Bool[Array, ""]:
         """Whether the result code is `CONVERGED`."""
         return self.result == Result.CONVERGED
+
+
+class RollerSolution(Solution, RollerResults):
+    """Solution of a roller bearing: that of `Solution`, and `RollerResults`."""
+
+
+class BallSolution(Solution, BallResults):
+    """Solution of a ball bearing: that of `Solution`, and `BallResults`."""
 
 
 def message(solution: Solution, moving_ring: str) -> str:
@@ -99,8 +92,9 @@ def message(solution: Solution, moving_ring: str) -> str:
     if result is Result.NO_LOAD_PATH:
         if int(solution.unrestrained) < 0:
             return (
-                "No load path for a roller: inertia throws it off, because no rib"
-                " holds it along its axis. Add the rib, or lower the speed."
+                "No load path for a rolling element: inertia throws it off, because"
+                " nothing holds it (a roller without a rib, along its axis). Add the"
+                " rib, or lower the speed."
             )
         freedom = FREEDOMS[int(solution.unrestrained)]
         return (
@@ -128,68 +122,9 @@ def message(solution: Solution, moving_ring: str) -> str:
 
 def warnings(solution: Solution) -> list[str]:
     """Physics warnings of a concrete, single solution, one sentence each."""
-    out = []
-    for ring, name in enumerate(("outer", "inner")):
-        edges = np.asarray(solution.edge_loaded)[:, ring].any(axis=1)
-        rollers = [int(i) for i in np.flatnonzero(edges)]
-        if rollers:
-            listed = ", ".join(map(str, rollers))
-            out.append(
-                f"edge-loaded roller: line load at the roller end above zero on the"
-                f" {name} raceway (rollers {listed}); the line-contact laws know no"
-                " end pressure peak"
-            )
-    return out
-
-
-def distribution(row: Row, points: int) -> tuple[Array, Array, Array, Array]:
-    """Line load, pressure and half width along every roller.
-
-    Args:
-        row: Solved rollers.
-        points: Number of positions, end to end.
-
-    Returns:
-        position (point,) [m]; line load [N/m], pressure [Pa] and half width [m], each
-        (roller, 2, point).
-    """
-    c = row.model.constants
-    xi = jnp.linspace(-1.0, 1.0, points, dtype=c.half_length.dtype)
-    position = c.half_length * xi
-    drops = jnp.stack([line.drop(xi) for line in c.lines])
-    approaches = _approaches(row)[:, :4].reshape(-1, 2, 2)
-    along = approaches[..., :1] + approaches[..., 1:] * xi[None, None, :] - drops[None]
-    load = jax.vmap(
-        lambda a: jnp.stack([line.line_load(a[k]) for k, line in enumerate(c.lines)])
-    )(along)
-    radius = relative_radii(c, position)
-    radius = radius[None]
-    return (
-        position,
-        load,
-        peak_pressure(load, radius, c.modulus),
-        half_width(load, radius, c.modulus),
-    )
-
-
-def contact_loads(
-    row: Row,
-) -> tuple[Float[Array, "roller 2"], Float[Array, "roller 4"]]:
-    """Load of every roller on both raceways and on the four ribs [N]."""
-    raceways, ribs = row.solved.raceway_load, row.solved.rib_load
-    all_ribs = jnp.zeros((raceways.shape[0], len(RIB_NAMES)), raceways.dtype)
-    present = row.model.constants.ribs
-    if present is not None:
-        columns = jnp.array([RIB_NAMES.index(name) for name in present.names])
-        all_ribs = all_ribs.at[:, columns].set(ribs)
-    return raceways, all_ribs
-
-
-def _approaches(row):
-    model = row.model
-    return jax.vmap(lambda r, x: model.kinematics.approaches(model.prepared, r, x))(
-        row.rings, row.state.x
-    )
+    if isinstance(solution, BallSolution):
+        return ball_warnings(solution)
+    return roller_warnings(solution)
 
 
 def describe(
@@ -204,23 +139,19 @@ def describe(
         element: The bearing.
         q: Ring freedoms [m, rad].
         speed: Ring speeds or `None`.
-        points: Positions along the roller.
+        points: Positions along a roller.
     """
-    row = element.row(q, speed)
-    evaluated = element.evaluate_row(row, q, speed)
-    roller_load, rib_load = contact_loads(row)
-    position, line_load, pressure, width = distribution(row, points)
+    rows = element.rows(q, speed)
+    evaluated = element.evaluate_rows(rows, q, speed)
+    if element.point_law is not None:
+        special = ball_results(rows, element.point_law)
+    else:
+        special = roller_results(rows, points)
     return {
         "displacement": q,
         "force": evaluated.force,
         "stiffness": evaluated.stiffness,
-        "roller_load": roller_load,
-        "rib_load": rib_load,
-        "roller_motion": roller_motions(row),
-        "azimuth": row.azimuth,
-        "position": position,
-        "line_load": line_load,
-        "contact_pressure": pressure,
-        "contact_half_width": width,
-        "edge_loaded": line_load[..., jnp.array([0, -1])] > 0,
+        "roller_motion": jnp.concatenate([motions(row) for row in rows]),
+        "azimuth": jnp.concatenate([row.azimuth for row in rows]),
+        **special,
     }, evaluated

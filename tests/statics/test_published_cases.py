@@ -39,8 +39,8 @@ def nu215(laminae):
 
 @eqx.filter_jit
 def state(element, q):
-    row = element.row(q)
-    return element.force(q), row.solved.raceway_load
+    row = element.rows(q)[0]
+    return element.force(q), row.solved.contact_load[:, :2]
 
 
 @pytest.mark.parametrize(

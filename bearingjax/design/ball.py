@@ -1,0 +1,467 @@
+"""Ball bearings as they stand on the drawing: dimensions, checked, no solving.
+
+A groove is a torus: its section is a circle of the groove radius r = f D around the
+groove centre, f being the osculation. Unloaded, a ball that touches both raceways has
+its centre on the pitch circle at z = 0; the groove centre of the inner ring then stands
+at (r_i - D/2) (sin α, cos α) from it in (z, r), that of the outer ring opposite. A
+positive contact angle α carries an inner-ring load along +z.
+"""
+
+import math
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..numerics.types import Scalar, as_count, as_real
+from .checks import check, concrete, count, in_range, number, positive
+from .material import Material
+
+
+class Groove(NamedTuple):
+    """One raceway arc, seen from the ball centre on the pitch circle.
+
+    Attributes:
+        on_outer: Whether it belongs to the outer ring. Static.
+        axial: z of the groove centre [m].
+        radial: Its r less the pitch radius [m].
+        radius: Groove radius [m].
+        open_side: Whether the raceway goes on as a cylinder beyond the groove
+            bottom, so that it carries on one side only. Static.
+        deepest: Cosine of the angle, from the middle of the raceway, at which the
+            arc is deepest: 1 but where two arcs meet [1].
+    """
+
+    on_outer: bool
+    axial: Scalar
+    radial: Scalar
+    radius: Scalar
+    open_side: bool
+    deepest: Scalar
+
+
+class AbstractBallBearing(eqx.Module):
+    """What every single-row ball bearing has.
+
+    Attributes:
+        n_balls: Number of balls.
+        pitch_diameter: Diameter of the circle of the ball centres, D_pw [m].
+        ball_diameter: Ball diameter, D_w [m].
+        outer_osculation: Radius of the outer groove over the ball diameter, f_o [1].
+        inner_osculation: Radius of the inner groove over the ball diameter, f_i [1].
+        first_azimuth: Azimuth of ball 0, from +x towards +y [rad].
+        ball_deviation: Diameter of each ball less `ball_diameter` (ball,) [m];
+            `None`: all equal.
+        outer_shoulder: Height of the outer shoulders above the groove bottom [m];
+            `None`: unknown, no truncation is looked for.
+        inner_shoulder: Height of the inner shoulders above the groove bottom [m].
+        material: Material of the balls.
+        ring_material: Material of the rings; `None`: as the balls.
+    """
+
+    n_balls: int = eqx.field(static=True, converter=as_count)
+    pitch_diameter: Scalar = eqx.field(converter=as_real)
+    ball_diameter: Scalar = eqx.field(converter=as_real)
+    outer_osculation: Scalar = eqx.field(converter=as_real, kw_only=True)
+    inner_osculation: Scalar = eqx.field(converter=as_real, kw_only=True)
+    first_azimuth: Scalar = eqx.field(converter=as_real, default=0.0, kw_only=True)
+    ball_deviation: Float[Array, " ball"] | None = eqx.field(
+        converter=as_real, default=None, kw_only=True
+    )
+    outer_shoulder: Scalar | None = eqx.field(
+        converter=as_real, default=None, kw_only=True
+    )
+    inner_shoulder: Scalar | None = eqx.field(
+        converter=as_real, default=None, kw_only=True
+    )
+    material: Material = eqx.field(default_factory=Material, kw_only=True)
+    ring_material: Material | None = eqx.field(default=None, kw_only=True)
+
+    @property
+    def rings(self) -> Material:
+        """Material of the rings."""
+        return self.material if self.ring_material is None else self.ring_material
+
+    @property
+    def centre_distances(self) -> tuple[Scalar, Scalar]:
+        """Groove radius less ball radius, outer and inner [m]."""
+        f = self.outer_osculation, self.inner_osculation
+        return (f[0] - 0.5) * self.ball_diameter, (f[1] - 0.5) * self.ball_diameter
+
+    @property
+    def centre_distance(self) -> Scalar:
+        """Distance A = (f_o + f_i - 1) D of the groove centres in contact [m]."""
+        outer, inner = self.centre_distances
+        return outer + inner
+
+    @property
+    def free_contact_angle(self) -> Scalar:
+        """Contact angle of the unloaded bearing, pushed axially [rad]; 0 under preload.
+
+        Its derivative is infinite where it leaves zero; `free_cosine` is smooth.
+        """
+        inside = self.free_cosine < 1.0
+        return jnp.where(
+            inside, jnp.arccos(jnp.where(inside, self.free_cosine, 0.0)), 0.0
+        )
+
+    @property
+    def free_cosine(self) -> Scalar:
+        """Cosine of the free contact angle, at most 1 [1]."""
+        raise NotImplementedError
+
+    @property
+    def clearance(self) -> Scalar:
+        """Radial internal clearance, diametral: s = 2A (1 - cos α0) [m]."""
+        raise NotImplementedError
+
+    @property
+    def grooves(self) -> tuple[Groove, ...]:
+        """All raceway arcs that a ball may touch, outer ring first."""
+        raise NotImplementedError
+
+    @property
+    def is_one_sided(self) -> bool:
+        """Whether it carries axial load in one direction only."""
+        return False
+
+    @property
+    def groove_axis(self) -> float:
+        """Contact angle in the middle of the raceways [rad]."""
+        return 0.0
+
+    def __check_init__(self):
+        count(self, "n_balls", self.n_balls)
+        for name in ("pitch_diameter", "ball_diameter"):
+            positive(self, name, getattr(self, name), "m")
+        number(self, "first_azimuth", self.first_azimuth, "rad")
+        for ring in ("outer", "inner"):
+            self._check_groove(ring)
+        self._check_materials()
+        self._check_row()
+        self._check_deviation()
+
+    def _check_groove(self, ring):
+        name = f"{ring}_osculation"
+        value = getattr(self, name)
+        number(self, name, value, "")
+        numbers = concrete(value)
+        if numbers is not None:
+            allowed = (
+                "above 0.5 and below 1: groove radius over ball diameter, such as 0.52"
+            )
+            check(self, name, value, "", 0.5 < numbers[0] < 1.0, allowed)
+        name = f"{ring}_shoulder"
+        value = getattr(self, name)
+        if value is None:
+            return
+        in_range(self, name, value, "m", 0.0, self.ball_diameter)
+
+    def _check_materials(self):
+        owner = type(self).__name__
+        if not isinstance(self.material, Material):
+            raise TypeError(
+                f"{owner}: `material` is a {type(self.material).__name__}; it must be"
+                " a Material."
+            )
+        if not isinstance(self.ring_material, Material | None):
+            raise TypeError(
+                f"{owner}: `ring_material` is a {type(self.ring_material).__name__};"
+                " it must be a Material or None."
+            )
+
+    def _check_row(self):
+        numbers = concrete(
+            self.pitch_diameter, self.ball_diameter, self.free_contact_angle
+        )
+        if numbers is None:
+            return
+        pitch, ball, angle = numbers
+        allowed = (
+            "small enough to leave an inner raceway inside the pitch circle of"
+            f" {pitch:.6g} m"
+        )
+        fits = pitch > ball * math.cos(angle)
+        check(self, "ball_diameter", ball, "m", fits, allowed)
+        most = int(math.pi / math.asin(min(1.0, ball / pitch)))
+        allowed = (
+            "low enough that balls do not overlap around the pitch circle (at most"
+            f" {most} of this size)"
+        )
+        apart = self.n_balls == 1 or ball < pitch * math.sin(math.pi / self.n_balls)
+        check(self, "n_balls", self.n_balls, "balls", apart, allowed)
+
+    def _check_deviation(self):
+        value = self.ball_deviation
+        if value is None or isinstance(value, jax.core.Tracer):
+            return
+        owner = type(self).__name__
+        if isinstance(value, str | bytes | bool) or np.shape(value) != (self.n_balls,):
+            raise ValueError(
+                f"{owner}: `ball_deviation` has shape {np.shape(value)}; it must be"
+                f" ({self.n_balls},), the diameter of each ball less `ball_diameter`"
+                " in m."
+            )
+        numbers = concrete(self.ball_diameter, *self.centre_distances)
+        if numbers is None:
+            return
+        ball, *distances = numbers
+        # A ball as large as its groove has no point contact.
+        most = 2.0 * min(distances)
+        allowed = (
+            f"finite, above {-ball:.6g} m and below {most:.6g} m, where a ball would"
+            " be as large as its groove"
+        )
+        value = np.asarray(value)
+        ok = np.isfinite(value) & (value < most) & (value > -ball)
+        check(self, "ball_deviation", value, "m", ok, allowed)
+
+
+class DeepGrooveBallBearing(AbstractBallBearing):
+    """Deep groove ball bearing: one full groove per ring, axial load both ways.
+
+    At zero displacement the rings are centred, axially too: with clearance no ball
+    touches. Attributes are those of `AbstractBallBearing`, and one of
+        radial_internal_clearance: Diametral play; negative is preload [m].
+        contact_angle: Free contact angle, from 0 to below π/2 [rad].
+    Neither: no clearance.
+
+    Traced: all fields but `n_balls`.
+    """
+
+    radial_internal_clearance: Scalar | None = eqx.field(
+        converter=as_real, default=None, kw_only=True
+    )
+    contact_angle: Scalar | None = eqx.field(
+        converter=as_real, default=None, kw_only=True
+    )
+
+    @property
+    def clearance(self):
+        if self.radial_internal_clearance is not None:
+            return self.radial_internal_clearance
+        if self.contact_angle is not None:
+            return clearance_of(self.contact_angle, self.centre_distance)
+        return jnp.zeros_like(self.pitch_diameter)
+
+    @property
+    def free_contact_angle(self):
+        if self.contact_angle is not None:
+            return self.contact_angle
+        return super().free_contact_angle
+
+    @property
+    def free_cosine(self):
+        return jnp.minimum(1.0, 1.0 - 0.5 * self.clearance / self.centre_distance)
+
+    @property
+    def grooves(self):
+        outer, inner = self.centre_distances
+        # Radially the groove centres are nearer by half of the diametral play.
+        share = 1.0 - 0.5 * self.clearance / self.centre_distance
+        zero, radius = jnp.zeros_like(outer), 0.5 * self.ball_diameter
+        one = jnp.ones_like(outer)
+        return (
+            Groove(True, zero, -share * outer, outer + radius, False, one),
+            Groove(False, zero, share * inner, inner + radius, False, one),
+        )
+
+    def __check_init__(self):
+        clearance, angle = self.radial_internal_clearance, self.contact_angle
+        if clearance is not None and angle is not None:
+            raise ValueError(
+                f"{type(self).__name__}: `radial_internal_clearance` and"
+                " `contact_angle` are both given; one follows from the other."
+            )
+        if angle is not None:
+            in_range(
+                self,
+                "contact_angle",
+                angle,
+                "rad",
+                0.0,
+                0.5 * np.pi,
+                include_low=True,
+            )
+        if clearance is None:
+            return
+        number(self, "radial_internal_clearance", clearance, "m")
+        numbers = concrete(clearance, self.centre_distance)
+        if numbers is not None:
+            most = 2.0 * numbers[1]
+            allowed = (
+                f"below {most:.6g} m in size, where the groove centres meet (metres"
+                " meant?)"
+            )
+            fits = abs(numbers[0]) < most
+            check(self, "radial_internal_clearance", clearance, "m", fits, allowed)
+
+
+class AngularContactBallBearing(AbstractBallBearing):
+    """Single-row angular contact ball bearing.
+
+    At zero displacement the balls just touch, at the contact angle. Beyond the bottom
+    of its groove each raceway goes on as a cylinder (the cut shoulder): the bearing
+    carries axial load on one side only, an inner-ring load along +z.
+
+    Attributes are those of `AbstractBallBearing`, and
+        contact_angle: Free contact angle, above 0 and below π/2 [rad].
+
+    Traced: all fields but `n_balls`.
+    """
+
+    contact_angle: Scalar = eqx.field(converter=as_real, kw_only=True)
+
+    @property
+    def free_contact_angle(self):
+        return self.contact_angle
+
+    @property
+    def free_cosine(self):
+        return jnp.cos(self.contact_angle)
+
+    @property
+    def clearance(self):
+        return clearance_of(self.contact_angle, self.centre_distance)
+
+    @property
+    def is_one_sided(self):
+        return True
+
+    @property
+    def grooves(self):
+        return _pair(self, self.free_contact_angle, open_side=True)
+
+    def __check_init__(self):
+        in_range(self, "contact_angle", self.contact_angle, "rad", 0.0, 0.5 * np.pi)
+
+
+class ThrustBallBearing(AbstractBallBearing):
+    """Single-direction thrust ball bearing, contact angle 90 degrees.
+
+    The inner ring is the shaft washer, at -z of the balls. Attributes are those of
+    `AbstractBallBearing`.
+
+    Traced: all fields but `n_balls`.
+    """
+
+    @property
+    def free_contact_angle(self):
+        return jnp.full_like(self.pitch_diameter, 0.5 * np.pi)
+
+    @property
+    def free_cosine(self):
+        return jnp.zeros_like(self.pitch_diameter)
+
+    @property
+    def clearance(self):
+        return 2.0 * self.centre_distance
+
+    @property
+    def groove_axis(self):
+        return 0.5 * np.pi
+
+    @property
+    def is_one_sided(self):
+        return True
+
+    @property
+    def grooves(self):
+        outer, inner = self.centre_distances
+        zero, radius = jnp.zeros_like(outer), 0.5 * self.ball_diameter
+        one = jnp.ones_like(outer)
+        return (
+            Groove(True, -outer, zero, outer + radius, True, one),
+            Groove(False, inner, zero, inner + radius, True, one),
+        )
+
+
+class FourPointBallBearing(AbstractBallBearing):
+    """Four-point contact ball bearing: each raceway is two arcs (a split ring).
+
+    The arcs are ground as one groove with a shim between the halves; without it a
+    ball rests on both arcs of a ring, at plus and minus the shim angle.
+
+    Attributes are those of `AbstractBallBearing`, and
+        shim_angle: Angle at which a ball rests in the arcs of one ring [rad].
+        radial_internal_clearance: Diametral play; negative is preload [m].
+
+    Traced: all fields but `n_balls`.
+    """
+
+    shim_angle: Scalar = eqx.field(converter=as_real, kw_only=True)
+    radial_internal_clearance: Scalar = eqx.field(
+        converter=as_real, default=0.0, kw_only=True
+    )
+
+    @property
+    def clearance(self):
+        return self.radial_internal_clearance
+
+    @property
+    def free_cosine(self):
+        play = 0.5 * self.clearance / self.centre_distance
+        return jnp.minimum(1.0, jnp.cos(self.shim_angle) - play)
+
+    @property
+    def grooves(self):
+        outer, inner = self.centre_distances
+        half = 0.25 * self.clearance
+        sine, cosine = jnp.sin(self.shim_angle), jnp.cos(self.shim_angle)
+        radius = 0.5 * self.ball_diameter
+        out = []
+        for on_outer, distance in ((True, outer), (False, inner)):
+            sign = -1.0 if on_outer else 1.0
+            # First the arc that carries with a positive contact angle.
+            for side in (sign, -sign):
+                out.append(
+                    Groove(
+                        on_outer,
+                        side * distance * sine,
+                        sign * (distance * cosine - half),
+                        distance + radius,
+                        False,
+                        jnp.cos(jnp.arcsin(distance * sine / (distance + radius))),
+                    )
+                )
+        return tuple(out)
+
+    def __check_init__(self):
+        in_range(self, "shim_angle", self.shim_angle, "rad", 0.0, 0.5 * np.pi)
+        clearance = self.radial_internal_clearance
+        number(self, "radial_internal_clearance", clearance, "m")
+        numbers = concrete(clearance, self.centre_distance, self.shim_angle)
+        if numbers is not None:
+            most = 2.0 * numbers[1] * math.cos(numbers[2])
+            allowed = (
+                f"below {most:.6g} m in size, where the groove centres meet (metres"
+                " meant?)"
+            )
+            fits = abs(numbers[0]) < most
+            check(self, "radial_internal_clearance", clearance, "m", fits, allowed)
+
+
+def clearance_of(contact_angle: Scalar, centre_distance: Scalar) -> Scalar:
+    """Radial internal clearance of a free contact angle, s = 2A (1 - cos α0) [m].
+
+    Args:
+        contact_angle: Free contact angle α0 [rad].
+        centre_distance: Distance A of the groove centres [m].
+
+    Source: Harris, Rolling Bearing Analysis, geometry of ball bearings.
+    """
+    return 4.0 * centre_distance * jnp.sin(0.5 * contact_angle) ** 2
+
+
+def _pair(bearing, angle, open_side):
+    outer, inner = bearing.centre_distances
+    sine, cosine = jnp.sin(angle), jnp.cos(angle)
+    radius = 0.5 * bearing.ball_diameter
+    one = jnp.ones_like(outer)
+    return (
+        Groove(True, -outer * sine, -outer * cosine, outer + radius, open_side, one),
+        Groove(False, inner * sine, inner * cosine, inner + radius, open_side, one),
+    )

@@ -1,0 +1,168 @@
+"""Sets of bearings: rows side by side on one shaft, in one housing."""
+
+import math
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..numerics.types import Scalar, as_real
+from .ball import AbstractBallBearing
+from .bearing import AbstractRollerBearing
+from .checks import concrete, number
+
+Bearing = AbstractRollerBearing | AbstractBallBearing
+
+
+class SetRow(eqx.Module):
+    """One row of a set.
+
+    Attributes:
+        bearing: The single-row bearing.
+        position: z of its origin in the set [m].
+        mirrored: Turned round: it carries an inner-ring load along -z.
+        inner_offset: Axial place of its inner ring against its outer ring, from
+            where the single bearing has it, along +z of the set [m]; how a set is
+            preloaded by grinding or by spacers.
+
+    Traced: position, inner_offset.
+    """
+
+    bearing: Bearing
+    position: Scalar = eqx.field(converter=as_real, default=0.0)
+    mirrored: bool = eqx.field(static=True, default=False)
+    inner_offset: Scalar = eqx.field(converter=as_real, default=0.0)
+
+    def __check_init__(self):
+        if not isinstance(self.bearing, Bearing):
+            raise TypeError(
+                f"SetRow: `bearing` is a {type(self.bearing).__name__}; it must be a"
+                " single-row roller or ball bearing."
+            )
+        if not isinstance(self.mirrored, bool):
+            raise TypeError(f"SetRow: `mirrored` is {self.mirrored!r}; True or False.")
+        number(self, "position", self.position, "m")
+        number(self, "inner_offset", self.inner_offset, "m")
+
+
+class BearingSet(eqx.Module):
+    """Rows that share the node of the inner and the node of the outer ring.
+
+    The nodes lie at z = 0 of the set. Rows may differ in everything but must be all
+    of balls or all of rollers.
+
+    Attributes:
+        rows: The rows, in any order.
+
+    Raises:
+        ValueError: For an empty set or one of balls and rollers.
+    """
+
+    rows: tuple[SetRow, ...] = eqx.field(converter=tuple)
+
+    @classmethod
+    def back_to_back(
+        cls, bearing: Bearing, spacing, preload_offset=0.0
+    ) -> "BearingSet":
+        """Pair in O arrangement (DB): stiff against tilting.
+
+        Args:
+            bearing: Either bearing of the pair.
+            spacing: Distance of the middles of the rows [m].
+            preload_offset: Axial approach of the inner rings that presses each row by
+                half of it [m]; the total of both gaps that the nut closes.
+
+        Raises:
+            ValueError: If `spacing` is not positive.
+        """
+        return cls._pair(bearing, spacing, preload_offset, mirrored=(False, True))
+
+    @classmethod
+    def face_to_face(
+        cls, bearing: Bearing, spacing, preload_offset=0.0
+    ) -> "BearingSet":
+        """Pair in X arrangement (DF): forgiving of misalignment.
+
+        Args:
+            bearing, spacing: As in `back_to_back`.
+            preload_offset: Axial approach of the outer rings that presses each row by
+                half of it [m].
+
+        Raises:
+            ValueError: If `spacing` is not positive.
+        """
+        return cls._pair(bearing, spacing, preload_offset, mirrored=(True, False))
+
+    @classmethod
+    def tandem(cls, bearing: Bearing, spacing, count: int = 2) -> "BearingSet":
+        """Rows that share an axial load along +z.
+
+        Args:
+            bearing: Any of the bearings.
+            spacing: Distance of the middles of neighbouring rows [m].
+            count: Number of rows.
+
+        Raises:
+            ValueError: If `spacing` is not positive.
+        """
+        _check_spacing(spacing)
+        places = [spacing * (k - 0.5 * (count - 1)) for k in range(count)]
+        return cls(tuple(SetRow(bearing, place) for place in places))
+
+    @classmethod
+    def _pair(cls, bearing, spacing, preload_offset, mirrored):
+        _check_spacing(spacing)
+        rows = []
+        for side, turned in zip((-0.5, 0.5), mirrored, strict=True):
+            # A row is pressed by its inner ring moving along +z; mirrored, along -z.
+            offset = -0.5 * preload_offset if turned else 0.5 * preload_offset
+            rows.append(SetRow(bearing, side * spacing, turned, offset))
+        return cls(tuple(rows))
+
+    def __check_init__(self):
+        if not self.rows:
+            raise ValueError("BearingSet: `rows` is empty; it must hold a SetRow.")
+        for row in self.rows:
+            if not isinstance(row, SetRow):
+                raise TypeError(
+                    f"BearingSet: `rows` holds a {type(row).__name__}; it must hold"
+                    " SetRows."
+                )
+        kinds = {isinstance(row.bearing, AbstractBallBearing) for row in self.rows}
+        if len(kinds) > 1:
+            raise ValueError(
+                "BearingSet: `rows` mix balls and rollers; a set must be all of balls"
+                " or all of rollers (give two elements instead)."
+            )
+
+
+def rows_of(bearing: Bearing | BearingSet) -> tuple[SetRow, ...]:
+    """The rows of a set, or the bearing as its only row."""
+    if isinstance(bearing, BearingSet):
+        return bearing.rows
+    return (SetRow(bearing),)
+
+
+def is_ball(bearing: Bearing | BearingSet) -> bool:
+    """Whether the rolling elements are balls."""
+    return isinstance(rows_of(bearing)[0].bearing, AbstractBallBearing)
+
+
+def pitch_radius(bearing: Bearing | BearingSet) -> Scalar:
+    """Largest pitch radius of the rows [m]."""
+    radii = [0.5 * row.bearing.pitch_diameter for row in rows_of(bearing)]
+    return jnp.max(jnp.stack(radii))
+
+
+def n_elements(bearing: Bearing) -> int:
+    """Number of rolling elements of a single row."""
+    if isinstance(bearing, AbstractBallBearing):
+        return bearing.n_balls
+    return bearing.n_rollers
+
+
+def _check_spacing(spacing):
+    numbers = concrete(spacing)
+    if numbers is not None and not (math.isfinite(numbers[0]) and numbers[0] > 0):
+        raise ValueError(
+            f"BearingSet: `spacing` is {numbers[0]:g} m; it must be above 0 m."
+        )

@@ -1,0 +1,111 @@
+"""What the equilibrium asks of one rolling element, roller or ball.
+
+`rings` are the motions of both rings in the element's own axes (r,), `x` its own
+unknowns (n,) [m]. All derivatives are with respect to (rings, x), in this order.
+"""
+
+import abc
+from typing import NamedTuple
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from ..numerics.types import Scalar
+
+Rings = Float[Array, " r"]
+Unknowns = Float[Array, " n"]
+
+
+class Derivatives(NamedTuple):
+    """Forces of one rolling element and their derivatives.
+
+    Attributes:
+        energy: U - F·y, strain energy less the potential of inertia [J]; without
+            that part of the inertia that has none.
+        gradient: Generalised forces (r + n,), or (n,) on x alone [N, N m]; the
+            derivative of the energy, if all forces have a potential.
+        hessian: Derivatives of `gradient`, (r + n, r + n) or (n, n) [N/m, N, N m].
+        contact_load: Load of each contact (contact,) [N].
+    """
+
+    energy: Scalar
+    gradient: Float[Array, " m"]
+    hessian: Float[Array, "m m"]
+    contact_load: Float[Array, " contact"]
+
+
+class AbstractModel(eqx.Module):
+    """One rolling element between its rings."""
+
+    guide: eqx.AbstractVar[Scalar]
+    """Guide spring constant [N/m]."""
+
+    diameter: eqx.AbstractVar[Scalar]
+    """Diameter of the rolling element [m]."""
+
+    gap: eqx.AbstractVar[Scalar]
+    """Size of the gaps, unloaded and centred [m]."""
+
+    n_unknowns: eqx.AbstractClassVar[int]
+    """Number of own unknowns, n."""
+
+    @property
+    def has_potential(self) -> bool:
+        """Whether all forces derive from an energy. Static."""
+        return True
+
+    @property
+    def is_convex(self) -> bool:
+        """Whether that energy is convex. Static."""
+        return True
+
+    @abc.abstractmethod
+    def transform(self, azimuth: Scalar) -> Float[Array, "r 12"]:
+        """Ring motions in the element's axes from q."""
+
+    @abc.abstractmethod
+    def derivatives(
+        self, rings: Rings, x: Unknowns, of_own: bool = False
+    ) -> Derivatives:
+        """Energy, forces and stiffness of the element.
+
+        All are differentiable; what is not used of them is not computed under `jit`.
+
+        Args:
+            rings: Motion of both rings in the element's axes (r,) [m, rad].
+            x: Own unknowns (n,) [m].
+            of_own: Derivatives with respect to x alone, (n,) and (n, n).
+        """
+
+    @abc.abstractmethod
+    def reach(self, rings: Rings) -> Scalar:
+        """How far the rings are from each other in the element's section [m]."""
+
+    @abc.abstractmethod
+    def pressed(self, approach: Scalar) -> Scalar:
+        """Load of one raceway contact pressed by `approach` [N]."""
+
+    @abc.abstractmethod
+    def inertia_size(self) -> Scalar | None:
+        """Size of the inertia forces [N], or `None` if there are none."""
+
+    @abc.abstractmethod
+    def motion(
+        self, rings: Rings, x: Unknowns, outer: Float[Array, "3"]
+    ) -> Float[Array, "3"]:
+        """(u, v, θ) of the element at the node on the axis [m, m, rad].
+
+        Args:
+            rings: Motion of both rings in the element's axes (r,) [m, rad].
+            x: Own unknowns (n,) [m].
+            outer: (u, v, θ) of the outer ring at the node [m, m, rad].
+        """
+
+    @abc.abstractmethod
+    def inertia(self, rings: Rings, x: Unknowns) -> Float[Array, "3"] | None:
+        """What inertia does to the element, or `None`.
+
+        Returns:
+            Generalised force on (u, v, θ): axial and radial force [N] and moment
+            about e_t, turning z towards r, at the node on the axis [N m].
+        """

@@ -1,0 +1,187 @@
+"""What a designer asks of solved balls: contact angles, ellipses, pressures, spin."""
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
+from ..element.ball import BallModel, gyroscopic_moment
+from ..element.ball_speed import BallKinematics
+from ..element.bearing_element import Row
+
+
+class BallResults(eqx.Module):
+    """Axis contact: (outer, inner), or with two arcs per ring (outer, outer, inner,
+    inner), each ring's arc for a positive contact angle first.
+
+    Attributes:
+        contact_load: Load of each contact (ball, contact) [N].
+        contact_angle: Angle of the line of centres, open contacts too, positive where
+            the row carries an inner-ring load along +z (before it is mirrored)
+            (ball, contact) [rad].
+        contact_pressure: Hertz peak pressure (ball, contact) [Pa].
+        semi_axes: Of the contact ellipse, in rolling direction and across
+            (ball, contact, 2) [m].
+        approach: Approach of ball and raceway, negative where apart
+            (ball, contact) [m].
+        shoulder_margin: Height of the shoulder above the end of the contact ellipse
+            (ball, contact) [m]; negative: the ellipse is truncated. Infinite where no
+            shoulder is given or no load carried.
+        kinematics: Orbit, rotation and spin, leading axis ball; `None` without speed.
+        gyroscopic_moment: Of each ball (ball,) [N m], or `None`.
+        centrifugal_force: Of each ball (ball,) [N], or `None`.
+    """
+
+    contact_load: Float[Array, "ball contact"]
+    contact_angle: Float[Array, "ball contact"]
+    contact_pressure: Float[Array, "ball contact"]
+    semi_axes: Float[Array, "ball contact 2"]
+    approach: Float[Array, "ball contact"]
+    shoulder_margin: Float[Array, "ball contact"]
+    kinematics: BallKinematics | None
+    gyroscopic_moment: Float[Array, " ball"] | None
+    centrifugal_force: Float[Array, " ball"] | None
+
+    @property
+    def n_contacts(self) -> Int[Array, " ball"]:
+        """How many contacts of each ball carry load, more than round-off."""
+        return jnp.sum(self._carrying, axis=1)
+
+    @property
+    def lifted(self) -> Array:
+        """Which balls have left the inner raceway and run on the outer one alone."""
+        half = self.contact_load.shape[1] // 2
+        outer, inner = self._carrying[:, :half], self._carrying[:, half:]
+        return jnp.any(outer, axis=1) & ~jnp.any(inner, axis=1)
+
+    @property
+    def _carrying(self):
+        return self.contact_load > 1e-9 * jnp.max(self.contact_load)
+
+
+def ball_results(rows: tuple[Row, ...], law: AbstractPointLaw) -> dict:
+    """Fields of `BallResults`, and `roller_load`, of solved rows.
+
+    Args:
+        rows: Solved balls of all rows.
+        law: Law of the contact constants.
+    """
+    parts = [_row_results(row, law) for row in rows]
+    contacts = max(part["contact_load"].shape[1] for part in parts)
+    out = {}
+    for name in parts[0]:
+        values = [part[name] for part in parts]
+        if values[0] is None:
+            out[name] = None
+        elif name == "kinematics":
+            out[name] = BallKinematics(
+                *(jnp.concatenate(v) for v in zip(*values, strict=True))
+            )
+        elif name == "roller_load":
+            out[name] = jnp.concatenate(values)
+        else:
+            out[name] = jnp.concatenate([_spread(v, contacts) for v in values])
+    return out
+
+
+def _spread(values, contacts):
+    """Contacts of a row with one arc per ring among rows with two."""
+    if values.ndim == 1 or values.shape[1] == contacts:
+        return values
+    shape = (values.shape[0], contacts, *values.shape[2:])
+    return jnp.zeros(shape, values.dtype).at[:, jnp.array([0, 2])].set(values)
+
+
+def _row_results(row: Row, law: AbstractPointLaw) -> dict:
+    bearing, model = row.part.bearing, row.model
+    assert isinstance(model, BallModel)
+    contacts = row.each(lambda m, r, x: m.contacts(r, x))
+    outwards = jnp.asarray([1.0 if o else -1.0 for o in model.on_outer])
+    vectors = outwards[None, :, None] * contacts.normal
+    load = row.solved.contact_load
+    balls = balls_of(bearing)
+    cosine = law.cosine(bearing.free_cosine, vectors[..., 1].T)
+    if bearing.ball_deviation is not None:
+        diameters = balls.diameter + bearing.ball_deviation
+        balls = balls._replace(diameter=diameters[None, :])
+    ellipses = ball_ellipses(balls, bearing.grooves, cosine)
+    axes = jnp.stack(ellipses.semi_axes(load.T), axis=-1).swapaxes(0, 1)
+    # Of two arcs the load of the raceway is that of the resultant.
+    sides = row.each(lambda m, r, x, q: m.directions(m.contacts(r, x), q)[1], load)
+    kinematics = moment = force = None
+    if model.turning is not None:
+        kinematics = row.each(lambda m, r, x: m.kinematics(m.contacts(r, x)))
+        turning = model.turning
+        moment = gyroscopic_moment(turning.moment, kinematics)
+        force = row.each(lambda m, r, x: m.inertia(r, x)[1])
+        if not turning.control.has_reaction:
+            moment = jnp.zeros_like(moment)
+    return {
+        "roller_load": sides,
+        "contact_load": load,
+        "contact_angle": jnp.arctan2(vectors[..., 0], vectors[..., 1]),
+        "contact_pressure": ellipses.peak_pressure(load.T).T,
+        "semi_axes": axes,
+        "approach": contacts.approach,
+        "shoulder_margin": _margins(bearing, vectors, axes, load),
+        "kinematics": kinematics,
+        "gyroscopic_moment": moment,
+        "centrifugal_force": force,
+    }
+
+
+def _margins(bearing, vectors, axes, load):
+    """Shoulder height less the height of the far end of the ellipse [m].
+
+    The ellipse is laid on the arc of the groove; heights are counted from where the
+    raceway is deepest.
+    """
+    margins = []
+    for k, groove in enumerate(bearing.grooves):
+        name = "outer_shoulder" if groove.on_outer else "inner_shoulder"
+        shoulder = getattr(bearing, name)
+        if shoulder is None:
+            margins.append(jnp.full(load.shape[:1], jnp.inf))
+            continue
+        angle = jnp.arctan2(vectors[:, k, 0], vectors[:, k, 1]) - bearing.groove_axis
+        end = jnp.abs(angle) + axes[:, k, 1] / groove.radius
+        height = groove.radius * (groove.deepest - jnp.cos(end))
+        margins.append(jnp.where(load[:, k] > 0, shoulder - height, jnp.inf))
+    return jnp.stack(margins, axis=1)
+
+
+def ball_warnings(solution) -> list[str]:
+    """Physics warnings of a concrete, single solution, one sentence each.
+
+    Args:
+        solution: A `BallSolution`.
+    """
+    out = []
+    margin = np.asarray(solution.shoulder_margin)
+    load = np.asarray(solution.contact_load)
+    half = margin.shape[1] // 2
+    for name, side in (("outer", slice(0, half)), ("inner", slice(half, None))):
+        cut = margin[:, side] < 0
+        balls = [int(i) for i in np.flatnonzero(cut.any(axis=1))]
+        if balls:
+            worst = load[:, side][cut].max()
+            most = -1e6 * margin[:, side].min()
+            out.append(
+                f"truncated contact ellipse: it reaches over the {name} shoulder by up"
+                f" to {most:.3g} um, at a contact load of up to {worst:.5g} N (balls"
+                f" {_listed(balls)}); pressure and stiffness there are not Hertz's"
+            )
+    if not solution.n_contacts.any():
+        return out
+    lifted = [int(i) for i in np.flatnonzero(np.asarray(solution.lifted))]
+    if lifted and solution.kinematics is not None:
+        out.append(
+            f"lifted off the inner raceway by centrifugal force: balls"
+            f" {_listed(lifted)}"
+        )
+    return out
+
+
+def _listed(numbers):
+    return ", ".join(map(str, numbers))
