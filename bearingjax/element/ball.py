@@ -375,7 +375,9 @@ class BallModel(AbstractModel):
         return jnp.stack([zero, force, moment])
 
 
-def gyroscopic_moment(moment_of_inertia: Scalar, kinematics: BallKinematics) -> Scalar:
+def gyroscopic_moment(
+    moment_of_inertia: Float[Array, "..."], kinematics: BallKinematics
+) -> Float[Array, "..."]:
     """Moment that turns the ball's axis with its orbit, I ω_c ω_R sin β [N m].
 
     Args:
@@ -383,7 +385,7 @@ def gyroscopic_moment(moment_of_inertia: Scalar, kinematics: BallKinematics) -> 
         kinematics: Of the ball.
     """
     k = kinematics
-    return moment_of_inertia * k.orbit * k.rotation * jnp.sin(k.pitch_angle)
+    return moment_of_inertia * k.orbit * k.rotation * k.axis[..., 0]
 
 
 def ball_model(

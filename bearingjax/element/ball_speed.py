@@ -22,6 +22,8 @@ from .inertia import Speed
 
 # A load [N] far below any that matters, for shares of no load at all.
 _NO_LOAD = 1e-15
+# Keep the kinematics finite for geometries in which no ball rolls.
+_COSINE, _SQUARE = 1e-3, 1e-30
 
 Direction = Float[Array, "2"]
 """Unit vector (z, r) from the inner to the outer side, along a contact normal."""
@@ -155,17 +157,27 @@ class BallKinematics(NamedTuple):
     Attributes:
         orbit: Orbital speed ω_c [rad/s].
         rotation: Speed ω_R relative to the orbiting frame [rad/s].
-        pitch_angle: β of the axis of rotation [rad].
+        axis: Axis of rotation (sin β, cos β) for its pitch angle β (2,).
         spin: Spin about the contact normal relative to outer and inner ring (2,)
             [rad/s].
         roll: Rolling about the contact tangent, likewise (2,) [rad/s].
     """
 
-    orbit: Scalar
-    rotation: Scalar
-    pitch_angle: Scalar
-    spin: Float[Array, "2"]
-    roll: Float[Array, "2"]
+    orbit: Float[Array, "..."]
+    rotation: Float[Array, "..."]
+    axis: Float[Array, "... 2"]
+    spin: Float[Array, "... 2"]
+    roll: Float[Array, "... 2"]
+
+    @property
+    def pitch_angle(self) -> Float[Array, "..."]:
+        """Pitch angle β of the axis of rotation [rad]."""
+        return jnp.arctan2(self.axis[..., 0], self.axis[..., 1])
+
+    @property
+    def spin_to_roll(self) -> Float[Array, "... 2"]:
+        """Size of spin over rolling at outer and inner raceway [1]."""
+        return jnp.abs(self.spin / self.roll)
 
 
 def ball_kinematics(
@@ -182,15 +194,18 @@ def ball_kinematics(
     Source: no slip at both contact centres; the spin axis of outer control is
         tan β = sin α_o/(cos α_o + γ), of inner control sin α_i/(cos α_i - γ).
     """
-    one = jnp.stack([jnp.zeros_like(ratio), ratio])
-    axis = share * (outer + one) + (1.0 - share) * (inner - one)
-    axis = axis / jnp.sqrt(axis @ axis)
-    # Circumferential speed of each ring at its contact, over ω d_m/2, and of the ball.
-    on_outer = (1.0 + ratio * outer[1]) / (axis @ outer)
-    on_inner = (1.0 - ratio * inner[1]) / (axis @ inner)
-    total = on_outer + on_inner
-    orbit = (speed.outer * on_outer + speed.inner * on_inner) / total
-    rotation = (speed.inner - speed.outer) * on_outer * on_inner / (ratio * total)
+    turned = jnp.stack([jnp.zeros_like(ratio), ratio])
+    axis = share * (outer + turned) + (1.0 - share) * (inner - turned)
+    axis = axis / jnp.sqrt(axis @ axis + _SQUARE)
+    # Cosines between axis and normals; beyond a right angle a ball does not roll.
+    at_outer = jnp.maximum(axis @ outer, _COSINE)
+    at_inner = jnp.maximum(axis @ inner, _COSINE)
+    # Circumferential speeds of the rings at their contacts, over ω d_m/2.
+    of_outer, of_inner = 1.0 + ratio * outer[1], 1.0 - ratio * inner[1]
+    weights = of_outer * at_inner, of_inner * at_outer
+    total = weights[0] + weights[1]
+    orbit = (speed.outer * weights[0] + speed.inner * weights[1]) / total
+    rotation = (speed.inner - speed.outer) * of_outer * of_inner / (ratio * total)
     # Rotation of the ball relative to each ring, in (z, r).
     of_rings = jnp.stack([speed.outer, speed.inner])
     along_z = orbit - of_rings - rotation * axis[1]
@@ -199,7 +214,7 @@ def ball_kinematics(
     return BallKinematics(
         orbit=orbit,
         rotation=rotation,
-        pitch_angle=jnp.arctan2(axis[0], axis[1]),
+        axis=axis,
         spin=along_z * normals[:, 0] + along_r * normals[:, 1],
         roll=along_z * normals[:, 1] - along_r * normals[:, 0],
     )
