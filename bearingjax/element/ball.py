@@ -140,6 +140,48 @@ class BallModel(AbstractModel):
         moved = jnp.abs(between[0]) + jnp.abs(between[1])
         return moved + lever * jnp.abs(between[2])
 
+    def first(self, rings):
+        """A turning ball that does not reach the inner ring lies in the outer one.
+
+        From amid the rings a small centrifugal force would take it there in steps
+        of any length.
+        """
+        amid = super().first(rings)
+        if self.turning is None:
+            return amid
+        outer = [k for k, on_outer in enumerate(self.on_outer) if on_outer]
+        centre = sum((self.start[k] for k in outer[1:]), start=self.start[outer[0]])
+        aside = (self.start[outer[0]] - centre / len(outer))[0]
+        pressed = (
+            self.turning.centrifugal / len(outer) / self.pressed(jnp.ones_like(aside))
+        )
+        length = self.reach_of[outer[0]] + positive_power(pressed, _D, _N)
+        height = jnp.sqrt(jnp.maximum(length**2 - aside**2, 0.0))
+        target = jnp.stack([jnp.zeros_like(height), height])
+        seat = target - centre / len(outer) - 0.5 * self._between(rings)[:2]
+        inner = self.contacts(rings, seat).approach[len(outer) :]
+        return jnp.where(jnp.max(inner) < 0.0, seat, amid)
+
+    @property
+    def shapes_steps(self):
+        return True
+
+    def shape(self, rings, x, step, size):
+        """Along the groove that carries most, and no deeper into others than needed.
+
+        Straight, a step along a groove would press the ball into it by step²/(2l);
+        and a step across a gap would end where the force is decades too large.
+        """
+        c = self.contacts(rings, x)
+        constant = self.constants(c)
+        bent = _bent(c, constant * positive_power(c.approach, _N, _D), step)
+        # An open contact is entered so far that it carries what is out of balance.
+        wanted = positive_power(size / constant, _D, _N)
+        reached = self.contacts(rings, x + bent).approach
+        entered = (c.approach < 0.0) & (reached > wanted)
+        share = (wanted - c.approach) / jnp.where(entered, reached - c.approach, 1.0)
+        return bent * jnp.min(jnp.where(entered, share, 1.0))
+
     def pressed(self, approach):
         normal = self.start / jnp.sqrt(jnp.sum(self.start**2, axis=1))[:, None]
         one = jnp.ones_like(self.reach_of)
@@ -373,6 +415,23 @@ class BallModel(AbstractModel):
         moment = -0.5 * self.diameter * (traction[0] + traction[1])
         force = self.pitch_radius * t.mass * kinematics.orbit**2
         return jnp.stack([zero, force, moment])
+
+
+def _bent(c: Contacts, load, step):
+    """The step, turned along the circle around the centre of the busiest groove."""
+    chosen = (load == jnp.max(load)) & (load > 0.0) & (c.mask > 0.0)
+    weight = jnp.where(chosen, 1.0, 0.0)
+    weight = weight / jnp.maximum(_sum(weight), 1.0)
+    normal = _sum(weight[:, None] * c.normal)
+    length = _sum(weight * c.length)
+    along = dot(normal, step)
+    new = length * normal + step
+    size = jnp.sqrt(jnp.maximum(dot(new, new), jnp.finfo(step.dtype).tiny))
+    # new/size·(length + along) - length·normal, without cancellation.
+    across2 = jnp.maximum(dot(step, step) - along * along, 0.0)
+    short = across2 / (size + length + along)
+    bends = (length + along > 0.0) & (length > 0.0)
+    return jnp.where(bends, step - short / size * new, step)
 
 
 def gyroscopic_moment(

@@ -33,6 +33,7 @@ from .equilibrium import (
     LocalState,
     condensed_force,
     condensed_stiffness,
+    settle,
     solve_element,
     solved_derivatives,
 )
@@ -268,7 +269,9 @@ class BearingElement(eqx.Module):
             pairs = zip(rows, shares, strict=True)
             force = sum(_sum_forces(row, share) for row, share in pairs)
             stiffness = sum(_stiffness(row) for row in rows)
-        states = [row.state for row in rows]
+        loads = [jnp.max(row.solved.contact_load) for row in rows]
+        largest = jnp.max(jnp.stack(loads))
+        states = [settle(row.state, largest) for row in rows]
         return Evaluated(
             energy=_energy(rows),
             force=force,

@@ -8,6 +8,7 @@ import abc
 from typing import NamedTuple
 
 import equinox as eqx
+import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar
@@ -80,6 +81,32 @@ class AbstractModel(eqx.Module):
     @abc.abstractmethod
     def reach(self, rings: Rings) -> Scalar:
         """How far the rings are from each other in the element's section [m]."""
+
+    def first(self, rings: Rings) -> Unknowns:
+        """Where a search for the equilibrium starts: amid the rings.
+
+        Args:
+            rings: Motion of both rings in the element's axes (r,) [m, rad].
+        """
+        return jnp.zeros((self.n_unknowns,), rings.dtype)
+
+    @property
+    def shapes_steps(self) -> bool:
+        """Whether `shape` is worth its time. Static."""
+        return False
+
+    def shape(
+        self, rings: Rings, x: Unknowns, step: Unknowns, size: Scalar
+    ) -> Unknowns:
+        """A better step of x, from what is known of the contacts.
+
+        Args:
+            rings: Motion of both rings in the element's axes (r,) [m, rad].
+            x: Own unknowns (n,) [m].
+            step: Step of Newton's method (n,) [m].
+            size: Of the force out of balance at x [N].
+        """
+        return step
 
     @abc.abstractmethod
     def pressed(self, approach: Scalar) -> Scalar:

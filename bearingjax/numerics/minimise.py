@@ -43,6 +43,7 @@ class Minimum(NamedTuple):
     Attributes:
         x: Minimiser (n,).
         residual: |gradient| / scale, zero below the round-off floor [1].
+        unbalanced: |gradient|.
         steps: Evaluations after the first.
         result: `Result` code.
         radius: Last trust radius, unit of x.
@@ -50,12 +51,16 @@ class Minimum(NamedTuple):
 
     x: Float[Array, " n"]
     residual: Float[Array, ""]
+    unbalanced: Float[Array, ""]
     steps: Int[Array, ""]
     result: Int[Array, ""]
     radius: Float[Array, ""]
 
 
 Function = Callable[[Float[Array, " n"], bool], Evaluation]
+Shape = Callable[
+    [Float[Array, " n"], Float[Array, " n"], Float[Array, ""]], Float[Array, " n"]
+]
 
 
 class AbstractMinimiser(eqx.Module):
@@ -67,6 +72,7 @@ class AbstractMinimiser(eqx.Module):
         function: Function,
         start: Float[Array, " n"],
         radius: Float[Array, ""],
+        shape: Shape | None = None,
     ) -> Minimum:
         """Minimise `function`.
 
@@ -74,6 +80,8 @@ class AbstractMinimiser(eqx.Module):
             function: (x, with_hessian) -> `Evaluation`.
             start: First point (n,).
             radius: First bound of the step, same unit as x.
+            shape: (x, step, size of the gradient) -> better step, by one who knows
+                where the function bends or stiffens. Newton's method alone uses it.
 
         Fails: `STEP_LIMIT`, `NON_FINITE` as result codes.
         """
@@ -131,9 +139,9 @@ class TrustRegionNewton(AbstractMinimiser):
     max_steps: int = eqx.field(static=True, default=100)
     symmetric: bool = eqx.field(static=True, default=True)
 
-    def minimise(self, function, start, radius):
+    def minimise(self, function, start, radius, shape=None):
         tolerance = _tolerance(self.tolerance, start.dtype)
-        return self.search(function, start, radius, tolerance, None, None)
+        return self.search(function, start, radius, tolerance, None, None, shape)
 
     def search(
         self,
@@ -143,11 +151,12 @@ class TrustRegionNewton(AbstractMinimiser):
         tolerance: Float[Array, ""] | float,
         direction: Float[Array, " n"] | None,
         limit: Float[Array, ""] | None,
+        shape: Shape | None = None,
     ) -> Minimum:
         """As `minimise`, for functions that may be flat at the start.
 
         Args:
-            function, start, radius: As in `minimise`.
+            function, start, radius, shape: As in `minimise`.
             tolerance: |gradient| / scale at which the search ends; may be traced.
             direction: Unit vector (n,), or zero. If the function falls along it and
                 too little curvature is felt within `radius` to end the fall, it is
@@ -188,6 +197,8 @@ class TrustRegionNewton(AbstractMinimiser):
             searching = state.reach > 0
             if direction is not None:
                 p = jnp.where(searching, state.reach * direction, p)
+            if shape is not None:
+                p = shape(state.x, p, size)
             p = jnp.where(first, 0.0, p)
             length = norm(p)
             new = function(state.x + p, True)
@@ -206,14 +217,14 @@ class TrustRegionNewton(AbstractMinimiser):
             grown = jnp.where(good, longer, state.radius)
             # A step too long has met a stiff contact: Newton along the step, from its
             # far end, says where.
-            bend = jnp.maximum(quadratic(new.hessian, p), tiny)
-            shorter = jnp.clip(1.0 - dot(new.gradient, p) / bend, 0.1, 0.9)
+            stiff = jnp.maximum(quadratic(new.hessian, p), tiny)
+            shorter = jnp.clip(1.0 - dot(new.gradient, p) / stiff, 0.1, 0.9)
             radius = jnp.where(accept, grown, shorter * length)
             reach = state.reach
             if direction is not None:
                 fall = -dot(new.gradient, direction)
-                bend = quadratic(new.hessian, direction)
-                begin = (fall > 0) & (bend * state.radius < fall)
+                stiff = quadratic(new.hessian, direction)
+                begin = (fall > 0) & (stiff * state.radius < fall)
                 reach = jnp.where(
                     first,
                     jnp.where(begin, state.radius, 0.0),
@@ -254,7 +265,7 @@ class BFGS(AbstractMinimiser):
     tolerance: float | None = eqx.field(static=True, default=None)
     max_steps: int = eqx.field(static=True, default=400)
 
-    def minimise(self, function, start, radius):
+    def minimise(self, function, start, radius, shape=None):
         default = 1e-9 if start.dtype == jnp.float64 else 1e-4
         tolerance = default if self.tolerance is None else self.tolerance
         eps = jnp.finfo(start.dtype).eps
@@ -354,6 +365,7 @@ def _finish(state, tolerance, limit):
     return Minimum(
         x=state.x,
         residual=jnp.where(size <= now.noise, 0.0, relative),
+        unbalanced=size,
         steps=state.steps.astype(jnp.int32),
         result=result.astype(jnp.int32),
         radius=state.radius,

@@ -7,22 +7,37 @@ from typing import Any
 import numpy as np
 
 from ..numerics.result import Result
-from ..statics.solution import Solution, message, warnings
+from ..statics.solution import BallSolution, Solution, message, warnings
 from .read import Scene
 
-ARRAYS = (
+COMMON = (
     "displacement",
     "force",
     "stiffness",
     "roller_load",
-    "rib_load",
     "roller_motion",
     "azimuth",
-    "position",
-    "line_load",
-    "contact_pressure",
 )
-"""Fields of the solution that are written, with their names."""
+"""Fields written of every solution, with their names."""
+
+OF_ROLLERS = ("rib_load", "position", "line_load", "contact_pressure")
+OF_BALLS = (
+    "contact_load",
+    "contact_angle",
+    "contact_pressure",
+    "semi_axes",
+    "approach",
+    "shoulder_margin",
+)
+OF_TURNING_BALLS = ("gyroscopic_moment", "centrifugal_force")
+KINEMATICS = {
+    "orbital_speed": "orbit",
+    "rotation_speed": "rotation",
+    "pitch_angle": "pitch_angle",
+    "spin": "spin",
+    "spin_to_roll": "spin_to_roll",
+}
+"""Names in the file of what `BallKinematics` holds."""
 
 
 def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
@@ -33,15 +48,16 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         solution: Its solution.
 
     Returns:
-        The fields of `ARRAYS` (m, rad, N, N m, Pa), and result, message, residual,
-        iterations, warnings and version. If the solve did not converge the arrays are
-        left out: there are no results.
+        The fields of `COMMON`, those of rollers or of balls (m, rad, N, N m, Pa), and
+        result, message, residual, iterations, warnings and version. If the solve did
+        not converge the arrays are left out: there are no results. What is infinite
+        (the margin of a shoulder that is not given) is null.
     """
     from .. import __version__
 
     result = Result(int(solution.result))
     solved = result is Result.CONVERGED
-    numbers = {name: np.asarray(getattr(solution, name)).tolist() for name in ARRAYS}
+    numbers = _numbers(solution)
     residual = float(solution.stats.residual)
     return {
         **(numbers if solved else {}),
@@ -52,6 +68,30 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         "warnings": [*scene.warnings, *(warnings(solution) if solved else [])],
         "version": __version__,
     }
+
+
+def _numbers(solution):
+    if not isinstance(solution, BallSolution):
+        names = (*COMMON, *OF_ROLLERS)
+        return {name: _listed(getattr(solution, name)) for name in names}
+    names = (*COMMON, *OF_BALLS)
+    moving = solution.kinematics
+    if moving is None:
+        return {name: _listed(getattr(solution, name)) for name in names}
+    numbers = {
+        name: _listed(getattr(solution, name)) for name in (*names, *OF_TURNING_BALLS)
+    }
+    speeds = {
+        name: _listed(getattr(moving, field)) for name, field in KINEMATICS.items()
+    }
+    return {**numbers, **speeds}
+
+
+def _listed(values):
+    values = np.asarray(values)
+    if np.isfinite(values).all():
+        return values.tolist()
+    return np.where(np.isfinite(values), values.astype(object), None).tolist()
 
 
 def write_json(path: str | Path, scene: Scene, solution: Solution) -> None:

@@ -18,6 +18,7 @@ KINDS = {
     "pressure": ("Pa", "GPa"),
     "density": ("kg/m^3", "kg/m^3"),
     "line constant": ("N/m^(19/9)", "N/m^(19/9)"),
+    "point constant": ("N/m^(3/2)", "N/m^(3/2)"),
 }
 """Kind of quantity to its SI unit and a unit that a message may suggest."""
 

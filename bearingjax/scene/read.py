@@ -12,40 +12,51 @@ from typing import Any
 import jax
 
 from ..contact.line import ISO16281, AbstractLineLaw, LineConstant, Palmgren
-from ..design import (
-    ARRANGEMENTS,
-    MATERIALS,
-    RIB_NAMES,
-    AbstractProfile,
-    AbstractRollerBearing,
-    CircularCrown,
-    CrownedEnds,
-    CylindricalRollerBearing,
-    FujiwaraKawase,
-    JohnsGohar,
-    Logarithmic,
-    Lundberg,
-    Material,
-    NeedleRollerBearing,
-    Rib,
-    Ribs,
-    Straight,
-    Tabulated,
-    TaperedRollerBearing,
+from ..contact.point_law import (
+    AbstractPointLaw,
+    FreeAngle,
+    OperatingAngle,
+    PointConstant,
+    ZeroAngle,
 )
-from ..element import FREEDOMS, LOADS, RINGS, BearingElement, Finite, Linearised, Speed
+from ..design import Bearing, BearingSet, is_ball
+from ..element import (
+    FREEDOMS,
+    LOADS,
+    RINGS,
+    AbstractRacewayControl,
+    BearingElement,
+    CentrifugalOnly,
+    EqualShare,
+    Finite,
+    FrictionLimited,
+    InnerControl,
+    Linearised,
+    LoadShare,
+    OuterControl,
+    Speed,
+)
 from ..numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
+from .bearing_table import read_bearing
 from .quantity import SceneError
 from .table import Table
 
-BEARINGS = {
-    "cylindrical_roller": CylindricalRollerBearing,
-    "needle_roller": NeedleRollerBearing,
-    "tapered_roller": TaperedRollerBearing,
-}
 LINE_LAWS = {"palmgren": Palmgren, "iso16281": ISO16281}
 QUADRATURES = {"contact_mapped": ContactMapped, "midpoint": Midpoint}
 KINEMATICS = {"linearised": Linearised, "finite": Finite}
+POINT_LAWS = {
+    "free_angle": FreeAngle,
+    "zero_angle": ZeroAngle,
+    "operating_angle": OperatingAngle,
+}
+CONTROLS = {
+    "outer": OuterControl,
+    "inner": InnerControl,
+    "equal_share": EqualShare,
+    "load_share": LoadShare,
+    "friction_limited": FrictionLimited,
+    "centrifugal_only": CentrifugalOnly,
+}
 EQUILIBRIA = {"newton": TrustRegionNewton, "bfgs": BFGS}
 
 
@@ -89,7 +100,7 @@ def shipped_scenes() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
-def load_bearing(source: str | Path) -> AbstractRollerBearing:
+def load_bearing(source: str | Path) -> Bearing | BearingSet:
     """The bearing of a scene file.
 
     Args:
@@ -127,7 +138,7 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
     top = Table(data, path.name)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        bearing = _bearing(top.table("bearing", required=True))
+        bearing = read_bearing(top)
     scene = _scene(top, path.stem, bearing, tuple(str(w.message) for w in caught))
     top.finish()
     return scene
@@ -175,10 +186,17 @@ def _set(data: dict, setting: str, file: str) -> None:
 
 
 def _scene(top, name, bearing, odd) -> Scene:
-    line_law = _line_law(top.table("contact"))
+    contact = top.table("contact")
     operating, numerics = top.table("operating"), top.table("numerics")
+    if is_ball(bearing):
+        choices = dict(
+            point_law=_point_law(contact), raceway_control=_control(operating)
+        )
+    else:
+        choices = dict(line_law=_line_law(contact), **_roller_numerics(numerics))
+    solver = numerics.choice("equilibrium", tuple(EQUILIBRIA), "newton")
     with numerics.building():
-        element = BearingElement(bearing, line_law, *_numerics(numerics))
+        element = BearingElement(bearing, equilibrium=EQUILIBRIA[solver](), **choices)
     tolerance = numerics.number("tolerance", None)
     if tolerance is not None and not 1e-14 <= tolerance < 1e-2:
         problem = f"{tolerance:g} is not allowed; from 1e-14 to below 0.01"
@@ -200,7 +218,7 @@ def _scene(top, name, bearing, odd) -> Scene:
         fixed_ring=operating.choice("fixed_ring", RINGS, "outer"),
         speed=Speed(rpm["inner"], rpm["outer"]) if any(rpm.values()) else None,
         tolerance=tolerance,
-        points=top.table("output").integer("points", 101, least=2),
+        points=_points(top.table("output"), bearing),
         warnings=odd,
     )
 
@@ -225,123 +243,43 @@ def _line_law(contact: Table) -> AbstractLineLaw:
         return LineConstant(constant)
 
 
-def _numerics(numerics: Table):
+def _roller_numerics(numerics: Table) -> dict[str, Any]:
     rule = numerics.choice("quadrature", tuple(QUADRATURES), "contact_mapped")
     points = numerics.integer("points", None)
     kinematics = numerics.choice("kinematics", tuple(KINEMATICS), "linearised")
-    solver = numerics.choice("equilibrium", tuple(EQUILIBRIA), "newton")
-    quadrature = QUADRATURES[rule]() if points is None else QUADRATURES[rule](points)
-    return KINEMATICS[kinematics](), quadrature, EQUILIBRIA[solver]()
+    with numerics.building():
+        quadrature = (
+            QUADRATURES[rule]() if points is None else QUADRATURES[rule](points)
+        )
+    return {"kinematics": KINEMATICS[kinematics](), "quadrature": quadrature}
 
 
-def _bearing(table: Table) -> AbstractRollerBearing:
-    kind = table.choice("type", tuple(BEARINGS))
-    values: dict[str, Any] = {"n_rollers": table.integer("n_rollers")}
-    for key in ("pitch_diameter", "roller_diameter", "roller_length"):
-        values[key] = table.quantity(key, "length")
-    play = "radial_internal_clearance"
-    values[play] = table.quantity(play, "length", 0.0)
-    values["first_azimuth"] = table.quantity("first_azimuth", "angle", 0.0)
-    if kind == "tapered_roller":
-        values["roller_axis_angle"] = table.quantity("roller_axis_angle", "angle")
-        values["roller_half_angle"] = table.quantity("roller_half_angle", "angle")
-    values["roller_profile"] = _profile(table.table("roller_profile"))
-    raceways = table.table("raceway_profile")
-    for ring in RINGS:
-        values[f"{ring}_raceway_profile"] = _profile(raceways.table(ring))
-    values["ribs"] = _ribs(table, kind)
-    values["material"] = _material(table, "material") or Material()
-    values["ring_material"] = _material(table, "ring_material")
-    with table.building():
-        return BEARINGS[kind](**values)
+def _point_law(contact: Table) -> AbstractPointLaw:
+    law = contact.choice("point_law", tuple(POINT_LAWS), "free_angle")
+    kind = "point constant"
+    outer = contact.quantity("outer_constant", kind, None)
+    inner = contact.quantity("inner_constant", kind, None)
+    if outer is None and inner is None:
+        return POINT_LAWS[law]()
+    for name, value in (("outer_constant", outer), ("inner_constant", inner)):
+        if value is None:
+            raise contact.error(name, "is missing; give the constants of both rings")
+    with contact.building():
+        return PointConstant(outer, inner)
 
 
-def _material(table: Table, key: str) -> Material | None:
-    given = table.table_or_word(key, tuple(MATERIALS))
-    if given is None:
-        return None
-    if isinstance(given, str):
-        return MATERIALS[given]()
-    steel = Material()
-    values = (
-        given.quantity("elastic_modulus", "pressure", steel.elastic_modulus),
-        given.number("poisson_ratio", steel.poisson_ratio),
-        given.quantity("density", "density", steel.density),
-    )
-    with given.building():
-        return Material(*values)
+def _control(operating: Table) -> AbstractRacewayControl:
+    name = operating.choice("raceway_control", tuple(CONTROLS), "outer")
+    friction = "friction_coefficient"
+    if name != "friction_limited":
+        if friction in operating:
+            problem = 'goes with `raceway_control` = "friction_limited" only'
+            raise operating.error(friction, problem)
+        return CONTROLS[name]()
+    with operating.building():
+        return FrictionLimited(operating.number(friction))
 
 
-def _ribs(table: Table, kind: str) -> Ribs:
-    if "arrangement" not in table:
-        for key in ("rib", "axial_internal_clearance"):
-            if key in table:
-                raise table.error(key, "belongs to an `arrangement`, which is missing")
-        ribs = table.table("ribs")
-        given = {name: ribs.table(name) for name in RIB_NAMES}
-        return Ribs(**{name: _rib(given[name]) for name in RIB_NAMES if name in ribs})
-    if "ribs" in table:
-        raise table.error("ribs", "give either `arrangement` or `ribs`, not both")
-    if kind == "tapered_roller":
-        problem = "is for cylindrical and needle rollers; a taper names its `ribs`"
-        raise table.error("arrangement", problem)
-    name = table.choice("arrangement", tuple(ARRANGEMENTS))
-    play = table.quantity("axial_internal_clearance", "length", None)
-    common = table.table("rib", required=True)
-    rib = _rib(common)
-    if play is not None and "axial_gap" in common:
-        problem = "give either `rib.axial_gap` or this, not both"
-        raise table.error("axial_internal_clearance", problem)
-    with table.building():
-        return Ribs.arrangement(name, rib, play)
-
-
-def _rib(table: Table) -> Rib:
-    if "end_radius" in table and table.word("end_radius") == "flat":
-        problem = "flat ends have no point contact; give the radius of the end sphere"
-        raise table.error("end_radius", problem)
-    values = (
-        table.quantity("end_radius", "length"),
-        table.quantity("contact_height", "length"),
-        table.quantity("axial_gap", "length", 0.0),
-    )
-    with table.building():
-        return Rib(*values)
-
-
-def _profile(table: Table) -> AbstractProfile:
-    kind = table.choice("type", tuple(_PROFILE_READERS), "straight")
-    with table.building():
-        return _PROFILE_READERS[kind](table)
-
-
-def _design_load(table: Table) -> dict[str, float]:
-    values = {"design_load": table.quantity("design_load", "force")}
-    modulus = table.quantity("contact_modulus", "pressure", None)
-    return values if modulus is None else {**values, "contact_modulus": modulus}
-
-
-_PROFILE_READERS = {
-    "straight": lambda t: Straight(),
-    "circular_crown": lambda t: CircularCrown(t.quantity("crown_radius", "length")),
-    "crowned_ends": lambda t: CrownedEnds(
-        t.quantity("straight_length", "length"),
-        t.quantity("crown_radius", "length"),
-        t.quantity("dub_off_length", "length", None),
-        t.quantity("dub_off_radius", "length", None),
-    ),
-    "logarithmic": lambda t: Logarithmic(t.number("coefficient", 0.00035)),
-    "lundberg": lambda t: Lundberg(**_design_load(t)),
-    "johns_gohar": lambda t: JohnsGohar(
-        **_design_load(t), half_width=t.quantity("half_width", "length")
-    ),
-    "fujiwara_kawase": lambda t: FujiwaraKawase(
-        **_design_load(t),
-        load_factor=t.number("load_factor"),
-        crowned_fraction=t.number("crowned_fraction"),
-        end_drop=t.quantity("end_drop", "length"),
-    ),
-    "tabulated": lambda t: Tabulated(
-        t.quantities("positions", "length"), t.quantities("drops", "length")
-    ),
-}
+def _points(output: Table, bearing) -> int:
+    """Positions along a roller; balls have none."""
+    return 2 if is_ball(bearing) else output.integer("points", 101, least=2)

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..design import TaperedRollerBearing
+from ..design import BearingSet, TaperedRollerBearing, is_ball, rows_of
 from ..element.frame import FREEDOMS, LOADS, RINGS
-from ..statics.solution import Solution, warnings
+from ..statics.solution import BallSolution, Solution, warnings
 from .read import Scene
 
 _RULE = "-" * 78
@@ -21,7 +21,7 @@ def report(scene: Scene, solution: Solution) -> str:
         _bearing(scene),
         _motion(scene, solution),
         _stiffness(scene, solution),
-        _rollers(solution),
+        _balls(solution) if isinstance(solution, BallSolution) else _rollers(solution),
         _ending(scene, solution),
     ]
     return f"\n{_RULE}\n".join(parts)
@@ -29,13 +29,43 @@ def report(scene: Scene, solution: Solution) -> str:
 
 def _bearing(scene):
     bearing = scene.element.bearing
+    lines = []
+    if isinstance(bearing, BearingSet):
+        places = ", ".join(
+            f"{1e3 * float(row.position):.4g} mm{' (mirrored)' if row.mirrored else ''}"
+            for row in bearing.rows
+        )
+        lines.append(f"{scene.name}: set of {len(bearing.rows)} rows at z = {places}")
+    head = scene.name if not lines else "each row"
+    row = rows_of(bearing)[0].bearing
+    own = _ball_row(row, head) if is_ball(bearing) else _roller_row(row, head)
+    return "\n".join([*lines, *own])
+
+
+def _ball_row(bearing, head):
+    pitch, diameter = (
+        1e3 * float(x) for x in (bearing.pitch_diameter, bearing.ball_diameter)
+    )
+    kind = type(bearing).__name__.removesuffix("BallBearing")
+    words = "".join(f" {c.lower()}" if c.isupper() else c for c in kind).strip()
+    angle = np.rad2deg(float(bearing.free_contact_angle))
+    return [
+        f"{head}: {words} ball bearing, {bearing.n_balls} balls of {diameter:.4g} mm on"
+        f" a pitch circle of {pitch:.4g} mm",
+        f"osculation: outer {float(bearing.outer_osculation):.4g}, inner"
+        f" {float(bearing.inner_osculation):.4g}; free contact angle {angle:.4g} deg;"
+        f" radial internal clearance {1e6 * float(bearing.clearance):.4g} µm",
+    ]
+
+
+def _roller_row(bearing, head):
     size = [bearing.pitch_diameter, bearing.roller_diameter, bearing.roller_length]
     pitch, diameter, length = (1e3 * float(x) for x in size)
     kind = type(bearing).__name__.removesuffix("RollerBearing").lower()
     clearance = 1e6 * float(bearing.radial_internal_clearance)
     ribs = ", ".join(bearing.ribs.present) or "none"
     lines = [
-        f"{scene.name}: {kind} roller bearing, {bearing.n_rollers} rollers"
+        f"{head}: {kind} roller bearing, {bearing.n_rollers} rollers"
         f" {diameter:.4g} x {length:.4g} mm on a pitch circle of {pitch:.4g} mm",
         f"radial internal clearance {clearance:.4g} µm; ribs: {ribs};"
         f" roller profile: {type(bearing.roller_profile).__name__}",
@@ -47,7 +77,7 @@ def _bearing(scene):
         lines.append(
             f"contact angle: outer {raceways[0]:.4g}, inner {raceways[1]:.4g} deg"
         )
-    return "\n".join(lines)
+    return lines
 
 
 def _ring(scene):
@@ -123,6 +153,46 @@ def _rollers(solution):
     if loose:
         lines.append(f" {loose} of {load.shape[0]} rollers are out of contact")
     return "\n".join(lines)
+
+
+def _balls(solution):
+    load = np.asarray(solution.contact_load)
+    angle = np.rad2deg(np.asarray(solution.contact_angle))
+    pressure = 1e-6 * np.asarray(solution.contact_pressure)
+    raceway = np.asarray(solution.roller_load)
+    azimuth = np.rad2deg(np.asarray(solution.azimuth)) % 360.0
+    states, touching = np.asarray(solution.n_contacts), 1e-9 * load.max()
+    half = load.shape[1] // 2
+    turning = solution.kinematics
+    head = (
+        "   ball azimuth  outer load inner load  outer angle inner  outer pmax"
+        "  inner  points" + ("  spin/roll" if turning else "") + "\n"
+        "            deg           N          N          deg   deg         MPa"
+        "    MPa" + ("       (larger)" if turning else "")
+    )
+    lines = [head]
+    for i in range(load.shape[0]):
+        if load[i].max() <= touching:
+            continue
+        # Of two arcs on a ring, the one that carries more.
+        o, k = np.argmax(load[i, :half]), half + np.argmax(load[i, half:])
+        line = (
+            f" {i:6d} {azimuth[i]:7.1f}  {raceway[i, 0]:10.5g} {raceway[i, 1]:10.5g}"
+            f"  {angle[i, o]:11.2f} {_angle(angle[i, k], load[i, k], touching)}"
+            f"  {pressure[i, o]:10.0f} {pressure[i, k]:6.0f}  {states[i]:6d}"
+        )
+        if turning:
+            line += f"  {np.asarray(turning.spin_to_roll)[i].max():9.3f}"
+        lines.append(line)
+    loose = load.shape[0] - (len(lines) - 1)
+    if loose:
+        lines.append(f" {loose} of {load.shape[0]} balls are out of contact")
+    return "\n".join(lines)
+
+
+def _angle(angle, load, touching):
+    """An open contact has no angle worth printing."""
+    return f"{angle:5.2f}" if load > touching else "    -"
 
 
 def _ending(scene, solution):

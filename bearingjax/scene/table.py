@@ -126,6 +126,26 @@ class Table:
         self._children.append(child)
         return child
 
+    def tables(self, key: str) -> "list[Table]":
+        """List of sub-tables, at least one."""
+        values = self._get(key, _MISSING, "a list of tables")
+        if not isinstance(values, list) or not values:
+            raise self.error(key, f"{values!r} is not a list of tables")
+        children = []
+        for k, value in enumerate(values):
+            if not isinstance(value, Mapping):
+                raise self.error(key, f"{value!r} is not a table")
+            children.append(Table(value, self._file, f"{self._full(key)}[{k}]"))
+        self._children += children
+        return children
+
+    def flag(self, key: str, default: Any = _MISSING) -> Any:
+        """true or false."""
+        value = self._get(key, default, "true or false")
+        if not isinstance(value, bool):
+            raise self.error(key, f"{value!r} is not true or false")
+        return value
+
     def table_or_word(self, key: str, choices: Sequence[str]) -> "Table | str | None":
         """Sub-table, one of several words, or `None` if absent."""
         if self.word(key) is not None:

@@ -235,7 +235,7 @@ def _solve(
 
     zero = jnp.zeros((), load.dtype)
     none = jnp.zeros((), jnp.int32)
-    begin = Minimum(stop(start), zero, none, none, first_radius)
+    begin = Minimum(stop(start), zero, zero, none, none, first_radius)
     minimum, _, steps = lax.while_loop(unfinished, at_factor, (begin, factor, none))
 
     def residual(y, args):

@@ -72,7 +72,9 @@ def test_6305_displacement(clearance, axis, displacement):
 def test_6305_stiffness():
     true = masta(10e-6)
     law = bj.ZeroAngle()
-    outer, inner = map(float, bj.BearingElement(true, point_law=law).models()[0].constant)
+    outer, inner = map(
+        float, bj.BearingElement(true, point_law=law).models()[0].constant
+    )
     # The groove centre on the circle of half the pitch diameter.
     lever = 0.02 * 0.0115 * float(true.free_cosine)
     bearing = masta(10e-6, pitch_diameter=0.0435 - 2.0 * lever)
@@ -297,7 +299,9 @@ def test_harris_mindel_contacts():
         # Loads and angles have five printed digits.
         assert float(axes[0]) == pytest.approx(along * inch, rel=1e-4)
         assert float(axes[1]) == pytest.approx(across * inch, rel=1e-4)
-        assert float(contact.peak_pressure(q)) == pytest.approx(pressure * psi, rel=1e-4)
+        assert float(contact.peak_pressure(q)) == pytest.approx(
+            pressure * psi, rel=1e-4
+        )
         assert float(contact.approach(q)) == pytest.approx(approach * inch, rel=1e-4)
 
 
@@ -336,7 +340,9 @@ def test_sjovall_integrals():
     q = np.zeros((len(eps), 12))
     q[:, 6] = radial / np.cos(40 * DEGREE)
     q[:, 8] = (2 * eps - 1) * radial / np.sin(40 * DEGREE)
-    rows = jax.vmap(lambda q: element.rows(q)[0].solved.contact_load[:, 1])(jnp.array(q))
+    rows = jax.vmap(lambda q: element.rows(q)[0].solved.contact_load[:, 1])(
+        jnp.array(q)
+    )
     force = np.asarray(jax.vmap(element.force)(jnp.array(q)))
     largest = np.asarray(rows).max(axis=1)
     j_r = force[:, 6] / (720 * largest * np.cos(40 * DEGREE))

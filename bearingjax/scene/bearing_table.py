@@ -1,0 +1,222 @@
+"""The [bearing] and [set] tables of a scene: what stands on the drawing."""
+
+from typing import Any
+
+from ..design import (
+    ARRANGEMENTS,
+    MATERIALS,
+    RIB_NAMES,
+    AbstractProfile,
+    AbstractRollerBearing,
+    AngularContactBallBearing,
+    Bearing,
+    BearingSet,
+    CircularCrown,
+    CrownedEnds,
+    CylindricalRollerBearing,
+    DeepGrooveBallBearing,
+    FourPointBallBearing,
+    FujiwaraKawase,
+    JohnsGohar,
+    Logarithmic,
+    Lundberg,
+    Material,
+    NeedleRollerBearing,
+    Rib,
+    Ribs,
+    SetRow,
+    Straight,
+    Tabulated,
+    TaperedRollerBearing,
+    ThrustBallBearing,
+)
+from ..element import RINGS
+from .table import Table
+
+ROLLERS = {
+    "cylindrical_roller": CylindricalRollerBearing,
+    "needle_roller": NeedleRollerBearing,
+    "tapered_roller": TaperedRollerBearing,
+}
+BALLS = {
+    "deep_groove_ball": DeepGrooveBallBearing,
+    "angular_contact_ball": AngularContactBallBearing,
+    "four_point_ball": FourPointBallBearing,
+    "thrust_ball": ThrustBallBearing,
+}
+SETS = ("back_to_back", "face_to_face", "tandem", "rows")
+
+
+def read_bearing(top: Table) -> Bearing | BearingSet:
+    """The bearing of a scene, or the set of such bearings.
+
+    Args:
+        top: The whole scene.
+
+    Raises:
+        SceneError: For what is missing, unknown or not allowed.
+    """
+    table = top.table("bearing", required=True)
+    kind = table.choice("type", (*ROLLERS, *BALLS))
+    bearing = _balls(table, kind) if kind in BALLS else _rollers(table, kind)
+    return _set(top.table("set"), bearing) if "set" in top else bearing
+
+
+def _set(table: Table, bearing: Bearing) -> BearingSet:
+    arrangement = table.choice("arrangement", SETS)
+    if arrangement == "rows":
+        rows = []
+        for row in table.tables("rows"):
+            values = (
+                row.quantity("position", "length"),
+                row.flag("mirrored", False),
+                row.quantity("inner_offset", "length", 0.0),
+            )
+            with row.building():
+                rows.append(SetRow(bearing, *values))
+        with table.building():
+            return BearingSet(tuple(rows))
+    spacing = table.quantity("spacing", "length")
+    with table.building():
+        if arrangement == "tandem":
+            return BearingSet.tandem(bearing, spacing, table.integer("count", 2))
+        offset = table.quantity("preload_offset", "length", 0.0)
+        return getattr(BearingSet, arrangement)(bearing, spacing, offset)
+
+
+def _balls(table: Table, kind: str) -> Bearing:
+    values: dict[str, Any] = {"n_balls": table.integer("n_balls")}
+    for key in ("pitch_diameter", "ball_diameter"):
+        values[key] = table.quantity(key, "length")
+    for ring in RINGS:
+        values[f"{ring}_osculation"] = table.number(f"{ring}_osculation")
+        key = f"{ring}_shoulder"
+        values[key] = table.quantity(key, "length", None)
+    values["first_azimuth"] = table.quantity("first_azimuth", "angle", 0.0)
+    if "ball_deviation" in table:
+        values["ball_deviation"] = table.quantities("ball_deviation", "length")
+    play, angle = "radial_internal_clearance", "contact_angle"
+    if kind == "deep_groove_ball":
+        values[play] = table.quantity(play, "length", None)
+        values[angle] = table.quantity(angle, "angle", None)
+    if kind == "angular_contact_ball":
+        values[angle] = table.quantity(angle, "angle")
+    if kind == "four_point_ball":
+        values[play] = table.quantity(play, "length", 0.0)
+        values["shim_angle"] = table.quantity("shim_angle", "angle")
+    values["material"] = _material(table, "material") or Material()
+    values["ring_material"] = _material(table, "ring_material")
+    with table.building():
+        return BALLS[kind](**values)
+
+
+def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
+    values: dict[str, Any] = {"n_rollers": table.integer("n_rollers")}
+    for key in ("pitch_diameter", "roller_diameter", "roller_length"):
+        values[key] = table.quantity(key, "length")
+    play = "radial_internal_clearance"
+    values[play] = table.quantity(play, "length", 0.0)
+    values["first_azimuth"] = table.quantity("first_azimuth", "angle", 0.0)
+    if kind == "tapered_roller":
+        values["roller_axis_angle"] = table.quantity("roller_axis_angle", "angle")
+        values["roller_half_angle"] = table.quantity("roller_half_angle", "angle")
+    values["roller_profile"] = _profile(table.table("roller_profile"))
+    raceways = table.table("raceway_profile")
+    for ring in RINGS:
+        values[f"{ring}_raceway_profile"] = _profile(raceways.table(ring))
+    values["ribs"] = _ribs(table, kind)
+    values["material"] = _material(table, "material") or Material()
+    values["ring_material"] = _material(table, "ring_material")
+    with table.building():
+        return ROLLERS[kind](**values)
+
+
+def _material(table: Table, key: str) -> Material | None:
+    given = table.table_or_word(key, tuple(MATERIALS))
+    if given is None:
+        return None
+    if isinstance(given, str):
+        return MATERIALS[given]()
+    steel = Material()
+    values = (
+        given.quantity("elastic_modulus", "pressure", steel.elastic_modulus),
+        given.number("poisson_ratio", steel.poisson_ratio),
+        given.quantity("density", "density", steel.density),
+    )
+    with given.building():
+        return Material(*values)
+
+
+def _ribs(table: Table, kind: str) -> Ribs:
+    if "arrangement" not in table:
+        for key in ("rib", "axial_internal_clearance"):
+            if key in table:
+                raise table.error(key, "belongs to an `arrangement`, which is missing")
+        ribs = table.table("ribs")
+        given = {name: ribs.table(name) for name in RIB_NAMES}
+        return Ribs(**{name: _rib(given[name]) for name in RIB_NAMES if name in ribs})
+    if "ribs" in table:
+        raise table.error("ribs", "give either `arrangement` or `ribs`, not both")
+    if kind == "tapered_roller":
+        problem = "is for cylindrical and needle rollers; a taper names its `ribs`"
+        raise table.error("arrangement", problem)
+    name = table.choice("arrangement", tuple(ARRANGEMENTS))
+    play = table.quantity("axial_internal_clearance", "length", None)
+    common = table.table("rib", required=True)
+    rib = _rib(common)
+    if play is not None and "axial_gap" in common:
+        problem = "give either `rib.axial_gap` or this, not both"
+        raise table.error("axial_internal_clearance", problem)
+    with table.building():
+        return Ribs.arrangement(name, rib, play)
+
+
+def _rib(table: Table) -> Rib:
+    if "end_radius" in table and table.word("end_radius") == "flat":
+        problem = "flat ends have no point contact; give the radius of the end sphere"
+        raise table.error("end_radius", problem)
+    values = (
+        table.quantity("end_radius", "length"),
+        table.quantity("contact_height", "length"),
+        table.quantity("axial_gap", "length", 0.0),
+    )
+    with table.building():
+        return Rib(*values)
+
+
+def _profile(table: Table) -> AbstractProfile:
+    kind = table.choice("type", tuple(_PROFILE_READERS), "straight")
+    with table.building():
+        return _PROFILE_READERS[kind](table)
+
+
+def _design_load(table: Table) -> dict[str, float]:
+    values = {"design_load": table.quantity("design_load", "force")}
+    modulus = table.quantity("contact_modulus", "pressure", None)
+    return values if modulus is None else {**values, "contact_modulus": modulus}
+
+
+_PROFILE_READERS = {
+    "straight": lambda t: Straight(),
+    "circular_crown": lambda t: CircularCrown(t.quantity("crown_radius", "length")),
+    "crowned_ends": lambda t: CrownedEnds(
+        t.quantity("straight_length", "length"),
+        t.quantity("crown_radius", "length"),
+        t.quantity("dub_off_length", "length", None),
+        t.quantity("dub_off_radius", "length", None),
+    ),
+    "logarithmic": lambda t: Logarithmic(t.number("coefficient", 0.00035)),
+    "lundberg": lambda t: Lundberg(**_design_load(t)),
+    "johns_gohar": lambda t: JohnsGohar(
+        **_design_load(t), half_width=t.quantity("half_width", "length")
+    ),
+    "fujiwara_kawase": lambda t: FujiwaraKawase(
+        **_design_load(t),
+        load_factor=t.number("load_factor"),
+        crowned_fraction=t.number("crowned_fraction"),
+        end_drop=t.quantity("end_drop", "length"),
+    ),
+    "tabulated": lambda t: Tabulated(
+        t.quantities("positions", "length"), t.quantities("drops", "length")
+    ),
+}

@@ -1,0 +1,157 @@
+"""Does a load solve of a ball bearing ever fail, or answer wrongly?
+
+Loads from 1e-3 N to 1e6 N in random directions that the bearing can carry, clearances of
+both signs, standing still and at speeds up to d_m n = 3 million mm/min, with and without
+gyroscopic moment. Every answer is checked by the residual of a fresh evaluation; a ball
+that has left its inner raceway is an answer.
+
+Run: python benchmarks/robust_balls.py [--count 700] [--smoke]
+"""
+
+import argparse
+import json
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+DECADES = range(-3, 6)
+PITCH, BALL = 0.05, 0.0095
+# d_m n in m rev/s, of 3 million mm/min.
+FASTEST = 3e6 * 1e-3 / 60.0
+
+
+def designs():
+    """Name to element and whether it needs axial load along +z."""
+    grooves = dict(outer_osculation=0.53, inner_osculation=0.52)
+
+    def deep(clearance):
+        return bj.DeepGrooveBallBearing(
+            9, PITCH, BALL, radial_internal_clearance=clearance, **grooves
+        )
+
+    def angular(degrees):
+        angle = np.deg2rad(degrees)
+        return bj.AngularContactBallBearing(
+            14, PITCH, BALL, contact_angle=angle, **grooves
+        )
+
+    four = bj.FourPointBallBearing(
+        13, PITCH, BALL, shim_angle=np.deg2rad(20), radial_internal_clearance=20e-6,
+        **grooves,
+    )  # fmt: skip
+    element = bj.BearingElement
+    return {
+        "deep groove, clearance 0": (element(deep(0.0)), False),
+        "deep groove, clearance 20 um": (element(deep(20e-6)), False),
+        "deep groove, preload 5 um": (element(deep(-5e-6)), False),
+        "deep groove, operating angle": (
+            element(deep(10e-6), point_law=bj.OperatingAngle()),
+            False,
+        ),
+        "angular contact, 15 deg": (element(angular(15)), True),
+        "angular contact, 40 deg, friction": (
+            element(angular(40), raceway_control=bj.FrictionLimited(0.05)),
+            True,
+        ),
+        "four-point, clearance 20 um": (
+            element(four, raceway_control=bj.LoadShare()),
+            False,
+        ),
+        "thrust": (element(bj.ThrustBallBearing(14, PITCH, BALL, **grooves)), True),
+        "pair, O, preload 20 um": (
+            element(bj.BearingSet.back_to_back(angular(25), 0.02, 20e-6)),
+            False,
+        ),
+    }
+
+
+def random_loads(rng, one_sided, decade, count):
+    """Loads on the inner ring (count, 6) that the bearing can carry [N, N m]."""
+    size = 10.0 ** rng.uniform(decade, decade + 1, count)
+    way = rng.uniform(0, 2 * np.pi, count)
+    radial, axial = rng.uniform(0, 1, count), rng.uniform(-1, 1, count)
+    if one_sided:
+        # Enough axial load to hold the row against radial load and moment.
+        radial, axial = rng.uniform(0, 0.5, count), rng.uniform(0.6, 1, count)
+    arm = rng.uniform(-1, 1, (2, count)) * 1e-3
+    zero = np.zeros(count)
+    loads = [radial * np.cos(way), radial * np.sin(way), axial, *arm, zero]
+    return np.stack(loads, axis=1) * size[:, None]
+
+
+@eqx.filter_jit
+def solve(element, loads, speeds):
+    def one(case):
+        load, omega = case
+        speed = None if omega is None else bj.Speed(omega)
+        s = bj.solve_load(element, load, speed=speed, throw=False)
+        free = jnp.asarray(
+            [n in bj.restrained_freedoms(element.bearing) for n in bj.FREEDOMS]
+        )
+        scale = jnp.where(jnp.arange(6) < 3, 1.0, 2.0 / PITCH)
+        fresh = element.evaluate(s.displacement, speed)
+        out = jnp.where(free, scale * (fresh.force[6:] - load), 0.0)
+        # Beside a load far below the inertia forces only their round-off is seen.
+        size = jnp.sqrt(jnp.sum((scale * jnp.where(free, load, 0.0)) ** 2))
+        floor = 1e-7 * fresh.magnitude * jnp.finfo(load.dtype).eps / 1e-16
+        residual = jnp.sqrt(jnp.sum(out**2)) / (size + floor)
+        lifted = jnp.any(s.lifted)
+        return (
+            s.result,
+            residual,
+            s.stats.iterations,
+            lifted,
+            jnp.max(s.stats.roller_iterations),
+        )
+
+    return jax.lax.map(one, (loads, speeds), batch_size=50)
+
+
+def run(count, seed=0, only=None):
+    """Rows of figures; `only` limits them to some designs."""
+    for index, (name, (element, one_sided)) in enumerate(designs().items()):
+        if only is not None and name not in only:
+            continue
+        rng = np.random.default_rng([seed, index])
+        for turning in (False, True):
+            for decade in DECADES:
+                loads = jnp.asarray(random_loads(rng, one_sided, decade, count))
+                speeds = None
+                if turning:
+                    fast = 2 * np.pi * FASTEST / PITCH
+                    speeds = jnp.asarray(rng.uniform(0, 1, count) ** 2 * fast)
+                code, residual, steps, lifted, inner = map(
+                    np.asarray, solve(element, loads, speeds)
+                )
+                good = code == bj.Result.CONVERGED
+                yield (
+                    dict(design=name, turning=turning, decade=decade, loads=count,
+                         failed=int((~good).sum()),
+                         codes=sorted(set(code[~good].tolist())),
+                         silently_wrong=int((good & ~(residual < 1e-8)).sum()),
+                         worst_residual=float(residual[good].max(initial=0.0)),
+                         lifted=int(lifted.sum()), most_steps=int(steps.max()),
+                         mean_steps=round(float(steps.mean()), 1),
+                         most_ball_steps=int(inner.max()))
+                )  # fmt: skip
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=700, help="per decade and design")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--smoke", action="store_true", help="three loads per decade")
+    args = parser.parse_args()
+    for row in run(3 if args.smoke else args.count, args.seed):
+        print(json.dumps(row), flush=True)
+
+
+if __name__ == "__main__":
+    main()
