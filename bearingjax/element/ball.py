@@ -174,13 +174,14 @@ class BallModel(AbstractModel):
         """
         c = self.contacts(rings, x)
         constant = self.constants(c)
-        bent = _bent(c, constant * positive_power(c.approach, _N, _D), step)
+        load = constant * positive_power(c.approach, _N, _D)
+        bent = _bent(c, load, step)
         # An open contact is entered so far that it carries what is out of balance.
         wanted = positive_power(size / constant, _D, _N)
         reached = self.contacts(rings, x + bent).approach
         entered = (c.approach < 0.0) & (reached > wanted)
         share = (wanted - c.approach) / jnp.where(entered, reached - c.approach, 1.0)
-        return bent * jnp.min(jnp.where(entered, share, 1.0))
+        return _bent(c, load, step * jnp.min(jnp.where(entered, share, 1.0)))
 
     def pressed(self, approach):
         normal = self.start / jnp.sqrt(jnp.sum(self.start**2, axis=1))[:, None]
@@ -243,30 +244,34 @@ class BallModel(AbstractModel):
     def directions(
         self, contacts: Contacts, load: Float[Array, " contact"]
     ) -> tuple[Float[Array, "2 2"], Float[Array, "2"]]:
-        """Direction and size of the load on each raceway.
+        """Where a ball rolls on each raceway, and its load there.
+
+        On two arcs it rolls on the one that it presses more deeply; while both are
+        pressed within a thousandth of its diameter of each other, in between.
 
         Args:
             contacts: From `contacts`.
             load: Load of each contact [N].
 
         Returns:
-            Unit vectors (sin α, cos α) (2, 2), outer and inner, and loads (2,) [N]: of
-            several arcs the resultant.
+            Unit vectors (sin α, cos α) (2, 2), outer and inner, and loads (2,) [N],
+            of two arcs their sum.
         """
         vectors = jnp.asarray(self._outwards(), load.dtype)[:, None] * contacts.normal
-        # An unloaded raceway has the mean direction of its arcs.
-        weighted = (load + self.guide * 1e-3 * self.diameter)[:, None] * vectors
         normals, loads = [], []
         for ring in (True, False):
-            mine = [k for k, o in enumerate(self.on_outer) if o is ring]
+            mine = [k for k, on_outer in enumerate(self.on_outer) if on_outer is ring]
             if len(mine) == 1:
                 normals.append(vectors[mine[0]])
                 loads.append(load[mine[0]])
-            else:
-                total = sum((weighted[k] for k in mine[1:]), weighted[mine[0]])
-                size = jnp.sqrt(total @ total)
-                normals.append(total / size)
-                loads.append(size)
+                continue
+            first, second = mine
+            deeper = contacts.approach[first] - contacts.approach[second]
+            t = jnp.clip(0.5 + deeper / (2e-3 * self.diameter), 0.0, 1.0)
+            share = t * t * (3.0 - 2.0 * t)
+            mean = share * vectors[first] + (1.0 - share) * vectors[second]
+            normals.append(mean / jnp.sqrt(dot(mean, mean)))
+            loads.append(load[first] + load[second])
         return jnp.stack(normals), jnp.stack(loads)
 
     def derivatives(self, rings, x, of_own=False):
@@ -381,6 +386,10 @@ class BallModel(AbstractModel):
         assert t is not None
         power = positive_power(contacts.approach, _N, _D)
         normals, loads = self.directions(contacts, self.constants(contacts) * power)
+        # In balance the outer raceway carries the centrifugal force at least; on the
+        # way there shares must not jump where a ball in flight first touches.
+        least = jnp.maximum(loads[0], 0.1 * t.centrifugal)
+        loads = jnp.stack([least, loads[1]])
         share = t.control.rolling_share(loads)
         kinematics = ball_kinematics(normals[0], normals[1], share, t.ratio, t.speed)
         demand = 2.0 / self.diameter * gyroscopic_moment(t.moment, kinematics)

@@ -1,4 +1,4 @@
-"""Loads of the rollers, and displacement against load."""
+"""Loads of the rolling elements, displacement against load, stiffness over speed."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -6,8 +6,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..element.frame import FREEDOMS, LOADS
-from ..statics.solution import Solution
-from .style import COLOURS, GREY, RACEWAYS, SMALL, axes_or_new
+from ..statics.solution import BallSolution, Solution
+from .style import (
+    COLOURS,
+    GREY,
+    RACEWAYS,
+    SMALL,
+    axes_or_new,
+    raceway_index,
+    row_slices,
+)
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -16,7 +24,7 @@ if TYPE_CHECKING:
 def load_zone(
     solution: Solution, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Load of every roller on both raceways [kN] at its azimuth.
+    """Load of every roller or ball on both raceways at its azimuth, in N or kN.
 
     Azimuth 0 is +x, to the right; it grows counter-clockwise, towards +y.
 
@@ -29,24 +37,31 @@ def load_zone(
     """
     ax = axes_or_new(ax, (6.0, 6.0), polar=True)
     azimuth = np.asarray(solution.azimuth, dtype=float)
-    load = 1e-3 * np.asarray(solution.roller_load, dtype=float)
+    load = np.asarray(solution.roller_load, dtype=float)
     zone = np.asarray(solution.load_zone)
     load = np.where(np.isfinite(load), load, 0.0)
     top = float(np.max(load, initial=0.0))
-    step = 2.0 * np.pi / len(azimuth)
-    width = min(0.36 * step, 0.08)
+    unit = "N" if top < 1e3 else "kN"
+    if unit == "kN":
+        load, top = 1e-3 * load, 1e-3 * top
+    rows = row_slices(solution)
+    step = 2.0 * np.pi / max(solution.row_sizes)
+    width = min(0.36 * step, 0.08) / (1.0 if len(rows) == 1 else 0.75 * len(rows))
     handles = []
-    for ring, name in enumerate(RACEWAYS):
-        side = 0.5 if name == "outer" else -0.5
-        bars = ax.bar(
-            azimuth + side * width,
-            load[:, ring],
-            width=width,
-            color=COLOURS[name],
-            label=f"{name} raceway",
-            zorder=2,
-        )
-        handles.append(bars)
+    for k, row in enumerate(rows):
+        for ring, name in enumerate(RACEWAYS):
+            # Bars of all rows and both raceways side by side.
+            side = len(rows) - 0.5 - (2 * k + ring)
+            bars = ax.bar(
+                azimuth[row] + side * width,
+                load[row, ring],
+                width=width,
+                color=COLOURS[name],
+                alpha=1.0 - 0.5 * k / len(rows),
+                label=f"{name} raceway" + (f", row {k}" if len(rows) > 1 else ""),
+                zorder=2,
+            )
+            handles.append(bars)
     (unloaded,) = ax.plot(
         azimuth[~zone],
         np.zeros(np.count_nonzero(~zone)),
@@ -68,12 +83,13 @@ def load_zone(
     ax.grid(color="0.85")
     ax.set_axisbelow(True)
     _radial_labels(polar, azimuth, load.sum(axis=1), top, limit)
-    ax.set_title("Roller loads [kN]")
+    balls = isinstance(solution, BallSolution)
+    ax.set_title(f"{'Ball' if balls else 'Roller'} loads [{unit}]")
     ax.legend(
         handles=handles if zone.all() else [*handles, unloaded],
         loc="upper center",
         bbox_to_anchor=(0.5, -0.06),
-        ncols=3,
+        ncols=3 if len(rows) == 1 else 2,
         fontsize=SMALL,
         frameon=False,
         columnspacing=1.2,
@@ -176,4 +192,51 @@ def load_displacement(
     ax.set_xlabel(f"load {load_name} [{x_unit}]")
     ax.set_ylabel(f"displacement {freedom} [{y_unit}]")
     ax.set_title("Displacement against load")
+    return ax
+
+
+def stiffness_over_speed(
+    speed: ArrayLike,
+    stiffness: ArrayLike,
+    *,
+    moving_ring: str = "inner",
+    ax: "matplotlib.axes.Axes | None" = None,
+) -> "matplotlib.axes.Axes":
+    """Axial and radial stiffness of a ring against speed.
+
+    Args:
+        speed: Of the turning ring, for every case (case,) [rad/s]; drawn in rpm.
+        stiffness: Of both rings (case, 12, 12) [N/m, N, N m].
+        moving_ring: Ring whose stiffness is shown, "outer" or "inner".
+        ax: Axes; a new figure if `None`.
+
+    Returns:
+        The axes.
+
+    Raises:
+        ValueError: If the shapes do not fit or the ring is unknown.
+    """
+    first = 6 * raceway_index(moving_ring)
+    rpm = np.atleast_1d(np.asarray(speed, dtype=float)) * 60.0 / (2.0 * np.pi)
+    k = np.asarray(stiffness, dtype=float)
+    if k.shape != (len(rpm), 12, 12):
+        raise ValueError(
+            f"`stiffness` has shape {k.shape}; it must be ({len(rpm)}, 12, 12), one"
+            " matrix for each speed."
+        )
+    ax = axes_or_new(ax)
+    for i, style in ((0, "-"), (1, "--"), (2, "-.")):
+        ax.plot(
+            rpm,
+            1e-6 * k[:, first + i, first + i],
+            linestyle=style,
+            color=COLOURS["inner"] if i == 2 else COLOURS["outer"],
+            label=f"{FREEDOMS[i]}",
+        )
+    ax.grid(color="0.9")
+    ax.set_xlabel("speed [rpm]")
+    ax.set_ylabel("stiffness [N/µm]")
+    ax.set_ylim(bottom=0.0)
+    ax.set_title(f"Stiffness of the {moving_ring} ring over speed")
+    ax.legend(fontsize=SMALL, frameon=False)
     return ax

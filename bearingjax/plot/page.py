@@ -4,9 +4,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design.bearing import AbstractRollerBearing
+from ..design import Bearing, BearingSet
 from ..numerics.result import Result
-from ..statics.solution import Solution, warnings
+from ..statics.solution import (
+    BallSolution,
+    RollerSolution,
+    Solution,
+    warnings,
+)
+from .balls import contact_angles, ellipses, first_row
 from .load import load_zone
 from .pressure import pressure_map, pressure_profiles
 from .section import cross_section
@@ -17,9 +23,9 @@ if TYPE_CHECKING:
 
 
 def overview(
-    bearing: AbstractRollerBearing, solution: Solution, title: str = ""
+    bearing: Bearing | BearingSet, solution: Solution, title: str = ""
 ) -> "matplotlib.figure.Figure":
-    """Section, load zone, pressures and the main results on one page.
+    """Section, load zone, contacts and the main results on one page.
 
     Args:
         bearing: The design.
@@ -32,15 +38,21 @@ def overview(
     figure = pyplot().figure(figsize=(12.0, 9.0))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
     axes = figure.subplot_mosaic(
-        [["section", "zone"], ["profiles", "map"], ["text", "text"]],
+        [["section", "zone"], ["left", "right"], ["text", "text"]],
         height_ratios=[1.15, 1.0, 0.13],
         per_subplot_kw={"zone": {"projection": "polar"}},
     )
     cross_section(bearing, axes["section"])
     load_zone(solution, axes["zone"])
     raceway = _busier_raceway(solution)
-    pressure_profiles(solution, axes["profiles"], raceway=raceway)
-    pressure_map(solution, axes["map"], raceway=raceway)
+    if isinstance(solution, BallSolution):
+        contact_angles(solution, axes["left"])
+        figure.draw_without_rendering()  # the layout gives the ellipses their scale
+        ellipses(first_row(bearing), solution, raceway=raceway, ax=axes["right"])
+    else:
+        assert isinstance(solution, RollerSolution)
+        pressure_profiles(solution, axes["left"], raceway=raceway)
+        pressure_map(solution, axes["right"], raceway=raceway)
     axes["text"].set_axis_off()
     axes["text"].text(
         0.5,
@@ -59,8 +71,12 @@ def overview(
 
 def _busier_raceway(solution):
     """The raceway with the higher pressure; the inner one if they are equal."""
-    outer, inner = np.max(np.asarray(solution.contact_pressure), axis=(0, 2))
-    return "outer" if outer > inner else "inner"
+    pressure = np.asarray(solution.contact_pressure)
+    if isinstance(solution, BallSolution):
+        outer, inner = np.split(pressure, 2, axis=1)
+    else:
+        outer, inner = pressure[:, 0], pressure[:, 1]
+    return "outer" if outer.max() > inner.max() else "inner"
 
 
 def _results(solution):
@@ -72,13 +88,14 @@ def _results(solution):
     roller, ring = np.unravel_index(np.argmax(load), load.shape)
     azimuth = degrees(solution.azimuth)[roller]
     result = Result(int(solution.result)).label.replace("_", " ")
+    element = "ball" if isinstance(solution, BallSolution) else "roller"
     count = len(warnings(solution))
     return (
         "inner against outer ring:  "
         f"u = ({_three(1e6 * shift)}) µm,  γ = ({_three(1e3 * tilt)}) mrad",
-        f"largest roller load {force_text(load[roller, ring])} at {azimuth:.4g}°,  "
+        f"largest {element} load {force_text(load[roller, ring])} at {azimuth:.4g}°,  "
         f"largest pressure {1e-6 * pressure.max():.4g} MPa,  "
-        f"{np.count_nonzero(np.asarray(solution.load_zone))} of {len(load)} rollers"
+        f"{np.count_nonzero(np.asarray(solution.load_zone))} of {len(load)} {element}s"
         f" loaded,  {result},  {count} warning{'' if count == 1 else 's'}",
     )
 

@@ -69,6 +69,18 @@ def raceway_index(raceway: str) -> int:
     return RACEWAYS.index(raceway)
 
 
+def row_slices(solution) -> list[slice]:
+    """Where the rolling elements of each row stand on the element axis.
+
+    Args:
+        solution: A single solution.
+    """
+    ends = np.cumsum(solution.row_sizes)
+    return [
+        slice(int(e) - n, int(e)) for e, n in zip(ends, solution.row_sizes, strict=True)
+    ]
+
+
 def degrees(azimuth) -> np.ndarray:
     """Azimuth from 0 up to 360 degrees, without rounding noise at the seam.
 

@@ -108,7 +108,11 @@ def _row_results(row: Row, law: AbstractPointLaw) -> dict:
     ellipses = ball_ellipses(balls, bearing.grooves, cosine)
     axes = jnp.stack(ellipses.semi_axes(load.T), axis=-1).swapaxes(0, 1)
     # Of two arcs the load of the raceway is that of the resultant.
-    sides = row.each(lambda m, r, x, q: m.directions(m.contacts(r, x), q)[1], load)
+    forces = load[..., None] * vectors
+    half = load.shape[1] // 2
+    pair = forces.reshape(load.shape[0], 2, half, 2).sum(axis=2)
+    square = jnp.sum(pair**2, axis=-1)
+    sides = jnp.sqrt(jnp.where(square > 0, square, 1.0)) * (square > 0)
     kinematics = moment = force = None
     if model.turning is not None:
         kinematics = row.each(lambda m, r, x: m.kinematics(m.contacts(r, x)))

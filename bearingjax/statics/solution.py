@@ -51,6 +51,7 @@ class Solution(eqx.Module):
             against the load, if the result is `NO_LOAD_PATH`; otherwise -1 (also if
             it is a rolling element that nothing holds).
         stats: How the solve went.
+        row_sizes: Number of rolling elements of each row. Static.
     """
 
     displacement: Ring
@@ -62,6 +63,7 @@ class Solution(eqx.Module):
     result: Int[Array, ""]
     unrestrained: Int[Array, ""]
     stats: Stats
+    row_sizes: tuple[int, ...] = eqx.field(static=True)
 
     @property
     def load_zone(self) -> Bool[Array, " element"]:
@@ -153,5 +155,6 @@ def describe(
         "stiffness": evaluated.stiffness,
         "roller_motion": jnp.concatenate([motions(row) for row in rows]),
         "azimuth": jnp.concatenate([row.azimuth for row in rows]),
+        "row_sizes": tuple(row.azimuth.shape[0] for row in rows),
         **special,
     }, evaluated

@@ -1,0 +1,149 @@
+"""Axial section of a ball bearing or a set of them, to scale."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..design import AbstractBallBearing, Bearing, BearingSet, rows_of
+from .style import COLOURS, GREY, ROLLER, SMALL, axes_or_new
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+_BODY = 0.30  # thickness of the schematic rings under the groove, ball diameters
+_WIDTH = 0.75  # half width of the schematic rings, ball diameters
+_SHOULDER = 0.2  # schematic height of a shoulder that is not given, ball diameters
+
+
+def ball_section(
+    bearing: Bearing | BearingSet, ax: "matplotlib.axes.Axes | None" = None
+) -> "matplotlib.axes.Axes":
+    """Axial section through the axis of one ball of every row.
+
+    Balls and raceways are to scale, unloaded; the ring bodies are schematic.
+
+    Args:
+        bearing: Of balls.
+        ax: Axes; a new figure if `None`.
+
+    Returns:
+        The axes: z to the right, radius upwards.
+    """
+    ax = axes_or_new(ax, (7.0, 6.0))
+    places = np.sort([1e3 * float(row.position) for row in rows_of(bearing)])
+    # Rings of neighbouring rows meet halfway.
+    reach = 0.49 * np.diff(places).min() if len(places) > 1 else np.inf
+    for row in rows_of(bearing):
+        part = row.bearing
+        assert isinstance(part, AbstractBallBearing)
+        sign = -1.0 if row.mirrored else 1.0
+        centre = np.array(
+            [1e3 * float(row.position), 0.5e3 * float(part.pitch_diameter)]
+        )
+
+        def place(points, sign=sign, centre=centre):
+            return centre + np.asarray(points) * np.array([sign, 1.0])
+
+        _rings(ax, part, place, reach)
+        _ball(ax, part, place)
+    first = rows_of(bearing)[0].bearing
+    ax.set_title("Axial section, to scale")
+    ax.text(
+        0.01, 0.01, "ring bodies schematic", transform=ax.transAxes, fontsize=SMALL,
+        color=GREY, va="bottom",
+    )  # fmt: skip
+    angle = np.rad2deg(float(first.free_contact_angle))
+    ax.text(
+        0.99,
+        0.01,
+        f"free contact angle {angle:.4g}°",
+        transform=ax.transAxes,
+        fontsize=SMALL,
+        color=GREY,
+        va="bottom",
+        ha="right",
+    )
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.08)
+    ax.set_xlabel("z [mm]")
+    ax.set_ylabel("radius [mm]")
+    return ax
+
+
+def _ball(ax, bearing, place):
+    radius = 0.5e3 * float(bearing.ball_diameter)
+    turn = np.linspace(0.0, 2.0 * np.pi, 181)
+    circle = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    ax.fill(
+        *place(circle).T, facecolor="#DDF1EA", edgecolor=ROLLER, linewidth=1.4, zorder=2
+    )
+    # Lines of contact of the unloaded bearing, through the ball's centre.
+    for groove in bearing.grooves:
+        outwards = 1.0 if groove.on_outer else -1.0
+        way = -outwards * np.array([float(groove.axial), float(groove.radial)])
+        size = np.hypot(*way)
+        angle = float(bearing.free_contact_angle)
+        way = way / size if size > 0 else np.array([np.sin(angle), np.cos(angle)])
+        line = np.stack([np.zeros(2), outwards * radius * way])
+        name = "outer" if groove.on_outer else "inner"
+        ax.plot(*place(line).T, color=COLOURS[name], linewidth=1.0, zorder=4)
+        ax.plot(*place(line[1:]).T, marker="o", color=COLOURS[name], ms=4, zorder=5)
+    ax.plot(*place(np.zeros((1, 2))).T, marker="+", color=GREY, zorder=5)
+
+
+def _rings(ax, bearing, place, reach):
+    diameter = 1e3 * float(bearing.ball_diameter)
+    for name, outwards in (("outer", 1.0), ("inner", -1.0)):
+        raceway = _raceway(bearing, name, outwards, reach)
+        back = outwards * (np.max(outwards * raceway[:, 1]) + _BODY * diameter)
+        outline = np.concatenate(
+            [raceway, [[raceway[-1, 0], back]], [[raceway[0, 0], back]]]
+        )
+        if bearing.groove_axis > 0.0:
+            outline = outline[:, ::-1]
+        ax.fill(
+            *place(outline).T,
+            facecolor=_light(COLOURS[name]),
+            edgecolor=COLOURS[name],
+            linewidth=1.2,
+            zorder=1,
+        )
+
+
+def _light(colour):
+    from matplotlib.colors import to_rgb
+
+    return (*to_rgb(colour), 0.12)
+
+
+def _raceway(bearing, name, outwards, reach):
+    """Contour of a ring on the side of the ball, along and across the raceway [mm].
+
+    Across points from the inner to the outer ring: along r, for washers along z.
+    """
+    diameter = 1e3 * float(bearing.ball_diameter)
+    given = getattr(bearing, f"{name}_shoulder")
+    height = _SHOULDER * diameter if given is None else 1e3 * float(given)
+    grooves = [g for g in bearing.grooves if g.on_outer is (name == "outer")]
+    pieces = []
+    for groove in grooves:
+        radius, deepest = 1e3 * float(groove.radius), float(groove.deepest)
+        centre = 1e3 * np.array([float(groove.axial), float(groove.radial)])
+        if bearing.groove_axis > 0.0:
+            centre = centre[::-1]
+        start, edge = np.arccos(np.clip([deepest, deepest - height / radius], -1, 1))
+        if len(grooves) == 2:
+            # An arc carries beyond the middle of the ring from its centre.
+            angles = -np.sign(centre[0]) * np.linspace(start, edge, 60)
+        else:
+            angles = np.linspace(-edge, edge, 121)
+            if groove.open_side and bearing.groove_axis == 0.0:
+                angles = angles[outwards * angles >= 0]
+        arc = np.stack([np.sin(angles), outwards * np.cos(angles)], axis=1)
+        pieces.append(centre + radius * arc)
+    points = np.concatenate(pieces)
+    points = points[np.argsort(points[:, 0], kind="stable")]
+    low, high = points[0].copy(), points[-1].copy()
+    reach = min(_WIDTH * diameter, reach)
+    low[0], high[0] = min(low[0], -reach), max(high[0], reach)
+    return np.concatenate([[low], points, [high]])
