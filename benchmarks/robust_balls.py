@@ -1,7 +1,7 @@
 """Does a load solve of a ball bearing ever fail, or answer wrongly?
 
-Loads from 1e-3 N to 1e6 N in random directions that the bearing can carry, clearances of
-both signs, standing still and at speeds up to d_m n = 3 million mm/min, with and without
+Loads from 1e-3 N to 1e6 N in random directions that the bearing can carry, clearances
+of both signs, standing still and at speeds up to d_m n = 3 million mm/min, with
 gyroscopic moment. Every answer is checked by the residual of a fresh evaluation; a ball
 that has left its inner raceway is an answer.
 

@@ -30,7 +30,7 @@ CHUNK = 5000
 class PlainNewton(AbstractMinimiser):
     """Newton's method without safeguards, for comparison."""
 
-    def minimise(self, function, start, radius):
+    def minimise(self, function, start, radius, shape=None):
         def body(_, x):
             e = function(x, True)
             return x - solve_symmetric(e.hessian, e.gradient)
@@ -40,7 +40,8 @@ class PlainNewton(AbstractMinimiser):
         size = jnp.sqrt(e.gradient @ e.gradient)
         good = size <= 1e-9 * e.scale + 10 * e.noise
         code = jnp.where(good, 0, 1).astype(jnp.int32)
-        return Minimum(x, size / (e.scale + 1e-300), jnp.asarray(60), code, radius)
+        residual = size / (e.scale + 1e-300)
+        return Minimum(x, residual, size, jnp.asarray(60), code, radius)
 
 
 SOLVERS = {

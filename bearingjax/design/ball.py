@@ -11,13 +11,12 @@ import math
 from typing import NamedTuple
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_count, as_real
-from .checks import check, concrete, count, in_range, number, positive
+from .checks import check, concrete, count, in_range, is_traced, number, positive
 from .material import Material
 
 
@@ -196,7 +195,7 @@ class AbstractBallBearing(eqx.Module):
 
     def _check_deviation(self):
         value = self.ball_deviation
-        if value is None or isinstance(value, jax.core.Tracer):
+        if value is None or is_traced(value):
             return
         owner = type(self).__name__
         if isinstance(value, str | bytes | bool) or np.shape(value) != (self.n_balls,):

@@ -85,8 +85,8 @@ class BallModel(AbstractModel):
             subtracted (contact, 2) [m/rad]; zero at the outer ring.
         constant: From the point law (contact, ...).
         pitch_radius: Radius of the circle of ball centres [m].
-        diameter: Ball diameter [m].
-        guide: Guide spring constant [N/m].
+        ball_diameter: Ball diameter [m].
+        spring: Guide spring constant [N/m].
         turning: Speeds, or `None`.
         on_outer: Which contacts belong to the outer ring.
         open_side: Which raceways are cylinders beyond the groove bottom.
@@ -100,14 +100,22 @@ class BallModel(AbstractModel):
     lever: Float[Array, "contact 2"]
     constant: Float[Array, "contact ..."]
     pitch_radius: Scalar
-    diameter: Scalar
-    guide: Scalar
+    ball_diameter: Scalar
+    spring: Scalar
     turning: Turning | None
     on_outer: tuple[bool, ...] = eqx.field(static=True)
     open_side: tuple[bool, ...] = eqx.field(static=True)
     follows_angle: bool = eqx.field(static=True)
 
     n_unknowns: ClassVar[int] = 2
+
+    @property
+    def guide(self):
+        return self.spring
+
+    @property
+    def diameter(self):
+        return self.ball_diameter
 
     @property
     def gap(self):
@@ -402,6 +410,7 @@ class BallModel(AbstractModel):
         opposite to it at the inner one, and back on the ring at the ball's surface.
         """
         t = self.turning
+        assert t is not None
         kinematics, normals, traction = self._carried(contacts)
         centrifugal = self.pitch_radius * t.mass * kinematics.orbit**2
         across = jnp.stack([-normals[:, 1], normals[:, 0]], axis=1)
@@ -489,8 +498,8 @@ def ball_model(
         lever=inner[:, None] * lever,
         constant=constant,
         pitch_radius=0.5 * pitch,
-        diameter=diameter,
-        guide=_guide(balls, diameter),
+        ball_diameter=diameter,
+        spring=_guide(balls, diameter),
         turning=_turning(bearing, diameter, speed, control),
         on_outer=tuple(g.on_outer for g in grooves),
         open_side=tuple(g.open_side for g in grooves),
@@ -516,4 +525,7 @@ def _turning(bearing, diameter, speed, control):
 
 def _sum(terms):
     """Sum over the contacts, written out so that it fuses."""
-    return sum((terms[k] for k in range(1, terms.shape[0])), start=terms[0])
+    total = terms[0]
+    for k in range(1, terms.shape[0]):
+        total = total + terms[k]
+    return total

@@ -1,8 +1,10 @@
 """The bearing as a finite element of twelve freedoms."""
 
+import functools
+import operator
 import warnings
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import equinox as eqx
 import jax
@@ -110,7 +112,10 @@ class Evaluated(NamedTuple):
     magnitude: Scalar
 
 
-class BearingElement(eqx.Module):
+AnyBearing = TypeVar("AnyBearing", bound=Bearing | BearingSet)
+
+
+class BearingElement(eqx.Module, Generic[AnyBearing]):
     """A rolling bearing, or a set of bearings, between two ring nodes: 12 freedoms.
 
     V(q) = Σ_elements min_x [U(q, x) - F·y]; `force` is its gradient, `stiffness` its
@@ -142,7 +147,7 @@ class BearingElement(eqx.Module):
     Traced: all real numbers. Static: the classes, and `cage_torque`.
     """
 
-    bearing: Bearing | BearingSet
+    bearing: AnyBearing
     line_law: AbstractLineLaw | None
     kinematics: AbstractKinematics
     quadrature: AbstractQuadrature | None
@@ -153,7 +158,7 @@ class BearingElement(eqx.Module):
 
     def __init__(
         self,
-        bearing: Bearing | BearingSet,
+        bearing: AnyBearing,
         line_law: AbstractLineLaw | None = None,
         kinematics: AbstractKinematics | None = None,
         quadrature: AbstractQuadrature | None = None,
@@ -210,7 +215,7 @@ class BearingElement(eqx.Module):
         Args:
             speed: Ring speeds or `None`.
         """
-        if self.point_law is None:
+        if self.point_law is None or self.raceway_control is None:
             return True
         gyroscopic = speed is not None and self.raceway_control.has_reaction
         return not (self.point_law.follows_angle or gyroscopic)
@@ -238,7 +243,7 @@ class BearingElement(eqx.Module):
         """
         if self.cage_torque:
             return jax.grad(self.energy)(q, speed)
-        return sum(_sum_forces(row, _forces(row)) for row in self.rows(q, speed))
+        return _total(_sum_forces(row, _forces(row)) for row in self.rows(q, speed))
 
     @eqx.filter_jit
     def stiffness(self, q: Ring, speed: Speed | None = None) -> RingStiffness:
@@ -250,7 +255,7 @@ class BearingElement(eqx.Module):
         """
         if self.cage_torque:
             return jax.hessian(self.energy)(q, speed)
-        return sum(_stiffness(row) for row in self.rows(q, speed))
+        return _total(_stiffness(row) for row in self.rows(q, speed))
 
     @eqx.filter_jit
     def evaluate(self, q: Ring, speed: Speed | None = None) -> Evaluated:
@@ -267,8 +272,8 @@ class BearingElement(eqx.Module):
             force, stiffness = self.force(q, speed), self.stiffness(q, speed)
         else:
             pairs = zip(rows, shares, strict=True)
-            force = sum(_sum_forces(row, share) for row, share in pairs)
-            stiffness = sum(_stiffness(row) for row in rows)
+            force = _total(_sum_forces(row, share) for row, share in pairs)
+            stiffness = _total(_stiffness(row) for row in rows)
         loads = [jnp.max(row.solved.contact_load) for row in rows]
         largest = jnp.max(jnp.stack(loads))
         states = [settle(row.state, largest) for row in rows]
@@ -279,18 +284,20 @@ class BearingElement(eqx.Module):
             result=worst(jnp.concatenate([s.result for s in states])),
             steps=jnp.max(jnp.concatenate([s.steps for s in states])),
             residual=jnp.max(jnp.concatenate([s.residual for s in states])),
-            magnitude=sum(jnp.sum(jnp.abs(share[:, :2])) for share in shares),
+            magnitude=_total(jnp.sum(jnp.abs(share[:, :2])) for share in shares),
         )
 
-    def models(self, speed: Speed | None = None) -> tuple[AbstractModel, ...]:
-        """One rolling element of each row, a ball of the common diameter.
+    def models(self, speed: Speed | None = None) -> tuple[Any, ...]:
+        """One rolling element of each row: a `RollerModel` or a `BallModel`.
+
+        A ball is one of the common diameter.
 
         Args:
             speed: Ring speeds or `None`.
         """
         return tuple(self._model(row.bearing, speed) for row in rows_of(self.bearing))
 
-    def _model(self, bearing, speed, deviation=None) -> AbstractModel:
+    def _model(self, bearing: Any, speed, deviation=None) -> AbstractModel:
         if isinstance(bearing, AbstractBallBearing):
             assert self.point_law is not None and self.raceway_control is not None
             law, control = self.point_law, self.raceway_control
@@ -424,8 +431,12 @@ def inertia_load(rows: tuple[Row, ...]) -> Float[Array, "6"]:
     return total
 
 
+def _total(parts) -> Any:
+    return functools.reduce(operator.add, parts)
+
+
 def _energy(rows) -> Scalar:
-    return sum(jnp.sum(row.solved.energy) for row in rows)
+    return _total(jnp.sum(row.solved.energy) for row in rows)
 
 
 def _forces(row: Row) -> Float[Array, "element r"]:

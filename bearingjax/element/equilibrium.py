@@ -154,13 +154,12 @@ def _solve(model, rings, magnitude, minimiser):
 
     radius = model.reach(rings) + model.gap + 1e-6 * model.diameter
     start = model.first(rings)
-    shape = None
-    if model.shapes_steps:
 
-        def shape(x, step, size):
-            return model.shape(rings, x, step, size)
+    def shape(x, step, size):
+        return model.shape(rings, x, step, size)
 
-    minimum = minimiser.minimise(function, start, radius, shape)
+    shaping = shape if model.shapes_steps else None
+    minimum = minimiser.minimise(function, start, radius, shaping)
     result = minimum.result
     if not model.is_convex:
         h = model.derivatives(rings, minimum.x, of_own=True).hessian

@@ -38,14 +38,20 @@ class Derivatives(NamedTuple):
 class AbstractModel(eqx.Module):
     """One rolling element between its rings."""
 
-    guide: eqx.AbstractVar[Scalar]
-    """Guide spring constant [N/m]."""
+    @property
+    @abc.abstractmethod
+    def guide(self) -> Scalar:
+        """Guide spring constant [N/m]."""
 
-    diameter: eqx.AbstractVar[Scalar]
-    """Diameter of the rolling element [m]."""
+    @property
+    @abc.abstractmethod
+    def diameter(self) -> Scalar:
+        """Diameter of the rolling element [m]."""
 
-    gap: eqx.AbstractVar[Scalar]
-    """Size of the gaps, unloaded and centred [m]."""
+    @property
+    @abc.abstractmethod
+    def gap(self) -> Scalar:
+        """Size of the gaps, unloaded and centred [m]."""
 
     n_unknowns: eqx.AbstractClassVar[int]
     """Number of own unknowns, n."""

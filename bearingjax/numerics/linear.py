@@ -4,6 +4,8 @@ LAPACK is called once per matrix; for 3 to 6 unknowns under `vmap` the unrolled
 factorisation is many times faster and has no foreign call in it.
 """
 
+from typing import Any
+
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
@@ -102,7 +104,7 @@ def solve(
             b[i] = b[i] - factor * b[k]
         for j in range(k + 1, n):
             a[k][j] = jnp.where(lifted, 0.0, a[k][j])
-    x = [None] * n
+    x: list[Any] = [None] * n
     for i in reversed(range(n)):
         value = b[i]
         for j in range(i + 1, n):

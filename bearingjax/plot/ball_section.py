@@ -47,6 +47,7 @@ def ball_section(
         _rings(ax, part, place, reach)
         _ball(ax, part, place)
     first = rows_of(bearing)[0].bearing
+    assert isinstance(first, AbstractBallBearing)
     ax.set_title("Axial section, to scale")
     ax.text(
         0.01, 0.01, "ring bodies schematic", transform=ax.transAxes, fontsize=SMALL,

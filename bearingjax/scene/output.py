@@ -91,7 +91,9 @@ def _listed(values):
     values = np.asarray(values)
     if np.isfinite(values).all():
         return values.tolist()
-    return np.where(np.isfinite(values), values.astype(object), None).tolist()
+    plain = values.astype(object)
+    plain[~np.isfinite(values)] = None
+    return plain.tolist()
 
 
 def write_json(path: str | Path, scene: Scene, solution: Solution) -> None:

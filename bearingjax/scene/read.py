@@ -19,7 +19,7 @@ from ..contact.point_law import (
     PointConstant,
     ZeroAngle,
 )
-from ..design import Bearing, BearingSet, is_ball
+from ..design import is_ball
 from ..element import (
     FREEDOMS,
     LOADS,
@@ -78,7 +78,7 @@ class Scene:
     """
 
     name: str
-    element: BearingElement
+    element: BearingElement[Any]
     load: tuple[float, ...]
     prescribed: dict[str, float]
     free: tuple[str, ...] | None
@@ -100,7 +100,7 @@ def shipped_scenes() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
-def load_bearing(source: str | Path) -> Bearing | BearingSet:
+def load_bearing(source: str | Path) -> Any:
     """The bearing of a scene file.
 
     Args:
@@ -189,11 +189,12 @@ def _scene(top, name, bearing, odd) -> Scene:
     contact = top.table("contact")
     operating, numerics = top.table("operating"), top.table("numerics")
     if is_ball(bearing):
-        choices = dict(
-            point_law=_point_law(contact), raceway_control=_control(operating)
-        )
+        choices: dict[str, Any] = {
+            "point_law": _point_law(contact),
+            "raceway_control": _control(operating),
+        }
     else:
-        choices = dict(line_law=_line_law(contact), **_roller_numerics(numerics))
+        choices = {"line_law": _line_law(contact), **_roller_numerics(numerics)}
     solver = numerics.choice("equilibrium", tuple(EQUILIBRIA), "newton")
     with numerics.building():
         element = BearingElement(bearing, equilibrium=EQUILIBRIA[solver](), **choices)

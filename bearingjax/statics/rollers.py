@@ -10,6 +10,7 @@ from ..contact.line import half_width, peak_pressure
 from ..design.rib import RIB_NAMES
 from ..element.bearing_element import Row
 from ..element.constants import relative_radii
+from ..element.roller import RollerModel
 
 
 class RollerResults(eqx.Module):
@@ -89,6 +90,7 @@ def distribution(row: Row, points: int) -> tuple[Array, Array, Array, Array]:
         position (point,) [m]; line load [N/m], pressure [Pa] and half width [m], each
         (roller, 2, point).
     """
+    assert isinstance(row.model, RollerModel)
     c = row.model.constants
     xi = jnp.linspace(-1.0, 1.0, points, dtype=c.half_length.dtype)
     position = c.half_length * xi
@@ -114,6 +116,7 @@ def contact_loads(
     """Load of every roller on both raceways and on the four ribs [N]."""
     raceways, ribs = jnp.split(row.solved.contact_load, [2], axis=1)
     all_ribs = jnp.zeros((raceways.shape[0], len(RIB_NAMES)), raceways.dtype)
+    assert isinstance(row.model, RollerModel)
     present = row.model.constants.ribs
     if present is not None:
         columns = jnp.array([RIB_NAMES.index(name) for name in present.names])

@@ -1,5 +1,7 @@
 """What a solved bearing is: everything that a designer asks of it."""
 
+from typing import TYPE_CHECKING, Any
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
@@ -65,6 +67,10 @@ class Solution(eqx.Module):
     stats: Stats
     row_sizes: tuple[int, ...] = eqx.field(static=True)
 
+    if TYPE_CHECKING:
+        # Which results there are depends on the rolling elements.
+        def __getattr__(self, name: str) -> Any: ...
+
     @property
     def load_zone(self) -> Bool[Array, " element"]:
         """Which rolling elements carry load between the raceways, above round-off."""
@@ -126,6 +132,7 @@ def warnings(solution: Solution) -> list[str]:
     """Physics warnings of a concrete, single solution, one sentence each."""
     if isinstance(solution, BallSolution):
         return ball_warnings(solution)
+    assert isinstance(solution, RollerSolution)
     return roller_warnings(solution)
 
 

@@ -269,7 +269,7 @@ def test_units_of_every_kind(everything):
 
 def test_profiles_of_roller_and_raceways(everything):
     bearing = everything.element.bearing
-    assert type(bearing.roller_profile) is bj.scene.read.Lundberg
+    assert type(bearing.roller_profile) is bj.Lundberg
     lundberg = {"design_load": 2000.0, "contact_modulus": 1e11}
     assert fields(bearing.roller_profile) == near(lundberg)
     assert type(bearing.outer_raceway_profile) is bj.CircularCrown

@@ -1,20 +1,20 @@
 """Whole ball bearings against published and independently computed numbers.
 
-* 6305-type (attributed to MASTA; M. Zhun's ISO/TS 16281 test data): curvatures at contact
-  angle zero, displacement 1e-4. Its static stiffness has the lever d_m/2 for the tilt,
-  where this library has the groove centre's radius: the pitch diameter is lowered so
-  that both are equal, with the constants of the true pitch diameter given explicitly.
+* 6305-type (attributed to MASTA; M. Zhun's ISO/TS 16281 test data): curvatures at
+  contact angle zero, displacement 1e-4. Its static stiffness has the lever d_m/2 for
+  the tilt, where this library has the groove centre's radius: the pitch diameter is
+  lowered so that both are equal, with the constants of the true pitch diameter.
 * 218 angular contact and 209 deep groove (examples of Harris), exact Hertz.
-* High-speed angular contact bearings of Jones's theory (HS-1 to HS-3), with the gyroscopic
-  moment at the outer raceway, without it and with its sign reversed, so that a failure
-  names its cause.
-* SKF program output in Harris and Mindel (1973): the two contacts. Of its equilibrium the
-  free contact angle is not printed and the printed speed contradicts the centrifugal
-  force, so it cannot be solved again.
+* High-speed angular contact bearings of Jones's theory (HS-1 to HS-3), with the
+  gyroscopic moment at the outer raceway, without it and with its sign reversed, so
+  that a failure names its cause.
+* SKF program output in Harris and Mindel (1973): the two contacts. Of its equilibrium
+  the free contact angle is not printed and the printed speed contradicts the
+  centrifugal force, so it cannot be solved again.
 * Sjovall's integrals and Stribeck's number.
 
-The cases with a tilt have their origin in the plane of the inner groove centres, ours is
-in that of the balls: loads and displacements are carried over as of a rigid body.
+The cases with a tilt have their origin in the plane of the inner groove centres, ours
+is in that of the balls: loads and displacements are carried over as of a rigid body.
 Tolerances are those of the sources.
 """
 
