@@ -10,13 +10,16 @@ README = (Path(__file__).parent.parent / "README.md").read_text()
 
 def test_python_examples(capsys):
     blocks = re.findall(r"```python\n(.*?)```", README, re.S)
-    assert len(blocks) == 2
+    assert len(blocks) == 3
     names: dict = {}
-    for block in blocks:
+    for block in blocks[:2]:
         exec(block, names)
-    assert bool(names["solution"].converged)
+        assert bool(names["solution"].converged)
     lines = capsys.readouterr().out.splitlines()
     assert -0.7 < float(lines[-1]) < -0.5  # d(displacement)/d(clearance)
+    exec(blocks[2], names)
+    assert type(names["solution"]) is bj.BallSolution
+    assert bool(names["solution"].converged)
 
 
 def test_two_commands_and_their_scene():
@@ -34,4 +37,4 @@ def test_picture_and_folders_exist():
         assert (root / target).exists(), target
     for folder in re.findall(r"^(bearingjax/\w+/|tests/|benchmarks/) ", README, re.M):
         assert (root / folder).is_dir(), folder
-    assert len(bj.scene.shipped_scenes()) == 6
+    assert len(bj.scene.shipped_scenes()) == 9

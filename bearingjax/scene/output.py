@@ -10,18 +10,27 @@ from ..numerics.result import Result
 from ..statics.solution import BallSolution, Solution, message, warnings
 from .read import Scene
 
-COMMON = (
+OF_ROLLERS = (
+    "displacement",
+    "force",
+    "stiffness",
+    "roller_load",
+    "rib_load",
+    "roller_motion",
+    "azimuth",
+    "position",
+    "line_load",
+    "contact_pressure",
+)
+"""Fields of a solution that are written, with their names."""
+
+OF_BALLS = (
     "displacement",
     "force",
     "stiffness",
     "roller_load",
     "roller_motion",
     "azimuth",
-)
-"""Fields written of every solution, with their names."""
-
-OF_ROLLERS = ("rib_load", "position", "line_load", "contact_pressure")
-OF_BALLS = (
     "contact_load",
     "contact_angle",
     "contact_pressure",
@@ -48,10 +57,10 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         solution: Its solution.
 
     Returns:
-        The fields of `COMMON`, those of rollers or of balls (m, rad, N, N m, Pa), and
-        result, message, residual, iterations, warnings and version. If the solve did
-        not converge the arrays are left out: there are no results. What is infinite
-        (the margin of a shoulder that is not given) is null.
+        The fields of `OF_ROLLERS` or `OF_BALLS` (m, rad, N, N m, Pa), and result,
+        message, residual, iterations, warnings and version. If the solve did not
+        converge the arrays are left out: there are no results. What is infinite (the
+        margin of a shoulder that is not given) is null.
     """
     from .. import __version__
 
@@ -72,9 +81,8 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
 
 def _numbers(solution):
     if not isinstance(solution, BallSolution):
-        names = (*COMMON, *OF_ROLLERS)
-        return {name: _listed(getattr(solution, name)) for name in names}
-    names = (*COMMON, *OF_BALLS)
+        return {name: _listed(getattr(solution, name)) for name in OF_ROLLERS}
+    names = OF_BALLS
     moving = solution.kinematics
     if moving is None:
         return {name: _listed(getattr(solution, name)) for name in names}

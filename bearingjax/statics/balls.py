@@ -113,7 +113,8 @@ def _row_results(row: Row, law: AbstractPointLaw) -> dict:
     half = load.shape[1] // 2
     pair = forces.reshape(load.shape[0], 2, half, 2).sum(axis=2)
     square = jnp.sum(pair**2, axis=-1)
-    sides = jnp.sqrt(jnp.where(square > 0, square, 1.0)) * (square > 0)
+    loaded = square > 0
+    sides = jnp.where(loaded, jnp.sqrt(jnp.where(loaded, square, 1.0)), 0.0)
     kinematics = moment = force = None
     if model.turning is not None:
         kinematics = row.each(lambda m, r, x: m.kinematics(m.contacts(r, x)))

@@ -18,7 +18,10 @@ roller_axis_angle = "11 deg"
 roller_half_angle = "1.7235 deg"
 """
 
-KNOWN_BEARINGS = "cylindrical_roller, needle_roller, tapered_roller"
+KNOWN_BEARINGS = (
+    "cylindrical_roller, needle_roller, tapered_roller, deep_groove_ball,"
+    " angular_contact_ball, four_point_ball, thrust_ball"
+)
 WHOLE = "is not a whole number of at least 1"
 NO_UNIT = 'has no unit; a length with its unit is wanted, such as "5 mm"'
 RIB = '{end_radius = "300 mm", contact_height = "1.5 mm"}'
@@ -297,11 +300,119 @@ SETTINGS = {
         "[bearing.ring_material]: Material: `elastic_modulus` is -1e+09 Pa; it must",
     ),
     # Names.
-    "ball bearing": (
+    "ball bearing with rollers": (
         "cylindrical_rig",
         "bearing.type=deep_groove_ball",
-        "`bearing.type`: 'deep_groove_ball' is not known; it must be one of"
-        f" {KNOWN_BEARINGS}",
+        "`bearing.n_balls`: is missing; it must be a whole number",
+    ),
+    "unknown bearing": (
+        "cylindrical_rig",
+        "bearing.type=spherical_roller",
+        "`bearing.type`: 'spherical_roller' is not known (did you mean"
+        f" `cylindrical_roller`?); it must be one of {KNOWN_BEARINGS}",
+    ),
+    # Balls.
+    "clearance and contact angle": (
+        "deep_groove",
+        "bearing.contact_angle=15 deg",
+        "[bearing]: DeepGrooveBallBearing: `radial_internal_clearance` and"
+        " `contact_angle` are both given; one follows from the other.",
+    ),
+    "osculation the other way": (
+        "deep_groove",
+        "bearing.outer_osculation=1.06",
+        "[bearing]: DeepGrooveBallBearing: `outer_osculation` is 1.06; it must be above"
+        " 0.5 and below 1: groove radius over ball diameter, such as 0.52.",
+    ),
+    "ball as large as the groove": (
+        "angular_contact",
+        "bearing.inner_osculation=0.5",
+        "[bearing]: AngularContactBallBearing: `inner_osculation` is 0.5; it must be",
+    ),
+    "too many balls": (
+        "deep_groove",
+        "bearing.n_balls=13",
+        "[bearing]: DeepGrooveBallBearing: `n_balls` is 13 balls; it must be low enough"
+        " that balls do not overlap around the pitch circle (at most 11 of this size).",
+    ),
+    "no balls": (
+        "deep_groove",
+        "bearing.n_balls=0",
+        "`bearing.n_balls`: 0 is not a whole number of at least 1",
+    ),
+    "contact angle of a thrust bearing": (
+        "angular_contact",
+        "bearing.contact_angle=90 deg",
+        "[bearing]: AngularContactBallBearing: `contact_angle` is 1.5708 rad; it must"
+        " be above 0 and below 1.5708 rad.",
+    ),
+    "negative contact angle": (
+        "angular_contact",
+        "bearing.contact_angle=-25 deg",
+        "[bearing]: AngularContactBallBearing: `contact_angle` is -0.436332 rad; it",
+    ),
+    "shoulder higher than the ball": (
+        "deep_groove",
+        "bearing.outer_shoulder=23 mm",
+        "[bearing]: DeepGrooveBallBearing: `outer_shoulder` is 0.023 m; it must be",
+    ),
+    "ball clearance in metres": (
+        "deep_groove",
+        "bearing.radial_internal_clearance=10 m",
+        "[bearing]: DeepGrooveBallBearing: `radial_internal_clearance` is 10 m; it must"
+        " be below 0.00115 m in size, where the groove centres meet (metres meant?).",
+    ),
+    "line law of a ball": (
+        "deep_groove",
+        "contact.line_law=palmgren",
+        "`contact.line_law`: unknown key",
+    ),
+    "quadrature of a ball": (
+        "deep_groove",
+        "numerics.quadrature=midpoint",
+        "`numerics.quadrature`: unknown key",
+    ),
+    "one constant of two": (
+        "deep_groove",
+        "contact.outer_constant=3e10 N/m^1.5",
+        "`contact.inner_constant`: is missing; give the constants of both rings",
+    ),
+    "unknown raceway control": (
+        "angular_contact",
+        "operating.raceway_control=both",
+        "`operating.raceway_control`: 'both' is not known",
+    ),
+    "friction without its control": (
+        "angular_contact",
+        "operating.raceway_control=outer",
+        "`operating.friction_coefficient`: goes with `raceway_control` ="
+        ' "friction_limited" only',
+    ),
+    "negative friction": (
+        "angular_contact",
+        "operating.friction_coefficient=-0.1",
+        "[operating]: FrictionLimited: `friction` is -0.1; it must be above 0.",
+    ),
+    "too few deviations": (
+        "deep_groove",
+        'bearing.ball_deviation=["1 um", "2 um"]',
+        "[bearing]: DeepGrooveBallBearing: `ball_deviation` has shape (2,); it must be"
+        " (7,)",
+    ),
+    "unknown arrangement of a set": (
+        "ball_pair",
+        "set.arrangement=DB",
+        "`set.arrangement`: 'DB' is not known; it must be one of back_to_back,",
+    ),
+    "rows at the same place": (
+        "ball_pair",
+        "set.spacing=0 mm",
+        "[set]: BearingSet: `spacing` is 0 m; it must be above 0 m.",
+    ),
+    "rows that are no list": (
+        "ball_pair",
+        "set={arrangement = 'rows', rows = 2}",
+        "`set.rows`: 2 is not a list of tables",
     ),
     "misspelt bearing type": (
         "cylindrical_rig",

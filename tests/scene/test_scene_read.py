@@ -8,14 +8,18 @@ import pytest
 from tolerances import PUBLISHED, ROUNDING
 
 import bearingjax as bj
+from bearingjax.design import n_elements, rows_of
 from bearingjax.scene import shipped_scenes
 
 DEG = np.pi / 180.0
 RPM = 2.0 * np.pi / 60.0
 
 SHIPPED = (
+    "angular_contact",
+    "ball_pair",
     "cylindrical_ribs",
     "cylindrical_rig",
+    "deep_groove",
     "hybrid_spindle",
     "needle",
     "nj_axial",
@@ -52,8 +56,11 @@ def test_every_shipped_scene_reads(name):
     raw = tomllib.loads(shipped_scenes()[name].read_text(encoding="utf-8"))
     assert scene.name == name
     assert scene.warnings == ()
-    assert scene.element.bearing.n_rollers == raw["bearing"]["n_rollers"]
-    assert scene.points == 101 and scene.tolerance is None
+    counts = [n_elements(row.bearing) for row in rows_of(scene.element.bearing)]
+    written = {raw["bearing"].get(key) for key in ("n_rollers", "n_balls")}
+    assert set(counts) == written - {None}
+    assert scene.points == (101 if "n_rollers" in raw["bearing"] else 2)
+    assert scene.tolerance is None
     assert any(scene.load)
 
 
@@ -436,3 +443,55 @@ def test_published_displacements(force, moment, uy, gx):
     assert 1e6 * motion[1] == pytest.approx(uy, rel=0.0, abs=allowed)
     allowed = PUBLISHED * abs(gx) + HALF_DIGIT["mrad"] if gx else 1e-6
     assert 1e3 * motion[3] == pytest.approx(gx, rel=0.0, abs=allowed)
+
+
+def test_ball_scene():
+    scene = bj.read_scene("angular_contact")
+    bearing, element = scene.element.bearing, scene.element
+    assert type(bearing) is bj.AngularContactBallBearing
+    assert fields(bearing.material) == near(fields(bj.Material.silicon_nitride()))
+    assert float(bearing.contact_angle) == pytest.approx(np.deg2rad(25))
+    assert type(element.point_law) is bj.OperatingAngle
+    assert type(element.raceway_control) is bj.FrictionLimited
+    assert float(element.raceway_control.friction) == pytest.approx(0.06)
+    plain = bj.read_scene("deep_groove").element
+    assert type(plain.point_law) is bj.FreeAngle
+    assert type(plain.raceway_control) is bj.OuterControl
+
+
+@pytest.mark.parametrize(
+    "arrangement, mirrored",
+    [
+        ("back_to_back", (False, True)),
+        ("face_to_face", (True, False)),
+        ("tandem", (False, False)),
+    ],
+)
+def test_sets(arrangement, mirrored):
+    settings = [f"set.arrangement={arrangement}"]
+    if arrangement == "tandem":
+        settings = [
+            'set={arrangement = "tandem", spacing = "17 mm", count = 2}',
+        ]
+    rows = bj.read_scene("ball_pair", settings).element.bearing.rows
+    assert tuple(row.mirrored for row in rows) == mirrored
+    assert [float(row.position) for row in rows] == pytest.approx([-8.5e-3, 8.5e-3])
+
+
+def test_rows_of_a_set_one_by_one():
+    setting = (
+        'set={arrangement = "rows", rows = [{position = "-9 mm"}, {position = "9 mm",'
+        ' mirrored = true, inner_offset = "-4 um"}]}'
+    )
+    rows = bj.read_scene("ball_pair", [setting]).element.bearing.rows
+    assert [row.mirrored for row in rows] == [False, True]
+    assert float(rows[1].inner_offset) == pytest.approx(-4e-6)
+
+
+def test_point_constants():
+    settings = [
+        "contact.outer_constant=3e10 N/m^1.5",
+        "contact.inner_constant=2 N/m^1.5",
+    ]
+    law = bj.read_scene("deep_groove", settings).element.point_law
+    assert [float(law.outer), float(law.inner)] == pytest.approx([3e10, 2.0])
