@@ -57,47 +57,50 @@ def balls(n=6, kind=bj.AngularContactBallBearing, **change):
 
 
 def ball_elements():
-    """Name to element of balls, or of a set: all that an identity may meet."""
+    """Name to element of balls, or of a set, and the speed to run it at."""
     element = bj.BearingElement
     angular = balls()
+    deep = balls(7, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6)
+    four = balls(
+        6,
+        bj.FourPointBallBearing,
+        shim_angle=20 * _DEG,
+        radial_internal_clearance=-3e-6,
+        ball_deviation=[0.0, 2e-6, -1e-6, 0.0, 1e-6, 0.0],
+    )
+    triple = bj.BearingSet(
+        (
+            bj.SetRow(angular, -0.02, inner_offset=4e-6),
+            bj.SetRow(balls(7, contact_angle=15 * _DEG), 0.003),
+            bj.SetRow(angular, 0.02, mirrored=True, inner_offset=-30e-6),
+        )
+    )
+    operating = bj.OperatingAngle()
+    tapers = bj.BearingSet.face_to_face(taper(5), 0.03, 30e-6)
+    centrifugal, friction = bj.CentrifugalOnly(), bj.FrictionLimited(0.06)
     return {
-        "deep groove, clearance": element(
-            balls(7, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6)
+        "deep groove, clearance": (element(deep), "still"),
+        "angular contact, outer control": (element(angular), "turning"),
+        "angular contact, operating angle": (
+            element(angular, point_law=operating),
+            "still",
         ),
-        "angular contact, outer control": element(angular),
-        "angular contact, operating angle": element(
-            angular,
-            point_law=bj.OperatingAngle(),
-            raceway_control=bj.CentrifugalOnly(),
+        "four-point, unlike balls, load share": (
+            element(four, raceway_control=bj.LoadShare()),
+            "turning",
         ),
-        "four-point, unlike balls, load share": element(
-            balls(
-                6,
-                bj.FourPointBallBearing,
-                shim_angle=20 * _DEG,
-                radial_internal_clearance=-3e-6,
-                ball_deviation=[0.0, 2e-6, -1e-6, 0.0, 1e-6, 0.0],
+        "thrust": (element(balls(7, bj.ThrustBallBearing)), "still"),
+        "ball pair, O": (
+            element(
+                bj.BearingSet.back_to_back(angular, 0.02, 20e-6),
+                raceway_control=centrifugal,
             ),
-            raceway_control=bj.LoadShare(),
+            "turning",
         ),
-        "thrust": element(balls(7, bj.ThrustBallBearing)),
-        "ball pair, O": element(
-            bj.BearingSet.back_to_back(angular, 0.02, 20e-6),
-            raceway_control=bj.CentrifugalOnly(),
-        ),
-        "triple, unlike rows": element(
-            bj.BearingSet(
-                (
-                    bj.SetRow(angular, -0.02, inner_offset=4e-6),
-                    bj.SetRow(balls(7, contact_angle=15 * _DEG), 0.003),
-                    bj.SetRow(angular, 0.02, mirrored=True, inner_offset=-30e-6),
-                )
-            ),
-            raceway_control=bj.FrictionLimited(0.06),
-        ),
-        "taper pair, X": element(
-            bj.BearingSet.face_to_face(taper(5), 0.03, 30e-6),
-            quadrature=bj.ContactMapped(24),
+        "triple, unlike rows": (element(triple, raceway_control=friction), "turning"),
+        "taper pair, X": (
+            element(tapers, quadrature=bj.ContactMapped(24)),
+            "still",
         ),
     }
 

@@ -494,4 +494,5 @@ def test_point_constants():
         "contact.inner_constant=2 N/m^1.5",
     ]
     law = bj.read_scene("deep_groove", settings).element.point_law
+    assert type(law) is bj.PointConstant
     assert [float(law.outer), float(law.inner)] == pytest.approx([3e10, 2.0])
