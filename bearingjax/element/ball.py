@@ -25,6 +25,7 @@ from ..numerics.linear import dot
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar
 from .ball_speed import (
+    MOST_FRICTION,
     AbstractRacewayControl,
     BallKinematics,
     ball_kinematics,
@@ -188,7 +189,13 @@ class BallModel(AbstractModel):
         wanted = positive_power(size / constant, _D, _N)
         reached = self.contacts(rings, x + bent).approach
         entered = (c.approach < 0.0) & (reached > wanted)
-        share = (wanted - c.approach) / jnp.where(entered, reached - c.approach, 1.0)
+        # The approach along the step, as a parabola through both its ends.
+        slope = _across(c.normal, step)
+        rise = wanted - c.approach
+        curve = reached - c.approach - slope
+        root = jnp.sqrt(jnp.maximum(slope**2 + 4.0 * curve * rise, 0.0))
+        share = 2.0 * rise / jnp.where(entered, slope + root, 1.0)
+        share = jnp.where(share > 0.0, jnp.minimum(share, 1.0), 1.0)
         return _bent(c, load, step * jnp.min(jnp.where(entered, share, 1.0)))
 
     def pressed(self, approach):
@@ -397,11 +404,14 @@ class BallModel(AbstractModel):
         # In balance the outer raceway carries the centrifugal force at least; on the
         # way there shares must not jump where a ball in flight first touches.
         least = jnp.maximum(loads[0], 0.1 * t.centrifugal)
-        loads = jnp.stack([least, loads[1]])
-        share = t.control.rolling_share(loads)
+        shared = jnp.stack([least, loads[1]])
+        share = t.control.rolling_share(shared)
         kinematics = ball_kinematics(normals[0], normals[1], share, t.ratio, t.speed)
         demand = 2.0 / self.diameter * gyroscopic_moment(t.moment, kinematics)
-        return kinematics, normals, t.control.traction(loads, demand)
+        # Whatever the control says, no contact holds more than friction lets it.
+        most = MOST_FRICTION * loads
+        traction = jnp.clip(t.control.traction(shared, demand), -most, most)
+        return kinematics, normals, traction
 
     def _inertia_forces(self, contacts):
         """Centrifugal force and tractions, as generalised forces on (rings, x).
@@ -433,6 +443,11 @@ class BallModel(AbstractModel):
         moment = -0.5 * self.diameter * (traction[0] + traction[1])
         force = self.pitch_radius * t.mass * kinematics.orbit**2
         return jnp.stack([zero, force, moment])
+
+
+def _across(normals, step):
+    """Part of a step along each normal."""
+    return normals[:, 0] * step[0] + normals[:, 1] * step[1]
 
 
 def _bent(c: Contacts, load, step):

@@ -20,10 +20,13 @@ from ..design.checks import positive
 from ..numerics.types import Scalar, as_real
 from .inertia import Speed
 
+MOST_FRICTION = 0.3
+"""Coefficient of friction that no raceway contact exceeds, whatever the control [1]."""
+
 # A load [N] far below any that matters, for shares of no load at all.
 _NO_LOAD = 1e-15
 # Keep the kinematics finite for geometries in which no ball rolls.
-_COSINE, _SQUARE = 1e-3, 1e-30
+_COSINE, _SQUARE = 0.1, 1e-30
 
 Direction = Float[Array, "2"]
 """Unit vector (z, r) from the inner to the outer side, along a contact normal."""
@@ -32,7 +35,10 @@ Direction = Float[Array, "2"]
 class AbstractRacewayControl(eqx.Module):
     """Where a ball rolls without spin, and which contact takes the gyroscopic moment.
 
-    The moment M is held by tractions T at the contacts, (T_o + T_i) D/2 = M.
+    The moment M is held by tractions T at the contacts, (T_o + T_i) D/2 = M. Whatever
+    is asked of a contact, it holds no more than `MOST_FRICTION` times its load: a raceway
+    that a ball has left gives no traction, and the ball then slips about the tangent of
+    its orbit.
     """
 
     @property
@@ -71,11 +77,7 @@ class OuterControl(AbstractRacewayControl):
 
 
 class InnerControl(AbstractRacewayControl):
-    """Inner raceway control: pure rolling there, which takes the whole moment.
-
-    A ball that leaves the inner raceway would then be held by a traction without a
-    load: choose another control for high speed.
-    """
+    """Inner raceway control: pure rolling there, which takes the whole moment."""
 
     def rolling_share(self, load):
         return jnp.zeros_like(load[0])

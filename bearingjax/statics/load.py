@@ -296,7 +296,9 @@ def _play_of(row) -> Scalar:
         # At the free angle a ball bearing of one side touches without play.
         play = jnp.zeros_like(axial) if bearing.is_one_sided else 2.0 * axial
         radial = jnp.zeros_like(axial) if bearing.is_one_sided else radial
-        return jnp.maximum(play, radial) + offset
+        # Less than this and a small load would follow the groove in tiny steps.
+        least = 1e-3 * bearing.centre_distance
+        return jnp.maximum(jnp.maximum(play, radial), least) + offset
     gaps = [getattr(bearing.ribs, name).axial_gap for name in bearing.ribs.present]
     gaps = [0.5 * bearing.radial_internal_clearance, *(2 * g for g in gaps)]
     return jnp.max(jnp.stack(gaps)) + offset
