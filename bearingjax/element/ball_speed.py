@@ -36,9 +36,9 @@ class AbstractRacewayControl(eqx.Module):
     """Where a ball rolls without spin, and which contact takes the gyroscopic moment.
 
     The moment M is held by tractions T at the contacts, (T_o + T_i) D/2 = M. Whatever
-    is asked of a contact, it holds no more than `MOST_FRICTION` times its load: a raceway
-    that a ball has left gives no traction, and the ball then slips about the tangent of
-    its orbit.
+    is asked of a contact, it holds no more than `MOST_FRICTION` times its load: a
+    raceway that a ball has left gives no traction, and the ball then slips about the
+    tangent of its orbit.
     """
 
     @property
