@@ -1,0 +1,198 @@
+"""Solutions of ball bearings and sets: closed forms, states, warnings, derivatives."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+import robust_balls
+from registry import ball_elements, balls
+
+import bearingjax as bj
+from bearingjax.element import inertia_load
+from bearingjax.statics import warnings
+
+DEGREE = np.pi / 180
+SPEED = bj.Speed(inner=2000.0)
+
+
+@pytest.fixture(scope="module")
+def angular():
+    return bj.BearingElement(balls(12))
+
+
+@pytest.fixture(scope="module")
+def deep():
+    bearing = balls(9, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6)
+    return bj.BearingElement(bearing)
+
+
+def test_thrust_solution_in_closed_form(angular):
+    """F = Z K A^1.5 sin α (cos α0/cos α - 1)^1.5, displacement A sin(α-α0)/cos α."""
+    b, model = angular.bearing, angular.models()[0]
+    outer, inner = map(float, model.constant)
+    series = (outer ** (-2 / 3) + inner ** (-2 / 3)) ** (-3 / 2)
+    distance, free = float(b.centre_distance), float(b.contact_angle)
+    angle = 28 * DEGREE
+    stretch = np.cos(free) / np.cos(angle) - 1
+    load = 12 * series * (distance * stretch) ** 1.5
+    s = bj.solve_load(angular, [0, 0, load * np.sin(angle), 0, 0, 0])
+    assert np.allclose(s.contact_angle, angle, rtol=1e-10)
+    assert np.allclose(s.roller_load, load / 12, rtol=1e-10)
+    moved = distance * np.sin(angle - free) / np.cos(angle)
+    assert float(s.displacement[8]) == pytest.approx(moved, rel=1e-10)
+    assert np.all(np.asarray(s.n_contacts) == 2)
+
+
+def test_balance_of_a_turning_bearing(angular):
+    s = bj.solve_load(angular, [300.0, 0, 800.0, 0, 0, 0], speed=SPEED)
+    force = np.asarray(s.force)
+    inertia = inertia_load(angular.rows(s.displacement, SPEED))
+    total = force[:6] + force[6:] + np.asarray(inertia)
+    assert np.abs(total).max() < 1e-9 * 800.0
+    # The stiffness is the Jacobian, and says that it is not symmetric.
+    assert not angular.has_potential(SPEED)
+    k = np.asarray(s.stiffness)
+    step = 1e-9
+    far = [
+        np.asarray(angular.force(s.displacement.at[8].add(sign * step), SPEED))
+        for sign in (1, -1)
+    ]
+    assert np.allclose((far[0] - far[1]) / (2 * step), k[:, 8], rtol=1e-5, atol=1e3)
+    assert np.abs(k - k.T).max() > 1e-4 * np.abs(k).max()
+
+
+def test_one_sided_bearing_pulled_the_other_way(angular):
+    s = bj.solve_load(angular, [0, 0, -800.0, 0, 0, 0], throw=False)
+    assert int(s.result) == bj.Result.NO_LOAD_PATH
+    assert bj.FREEDOMS[int(s.unrestrained)] == "uz"
+    with pytest.raises(bj.SolveError, match="No load path in uz"):
+        bj.solve_load(angular, [0, 0, -800.0, 0, 0, 0])
+
+
+def test_deep_groove_carries_both_ways(deep):
+    plus = bj.solve_load(deep, [0, 0, 800.0, 0, 0, 0])
+    minus = bj.solve_load(deep, [0, 0, -800.0, 0, 0, 0])
+    assert np.allclose(plus.displacement[8], -minus.displacement[8], rtol=1e-9)
+    assert np.allclose(plus.contact_angle, -minus.contact_angle, rtol=1e-9)
+
+
+def test_balls_lift_off_at_high_speed(deep):
+    s = bj.solve_load(deep, [0, -50.0, 0, 0, 0, 0], speed=SPEED)
+    lifted = np.asarray(s.lifted)
+    assert lifted.any() and not lifted.all()
+    assert np.all(np.asarray(s.contact_load)[lifted, 1] == 0)
+    # A lifted ball presses with its centrifugal force, at the bottom of the groove.
+    assert np.allclose(
+        np.asarray(s.contact_load)[lifted, 0],
+        np.asarray(s.centrifugal_force)[lifted],
+        rtol=1e-9,
+    )
+    assert any("lifted off the inner raceway" in line for line in warnings(s))
+
+
+def test_states_of_a_four_point_bearing():
+    """Pure thrust: two points. A large ball under a radial load: more."""
+    element = ball_elements()["four-point, unlike balls, load share"][0]
+    bearing = eqx.tree_at(
+        lambda b: b.radial_internal_clearance, element.bearing, jnp.asarray(20e-6)
+    )
+    element = eqx.tree_at(lambda e: e.bearing, element, bearing)
+    thrust = bj.solve_load(element, [0, 0, 2000.0, 0, 0, 0])
+    assert np.all(np.asarray(thrust.n_contacts) == 2)
+    assert np.all(np.asarray(thrust.contact_load)[:, [1, 3]] == 0)
+    radial = bj.solve_load(element, [0, -2000.0, 0, 0, 0, 0])
+    assert set(np.asarray(radial.n_contacts)) == {0, 4}
+    mixed = bj.solve_load(element, [0, -2000.0, 500.0, 0, 0, 0], speed=SPEED)
+    assert {2, 3} & set(np.asarray(mixed.n_contacts).tolist())
+
+
+def test_truncated_ellipse_is_warned_of(angular):
+    shallow = balls(12, inner_shoulder=1.1e-3, outer_shoulder=3e-3)
+    light = bj.solve_load(bj.BearingElement(shallow), [0, 0, 100.0, 0, 0, 0])
+    heavy = bj.solve_load(bj.BearingElement(shallow), [0, 0, 9000.0, 0, 0, 0])
+    assert not warnings(light)
+    (line,) = warnings(heavy)
+    assert line.startswith("truncated contact ellipse: it reaches over the inner")
+    load = float(heavy.contact_load[0, 1])
+    assert f"contact load of up to {load:.5g} N" in line
+    # Height of the end of the ellipse on its arc.
+    angle, radius = float(heavy.contact_angle[0, 1]), 0.52 * 0.0095
+    end = angle + float(heavy.semi_axes[0, 1, 1]) / radius
+    margin = 1.1e-3 - radius * (1 - np.cos(end))
+    assert float(heavy.shoulder_margin[0, 1]) == pytest.approx(margin, rel=1e-9)
+    none = bj.solve_load(angular, [0, 0, 9000.0, 0, 0, 0])
+    assert np.all(np.isinf(np.asarray(none.shoulder_margin)))
+
+
+def test_preloaded_pair(angular):
+    """Under no load each row presses the other; in the linear part both are felt."""
+    pair = bj.BearingElement(bj.BearingSet.back_to_back(angular.bearing, 0.02, 16e-6))
+    free = bj.solve_load(pair, [0, 0, 1e-3, 0, 0, 0])
+    alone = np.asarray(angular.force(jnp.zeros(12).at[8].set(8e-6)))[8]
+    rows = np.split(np.asarray(free.contact_load)[:, 0], 2)
+    for row in rows:
+        thrust = row.sum() * np.sin(float(free.contact_angle[0, 0]))
+        assert thrust == pytest.approx(alone, rel=1e-4)
+    single = np.asarray(angular.stiffness(jnp.zeros(12).at[8].set(8e-6)))
+    both = np.asarray(free.stiffness)
+    # AF002-8: k_z = 2 c_a; radially too, but each row tilts with the other's lever.
+    assert both[8, 8] == pytest.approx(2 * single[8, 8], rel=1e-4)
+    assert both[6, 6] == pytest.approx(2 * single[6, 6], rel=1e-4)
+    assert free.row_sizes == (12, 12)
+
+
+def test_arrangements_differ_in_tilt(angular):
+    def tilt(make):
+        element = bj.BearingElement(make(angular.bearing, 0.02, 16e-6))
+        return float(bj.solve_load(element, [0, 0, 1e-3, 0, 0, 0]).stiffness[9, 9])
+
+    spread = 0.052 * np.tan(25 * DEGREE)  # distance of the load centres of an O set
+    o_set, x_set = tilt(bj.BearingSet.back_to_back), tilt(bj.BearingSet.face_to_face)
+    # About as the squares of the distances of the load centres from each other.
+    assert o_set / x_set > ((spread + 0.02) / (spread - 0.02)) ** 2 / 3
+    assert o_set > 5 * x_set
+
+
+def test_tandem_shares_the_thrust(angular):
+    element = bj.BearingElement(bj.BearingSet.tandem(angular.bearing, 0.02, 3))
+    s = bj.solve_load(element, [0, 0, 3000.0, 0, 0, 0])
+    one = bj.solve_load(angular, [0, 0, 1000.0, 0, 0, 0])
+    assert np.allclose(s.contact_load, one.contact_load[0], rtol=1e-9)
+
+
+def test_derivatives_with_respect_to_the_design():
+    def stiffness(angle, osculation):
+        bearing = balls(8, contact_angle=angle, inner_osculation=osculation)
+        element = bj.BearingElement(bearing, point_law=bj.OperatingAngle())
+        load = jnp.asarray([100.0, 0, 500.0, 0, 0, 0])
+        s = bj.solve_load(element, load, speed=bj.Speed(1500.0), throw=False)
+        return s.stiffness[8, 8] * 1e-6
+
+    at = (jnp.asarray(0.4), jnp.asarray(0.52))
+    value = jax.jit(stiffness)
+    exact = jax.jit(jax.jacfwd(stiffness, argnums=(0, 1)))(*at)
+    for k, step in enumerate((1e-5, 1e-6)):
+        ends = []
+        for sign in (1, -1):
+            moved = list(at)
+            moved[k] = moved[k] + sign * step
+            ends.append(float(value(*moved)))
+        difference = (ends[0] - ends[1]) / (2 * step)
+        assert float(exact[k]) == pytest.approx(difference, rel=1e-5)
+
+
+def test_individual_balls_share_unequally():
+    """AF003 needs balls of their own size: a large one takes more, a small one none."""
+    deviation = np.zeros(9)
+    deviation[[2, 6]] = [4e-6, -30e-6]
+    bearing = balls(9, bj.DeepGrooveBallBearing, ball_deviation=deviation)
+    s = bj.solve_load(bj.BearingElement(bearing), [0, 0, 50.0, 0, 0, 0])
+    load = np.asarray(s.contact_load)[:, 0]
+    assert load.argmax() == 2 and load[6] == 0.0
+
+
+def test_small_robustness_run():
+    """Seeded, small version of benchmarks/robust_balls.py."""
+    for row in robust_balls.run(2, seed=1, only=["four-point, clearance 20 um"]):
+        assert row["failed"] == 0 and row["silently_wrong"] == 0, row
