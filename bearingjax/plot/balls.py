@@ -13,6 +13,7 @@ from .style import (
     SMALL,
     axes_or_new,
     raceway_index,
+    row_slice,
     row_slices,
 )
 
@@ -103,10 +104,7 @@ def ellipses(
     """
     ring = raceway_index(raceway)
     ax = axes_or_new(ax)
-    rows = row_slices(solution)
-    if not 0 <= row < len(rows):
-        raise ValueError(f"`row` is {row}; the solution has rows 0 to {len(rows) - 1}.")
-    mine = rows[row]
+    mine = row_slice(solution, row)
     azimuth = np.rad2deg(np.asarray(solution.azimuth)[mine]) % 360.0
     half = solution.contact_load.shape[1] // 2
     grooves = [g for g in bearing.grooves if g.on_outer is (ring == 0)]
@@ -134,7 +132,7 @@ def ellipses(
     ax.axhline(0.0, color=GREY, linewidth=0.8, linestyle=":")
     ax.set_xlabel("azimuth [deg]")
     ax.set_ylabel("along the groove, from its bottom [mm]")
-    which = f", row {row}" if len(rows) > 1 else ""
+    which = f", row {row}" if len(solution.row_sizes) > 1 else ""
     ax.set_title(f"Contact ellipses on the {raceway} raceway{which}")
     return ax
 

@@ -13,6 +13,7 @@ from .style import (
     force_text,
     pyplot,
     raceway_index,
+    row_slice,
 )
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def pressure_profiles(
     ax: "matplotlib.axes.Axes | None" = None,
     count: int = 3,
     raceway: str = "inner",
+    row: int = 0,
 ) -> "matplotlib.axes.Axes":
     """Contact pressure [MPa] along the most loaded rollers.
 
@@ -38,23 +40,25 @@ def pressure_profiles(
         ax: Axes; a new figure if `None`.
         count: Number of rollers, most loaded first.
         raceway: "inner", "outer" or "both".
+        row: Which row of a set.
 
     Returns:
         The axes.
 
     Raises:
-        ValueError: If `count` is below 1 or `raceway` is unknown.
+        ValueError: If `count` is below 1, or `raceway` or `row` is unknown.
     """
     if count < 1:
         raise ValueError(f"`count` is {count}; it must be at least 1.")
     names = ("inner", "outer") if raceway == "both" else (raceway,)
     rings = np.array([raceway_index(name) for name in names])
     ax = axes_or_new(ax)
-    position = 1e3 * np.asarray(solution.position)
-    pressure = 1e-6 * np.asarray(solution.contact_pressure)
-    load = np.asarray(solution.roller_load)
-    angle = degrees(solution.azimuth)
-    edges = np.asarray(solution.edge_loaded)
+    mine = row_slice(solution, row)
+    position = _position(solution, mine)
+    pressure = 1e-6 * np.asarray(solution.contact_pressure)[mine]
+    load = np.asarray(solution.roller_load)[mine]
+    angle = degrees(solution.azimuth)[mine]
+    edges = np.asarray(solution.edge_loaded)[mine]
     # Equal loads (to 1 ppm) by azimuth.
     total = load[:, rings].sum(axis=1)
     scale = np.max(total, initial=0.0) or 1.0
@@ -105,10 +109,17 @@ def pressure_profiles(
     return ax
 
 
+def _position(solution, mine):
+    """Positions along the rollers of a row [mm]."""
+    position = 1e3 * np.asarray(solution.position)
+    return position if position.ndim == 1 else position[mine.start]
+
+
 def pressure_map(
     solution: Solution,
     ax: "matplotlib.axes.Axes | None" = None,
     raceway: str = "inner",
+    row: int = 0,
 ) -> "matplotlib.axes.Axes":
     """Contact pressure [MPa] of all rollers: azimuth by position along the roller.
 
@@ -118,19 +129,21 @@ def pressure_map(
         solution: A single solution.
         ax: Axes; a new figure if `None`.
         raceway: "inner" or "outer".
+        row: Which row of a set.
 
     Returns:
         The axes; the colour bar stands beside it.
 
     Raises:
-        ValueError: If `raceway` is unknown.
+        ValueError: If `raceway` or `row` is unknown.
     """
     ring = raceway_index(raceway)
     ax = axes_or_new(ax, (8.0, 4.5))
-    angle = degrees(solution.azimuth)
+    mine = row_slice(solution, row)
+    angle = degrees(solution.azimuth)[mine]
     order = np.argsort(angle, kind="stable")
-    pressure = 1e-6 * np.asarray(solution.contact_pressure)[:, ring]
-    position = 1e3 * np.asarray(solution.position)
+    pressure = 1e-6 * np.asarray(solution.contact_pressure)[mine, ring]
+    position = _position(solution, mine)
     top = np.nanmax(pressure, initial=0.0)
     # Last and first roller stand on both sides of the seam at 0°.
     around = np.concatenate([order[-1:], order, order[:1]])

@@ -81,6 +81,22 @@ def row_slices(solution) -> list[slice]:
     ]
 
 
+def row_slice(solution, row: int) -> slice:
+    """Where the rolling elements of one row stand on the element axis.
+
+    Args:
+        solution: A single solution.
+        row: Which row of a set.
+
+    Raises:
+        ValueError: If there is no such row.
+    """
+    rows = row_slices(solution)
+    if not 0 <= row < len(rows):
+        raise ValueError(f"`row` is {row}; the solution has rows 0 to {len(rows) - 1}.")
+    return rows[row]
+
+
 def degrees(azimuth) -> np.ndarray:
     """Azimuth from 0 up to 360 degrees, without rounding noise at the seam.
 

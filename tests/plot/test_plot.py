@@ -10,6 +10,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.patches import Ellipse
 
 import bearingjax as bj
 from bearingjax import plot
@@ -307,3 +308,42 @@ def test_import_leaves_matplotlib_alone_and_its_absence_is_explained():
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
     assert 'pip install "bearingjax[plot]"' in done.stdout
+
+
+def test_pages_of_balls_and_sets():
+    """A page for each kind; what is drawn of the ellipses is to scale."""
+    from registry import ball_elements
+
+    for name in (
+        "four-point, unlike balls, load share",
+        "thrust",
+        "ball pair, O",
+        "taper pair, X",
+    ):
+        element, _ = ball_elements()[name]
+        solution = bj.solve_load(element, [100.0, 0, 800.0, 0, 0, 0])
+        page = bj.plot.overview(element.bearing, solution, name)
+        titles = [ax.get_title() for ax in page.axes]
+        assert titles[0] == "Axial section, to scale"
+        if isinstance(solution, bj.BallSolution):
+            ellipse = page.axes[3].patches[0]
+            assert isinstance(ellipse, Ellipse)
+            ax = page.axes[3]
+            box, size = ax.get_position(), page.get_size_inches()
+            wide = np.ptp(ax.get_xlim()) / (box.width * size[0])
+            high = np.ptp(ax.get_ylim()) / (box.height * size[1])
+            drawn = (ellipse.width / wide) / (ellipse.height / high)
+            axes = np.asarray(solution.semi_axes).reshape(-1, 2)
+            axes = axes[axes[:, 1] > 0]
+            # The page is laid out once more when it is drawn: a few per cent.
+            assert np.isclose(drawn, axes[:, 0] / axes[:, 1], rtol=0.05).any()
+
+
+def test_stiffness_over_speed():
+    ax = bj.plot.stiffness_over_speed(
+        [0.0, 100.0], np.tile(np.eye(12) * 1e6, (2, 1, 1))
+    )
+    assert len(ax.lines) == 3 and np.allclose(ax.lines[2].get_ydata(), 1.0)
+    assert np.allclose(ax.lines[0].get_xdata(), [0.0, 100.0 * 30 / np.pi])
+    with pytest.raises(ValueError, match="one matrix for each speed"):
+        bj.plot.stiffness_over_speed([0.0], np.eye(12))
