@@ -188,7 +188,7 @@ def test_facts_15_to_17_two_loaded_zones(
         zone = np.flatnonzero(above[half:-half]) + half
         assert zone[0] / 720 == pytest.approx(0.404, abs=0.002)
         assert zone[-1] / 720 == pytest.approx(0.596, abs=0.002)
-        # Fact 20: the zones' middles are under the load and opposite.
+        # Fact 20: the zones' middles are under the load and opposite, to one place.
         assert 0.5 * (zone[0] + zone[-1]) == pytest.approx(360, abs=1)
 
 
@@ -200,7 +200,8 @@ def test_facts_18_and_19(element):
     assert u[4] == pytest.approx(2.649e-3, rel=PUBLISHED)
     locked = combined(element, 400.0, free=["ux", "uy", "uz"])
     load = np.asarray(along_the_orbit(locked.displacement))
-    # One maximum only: falling from 191 N under the load to 44 N opposite.
+    # One maximum only: falling from 191 N under the load to 44 N opposite (printed
+    # to 1 N).
     assert load[0] == pytest.approx(191, abs=1) and load[360] == pytest.approx(
         44, abs=1
     )
