@@ -100,7 +100,7 @@ def solve(element, loads, speeds):
         out = jnp.where(free, scale * (fresh.force[6:] - load), 0.0)
         # Beside a load far below the inertia forces only their round-off is seen.
         size = jnp.sqrt(jnp.sum((scale * jnp.where(free, load, 0.0)) ** 2))
-        floor = 1e-7 * fresh.magnitude * jnp.finfo(load.dtype).eps / 1e-16
+        floor = 10.0 * jnp.finfo(load.dtype).eps * fresh.magnitude / 1e-8
         residual = jnp.sqrt(jnp.sum(out**2)) / (size + floor)
         lifted = jnp.any(s.lifted)
         return (

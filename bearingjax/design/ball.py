@@ -7,6 +7,7 @@ at (r_i - D/2) (sin α, cos α) from it in (z, r), that of the outer ring opposi
 positive contact angle α carries an inner-ring load along +z.
 """
 
+import abc
 import math
 from typing import NamedTuple
 
@@ -108,24 +109,32 @@ class AbstractBallBearing(eqx.Module):
         )
 
     @property
+    @abc.abstractmethod
     def free_cosine(self) -> Scalar:
         """Cosine of the free contact angle, at most 1 [1]."""
-        raise NotImplementedError
 
     @property
+    @abc.abstractmethod
     def clearance(self) -> Scalar:
         """Radial internal clearance, diametral: s = 2A (1 - cos α0) [m]."""
-        raise NotImplementedError
 
     @property
+    @abc.abstractmethod
     def grooves(self) -> tuple[Groove, ...]:
         """All raceway arcs that a ball may touch, outer ring first."""
-        raise NotImplementedError
 
     @property
     def is_one_sided(self) -> bool:
         """Whether it carries axial load in one direction only."""
         return False
+
+    @property
+    def play(self) -> Scalar:
+        """Largest play between the rings, radial or axial [m]; may be negative."""
+        axial = 2.0 * self.centre_distance * jnp.sin(self.free_contact_angle)
+        if self.is_one_sided:
+            return jnp.zeros_like(axial)  # its zero is where the balls touch
+        return jnp.maximum(axial, 0.5 * self.clearance)
 
     @property
     def groove_axis(self) -> float:

@@ -64,6 +64,13 @@ class AbstractRollerBearing(eqx.Module):
         return jnp.zeros_like(self.pitch_diameter)
 
     @property
+    def play(self) -> Scalar:
+        """Largest play between the rings, radial or axial [m]; may be negative."""
+        ribs = [getattr(self.ribs, name).axial_gap for name in self.ribs.present]
+        plays = [0.5 * self.radial_internal_clearance, *(2 * gap for gap in ribs)]
+        return jnp.max(jnp.stack(plays))
+
+    @property
     def rings(self) -> Material:
         """Material of the rings."""
         return self.material if self.ring_material is None else self.ring_material

@@ -14,6 +14,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ..design import (
+    AbstractBallBearing,
     Bearing,
     BearingSet,
     TaperedRollerBearing,
@@ -283,25 +284,15 @@ def _solve(
 
 def _play(element: BearingElement) -> Scalar:
     """Largest play between the rings, radial or axial [m]."""
-    plays = [_play_of(row) for row in rows_of(element.bearing)]
-    return jnp.maximum(jnp.max(jnp.stack(plays)), 0.0)
-
-
-def _play_of(row) -> Scalar:
-    bearing = row.bearing
-    offset = jnp.abs(row.inner_offset)
-    if is_ball(bearing):
-        axial = bearing.centre_distance * jnp.sin(bearing.free_contact_angle)
-        radial = 0.5 * bearing.clearance
-        # At the free angle a ball bearing of one side touches without play.
-        play = jnp.zeros_like(axial) if bearing.is_one_sided else 2.0 * axial
-        radial = jnp.zeros_like(axial) if bearing.is_one_sided else radial
-        # Less than this and a small load would follow the groove in tiny steps.
-        least = 1e-3 * bearing.centre_distance
-        return jnp.maximum(jnp.maximum(play, radial), least) + offset
-    gaps = [getattr(bearing.ribs, name).axial_gap for name in bearing.ribs.present]
-    gaps = [0.5 * bearing.radial_internal_clearance, *(2 * g for g in gaps)]
-    return jnp.max(jnp.stack(gaps)) + offset
+    rows = rows_of(element.bearing)
+    plays = [row.bearing.play + jnp.abs(row.inner_offset) for row in rows]
+    # Less than this and a small load would follow the groove in tiny steps.
+    least = [
+        1e-3 * row.bearing.centre_distance
+        for row in rows
+        if isinstance(row.bearing, AbstractBallBearing)
+    ]
+    return jnp.max(jnp.stack([jnp.zeros_like(plays[0]), *plays, *least]))
 
 
 def _load_for(element: BearingElement, approach: Scalar) -> Scalar:

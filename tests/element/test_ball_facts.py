@@ -150,6 +150,7 @@ def test_facts_6_to_8_axial(element, axial, angles, load, pressure):
     thrust = np.asarray(s.roller_load[:, 1]) * np.sin(alpha[:, 1])
     thrust = thrust + traction * np.cos(alpha[:, 1])
     assert np.sum(thrust) == pytest.approx(axial, rel=1e-9)
+    # Printed once for all loads, while both follow the contact angles: by 1 and 6 %.
     assert np.allclose(s.centrifugal_force, 1.52, rtol=0.011)
     assert np.allclose(s.gyroscopic_moment, 1.6e-3, rtol=0.07)
 
@@ -167,9 +168,10 @@ def test_facts_6_to_8_axial(element, axial, angles, load, pressure):
 def test_facts_15_to_17_two_loaded_zones(
     element, radial, first, second, least, true_least
 ):
-    s = combined(element, radial)
+    s = combined(element, radial, tolerance=1e-12)
     # Fact 5: nothing out of balance.
-    assert float(s.stats.residual) * 600.0 < 1e-8
+    load = np.hypot(600.0, radial)
+    assert float(s.stats.residual) * load < 1e-9
     load = np.asarray(along_the_orbit(s.displacement))
     # Printed to 0.1 N.
     spline = periodic_spline(np.asarray(s.roller_load)[:, 1], 720)
@@ -263,7 +265,8 @@ def test_af002_2_and_7_preloaded_bearing(line):
     exact = np.asarray(s.stiffness)[6:, 6:]
     # Printed to a per cent (12 and 15 degrees) or a thousandth.
     assert exact[2, 2] / axial == pytest.approx(ratio, abs=6e-3)
-    assert 1.0 <= exact[0, 0] / radial < 1.012
+    # "+0.04 to +1.0 %".
+    assert 1.0003 < exact[0, 0] / radial < 1.0105
 
 
 def test_af003_1_stiffness_of_a_contact():

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import robust_balls
 from registry import ball_elements, balls
+from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.element import inertia_load
@@ -142,16 +143,35 @@ def test_preloaded_pair(angular):
     assert free.row_sizes == (12, 12)
 
 
-def test_arrangements_differ_in_tilt(angular):
-    def tilt(make):
-        element = bj.BearingElement(make(angular.bearing, 0.02, 16e-6))
-        return float(bj.solve_load(element, [0, 0, 1e-3, 0, 0, 0]).stiffness[9, 9])
+@pytest.mark.parametrize("make", ["back_to_back", "face_to_face"])
+def test_stiffness_of_a_pair_is_that_of_its_rows(angular, make):
+    """Each row's own stiffness, carried to the middle of the pair as a rigid body."""
+    single = np.asarray(angular.stiffness(jnp.zeros(12).at[8].set(8e-6)))[6:, 6:]
+    expected = np.zeros((6, 6))
+    mirrored = (False, True) if make == "back_to_back" else (True, False)
+    for place, turned in zip((-0.01, 0.01), mirrored, strict=True):
+        shift = np.eye(6)
+        shift[0, 4], shift[1, 3] = place, -place
+        turn = np.diag([1, 1, -1, -1, -1, 1.0]) if turned else np.eye(6)
+        expected += shift.T @ turn @ single @ turn @ shift
+    pair = getattr(bj.BearingSet, make)(angular.bearing, 0.02, 16e-6)
+    k = np.asarray(bj.BearingElement(pair).stiffness(jnp.zeros(12)))[6:, 6:]
+    scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))[:5, :5]
+    assert np.abs((k - expected)[:5, :5] / scale).max() < ROUNDING
+    # O is stiff against tilting where X is not.
+    assert (expected[3, 3] > 3 * single[3, 3]) == (make == "back_to_back")
 
-    spread = 0.052 * np.tan(25 * DEGREE)  # distance of the load centres of an O set
-    o_set, x_set = tilt(bj.BearingSet.back_to_back), tilt(bj.BearingSet.face_to_face)
-    # About as the squares of the distances of the load centres from each other.
-    assert o_set / x_set > ((spread + 0.02) / (spread - 0.02)) ** 2 / 3
-    assert o_set > 5 * x_set
+
+def test_work_on_a_closed_path_is_zero():
+    """Round a circle in uy, uz of a pair; the mean of a period converges fast."""
+    element, _ = ball_elements()["ball pair, O"]
+    turns = np.linspace(0, 2 * np.pi, 257)
+    q = np.zeros((257, 12))
+    q[:, 7], q[:, 8] = 6e-6 * np.cos(turns), 6e-6 * np.sin(turns)
+    force = np.asarray(jax.jit(jax.vmap(element.force))(jnp.asarray(q)))
+    rate = 6e-6 * (-force[:, 7] * np.sin(turns) + force[:, 8] * np.cos(turns))
+    work, size = (np.mean(v[:-1]) * 2 * np.pi for v in (rate, np.abs(rate)))
+    assert abs(work) < SOLVER * size
 
 
 def test_tandem_shares_the_thrust(angular):

@@ -113,10 +113,8 @@ def test_218_under_thrust():
     angle = np.asarray(solution.contact_angle)[0] / DEGREE
     assert np.allclose(angle, 41.4984, rtol=1e-5)
     assert np.allclose(solution.roller_load, 1678.99, rtol=1e-5)
+    # Printed as 0.036 mm; it is 0.0360045.
     assert float(solution.displacement[8]) == pytest.approx(0.036e-3, rel=2e-4)
-    # The textbook's printed figures: 0.15 degrees and 0.3 % of the load.
-    assert np.allclose(angle, 41.6, atol=0.15)
-    assert np.allclose(solution.roller_load, 1676.0, rtol=3e-3)
 
 
 def angular_218():
