@@ -132,7 +132,8 @@ class CLoop:
     """The compiled C loop with the numbers of one element."""
 
     def __init__(self, library, el):
-        constants, quadrature, b = el.models()[0].constants, el.quadrature, el.bearing
+        constants = el.model().rows[0].element.constants
+        quadrature, b = el.quadrature, el.bearing
         line, table = constants.lines[0], constants.tables[0]
         numbers = {
             "n_rollers": b.n_rollers,
@@ -182,7 +183,7 @@ def compile_c(folder, el):
     compiler = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
     if compiler is None:
         return None
-    scan = el.models()[0].constants.tables[0][2].shape[1]
+    scan = el.model().rows[0].element.constants.tables[0][2].shape[1]
     sizes = [f"-DPOINTS={el.quadrature.points}", f"-DSCAN={scan}"]
     target = os.path.join(folder, "c_loop.so")
     command = [compiler, *FLAGS, *sizes, "-o", target, str(SOURCE), "-lm"]

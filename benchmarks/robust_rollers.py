@@ -96,7 +96,7 @@ def run(count, solver, seed=0):
     rows = []
     for index, (name, bearing) in enumerate(designs().items()):
         element = bj.BearingElement(bearing)
-        (model,) = element.models()
+        model = element.model().rows[0].element
 
         @eqx.filter_jit
         def solve(model, rings):

@@ -68,10 +68,9 @@ def ball_elements():
         radial_internal_clearance=-3e-6,
         ball_deviation=[0.0, 2e-6, -1e-6, 0.0, 1e-6, 0.0],
     )
-    triple = bj.BearingSet(
+    unlike = bj.BearingSet(
         (
-            bj.SetRow(angular, -0.02, inner_offset=4e-6),
-            bj.SetRow(balls(7, contact_angle=15 * _DEG), 0.003),
+            bj.SetRow(balls(7, contact_angle=15 * _DEG), -0.02, inner_offset=4e-6),
             bj.SetRow(angular, 0.02, mirrored=True, inner_offset=-30e-6),
         )
     )
@@ -97,7 +96,7 @@ def ball_elements():
             ),
             "turning",
         ),
-        "triple, unlike rows": (element(triple, raceway_control=friction), "turning"),
+        "set of unlike rows": (element(unlike, raceway_control=friction), "turning"),
         "taper pair, X": (
             element(tapers, quadrature=bj.ContactMapped(24)),
             "still",

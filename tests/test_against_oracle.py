@@ -22,8 +22,9 @@ ROLLERS = 5  # fewer than drawn: one compilation per kind and profile
 
 @eqx.filter_jit
 def evaluate(element, q):
-    rows = element.rows(q)
-    return element.evaluate_rows(rows, q), rows[0].solved
+    model = element.model()
+    rows = model.solve(q)
+    return model.evaluate(q, rows), rows[0].solved
 
 
 def case(seed):

@@ -11,10 +11,10 @@ from .ball_speed import OuterControl as OuterControl
 from .ball_speed import ball_kinematics as ball_kinematics
 from .ball_speed import ball_mass as ball_mass
 from .bearing_element import BearingElement as BearingElement
-from .bearing_element import Evaluated as Evaluated
-from .bearing_element import Row as Row
-from .bearing_element import azimuths as azimuths
-from .bearing_element import inertia_load as inertia_load
+from .bearing_model import Evaluated as Evaluated
+from .bearing_model import Row as Row
+from .bearing_model import azimuths as azimuths
+from .bearing_model import inertia_load as inertia_load
 from .constants import ContactConstants as ContactConstants
 from .constants import contact_constants as contact_constants
 from .frame import FREEDOMS as FREEDOMS

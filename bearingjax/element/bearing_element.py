@@ -1,116 +1,26 @@
 """The bearing as a finite element of twelve freedoms."""
 
-import functools
-import operator
 import warnings
-from collections.abc import Callable
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, TypeVar
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jax import lax
-from jaxtyping import Array, Float, Int
 
 from ..contact.line import AbstractLineLaw, Palmgren
 from ..contact.point_law import AbstractPointLaw, FreeAngle
-from ..design import (
-    AbstractBallBearing,
-    AbstractRollerBearing,
-    Bearing,
-    BearingSet,
-    SetRow,
-    is_ball,
-    n_elements,
-    rows_of,
-)
+from ..design import AbstractBallBearing, Bearing, BearingSet, SetRow, is_ball, rows_of
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
-from ..numerics.result import worst
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .ball import ball_model
 from .ball_speed import AbstractRacewayControl, OuterControl
+from .bearing_model import BearingModel, Evaluated, Row, RowModel
 from .constants import contact_constants
-from .equilibrium import (
-    LocalState,
-    condensed_force,
-    condensed_stiffness,
-    settle,
-    solve_element,
-    solved_derivatives,
-)
-from .frame import placement, roll_ratio, roller_azimuth, section_matrix
 from .inertia import Speed, inertia_force
 from .kinematics import AbstractKinematics, Linearised
-from .model import AbstractModel, Derivatives
+from .model import AbstractModel
 from .roller import RollerModel
-
-
-class Row(eqx.Module):
-    """All rolling elements of a row at given ring freedoms.
-
-    Attributes:
-        part: The row and its place.
-        local: Ring freedoms at the row's origin, mirrored with it (12,) [m, rad].
-        model: One element, common to all; of unlike elements, with a leading axis.
-        azimuth: (element,) [rad].
-        transform: Ring motions in an element's axes from q (element, r, 12).
-        rings: Ring motions in an element's axes (element, r).
-        state: Solved elements, leading axis element.
-        solved: Their energies, forces and derivatives there, likewise.
-        unlike: Whether `model` has a leading axis. Static.
-    """
-
-    part: SetRow
-    local: Ring
-    model: AbstractModel
-    azimuth: Float[Array, " element"]
-    transform: Float[Array, "element r 12"]
-    rings: Float[Array, "element r"]
-    state: LocalState
-    solved: Derivatives
-    unlike: bool = eqx.field(static=True)
-
-    def each(self, function: Callable, *arrays) -> Any:
-        """Apply function(model, rings, x, *arrays) to every element.
-
-        Args:
-            function: Of one element.
-            *arrays: More arguments, with leading axis element.
-        """
-        return each(
-            self.model, self.unlike, function, self.rings, self.state.x, *arrays
-        )
-
-
-def each(model: AbstractModel, unlike: bool, function: Callable, *arrays) -> Any:
-    """Apply function(model, *arrays) to every element of a row."""
-    axes = (0 if unlike else None,) + (0,) * len(arrays)
-    return jax.vmap(function, in_axes=axes)(model, *arrays)
-
-
-class Evaluated(NamedTuple):
-    """Energy, force and stiffness of the bearing, and how its elements fared.
-
-    Attributes:
-        energy: V [J].
-        force: External load that holds the rings (12,) [N, N m].
-        stiffness: d(force)/dq (12, 12).
-        result: Worst `Result` code of the rolling elements.
-        steps: Most steps that one took.
-        residual: Largest relative residual of one [1].
-        magnitude: Sum of the sizes of what the elements pass to the rings, in which
-            the ring force may cancel [N].
-    """
-
-    energy: Scalar
-    force: Ring
-    stiffness: RingStiffness
-    result: Int[Array, ""]
-    steps: Int[Array, ""]
-    residual: Scalar
-    magnitude: Scalar
-
 
 AnyBearing = TypeVar("AnyBearing", bound=Bearing | BearingSet)
 
@@ -209,16 +119,34 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 stacklevel=3,
             )
 
+    @eqx.filter_jit
+    def model(self, speed: Speed | None = None) -> BearingModel:
+        """The bearing with all its contact constants worked out.
+
+        To evaluate one design many times: `element.model(speed).evaluate(q)`.
+
+        Args:
+            speed: Ring speeds; `None`: no inertia, and nothing of it compiled.
+
+        Raises:
+            TypeError: If `speed` is not a `Speed`.
+        """
+        if speed is not None and not isinstance(speed, Speed):
+            raise TypeError(
+                f"BearingElement: `speed` is a {type(speed).__name__}; it must be a"
+                " Speed(inner, outer) in rad/s, or None."
+            )
+        alone = not isinstance(self.bearing, BearingSet)
+        rows = tuple(self._row(part, speed, alone) for part in rows_of(self.bearing))
+        return BearingModel(rows, self.equilibrium, self.cage_torque)
+
     def has_potential(self, speed: Speed | None = None) -> bool:
         """Whether all forces derive from `energy`, so that `stiffness` is symmetric.
 
         Args:
             speed: Ring speeds or `None`.
         """
-        if self.point_law is None or self.raceway_control is None:
-            return True
-        gyroscopic = speed is not None and self.raceway_control.has_reaction
-        return not (self.point_law.follows_angle or gyroscopic)
+        return eqx.filter_eval_shape(self.model, speed).has_potential
 
     @eqx.filter_jit
     def energy(self, q: Ring, speed: Speed | None = None) -> Scalar:
@@ -230,74 +158,50 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
         Raises:
             ValueError: If `q` is not of shape (12,).
+            TypeError: If `speed` is not a `Speed`.
         """
-        return _energy(self.rows(q, speed))
+        return self.model(speed).energy(q)
 
     @eqx.filter_jit
     def force(self, q: Ring, speed: Speed | None = None) -> Ring:
         """External load that holds the rings where they are [N, N m].
 
-        Args:
-            q: Ring freedoms, outer then inner [m, rad].
-            speed: Ring speeds or `None`.
+        Args, raises: as `energy`.
         """
-        if self.cage_torque:
-            return jax.grad(self.energy)(q, speed)
-        return _total(_sum_forces(row, _forces(row)) for row in self.rows(q, speed))
+        return self.model(speed).force(q)
 
     @eqx.filter_jit
     def stiffness(self, q: Ring, speed: Speed | None = None) -> RingStiffness:
         """Tangent stiffness d(force)/dq by static condensation [N/m, N, N m].
 
-        Args:
-            q: Ring freedoms, outer then inner [m, rad].
-            speed: Ring speeds or `None`.
+        Args, raises: as `energy`.
         """
-        if self.cage_torque:
-            return jax.hessian(self.energy)(q, speed)
-        return _total(_stiffness(row) for row in self.rows(q, speed))
+        return self.model(speed).stiffness(q)
 
     @eqx.filter_jit
     def evaluate(self, q: Ring, speed: Speed | None = None) -> Evaluated:
-        """Energy, force and stiffness from one solve of the elements, with its code."""
-        return self.evaluate_rows(self.rows(q, speed), q, speed)
+        """Energy, force and stiffness from one solve of the elements, with its code.
+
+        Args, raises: as `energy`.
+        """
+        return self.model(speed).evaluate(q)
 
     @eqx.filter_jit
-    def evaluate_rows(
-        self, rows: tuple[Row, ...], q: Ring, speed: Speed | None = None
-    ) -> Evaluated:
-        """`evaluate` for rolling elements that are already solved at `q`."""
-        shares = [_forces(row) for row in rows]
-        if self.cage_torque:
-            force, stiffness = self.force(q, speed), self.stiffness(q, speed)
-        else:
-            pairs = zip(rows, shares, strict=True)
-            force = _total(_sum_forces(row, share) for row, share in pairs)
-            stiffness = _total(_stiffness(row) for row in rows)
-        loads = [jnp.max(row.solved.contact_load) for row in rows]
-        largest = jnp.max(jnp.stack(loads))
-        states = [settle(row.state, largest) for row in rows]
-        return Evaluated(
-            energy=_energy(rows),
-            force=force,
-            stiffness=stiffness,
-            result=worst(jnp.concatenate([s.result for s in states])),
-            steps=jnp.max(jnp.concatenate([s.steps for s in states])),
-            residual=jnp.max(jnp.concatenate([s.residual for s in states])),
-            magnitude=_total(jnp.sum(jnp.abs(share[:, :2])) for share in shares),
-        )
+    def rows(self, q: Ring, speed: Speed | None = None) -> tuple[Row, ...]:
+        """The rolling elements of every row, solved at given ring freedoms.
 
-    def models(self, speed: Speed | None = None) -> tuple[Any, ...]:
-        """One rolling element of each row: a `RollerModel` or a `BallModel`.
-
-        A ball is one of the common diameter.
-
-        Args:
-            speed: Ring speeds or `None`.
+        Args, raises: as `energy`.
         """
-        return tuple(self._model(row.bearing, speed) for row in rows_of(self.bearing))
+        return self.model(speed).solve(q)
 
-    def _model(self, bearing: Any, speed, deviation=None) -> AbstractModel:
+    def _row(self, part: SetRow, speed, alone) -> RowModel:
+        deviation = getattr(part.bearing, "ball_deviation", None)
+        if deviation is None:
+            return RowModel(part, self._one(part.bearing, speed), False, alone)
+        every = jax.vmap(lambda d: self._one(part.bearing, speed, d))(deviation)
+        return RowModel(part, every, True, alone)
+
+    def _one(self, bearing: Any, speed, deviation=None) -> AbstractModel:
         if isinstance(bearing, AbstractBallBearing):
             assert self.point_law is not None and self.raceway_control is not None
             law, control = self.point_law, self.raceway_control
@@ -312,143 +216,3 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             self.quadrature,
             body_force,
         )
-
-    @eqx.filter_jit
-    def rows(self, q: Ring, speed: Speed | None = None) -> tuple[Row, ...]:
-        """Solve every rolling element at given ring freedoms.
-
-        Args:
-            q: Ring freedoms, outer then inner [m, rad].
-            speed: Ring speeds or `None`.
-
-        Raises:
-            ValueError: If `q` is not of shape (12,).
-            TypeError: If `speed` is not a `Speed`.
-        """
-        parts = rows_of(self.bearing)
-        q = jnp.asarray(q, dtype=parts[0].bearing.pitch_diameter.dtype)
-        if q.shape != (12,):
-            raise ValueError(
-                f"BearingElement: `q` has shape {q.shape}; it must be (12,): outer"
-                " ring (ux uy uz gx gy gz), then inner ring."
-            )
-        if speed is not None and not isinstance(speed, Speed):
-            raise TypeError(
-                f"BearingElement: `speed` is a {type(speed).__name__}; it must be a"
-                " Speed(inner, outer) in rad/s, or None."
-            )
-        if not isinstance(self.bearing, BearingSet):
-            return (self._row(parts[0], q, None, speed),)
-        rows = []
-        for part in parts:
-            place = placement(part.position, part.mirrored)
-            zero = jnp.zeros_like(place)
-            both = jnp.block([[place, zero], [zero, place]])
-            rows.append(self._row(part, q, both, speed))
-        return tuple(rows)
-
-    def _row(self, part: SetRow, q, place, speed) -> Row:
-        bearing = part.bearing
-        deviation = getattr(bearing, "ball_deviation", None)
-        unlike = deviation is not None
-        if unlike:
-            model = jax.vmap(lambda d: self._model(bearing, speed, d))(deviation)
-        else:
-            model = self._model(bearing, speed)
-        turned = q if self.cage_torque else lax.stop_gradient(q)
-        azimuth = azimuths(bearing, turned)
-        transform = each(model, unlike, lambda m, phi: m.transform(phi), azimuth)
-        local = q
-        if place is not None:
-            offset = -part.inner_offset if part.mirrored else part.inner_offset
-            local = (place @ q).at[8].add(offset)
-        # gz moves the elements only through the azimuth: its columns are zero.
-        rings = transform @ local
-        if place is not None:
-            transform = transform @ place
-        magnitude = jnp.max(jnp.abs(local[jnp.array([0, 1, 2, 6, 7, 8])]))
-        tilt = jnp.max(jnp.abs(local[jnp.array([3, 4, 9, 10])]))
-        magnitude = magnitude + 0.5 * bearing.pitch_diameter * tilt
-        state = each(
-            model,
-            unlike,
-            lambda m, r: solve_element(m, r, magnitude, self.equilibrium),
-            rings,
-        )
-        solved = each(
-            model,
-            unlike,
-            lambda m, r, x: solved_derivatives(m, r, magnitude, x),
-            rings,
-            state.x,
-        )
-        return Row(part, local, model, azimuth, transform, rings, state, solved, unlike)
-
-
-def azimuths(bearing: Bearing, q: Ring) -> Float[Array, " element"]:
-    """Azimuth of every rolling element for given ring rotations gz [rad].
-
-    Args:
-        bearing: A single row.
-        q: Ring freedoms [m, rad]; only both gz count.
-    """
-    if isinstance(bearing, AbstractRollerBearing):
-        diameter, cosine = bearing.roller_diameter, jnp.cos(bearing.axis_angle)
-    else:
-        diameter, cosine = bearing.ball_diameter, bearing.free_cosine
-    ratio = roll_ratio(diameter, bearing.pitch_diameter, cosine)
-    return roller_azimuth(bearing.first_azimuth, n_elements(bearing), ratio, q)
-
-
-def motions(row: Row) -> Float[Array, "element 3"]:
-    """Section motion (u, v, θ) of every element at the node on the axis [m, rad]."""
-
-    def one(model, rings, x, azimuth):
-        outer = section_matrix(azimuth) @ row.local[:6]
-        u, v, theta = model.motion(rings, x, outer)
-        if row.part.mirrored:
-            u, theta = -u, -theta
-        return jnp.stack([u, v - row.part.position * theta, theta])
-
-    return row.each(one, row.azimuth)
-
-
-def inertia_load(rows: tuple[Row, ...]) -> Float[Array, "6"]:
-    """What inertia does to all rolling elements, at the node [N, N m].
-
-    The forces that hold both rings add up to minus this.
-
-    Args:
-        rows: Solved rows.
-    """
-    total = jnp.zeros((6,), rows[0].local.dtype)
-    for row in rows:
-        parts = row.each(lambda m, r, x: m.inertia(r, x))
-        if parts is not None:
-            section = jax.vmap(section_matrix)(row.azimuth)
-            place = placement(row.part.position, row.part.mirrored)
-            total = total + jnp.einsum("lai,la->i", section, parts) @ place
-    return total
-
-
-def _total(parts) -> Any:
-    return functools.reduce(operator.add, parts)
-
-
-def _energy(rows) -> Scalar:
-    return _total(jnp.sum(row.solved.energy) for row in rows)
-
-
-def _forces(row: Row) -> Float[Array, "element r"]:
-    """What each element passes to the rings, in its axes [N, N m]."""
-    return jax.vmap(lambda d: condensed_force(row.model, d))(row.solved)
-
-
-def _sum_forces(row: Row, shares: Float[Array, "element r"]) -> Ring:
-    return jnp.einsum("lai,la->i", row.transform, shares)
-
-
-def _stiffness(row: Row) -> RingStiffness:
-    blocks = jax.vmap(lambda h: condensed_stiffness(row.model, h))(row.solved.hessian)
-    half = jnp.einsum("lab,lbj->laj", blocks, row.transform)
-    return jnp.einsum("lai,laj->ij", row.transform, half)

@@ -9,7 +9,7 @@ from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
 from ..design import AbstractBallBearing
 from ..element.ball import BallModel, gyroscopic_moment
 from ..element.ball_speed import BallKinematics
-from ..element.bearing_element import Row
+from ..element.bearing_model import Row
 
 
 class BallResults(eqx.Module):
@@ -95,7 +95,7 @@ def _spread(values, contacts):
 
 
 def _row_results(row: Row, law: AbstractPointLaw) -> dict:
-    bearing, model = row.part.bearing, row.model
+    bearing, model = row.part.bearing, row.model.element
     assert isinstance(model, BallModel) and isinstance(bearing, AbstractBallBearing)
     contacts = row.each(lambda m, r, x: m.contacts(r, x))
     outwards = jnp.asarray([1.0 if o else -1.0 for o in model.on_outer])

@@ -23,6 +23,7 @@ from ..design import (
     rows_of,
 )
 from ..element.bearing_element import BearingElement
+from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..element.inertia import Speed
 from ..numerics.implicit import attach, stop
@@ -185,13 +186,14 @@ def _solve(
 
     # All that depends on the trace goes through the arguments: a derivative rule must
     # not close over it.
-    args = (element, load, given, fixed, speed, scale, free)
+    model = element.model(speed)
+    args = (model, load, given, fixed, scale, free)
     frozen = stop(args)
-    symmetric = element.has_potential(speed)
+    symmetric = model.has_potential
 
     def function(y, factor):
-        element, load, _, fixed, speed, scale, free = frozen
-        e = element.evaluate(ring_freedoms(y, scale, fixed), speed)
+        model, load, _, fixed, scale, free = frozen
+        e = model.evaluate(ring_freedoms(y, scale, fixed))
         pull = factor * free * scale * load
         g = free * (scale * e.force[moving]) - pull
         h = jnp.outer(free * scale, free * scale) * e.stiffness[moving, moving]
@@ -240,14 +242,14 @@ def _solve(
     minimum, _, steps = lax.while_loop(unfinished, at_factor, (begin, factor, none))
 
     def residual(y, args):
-        element, load, given, fixed, speed, scale, free = args
-        force = element.force(ring_freedoms(y, scale, fixed), speed)[moving]
+        model, load, given, fixed, scale, free = args
+        force = model.force(ring_freedoms(y, scale, fixed))[moving]
         # A held freedom follows what is prescribed for it.
         return free * scale * (force - load) + (1.0 - free) * (y - given / scale)
 
     y = attach(residual, minimum.x, args, symmetric)
     q = ring_freedoms(y, scale, fixed)
-    fields, evaluated = describe(element, q, speed, points)
+    fields, evaluated = describe(element, model, q, points)
 
     out = free * scale * (fields["force"][moving] - load)
     reference = jnp.where(size > 0, size, evaluated.magnitude)
@@ -282,9 +284,9 @@ def _solve(
     )
 
 
-def _play(element: BearingElement) -> Scalar:
+def _play(model: BearingModel) -> Scalar:
     """Largest play between the rings, radial or axial [m]."""
-    rows = rows_of(element.bearing)
+    rows = [row.part for row in model.rows]
     plays = [row.bearing.play + jnp.abs(row.inner_offset) for row in rows]
     # Less than this and a small load would follow the groove in tiny steps.
     least = [
@@ -295,10 +297,10 @@ def _play(element: BearingElement) -> Scalar:
     return jnp.max(jnp.stack([jnp.zeros_like(plays[0]), *plays, *least]))
 
 
-def _load_for(element: BearingElement, approach: Scalar) -> Scalar:
+def _load_for(model: BearingModel, approach: Scalar) -> Scalar:
     """Load of one raceway contact pressed by `approach` [N]."""
-    loads = [model.pressed(approach) for model in element.models()]
-    return jnp.max(jnp.stack(loads))
+    loads = [row.each(lambda one: one.pressed(approach)) for row in model.rows]
+    return jnp.max(jnp.stack([jnp.max(load) for load in loads]))
 
 
 def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Array:

@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Float
 
 from ..contact.line import half_width, peak_pressure
 from ..design.rib import RIB_NAMES
-from ..element.bearing_element import Row
+from ..element.bearing_model import Row
 from ..element.constants import relative_radii
 from ..element.roller import RollerModel
 
@@ -90,8 +90,8 @@ def distribution(row: Row, points: int) -> tuple[Array, Array, Array, Array]:
         position (point,) [m]; line load [N/m], pressure [Pa] and half width [m], each
         (roller, 2, point).
     """
-    assert isinstance(row.model, RollerModel)
-    c = row.model.constants
+    assert isinstance(row.model.element, RollerModel)
+    c = row.model.element.constants
     xi = jnp.linspace(-1.0, 1.0, points, dtype=c.half_length.dtype)
     position = c.half_length * xi
     drops = jnp.stack([line.drop(xi) for line in c.lines])
@@ -116,8 +116,8 @@ def contact_loads(
     """Load of every roller on both raceways and on the four ribs [N]."""
     raceways, ribs = jnp.split(row.solved.contact_load, [2], axis=1)
     all_ribs = jnp.zeros((raceways.shape[0], len(RIB_NAMES)), raceways.dtype)
-    assert isinstance(row.model, RollerModel)
-    present = row.model.constants.ribs
+    assert isinstance(row.model.element, RollerModel)
+    present = row.model.element.constants.ribs
     if present is not None:
         columns = jnp.array([RIB_NAMES.index(name) for name in present.names])
         all_ribs = all_ribs.at[:, columns].set(ribs)
@@ -125,7 +125,7 @@ def contact_loads(
 
 
 def _approaches(row):
-    model = row.model
+    model = row.model.element
     return jax.vmap(lambda r, x: model.kinematics.approaches(model.prepared, r, x))(
         row.rings, row.state.x
     )

@@ -6,9 +6,9 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from ..element.bearing_element import BearingElement, Evaluated, motions
+from ..element.bearing_element import BearingElement
+from ..element.bearing_model import BearingModel, Evaluated, motions
 from ..element.frame import FREEDOMS
-from ..element.inertia import Speed
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .balls import BallResults, ball_results, ball_warnings
@@ -137,21 +137,18 @@ def warnings(solution: Solution) -> list[str]:
 
 
 def describe(
-    element: BearingElement,
-    q: Ring,
-    speed: Speed | None,
-    points: int,
+    element: BearingElement, model: BearingModel, q: Ring, points: int
 ) -> tuple[dict, Evaluated]:
     """All fields of a `Solution` that follow from the ring freedoms.
 
     Args:
         element: The bearing.
+        model: Its model at the speeds.
         q: Ring freedoms [m, rad].
-        speed: Ring speeds or `None`.
         points: Positions along a roller.
     """
-    rows = element.rows(q, speed)
-    evaluated = element.evaluate_rows(rows, q, speed)
+    rows = model.solve(q)
+    evaluated = model.evaluate(q, rows)
     if element.point_law is not None:
         special = ball_results(rows, element.point_law)
     else:

@@ -49,7 +49,7 @@ def loaded(element, force, moment):
 def roller():
     """Model of one roller of the surrogate, and the paper's ring motion."""
     element = surrogate()
-    (model,) = element.models()
+    model = element.model().rows[0].element
     # Node on the axis to roller centre: x_m = v, x_t = u - R_m θ, θ.
     lever = 0.5 * 0.0725
     rings = jnp.asarray([-lever * 5e-4, -0.03e-3, 5e-4, 0.0, 0.0, 0.0])

@@ -87,7 +87,7 @@ def periodic_spline(values, count):
 
 
 def test_constants_and_masses(element):
-    outer, inner = element.models()[0].constant
+    outer, inner = element.model().rows[0].element.constant
     assert float(inner) == pytest.approx(3.196e10, rel=PUBLISHED)
     assert float(outer) == pytest.approx(3.399e10, rel=PUBLISHED)
     mass, moment = map(float, ball_mass(jnp.asarray(0.0127), jnp.asarray(7850.0)))

@@ -68,7 +68,7 @@ def test_against_the_sum_over_the_volume(name):
         "steep taper without cone": taper(roller_half_angle=0.0, roller_axis_angle=0.5),
         "taper": taper(),
     }[name]
-    constants = bj.BearingElement(bearing).models()[0].constants
+    constants = bj.BearingElement(bearing).model().rows[0].element.constants
     orbit, spin = map(float, roller_speeds(constants, SPEED))
     mass, points, want = brute_force(bearing, orbit, spin)
     got = np.asarray(inertia_force(constants, SPEED))
@@ -87,7 +87,7 @@ def test_against_the_sum_over_the_volume(name):
 def test_rolling_without_slip():
     """Surface speeds of roller and raceways agree at both contacts."""
     bearing = bearings()["cylindrical, crowned ends"]
-    constants = bj.BearingElement(bearing).models()[0].constants
+    constants = bj.BearingElement(bearing).model().rows[0].element.constants
     orbit, spin = map(float, roller_speeds(constants, SPEED))
     radius, pitch = 0.007, 0.03625
     assert orbit * pitch + (orbit + spin) * radius == pytest.approx(
@@ -105,8 +105,8 @@ def test_centrifugal_force_loads_the_outer_raceway():
     element = bj.BearingElement(bearing)
     speed = bj.Speed(inner=1000.0)
     row = element.rows(jnp.zeros(12), speed)[0]
-    mass, _, _ = mass_and_inertia(element.models()[0].constants)
-    orbit, _ = roller_speeds(element.models()[0].constants, speed)
+    mass, _, _ = mass_and_inertia(element.model().rows[0].element.constants)
+    orbit, _ = roller_speeds(element.model().rows[0].element.constants, speed)
     expected = float(mass * 0.03625 * orbit**2)
     load = np.asarray(row.solved.contact_load[:, :2])
     assert np.allclose(load[:, 0], expected, rtol=SOLVER)

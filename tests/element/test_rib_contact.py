@@ -30,7 +30,7 @@ def test_sphere_touches_the_rib_at_its_height(kind, name):
     half = float(bearing.half_angle)
     side = -1.0 if name.endswith("minus") else 1.0
     ring = 1.0 if name.startswith("outer") else -1.0
-    contacts = bj.BearingElement(bearing).models()[0].constants.ribs
+    contacts = bj.BearingElement(bearing).model().rows[0].element.constants.ribs
     assert contacts is not None
     normal, centre, point = (
         np.asarray(v[0]) for v in (contacts.normal, contacts.centre, contacts.point)
@@ -77,7 +77,7 @@ def test_taper_rib_load_follows_from_balance():
     axis, half = np.deg2rad(11), np.deg2rad(1.7235)
     outer, inner = np.asarray(row.solved.contact_load[:, :2])[0]
     rib = float(row.solved.contact_load[0, 2])
-    ribs = element.models()[0].constants.ribs
+    ribs = element.model().rows[0].element.constants.ribs
     assert ribs is not None
     t_m = np.asarray(ribs.normal[0])
     # Forces on the roller along t and across it.

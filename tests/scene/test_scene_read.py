@@ -127,7 +127,9 @@ def test_cylindrical_ribs():
 
 
 def test_a_quarter_of_the_radial_play_stands_at_each_raceway():
-    constants = bj.read_scene("cylindrical_ribs").element.models()[0].constants
+    constants = (
+        bj.read_scene("cylindrical_ribs").element.model().rows[0].element.constants
+    )
     assert float(constants.gap) == near(25e-6 / 4.0)
 
 

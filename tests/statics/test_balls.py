@@ -30,7 +30,7 @@ def deep():
 
 def test_thrust_solution_in_closed_form(angular):
     """F = Z K A^1.5 sin α (cos α0/cos α - 1)^1.5, displacement A sin(α-α0)/cos α."""
-    b, model = angular.bearing, angular.models()[0]
+    b, model = angular.bearing, angular.model().rows[0].element
     outer, inner = map(float, model.constant)
     series = (outer ** (-2 / 3) + inner ** (-2 / 3)) ** (-3 / 2)
     distance, free = float(b.centre_distance), float(b.contact_angle)

@@ -73,7 +73,7 @@ def test_6305_stiffness():
     true = masta(10e-6)
     law = bj.ZeroAngle()
     outer, inner = map(
-        float, bj.BearingElement(true, point_law=law).models()[0].constant
+        float, bj.BearingElement(true, point_law=law).model().rows[0].element.constant
     )
     # The groove centre on the circle of half the pitch diameter.
     lever = 0.02 * 0.0115 * float(true.free_cosine)
@@ -131,7 +131,7 @@ def angular_218():
 
 def test_218_constants_and_curvatures():
     bearing = angular_218()
-    outer, inner = bj.BearingElement(bearing).models()[0].constant
+    outer, inner = bj.BearingElement(bearing).model().rows[0].element.constant
     to_si = 1e3**1.5  # N/mm^1.5
     assert float(inner) == pytest.approx(1292363.2 * to_si, rel=1e-4)
     assert float(outer) == pytest.approx(1344293.5 * to_si, rel=1e-4)

@@ -1,0 +1,301 @@
+"""The mechanics of a bearing whose contact constants are known.
+
+A design becomes a `BearingModel` once (`BearingElement.model`); energy, force and
+stiffness at any ring freedoms follow from that, as often as wanted.
+"""
+
+import functools
+import operator
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Float, Int
+
+from ..design import AbstractRollerBearing, Bearing, SetRow, n_elements
+from ..numerics.minimise import AbstractMinimiser
+from ..numerics.result import worst
+from ..numerics.types import Ring, RingStiffness, Scalar
+from .equilibrium import (
+    LocalState,
+    condensed_force,
+    condensed_stiffness,
+    settle,
+    solve_element,
+    solved_derivatives,
+)
+from .frame import placement, roll_ratio, roller_azimuth, section_matrix
+from .model import Derivatives
+
+
+class RowModel(eqx.Module):
+    """One row: its place, and what the energy of its rolling elements needs.
+
+    Attributes:
+        part: The row and its place.
+        element: One rolling element, common to all, a `RollerModel` or `BallModel`;
+            of unlike elements, with a leading axis.
+        unlike: Whether `element` has a leading axis. Static.
+        alone: Whether the row is the bearing, not part of a set. Static.
+    """
+
+    part: SetRow
+    element: Any
+    unlike: bool = eqx.field(static=True)
+    alone: bool = eqx.field(static=True)
+
+    def each(self, function: Callable, *arrays) -> Any:
+        """Apply function(element, *arrays) to every rolling element.
+
+        Args:
+            function: Of one element.
+            *arrays: More arguments, with leading axis element. Without any, like
+                elements are one element.
+        """
+        if not (self.unlike or arrays):
+            return function(self.element)
+        axes = (0 if self.unlike else None,) + (0,) * len(arrays)
+        return jax.vmap(function, in_axes=axes)(self.element, *arrays)
+
+    def solve(self, q: Ring, minimiser: AbstractMinimiser, turns: bool) -> "Row":
+        """Equilibrium of every rolling element at given ring freedoms.
+
+        Args:
+            q: Ring freedoms at the node [m, rad].
+            minimiser: Local solver. Static.
+            turns: Whether derivatives see the azimuth move with gz. Static.
+        """
+        part, bearing = self.part, self.part.bearing
+        azimuth = azimuths(bearing, q if turns else lax.stop_gradient(q))
+        transform = self.each(lambda m, phi: m.transform(phi), azimuth)
+        local = q
+        if not self.alone:
+            place = placement(part.position, part.mirrored)
+            zero = jnp.zeros_like(place)
+            place = jnp.block([[place, zero], [zero, place]])
+            offset = -part.inner_offset if part.mirrored else part.inner_offset
+            local = (place @ q).at[8].add(offset)
+        # gz moves the elements only through the azimuth: its columns are zero.
+        rings = transform @ local
+        if not self.alone:
+            transform = transform @ place
+        magnitude = jnp.max(jnp.abs(local[jnp.array([0, 1, 2, 6, 7, 8])]))
+        tilt = jnp.max(jnp.abs(local[jnp.array([3, 4, 9, 10])]))
+        magnitude = magnitude + 0.5 * bearing.pitch_diameter * tilt
+        state = self.each(lambda m, r: solve_element(m, r, magnitude, minimiser), rings)
+        solved = self.each(
+            lambda m, r, x: solved_derivatives(m, r, magnitude, x), rings, state.x
+        )
+        return Row(self, local, azimuth, transform, rings, state, solved)
+
+
+class Row(eqx.Module):
+    """All rolling elements of a row at given ring freedoms.
+
+    Attributes:
+        model: What they are.
+        local: Ring freedoms at the row's origin, mirrored with it (12,) [m, rad].
+        azimuth: (element,) [rad].
+        transform: Ring motions in an element's axes from q (element, r, 12).
+        rings: Ring motions in an element's axes (element, r).
+        state: Solved elements, leading axis element.
+        solved: Their energies, forces and derivatives there, likewise.
+    """
+
+    model: RowModel
+    local: Ring
+    azimuth: Float[Array, " element"]
+    transform: Float[Array, "element r 12"]
+    rings: Float[Array, "element r"]
+    state: LocalState
+    solved: Derivatives
+
+    @property
+    def part(self) -> SetRow:
+        """The row and its place."""
+        return self.model.part
+
+    def each(self, function: Callable, *arrays) -> Any:
+        """Apply function(element, rings, x, *arrays) to every rolling element.
+
+        Args:
+            function: Of one element.
+            *arrays: More arguments, with leading axis element.
+        """
+        return self.model.each(function, self.rings, self.state.x, *arrays)
+
+    def forces(self) -> Float[Array, "element r"]:
+        """What each element passes to the rings, in its axes [N, N m]."""
+        return self.model.each(condensed_force, self.solved)
+
+    def sum_forces(self, shares: Float[Array, "element r"]) -> Ring:
+        """Forces on both nodes from `forces` [N, N m]."""
+        return jnp.einsum("lai,la->i", self.transform, shares)
+
+    def stiffness(self) -> RingStiffness:
+        """Stiffness between both nodes [N/m, N, N m]."""
+        blocks = self.model.each(condensed_stiffness, self.solved.hessian)
+        half = jnp.einsum("lab,lbj->laj", blocks, self.transform)
+        return jnp.einsum("lai,laj->ij", self.transform, half)
+
+
+class Evaluated(NamedTuple):
+    """Energy, force and stiffness of the bearing, and how its elements fared.
+
+    Attributes:
+        energy: V [J].
+        force: External load that holds the rings (12,) [N, N m].
+        stiffness: d(force)/dq (12, 12).
+        result: Worst `Result` code of the rolling elements.
+        steps: Most steps that one took.
+        residual: Largest relative residual of one [1].
+        magnitude: Sum of the sizes of what the elements pass to the rings, in which
+            the ring force may cancel [N].
+    """
+
+    energy: Scalar
+    force: Ring
+    stiffness: RingStiffness
+    result: Int[Array, ""]
+    steps: Int[Array, ""]
+    residual: Scalar
+    magnitude: Scalar
+
+
+class BearingModel(eqx.Module):
+    """A bearing or set at given speeds, ready to be evaluated.
+
+    Functions of the ring freedoms q (12,) [m, rad], outer ring first; meaning and
+    units as of the same functions of `BearingElement`.
+
+    Attributes:
+        rows: Its rows.
+        equilibrium: Local solver.
+        cage_torque: Differentiate through the azimuth of the rolling elements.
+
+    Traced: all real numbers. Static: the classes, and `cage_torque`.
+    """
+
+    rows: tuple[RowModel, ...]
+    equilibrium: AbstractMinimiser
+    cage_torque: bool = eqx.field(static=True)
+
+    @property
+    def has_potential(self) -> bool:
+        """Whether all forces derive from the energy. Static."""
+        return all(row.element.has_potential for row in self.rows)
+
+    def solve(self, q: Ring) -> tuple[Row, ...]:
+        """Solve every rolling element at given ring freedoms.
+
+        Raises:
+            ValueError: If `q` is not of shape (12,).
+        """
+        q = jnp.asarray(q, dtype=self.rows[0].part.bearing.pitch_diameter.dtype)
+        if q.shape != (12,):
+            raise ValueError(
+                f"BearingElement: `q` has shape {q.shape}; it must be (12,): outer"
+                " ring (ux uy uz gx gy gz), then inner ring."
+            )
+        return tuple(r.solve(q, self.equilibrium, self.cage_torque) for r in self.rows)
+
+    def energy(self, q: Ring) -> Scalar:
+        """Condensed strain energy V(q) [J]."""
+        return _energy(self.solve(q))
+
+    def force(self, q: Ring) -> Ring:
+        """External load that holds the rings where they are [N, N m]."""
+        if self.cage_torque:
+            return jax.grad(self.energy)(q)
+        return _total(row.sum_forces(row.forces()) for row in self.solve(q))
+
+    def stiffness(self, q: Ring) -> RingStiffness:
+        """Tangent stiffness d(force)/dq [N/m, N, N m]."""
+        if self.cage_torque:
+            return jax.hessian(self.energy)(q)
+        return _total(row.stiffness() for row in self.solve(q))
+
+    def evaluate(self, q: Ring, rows: tuple[Row, ...] | None = None) -> Evaluated:
+        """Energy, force and stiffness from one solve of the elements, with its code.
+
+        Args:
+            q: Ring freedoms [m, rad].
+            rows: The elements solved at `q`, if they are at hand.
+        """
+        rows = self.solve(q) if rows is None else rows
+        shares = [row.forces() for row in rows]
+        if self.cage_torque:
+            force, stiffness = self.force(q), self.stiffness(q)
+        else:
+            pairs = zip(rows, shares, strict=True)
+            force = _total(row.sum_forces(share) for row, share in pairs)
+            stiffness = _total(row.stiffness() for row in rows)
+        loads = [jnp.max(row.solved.contact_load) for row in rows]
+        largest = jnp.max(jnp.stack(loads))
+        states = [settle(row.state, largest) for row in rows]
+        return Evaluated(
+            energy=_energy(rows),
+            force=force,
+            stiffness=stiffness,
+            result=worst(jnp.concatenate([s.result for s in states])),
+            steps=jnp.max(jnp.concatenate([s.steps for s in states])),
+            residual=jnp.max(jnp.concatenate([s.residual for s in states])),
+            magnitude=_total(jnp.sum(jnp.abs(share[:, :2])) for share in shares),
+        )
+
+
+def azimuths(bearing: Bearing, q: Ring) -> Float[Array, " element"]:
+    """Azimuth of every rolling element for given ring rotations gz [rad].
+
+    Args:
+        bearing: A single row.
+        q: Ring freedoms [m, rad]; only both gz count.
+    """
+    if isinstance(bearing, AbstractRollerBearing):
+        diameter, cosine = bearing.roller_diameter, jnp.cos(bearing.axis_angle)
+    else:
+        diameter, cosine = bearing.ball_diameter, bearing.free_cosine
+    ratio = roll_ratio(diameter, bearing.pitch_diameter, cosine)
+    return roller_azimuth(bearing.first_azimuth, n_elements(bearing), ratio, q)
+
+
+def motions(row: Row) -> Float[Array, "element 3"]:
+    """Section motion (u, v, θ) of every element at the node on the axis [m, rad]."""
+
+    def one(model, rings, x, azimuth):
+        outer = section_matrix(azimuth) @ row.local[:6]
+        u, v, theta = model.motion(rings, x, outer)
+        if row.part.mirrored:
+            u, theta = -u, -theta
+        return jnp.stack([u, v - row.part.position * theta, theta])
+
+    return row.each(one, row.azimuth)
+
+
+def inertia_load(rows: tuple[Row, ...]) -> Float[Array, "6"]:
+    """What inertia does to all rolling elements, at the node [N, N m].
+
+    The forces that hold both rings add up to minus this.
+
+    Args:
+        rows: Solved rows.
+    """
+    total = jnp.zeros((6,), rows[0].local.dtype)
+    for row in rows:
+        parts = row.each(lambda m, r, x: m.inertia(r, x))
+        if parts is not None:
+            section = jax.vmap(section_matrix)(row.azimuth)
+            place = placement(row.part.position, row.part.mirrored)
+            total = total + jnp.einsum("lai,la->i", section, parts) @ place
+    return total
+
+
+def _total(parts) -> Any:
+    return functools.reduce(operator.add, parts)
+
+
+def _energy(rows) -> Scalar:
+    return _total(jnp.sum(row.solved.energy) for row in rows)
