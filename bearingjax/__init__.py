@@ -38,6 +38,7 @@ from .design import Material as Material
 from .design import NeedleRollerBearing as NeedleRollerBearing
 from .design import Rib as Rib
 from .design import Ribs as Ribs
+from .design import SelfAligningBallRow as SelfAligningBallRow
 from .design import SetRow as SetRow
 from .design import Straight as Straight
 from .design import Tabulated as Tabulated

@@ -5,6 +5,7 @@ from .ball import AngularContactBallBearing as AngularContactBallBearing
 from .ball import DeepGrooveBallBearing as DeepGrooveBallBearing
 from .ball import FourPointBallBearing as FourPointBallBearing
 from .ball import Groove as Groove
+from .ball import SelfAligningBallRow as SelfAligningBallRow
 from .ball import ThrustBallBearing as ThrustBallBearing
 from .bearing import AbstractRollerBearing as AbstractRollerBearing
 from .bearing import CylindricalRollerBearing as CylindricalRollerBearing
@@ -14,6 +15,7 @@ from .bearing_set import Bearing as Bearing
 from .bearing_set import BearingSet as BearingSet
 from .bearing_set import SetRow as SetRow
 from .bearing_set import is_ball as is_ball
+from .bearing_set import is_self_aligning as is_self_aligning
 from .bearing_set import n_elements as n_elements
 from .bearing_set import pitch_radius as pitch_radius
 from .bearing_set import rows_of as rows_of

@@ -50,7 +50,8 @@ class AbstractBallBearing(eqx.Module):
         n_balls: Number of balls.
         pitch_diameter: Diameter of the circle of the ball centres, D_pw [m].
         ball_diameter: Ball diameter, D_w [m].
-        outer_osculation: Radius of the outer groove over the ball diameter, f_o [1].
+        outer_osculation: Radius of the outer groove over the ball diameter, f_o [1];
+            `None` if the raceway is a sphere, of a self-aligning bearing.
         inner_osculation: Radius of the inner groove over the ball diameter, f_i [1].
         first_azimuth: Azimuth of ball 0, from +x towards +y [rad].
         ball_deviation: Diameter of each ball less `ball_diameter` (ball,) [m];
@@ -65,7 +66,9 @@ class AbstractBallBearing(eqx.Module):
     n_balls: int = eqx.field(static=True, converter=as_count)
     pitch_diameter: Scalar = eqx.field(converter=as_real)
     ball_diameter: Scalar = eqx.field(converter=as_real)
-    outer_osculation: Scalar = eqx.field(converter=as_real, kw_only=True)
+    outer_osculation: Scalar | None = eqx.field(
+        converter=as_real, default=None, kw_only=True
+    )
     inner_osculation: Scalar = eqx.field(converter=as_real, kw_only=True)
     first_azimuth: Scalar = eqx.field(converter=as_real, default=0.0, kw_only=True)
     ball_deviation: Float[Array, " ball"] | None = eqx.field(
@@ -88,6 +91,7 @@ class AbstractBallBearing(eqx.Module):
     @property
     def centre_distances(self) -> tuple[Scalar, Scalar]:
         """Groove radius less ball radius, outer and inner [m]."""
+        assert self.outer_osculation is not None
         f = self.outer_osculation, self.inner_osculation
         return (f[0] - 0.5) * self.ball_diameter, (f[1] - 0.5) * self.ball_diameter
 
@@ -141,6 +145,11 @@ class AbstractBallBearing(eqx.Module):
         """Contact angle in the middle of the raceways [rad]."""
         return 0.0
 
+    @property
+    def axial_place(self) -> Scalar:
+        """z of the circle of ball centres from the origin of the bearing [m]."""
+        return jnp.zeros_like(self.pitch_diameter)
+
     def __check_init__(self):
         count(self, "n_balls", self.n_balls)
         for name in ("pitch_diameter", "ball_diameter"):
@@ -155,6 +164,11 @@ class AbstractBallBearing(eqx.Module):
     def _check_groove(self, ring):
         name = f"{ring}_osculation"
         value = getattr(self, name)
+        if value is None:
+            raise ValueError(
+                f"{type(self).__name__}: `{name}` is missing; give the groove radius"
+                " over the ball diameter, such as 0.52."
+            )
         number(self, name, value, "")
         numbers = concrete(value)
         if numbers is not None:
@@ -450,6 +464,98 @@ class FourPointBallBearing(AbstractBallBearing):
             )
             fits = abs(numbers[0]) < most
             check(self, "radial_internal_clearance", clearance, "m", fits, allowed)
+
+
+class SelfAligningBallRow(AbstractBallBearing):
+    """One row of a self-aligning ball bearing: its outer raceway is a sphere.
+
+    The centre of the sphere is the origin of the bearing, on the axis, so that the
+    rings tilt freely about it. `BearingSet.self_aligning` makes the bearing of two
+    such rows. At zero displacement the rings are centred; half of the play stands at
+    each raceway.
+
+    Attributes are those of `AbstractBallBearing` without `outer_osculation`, which
+    follows from the sphere, and
+        row_offset: z of the row from the middle of the bearing [m].
+        radial_internal_clearance: Diametral play; negative is preload [m].
+
+    Traced: all fields but `n_balls`.
+    """
+
+    row_offset: Scalar = eqx.field(converter=as_real, kw_only=True)
+    radial_internal_clearance: Scalar = eqx.field(
+        converter=as_real, default=0.0, kw_only=True
+    )
+
+    @property
+    def free_contact_angle(self):
+        return jnp.arctan2(self.row_offset, 0.5 * self.pitch_diameter)
+
+    @property
+    def free_cosine(self):
+        return jnp.cos(self.free_contact_angle)
+
+    @property
+    def groove_axis(self):
+        return self.free_contact_angle
+
+    @property
+    def clearance(self):
+        return self.radial_internal_clearance
+
+    @property
+    def centre_distances(self):
+        gap = 0.25 * self.clearance * self.free_cosine
+        outer = jnp.sqrt(0.25 * self.pitch_diameter**2 + self.row_offset**2)
+        return outer + gap, (self.inner_osculation - 0.5) * self.ball_diameter
+
+    @property
+    def play(self):
+        # Axially a row closes with the sine of its contact angle, radially its cosine.
+        longer = jnp.maximum(1.0, 0.5 * self.pitch_diameter / self.row_offset)
+        return 0.5 * self.clearance * longer
+
+    @property
+    def axial_place(self):
+        return self.row_offset
+
+    @property
+    def grooves(self):
+        outer, inner = self.centre_distances
+        gap = 0.25 * self.clearance * self.free_cosine
+        near = inner - gap
+        sine, cosine = jnp.sin(self.free_contact_angle), self.free_cosine
+        radius, pitch = 0.5 * self.ball_diameter, 0.5 * self.pitch_diameter
+        one = jnp.ones_like(inner)
+        return (
+            Groove(True, -self.row_offset, -pitch, outer + radius, False, one),
+            Groove(False, near * sine, near * cosine, inner + radius, False, one),
+        )
+
+    def __check_init__(self):
+        positive(self, "row_offset", self.row_offset, "m")
+        clearance = self.radial_internal_clearance
+        number(self, "radial_internal_clearance", clearance, "m")
+        numbers = concrete(clearance, self.centre_distances[1], self.free_cosine)
+        if numbers is not None:
+            most = 4.0 * numbers[1] / numbers[2]
+            allowed = (
+                f"below {most:.6g} m in size, where the inner groove centre meets the"
+                " ball (metres meant?)"
+            )
+            fits = abs(numbers[0]) < most
+            check(self, "radial_internal_clearance", clearance, "m", fits, allowed)
+
+    def _check_groove(self, ring):
+        if ring == "inner":
+            super()._check_groove(ring)
+            return
+        for name in ("outer_osculation", "outer_shoulder"):
+            if getattr(self, name) is not None:
+                raise ValueError(
+                    f"{type(self).__name__}: `{name}` is given, but the outer raceway"
+                    " is a sphere about the middle of the bearing."
+                )
 
 
 def clearance_of(contact_angle: Scalar, centre_distance: Scalar) -> Scalar:

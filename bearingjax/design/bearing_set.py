@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from ..numerics.types import Scalar, as_real
-from .ball import AbstractBallBearing
+from .ball import AbstractBallBearing, SelfAligningBallRow
 from .bearing import AbstractRollerBearing
 from .checks import concrete, number
 
@@ -109,6 +109,25 @@ class BearingSet(eqx.Module):
         return cls(tuple(SetRow(bearing, place) for place in places))
 
     @classmethod
+    def self_aligning(cls, row: SelfAligningBallRow) -> "BearingSet":
+        """Self-aligning ball bearing: the row and its mirror image, balls staggered.
+
+        Args:
+            row: The row on the +z side.
+
+        Raises:
+            TypeError: If `row` is no `SelfAligningBallRow`.
+        """
+        if not isinstance(row, SelfAligningBallRow):
+            raise TypeError(
+                f"BearingSet: `row` is a {type(row).__name__}; it must be a"
+                " SelfAligningBallRow."
+            )
+        staggered = row.first_azimuth + jnp.pi / row.n_balls
+        other = eqx.tree_at(lambda r: r.first_azimuth, row, staggered)
+        return cls((SetRow(row), SetRow(other, mirrored=True)))
+
+    @classmethod
     def _pair(cls, bearing, spacing, preload_offset, mirrored):
         _check_spacing(spacing)
         rows = []
@@ -126,6 +145,15 @@ class BearingSet(eqx.Module):
                 raise TypeError(
                     f"BearingSet: `rows` holds a {type(row).__name__}; it must hold"
                     " SetRows."
+                )
+            # Two spheres about different centres would not align.
+            numbers = concrete(row.position)
+            aligning = isinstance(row.bearing, SelfAligningBallRow)
+            if aligning and numbers is not None and numbers[0] != 0.0:
+                raise ValueError(
+                    "BearingSet: `position` of a SelfAligningBallRow is"
+                    f" {numbers[0]:g} m; it must be 0 m: its origin is the middle of"
+                    " the bearing."
                 )
         kinds = {isinstance(row.bearing, AbstractBallBearing) for row in self.rows}
         if len(kinds) > 1:
@@ -145,6 +173,12 @@ def rows_of(bearing: Bearing | BearingSet) -> tuple[SetRow, ...]:
 def is_ball(bearing: Bearing | BearingSet) -> bool:
     """Whether the rolling elements are balls."""
     return isinstance(rows_of(bearing)[0].bearing, AbstractBallBearing)
+
+
+def is_self_aligning(bearing: Bearing | BearingSet) -> bool:
+    """Whether its rings tilt freely."""
+    rows = rows_of(bearing)
+    return all(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
 
 
 def pitch_radius(bearing: Bearing | BearingSet) -> Scalar:

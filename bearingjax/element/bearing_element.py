@@ -9,7 +9,15 @@ import jax.numpy as jnp
 
 from ..contact.line import AbstractLineLaw, Palmgren
 from ..contact.point_law import AbstractPointLaw, FreeAngle
-from ..design import AbstractBallBearing, Bearing, BearingSet, SetRow, is_ball, rows_of
+from ..design import (
+    AbstractBallBearing,
+    Bearing,
+    BearingSet,
+    SetRow,
+    is_ball,
+    is_self_aligning,
+    rows_of,
+)
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Ring, RingStiffness, Scalar
@@ -18,7 +26,7 @@ from .ball_speed import AbstractRacewayControl, OuterControl
 from .bearing_model import BearingModel, Evaluated, Row, RowModel
 from .constants import contact_constants
 from .inertia import Speed, inertia_force
-from .kinematics import AbstractKinematics, Linearised
+from .kinematics import AbstractKinematics, Finite, Linearised
 from .model import AbstractModel
 from .roller import RollerModel
 
@@ -44,7 +52,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
     Attributes:
         bearing: The design, or a `BearingSet`.
         line_law: Law of the raceway contacts of rollers; `Palmgren()`.
-        kinematics: `Linearised()` or, for rollers, `Finite()`.
+        kinematics: Small ring rotations, `Linearised()`, or `Finite()`: of balls
+            exact, of rollers the paper's formula. Self-aligning bearings: `Finite()`.
         quadrature: Of roller contacts, `ContactMapped(points)` or `Midpoint(points)`.
         equilibrium: Local solver, `TrustRegionNewton()` or `BFGS()`.
         cage_torque: Differentiate through the azimuth of the rolling elements.
@@ -93,7 +102,6 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         wrong = {
             "line_law": balls and line_law,
             "quadrature": balls and quadrature,
-            "kinematics": balls and not isinstance(kinematics, Linearised | None),
             "point_law": not balls and point_law,
             "raceway_control": not balls and raceway_control,
         }
@@ -106,7 +114,13 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 )
         self.bearing = bearing
         self.line_law = None if balls else line_law or Palmgren()
-        self.kinematics = kinematics or Linearised()
+        aligning = is_self_aligning(bearing)
+        if aligning and isinstance(kinematics, Linearised):
+            raise ValueError(
+                "BearingElement: `kinematics` is Linearised(), with which a"
+                " self-aligning bearing would resist its tilt; use Finite()."
+            )
+        self.kinematics = kinematics or (Finite() if aligning else Linearised())
         self.quadrature = None if balls else quadrature or ContactMapped()
         self.equilibrium = equilibrium or TrustRegionNewton()
         self.cage_torque = cage_torque
@@ -197,15 +211,16 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
     def _row(self, part: SetRow, speed, alone) -> RowModel:
         deviation = getattr(part.bearing, "ball_deviation", None)
         if deviation is None:
-            return RowModel(part, self._one(part.bearing, speed), False, alone)
-        every = jax.vmap(lambda d: self._one(part.bearing, speed, d))(deviation)
+            return RowModel(part, self._one(part, speed), False, alone)
+        every = jax.vmap(lambda d: self._one(part, speed, d))(deviation)
         return RowModel(part, every, True, alone)
 
-    def _one(self, bearing: Any, speed, deviation=None) -> AbstractModel:
+    def _one(self, part: SetRow, speed, deviation=None) -> AbstractModel:
+        bearing: Any = part.bearing
         if isinstance(bearing, AbstractBallBearing):
             assert self.point_law is not None and self.raceway_control is not None
             law, control = self.point_law, self.raceway_control
-            return ball_model(bearing, law, speed, control, deviation)
+            return ball_model(part, law, self.kinematics, speed, control, deviation)
         assert self.line_law is not None and self.quadrature is not None
         constants = contact_constants(bearing, self.line_law, self.quadrature)
         body_force = None if speed is None else inertia_force(constants, speed)

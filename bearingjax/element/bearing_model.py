@@ -36,7 +36,7 @@ class RowModel(eqx.Module):
 
     Attributes:
         part: The row and its place.
-        element: One rolling element, common to all, a `RollerModel` or `BallModel`;
+        element: One rolling element, common to all, a `RollerModel` or ball;
             of unlike elements, with a leading axis.
         unlike: Whether `element` has a leading axis. Static.
         alone: Whether the row is the bearing, not part of a set. Static.
@@ -60,6 +60,17 @@ class RowModel(eqx.Module):
         axes = (0 if self.unlike else None,) + (0,) * len(arrays)
         return jax.vmap(function, in_axes=axes)(self.element, *arrays)
 
+    @property
+    def position(self) -> Scalar:
+        """z of the origin that the elements count from, in the set [m]."""
+        position = self.part.position
+        return jnp.zeros_like(position) if self.element.places_itself else position
+
+    @property
+    def placement(self) -> Float[Array, "6 6"]:
+        """Ring freedoms in the row's own axes, from those at the node."""
+        return placement(self.position, self.part.mirrored)
+
     def solve(self, q: Ring, minimiser: AbstractMinimiser, turns: bool) -> "Row":
         """Equilibrium of every rolling element at given ring freedoms.
 
@@ -73,11 +84,13 @@ class RowModel(eqx.Module):
         transform = self.each(lambda m, phi: m.transform(phi), azimuth)
         local = q
         if not self.alone:
-            place = placement(part.position, part.mirrored)
+            place = self.placement
             zero = jnp.zeros_like(place)
             place = jnp.block([[place, zero], [zero, place]])
-            offset = -part.inner_offset if part.mirrored else part.inner_offset
-            local = (place @ q).at[8].add(offset)
+            local = place @ q
+            if not self.element.places_itself:
+                offset = -part.inner_offset if part.mirrored else part.inner_offset
+                local = local.at[8].add(offset)
         # gz moves the elements only through the azimuth: its columns are zero.
         rings = transform @ local
         if not self.alone:
@@ -265,12 +278,14 @@ def azimuths(bearing: Bearing, q: Ring) -> Float[Array, " element"]:
 def motions(row: Row) -> Float[Array, "element 3"]:
     """Section motion (u, v, θ) of every element at the node on the axis [m, rad]."""
 
+    position = row.model.position
+
     def one(model, rings, x, azimuth):
         outer = section_matrix(azimuth) @ row.local[:6]
         u, v, theta = model.motion(rings, x, outer)
         if row.part.mirrored:
             u, theta = -u, -theta
-        return jnp.stack([u, v - row.part.position * theta, theta])
+        return jnp.stack([u, v - position * theta, theta])
 
     return row.each(one, row.azimuth)
 
@@ -288,8 +303,9 @@ def inertia_load(rows: tuple[Row, ...]) -> Float[Array, "6"]:
         parts = row.each(lambda m, r, x: m.inertia(r, x))
         if parts is not None:
             section = jax.vmap(section_matrix)(row.azimuth)
-            place = placement(row.part.position, row.part.mirrored)
-            total = total + jnp.einsum("lai,la->i", section, parts) @ place
+            total = (
+                total + jnp.einsum("lai,la->i", section, parts) @ row.model.placement
+            )
     return total
 
 

@@ -80,7 +80,7 @@ def solve_element(
 
 
 def is_loose(
-    model: AbstractModel, x: Unknowns, magnitude: Scalar, load: Scalar, pull: Unknowns
+    model: AbstractModel, off: Unknowns, magnitude: Scalar, load: Scalar, pull: Unknowns
 ) -> Bool[Array, ""]:
     """Whether a rolling element is held by no more than the guide spring.
 
@@ -90,7 +90,7 @@ def is_loose(
 
     Args:
         model: The rolling element.
-        x: Its unknowns [m].
+        off: Its unknowns, less where the rings take it [m].
         magnitude: Size of the displacements of the rings [m].
         load: Sum of the sizes of contact loads and inertia force [N].
         pull: Derivative of the energy with respect to x [N].
@@ -99,11 +99,11 @@ def is_loose(
         False for NaN, which must not pass for an open contact.
     """
     guide = model.guide
-    contacts = pull - guide * x
+    contacts = pull - guide * off
     unbalanced = dot(contacts, contacts) >= (0.03 * load) ** 2
     # About 1e-8 N. With ten times this, rollers jump that matter to loads of 1e-3 N;
     # with a tenth, some loose rollers do not come to rest (benchmarks/robust_*.py).
-    return unbalanced & (load <= 100.0 * guide * _size(model, x, magnitude))
+    return unbalanced & (load <= 100.0 * guide * _size(model, off, magnitude))
 
 
 def _size(model, x, magnitude):
@@ -132,7 +132,8 @@ def solved_derivatives(
     d = model.derivatives(rings, x)
     load = _load(model, d)
     pull = d.gradient[-model.n_unknowns :]
-    loose = is_loose(*stop((model, x, magnitude, load, pull)))
+    off = x - model.amid(rings)
+    loose = is_loose(*stop((model, off, magnitude, load, pull)))
     return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), d)
 
 
@@ -146,14 +147,14 @@ def _solve(model, rings, magnitude, minimiser):
         # Round-off of positions, and what is small against the guide's own force.
         noise = _size(model, x, magnitude) * (eps * trace(h) + 1e-6 * model.guide)
         # A loose element need not be placed: its solve is over.
-        loose = is_loose(model, x, magnitude, scale, g)
+        loose = is_loose(model, x - centre, magnitude, scale, g)
         noise = jnp.where(loose, norm(g), noise)
         scale = jnp.where(loose, jnp.inf, scale)
         value = d.energy if model.has_potential else jnp.full_like(d.energy, jnp.nan)
         return Evaluation(value, g, h if with_hessian else h[:0], scale, noise)
 
     radius = model.reach(rings) + model.gap + 1e-6 * model.diameter
-    start = model.first(rings)
+    start, centre = model.first(rings), model.amid(rings)
 
     def shape(x, step, size):
         return model.shape(rings, x, step, size)

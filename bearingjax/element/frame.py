@@ -53,6 +53,26 @@ def placement(position: Scalar, mirrored: bool) -> Float[Array, "6 6"]:
     return p.at[0, 4].add(position).at[1, 3].add(-position)
 
 
+def turn_factors(square: Scalar) -> tuple[Scalar, Scalar]:
+    """sin|g|/|g| and (1 - cos|g|)/|g|² of a rotation vector g, smooth at zero.
+
+    With them R v = v + sin|g|/|g| g x v + (1 - cos|g|)/|g|² g x (g x v).
+
+    Args:
+        square: |g|² [rad²].
+
+    Source: Rodrigues' formula.
+    """
+    small = square < 1e-4
+    angle = jnp.sqrt(jnp.where(small, 1.0, square))
+    half = jnp.sin(0.5 * angle)
+    # Series below 0.01 rad, good to round-off there with the first two derivatives.
+    one = 1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))
+    two = 0.5 - square / 24.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))
+    one = jnp.where(small, one, jnp.sin(angle) / angle)
+    return one, jnp.where(small, two, 2.0 * half * half / (angle * angle))
+
+
 def to_roller_axes(axis_angle: Scalar, pitch_radius: Scalar) -> Float[Array, "3 3"]:
     """Motion of the roller centre's point of a body, along and across the roller.
 

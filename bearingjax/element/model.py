@@ -66,6 +66,11 @@ class AbstractModel(eqx.Module):
         """Whether that energy is convex. Static."""
         return True
 
+    @property
+    def places_itself(self) -> bool:
+        """Whether it knows the place of its row, for rings that turn far. Static."""
+        return False
+
     @abc.abstractmethod
     def transform(self, azimuth: Scalar) -> Float[Array, "r 12"]:
         """Ring motions in the element's axes from q."""
@@ -88,13 +93,21 @@ class AbstractModel(eqx.Module):
     def reach(self, rings: Rings) -> Scalar:
         """How far the rings are from each other in the element's section [m]."""
 
-    def first(self, rings: Rings) -> Unknowns:
-        """Where a search for the equilibrium starts: amid the rings.
+    def amid(self, rings: Rings) -> Unknowns:
+        """Where the rings take the element, and its guide spring holds it (n,) [m].
 
         Args:
             rings: Motion of both rings in the element's axes (r,) [m, rad].
         """
         return jnp.zeros((self.n_unknowns,), rings.dtype)
+
+    def first(self, rings: Rings) -> Unknowns:
+        """Where a search for the equilibrium starts (n,) [m].
+
+        Args:
+            rings: Motion of both rings in the element's axes (r,) [m, rad].
+        """
+        return self.amid(rings)
 
     @property
     def shapes_steps(self) -> bool:

@@ -7,7 +7,8 @@ from jaxtyping import Array, Float, Int
 
 from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
 from ..design import AbstractBallBearing
-from ..element.ball import BallModel, gyroscopic_moment
+from ..element.ball import AbstractBallModel
+from ..element.ball_inertia import gyroscopic_moment
 from ..element.ball_speed import BallKinematics
 from ..element.bearing_model import Row
 
@@ -96,9 +97,11 @@ def _spread(values, contacts):
 
 def _row_results(row: Row, law: AbstractPointLaw) -> dict:
     bearing, model = row.part.bearing, row.model.element
-    assert isinstance(model, BallModel) and isinstance(bearing, AbstractBallBearing)
+    assert isinstance(model, AbstractBallModel) and isinstance(
+        bearing, AbstractBallBearing
+    )
     contacts = row.each(lambda m, r, x: m.contacts(r, x))
-    outwards = jnp.asarray([1.0 if o else -1.0 for o in model.on_outer])
+    outwards = jnp.asarray(model.grooves.outwards)
     vectors = outwards[None, :, None] * contacts.normal
     load = row.solved.contact_load
     balls = balls_of(bearing)

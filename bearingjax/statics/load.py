@@ -19,6 +19,7 @@ from ..design import (
     BearingSet,
     TaperedRollerBearing,
     is_ball,
+    is_self_aligning,
     pitch_radius,
     rows_of,
 )
@@ -41,14 +42,15 @@ DEFAULT_TOLERANCE = {"float64": 1e-11, "float32": 1e-4}
 def restrained_freedoms(bearing: Bearing | BearingSet) -> tuple[str, ...]:
     """Freedoms that the bearing can hold at all, against a load of the right sense.
 
-    Never gz; uz for balls and tapers, and where a pair of ribs passes axial load from
-    ring to ring.
+    Never gz; not gx and gy of a self-aligning bearing; uz for balls and tapers, and
+    where a pair of ribs passes axial load from ring to ring.
 
     Args:
         bearing: The design.
     """
     axial = is_ball(bearing) or any(_ribs_hold(row.bearing) for row in rows_of(bearing))
-    return ("ux", "uy", "uz", "gx", "gy") if axial else ("ux", "uy", "gx", "gy")
+    tilts = () if is_self_aligning(bearing) else ("gx", "gy")
+    return ("ux", "uy", *(("uz",) if axial else ()), *tilts)
 
 
 def _ribs_hold(bearing):
@@ -290,7 +292,7 @@ def _play(model: BearingModel) -> Scalar:
     plays = [row.bearing.play + jnp.abs(row.inner_offset) for row in rows]
     # Less than this and a small load would follow the groove in tiny steps.
     least = [
-        1e-3 * row.bearing.centre_distance
+        2e-3 * row.bearing.centre_distances[1]
         for row in rows
         if isinstance(row.bearing, AbstractBallBearing)
     ]

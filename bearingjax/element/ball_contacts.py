@@ -1,0 +1,151 @@
+"""Contacts of one ball in its grooves, from how it has moved against each of them."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..numerics.linear import dot
+from ..numerics.types import Scalar
+from .model import Unknowns
+
+
+class Contacts(NamedTuple):
+    """Contacts of one ball at given motions, each array with the axis contact.
+
+    Attributes:
+        approach: l - L [m].
+        length: l, distance of ball centre and groove centre, above zero [m].
+        normal: Unit vector (z, r) from groove centre to ball centre (contact, 2), in
+            the section of the ring.
+        mask: 0 where the axial part counts for nothing (cylinder), else 1.
+    """
+
+    approach: Float[Array, " contact"]
+    length: Float[Array, " contact"]
+    normal: Float[Array, "contact 2"]
+    mask: Float[Array, " contact"]
+
+
+class GrooveGeometry(eqx.Module):
+    """Where the grooves lie around a ball, unloaded.
+
+    Attributes:
+        start: Vector (z, r) from each groove centre to the ball centre, unloaded
+            (contact, 2) [m].
+        reach: L = groove radius - ball radius (contact,) [m].
+        on_outer: Which contacts belong to the outer ring.
+        open_side: Which raceways are cylinders beyond the groove bottom.
+
+    Static: on_outer, open_side.
+    """
+
+    start: Float[Array, "contact 2"]
+    reach: Float[Array, " contact"]
+    on_outer: tuple[bool, ...] = eqx.field(static=True)
+    open_side: tuple[bool, ...] = eqx.field(static=True)
+
+    @property
+    def outwards(self) -> list[float]:
+        """1 for contacts of the outer ring, else -1."""
+        return [1.0 if outer else -1.0 for outer in self.on_outer]
+
+    @property
+    def gap(self) -> Scalar:
+        """Largest gap or squeeze, unloaded and centred [m]."""
+        square = jnp.sum(self.start**2, axis=1)
+        return jnp.max(jnp.abs(jnp.sqrt(square) - self.reach))
+
+    def touch(self, moved: Float[Array, "contact 2"]) -> Contacts:
+        """Contacts of a ball that has moved.
+
+        Args:
+            moved: Motion (z, r) of the ball centre against each groove centre [m].
+        """
+        vector = self.start + moved
+        along = jnp.asarray(self.outwards, moved.dtype) * vector[:, 0]
+        beyond = jnp.asarray(self.open_side) & (along < 0)
+        mask = jnp.where(beyond, 0.0, 1.0)
+        # From groove centre to ball centre; what does not count is left out.
+        z, r = mask * vector[:, 0], vector[:, 1]
+        square = z * z + r * r
+        tiny = jnp.finfo(moved.dtype).tiny
+        length = jnp.sqrt(jnp.maximum(square, tiny))
+        # (l² - L²)/(l + L) without the cancellation, where the start is known.
+        start2 = jnp.sum(self.start**2, axis=1) - self.reach**2
+        change = jnp.sum(moved * (2.0 * self.start + moved), axis=1)
+        difference = jnp.where(beyond, square - self.reach**2, start2 + change)
+        approach = difference / (length + self.reach)
+        normal = jnp.stack([z / length, r / length], axis=1)
+        return Contacts(approach, length, normal, mask)
+
+    def directions(
+        self, contacts: Contacts, load: Float[Array, " contact"], diameter: Scalar
+    ) -> tuple[Float[Array, "2 2"], Float[Array, "2"]]:
+        """Where a ball rolls on each raceway, and its load there.
+
+        On two arcs it rolls on the one that it presses more deeply; while both are
+        pressed within a thousandth of its diameter of each other, in between.
+
+        Args:
+            contacts: From `touch`.
+            load: Load of each contact [N].
+            diameter: Ball diameter [m].
+
+        Returns:
+            Unit vectors (sin α, cos α) (2, 2), outer and inner, and loads (2,) [N],
+            of two arcs their sum.
+        """
+        vectors = jnp.asarray(self.outwards, load.dtype)[:, None] * contacts.normal
+        normals, loads = [], []
+        for ring in (True, False):
+            mine = [k for k, on_outer in enumerate(self.on_outer) if on_outer is ring]
+            if len(mine) == 1:
+                normals.append(vectors[mine[0]])
+                loads.append(load[mine[0]])
+                continue
+            first, second = mine
+            deeper = contacts.approach[first] - contacts.approach[second]
+            t = jnp.clip(0.5 + deeper / (2e-3 * diameter), 0.0, 1.0)
+            share = t * t * (3.0 - 2.0 * t)
+            mean = share * vectors[first] + (1.0 - share) * vectors[second]
+            normals.append(mean / jnp.sqrt(dot(mean, mean)))
+            loads.append(load[first] + load[second])
+        return jnp.stack(normals), jnp.stack(loads)
+
+
+def along_normals(c: Contacts, step: Unknowns) -> Float[Array, " contact"]:
+    """Part of a step of the ball along each normal [m]."""
+    return c.normal[:, 0] * step[0] + c.normal[:, 1] * step[1]
+
+
+def bent(c: Contacts, load: Float[Array, " contact"], step: Unknowns) -> Unknowns:
+    """A step, turned along the circle around the centre of the busiest groove.
+
+    Args:
+        c: Contacts before the step.
+        load: Their loads [N].
+        step: Step of the ball centre (z, r) [m].
+    """
+    chosen = (load == jnp.max(load)) & (load > 0.0) & (c.mask > 0.0)
+    weight = jnp.where(chosen, 1.0, 0.0)
+    weight = weight / jnp.maximum(add(weight), 1.0)
+    normal = add(weight[:, None] * c.normal)
+    length = add(weight * c.length)
+    along = dot(normal, step)
+    new = length * normal + step
+    size = jnp.sqrt(jnp.maximum(dot(new, new), jnp.finfo(step.dtype).tiny))
+    # new/size·(length + along) - length·normal, without cancellation.
+    across2 = jnp.maximum(dot(step, step) - along * along, 0.0)
+    short = across2 / (size + length + along)
+    bends = (length + along > 0.0) & (length > 0.0)
+    return jnp.where(bends, step - short / size * new, step)
+
+
+def add(terms: Float[Array, "contact ..."]) -> Float[Array, "..."]:
+    """Sum over the contacts, written out so that it fuses."""
+    total = terms[0]
+    for k in range(1, terms.shape[0]):
+        total = total + terms[k]
+    return total
