@@ -1,10 +1,15 @@
 """Strict JAX for every test: float64, no silent promotion, typed calls."""
 
 import gc
+import os
 
 import jax
 import pytest
 from jaxtyping import install_import_hook
+
+# The tests spend their time in the compiler: 40 % less of it without LLVM's optimiser.
+# `XLA_FLAGS= pytest` tests the programs as users compile them.
+os.environ.setdefault("XLA_FLAGS", "--xla_backend_optimization_level=0")
 
 jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_numpy_rank_promotion", "raise")

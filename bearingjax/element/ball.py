@@ -115,7 +115,8 @@ class AbstractBallModel(AbstractModel):
         if not self.follows_angle:
             return self.constant
         outwards = jnp.asarray(self.grooves.outwards, contacts.length.dtype)
-        return at_angle(self.constant, outwards * contacts.normal[:, 1])
+        z, r = outwards * contacts.normal[:, 0], outwards * contacts.normal[:, 1]
+        return at_angle(self.constant, jnp.arctan2(z, r))
 
     def pressed(self, approach):
         start = self.grooves.start
