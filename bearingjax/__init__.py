@@ -36,6 +36,7 @@ from .design import Logarithmic as Logarithmic
 from .design import Lundberg as Lundberg
 from .design import Material as Material
 from .design import NeedleRollerBearing as NeedleRollerBearing
+from .design import PreloadSpring as PreloadSpring
 from .design import Rib as Rib
 from .design import Ribs as Ribs
 from .design import SelfAligningBallRow as SelfAligningBallRow
@@ -68,6 +69,7 @@ from .scene import run_scene as run_scene
 from .statics import BallSolution as BallSolution
 from .statics import RollerSolution as RollerSolution
 from .statics import Solution as Solution
+from .statics import preload as preload
 from .statics import restrained_freedoms as restrained_freedoms
 from .statics import solve_load as solve_load
 

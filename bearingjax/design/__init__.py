@@ -13,6 +13,7 @@ from .bearing import NeedleRollerBearing as NeedleRollerBearing
 from .bearing import TaperedRollerBearing as TaperedRollerBearing
 from .bearing_set import Bearing as Bearing
 from .bearing_set import BearingSet as BearingSet
+from .bearing_set import PreloadSpring as PreloadSpring
 from .bearing_set import SetRow as SetRow
 from .bearing_set import is_ball as is_ball
 from .bearing_set import is_self_aligning as is_self_aligning

@@ -8,9 +8,43 @@ import jax.numpy as jnp
 from ..numerics.types import Scalar, as_real
 from .ball import AbstractBallBearing, SelfAligningBallRow
 from .bearing import AbstractRollerBearing
-from .checks import concrete, number
+from .checks import concrete, non_negative, number, positive
 
 Bearing = AbstractRollerBearing | AbstractBallBearing
+
+
+class PreloadSpring(eqx.Module):
+    """Spring that presses one row of a set, its ring sliding axially.
+
+    Attributes:
+        force: What it presses with where the row just touches [N].
+        stiffness: Loss of force per travel that closes the row [N/m]; zero: a
+            constant force.
+
+    The spring pushes, it does not pull: beyond travel force/stiffness it is slack.
+
+    Traced: all fields.
+    """
+
+    force: Scalar = eqx.field(converter=as_real)
+    stiffness: Scalar = eqx.field(converter=as_real, default=0.0)
+
+    def __check_init__(self):
+        positive(self, "force", self.force, "N")
+        non_negative(self, "stiffness", self.stiffness, "N/m")
+
+    def push(self, travel: Scalar) -> tuple[Scalar, Scalar, Scalar]:
+        """Energy [J], force [N] and its loss per travel [N/m] at a travel [m].
+
+        The energy is that given to the row, counted negative.
+        """
+        soft = self.stiffness == 0
+        slack = (travel * self.stiffness > self.force) & ~soft
+        full = self.force / jnp.where(soft, 1.0, self.stiffness)
+        until = jnp.where(slack, full, travel)
+        energy = -(self.force - 0.5 * self.stiffness * until) * until
+        force = jnp.where(slack, 0.0, self.force - self.stiffness * travel)
+        return energy, force, jnp.where(slack, 0.0, self.stiffness)
 
 
 class SetRow(eqx.Module):
@@ -23,14 +57,17 @@ class SetRow(eqx.Module):
         inner_offset: Axial place of its inner ring against its outer ring, from
             where the single bearing has it, along +z of the set [m]; how a set is
             preloaded by grinding or by spacers.
+        spring: Spring that presses the row; its ring then slides on its seat by
+            `inner_offset` and what the balance asks.
 
-    Traced: position, inner_offset.
+    Traced: position, inner_offset, spring.
     """
 
     bearing: Bearing
     position: Scalar = eqx.field(converter=as_real, default=0.0)
     mirrored: bool = eqx.field(static=True, default=False)
     inner_offset: Scalar = eqx.field(converter=as_real, default=0.0)
+    spring: PreloadSpring | None = None
 
     def __check_init__(self):
         if not isinstance(self.bearing, Bearing):
@@ -42,6 +79,11 @@ class SetRow(eqx.Module):
             raise TypeError(f"SetRow: `mirrored` is {self.mirrored!r}; True or False.")
         number(self, "position", self.position, "m")
         number(self, "inner_offset", self.inner_offset, "m")
+        if not isinstance(self.spring, PreloadSpring | None):
+            raise TypeError(
+                f"SetRow: `spring` is a {type(self.spring).__name__}; it must be a"
+                " PreloadSpring or None."
+            )
 
 
 class BearingSet(eqx.Module):
@@ -61,7 +103,11 @@ class BearingSet(eqx.Module):
 
     @classmethod
     def back_to_back(
-        cls, bearing: Bearing, spacing, preload_offset=0.0
+        cls,
+        bearing: Bearing,
+        spacing,
+        preload_offset=0.0,
+        spring: PreloadSpring | None = None,
     ) -> "BearingSet":
         """Pair in O arrangement (DB): stiff against tilting.
 
@@ -70,27 +116,32 @@ class BearingSet(eqx.Module):
             spacing: Distance of the middles of the rows [m].
             preload_offset: Axial approach of the inner rings that presses each row by
                 half of it [m]; the total of both gaps that the nut closes.
+            spring: Spring that presses the row at +z.
 
         Raises:
             ValueError: If `spacing` is not positive.
         """
-        return cls._pair(bearing, spacing, preload_offset, mirrored=(False, True))
+        return cls._pair(bearing, spacing, preload_offset, spring, (False, True))
 
     @classmethod
     def face_to_face(
-        cls, bearing: Bearing, spacing, preload_offset=0.0
+        cls,
+        bearing: Bearing,
+        spacing,
+        preload_offset=0.0,
+        spring: PreloadSpring | None = None,
     ) -> "BearingSet":
         """Pair in X arrangement (DF): forgiving of misalignment.
 
         Args:
-            bearing, spacing: As in `back_to_back`.
+            bearing, spacing, spring: As in `back_to_back`.
             preload_offset: Axial approach of the outer rings that presses each row by
                 half of it [m].
 
         Raises:
             ValueError: If `spacing` is not positive.
         """
-        return cls._pair(bearing, spacing, preload_offset, mirrored=(True, False))
+        return cls._pair(bearing, spacing, preload_offset, spring, (True, False))
 
     @classmethod
     def tandem(cls, bearing: Bearing, spacing, count: int = 2) -> "BearingSet":
@@ -128,13 +179,14 @@ class BearingSet(eqx.Module):
         return cls((SetRow(row), SetRow(other, mirrored=True)))
 
     @classmethod
-    def _pair(cls, bearing, spacing, preload_offset, mirrored):
+    def _pair(cls, bearing, spacing, preload_offset, spring, mirrored):
         _check_spacing(spacing)
         rows = []
         for side, turned in zip((-0.5, 0.5), mirrored, strict=True):
             # A row is pressed by its inner ring moving along +z; mirrored, along -z.
             offset = -0.5 * preload_offset if turned else 0.5 * preload_offset
-            rows.append(SetRow(bearing, side * spacing, turned, offset))
+            pressed = spring if side > 0 else None
+            rows.append(SetRow(bearing, side * spacing, turned, offset, pressed))
         return cls(tuple(rows))
 
     def __check_init__(self):

@@ -75,7 +75,7 @@ class AbstractBallModel(AbstractModel):
         """
 
     @abc.abstractmethod
-    def _pushed(self, rings, x, on_contacts, on_ball, on_rings, of_own):
+    def _pushed(self, rings, x, on_contacts, on_ball, on_rings, of_own) -> Array:
         """Generalised forces on (rings, x), or on x.
 
         From forces (z, r) against each groove (contact, 2), on the ball (2,), and on

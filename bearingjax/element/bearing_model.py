@@ -4,6 +4,7 @@ A design becomes a `BearingModel` once (`BearingElement.model`); energy, force a
 stiffness at any ring freedoms follow from that, as often as wanted.
 """
 
+import dataclasses
 import functools
 import operator
 from collections.abc import Callable
@@ -16,7 +17,8 @@ from jax import lax
 from jaxtyping import Array, Float, Int
 
 from ..design import AbstractRollerBearing, Bearing, SetRow, n_elements
-from ..numerics.minimise import AbstractMinimiser
+from ..numerics.implicit import attach, stop
+from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
 from ..numerics.result import worst
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .equilibrium import (
@@ -79,10 +81,12 @@ class RowModel(eqx.Module):
             minimiser: Local solver. Static.
             turns: Whether derivatives see the azimuth move with gz. Static.
         """
-        part, bearing = self.part, self.part.bearing
-        azimuth = azimuths(bearing, q if turns else lax.stop_gradient(q))
+        part = self.part
+        azimuth = azimuths(part.bearing, q if turns else lax.stop_gradient(q))
+        # gz moves the elements only through the azimuth: its columns are zero.
         transform = self.each(lambda m, phi: m.transform(phi), azimuth)
         local = q
+        place = None
         if not self.alone:
             place = self.placement
             zero = jnp.zeros_like(place)
@@ -90,19 +94,89 @@ class RowModel(eqx.Module):
             local = place @ q
             if not self.element.places_itself:
                 offset = -part.inner_offset if part.mirrored else part.inner_offset
-                local = local.at[8].add(offset)
-        # gz moves the elements only through the azimuth: its columns are zero.
-        rings = transform @ local
-        if not self.alone:
-            transform = transform @ place
+                local = local.at[_CLOSING].add(offset)
+        pressed = None
+        if part.spring is not None:
+            pressed = self._pressed(local, transform, minimiser)
+            local = local.at[_CLOSING].add(pressed.travel)
+        row = self._at(local, azimuth, transform, minimiser)
+        if part.spring is not None and pressed is not None:
+            energy, _, rate = part.spring.push(pressed.travel)
+            pressed = pressed._replace(energy=energy, rate=rate)
+        if place is not None:
+            row = dataclasses.replace(row, transform=transform @ place)
+        return dataclasses.replace(row, pressed=pressed)
+
+    def _at(self, local, azimuth, transform, minimiser) -> "Row":
+        """The elements at given motions in the row's own axes."""
         magnitude = jnp.max(jnp.abs(local[jnp.array([0, 1, 2, 6, 7, 8])]))
         tilt = jnp.max(jnp.abs(local[jnp.array([3, 4, 9, 10])]))
-        magnitude = magnitude + 0.5 * bearing.pitch_diameter * tilt
+        magnitude = magnitude + 0.5 * self.part.bearing.pitch_diameter * tilt
+        rings = transform @ local
         state = self.each(lambda m, r: solve_element(m, r, magnitude, minimiser), rings)
         solved = self.each(
             lambda m, r, x: solved_derivatives(m, r, magnitude, x), rings, state.x
         )
-        return Row(self, local, azimuth, transform, rings, state, solved)
+        return Row(self, local, azimuth, transform, rings, state, solved, None)
+
+    def _pressed(self, local, transform, minimiser) -> "Pressed":
+        """Travel of a spring that the row balances, and how it follows the rings."""
+        column = transform[:, :, _CLOSING]
+        azimuth = jnp.zeros(transform.shape[:1], local.dtype)  # nothing asks for it
+
+        def balance(travel, args):
+            model, transform, local, column = args
+            moved = local.at[_CLOSING].add(travel[0])
+            row = model._at(moved, azimuth, transform, minimiser)
+            energy, force, rate = model.part.spring.push(travel[0])
+            pull = jnp.einsum("la,la->", column, row.forces()) - force
+            return row, jnp.stack([pull]), energy, rate, force
+
+        args = (self, transform, local, column)
+        frozen = stop(args)
+        symmetric = self.element.has_potential
+
+        def function(travel, _):
+            row, pull, energy, rate, force = balance(travel, frozen)
+            stiff = jnp.einsum("la,lab,lb->", frozen[3], row.blocks(), frozen[3])
+            value = energy + jnp.sum(row.solved.energy)
+            value = value if symmetric else jnp.full_like(value, jnp.nan)
+            # Round-off of forces that cancel, and of positions in a stiff row.
+            sizes = jnp.sum(jnp.abs(row.forces())) + stiff * jnp.abs(travel[0])
+            noise = jnp.finfo(local.dtype).eps * (sizes + force)
+            return Evaluation(value, pull, (stiff + rate)[None, None], force, noise)
+
+        zero = jnp.zeros((1,), local.dtype)
+        radius = 1e-4 * self.part.bearing.pitch_diameter
+        solver = TrustRegionNewton()
+        minimum = solver.search(
+            function, zero, stop(radius), 1e-13, jnp.ones_like(zero), None
+        )
+        found = attach(lambda y, args: balance(y, args)[1], minimum.x, args, symmetric)
+        empty = jnp.zeros((), local.dtype)
+        return Pressed(found[0], empty, empty, column, minimum.result)
+
+
+_CLOSING = 8
+"""Freedom that presses a row in its own axes: uz of the inner ring."""
+
+
+class Pressed(NamedTuple):
+    """A spring that presses a row.
+
+    Attributes:
+        travel: What its ring has slid on its seat, closing the row [m].
+        energy: Of the spring, less that at zero travel [J].
+        rate: Loss of its force per travel [N/m].
+        column: How the travel moves the rings in each element's axes (element, r).
+        result: `Result` code of the balance.
+    """
+
+    travel: Scalar
+    energy: Scalar
+    rate: Scalar
+    column: Float[Array, "element r"]
+    result: Int[Array, ""]
 
 
 class Row(eqx.Module):
@@ -116,6 +190,7 @@ class Row(eqx.Module):
         rings: Ring motions in an element's axes (element, r).
         state: Solved elements, leading axis element.
         solved: Their energies, forces and derivatives there, likewise.
+        pressed: The spring that presses the row, or `None`.
     """
 
     model: RowModel
@@ -125,6 +200,7 @@ class Row(eqx.Module):
     rings: Float[Array, "element r"]
     state: LocalState
     solved: Derivatives
+    pressed: Pressed | None
 
     @property
     def part(self) -> SetRow:
@@ -148,11 +224,29 @@ class Row(eqx.Module):
         """Forces on both nodes from `forces` [N, N m]."""
         return jnp.einsum("lai,la->i", self.transform, shares)
 
+    def blocks(self) -> Float[Array, "element r r"]:
+        """Condensed stiffness of each element, in its axes [N/m, N, N m]."""
+        return self.model.each(condensed_stiffness, self.solved.hessian)
+
     def stiffness(self) -> RingStiffness:
-        """Stiffness between both nodes [N/m, N, N m]."""
-        blocks = self.model.each(condensed_stiffness, self.solved.hessian)
+        """Stiffness between both nodes, springs condensed [N/m, N, N m]."""
+        blocks = self.blocks()
         half = jnp.einsum("lab,lbj->laj", blocks, self.transform)
-        return jnp.einsum("lai,laj->ij", self.transform, half)
+        total = jnp.einsum("lai,laj->ij", self.transform, half)
+        if self.pressed is None:
+            return total
+        column = self.pressed.column
+        right = jnp.einsum("lai,lab,lb->i", self.transform, blocks, column)
+        left = jnp.einsum("la,laj->j", column, half)
+        own = jnp.einsum("la,lab,lb->", column, blocks, column) + self.pressed.rate
+        held = own > 0
+        share = jnp.where(held, 1.0 / jnp.where(held, own, 1.0), 0.0)
+        return total - share * jnp.outer(right, left)
+
+    def energy(self) -> Scalar:
+        """Energy of the elements, and of the spring [J]."""
+        energy = jnp.sum(self.solved.energy)
+        return energy if self.pressed is None else energy + self.pressed.energy
 
 
 class Evaluated(NamedTuple):
@@ -217,7 +311,7 @@ class BearingModel(eqx.Module):
 
     def energy(self, q: Ring) -> Scalar:
         """Condensed strain energy V(q) [J]."""
-        return _energy(self.solve(q))
+        return _total(row.energy() for row in self.solve(q))
 
     def force(self, q: Ring) -> Ring:
         """External load that holds the rings where they are [N, N m]."""
@@ -249,11 +343,12 @@ class BearingModel(eqx.Module):
         loads = [jnp.max(row.solved.contact_load) for row in rows]
         largest = jnp.max(jnp.stack(loads))
         states = [settle(row.state, largest) for row in rows]
+        springs = [r.pressed.result[None] for r in rows if r.pressed is not None]
         return Evaluated(
-            energy=_energy(rows),
+            energy=_total(row.energy() for row in rows),
             force=force,
             stiffness=stiffness,
-            result=worst(jnp.concatenate([s.result for s in states])),
+            result=worst(jnp.concatenate([*springs, *(s.result for s in states)])),
             steps=jnp.max(jnp.concatenate([s.steps for s in states])),
             residual=jnp.max(jnp.concatenate([s.residual for s in states])),
             magnitude=_total(jnp.sum(jnp.abs(share[:, :2])) for share in shares),
@@ -311,7 +406,3 @@ def inertia_load(rows: tuple[Row, ...]) -> Float[Array, "6"]:
 
 def _total(parts) -> Any:
     return functools.reduce(operator.add, parts)
-
-
-def _energy(rows) -> Scalar:
-    return _total(jnp.sum(row.solved.energy) for row in rows)

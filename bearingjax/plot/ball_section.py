@@ -4,7 +4,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design import AbstractBallBearing, Bearing, BearingSet, rows_of
+from ..design import (
+    AbstractBallBearing,
+    Bearing,
+    BearingSet,
+    SelfAligningBallRow,
+    ThrustBallBearing,
+    rows_of,
+)
 from .style import COLOURS, GREY, ROLLER, SMALL, axes_or_new
 
 if TYPE_CHECKING:
@@ -30,16 +37,14 @@ def ball_section(
         The axes: z to the right, radius upwards.
     """
     ax = axes_or_new(ax, (7.0, 6.0))
-    places = np.sort([1e3 * float(row.position) for row in rows_of(bearing)])
+    places = np.sort([_position(row) for row in rows_of(bearing)])
     # Rings of neighbouring rows meet halfway.
     reach = 0.49 * np.diff(places).min() if len(places) > 1 else np.inf
     for row in rows_of(bearing):
         part = row.bearing
         assert isinstance(part, AbstractBallBearing)
         sign = -1.0 if row.mirrored else 1.0
-        centre = np.array(
-            [1e3 * float(row.position), 0.5e3 * float(part.pitch_diameter)]
-        )
+        centre = np.array([_position(row), 0.5e3 * float(part.pitch_diameter)])
 
         def place(points, sign=sign, centre=centre):
             return centre + np.asarray(points) * np.array([sign, 1.0])
@@ -71,6 +76,12 @@ def ball_section(
     return ax
 
 
+def _position(row):
+    """z of the circle of ball centres [mm]."""
+    within = 1e3 * float(row.bearing.axial_place)
+    return 1e3 * float(row.position) + (-within if row.mirrored else within)
+
+
 def _ball(ax, bearing, place):
     radius = 0.5e3 * float(bearing.ball_diameter)
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
@@ -96,11 +107,13 @@ def _rings(ax, bearing, place, reach):
     diameter = 1e3 * float(bearing.ball_diameter)
     for name, outwards in (("outer", 1.0), ("inner", -1.0)):
         raceway = _raceway(bearing, name, outwards, reach)
+        if isinstance(bearing, SelfAligningBallRow):
+            raceway = _aligning(bearing, name, reach)
         back = outwards * (np.max(outwards * raceway[:, 1]) + _BODY * diameter)
         outline = np.concatenate(
             [raceway, [[raceway[-1, 0], back]], [[raceway[0, 0], back]]]
         )
-        if bearing.groove_axis > 0.0:
+        if isinstance(bearing, ThrustBallBearing):
             outline = outline[:, ::-1]
         ax.fill(
             *place(outline).T,
@@ -117,6 +130,25 @@ def _light(colour):
     return (*to_rgb(colour), 0.12)
 
 
+def _aligning(bearing, name, reach):
+    """Contour of a ring of a self-aligning bearing, from its middle outwards [mm]."""
+    diameter = 1e3 * float(bearing.ball_diameter)
+    middle, reach = -1e3 * float(bearing.row_offset), _WIDTH * diameter
+    groove = bearing.grooves[0 if name == "outer" else 1]
+    centre = 1e3 * np.array([float(groove.axial), float(groove.radial)])
+    radius = 1e3 * float(groove.radius)
+    if name == "outer":
+        angles = np.arcsin((np.linspace(middle, reach, 60) - centre[0]) / radius)
+        return centre + radius * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    given = bearing.inner_shoulder
+    height = _SHOULDER * diameter if given is None else 1e3 * float(given)
+    edge = np.arccos(1.0 - height / radius)
+    angles = np.linspace(-edge, edge, 121) - bearing.groove_axis
+    points = centre + radius * np.stack([np.sin(angles), -np.cos(angles)], axis=1)
+    ends = [middle, points[0, 1]], [max(reach, points[-1, 0]), points[-1, 1]]
+    return np.concatenate([[ends[0]], points, [ends[1]]])
+
+
 def _raceway(bearing, name, outwards, reach):
     """Contour of a ring on the side of the ball, along and across the raceway [mm].
 
@@ -130,7 +162,7 @@ def _raceway(bearing, name, outwards, reach):
     for groove in grooves:
         radius, deepest = 1e3 * float(groove.radius), float(groove.deepest)
         centre = 1e3 * np.array([float(groove.axial), float(groove.radial)])
-        if bearing.groove_axis > 0.0:
+        if isinstance(bearing, ThrustBallBearing):
             centre = centre[::-1]
         start, edge = np.arccos(np.clip([deepest, deepest - height / radius], -1, 1))
         if len(grooves) == 2:

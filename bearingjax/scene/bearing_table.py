@@ -22,8 +22,10 @@ from ..design import (
     Lundberg,
     Material,
     NeedleRollerBearing,
+    PreloadSpring,
     Rib,
     Ribs,
+    SelfAligningBallRow,
     SetRow,
     Straight,
     Tabulated,
@@ -31,6 +33,7 @@ from ..design import (
     ThrustBallBearing,
 )
 from ..element import RINGS
+from ..statics.preload import check_preload
 from .table import Table
 
 ROLLERS = {
@@ -42,16 +45,20 @@ BALLS = {
     "deep_groove_ball": DeepGrooveBallBearing,
     "angular_contact_ball": AngularContactBallBearing,
     "four_point_ball": FourPointBallBearing,
+    "self_aligning_ball": SelfAligningBallRow,
     "thrust_ball": ThrustBallBearing,
 }
 SETS = ("back_to_back", "face_to_face", "tandem", "rows")
 
 
-def read_bearing(top: Table) -> Bearing | BearingSet:
-    """The bearing of a scene, or the set of such bearings.
+def read_bearing(top: Table) -> tuple[Bearing | BearingSet, float | None]:
+    """The bearing of a scene, or the set of such bearings, and its preload.
 
     Args:
         top: The whole scene.
+
+    Returns:
+        Bearing or set, and the force to which it is preloaded [N] or `None`.
 
     Raises:
         SceneError: For what is missing, unknown or not allowed.
@@ -59,11 +66,21 @@ def read_bearing(top: Table) -> Bearing | BearingSet:
     table = top.table("bearing", required=True)
     kind = table.choice("type", (*ROLLERS, *BALLS))
     bearing = _balls(table, kind) if kind in BALLS else _rollers(table, kind)
-    return _set(top.table("set"), bearing) if "set" in top else bearing
+    if isinstance(bearing, SelfAligningBallRow):
+        if "set" in top:
+            raise top.error("set", "a self-aligning bearing has both its rows already")
+        with table.building():
+            return BearingSet.self_aligning(bearing), None
+    return _set(top.table("set"), bearing) if "set" in top else (bearing, None)
 
 
-def _set(table: Table, bearing: Bearing) -> BearingSet:
+def _set(table: Table, bearing: Bearing) -> tuple[BearingSet, float | None]:
     arrangement = table.choice("arrangement", SETS)
+    if arrangement == "tandem":
+        spacing, count = table.quantity("spacing", "length"), table.integer("count", 2)
+        with table.building():
+            return BearingSet.tandem(bearing, spacing, count), None
+    force = table.quantity("preload_force", "force", None)
     if arrangement == "rows":
         rows = []
         for row in table.tables("rows"):
@@ -71,24 +88,44 @@ def _set(table: Table, bearing: Bearing) -> BearingSet:
                 row.quantity("position", "length"),
                 row.flag("mirrored", False),
                 row.quantity("inner_offset", "length", 0.0),
+                _spring(row),
             )
             with row.building():
                 rows.append(SetRow(bearing, *values))
         with table.building():
-            return BearingSet(tuple(rows))
-    spacing = table.quantity("spacing", "length")
+            pack = BearingSet(tuple(rows))
+    else:
+        spacing = table.quantity("spacing", "length")
+        offset = table.quantity("preload_offset", "length", None)
+        spring = _spring(table)
+        if force is not None and offset is not None:
+            problem = "give either `preload_offset` or this, not both"
+            raise table.error("preload_force", problem)
+        with table.building():
+            build = getattr(BearingSet, arrangement)
+            pack = build(bearing, spacing, offset or 0.0, spring)
+    if force is not None:
+        with table.building():
+            check_preload(pack, force)
+    return pack, force
+
+
+def _spring(table: Table) -> PreloadSpring | None:
+    force = table.quantity("spring_force", "force", None)
+    stiffness = table.quantity("spring_stiffness", "stiffness", None)
+    if force is None:
+        if stiffness is not None:
+            raise table.error("spring_stiffness", "goes with `spring_force`")
+        return None
     with table.building():
-        if arrangement == "tandem":
-            return BearingSet.tandem(bearing, spacing, table.integer("count", 2))
-        offset = table.quantity("preload_offset", "length", 0.0)
-        return getattr(BearingSet, arrangement)(bearing, spacing, offset)
+        return PreloadSpring(force, 0.0 if stiffness is None else stiffness)
 
 
 def _balls(table: Table, kind: str) -> Bearing:
     values: dict[str, Any] = {"n_balls": table.integer("n_balls")}
     for key in ("pitch_diameter", "ball_diameter"):
         values[key] = table.quantity(key, "length")
-    for ring in RINGS:
+    for ring in RINGS[1:] if kind == "self_aligning_ball" else RINGS:
         values[f"{ring}_osculation"] = table.number(f"{ring}_osculation")
         key = f"{ring}_shoulder"
         values[key] = table.quantity(key, "length", None)
@@ -104,6 +141,9 @@ def _balls(table: Table, kind: str) -> Bearing:
     if kind == "four_point_ball":
         values[play] = table.quantity(play, "length", 0.0)
         values["shim_angle"] = table.quantity("shim_angle", "angle")
+    if kind == "self_aligning_ball":
+        values["row_offset"] = table.quantity("row_offset", "length")
+        values[play] = table.quantity(play, "length", 0.0)
     values["material"] = _material(table, "material") or Material()
     values["ring_material"] = _material(table, "ring_material")
     with table.building():

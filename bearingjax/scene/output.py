@@ -38,6 +38,7 @@ OF_BALLS = (
     "approach",
     "shoulder_margin",
 )
+OF_SPRINGS = ("spring_travel", "spring_force")
 OF_TURNING_BALLS = ("gyroscopic_moment", "centrifugal_force")
 KINEMATICS = {
     "orbital_speed": "orbit",
@@ -57,10 +58,10 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         solution: Its solution.
 
     Returns:
-        The fields of `OF_ROLLERS` or `OF_BALLS` (m, rad, N, N m, Pa), and result,
-        message, residual, iterations, warnings and version. If the solve did not
-        converge the arrays are left out: there are no results. What is infinite (the
-        margin of a shoulder that is not given) is null.
+        The fields of `OF_ROLLERS` or `OF_BALLS`, with springs `OF_SPRINGS` (m, rad,
+        N, N m, Pa), and result, message, residual, iterations, warnings and version.
+        If the solve did not converge the arrays are left out: there are no results.
+        What is infinite (the margin of a shoulder that is not given) is null.
     """
     from .. import __version__
 
@@ -80,6 +81,13 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
 
 
 def _numbers(solution):
+    numbers = _of_elements(solution)
+    if solution.spring_force is not None:
+        numbers |= {name: _listed(getattr(solution, name)) for name in OF_SPRINGS}
+    return numbers
+
+
+def _of_elements(solution):
     if not isinstance(solution, BallSolution):
         return {name: _listed(getattr(solution, name)) for name in OF_ROLLERS}
     names = OF_BALLS

@@ -17,6 +17,7 @@ KINDS = {
     "speed": ("rad/s", "rpm"),
     "pressure": ("Pa", "GPa"),
     "density": ("kg/m^3", "kg/m^3"),
+    "stiffness": ("N/m", "N/mm"),
     "line constant": ("N/m^(19/9)", "N/m^(19/9)"),
     "point constant": ("N/m^(3/2)", "N/m^(3/2)"),
 }

@@ -24,6 +24,7 @@ from ..element import (
     FREEDOMS,
     LOADS,
     RINGS,
+    AbstractKinematics,
     AbstractRacewayControl,
     BearingElement,
     CentrifugalOnly,
@@ -66,7 +67,8 @@ class Scene:
 
     Attributes:
         name: Name of the file without its ending.
-        element: The bearing with its law and numerics.
+        element: The bearing with its law and numerics, before it is preloaded.
+        preload_force: Force to which its rows are ground [N], or `None`.
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring [N, N m].
         prescribed: Displacements given by freedom name [m, rad].
         free: Freedoms that may move, or `None` for all that the bearing restrains.
@@ -79,6 +81,7 @@ class Scene:
 
     name: str
     element: BearingElement[Any]
+    preload_force: float | None
     load: tuple[float, ...]
     prescribed: dict[str, float]
     free: tuple[str, ...] | None
@@ -138,8 +141,10 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
     top = Table(data, path.name)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        bearing = read_bearing(top)
-    scene = _scene(top, path.stem, bearing, tuple(str(w.message) for w in caught))
+        bearing, preload = read_bearing(top)
+    scene = _scene(
+        top, path.stem, bearing, preload, tuple(str(w.message) for w in caught)
+    )
     top.finish()
     return scene
 
@@ -185,7 +190,7 @@ def _set(data: dict, setting: str, file: str) -> None:
         data[parts[-1]] = text.strip()
 
 
-def _scene(top, name, bearing, odd) -> Scene:
+def _scene(top, name, bearing, preload, odd) -> Scene:
     contact = top.table("contact")
     operating, numerics = top.table("operating"), top.table("numerics")
     if is_ball(bearing):
@@ -193,6 +198,8 @@ def _scene(top, name, bearing, odd) -> Scene:
             "point_law": _point_law(contact),
             "raceway_control": _control(operating),
         }
+        if "kinematics" in numerics:
+            choices["kinematics"] = _kinematics(numerics)
     else:
         choices = {"line_law": _line_law(contact), **_roller_numerics(numerics)}
     solver = numerics.choice("equilibrium", tuple(EQUILIBRIA), "newton")
@@ -213,6 +220,7 @@ def _scene(top, name, bearing, odd) -> Scene:
     return Scene(
         name=name,
         element=element,
+        preload_force=preload,
         load=tuple(load.get(component, 0.0) for component in LOADS),
         prescribed=prescribed,
         free=free,
@@ -247,12 +255,16 @@ def _line_law(contact: Table) -> AbstractLineLaw:
 def _roller_numerics(numerics: Table) -> dict[str, Any]:
     rule = numerics.choice("quadrature", tuple(QUADRATURES), "contact_mapped")
     points = numerics.integer("points", None)
-    kinematics = numerics.choice("kinematics", tuple(KINEMATICS), "linearised")
+    kinematics = _kinematics(numerics)
     with numerics.building():
         quadrature = (
             QUADRATURES[rule]() if points is None else QUADRATURES[rule](points)
         )
-    return {"kinematics": KINEMATICS[kinematics](), "quadrature": quadrature}
+    return {"kinematics": kinematics, "quadrature": quadrature}
+
+
+def _kinematics(numerics: Table) -> AbstractKinematics:
+    return KINEMATICS[numerics.choice("kinematics", tuple(KINEMATICS), "linearised")]()
 
 
 def _point_law(contact: Table) -> AbstractPointLaw:

@@ -18,7 +18,7 @@ def report(scene: Scene, solution: Solution) -> str:
         solution: Its solution, converged.
     """
     parts = [
-        _bearing(scene),
+        _bearing(scene, solution),
         _motion(scene, solution),
         _stiffness(scene, solution),
         _balls(solution) if isinstance(solution, BallSolution) else _rollers(solution),
@@ -27,35 +27,58 @@ def report(scene: Scene, solution: Solution) -> str:
     return f"\n{_RULE}\n".join(parts)
 
 
-def _bearing(scene):
+def _bearing(scene, solution):
     bearing = scene.element.bearing
     lines = []
     if isinstance(bearing, BearingSet):
         places = ", ".join(
-            f"{1e3 * float(row.position):.4g} mm{' (mirrored)' if row.mirrored else ''}"
+            f"{1e3 * _place(row):.4g} mm{' (mirrored)' if row.mirrored else ''}"
             for row in bearing.rows
         )
         lines.append(f"{scene.name}: set of {len(bearing.rows)} rows at z = {places}")
+        if scene.preload_force is not None:
+            lines.append(f"ground to a preload of {scene.preload_force:.5g} N")
+        lines += _springs(bearing, solution)
     head = scene.name if not lines else "each row"
     row = rows_of(bearing)[0].bearing
     own = _ball_row(row, head) if is_ball(bearing) else _roller_row(row, head)
     return "\n".join([*lines, *own])
 
 
+def _place(row):
+    within = float(getattr(row.bearing, "axial_place", 0.0))
+    return float(row.position) + (-within if row.mirrored else within)
+
+
+def _springs(bearing, solution):
+    if solution.spring_force is None:
+        return []
+    return [
+        f"row {k}: its spring presses with {float(solution.spring_force[k]):.5g} N, its"
+        f" ring has slid by {1e6 * float(solution.spring_travel[k]):.4g} µm"
+        for k, row in enumerate(bearing.rows)
+        if row.spring is not None
+    ]
+
+
 def _ball_row(bearing, head):
     pitch, diameter = (
         1e3 * float(x) for x in (bearing.pitch_diameter, bearing.ball_diameter)
     )
-    kind = type(bearing).__name__.removesuffix("BallBearing")
+    kind = type(bearing).__name__.removesuffix("BallBearing").removesuffix("BallRow")
     words = "".join(f" {c.lower()}" if c.isupper() else c for c in kind).strip()
     angle = np.rad2deg(float(bearing.free_contact_angle))
     return [
         f"{head}: {words} ball bearing, {bearing.n_balls} balls of {diameter:.4g} mm on"
         f" a pitch circle of {pitch:.4g} mm",
-        f"osculation: outer {float(bearing.outer_osculation):.4g}, inner"
+        f"osculation: outer {_osculation(bearing.outer_osculation)}, inner"
         f" {float(bearing.inner_osculation):.4g}; free contact angle {angle:.4g} deg;"
         f" radial internal clearance {1e6 * float(bearing.clearance):.4g} µm",
     ]
+
+
+def _osculation(value):
+    return "of a sphere" if value is None else f"{float(value):.4g}"
 
 
 def _roller_row(bearing, head):

@@ -1,6 +1,7 @@
 """Running what a scene asks for."""
 
 from ..statics.load import solve_load
+from ..statics.preload import preload
 from ..statics.solution import Solution
 from .read import Scene
 
@@ -16,8 +17,11 @@ def run_scene(scene: Scene) -> Solution:
 
     Fails: as `solve_load`.
     """
+    element = scene.element
+    if scene.preload_force is not None:
+        element = preload(element, scene.preload_force, throw=False)
     return solve_load(
-        scene.element,
+        element,
         scene.load,
         prescribed=scene.prescribed,
         free=scene.free,

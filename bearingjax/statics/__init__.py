@@ -2,6 +2,7 @@
 
 from .load import restrained_freedoms as restrained_freedoms
 from .load import solve_load as solve_load
+from .preload import preload as preload
 from .solution import BallSolution as BallSolution
 from .solution import RollerSolution as RollerSolution
 from .solution import Solution as Solution

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
 from ..element.bearing_element import BearingElement
-from ..element.bearing_model import BearingModel, Evaluated, motions
+from ..element.bearing_model import BearingModel, Evaluated, Row, motions
 from ..element.frame import FREEDOMS
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
@@ -53,6 +53,9 @@ class Solution(eqx.Module):
             against the load, if the result is `NO_LOAD_PATH`; otherwise -1 (also if
             it is a rolling element that nothing holds).
         stats: How the solve went.
+        spring_travel: What each row's ring has slid on its seat, closing the row
+            (row,) [m], zero without a spring; `None` if no row has one.
+        spring_force: Force of each row's spring (row,) [N], or `None`.
         row_sizes: Number of rolling elements of each row. Static.
     """
 
@@ -65,6 +68,8 @@ class Solution(eqx.Module):
     result: Int[Array, ""]
     unrestrained: Int[Array, ""]
     stats: Stats
+    spring_travel: Float[Array, " row"] | None
+    spring_force: Float[Array, " row"] | None
     row_sizes: tuple[int, ...] = eqx.field(static=True)
 
     if TYPE_CHECKING:
@@ -159,6 +164,22 @@ def describe(
         "stiffness": evaluated.stiffness,
         "roller_motion": jnp.concatenate([motions(row) for row in rows]),
         "azimuth": jnp.concatenate([row.azimuth for row in rows]),
+        **_springs(rows),
         "row_sizes": tuple(row.azimuth.shape[0] for row in rows),
         **special,
     }, evaluated
+
+
+def _springs(rows: tuple[Row, ...]) -> dict:
+    if all(row.pressed is None for row in rows):
+        return {"spring_travel": None, "spring_force": None}
+    travel, force = [], []
+    for row in rows:
+        spring, pressed = row.part.spring, row.pressed
+        if spring is None or pressed is None:
+            travel.append(jnp.zeros_like(row.part.position))
+            force.append(jnp.zeros_like(row.part.position))
+        else:
+            travel.append(pressed.travel)
+            force.append(spring.push(pressed.travel)[1])
+    return {"spring_travel": jnp.stack(travel), "spring_force": jnp.stack(force)}

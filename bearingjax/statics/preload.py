@@ -1,0 +1,84 @@
+"""Preload by force: where the rings of a set must be ground to press its rows so."""
+
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..design import Bearing, BearingSet, SetRow
+from ..design.checks import positive
+from ..element.bearing_element import BearingElement
+from ..numerics.types import Scalar
+from .load import restrained_freedoms, solve_load
+
+
+def preload(
+    element: BearingElement[Any], force: Scalar | float, *, throw: bool = True
+) -> BearingElement[Any]:
+    """The set ground so that its rows press each other with a given force.
+
+    Rings coaxial, still and unloaded, the rows that face +z carry `force` together,
+    and so do those that face -z. Rows of the same side move as one: each keeps the
+    `inner_offset` that it has against the others.
+
+    Args:
+        element: A set with rows of both sides.
+        force: Axial preload [N].
+        throw: Raise if a solve fails; otherwise the offsets are then NaN.
+
+    Returns:
+        Element with new `inner_offset`, differentiable with respect to design and
+        force (implicit function theorem).
+
+    Raises:
+        ValueError: If the bearing is no such set, or a row holds no axial load.
+        SolveError: If a solve fails and `throw` is set.
+    """
+    bearing = element.bearing
+    check_preload(bearing, force)
+    offsets = {}
+    for side in (False, True):
+        sign = -1.0 if side else 1.0
+        mine = [row for row in bearing.rows if row.mirrored is side]
+        # In the rows' own axes, all at one place: coaxial rings do not feel it.
+        rows = [SetRow(r.bearing, inner_offset=sign * r.inner_offset) for r in mine]
+        group = BearingSet(tuple(rows))
+        alone = eqx.tree_at(lambda e: e.bearing, element, group)
+        load = jnp.zeros(6, bearing.rows[0].position.dtype).at[2].set(force)
+        solution = solve_load(alone, load, free=["uz"], throw=throw)
+        travel = jnp.where(solution.converged, solution.displacement[8], jnp.nan)
+        offsets[side] = sign * travel
+
+    def moved(row):
+        return row.inner_offset + offsets[row.mirrored]
+
+    return eqx.tree_at(
+        lambda e: [r.inner_offset for r in e.bearing.rows],
+        element,
+        [moved(row) for row in bearing.rows],
+    )
+
+
+def check_preload(bearing: Bearing | BearingSet, force: Scalar | float) -> None:
+    """Raise unless `preload` can preload this bearing.
+
+    Args:
+        bearing: The design.
+        force: Axial preload [N].
+
+    Raises:
+        ValueError: If it is no set, has no rows that face each other, a row that holds
+            no axial load or one with a spring, or if the force is not positive.
+    """
+    problem = None
+    if not isinstance(bearing, BearingSet):
+        problem = "a bearing alone is preloaded by its clearance or by a load"
+    elif {row.mirrored for row in bearing.rows} != {False, True}:
+        problem = "no rows face each other"
+    elif any(row.spring is not None for row in bearing.rows):
+        problem = "a row has a spring, which presses it"
+    elif any("uz" not in restrained_freedoms(row.bearing) for row in bearing.rows):
+        problem = "a row holds no axial load"
+    if problem:
+        raise ValueError(f"preload: not by force: {problem}.")
+    positive(bearing, "preload force", force, "N")
