@@ -20,7 +20,7 @@ roller_half_angle = "1.7235 deg"
 
 KNOWN_BEARINGS = (
     "cylindrical_roller, needle_roller, tapered_roller, deep_groove_ball,"
-    " angular_contact_ball, four_point_ball, thrust_ball"
+    " angular_contact_ball, four_point_ball, self_aligning_ball, thrust_ball"
 )
 WHOLE = "is not a whole number of at least 1"
 NO_UNIT = 'has no unit; a length with its unit is wanted, such as "5 mm"'
@@ -413,6 +413,46 @@ SETTINGS = {
         "ball_pair",
         "set={arrangement = 'rows', rows = 2}",
         "`set.rows`: 2 is not a list of tables",
+    ),
+    "preload twice": (
+        "ball_pair",
+        "set.preload_force=300 N",
+        "`set.preload_force`: give either `preload_offset` or this, not both",
+    ),
+    "preload of a sprung pair": (
+        "sprung_pair",
+        "set.preload_force=300 N",
+        "[set]: preload: not by force: a row has a spring, which presses it.",
+    ),
+    "preload that pulls": (
+        "ball_pair",
+        "set={arrangement='face_to_face', spacing='9 mm', preload_force='-3 N'}",
+        "[set]: BearingSet: `preload force` is -3 N; it must be",
+    ),
+    "spring without its force": (
+        "ball_pair",
+        "set.spring_stiffness=80 N/mm",
+        "`set.spring_stiffness`: goes with `spring_force`",
+    ),
+    "spring stiffness as a force": (
+        "sprung_pair",
+        "set.spring_stiffness=80 N",
+        "`set.spring_stiffness`: ",
+    ),
+    "set of self-aligning bearings": (
+        "self_aligning",
+        "set.arrangement=tandem",
+        "`set`: a self-aligning bearing has both its rows already",
+    ),
+    "outer osculation of a sphere": (
+        "self_aligning",
+        "bearing.outer_osculation=0.52",
+        "`bearing.outer_osculation`: unknown key (did you mean `inner_osculation`?)",
+    ),
+    "linearised self-aligning bearing": (
+        "self_aligning",
+        "numerics.kinematics=linearised",
+        "[numerics]: BearingElement: `kinematics` is Linearised(), with which",
     ),
     "misspelt bearing type": (
         "cylindrical_rig",

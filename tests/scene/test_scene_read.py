@@ -23,6 +23,8 @@ SHIPPED = (
     "hybrid_spindle",
     "needle",
     "nj_axial",
+    "self_aligning",
+    "sprung_pair",
     "tapered",
 )
 

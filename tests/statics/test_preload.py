@@ -1,0 +1,188 @@
+"""Preload by force and by spring."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from registry import balls, taper
+from tolerances import DIFFERENCE, ROUNDING
+
+import bearingjax as bj
+
+STILL = jnp.zeros(12)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return bj.BearingElement(bj.BearingSet.back_to_back(balls(), 0.02))
+
+
+@eqx.filter_jit
+def evaluate(element, q):
+    model = element.model()
+    rows = model.solve(q)
+    axial = jnp.stack([row.sum_forces(row.forces())[8] for row in rows])
+    return model.evaluate(q, rows), axial, rows
+
+
+def test_each_side_carries_the_preload(pair):
+    ground = bj.preload(pair, 400.0)
+    e, axial, _ = evaluate(ground, STILL)
+    assert np.allclose(axial, [400.0, -400.0], rtol=1e-9)
+    assert np.abs(np.asarray(e.force)).max() < 1e-6
+    # A pair already pressed is pressed to the same force, from where it is.
+    pressed = bj.BearingElement(bj.BearingSet.back_to_back(balls(), 0.02, 3e-6))
+    again = bj.preload(pressed, 400.0)
+    for one, other in zip(ground.bearing.rows, again.bearing.rows, strict=True):
+        assert float(one.inner_offset) == pytest.approx(
+            float(other.inner_offset), rel=1e-9
+        )
+
+
+def test_preload_of_unlike_sides():
+    """Two rows against one: together they carry what the other one carries."""
+    one, other = balls(), balls(8, contact_angle=0.3)
+    rows = (
+        bj.SetRow(one, -0.03),
+        bj.SetRow(one, -0.01, inner_offset=2e-6),
+        bj.SetRow(other, 0.02, mirrored=True),
+    )
+    ground = bj.preload(bj.BearingElement(bj.BearingSet(rows)), 600.0)
+    _, axial, _ = evaluate(ground, STILL)
+    assert float(axial[0] + axial[1]) == pytest.approx(600.0, rel=1e-9)
+    assert float(axial[2]) == pytest.approx(-600.0, rel=1e-9)
+    # The second row was 2 um ahead, and stays so.
+    offsets = [float(row.inner_offset) for row in ground.bearing.rows]
+    assert offsets[1] - offsets[0] == pytest.approx(2e-6, rel=1e-9)
+    assert float(axial[1]) > float(axial[0])
+
+
+def test_offset_follows_force_and_design(pair):
+    """Closed form: rows of n balls pressed axially; its slope, by differences."""
+
+    def offset(force, angle):
+        changed = bj.BearingSet.back_to_back(balls(contact_angle=angle), 0.02)
+        element = eqx.tree_at(lambda e: e.bearing, pair, changed)
+        return bj.preload(element, force).bearing.rows[0].inner_offset * 1e6
+
+    at = (jnp.asarray(400.0), jnp.asarray(0.4))
+    slopes = jax.grad(offset, argnums=(0, 1))(*at)
+    for k, step in enumerate((1e-2, 1e-6)):
+        moved = [
+            offset(*(v + sign * step * (i == k) for i, v in enumerate(at)))
+            for sign in (1, -1)
+        ]
+        slope = float(moved[0] - moved[1]) / (2 * step)
+        assert float(slopes[k]) == pytest.approx(slope, rel=1e-6)
+
+
+SPRUNG = {
+    "balls, soft": (balls(), bj.PreloadSpring(300.0, 8e4)),
+    "tapers, constant": (taper(5), bj.PreloadSpring(2000.0)),
+}
+
+
+@pytest.fixture(scope="module", params=SPRUNG)
+def sprung(request):
+    bearing, spring = SPRUNG[request.param]
+    pair = bj.BearingSet.face_to_face(bearing, 0.03, spring=spring)
+    return bj.BearingElement(pair), spring
+
+
+def push(spring, travel):
+    return max(float(spring.force) - float(spring.stiffness) * travel, 0.0)
+
+
+def test_the_row_carries_what_the_spring_pushes(sprung):
+    element, spring = sprung
+    for way in (0.0, 5e-6, -2e-5, -2e-4):
+        e, axial, rows = evaluate(element, STILL.at[8].set(way))
+        assert int(e.result) == bj.Result.CONVERGED
+        row = rows[1]
+        travel = float(row.pressed.travel)
+        # In X arrangement the row at +z faces +z.
+        assert float(axial[1]) == pytest.approx(push(spring, travel), rel=1e-9)
+    # The ring slides after its row: the travel makes up for the way.
+    start = float(evaluate(element, STILL)[2][1].pressed.travel)
+    assert travel == pytest.approx(start + 2e-4, rel=1e-2)
+
+
+def test_slack_spring():
+    """Beyond its travel the spring does not pull, and the row passes nothing."""
+    spring = bj.PreloadSpring(10.0, 1e6)  # slack after 10 um
+    element = bj.BearingElement(bj.BearingSet.face_to_face(balls(), 0.03, 0.0, spring))
+    e, axial, rows = evaluate(element, STILL.at[8].set(-30e-6))
+    assert float(axial[1]) == 0.0 and int(e.result) == bj.Result.CONVERGED
+    assert np.all(np.isfinite(e.stiffness))
+    # Its energy is spent: force²/(2 stiffness).
+    assert float(rows[1].pressed.energy) == pytest.approx(-(10.0**2) / 2e6, rel=1e-12)
+
+
+def test_force_and_stiffness_are_derivatives(sprung):
+    element, _ = sprung
+    q = jnp.asarray([0.0] * 6 + [2e-6, -4e-6, 5e-6, 1e-4, -5e-5, 0.0])
+    e, _, _ = evaluate(element, q)
+    force, k = np.asarray(e.force), np.asarray(e.stiffness)
+
+    @eqx.filter_jit
+    def by_autodiff(element, q):
+        along = jax.jvp(element.force, (q,), (q,))[1]
+        return jax.grad(element.energy)(q), along
+
+    gradient, along = by_autodiff(element, q)
+    assert np.abs(gradient - force).max() < 10 * ROUNDING * np.abs(force).max()
+    scale = np.abs(k @ np.asarray(q)).max()
+    assert np.abs(along - k @ np.asarray(q)).max() < 10 * ROUNDING * scale
+    step = 1e-9
+    ends = [
+        np.asarray(evaluate(element, q.at[8].add(sign * step))[0].force)
+        for sign in (1, -1)
+    ]
+    slope = (ends[0] - ends[1]) / (2 * step)
+    assert np.abs(slope - k[:, 8]).max() < 100 * DIFFERENCE * np.abs(k).max()
+
+
+def test_load_solve_with_a_spring():
+    """A load that closes the sprung row moves the shaft as the spring allows."""
+    spring = bj.PreloadSpring(300.0, 8e4)
+    element = bj.BearingElement(bj.BearingSet.back_to_back(balls(), 0.03, 0.0, spring))
+    solutions = [
+        bj.solve_load(element, [0.0, 0.0, axial, 0.0, 0.0, 0.0])
+        for axial in (0.0, 100.0, -400.0)
+    ]
+    free, closed, opened = solutions
+    # The fixed row takes what closes it; the spring then gives a little less.
+    assert float(free.spring_force[1]) == pytest.approx(
+        300.0 - 8e4 * float(free.spring_travel[1]), rel=1e-12
+    )
+    assert float(free.spring_force[0]) == 0.0
+    assert 0 < float(closed.displacement[8] - free.displacement[8]) < 5e-6
+    # Against the spring: it alone holds 400 N, after 100 N/(80 N/mm) of travel.
+    moved = -float(opened.displacement[8])
+    assert float(opened.spring_force[1]) == pytest.approx(400.0, rel=1e-9)
+    assert moved == pytest.approx(100.0 / 8e4, rel=0.03)
+    assert float(opened.stiffness[8, 8]) == pytest.approx(8e4, rel=0.01)
+
+
+def test_bad_input(pair):
+    one_way = bj.BearingElement(bj.BearingSet.tandem(balls(), 0.02))
+    roller = bj.CylindricalRollerBearing(6, 0.065, 0.01, 0.01)
+    sprung = bj.BearingSet.back_to_back(balls(), 0.02, spring=bj.PreloadSpring(10.0))
+    for element, problem in (
+        (bj.BearingElement(balls()), "a bearing alone"),
+        (one_way, "no rows face each other"),
+        (bj.BearingElement(bj.BearingSet.back_to_back(roller, 0.02)), "no axial load"),
+        (bj.BearingElement(sprung), "a row has a spring"),
+    ):
+        with pytest.raises(ValueError, match=problem):
+            bj.preload(element, 100.0)
+    for force in (-1.0, 0.0, np.nan):
+        with pytest.raises(ValueError, match="`preload force`"):
+            bj.preload(pair, force)
+    with pytest.raises(ValueError, match="`force`"):
+        bj.PreloadSpring(-5.0)
+    with pytest.raises(ValueError, match="`stiffness`"):
+        bj.PreloadSpring(5.0, -1.0)
+    with pytest.raises(TypeError, match="spring"):
+        bj.SetRow(balls(), spring=300.0)
