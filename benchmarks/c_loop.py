@@ -56,6 +56,7 @@ force and stiffness equal those of the C loop to 3e-16; AMD EPYC, 2 cores; one c
 
 import argparse
 import ctypes
+import functools
 import json
 import os
 import random
@@ -178,26 +179,31 @@ def _pointer(array):
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
 
+def compiler():
+    """A C compiler, or `None`."""
+    return next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
+
+
 def compile_c(folder, el):
     """Shared library from `c_loop.c`, or `None` without a compiler."""
-    compiler = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
-    if compiler is None:
+    if compiler() is None:
         return None
     scan = el.model().rows[0].element.constants.tables[0][2].shape[1]
     sizes = [f"-DPOINTS={el.quadrature.points}", f"-DSCAN={scan}"]
     target = os.path.join(folder, "c_loop.so")
-    command = [compiler, *FLAGS, *sizes, "-o", target, str(SOURCE), "-lm"]
+    command = [compiler(), *FLAGS, *sizes, "-o", target, str(SOURCE), "-lm"]
     subprocess.run(command, check=True)
     return ctypes.CDLL(target)
 
 
+def both(element, q):
+    """Force and stiffness of a bearing element or model."""
+    e = element.evaluate(q)
+    return e.force, e.stiffness
+
+
 def jax_calls(el, q):
     """The JAX variants: name -> function of q."""
-
-    def both(el, q):
-        e = el.evaluate(q)
-        return e.force, e.stiffness
-
     filtered = eqx.filter_jit(both)
     closed = jax.jit(lambda q: both(el, q))
     return {
@@ -210,12 +216,8 @@ def jax_calls(el, q):
 def batch_call(el, q):
     """Force and stiffness of many motions near q in one call, in chunks."""
     qs = q * jnp.linspace(0.97, 1.03, BATCH)[:, None]
-
-    def both(q):
-        e = el.evaluate(q)
-        return e.force, e.stiffness
-
-    batched = jax.jit(lambda qs: jax.lax.map(both, qs, batch_size=CHUNK))
+    one = functools.partial(both, el)
+    batched = jax.jit(lambda qs: jax.lax.map(one, qs, batch_size=CHUNK))
     return lambda: batched(qs)
 
 
@@ -291,10 +293,9 @@ def summary(figures):
     return rows
 
 
-def study(c, el, q, rounds, block):
+def study(c, el, q, rounds, block, calls):
     """Agreement and times of one case."""
     *reference, steps = c.results(q)
-    calls = jax_calls(el, q)
     errors = {name: disagreement(el, reference, f(q)) for name, f in calls.items()}
     every = timers(c, calls, batch_call(el, q), q)
     rows = summary(measure(every, rounds, block))
@@ -346,7 +347,7 @@ def main():
             print("c_loop: no C compiler (cc, gcc, clang); skipped.", file=sys.stderr)
             return 0
         results = {
-            case: study(CLoop(library, el), el, q, rounds, block)
+            case: study(CLoop(library, el), el, q, rounds, block, jax_calls(el, q))
             for case, (el, q) in cases().items()
         }
     if args.json:

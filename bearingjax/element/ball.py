@@ -122,7 +122,7 @@ class AbstractBallModel(AbstractModel):
         start = self.grooves.start
         normal = start / jnp.sqrt(jnp.sum(start**2, axis=1))[:, None]
         one = jnp.ones_like(self.grooves.reach)
-        constant = self.constants(Contacts(one, one, normal, one))
+        constant = self.constants(Contacts(one, one, one, normal, one))
         return jnp.max(constant) * positive_power(approach, _N, _D)
 
     def first(self, rings):
@@ -159,7 +159,7 @@ class AbstractBallModel(AbstractModel):
         load = constant * positive_power(c.approach, _N, _D)
         turned = bent(c, load, step)
         # An open contact is entered so far that it carries what is out of balance.
-        wanted = positive_power(size / constant, _D, _N)
+        wanted = positive_power(size, _D, _N) / positive_power(constant, _D, _N)
         reached = self.contacts(rings, x + turned).approach
         entered = (c.approach < 0.0) & (reached > wanted)
         # The approach along the step, as a parabola through both its ends.
@@ -180,7 +180,7 @@ class AbstractBallModel(AbstractModel):
         energy = (_D / (_N + _D)) * dot(load, contacts.approach)
         # Of a contact: its stiffness along the normal, load over length across.
         z, r = contacts.normal[:, 0], contacts.normal[:, 1]
-        turn = load / contacts.length
+        turn = load * contacts.inverse
         kzz = (rate - turn) * z * z + turn * contacts.mask
         kzr = (rate - turn) * z * r
         krr = (rate - turn) * r * r + turn

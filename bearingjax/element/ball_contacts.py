@@ -17,6 +17,7 @@ class Contacts(NamedTuple):
     Attributes:
         approach: l - L [m].
         length: l, distance of ball centre and groove centre, above zero [m].
+        inverse: 1/l [1/m].
         normal: Unit vector (z, r) from groove centre to ball centre (contact, 2), in
             the section of the ring.
         mask: 0 where the axial part counts for nothing (cylinder), else 1.
@@ -24,6 +25,7 @@ class Contacts(NamedTuple):
 
     approach: Float[Array, " contact"]
     length: Float[Array, " contact"]
+    inverse: Float[Array, " contact"]
     normal: Float[Array, "contact 2"]
     mask: Float[Array, " contact"]
 
@@ -77,8 +79,10 @@ class GrooveGeometry(eqx.Module):
         change = jnp.sum(moved * (2.0 * self.start + moved), axis=1)
         difference = jnp.where(beyond, square - self.reach**2, start2 + change)
         approach = difference / (length + self.reach)
-        normal = jnp.stack([z / length, r / length], axis=1)
-        return Contacts(approach, length, normal, mask)
+        # Divisions and roots part a compiled loop in two: as few as can be.
+        inverse = 1.0 / length
+        normal = jnp.stack([z * inverse, r * inverse], axis=1)
+        return Contacts(approach, length, inverse, normal, mask)
 
     def directions(
         self, contacts: Contacts, load: Float[Array, " contact"], diameter: Scalar
@@ -138,9 +142,9 @@ def bent(c: Contacts, load: Float[Array, " contact"], step: Unknowns) -> Unknown
     size = jnp.sqrt(jnp.maximum(dot(new, new), jnp.finfo(step.dtype).tiny))
     # new/size·(length + along) - length·normal, without cancellation.
     across2 = jnp.maximum(dot(step, step) - along * along, 0.0)
-    short = across2 / (size + length + along)
+    short = across2 / (size * (size + length + along))
     bends = (length + along > 0.0) & (length > 0.0)
-    return jnp.where(bends, step - short / size * new, step)
+    return jnp.where(bends, step - short * new, step)
 
 
 def add(terms: Float[Array, "contact ..."]) -> Float[Array, "..."]:

@@ -18,6 +18,7 @@ from ..design import (
     is_self_aligning,
     rows_of,
 )
+from ..design.checks import is_traced
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Ring, RingStiffness, Scalar
@@ -133,11 +134,12 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 stacklevel=3,
             )
 
-    @eqx.filter_jit
     def model(self, speed: Speed | None = None) -> BearingModel:
         """The bearing with all its contact constants worked out.
 
-        To evaluate one design many times: `element.model(speed).evaluate(q)`.
+        To evaluate one design many times: `element.model(speed).evaluate(q)`. If no
+        number of the design is traced, the constants are known numbers even within
+        `jit`, which then need not be computed in every call.
 
         Args:
             speed: Ring speeds; `None`: no inertia, and nothing of it compiled.
@@ -150,6 +152,13 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 f"BearingElement: `speed` is a {type(speed).__name__}; it must be a"
                 " Speed(inner, outer) in rad/s, or None."
             )
+        if any(is_traced(leaf) for leaf in jax.tree.leaves((self, speed))):
+            return self._model(speed)
+        with jax.ensure_compile_time_eval():
+            return self._model(speed)
+
+    @eqx.filter_jit
+    def _model(self, speed) -> BearingModel:
         alone = not isinstance(self.bearing, BearingSet)
         rows = tuple(self._row(part, speed, alone) for part in rows_of(self.bearing))
         return BearingModel(rows, self.equilibrium, self.cage_torque)
@@ -162,7 +171,6 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """
         return eqx.filter_eval_shape(self.model, speed).has_potential
 
-    @eqx.filter_jit
     def energy(self, q: Ring, speed: Speed | None = None) -> Scalar:
         """Condensed strain energy V(q) [J].
 
@@ -176,7 +184,6 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """
         return self.model(speed).energy(q)
 
-    @eqx.filter_jit
     def force(self, q: Ring, speed: Speed | None = None) -> Ring:
         """External load that holds the rings where they are [N, N m].
 
@@ -184,7 +191,6 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """
         return self.model(speed).force(q)
 
-    @eqx.filter_jit
     def stiffness(self, q: Ring, speed: Speed | None = None) -> RingStiffness:
         """Tangent stiffness d(force)/dq by static condensation [N/m, N, N m].
 
@@ -192,7 +198,6 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """
         return self.model(speed).stiffness(q)
 
-    @eqx.filter_jit
     def evaluate(self, q: Ring, speed: Speed | None = None) -> Evaluated:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
@@ -200,7 +205,6 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """
         return self.model(speed).evaluate(q)
 
-    @eqx.filter_jit
     def rows(self, q: Ring, speed: Speed | None = None) -> tuple[Row, ...]:
         """The rolling elements of every row, solved at given ring freedoms.
 

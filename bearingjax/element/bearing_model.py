@@ -295,6 +295,7 @@ class BearingModel(eqx.Module):
         """Whether all forces derive from the energy. Static."""
         return all(row.element.has_potential for row in self.rows)
 
+    @eqx.filter_jit
     def solve(self, q: Ring) -> tuple[Row, ...]:
         """Solve every rolling element at given ring freedoms.
 
@@ -309,22 +310,26 @@ class BearingModel(eqx.Module):
             )
         return tuple(r.solve(q, self.equilibrium, self.cage_torque) for r in self.rows)
 
+    @eqx.filter_jit
     def energy(self, q: Ring) -> Scalar:
         """Condensed strain energy V(q) [J]."""
         return _total(row.energy() for row in self.solve(q))
 
+    @eqx.filter_jit
     def force(self, q: Ring) -> Ring:
         """External load that holds the rings where they are [N, N m]."""
         if self.cage_torque:
             return jax.grad(self.energy)(q)
         return _total(row.sum_forces(row.forces()) for row in self.solve(q))
 
+    @eqx.filter_jit
     def stiffness(self, q: Ring) -> RingStiffness:
         """Tangent stiffness d(force)/dq [N/m, N, N m]."""
         if self.cage_torque:
             return jax.hessian(self.energy)(q)
         return _total(row.stiffness() for row in self.solve(q))
 
+    @eqx.filter_jit
     def evaluate(self, q: Ring, rows: tuple[Row, ...] | None = None) -> Evaluated:
         """Energy, force and stiffness from one solve of the elements, with its code.
 

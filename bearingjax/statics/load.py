@@ -140,10 +140,10 @@ def solve_load(
         tolerance = DEFAULT_TOLERANCE[str(dtype)]
     solution = _solve(
         element,
+        element.model(speed),
         load,
         given,
         fixed,
-        speed,
         is_free,
         held,
         fixed_ring,
@@ -162,10 +162,10 @@ def solve_load(
 @eqx.filter_jit
 def _solve(
     element,
+    model,
     load,
     given,
     fixed,
-    speed,
     is_free,
     held,
     fixed_ring,
@@ -188,7 +188,6 @@ def _solve(
 
     # All that depends on the trace goes through the arguments: a derivative rule must
     # not close over it.
-    model = element.model(speed)
     args = (model, load, given, fixed, scale, free)
     frozen = stop(args)
     symmetric = model.has_potential

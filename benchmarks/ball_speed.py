@@ -1,0 +1,226 @@
+"""How far is a ball bearing (force and stiffness) from a C loop, and from a formula?
+
+An angular contact bearing with 16 balls under axial, combined and radial load with a
+tilt. `c_ball.c` is the same algorithm, compiled on demand; its result is checked
+against JAX. Variants and clocks as in `c_loop.py`; here the constants of the contacts
+are known ("model given"), or worked out in every call ("filter_jit"). In the same
+table: a call of ROSS's `BallBearingElement`, a closed formula for the radial stiffness
+of a deep groove bearing, beside ours for the bearing that the formula is about; its
+"error" is its stiffness against ours. ROSS is timed if it can be imported.
+
+Run: python benchmarks/ball_speed.py [--json] [--smoke]
+
+Last run:
+
+"""
+
+import argparse
+import ctypes
+import json
+import subprocess
+import sys
+import tempfile
+import time
+import types
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import c_loop  # noqa: E402
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+SOURCE = Path(__file__).with_name("c_ball.c")
+GOAL = {"hot": 5.0, "batch": 1.0 / 0.9}
+LOADS = {
+    "axial": ([0.0, 0.0, 800.0, 0.0, 0.0, 0.0], {}),
+    "combined": ([0.0, -1000.0, 800.0, 0.0, 0.0, 0.0], {}),
+    "radial, tilted": ([0.0, -1000.0, 200.0, 0.0, 0.0, 0.0], {"gx": 1e-3}),
+}
+ROSS = "ROSS BallBearingElement"
+
+
+def element():
+    """The bearing that is measured."""
+    return bj.BearingElement(
+        bj.AngularContactBallBearing(
+            16, 0.0535, 0.0087,
+            outer_osculation=0.52, inner_osculation=0.52, contact_angle=0.4363,
+        )
+    )  # fmt: skip
+
+
+class CBall:
+    """The compiled C loop with the numbers of one element."""
+
+    def __init__(self, library, el):
+        row = el.model().rows[0]
+        ball, b = row.element, row.part.bearing
+        grooves = ball.grooves
+        numbers = [
+            b.n_balls, b.first_azimuth,
+            b.ball_diameter * b.free_cosine / b.pitch_diameter,
+            ball.pitch_radius, ball.diameter, ball.guide, ball.gap,
+            *np.ravel(grooves.start), *grooves.reach, *ball.constant,
+            *ball.lever[1], float(grooves.open_side[0]),
+        ]  # fmt: skip
+        self.design = np.array([float(x) for x in numbers])
+        self.force, self.stiffness = np.zeros(12), np.zeros((12, 12))
+        self.steps = ctypes.c_int()
+        self.loop = library
+        library.repeat.restype = ctypes.c_double
+
+    def arguments(self, q):
+        """What a C call takes; results land in `force` and `stiffness`."""
+        self.q = np.array(q)
+        every = (self.design, self.q, self.force, self.stiffness)
+        pointers = [x.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for x in every]
+        return *pointers, ctypes.byref(self.steps)
+
+    def results(self, q):
+        """Force [N, N m], stiffness and most steps of a ball."""
+        self.loop.force_stiffness(*self.arguments(q))
+        return self.force.copy(), self.stiffness.copy(), self.steps.value
+
+
+def compile_c(folder):
+    """Shared library from `c_ball.c`, or `None` without a compiler."""
+    compiler = c_loop.compiler()
+    if compiler is None:
+        return None
+    target = str(Path(folder) / "c_ball.so")
+    command = [compiler, *c_loop.FLAGS, "-o", target, str(SOURCE), "-lm"]
+    subprocess.run(command, check=True)
+    return ctypes.CDLL(target)
+
+
+def calls_of(el, q):
+    """The JAX variants: name -> function of q."""
+    filtered = eqx.filter_jit(c_loop.both)
+    model = el.model()
+    given = jax.jit(lambda q: c_loop.both(model, q))
+    return {
+        "filter_jit(element, q)": lambda q: filtered(el, q),
+        "jit(q), model given": given,
+        "the same, ahead of time": given.lower(q).compile(),
+    }
+
+
+def ross_call(radial, el):
+    """ROSS's element for a radial load: its call, and its stiffness; or `None`."""
+    try:
+        # Its seals want a library of fluids that is not needed here.
+        sys.modules.setdefault("ccp", types.ModuleType("ccp"))
+        import ross
+    except ImportError:
+        return None
+    b = el.bearing
+
+    def call():
+        return ross.BallBearingElement(
+            n=0,
+            n_balls=b.n_balls,
+            d_balls=float(b.ball_diameter),
+            fs=radial,
+            alpha=0.0,
+        )
+
+    return call
+
+
+def beside_ross(rounds, block):
+    """Radial stiffness and time of both, deep groove, no clearance, radial load."""
+    radial = 1000.0
+    bearing = bj.DeepGrooveBallBearing(
+        16, 0.0535, 0.0087, outer_osculation=0.52, inner_osculation=0.52
+    )
+    el = bj.BearingElement(bearing)
+    solution = bj.solve_load(
+        el, [0.0, -radial, 0, 0, 0, 0], free=["ux", "uy"], prescribed={"uz": 0.0}
+    )
+    ours = float(solution.stiffness[7, 7])
+    call = ross_call(radial, el)
+    if call is None:
+        return None
+    model = el.model()
+    given = jax.jit(lambda q: c_loop.both(model, q))
+    load = jax.jit(
+        lambda f: (
+            bj.solve_load(
+                el,
+                f,
+                free=["ux", "uy"],
+                prescribed={"uz": 0.0},
+                throw=False,
+            ).stiffness
+        )
+    )
+    variants = {
+        ROSS: call,
+        "ours, force and stiffness": lambda: given(solution.displacement),
+        "ours, from the load": lambda: load(jnp.array([0.0, -radial, 0, 0, 0, 0])),
+    }
+    times = {}
+    for name, function in variants.items():
+        jax.block_until_ready(function())
+        best = []
+        for _ in range(rounds):
+            begin = time.perf_counter()
+            for _ in range(block):
+                out = function()
+            if name != ROSS:
+                jax.block_until_ready(out)
+            best.append((time.perf_counter() - begin) / block)
+        times[name] = 1e6 * float(np.median(best))
+    kyy = float(np.ravel(call().kyy)[0])
+    return {"us": times, "stiffness": {ROSS: kyy, "ours": ours}}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line of figures")
+    parser.add_argument("--smoke", action="store_true", help="few repeats")
+    args = parser.parse_args()
+    rounds, block = (5, 20) if args.smoke else (40, 200)
+    el = element()
+    with tempfile.TemporaryDirectory() as folder:
+        library = compile_c(folder)
+        if library is None:
+            print("ball_speed: no C compiler (cc, gcc, clang).", file=sys.stderr)
+            return 0
+        results = {}
+        for name, (load, tilt) in LOADS.items():
+            q = bj.solve_load(el, load, prescribed=tilt).displacement
+            calls = calls_of(el, q)
+            c = CBall(library, el)
+            results[name] = c_loop.study(c, el, q, rounds, block, calls)
+    formula = beside_ross(rounds, block)
+    agrees = c_loop.agrees(results)
+    if args.json:
+        report = {"goal": GOAL, "agrees": agrees, "cases": results, "ross": formula}
+        print(json.dumps(report))
+    else:
+        for name, result in results.items():
+            c_loop.show(name, result)
+        print(f"\ngoal: hot ≤ {GOAL['hot']:g}, in a batch ≤ {GOAL['batch']:.2f}")
+        if formula is None:
+            print("\nROSS is not installed: its formula is not timed.")
+        else:
+            print("\nradial stiffness of a deep groove bearing, 1 kN, no clearance")
+            for name, t in formula["us"].items():
+                print(f"{name:28}{t:10.1f} us")
+            off = formula["stiffness"][ROSS] / formula["stiffness"]["ours"] - 1.0
+            print(f"stiffness of the formula against ours: {100 * off:+.1f} %")
+    if not agrees:
+        print("ball_speed: C and JAX disagree.", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
