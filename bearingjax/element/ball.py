@@ -25,6 +25,7 @@ from jaxtyping import Array, Float
 
 from ..contact.hertz import EXPONENT
 from ..contact.point_law import AbstractPointLaw, at_angle, balls_of
+from ..design.ball import ThrustBallBearing
 from ..design.bearing_set import SetRow
 from ..numerics.implicit import stop
 from ..numerics.linear import dot
@@ -52,7 +53,10 @@ class AbstractBallModel(AbstractModel):
         ball_diameter: Ball diameter [m].
         spring: Guide spring constant [N/m].
         turning: Speeds, or `None`.
-        follows_angle: Whether the constants follow the operating angle. Static.
+        follows_angle: Whether the constants follow the operating angle.
+        washers: Whether the raceways are those of a thrust bearing.
+
+    Static: follows_angle, washers.
     """
 
     grooves: GrooveGeometry
@@ -62,6 +66,7 @@ class AbstractBallModel(AbstractModel):
     spring: Scalar
     turning: Turning | None
     follows_angle: bool = eqx.field(static=True)
+    washers: bool = eqx.field(static=True)
 
     n_unknowns: ClassVar[int] = 2
 
@@ -170,6 +175,14 @@ class AbstractBallModel(AbstractModel):
         share = 2.0 * rise / jnp.where(entered, slope + root, 1.0)
         share = jnp.where(share > 0.0, jnp.minimum(share, 1.0), 1.0)
         return bent(c, load, step * jnp.min(jnp.where(entered, share, 1.0)))
+
+    def thrown_off(self, rings, x):
+        away = super().thrown_off(rings, x)
+        if not self.washers:
+            return away
+        # A washer's groove does not reach up to its centre.
+        c = self.contacts(rings, x)
+        return away | jnp.any((c.approach > 0.0) & (c.mask == 0.0))
 
     def _contact_terms(self, contacts):
         """Load (contact,), their energy, forces (contact, 2), stiffness (…, 2, 2)."""
@@ -551,6 +564,7 @@ def ball_model(
         spring=_guide(balls, diameter),
         turning=inertia,
         follows_angle=law.follows_angle,
+        washers=isinstance(bearing, ThrustBallBearing),
     )
     if isinstance(kinematics, Finite):
         sign = -1.0 if part.mirrored else 1.0

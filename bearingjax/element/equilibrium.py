@@ -168,8 +168,7 @@ def _solve(model, rings, magnitude, minimiser):
         result = jnp.where(saddle, int(Result.SADDLE), result)
     if model.inertia_size() is not None:
         # Thrown off: inertia along a direction that only the guide holds.
-        away = norm(minimum.x) > 10.0 * model.diameter
-        lost = away & (result != int(Result.NON_FINITE))
+        lost = model.thrown_off(rings, minimum.x) & (result != int(Result.NON_FINITE))
         result = jnp.where(lost, int(Result.NO_LOAD_PATH), result)
     result = result.astype(jnp.int32)
     return LocalState(

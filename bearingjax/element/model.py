@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
+from ..numerics.linear import dot
 from ..numerics.types import Scalar
 
 Rings = Float[Array, " r"]
@@ -108,6 +109,15 @@ class AbstractModel(eqx.Module):
             rings: Motion of both rings in the element's axes (r,) [m, rad].
         """
         return self.amid(rings)
+
+    def thrown_off(self, rings: Rings, x: Unknowns) -> Bool[Array, ""]:
+        """Whether inertia has taken the element where nothing real holds it.
+
+        Args:
+            rings: Motion of both rings in the element's axes (r,) [m, rad].
+            x: Own unknowns (n,) [m].
+        """
+        return dot(x, x) > (10.0 * self.diameter) ** 2
 
     @property
     def shapes_steps(self) -> bool:

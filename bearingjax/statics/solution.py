@@ -106,8 +106,9 @@ def message(solution: Solution, moving_ring: str) -> str:
         if int(solution.unrestrained) < 0:
             return (
                 "No load path for a rolling element: inertia throws it off, because"
-                " nothing holds it (a roller without a rib, along its axis). Add the"
-                " rib, or lower the speed."
+                " nothing holds it (a roller without a rib, along its axis; a ball of a"
+                " thrust bearing, out of its grooves). Add the rib or axial load, or"
+                " lower the speed."
             )
         freedom = FREEDOMS[int(solution.unrestrained)]
         return (
