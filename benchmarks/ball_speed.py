@@ -16,6 +16,7 @@ Last run:
 
 import argparse
 import ctypes
+import importlib
 import json
 import subprocess
 import sys
@@ -116,7 +117,7 @@ def ross_call(radial, el):
     try:
         # Its seals want a library of fluids that is not needed here.
         sys.modules.setdefault("ccp", types.ModuleType("ccp"))
-        import ross
+        ross = importlib.import_module("ross")
     except ImportError:
         return None
     b = el.bearing

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design import AbstractBallBearing, rows_of
+from ..design import AbstractBallBearing
 from ..statics.solution import BallSolution
 from .style import (
     COLOURS,
@@ -183,10 +183,3 @@ def _shoulders(ax, bearing, raceway, groove, radius):
             va="bottom" if side > 0 else "top",
             fontsize=SMALL,
         )
-
-
-def first_row(bearing) -> AbstractBallBearing:
-    """The bearing of the first row."""
-    row = rows_of(bearing)[0].bearing
-    assert isinstance(row, AbstractBallBearing)
-    return row

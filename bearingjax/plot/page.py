@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design import Bearing, BearingSet
+from ..design import AbstractBallBearing, Bearing, BearingSet, rows_of
 from ..numerics.result import Result
 from ..statics.solution import (
     BallSolution,
@@ -12,11 +12,11 @@ from ..statics.solution import (
     Solution,
     warnings,
 )
-from .balls import contact_angles, ellipses, first_row
+from .balls import contact_angles, ellipses
 from .load import load_zone
 from .pressure import pressure_map, pressure_profiles
 from .section import cross_section
-from .style import degrees, force_text, pyplot
+from .style import degrees, force_text, pyplot, row_slices
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -44,15 +44,17 @@ def overview(
     )
     cross_section(bearing, axes["section"])
     load_zone(solution, axes["zone"])
-    raceway = _busier_raceway(solution)
+    raceway, row = _busier_raceway(solution), _busiest_row(solution)
     if isinstance(solution, BallSolution):
         contact_angles(solution, axes["left"])
         figure.draw_without_rendering()  # the layout gives the ellipses their scale
-        ellipses(first_row(bearing), solution, raceway=raceway, ax=axes["right"])
+        part = rows_of(bearing)[row].bearing
+        assert isinstance(part, AbstractBallBearing)
+        ellipses(part, solution, raceway=raceway, row=row, ax=axes["right"])
     else:
         assert isinstance(solution, RollerSolution)
-        pressure_profiles(solution, axes["left"], raceway=raceway)
-        pressure_map(solution, axes["right"], raceway=raceway)
+        pressure_profiles(solution, axes["left"], raceway=raceway, row=row)
+        pressure_map(solution, axes["right"], raceway=raceway, row=row)
     axes["text"].set_axis_off()
     axes["text"].text(
         0.5,
@@ -77,6 +79,13 @@ def _busier_raceway(solution):
     else:
         outer, inner = pressure[:, 0], pressure[:, 1]
     return "outer" if outer.max() > inner.max() else "inner"
+
+
+def _busiest_row(solution):
+    """The row with the largest load of a roller or ball."""
+    load = np.asarray(solution.roller_load)
+    tops = [load[mine].max(initial=0.0) for mine in row_slices(solution)]
+    return int(np.argmax(tops))
 
 
 def _results(solution):

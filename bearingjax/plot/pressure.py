@@ -101,12 +101,17 @@ def pressure_profiles(
     ax.set_xlabel("position along the roller [mm]")
     ax.set_ylabel("contact pressure [MPa]")
     which = "both raceways" if raceway == "both" else f"{raceway} raceway"
+    which += _of_row(solution, row)
     ax.set_title(f"Pressure along the most loaded rollers, {which}")
     title = "azimuth: load"
     if np.any(edges[np.ix_(rollers, rings)]):
         title += "\n▲ loaded roller end"
     ax.legend(title=title, fontsize=SMALL, title_fontsize=SMALL, loc="best")
     return ax
+
+
+def _of_row(solution, row):
+    return f", row {row}" if len(solution.row_sizes) > 1 else ""
 
 
 def _position(solution, mine):
@@ -168,7 +173,7 @@ def pressure_map(
     ax.set_ylim(position[0], position[-1])
     ax.set_xlabel("azimuth of the roller [°]")
     ax.set_ylabel("position along the roller [mm]")
-    ax.set_title(f"Contact pressure, {raceway} raceway")
+    ax.set_title(f"Contact pressure, {raceway} raceway{_of_row(solution, row)}")
     return ax
 
 

@@ -279,6 +279,8 @@ def _solve(
     kind = BallSolution if is_ball(element.bearing) else RollerSolution
     return kind(
         **fields,
+        free=tuple(f for f, yes in zip(FREEDOMS, is_free, strict=True) if yes),
+        moving_ring=RINGS[1 - RINGS.index(fixed_ring)],
         result=result,
         unrestrained=unrestrained.astype(jnp.int32),
         stats=stats,

@@ -4,11 +4,12 @@ from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel, Evaluated, Row, motions
-from ..element.frame import FREEDOMS
+from ..element.frame import FREEDOMS, RINGS
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .balls import BallResults, ball_results, ball_warnings
@@ -56,7 +57,11 @@ class Solution(eqx.Module):
         spring_travel: What each row's ring has slid on its seat, closing the row
             (row,) [m], zero without a spring; `None` if no row has one.
         spring_force: Force of each row's spring (row,) [N], or `None`.
-        row_sizes: Number of rolling elements of each row. Static.
+        row_sizes: Number of rolling elements of each row.
+        free: Freedoms of the moving ring that were free.
+        moving_ring: "outer" or "inner".
+
+    Static: row_sizes, free, moving_ring.
     """
 
     displacement: Ring
@@ -71,6 +76,8 @@ class Solution(eqx.Module):
     spring_travel: Float[Array, " row"] | None
     spring_force: Float[Array, " row"] | None
     row_sizes: tuple[int, ...] = eqx.field(static=True)
+    free: tuple[str, ...] = eqx.field(static=True)
+    moving_ring: str = eqx.field(static=True)
 
     if TYPE_CHECKING:
         # Which results there are depends on the rolling elements.
@@ -137,9 +144,34 @@ def message(solution: Solution, moving_ring: str) -> str:
 def warnings(solution: Solution) -> list[str]:
     """Physics warnings of a concrete, single solution, one sentence each."""
     if isinstance(solution, BallSolution):
-        return ball_warnings(solution)
+        return [*_slack(solution), *ball_warnings(solution)]
     assert isinstance(solution, RollerSolution)
-    return roller_warnings(solution)
+    return [*_slack(solution), *roller_warnings(solution)]
+
+
+def _slack(solution: Solution) -> list[str]:
+    """A free freedom that nothing holds where it is, though no load pushes it."""
+    first = 6 * RINGS.index(solution.moving_ring)
+    index = [FREEDOMS.index(name) for name in solution.free]
+    if not index:
+        return []
+    k = np.asarray(solution.stiffness)[first : first + 6, first : first + 6]
+    k = k[np.ix_(index, index)]
+    size = np.diag(k).max(initial=0.0, where=np.array(index) < 3)
+    turn = np.diag(k).max(initial=0.0, where=np.array(index) >= 3)
+    # Rotations in metres, by the arm at which both are alike.
+    arm = np.sqrt(turn / size) if size > 0 and turn > 0 else 1.0
+    scale = np.where(np.array(index) < 3, 1.0, 1.0 / arm)
+    values, vectors = np.linalg.eigh(0.5 * scale * (k + k.T) * scale[:, None])
+    loose = np.flatnonzero(np.abs(values) <= 1e-9 * np.abs(values).max())
+    names = {solution.free[int(np.abs(vectors[:, i]).argmax())] for i in loose}
+    if not names:
+        return []
+    listed = ", ".join(name for name in FREEDOMS if name in names)
+    return [
+        f"no stiffness in {listed} of the {solution.moving_ring} ring: nothing holds it"
+        " there, and its place is arbitrary"
+    ]
 
 
 def describe(

@@ -132,10 +132,6 @@ def test_four_point_geometry():
             lambda: bj.BearingElement(deep(), line_law=bj.Palmgren()),
             "`line_law` is for rollers",
         ),
-        (
-            lambda: bj.BearingElement(deep(), kinematics=bj.Finite()),
-            "`kinematics` is for rollers",
-        ),
     ],
 )
 def test_wrong_calls_say_what_is_allowed(make, message):

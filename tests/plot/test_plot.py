@@ -325,6 +325,10 @@ def test_pages_of_balls_and_sets():
         page = bj.plot.overview(element.bearing, solution, name)
         titles = [ax.get_title() for ax in page.axes]
         assert titles[0] == "Axial section, to scale"
+        if len(solution.row_sizes) > 1:
+            # The page shows the row with the largest load.
+            tops = np.asarray(solution.roller_load).reshape(2, -1).max(axis=1)
+            assert titles[3].endswith(f", row {tops.argmax()}")
         if isinstance(solution, bj.BallSolution):
             ellipse = page.axes[3].patches[0]
             assert isinstance(ellipse, Ellipse)

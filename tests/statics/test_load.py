@@ -110,6 +110,15 @@ def test_edge_loaded_rollers_are_warned_of(crowned):
     assert text and all("edge-loaded" in line for line in text)
 
 
+def test_a_freedom_without_stiffness_is_warned_of(crowned):
+    load = [0.0, -500.0, 0, 0, 0, 0]
+    s = bj.solve_load(crowned, load, free=["ux", "uy", "uz"])
+    (line,) = (t for t in bj.statics.warnings(s) if "no stiffness" in t)
+    assert line.startswith("no stiffness in uz of the inner ring: nothing holds it")
+    held = bj.solve_load(crowned, load, free=["ux", "uy"])
+    assert not any("no stiffness" in t for t in bj.statics.warnings(held))
+
+
 @pytest.mark.parametrize(
     "load, name",
     [([0, 0, -6000.0, 0, 0, 0], "uz"), ([3000.0, 0, 0, 0, 0, 0], "uz")],
