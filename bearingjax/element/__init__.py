@@ -11,6 +11,7 @@ from .ball_speed import OuterControl as OuterControl
 from .ball_speed import ball_kinematics as ball_kinematics
 from .ball_speed import ball_mass as ball_mass
 from .bearing_element import BearingElement as BearingElement
+from .bearing_model import BearingModel as BearingModel
 from .bearing_model import Evaluated as Evaluated
 from .bearing_model import Row as Row
 from .bearing_model import azimuths as azimuths

@@ -182,35 +182,45 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             ValueError: If `q` is not of shape (12,).
             TypeError: If `speed` is not a `Speed`.
         """
-        return self.model(speed).energy(q)
+        return self._at("energy", q, speed)
 
     def force(self, q: Ring, speed: Speed | None = None) -> Ring:
         """External load that holds the rings where they are [N, N m].
 
         Args, raises: as `energy`.
         """
-        return self.model(speed).force(q)
+        return self._at("force", q, speed)
 
     def stiffness(self, q: Ring, speed: Speed | None = None) -> RingStiffness:
         """Tangent stiffness d(force)/dq by static condensation [N/m, N, N m].
 
         Args, raises: as `energy`.
         """
-        return self.model(speed).stiffness(q)
+        return self._at("stiffness", q, speed)
 
     def evaluate(self, q: Ring, speed: Speed | None = None) -> Evaluated:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
         Args, raises: as `energy`.
         """
-        return self.model(speed).evaluate(q)
+        return self._at("evaluate", q, speed)
 
     def rows(self, q: Ring, speed: Speed | None = None) -> tuple[Row, ...]:
         """The rolling elements of every row, solved at given ring freedoms.
 
         Args, raises: as `energy`.
         """
-        return self.model(speed).solve(q)
+        return self._at("solve", q, speed)
+
+    def _at(self, name: str, q, speed):
+        """A function of the model, of all in one program if nothing is traced yet."""
+        if is_traced(q):
+            return getattr(self.model(speed), name)(q)
+        return self._jitted(name, q, speed)
+
+    @eqx.filter_jit
+    def _jitted(self, name, q, speed):
+        return getattr(self.model(speed), name)(q)
 
     def _row(self, part: SetRow, speed, alone) -> RowModel:
         deviation = getattr(part.bearing, "ball_deviation", None)
