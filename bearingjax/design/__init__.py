@@ -1,12 +1,12 @@
 """What stands on the drawing: materials, profiles, ribs, bearings. Data, no solving."""
 
 from .ball import AbstractBallBearing as AbstractBallBearing
-from .ball import AngularContactBallBearing as AngularContactBallBearing
-from .ball import DeepGrooveBallBearing as DeepGrooveBallBearing
-from .ball import FourPointBallBearing as FourPointBallBearing
 from .ball import Groove as Groove
-from .ball import SelfAligningBallRow as SelfAligningBallRow
-from .ball import ThrustBallBearing as ThrustBallBearing
+from .ball_types import AngularContactBallBearing as AngularContactBallBearing
+from .ball_types import DeepGrooveBallBearing as DeepGrooveBallBearing
+from .ball_types import FourPointBallBearing as FourPointBallBearing
+from .ball_types import SelfAligningBallRow as SelfAligningBallRow
+from .ball_types import ThrustBallBearing as ThrustBallBearing
 from .bearing import AbstractRollerBearing as AbstractRollerBearing
 from .bearing import CylindricalRollerBearing as CylindricalRollerBearing
 from .bearing import NeedleRollerBearing as NeedleRollerBearing

@@ -6,7 +6,8 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from ..numerics.types import Scalar, as_real
-from .ball import AbstractBallBearing, SelfAligningBallRow
+from .ball import AbstractBallBearing
+from .ball_types import SelfAligningBallRow
 from .bearing import AbstractRollerBearing
 from .checks import concrete, non_negative, number, positive
 

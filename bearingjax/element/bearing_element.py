@@ -22,7 +22,7 @@ from ..design.checks import is_traced
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Ring, RingStiffness, Scalar
-from .ball import ball_model
+from .ball_model import ball_model
 from .ball_speed import AbstractRacewayControl, OuterControl
 from .bearing_model import BearingModel, Evaluated, Row, RowModel
 from .constants import contact_constants

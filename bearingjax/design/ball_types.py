@@ -1,0 +1,350 @@
+"""The types of ball bearings: what each adds to `AbstractBallBearing`."""
+
+import math
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from ..numerics.types import Scalar, as_real
+from .ball import AbstractBallBearing, Groove
+from .checks import check, concrete, in_range, number, positive
+
+
+class DeepGrooveBallBearing(AbstractBallBearing):
+    """Deep groove ball bearing: one full groove per ring, axial load both ways.
+
+    At zero displacement the rings are centred, axially too: with clearance no ball
+    touches. Attributes are those of `AbstractBallBearing`, and one of
+        radial_internal_clearance: Diametral play; negative is preload [m].
+        contact_angle: Free contact angle, from 0 to below π/2 [rad].
+    Neither: no clearance.
+
+    Traced: all fields but `n_balls`.
+    """
+
+    radial_internal_clearance: Scalar | None = eqx.field(
+        converter=as_real, default=None, kw_only=True
+    )
+    contact_angle: Scalar | None = eqx.field(
+        converter=as_real, default=None, kw_only=True
+    )
+
+    @property
+    def clearance(self):
+        if self.radial_internal_clearance is not None:
+            return self.radial_internal_clearance
+        if self.contact_angle is not None:
+            return clearance_of(self.contact_angle, self.centre_distance)
+        return jnp.zeros_like(self.pitch_diameter)
+
+    @property
+    def free_contact_angle(self):
+        if self.contact_angle is not None:
+            return self.contact_angle
+        return super().free_contact_angle
+
+    @property
+    def free_cosine(self):
+        return jnp.minimum(1.0, 1.0 - 0.5 * self.clearance / self.centre_distance)
+
+    @property
+    def grooves(self):
+        outer, inner = self.centre_distances
+        # Radially the groove centres are nearer by half of the diametral play.
+        share = 1.0 - 0.5 * self.clearance / self.centre_distance
+        zero, radius = jnp.zeros_like(outer), 0.5 * self.ball_diameter
+        one = jnp.ones_like(outer)
+        return (
+            Groove(True, zero, -share * outer, outer + radius, False, one),
+            Groove(False, zero, share * inner, inner + radius, False, one),
+        )
+
+    def __check_init__(self):
+        clearance, angle = self.radial_internal_clearance, self.contact_angle
+        if clearance is not None and angle is not None:
+            raise ValueError(
+                f"{type(self).__name__}: `radial_internal_clearance` and"
+                " `contact_angle` are both given; one follows from the other."
+            )
+        if angle is not None:
+            in_range(
+                self,
+                "contact_angle",
+                angle,
+                "rad",
+                0.0,
+                0.5 * np.pi,
+                include_low=True,
+            )
+        if clearance is None:
+            return
+        number(self, "radial_internal_clearance", clearance, "m")
+        numbers = concrete(clearance, self.centre_distance)
+        if numbers is not None:
+            most = 2.0 * numbers[1]
+            allowed = (
+                f"below {most:.6g} m in size, where the groove centres meet (metres"
+                " meant?)"
+            )
+            fits = abs(numbers[0]) < most
+            check(self, "radial_internal_clearance", clearance, "m", fits, allowed)
+
+
+class AngularContactBallBearing(AbstractBallBearing):
+    """Single-row angular contact ball bearing.
+
+    At zero displacement the balls just touch, at the contact angle. Beyond the bottom
+    of its groove each raceway goes on as a cylinder (the cut shoulder): the bearing
+    carries axial load on one side only, an inner-ring load along +z.
+
+    Attributes are those of `AbstractBallBearing`, and
+        contact_angle: Free contact angle, above 0 and below π/2 [rad].
+
+    Traced: all fields but `n_balls`.
+    """
+
+    contact_angle: Scalar = eqx.field(converter=as_real, kw_only=True)
+
+    @property
+    def free_contact_angle(self):
+        return self.contact_angle
+
+    @property
+    def free_cosine(self):
+        return jnp.cos(self.contact_angle)
+
+    @property
+    def clearance(self):
+        return clearance_of(self.contact_angle, self.centre_distance)
+
+    @property
+    def is_one_sided(self):
+        return True
+
+    @property
+    def grooves(self):
+        return _pair(self, self.free_contact_angle, open_side=True)
+
+    def __check_init__(self):
+        in_range(self, "contact_angle", self.contact_angle, "rad", 0.0, 0.5 * np.pi)
+
+
+class ThrustBallBearing(AbstractBallBearing):
+    """Single-direction thrust ball bearing, contact angle 90 degrees.
+
+    The inner ring is the shaft washer, at -z of the balls. Attributes are those of
+    `AbstractBallBearing`.
+
+    Traced: all fields but `n_balls`.
+    """
+
+    @property
+    def free_contact_angle(self):
+        return jnp.full_like(self.pitch_diameter, 0.5 * np.pi)
+
+    @property
+    def free_cosine(self):
+        return jnp.zeros_like(self.pitch_diameter)
+
+    @property
+    def clearance(self):
+        return 2.0 * self.centre_distance
+
+    @property
+    def groove_axis(self):
+        return 0.5 * np.pi
+
+    @property
+    def is_one_sided(self):
+        return True
+
+    @property
+    def grooves(self):
+        outer, inner = self.centre_distances
+        zero, radius = jnp.zeros_like(outer), 0.5 * self.ball_diameter
+        one = jnp.ones_like(outer)
+        return (
+            Groove(True, -outer, zero, outer + radius, True, one),
+            Groove(False, inner, zero, inner + radius, True, one),
+        )
+
+
+class FourPointBallBearing(AbstractBallBearing):
+    """Four-point contact ball bearing: each raceway is two arcs (a split ring).
+
+    The arcs are ground as one groove with a shim between the halves; without it a
+    ball rests on both arcs of a ring, at plus and minus the shim angle.
+
+    Attributes are those of `AbstractBallBearing`, and
+        shim_angle: Angle at which a ball rests in the arcs of one ring [rad].
+        radial_internal_clearance: Diametral play; negative is preload [m].
+
+    Traced: all fields but `n_balls`.
+    """
+
+    shim_angle: Scalar = eqx.field(converter=as_real, kw_only=True)
+    radial_internal_clearance: Scalar = eqx.field(
+        converter=as_real, default=0.0, kw_only=True
+    )
+
+    @property
+    def clearance(self):
+        return self.radial_internal_clearance
+
+    @property
+    def free_cosine(self):
+        play = 0.5 * self.clearance / self.centre_distance
+        return jnp.minimum(1.0, jnp.cos(self.shim_angle) - play)
+
+    @property
+    def grooves(self):
+        outer, inner = self.centre_distances
+        half = 0.25 * self.clearance
+        sine, cosine = jnp.sin(self.shim_angle), jnp.cos(self.shim_angle)
+        radius = 0.5 * self.ball_diameter
+        out = []
+        for on_outer, distance in ((True, outer), (False, inner)):
+            sign = -1.0 if on_outer else 1.0
+            # First the arc that carries with a positive contact angle.
+            for side in (sign, -sign):
+                out.append(
+                    Groove(
+                        on_outer,
+                        side * distance * sine,
+                        sign * (distance * cosine - half),
+                        distance + radius,
+                        False,
+                        jnp.cos(jnp.arcsin(distance * sine / (distance + radius))),
+                    )
+                )
+        return tuple(out)
+
+    def __check_init__(self):
+        in_range(self, "shim_angle", self.shim_angle, "rad", 0.0, 0.5 * np.pi)
+        clearance = self.radial_internal_clearance
+        number(self, "radial_internal_clearance", clearance, "m")
+        numbers = concrete(clearance, self.centre_distance, self.shim_angle)
+        if numbers is not None:
+            most = 2.0 * numbers[1] * math.cos(numbers[2])
+            allowed = (
+                f"below {most:.6g} m in size, where the groove centres meet (metres"
+                " meant?)"
+            )
+            fits = abs(numbers[0]) < most
+            check(self, "radial_internal_clearance", clearance, "m", fits, allowed)
+
+
+class SelfAligningBallRow(AbstractBallBearing):
+    """One row of a self-aligning ball bearing: its outer raceway is a sphere.
+
+    The centre of the sphere is the origin of the bearing, on the axis, so that the
+    rings tilt freely about it. `BearingSet.self_aligning` makes the bearing of two
+    such rows. At zero displacement the rings are centred; half of the play stands at
+    each raceway.
+
+    Attributes are those of `AbstractBallBearing` without `outer_osculation`, which
+    follows from the sphere, and
+        row_offset: z of the row from the middle of the bearing [m].
+        radial_internal_clearance: Diametral play; negative is preload [m].
+
+    Traced: all fields but `n_balls`.
+    """
+
+    row_offset: Scalar = eqx.field(converter=as_real, kw_only=True)
+    radial_internal_clearance: Scalar = eqx.field(
+        converter=as_real, default=0.0, kw_only=True
+    )
+
+    @property
+    def free_contact_angle(self):
+        return jnp.arctan2(self.row_offset, 0.5 * self.pitch_diameter)
+
+    @property
+    def free_cosine(self):
+        return jnp.cos(self.free_contact_angle)
+
+    @property
+    def groove_axis(self):
+        return self.free_contact_angle
+
+    @property
+    def clearance(self):
+        return self.radial_internal_clearance
+
+    @property
+    def centre_distances(self):
+        gap = 0.25 * self.clearance * self.free_cosine
+        outer = jnp.sqrt(0.25 * self.pitch_diameter**2 + self.row_offset**2)
+        return outer + gap, (self.inner_osculation - 0.5) * self.ball_diameter
+
+    @property
+    def play(self):
+        # Axially a row closes with the sine of its contact angle, radially its cosine.
+        longer = jnp.maximum(1.0, 0.5 * self.pitch_diameter / self.row_offset)
+        return 0.5 * self.clearance * longer
+
+    @property
+    def axial_place(self):
+        return self.row_offset
+
+    @property
+    def grooves(self):
+        outer, inner = self.centre_distances
+        gap = 0.25 * self.clearance * self.free_cosine
+        near = inner - gap
+        sine, cosine = jnp.sin(self.free_contact_angle), self.free_cosine
+        radius, pitch = 0.5 * self.ball_diameter, 0.5 * self.pitch_diameter
+        one = jnp.ones_like(inner)
+        return (
+            Groove(True, -self.row_offset, -pitch, outer + radius, False, one),
+            Groove(False, near * sine, near * cosine, inner + radius, False, one),
+        )
+
+    def __check_init__(self):
+        positive(self, "row_offset", self.row_offset, "m")
+        clearance = self.radial_internal_clearance
+        number(self, "radial_internal_clearance", clearance, "m")
+        numbers = concrete(clearance, self.centre_distances[1], self.free_cosine)
+        if numbers is not None:
+            most = 4.0 * numbers[1] / numbers[2]
+            allowed = (
+                f"below {most:.6g} m in size, where the inner groove centre meets the"
+                " ball (metres meant?)"
+            )
+            fits = abs(numbers[0]) < most
+            check(self, "radial_internal_clearance", clearance, "m", fits, allowed)
+
+    def _check_groove(self, ring):
+        if ring == "inner":
+            super()._check_groove(ring)
+            return
+        for name in ("outer_osculation", "outer_shoulder"):
+            if getattr(self, name) is not None:
+                raise ValueError(
+                    f"{type(self).__name__}: `{name}` is given, but the outer raceway"
+                    " is a sphere about the middle of the bearing."
+                )
+
+
+def clearance_of(contact_angle: Scalar, centre_distance: Scalar) -> Scalar:
+    """Radial internal clearance of a free contact angle, s = 2A (1 - cos α0) [m].
+
+    Args:
+        contact_angle: Free contact angle α0 [rad].
+        centre_distance: Distance A of the groove centres [m].
+
+    Source: Harris, Rolling Bearing Analysis, geometry of ball bearings.
+    """
+    return 4.0 * centre_distance * jnp.sin(0.5 * contact_angle) ** 2
+
+
+def _pair(bearing, angle, open_side):
+    outer, inner = bearing.centre_distances
+    sine, cosine = jnp.sin(angle), jnp.cos(angle)
+    radius = 0.5 * bearing.ball_diameter
+    one = jnp.ones_like(outer)
+    return (
+        Groove(True, -outer * sine, -outer * cosine, outer + radius, open_side, one),
+        Groove(False, inner * sine, inner * cosine, inner + radius, open_side, one),
+    )
