@@ -23,6 +23,8 @@ class PreloadSpring(eqx.Module):
             constant force.
 
     The spring pushes, it does not pull: beyond travel force/stiffness it is slack.
+    Pushed back it gives way without end: there is no stop. Mounted, it presses with
+    a little less than `force`, by the travel in which the row takes it up.
 
     Traced: all fields.
     """
@@ -232,6 +234,12 @@ def is_self_aligning(bearing: Bearing | BearingSet) -> bool:
     """Whether its rings tilt freely."""
     rows = rows_of(bearing)
     return all(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
+
+
+def has_sphere(bearing: Bearing | BearingSet) -> bool:
+    """Whether an outer raceway is a sphere, which asks for finite rotations."""
+    rows = rows_of(bearing)
+    return any(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
 
 
 def pitch_radius(bearing: Bearing | BearingSet) -> Scalar:

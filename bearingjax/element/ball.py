@@ -168,6 +168,10 @@ class AbstractBallModel(AbstractModel):
         share = jnp.where(share > 0.0, jnp.minimum(share, 1.0), 1.0)
         return bent(c, load, step * jnp.min(jnp.where(entered, share, 1.0)))
 
+    @property
+    def may_leave(self):
+        return self.washers or super().may_leave
+
     def thrown_off(self, rings, x):
         away = super().thrown_off(rings, x)
         if not self.washers:

@@ -19,9 +19,11 @@ class FiniteBall(AbstractBallModel):
     axes (radial, tangential, axial) at the ball's azimuth (12,). The ball stays in
     that axial section of the outer ring's node; x counts from there. Forces are
     conjugate to the rotation vectors: moments about the axes for small tilts, and
-    about the axis of a tilt of any size.
+    about the axis of a tilt of any size. Rings are turned about their axis first (which
+    they do not feel), then tilted by (gx, gy, 0). Tractions and gyroscopic moment act
+    at the undisturbed place of the ball, as for small tilts.
 
-    A ring is a body of revolution: only its axis e = R z counts, and of the ball its
+    A ring is a body of revolution: only its axis e counts, and of the ball its
     height along that axis and its distance from it.
 
     Attributes:
@@ -40,6 +42,10 @@ class FiniteBall(AbstractBallModel):
     @property
     def places_itself(self):
         return True
+
+    @property
+    def n_forces(self):
+        return 3
 
     def transform(self, azimuth):
         c, s = jnp.cos(azimuth), jnp.sin(azimuth)
@@ -99,7 +105,7 @@ class FiniteBall(AbstractBallModel):
 
     def inertia(self, rings, x):
         out = super().inertia(rings, x)
-        return None if out is None else out.at[2].add(self.along * out[1])
+        return None if out is None else out.at[2].add((self.along + x[0]) * out[1])
 
     def derivatives(self, rings, x, of_own=False):
         contacts = self.contacts(rings, x)

@@ -14,8 +14,8 @@ from ..design import (
     Bearing,
     BearingSet,
     SetRow,
+    has_sphere,
     is_ball,
-    is_self_aligning,
     rows_of,
 )
 from ..design.checks import is_traced
@@ -115,11 +115,17 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 )
         self.bearing = bearing
         self.line_law = None if balls else line_law or Palmgren()
-        aligning = is_self_aligning(bearing)
+        aligning = has_sphere(bearing)
         if aligning and isinstance(kinematics, Linearised):
             raise ValueError(
                 "BearingElement: `kinematics` is Linearised(), with which a"
                 " self-aligning bearing would resist its tilt; use Finite()."
+            )
+        sprung = any(row.spring is not None for row in rows_of(bearing))
+        if balls and sprung and (aligning or isinstance(kinematics, Finite)):
+            raise ValueError(
+                "BearingElement: a row has a spring, whose ring would slide along a"
+                " tilted seat; with Finite() kinematics that is not modelled."
             )
         self.kinematics = kinematics or (Finite() if aligning else Linearised())
         self.quadrature = None if balls else quadrature or ContactMapped()

@@ -356,7 +356,10 @@ class BearingModel(eqx.Module):
             result=worst(jnp.concatenate([*springs, *(s.result for s in states)])),
             steps=jnp.max(jnp.concatenate([s.steps for s in states])),
             residual=jnp.max(jnp.concatenate([s.residual for s in states])),
-            magnitude=_total(jnp.sum(jnp.abs(share[:, :2])) for share in shares),
+            magnitude=_total(
+                jnp.sum(jnp.abs(share[:, : row.model.element.n_forces]))
+                for row, share in zip(rows, shares, strict=True)
+            ),
         )
 
 

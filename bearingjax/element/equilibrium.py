@@ -162,11 +162,12 @@ def _solve(model, rings, magnitude, minimiser):
     shaping = shape if model.shapes_steps else None
     minimum = minimiser.minimise(function, start, radius, shaping)
     result = minimum.result
-    if not model.is_convex:
+    # Where part of the forces has no potential a pivot says nothing.
+    if model.has_potential and not model.is_convex:
         h = model.derivatives(rings, minimum.x, of_own=True).hessian
         saddle = (smallest_pivot(h) < -1e-9) & (result == Result.CONVERGED)
         result = jnp.where(saddle, int(Result.SADDLE), result)
-    if model.inertia_size() is not None:
+    if model.may_leave:
         # Thrown off: inertia along a direction that only the guide holds.
         lost = model.thrown_off(rings, minimum.x) & (result != int(Result.NON_FINITE))
         result = jnp.where(lost, int(Result.NO_LOAD_PATH), result)

@@ -117,7 +117,18 @@ class AbstractModel(eqx.Module):
             rings: Motion of both rings in the element's axes (r,) [m, rad].
             x: Own unknowns (n,) [m].
         """
-        return dot(x, x) > (10.0 * self.diameter) ** 2
+        off = x - self.amid(rings)
+        return dot(off, off) > (10.0 * self.diameter) ** 2
+
+    @property
+    def may_leave(self) -> bool:
+        """Whether `thrown_off` is to be asked. Static."""
+        return self.inertia_size() is not None
+
+    @property
+    def n_forces(self) -> int:
+        """How many of the first of `rings` are displacements. Static."""
+        return 2
 
     @property
     def shapes_steps(self) -> bool:

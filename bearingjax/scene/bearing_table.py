@@ -65,6 +65,9 @@ def read_bearing(top: Table) -> tuple[Bearing | BearingSet, float | None]:
     """
     table = top.table("bearing", required=True)
     kind = table.choice("type", (*ROLLERS, *BALLS))
+    if kind == "self_aligning_ball" and "outer_osculation" in table:
+        problem = "the outer raceway is a sphere about the middle of the bearing"
+        raise table.error("outer_osculation", problem)
     bearing = _balls(table, kind) if kind in BALLS else _rollers(table, kind)
     if isinstance(bearing, SelfAligningBallRow):
         if "set" in top:
@@ -77,6 +80,10 @@ def read_bearing(top: Table) -> tuple[Bearing | BearingSet, float | None]:
 def _set(table: Table, bearing: Bearing) -> tuple[BearingSet, float | None]:
     arrangement = table.choice("arrangement", SETS)
     if arrangement == "tandem":
+        for key in ("preload_force", "preload_offset", "spring_force"):
+            if key in table:
+                problem = "is for rows that face each other; those of a tandem do not"
+                raise table.error(key, problem)
         spacing, count = table.quantity("spacing", "length"), table.integer("count", 2)
         with table.building():
             return BearingSet.tandem(bearing, spacing, count), None

@@ -216,6 +216,11 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         problem = f"{', '.join(both)} is both free and prescribed; choose one"
         raise operating.error("free", problem)
     load = _components(operating, "load", LOADS, ("force", "moment"))
+    for freedom in prescribed:
+        name = LOADS[FREEDOMS.index(freedom)]
+        if load.get(name):
+            problem = f"{name} acts on {freedom}, which is prescribed; choose one"
+            raise operating.error("load", problem)
     rpm = {r: operating.quantity(f"{r}_speed", "speed", 0.0) for r in RINGS}
     return Scene(
         name=name,

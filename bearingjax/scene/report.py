@@ -54,8 +54,9 @@ def _springs(bearing, solution):
     if solution.spring_force is None:
         return []
     return [
-        f"row {k}: its spring presses with {float(solution.spring_force[k]):.5g} N, its"
-        f" ring has slid by {1e6 * float(solution.spring_travel[k]):.4g} µm"
+        f"row {k} (z = {1e3 * _place(row):.4g} mm): its spring presses with"
+        f" {float(solution.spring_force[k]):.5g} N after"
+        f" {1e6 * float(solution.spring_travel[k]):.4g} µm of travel"
         for k, row in enumerate(bearing.rows)
         if row.spring is not None
     ]

@@ -23,6 +23,7 @@ from ..design import (
     pitch_radius,
     rows_of,
 )
+from ..design.checks import is_traced
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS, LOADS, RINGS
@@ -83,7 +84,8 @@ def solve_load(
             `None` is no load. A load on a freedom that neither is free nor
             prescribed goes into the support.
         prescribed: Displacements given instead of loads, by freedom name [m, rad];
-            gz turns the set of rollers.
+            their loads are results, and a `load` on them an error; gz turns the set
+            of rollers.
         free: Freedoms of the moving ring that may move. Default: all that the
             bearing can restrain and that are not prescribed; a load on any other is
             then "no load path". The others stay at zero.
@@ -128,11 +130,24 @@ def solve_load(
         raise ValueError(
             f"solve_load: {', '.join(both)} is both free and prescribed; choose one."
         )
+    if not is_traced(load):
+        for name in prescribed:
+            index = FREEDOMS.index(name)
+            if load[index] != 0:
+                raise ValueError(
+                    f"solve_load: `load` has {LOADS[index]}, but {name} is prescribed;"
+                    " its load is a result. Choose one."
+                )
     if "gz" in free:
         raise ValueError(
             "solve_load: `free` contains gz, which no rolling bearing restrains; it"
             " is operating data (prescribe it to turn the set of rollers)."
         )
+    for k, row in enumerate(rows_of(element.bearing)):
+        if row.spring is not None and "uz" not in restrained_freedoms(row.bearing):
+            raise ValueError(
+                f"solve_load: row {k} has a spring, but holds no axial load."
+            )
     is_free = tuple(name in free for name in FREEDOMS)
     # With the default choice a load that nothing can carry is an error of the scene.
     held = tuple(name in prescribed or not default_free for name in FREEDOMS)
@@ -281,6 +296,7 @@ def _solve(
         **fields,
         free=tuple(f for f, yes in zip(FREEDOMS, is_free, strict=True) if yes),
         moving_ring=RINGS[1 - RINGS.index(fixed_ring)],
+        pitch_radius=radius,
         result=result,
         unrestrained=unrestrained.astype(jnp.int32),
         stats=stats,

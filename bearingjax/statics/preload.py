@@ -4,9 +4,10 @@ from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 
-from ..design import Bearing, BearingSet, SetRow
-from ..design.checks import positive
+from ..design import Bearing, BearingSet, SetRow, is_self_aligning
+from ..design.checks import concrete, is_traced
 from ..element.bearing_element import BearingElement
 from ..numerics.types import Scalar
 from .load import restrained_freedoms, solve_load
@@ -27,13 +28,20 @@ def preload(
         throw: Raise if a solve fails; otherwise the offsets are then NaN.
 
     Returns:
-        Element with new `inner_offset`, differentiable with respect to design and
+        Element with new `inner_offset` (of a pair plus and minus half of what is
+        ground off in all), differentiable with respect to design and
         force (implicit function theorem).
 
     Raises:
-        ValueError: If the bearing is no such set, or a row holds no axial load.
+        TypeError: If `element` is no BearingElement.
+        ValueError: As `check_preload`.
         SolveError: If a solve fails and `throw` is set.
     """
+    if not isinstance(element, BearingElement):
+        raise TypeError(
+            f"preload: `element` is a {type(element).__name__}; it must be a"
+            " BearingElement (the contact laws count)."
+        )
     bearing = element.bearing
     check_preload(bearing, force)
     offsets = {}
@@ -68,17 +76,21 @@ def check_preload(bearing: Bearing | BearingSet, force: Scalar | float) -> None:
 
     Raises:
         ValueError: If it is no set, has no rows that face each other, a row that holds
-            no axial load or one with a spring, or if the force is not positive.
+            no axial load, one solid ring or a spring, or if the force is not positive.
     """
     problem = None
     if not isinstance(bearing, BearingSet):
         problem = "a bearing alone is preloaded by its clearance or by a load"
     elif {row.mirrored for row in bearing.rows} != {False, True}:
         problem = "no rows face each other"
+    elif is_self_aligning(bearing):
+        problem = "the rows of a self-aligning bearing share one inner ring"
     elif any(row.spring is not None for row in bearing.rows):
         problem = "a row has a spring, which presses it"
     elif any("uz" not in restrained_freedoms(row.bearing) for row in bearing.rows):
         problem = "a row holds no axial load"
     if problem:
         raise ValueError(f"preload: not by force: {problem}.")
-    positive(bearing, "preload force", force, "N")
+    numbers = concrete(force)
+    if not is_traced(force) and not (numbers and 0 < numbers[0] < np.inf):
+        raise ValueError(f"preload: `force` is {force} N; it must be above 0 N.")

@@ -58,6 +58,7 @@ class Solution(eqx.Module):
             (row,) [m], zero without a spring; `None` if no row has one.
         spring_force: Force of each row's spring (row,) [N], or `None`.
         row_sizes: Number of rolling elements of each row.
+        pitch_radius: Of the bearing, the largest of a set [m].
         free: Freedoms of the moving ring that were free.
         moving_ring: "outer" or "inner".
 
@@ -75,6 +76,7 @@ class Solution(eqx.Module):
     stats: Stats
     spring_travel: Float[Array, " row"] | None
     spring_force: Float[Array, " row"] | None
+    pitch_radius: Scalar
     row_sizes: tuple[int, ...] = eqx.field(static=True)
     free: tuple[str, ...] = eqx.field(static=True)
     moving_ring: str = eqx.field(static=True)
@@ -112,10 +114,10 @@ def message(solution: Solution, moving_ring: str) -> str:
     if result is Result.NO_LOAD_PATH:
         if int(solution.unrestrained) < 0:
             return (
-                "No load path for a rolling element: inertia throws it off, because"
-                " nothing holds it (a roller without a rib, along its axis; a ball of a"
-                " thrust bearing, out of its grooves). Add the rib or axial load, or"
-                " lower the speed."
+                "No load path for a rolling element: it leaves its raceway, because"
+                " nothing holds it (a turning roller without a rib, along its axis; a"
+                " ball of a thrust bearing, out of its groove). Add the rib or axial"
+                " load, or lower the speed."
             )
         freedom = FREEDOMS[int(solution.unrestrained)]
         return (
@@ -130,8 +132,9 @@ def message(solution: Solution, moving_ring: str) -> str:
         )
     if result is Result.SADDLE:
         return (
-            "A roller's equilibrium is a saddle, not a minimum (finite kinematics):"
-            " use linearised kinematics, or more load or length of contact."
+            "The equilibrium of a roller or ball is a saddle, not a minimum (finite"
+            " kinematics): use linearised kinematics, or more load or length of"
+            " contact."
         )
     return (
         f"Step limit reached after {int(stats.iterations)} steps, relative residual"
@@ -144,9 +147,27 @@ def message(solution: Solution, moving_ring: str) -> str:
 def warnings(solution: Solution) -> list[str]:
     """Physics warnings of a concrete, single solution, one sentence each."""
     if isinstance(solution, BallSolution):
-        return [*_slack(solution), *ball_warnings(solution)]
-    assert isinstance(solution, RollerSolution)
-    return [*_slack(solution), *roller_warnings(solution)]
+        special = ball_warnings(solution)
+    else:
+        assert isinstance(solution, RollerSolution)
+        special = roller_warnings(solution)
+    return [*_slack(solution), *_idle_rows(solution), *special]
+
+
+def _idle_rows(solution: Solution) -> list[str]:
+    """Rows of a loaded set that pass nothing, and springs that are slack."""
+    load = np.asarray(solution.roller_load).min(axis=1)
+    ends = np.cumsum(solution.row_sizes)
+    tops = [part.max() for part in np.split(load, ends[:-1])]
+    out = []
+    for k, top in enumerate(tops):
+        if max(tops) > 0 and top <= 1e-9 * max(tops):
+            out.append(f"row {k} is unloaded: the other rows or their springs hold all")
+    travel, force = solution.spring_travel, solution.spring_force
+    if travel is not None and force is not None:
+        slack = (np.asarray(force) == 0) & (np.asarray(travel) != 0)
+        out += [f"the spring of row {k} is slack" for k in np.flatnonzero(slack)]
+    return out
 
 
 def _slack(solution: Solution) -> list[str]:
@@ -155,15 +176,13 @@ def _slack(solution: Solution) -> list[str]:
     index = [FREEDOMS.index(name) for name in solution.free]
     if not index:
         return []
+    scale = np.repeat([1.0, 1.0 / float(solution.pitch_radius)], 3)
     k = np.asarray(solution.stiffness)[first : first + 6, first : first + 6]
-    k = k[np.ix_(index, index)]
-    size = np.diag(k).max(initial=0.0, where=np.array(index) < 3)
-    turn = np.diag(k).max(initial=0.0, where=np.array(index) >= 3)
-    # Rotations in metres, by the arm at which both are alike.
-    arm = np.sqrt(turn / size) if size > 0 and turn > 0 else 1.0
-    scale = np.where(np.array(index) < 3, 1.0, 1.0 / arm)
-    values, vectors = np.linalg.eigh(0.5 * scale * (k + k.T) * scale[:, None])
-    loose = np.flatnonzero(np.abs(values) <= 1e-9 * np.abs(values).max())
+    k = 0.5 * scale * (k + k.T) * scale[:, None]
+    if not np.isfinite(k).all():
+        return []
+    values, vectors = np.linalg.eigh(k[np.ix_(index, index)])
+    loose = np.flatnonzero(np.abs(values) <= 1e-9 * np.abs(k).max())
     names = {solution.free[int(np.abs(vectors[:, i]).argmax())] for i in loose}
     if not names:
         return []

@@ -151,6 +151,21 @@ def test_row_in_a_set_is_placed_exactly():
     assert np.abs(np.asarray(turned.force)).max() < angle**2 * float(straight.magnitude)
 
 
+def test_free_tilts_are_warned_of(aligning):
+    load = np.zeros(6)
+    s = bj.solve_load(aligning, load, free=["ux", "uy", "uz", "gx", "gy"])
+    (line,) = bj.statics.warnings(s)
+    assert line.startswith("no stiffness in gx, gy of the inner ring")
+    # The forces between the rings: of a thrust pair they are all axial.
+    washer = balls(kind=bj.ThrustBallBearing)
+    pair = bj.BearingSet.back_to_back(washer, 0.03, 14e-6)
+    finite, small = (
+        evaluate(bj.BearingElement(pair, kinematics=kind), jnp.zeros(12))[0]
+        for kind in (bj.Finite(), bj.Linearised())
+    )
+    assert float(finite.magnitude) == pytest.approx(float(small.magnitude), rel=1e-9)
+
+
 def test_bad_input():
     with pytest.raises(ValueError, match="`outer_osculation` is given"):
         row(outer_osculation=0.52)
@@ -164,6 +179,12 @@ def test_bad_input():
         bj.BearingSet.self_aligning(balls())
     with pytest.raises(ValueError, match="must be 0 m"):
         bj.BearingSet((bj.SetRow(row(), 0.01),))
-    with pytest.raises(ValueError, match="resist its tilt"):
-        pair = bj.BearingSet.self_aligning(row())
-        bj.BearingElement(pair, kinematics=bj.Linearised())
+    mixed = bj.BearingSet((bj.SetRow(row()), bj.SetRow(balls(), 0.04)))
+    for bearing in (bj.BearingSet.self_aligning(row()), mixed):
+        with pytest.raises(ValueError, match="resist its tilt"):
+            bj.BearingElement(bearing, kinematics=bj.Linearised())
+        assert isinstance(bj.BearingElement(bearing).kinematics, bj.Finite)
+    spring = bj.PreloadSpring(300.0)
+    pair = bj.BearingSet.back_to_back(balls(), 0.02, spring=spring)
+    with pytest.raises(ValueError, match="with Finite"):
+        bj.BearingElement(pair, kinematics=bj.Finite())

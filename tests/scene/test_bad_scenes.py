@@ -427,7 +427,17 @@ SETTINGS = {
     "preload that pulls": (
         "ball_pair",
         "set={arrangement='face_to_face', spacing='9 mm', preload_force='-3 N'}",
-        "[set]: BearingSet: `preload force` is -3 N; it must be",
+        "[set]: preload: `force` is -3.0 N; it must be above 0 N.",
+    ),
+    "preload of a tandem": (
+        "ball_pair",
+        "set={arrangement='tandem', spacing='9 mm', spring_force='3 N'}",
+        "`set.spring_force`: is for rows that face each other; those of a tandem do",
+    ),
+    "load on what is prescribed": (
+        "self_aligning",
+        "operating.load.Mx=5 N m",
+        "`operating.load`: Mx acts on gx, which is prescribed; choose one",
     ),
     "spring without its force": (
         "ball_pair",
@@ -447,7 +457,7 @@ SETTINGS = {
     "outer osculation of a sphere": (
         "self_aligning",
         "bearing.outer_osculation=0.52",
-        "`bearing.outer_osculation`: unknown key (did you mean `inner_osculation`?)",
+        "`bearing.outer_osculation`: the outer raceway is a sphere about the middle",
     ),
     "linearised self-aligning bearing": (
         "self_aligning",

@@ -63,6 +63,17 @@ def test_balance_of_a_turning_bearing(angular):
     assert np.abs(k - k.T).max() > 1e-4 * np.abs(k).max()
 
 
+def test_ball_out_of_the_groove_of_a_washer():
+    """Inertia takes it there, if there is next to no axial load."""
+    element = bj.BearingElement(balls(9, bj.ThrustBallBearing))
+    speed = bj.Speed(1500.0)
+    s = bj.solve_load(element, [1.7, 0.8, 5.0, 0, 0, 0], speed=speed, throw=False)
+    assert int(s.result) == bj.Result.NO_LOAD_PATH and int(s.unrestrained) == -1
+    assert "leaves its raceway" in bj.statics.message(s, "inner")
+    held = bj.solve_load(element, [50.0, 0, 5000.0, 0, 0, 0], speed=speed, throw=False)
+    assert bool(held.converged)
+
+
 def test_one_sided_bearing_pulled_the_other_way(angular):
     s = bj.solve_load(angular, [0, 0, -800.0, 0, 0, 0], throw=False)
     assert int(s.result) == bj.Result.NO_LOAD_PATH

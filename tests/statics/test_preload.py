@@ -165,6 +165,11 @@ def test_load_solve_with_a_spring():
     assert float(opened.stiffness[8, 8]) == pytest.approx(8e4, rel=0.01)
 
 
+ALIGNING = bj.SelfAligningBallRow(
+    9, 0.046, 0.0087, inner_osculation=0.52, row_offset=0.006
+)
+
+
 def test_bad_input(pair):
     one_way = bj.BearingElement(bj.BearingSet.tandem(balls(), 0.02))
     roller = bj.CylindricalRollerBearing(6, 0.065, 0.01, 0.01)
@@ -174,12 +179,18 @@ def test_bad_input(pair):
         (one_way, "no rows face each other"),
         (bj.BearingElement(bj.BearingSet.back_to_back(roller, 0.02)), "no axial load"),
         (bj.BearingElement(sprung), "a row has a spring"),
+        (bj.BearingElement(bj.BearingSet.self_aligning(ALIGNING)), "one inner ring"),
     ):
         with pytest.raises(ValueError, match=problem):
             bj.preload(element, 100.0)
+    loose = bj.BearingSet.back_to_back(roller, 0.02, spring=bj.PreloadSpring(10.0))
+    with pytest.raises(ValueError, match="row 1 has a spring, but holds no axial"):
+        bj.solve_load(bj.BearingElement(loose), [0, -10.0, 0, 0, 0, 0])
     for force in (-1.0, 0.0, np.nan):
-        with pytest.raises(ValueError, match="`preload force`"):
+        with pytest.raises(ValueError, match="`force` is"):
             bj.preload(pair, force)
+    with pytest.raises(TypeError, match="BearingElement"):
+        bj.preload(pair.bearing, 100.0)
     with pytest.raises(ValueError, match="`force`"):
         bj.PreloadSpring(-5.0)
     with pytest.raises(ValueError, match="`stiffness`"):
