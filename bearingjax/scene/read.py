@@ -217,9 +217,9 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         raise operating.error("free", problem)
     load = _components(operating, "load", LOADS, ("force", "moment"))
     for freedom in prescribed:
-        name = LOADS[FREEDOMS.index(freedom)]
-        if load.get(name):
-            problem = f"{name} acts on {freedom}, which is prescribed; choose one"
+        component = LOADS[FREEDOMS.index(freedom)]
+        if load.get(component):
+            problem = f"{component} acts on {freedom}, which is prescribed; choose one"
             raise operating.error("load", problem)
     rpm = {r: operating.quantity(f"{r}_speed", "speed", 0.0) for r in RINGS}
     return Scene(

@@ -176,7 +176,8 @@ def _slack(solution: Solution) -> list[str]:
     index = [FREEDOMS.index(name) for name in solution.free]
     if not index:
         return []
-    scale = np.repeat([1.0, 1.0 / float(solution.pitch_radius)], 3)
+    radius = float(solution.pitch_radius)
+    scale = np.repeat([1.0, 1.0 / radius if radius > 0 else 1.0], 3)
     k = np.asarray(solution.stiffness)[first : first + 6, first : first + 6]
     k = 0.5 * scale * (k + k.T) * scale[:, None]
     if not np.isfinite(k).all():

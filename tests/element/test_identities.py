@@ -25,7 +25,8 @@ CASES = [
     for name in bearings()
     for rule in quadratures()
     for speed in speeds()
-    if holds(name, speed)
+    # With inertia one rule will do: it knows nothing of the quadrature.
+    if holds(name, speed) and (rule, speed) != ("midpoint", "turning")
 ]
 
 

@@ -316,7 +316,6 @@ def test_pages_of_balls_and_sets():
 
     for name in (
         "four-point, unlike balls, load share",
-        "thrust",
         "ball pair, O",
         "taper pair, X",
     ):

@@ -236,12 +236,9 @@ inner_speed = "180 deg/s"
 outer_speed = "-60 rpm"
 
 [operating.load]
-Fx = "1 N"
-Fy = "2 kN"
+Fx = "2 kN"
 Fz = "-3e3 N"
-Mx = "4 N m"
 My = "5 N mm"
-Mz = "6 kN m"
 
 [numerics]
 quadrature = "contact_mapped"
@@ -302,7 +299,7 @@ def test_ribs_one_by_one(everything):
 
 def test_operation_and_numerics(everything):
     assert everything.name == "mine"
-    assert everything.load == near((1.0, 2000.0, -3000.0, 4.0, 5e-3, 6000.0))
+    assert everything.load == near((2000.0, 0.0, -3000.0, 0.0, 5e-3, 0.0))
     prescribed = {"uy": 7e-6, "gx": -2e-3, "gz": 0.5 * DEG}
     assert everything.prescribed == near(prescribed)
     assert everything.free == ("uz", "ux")
