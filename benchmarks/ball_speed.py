@@ -12,6 +12,46 @@ Run: python benchmarks/ball_speed.py [--json] [--smoke]
 
 Last run:
 
+axial: most steps 3 (JAX 3)
+                                     hot, µs         cold, µs         ratio to C
+                                 min  median      min  median    hot  cold  call
+C loop                           6.1     6.2      8.1    11.0    1.0   1.0   0.3
+C through ctypes                 6.5     6.6     17.1    32.4    1.1   3.0   1.0
+filter_jit(element, q)         192.2   205.5    299.2  2136.4   33.3 194.8  65.9
+jit(q), model given             74.3    83.8    211.0   353.0   13.6  32.2  10.9
+the same, ahead of time         78.0    84.9    228.4   363.2   13.8  33.1  11.2
+one of 256 in a call            16.1    17.4     17.2    18.8    2.8   1.7   0.6
+
+combined: most steps 3 (JAX 3)
+                                     hot, µs         cold, µs         ratio to C
+                                 min  median      min  median    hot  cold  call
+C loop                           6.1     6.4      8.9    11.4    1.0   1.0   0.3
+C through ctypes                 6.5     6.6     22.2    39.0    1.0   3.4   1.0
+filter_jit(element, q)         194.7   252.3    672.3  2668.9   39.7 234.6  68.5
+jit(q), model given             81.6   114.3    263.3   443.6   18.0  39.0  11.4
+the same, ahead of time         82.2   118.6    318.3   445.0   18.7  39.1  11.4
+one of 256 in a call            17.0    17.8     17.9    19.2    2.8   1.7   0.5
+
+radial, tilted: most steps 3 (JAX 3)
+                                     hot, µs         cold, µs         ratio to C
+                                 min  median      min  median    hot  cold  call
+C loop                           2.4     2.5      5.5     7.9    1.0   1.0   0.2
+C through ctypes                 2.7     2.8     15.8    31.8    1.1   4.0   1.0
+filter_jit(element, q)         191.2   222.6    363.6  2602.2   90.3 331.0  81.9
+jit(q), model given             78.9    95.8    256.7   397.7   38.8  50.6  12.5
+the same, ahead of time         83.9    96.4    198.7   439.1   39.1  55.9  13.8
+one of 256 in a call            16.1    17.2     16.9    18.5    7.0   2.4   0.6
+
+goal: hot ≤ 5, in a batch ≤ 1.11
+
+radial stiffness of a deep groove bearing, 1 kN, no clearance
+ROSS BallBearingElement          378.2 us
+ours, force and stiffness         49.6 us
+ours, from the load              493.2 us
+stiffness of the formula against ours: +5.0 %
+
+force and stiffness equal those of the C loop to 8e-15; ROSS 2.3; AMD EPYC, 2 cores;
+one core used
 """
 
 import argparse
