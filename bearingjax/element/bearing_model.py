@@ -97,12 +97,9 @@ class RowModel(eqx.Module):
                 local = local.at[_CLOSING].add(offset)
         pressed = None
         if part.spring is not None:
-            pressed = self._pressed(local, transform, minimiser)
+            pressed = self._pressed(part.spring, local, transform, minimiser)
             local = local.at[_CLOSING].add(pressed.travel)
         row = self._at(local, azimuth, transform, minimiser)
-        if part.spring is not None and pressed is not None:
-            energy, _, rate = part.spring.push(pressed.travel)
-            pressed = pressed._replace(energy=energy, rate=rate)
         if place is not None:
             row = dataclasses.replace(row, transform=transform @ place)
         return dataclasses.replace(row, pressed=pressed)
@@ -119,7 +116,7 @@ class RowModel(eqx.Module):
         )
         return Row(self, local, azimuth, transform, rings, state, solved, None)
 
-    def _pressed(self, local, transform, minimiser) -> "Pressed":
+    def _pressed(self, spring, local, transform, minimiser) -> "Pressed":
         """Travel of a spring that the row balances, and how it follows the rings."""
         column = transform[:, :, _CLOSING]
         azimuth = jnp.zeros(transform.shape[:1], local.dtype)  # nothing asks for it
@@ -153,8 +150,8 @@ class RowModel(eqx.Module):
             function, zero, stop(radius), 1e-13, jnp.ones_like(zero), None
         )
         found = attach(lambda y, args: balance(y, args)[1], minimum.x, args, symmetric)
-        empty = jnp.zeros((), local.dtype)
-        return Pressed(found[0], empty, empty, column, minimum.result)
+        energy, _, rate = spring.push(found[0])
+        return Pressed(found[0], energy, rate, column, minimum.result)
 
 
 _CLOSING = 8
