@@ -67,6 +67,7 @@ from .scene import load_bearing as load_bearing
 from .scene import read_scene as read_scene
 from .scene import run_scene as run_scene
 from .statics import BallSolution as BallSolution
+from .statics import Cases as Cases
 from .statics import RollerSolution as RollerSolution
 from .statics import Solution as Solution
 from .statics import preload as preload

@@ -1,5 +1,7 @@
 """Load solves and what they return."""
 
+from .cases import Cases as Cases
+from .cases import solve_case as solve_case
 from .load import restrained_freedoms as restrained_freedoms
 from .load import solve_load as solve_load
 from .preload import preload as preload

@@ -1,0 +1,179 @@
+"""Many operating cases of one bearing: loads, displacements, speeds, hours."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from ..element.bearing_element import BearingElement
+from ..element.frame import FREEDOMS
+from ..element.inertia import Speed
+from .load import solve_load
+from .solution import Solution
+
+
+class Cases(eqx.Module):
+    """Operating cases, all fields with a leading axis (case,).
+
+    Nothing is judged by value here: a case with a NaN or an absurd number is solved,
+    fails, and says so in its own result code.
+
+    Attributes:
+        load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring (case, 6) [N, N m].
+        prescribed: Displacements given instead of loads, by freedom (case,) [m, rad].
+        fixed_displacement: Of the fixed ring (case, 6) [m, rad], or `None`: zero.
+        inner_speed: Of the inner ring (case,) [rad/s]; `None` with `outer_speed`
+            `None`: no inertia, and nothing of it compiled.
+        outer_speed: Of the outer ring (case,) [rad/s], or `None`.
+        hours: Time that the machine spends in each case (case,) [h], or `None`.
+        design: Which of several designs each case has (case,), or `None`.
+
+    Traced: all fields.
+    """
+
+    load: Float[Array | np.ndarray, "case 6"]
+    prescribed: dict[str, Float[Array | np.ndarray, " case"]]
+    fixed_displacement: Float[Array | np.ndarray, "case 6"] | None
+    inner_speed: Float[Array | np.ndarray, " case"] | None
+    outer_speed: Float[Array | np.ndarray, " case"] | None
+    hours: Float[Array | np.ndarray, " case"] | None
+    design: Int[Array | np.ndarray, " case"] | None
+
+    def __init__(
+        self,
+        load: Any = None,
+        *,
+        prescribed: Mapping[str, Any] | None = None,
+        fixed_displacement: Any = None,
+        inner_speed: Any = None,
+        outer_speed: Any = None,
+        hours: Any = None,
+        design: Any = None,
+    ):
+        """What has no case axis holds for all cases.
+
+        Raises:
+            ValueError: For shapes that do not fit, unknown freedoms, hours below
+                zero or without a sum above zero, or if nothing has a case axis.
+        """
+        prescribed = {} if prescribed is None else dict(prescribed)
+        unknown = [name for name in prescribed if name not in FREEDOMS]
+        if unknown:
+            raise ValueError(
+                f"Cases: `prescribed` names {', '.join(map(repr, unknown))}; freedoms"
+                f" are {', '.join(FREEDOMS)}."
+            )
+        scalars = {
+            "inner_speed": inner_speed,
+            "outer_speed": outer_speed,
+            "hours": hours,
+            "design": design,
+            **prescribed,
+        }
+        vectors = {"load": load, "fixed_displacement": fixed_displacement}
+        arrays = {
+            name: _array(name, value, tail)
+            for group, tail in ((scalars, ()), (vectors, (6,)))
+            for name, value in group.items()
+            if value is not None
+        }
+        lead = {
+            name: a.shape[0] for name, a in arrays.items() if a.ndim > (name in vectors)
+        }
+        if not lead:
+            raise ValueError(
+                "Cases: nothing has a case axis; give loads of shape (case, 6), or"
+                " speeds, displacements or designs of shape (case,)."
+            )
+        if len(set(lead.values())) > 1:
+            sizes = ", ".join(f"{name} {size}" for name, size in lead.items())
+            raise ValueError(f"Cases: not one number of cases: {sizes}.")
+        count = next(iter(lead.values()))
+        arrays.setdefault("load", np.zeros(6))
+
+        def full(name):
+            if name not in arrays:
+                return None
+            tail = (6,) if name in vectors else ()
+            array = arrays[name]
+            whole = (count, *tail)
+            if array.shape == whole:
+                return array
+            backend = jnp if isinstance(array, jax.Array) else np
+            return backend.broadcast_to(array, whole)
+
+        for name in ("load", "fixed_displacement"):
+            setattr(self, name, full(name))
+        for name in ("inner_speed", "outer_speed", "hours", "design"):
+            setattr(self, name, full(name))
+        self.prescribed = {name: full(name) for name in prescribed}
+        _check_hours(self.hours)
+
+    @property
+    def count(self) -> int:
+        """Number of cases."""
+        return self.load.shape[0]
+
+
+def _array(name, value, tail):
+    if not isinstance(value, jax.Array):
+        value = np.asarray(value, dtype=int if name == "design" else float)
+    shape = np.shape(value)
+    if shape not in (tail, shape[:1] + tail):
+        wanted = "(6,) or (case, 6)" if tail else "() or (case,)"
+        raise ValueError(f"Cases: `{name}` has shape {shape}; it must be {wanted}.")
+    return value
+
+
+def _check_hours(hours):
+    if hours is None or isinstance(hours, jax.core.Tracer):
+        return
+    values = np.asarray(hours)
+    if not (np.isfinite(values).all() and (values >= 0).all() and values.sum() > 0):
+        raise ValueError(
+            "Cases: `hours` must be finite, at least 0 h each, and above 0 h in all."
+        )
+
+
+def solve_case(
+    element: BearingElement[Any],
+    case: Cases,
+    *,
+    free: Sequence[str] | None = None,
+    fixed_ring: str = "outer",
+    points: int = 101,
+    tolerance: float | None = None,
+    max_steps: int = 200,
+) -> Solution:
+    """One case of many, to be mapped: `jax.vmap(lambda c: solve_case(element, c))`.
+
+    Args:
+        element: The bearing of this case.
+        case: Cases without their leading axis, as `vmap` hands them out.
+        free, fixed_ring, points, tolerance, max_steps: As in `solve_load`.
+
+    Returns:
+        Solution with its result code; nothing is raised for a failed solve.
+    """
+    speed = None
+    if case.inner_speed is not None or case.outer_speed is not None:
+        still = jnp.zeros((), case.load.dtype)
+        speeds = (case.inner_speed, case.outer_speed)
+        speed = Speed(*(still if s is None else s for s in speeds))
+    return solve_load(
+        element,
+        case.load,
+        prescribed=case.prescribed,
+        free=free,
+        fixed_ring=fixed_ring,
+        fixed_displacement=case.fixed_displacement,
+        speed=speed,
+        points=points,
+        tolerance=tolerance,
+        max_steps=max_steps,
+        throw=False,
+    )
