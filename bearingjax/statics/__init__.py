@@ -11,3 +11,6 @@ from .solution import Solution as Solution
 from .solution import Stats as Stats
 from .solution import message as message
 from .solution import warnings as warnings
+from .sweep import Sweep as Sweep
+from .sweep import stack_designs as stack_designs
+from .sweep import sweep as sweep
