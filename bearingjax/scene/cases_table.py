@@ -75,7 +75,7 @@ class _Column:
     """Values of one key: case k has `values[index[k]]`."""
 
     key: str
-    values: Sequence[Any]
+    values: Sequence[Any] | np.ndarray
     index: np.ndarray
 
 
@@ -132,14 +132,12 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
 def _check_key(table, key, scene):
     if key in OPERATING:
         name = key.rpartition(".")[2]
-        fixed = {*scene.prescribed, *(scene.free or ())}
         if key.startswith("operating.prescribed.") and name in (scene.free or ()):
             raise table.error(key, f"{name} is free in this scene; choose one")
-        if key.startswith("operating.load."):
+        if name in LOADS and FREEDOMS[LOADS.index(name)] in scene.prescribed:
             freedom = FREEDOMS[LOADS.index(name)]
-            if freedom in fixed and freedom in scene.prescribed:
-                problem = f"{name} acts on {freedom}, which is prescribed; choose one"
-                raise table.error(key, problem)
+            problem = f"{name} acts on {freedom}, which is prescribed; choose one"
+            raise table.error(key, problem)
         return
     if key.partition(".")[0] in DESIGN and "." in key:
         return
