@@ -70,6 +70,11 @@ class LineContact(eqx.Module):
         ordered = jnp.sort(jnp.stack(kinks))
         return tuple(ordered[i] for i in range(len(kinks)))
 
+    @property
+    def arcs(self) -> bool:
+        """Whether the drop is made of straight lines and flat arcs. Static."""
+        return self.roller_profile.arcs and self.raceway_profile.arcs
+
     def line_load(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
         """Load per length at a given approach [N/m]."""
         return self.constant * positive_power(approach, _N, _D)
@@ -160,7 +165,7 @@ def response(
 def _plain(static, a, b, numbers) -> Response:
     structure, quadrature = static
     line, table = jax.tree.unflatten(structure, numbers)
-    nodes = quadrature.nodes(_offset, line, table, a, b)
+    nodes = quadrature.nodes(_offset, line, table, a, b, line.arcs)
     return _integrals(line, nodes, quadrature)
 
 

@@ -6,6 +6,7 @@ gap. Derivatives in s are finite everywhere, roller ends and kinks included.
 """
 
 import abc
+from typing import ClassVar
 
 import equinox as eqx
 import jax
@@ -22,6 +23,9 @@ STEEL_MODULUS = 206e9 / (2.0 * (1.0 - 0.3**2))
 
 class AbstractProfile(eqx.Module):
     """Profile of a roller or a raceway."""
+
+    arcs: ClassVar[bool] = False
+    """Whether it is made of straight lines and flat arcs, kinks between them."""
 
     @abc.abstractmethod
     def drop(
@@ -72,6 +76,8 @@ def _drop(profile, position, length, diameter):
 class Straight(AbstractProfile):
     """No profile: the drop is zero."""
 
+    arcs: ClassVar[bool] = True
+
     def drop(self, position, length, diameter):
         return jnp.zeros_like(position)
 
@@ -85,6 +91,8 @@ class CircularCrown(AbstractProfile):
     Traced: all fields.
     Source: geometry, drop = R - sqrt(R² - s²).
     """
+
+    arcs: ClassVar[bool] = True
 
     crown_radius: Scalar = eqx.field(converter=as_real)
 
@@ -113,6 +121,8 @@ class CrownedEnds(AbstractProfile):
     Traced: all fields. Static: whether there is a dub-off.
     Source: geometry of tangent arcs.
     """
+
+    arcs: ClassVar[bool] = True
 
     straight_length: Scalar = eqx.field(converter=as_real)
     crown_radius: Scalar = eqx.field(converter=as_real)

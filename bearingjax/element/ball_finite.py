@@ -107,7 +107,7 @@ class FiniteBall(AbstractBallModel):
         out = super().inertia(rings, x)
         return None if out is None else out.at[2].add((self.along + x[0]) * out[1])
 
-    def derivatives(self, rings, x, of_own=False):
+    def derivatives(self, rings, x, of_own=False, responses=()):
         contacts = self.contacts(rings, x)
         load, energy, force, blocks = self._contact_terms(contacts)
         # The guide has no reaction on the rings: it is no part of the bearing.

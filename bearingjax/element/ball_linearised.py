@@ -57,7 +57,7 @@ class LinearisedBall(AbstractBallModel):
         sides = [0.5 * outwards for outwards in self.grooves.outwards]
         return jnp.asarray(sides, self.diameter.dtype)
 
-    def derivatives(self, rings, x, of_own=False):
+    def derivatives(self, rings, x, of_own=False, responses=()):
         contacts = self.contacts(rings, x)
         load, energy, force, blocks = self._contact_terms(contacts)
         energy = energy + 0.5 * self.guide * dot(x, x)

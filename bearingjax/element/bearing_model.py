@@ -124,7 +124,7 @@ class RowModel(eqx.Module):
             *guesses,
         )
         solved = self.each(
-            lambda m, r, x: solved_derivatives(m, r, magnitude, x), rings, state.x
+            lambda m, r, s: solved_derivatives(m, r, magnitude, s), rings, state
         )
         return Row(self, local, azimuth, transform, rings, state, solved, None)
 

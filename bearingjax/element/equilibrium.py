@@ -4,13 +4,13 @@ Its own unknowns are those that minimise its energy, a convex problem with linea
 kinematics; where part of the forces has no potential, those that balance them.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from ..numerics.implicit import attach, stop
+from ..numerics.implicit import attach, recall, stop
 from ..numerics.linear import dot, norm, smallest_pivot, solve, trace
 from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
 from ..numerics.result import Result
@@ -27,6 +27,7 @@ class LocalState(NamedTuple):
         unbalanced: That force, of the unknowns in metres [N].
         steps: Evaluations that the solve took.
         result: `Result` code.
+        responses: `AbstractModel.responses` at x, or empty.
     """
 
     x: Unknowns
@@ -34,6 +35,7 @@ class LocalState(NamedTuple):
     unbalanced: Scalar
     steps: Int[Array, ""]
     result: Int[Array, ""]
+    responses: Any = ()
 
 
 def solve_element(
@@ -121,7 +123,7 @@ def _load(model, derivatives):
 
 
 def solved_derivatives(
-    model: AbstractModel, rings: Rings, magnitude: Scalar, x: Unknowns
+    model: AbstractModel, rings: Rings, magnitude: Scalar, state: LocalState
 ) -> Derivatives:
     """Energy and derivatives of a solved rolling element; all zero if it is loose.
 
@@ -131,9 +133,14 @@ def solved_derivatives(
 
     Args:
         model, rings, magnitude: As in `solve_element`.
-        x: The solved unknowns [m].
+        state: From `solve_element`.
     """
-    d = model.derivatives(rings, x)
+    x, responses = state.x, state.responses
+    if jax.tree.leaves(responses):
+        # The last step of the solve has them; only a derivative needs them anew.
+        args = (model, rings, x)
+        responses = recall(type(model).responses, responses, args)
+    d = model.derivatives(rings, x, responses=responses)
     load = _load(model, d)
     pull = d.gradient[-model.n_unknowns :]
     off = x - model.amid(rings)
@@ -144,8 +151,9 @@ def solved_derivatives(
 def _solve(model, rings, magnitude, minimiser, guess):
     eps = jnp.finfo(rings.dtype).eps
 
-    def function(x, with_hessian):
-        d = model.derivatives(rings, x, of_own=True)
+    def function(x, with_hessian, *_):
+        responses = model.responses(rings, x)
+        d = model.derivatives(rings, x, of_own=True, responses=responses)
         g, h = d.gradient, d.hessian
         scale = _load(model, d)
         # Round-off of positions, and what is small against the guide's own force.
@@ -155,7 +163,8 @@ def _solve(model, rings, magnitude, minimiser, guess):
         noise = jnp.where(loose, norm(g), noise)
         scale = jnp.where(loose, jnp.inf, scale)
         value = d.energy if model.has_potential else jnp.full_like(d.energy, jnp.nan)
-        return Evaluation(value, g, h if with_hessian else h[:0], scale, noise)
+        hessian = h if with_hessian else h[:0]
+        return Evaluation(value, g, hessian, scale, noise, responses)
 
     radius = model.reach(rings) + model.gap + 1e-6 * model.diameter
     start, centre = model.first(rings), model.amid(rings)
@@ -167,7 +176,11 @@ def _solve(model, rings, magnitude, minimiser, guess):
         return model.shape(rings, x, step, size)
 
     shaping = shape if model.shapes_steps else None
-    minimum = minimiser.minimise(function, start, radius, shaping)
+    memory = jax.tree.map(
+        lambda a: jnp.zeros(a.shape, a.dtype),
+        jax.eval_shape(model.responses, rings, start),
+    )
+    minimum = minimiser.minimise(function, start, radius, shaping, memory)
     result = minimum.result
     # Where part of the forces has no potential a pivot says nothing.
     if model.has_potential and not model.is_convex:
@@ -180,7 +193,12 @@ def _solve(model, rings, magnitude, minimiser, guess):
         result = jnp.where(lost, int(Result.NO_LOAD_PATH), result)
     result = result.astype(jnp.int32)
     return LocalState(
-        minimum.x, minimum.residual, minimum.unbalanced, minimum.steps, result
+        minimum.x,
+        minimum.residual,
+        minimum.unbalanced,
+        minimum.steps,
+        result,
+        minimum.memory,
     )
 
 

@@ -5,7 +5,7 @@ unknowns (n,) [m]. All derivatives are with respect to (rings, x), in this order
 """
 
 import abc
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -76,9 +76,21 @@ class AbstractModel(eqx.Module):
     def transform(self, azimuth: Scalar) -> Float[Array, "r 12"]:
         """Ring motions in the element's axes from q."""
 
+    def responses(self, rings: Rings, x: Unknowns) -> Any:
+        """What is dear in `derivatives`, to be kept from the last step of a solve.
+
+        Args:
+            rings: Motion of both rings in the element's axes (r,) [m, rad].
+            x: Own unknowns (n,) [m].
+
+        Returns:
+            Pytree of arrays; empty if nothing is worth it.
+        """
+        return ()
+
     @abc.abstractmethod
     def derivatives(
-        self, rings: Rings, x: Unknowns, of_own: bool = False
+        self, rings: Rings, x: Unknowns, of_own: bool = False, responses: Any = ()
     ) -> Derivatives:
         """Energy, forces and stiffness of the element.
 
@@ -88,6 +100,7 @@ class AbstractModel(eqx.Module):
             rings: Motion of both rings in the element's axes (r,) [m, rad].
             x: Own unknowns (n,) [m].
             of_own: Derivatives with respect to x alone, (n,) and (n, n).
+            responses: `responses` at this place, if they are known.
         """
 
     @abc.abstractmethod

@@ -96,9 +96,10 @@ class RollerModel(AbstractModel):
         scale = jnp.stack([one, one, 1.0 / self.constants.half_length])
         return self.body_force * scale
 
-    def derivatives(self, rings, x, of_own=False):
-        kinematics, prepared, c = self.kinematics, self.prepared, self.constants
-        approaches = kinematics.approaches(prepared, rings, x)
+    def responses(self, rings, x):
+        """Energies, forces and stiffness of all contacts: raceways, then ribs."""
+        c = self.constants
+        approaches = self.kinematics.approaches(self.prepared, rings, x)
         raceways = _per_raceway(
             lambda line, table, ab: line_contact.response(
                 line, table, self.quadrature, *ab
@@ -106,15 +107,15 @@ class RollerModel(AbstractModel):
             c,
             approaches,
         )
-        energies, forces = raceways.energy, raceways.load.reshape(-1)
-        stiffness = raceways.stiffness.reshape(-1)
-        contact_load = raceways.load[:, 0]
+        parts = [jax.tree.map(jnp.ravel, tuple(raceways))]
         if c.ribs is not None:
-            ribs = [rib_density(c, approaches, order) for order in range(3)]
-            contact_load = jnp.concatenate([contact_load, ribs[1]])
-            energies = jnp.concatenate([energies, ribs[0]])
-            forces = jnp.concatenate([forces, ribs[1]])
-            stiffness = jnp.concatenate([stiffness, ribs[2]])
+            parts.append(tuple(rib_density(c, approaches, order) for order in range(3)))
+        return tuple(jnp.concatenate(same) for same in zip(*parts, strict=True))
+
+    def derivatives(self, rings, x, of_own=False, responses=()):
+        kinematics, prepared, c = self.kinematics, self.prepared, self.constants
+        energies, forces, stiffness = responses or self.responses(rings, x)
+        contact_load = jnp.concatenate([forces[:4:2], forces[4:]])
         first = 6 if of_own else 0
         jacobian = kinematics.jacobian(prepared, rings, x)[:, first:]
         size = 9 - first

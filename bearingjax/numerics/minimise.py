@@ -76,15 +76,18 @@ class AbstractMinimiser(eqx.Module):
         start: Float[Array, " n"],
         radius: Float[Array, ""],
         shape: Shape | None = None,
+        memory: Any = (),
     ) -> Minimum:
         """Minimise `function`.
 
         Args:
-            function: (x, with_hessian) -> `Evaluation`.
+            function: (x, with_hessian) -> `Evaluation`; with a `memory`, that of
+                where the step began is its third argument.
             start: First point (n,).
             radius: First bound of the step, same unit as x.
             shape: (x, step, size of the gradient) -> better step, by one who knows
                 where the function bends or stiffens. Newton's method alone uses it.
+            memory: Of the start. Newton's method alone keeps it.
 
         Fails: `STEP_LIMIT`, `NON_FINITE` as result codes.
         """
@@ -158,9 +161,11 @@ class TrustRegionNewton(AbstractMinimiser):
     max_steps: int = eqx.field(static=True, default=100)
     symmetric: bool = eqx.field(static=True, default=True)
 
-    def minimise(self, function, start, radius, shape=None):
-        tolerance = _tolerance(self.tolerance, start.dtype)
-        return self.search(function, start, radius, tolerance, None, None, shape)
+    def minimise(self, function, start, radius, shape=None, memory=()):
+        goal = _tolerance(self.tolerance, start.dtype)
+        return self.search(
+            function, start, radius, goal, None, None, shape, memory=memory
+        )
 
     def search(
         self,
@@ -178,7 +183,7 @@ class TrustRegionNewton(AbstractMinimiser):
         """As `minimise`, for functions that may be flat at the start.
 
         Args:
-            function, start, radius, shape: As in `minimise`.
+            function, start, radius, shape, memory: As in `minimise`.
             tolerance: |gradient| / scale at which the search ends; may be traced.
             direction: Unit vector (n,), or zero. If the function falls along it and
                 too little curvature is felt within `radius` to end the fall, it is
@@ -188,8 +193,6 @@ class TrustRegionNewton(AbstractMinimiser):
                 solve then ends with `NO_LOAD_PATH`.
             pull: A force on x beside `function`, which the scale of the latter then
                 is not: the force is, unless it is zero.
-            memory: Of the start. With it, `function` takes the memory of where the
-                step began as its third argument.
             max_steps: Instead of the attribute; may be traced.
 
         Fails: as `minimise`, and `NO_LOAD_PATH`.
@@ -321,7 +324,7 @@ class BFGS(AbstractMinimiser):
     tolerance: float | None = eqx.field(static=True, default=None)
     max_steps: int = eqx.field(static=True, default=400)
 
-    def minimise(self, function, start, radius, shape=None):
+    def minimise(self, function, start, radius, shape=None, memory=()):
         default = 1e-9 if start.dtype == jnp.float64 else 1e-4
         tolerance = default if self.tolerance is None else self.tolerance
         eps = jnp.finfo(start.dtype).eps
@@ -347,7 +350,8 @@ class BFGS(AbstractMinimiser):
                 1.0, state.radius / jnp.maximum(norm(direction), tiny)
             )
             s = jnp.where(first, 0.0, fraction * direction)
-            new = function(state.x + s, False)
+            past = (memory,) if jax.tree.leaves(memory) else ()
+            new = function(state.x + s, False, *past)
             accept = (new.value - now.value <= 1e-4 * (now.gradient @ s)) | (
                 norm(new.gradient) <= 0.5 * norm(now.gradient)
             )

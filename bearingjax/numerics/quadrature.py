@@ -25,9 +25,9 @@ from .implicit import attach_roots, stop
 
 Offset = Callable[[Array], Array]
 
-# Steps that find a zone edge from its scan interval: to 1e-14 on crowns, to 1e-8 on the
-# singular end of a logarithm, where less than that is in error in the integrals.
-_REFINEMENTS = 5
+# Steps that find a zone edge from its scan interval: to 1e-14 on an arc; of any profile
+# to 1e-8 on the singular end of a logarithm, where less is in error in the integrals.
+_OF_ARCS, _OF_ANY = 3, 5
 _SETTLED = 1e-9
 
 
@@ -57,8 +57,13 @@ class AbstractQuadrature(eqx.Module):
         """What depends on the offset h alone, computed once per design."""
 
     @abc.abstractmethod
-    def nodes(self, offset: Callable, args, table, a: Array, b: Array) -> Nodes:
-        """Nodes for given a, b; `offset(args, ξ)` is h."""
+    def nodes(
+        self, offset: Callable, args, table, a: Array, b: Array, arcs: bool = False
+    ) -> Nodes:
+        """Nodes for given a, b; `offset(args, ξ)` is h.
+
+        `arcs`: h is made of straight lines and flat arcs, kinks between them. Static.
+        """
 
     def basis(self, dtype) -> Float[Array, "point 3"]:
         """Constant matrix (w, w τ, w τ²)."""
@@ -91,7 +96,7 @@ class Midpoint(AbstractQuadrature):
         tau, _ = self.reference()
         return (offset(jnp.asarray(tau, dtype=dtype)),)
 
-    def nodes(self, offset, args, table, a, b):
+    def nodes(self, offset, args, table, a, b, arcs=False):
         (fixed,) = table
         tau = jnp.asarray(self.reference()[0], dtype=a.dtype)
         one = jnp.ones((1,), dtype=a.dtype)
@@ -145,10 +150,12 @@ class ContactMapped(AbstractQuadrature):
         fixed, slope = jax.jvp(offset, (at,), (jnp.ones_like(at),))
         return start, end, at, stop(fixed), stop(slope)
 
-    def nodes(self, offset, args, table, a, b):
+    def nodes(self, offset, args, table, a, b, arcs=False):
         start, end, *_ = table
         left, right, inner = _loaded_interval(
-            lambda x: offset(stop(args), x), *stop((*table, a, b))
+            lambda x: offset(stop(args), x),
+            *stop((*table, a, b)),
+            _OF_ARCS if arcs else _OF_ANY,
         )
 
         def argument(x, traced):
@@ -172,7 +179,7 @@ def _scan_point(index, start, end, count):
     return (start * right + end * left) / (left + right)
 
 
-def _loaded_interval(offset, start, end, at, fixed, slope, a, b):
+def _loaded_interval(offset, start, end, at, fixed, slope, a, b, steps):
     """First and last zero of a + b ξ - h in each panel, and which are inside.
 
     Args:
@@ -180,6 +187,7 @@ def _loaded_interval(offset, start, end, at, fixed, slope, a, b):
         start, end: Panel ends (panel,).
         at, fixed, slope: Scan points, h and its derivative there (panel, scan).
         a, b: Scalars.
+        steps: How many times an edge is refined.
 
     Returns:
         left, right (panel,), right ≥ left, and inner (2, panel): the edge is a root
@@ -235,7 +243,7 @@ def _loaded_interval(offset, start, end, at, fixed, slope, a, b):
         new = jnp.where(between, new, safe)
         return new, inside, outside
 
-    x, *_ = lax.fori_loop(0, _REFINEMENTS, refine, (outside, inside, outside))
+    x, *_ = lax.fori_loop(0, steps, refine, (outside, inside, outside))
     inner = jnp.stack([f[:, 0] <= 0, f[:, -1] <= 0])
     left = jnp.where(inner[0], x[0], start)
     right = jnp.where(inner[1], x[1], end)

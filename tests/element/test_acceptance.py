@@ -108,7 +108,7 @@ def test_fact_6_condensed_stiffness_is_the_derivative_of_the_force(roller):
     @jax.jit
     def both(rings):
         state = solve_element(model, rings, magnitude, solver)
-        d = solved_derivatives(model, rings, magnitude, state.x)
+        d = solved_derivatives(model, rings, magnitude, state)
         return condensed_force(model, d), condensed_stiffness(model, d.hessian)
 
     # An unsymmetric state: the inner ring tilts too.

@@ -1,4 +1,4 @@
-"""`[cases]` of a scene: grid, list and spectrum, what is wrong with them, the command."""
+"""`[cases]` of a scene: grid, list and spectrum, what may be wrong, the command."""
 
 import json
 
