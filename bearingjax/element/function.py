@@ -17,7 +17,6 @@ from jaxtyping import Array, Float
 
 from ..design import BearingSet, rows_of
 from ..design.checks import check
-from ..numerics.result import Result
 from ..numerics.types import Ring, Scalar, as_real
 from .bearing_model import azimuths
 from .inertia import Speed
@@ -72,11 +71,7 @@ def ring_force(
                 f"BearingElement: `{name}` has shape {jnp.shape(value)}; it must be"
                 " (12,): outer ring (ux uy uz gx gy gz), then inner ring."
             )
-    evaluated = parameters.element.model(parameters.speed).evaluate(motion)
-    # A product: the derivative of a failed case is then NaN too.
-    force = evaluated.force * jnp.where(
-        evaluated.result == Result.CONVERGED, 1.0, jnp.nan
-    )
+    force = parameters.element.model(parameters.speed).force_or_nan(jnp.asarray(motion))
     if parameters.damping is None:
         return force
     damping = parameters.damping

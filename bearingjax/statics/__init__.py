@@ -1,5 +1,7 @@
 """Load solves and what they return."""
 
+from .linearise import OperatingPoint as OperatingPoint
+from .linearise import linearise as linearise
 from .load import restrained_freedoms as restrained_freedoms
 from .load import solve_load as solve_load
 from .preload import preload as preload
