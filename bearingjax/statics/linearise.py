@@ -86,10 +86,10 @@ class OperatingPoint(eqx.Module):
         other = np.array([FREEDOMS.index(name) for name in others])
         # All in N/m, so that small means the same for forces and moments.
         radius = self.solution.pitch_radius
-        scale = jnp.where(other < 3, jnp.ones_like(radius), 1.0 / radius)
-        own = scale[:, None] * k[jnp.ix_(other, other)] * scale
-        across = k[jnp.ix_(kept, other)] * scale
-        back = scale[:, None] * k[jnp.ix_(other, kept)]
+        scale = jnp.diag(jnp.where(other < 3, jnp.ones_like(radius), 1.0 / radius))
+        own = scale @ k[jnp.ix_(other, other)] @ scale
+        across = k[jnp.ix_(kept, other)] @ scale
+        back = scale @ k[jnp.ix_(other, kept)]
         return block - across @ jnp.linalg.pinv(own, rtol=_SLACK) @ back
 
 
