@@ -66,7 +66,7 @@ def test_at_a_time_it_is_the_element_turned_as_far(name):
     np.testing.assert_allclose(by_motion, by_gz, atol=SOLVER * size)
 
 
-def test_force_repeats_with_the_pass_of_the_elements_and_halfway_is_that_of_twice_as_many():
+def test_force_repeats_with_the_pass_of_the_elements():
     element = ELEMENTS["rollers"]
     _, parameters = element.as_function(SPEED)
     q = pressed(x=0.0)
@@ -117,11 +117,10 @@ def test_derivatives_with_respect_to_all_arguments(name):
     slope, pull = both(point, tangent)
     errors = []
     for step in (1e-5, 1e-6):
-        moved = [
-            orbiting(*jax.tree.map(lambda x, d: x + s * d, point, tangent))
-            for s in (-step, step)
-        ]
-        errors.append(abs((moved[1] - moved[0]) / (2 * step) - slope).max())
+        up = jax.tree.map(lambda x, d, h=step: x + h * d, point, tangent)
+        down = jax.tree.map(lambda x, d, h=step: x - h * d, point, tangent)
+        change = orbiting(*up) - orbiting(*down)
+        errors.append(abs(change / (2 * step) - slope).max())
     assert min(errors) < DIFFERENCE * abs(slope).max()
 
     # Reverse mode is the transpose.
