@@ -162,8 +162,9 @@ def _turned(element: Any, speed: Speed, time: Any) -> Any:
 
 def _first_azimuths(element: Any) -> list:
     bearing = element.bearing
-    parts = [r.bearing for r in bearing.rows] if isinstance(bearing, BearingSet) else []
-    return [part.first_azimuth for part in parts or [bearing]]
+    if isinstance(bearing, BearingSet):
+        return [row.bearing.first_azimuth for row in bearing.rows]
+    return [bearing.first_azimuth]
 
 
 _BETWEEN_RINGS = np.kron([[1, -1], [-1, 1]], np.diag([1, 1, 1, 0, 0, 0]))
