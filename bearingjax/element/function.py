@@ -3,8 +3,8 @@
 Two plain functions and what they are given: nothing is closed over, so that any
 integrator may pass the parameters through as traced numbers. The contact constants
 are worked out from the design in every call, because then every parameter is a number
-of the drawing, with its full derivative, and may change from call to call (a run-up).
-They are a small part of a call; parameters that are closed over cost nothing again.
+of the drawing, with its full derivative, and may change from call to call (a run-up);
+in a compiled loop of 2000 calls that cost nothing measurable, rollers or balls.
 """
 
 from collections.abc import Callable

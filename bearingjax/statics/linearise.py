@@ -116,6 +116,8 @@ def linearise(
 
     Raises:
         ValueError, SolveError: As `solve_load`.
+
+    Fails: as `solve_load`; with `throw=False` read `solution.result`.
     """
     return OperatingPoint(
         solve_load(
