@@ -14,6 +14,7 @@ from . import design as design
 from . import element as element
 from . import numerics as numerics
 from . import plot as plot
+from . import rotor as rotor
 from . import scene as scene
 from . import statics as statics
 from .contact import ISO16281 as ISO16281
@@ -62,15 +63,19 @@ from .numerics import Midpoint as Midpoint
 from .numerics import Result as Result
 from .numerics import SolveError as SolveError
 from .numerics import TrustRegionNewton as TrustRegionNewton
+from .rotor import stiffness_table as stiffness_table
+from .rotor import to_ross as to_ross
 from .scene import SceneError as SceneError
 from .scene import load_bearing as load_bearing
 from .scene import read_scene as read_scene
 from .scene import run_scene as run_scene
 from .statics import BallSolution as BallSolution
 from .statics import Cases as Cases
+from .statics import OperatingPoint as OperatingPoint
 from .statics import RollerSolution as RollerSolution
 from .statics import Solution as Solution
 from .statics import Sweep as Sweep
+from .statics import linearise as linearise
 from .statics import preload as preload
 from .statics import restrained_freedoms as restrained_freedoms
 from .statics import solve_load as solve_load

@@ -13,10 +13,10 @@ import pytest
 import bearingjax as bj
 
 PACKAGE = Path(bj.__file__).parent
-LAYERS = ["numerics", "design", "contact", "element", "statics", "scene", "plot", "cli"]
+LAYERS = "numerics design contact element statics rotor scene plot cli".split()
 # What the plots show is what statics and below provide; scene and plot stand side by
 # side, and only the command line and the top level see both.
-NOT_SEEN = {"plot": {"scene"}, "scene": {"plot"}}
+NOT_SEEN = {"plot": {"scene", "rotor"}, "scene": {"plot"}}
 
 
 def modules():
@@ -64,6 +64,7 @@ def test_everyday_names():
     names = (
         "BearingElement CylindricalRollerBearing TaperedRollerBearing solve_load"
         " NeedleRollerBearing Material Rib Ribs Speed load_bearing plot Result"
+        " linearise stiffness_table to_ross"
     )
     for name in names.split():
         assert hasattr(bj, name), name

@@ -10,7 +10,7 @@ README = (Path(__file__).parent.parent / "README.md").read_text()
 
 def test_python_examples(capsys):
     blocks = re.findall(r"```python\n(.*?)```", README, re.S)
-    assert len(blocks) == 3
+    assert len(blocks) == 5
     names: dict = {}
     for block in blocks[:2]:
         exec(block, names)
@@ -20,6 +20,11 @@ def test_python_examples(capsys):
     exec(blocks[2], names)
     assert type(names["solution"]) is bj.BallSolution
     assert bool(names["solution"].converged)
+    for block in blocks[3:]:
+        exec(block, names)
+    assert names["f"][7] < -100.0  # the inner ring is held down
+    whole, pair = names["k6"], names["k2"]
+    assert 0 < pair[1, 1] < whole[1, 1]
 
 
 def test_two_commands_and_their_scene():
@@ -35,6 +40,8 @@ def test_picture_and_folders_exist():
     root = Path(__file__).parent.parent
     for target in re.findall(r"\]\((?!http)([^)]+)\)", README):
         assert (root / target).exists(), target
-    for folder in re.findall(r"^(bearingjax/\w+/|tests/|benchmarks/) ", README, re.M):
+    for folder in re.findall(
+        r"^(bearingjax/\w+/|tests/|notebooks/|benchmarks/) ", README, re.M
+    ):
         assert (root / folder).is_dir(), folder
     assert len(bj.scene.shipped_scenes()) == 11

@@ -21,6 +21,9 @@ from .constants import contact_constants as contact_constants
 from .frame import FREEDOMS as FREEDOMS
 from .frame import LOADS as LOADS
 from .frame import RINGS as RINGS
+from .function import FunctionParameters as FunctionParameters
+from .function import orbiting_force as orbiting_force
+from .function import ring_force as ring_force
 from .inertia import Speed as Speed
 from .inertia import inertia_force as inertia_force
 from .inertia import mass_and_inertia as mass_and_inertia

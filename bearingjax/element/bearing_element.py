@@ -26,6 +26,7 @@ from .ball_model import ball_model
 from .ball_speed import AbstractRacewayControl, OuterControl
 from .bearing_model import BearingModel, Evaluated, Row, RowModel
 from .constants import contact_constants
+from .function import FunctionParameters, RingFunction, as_function
 from .inertia import Speed, inertia_force
 from .kinematics import AbstractKinematics, Finite, Linearised
 from .model import AbstractModel
@@ -217,6 +218,56 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         Args, raises: as `energy`.
         """
         return self._at("solve", q, speed)
+
+    def as_function(
+        self,
+        speed: Speed | None = None,
+        damping: Any = None,
+        *,
+        orbit: bool = True,
+    ) -> tuple[RingFunction, FunctionParameters]:
+        """The bearing as a pure function of motion, velocity, time and parameters.
+
+        function(motion, velocity, time, parameters) is the force (12,) that holds the
+        rings, of the sign of `force`: in the equations of motion of the two rings
+        M a = F - f, with F what else acts on them. It is differentiable with respect
+        to all four; under `jit` a plain static function, the same for all bearings.
+
+        The rolling elements orbit, rolling without slip: at time t the rings have
+        turned by t times their speeds, and the element by what `force` makes of such
+        gz. So the stiffness varies with the pass of the elements (variable
+        compliance), at n/2 [(1 - G) Ω_i + (1 + G) Ω_o] [rad/s] for n elements with
+        G = D cos α/d_m, that of the free contact angle. A gz in `motion` turns them
+        on top of that: it is for what differs from the steady turn. Who integrates
+        the whole rotation (a run-up) sets `orbit=False`, else it counts twice.
+
+        The inertia of the elements is that of their steady orbit at `speed`; they
+        follow the rings without delay. Nothing damps unless `damping` says so.
+
+        Args:
+            speed: Ring speeds; `None`: rings at rest, no inertia.
+            damping: Linear and viscous: a number c [N s/m], dashpots between the
+                origins of the rings in x, y and z; or a matrix C (12, 12) with
+                f = … + C velocity [N s/m, N s, N m s], as of a damping in proportion
+                to a stiffness, β `linearise(…).stiffness`. None: no damping.
+            orbit: Whether the rolling elements orbit with time, or only with the gz
+                of `motion`.
+
+        Returns:
+            function, parameters. Pass the parameters on as arguments (`args` of
+            Diffrax), to differentiate or to change them: `parameters.element` is this
+            element, `parameters.speed` and `parameters.damping` what was given.
+            Where a rolling element does not converge the force is NaN.
+
+        Raises:
+            TypeError: If `speed` is not a `Speed`, or `damping` no number.
+            ValueError: If `damping` is of another shape, not finite, or negative on
+                its diagonal; by the function, if `motion` or `velocity` is not of
+                shape (12,).
+
+        Source: variable compliance, Sunnersjö, J. Sound Vib. 58 (1978).
+        """
+        return as_function(self, speed, damping, orbit)
 
     def _at(self, name: str, q, speed):
         """A function of the model, of all in one program if nothing is traced yet."""

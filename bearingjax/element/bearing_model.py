@@ -19,7 +19,7 @@ from jaxtyping import Array, Float, Int
 from ..design import AbstractRollerBearing, Bearing, SetRow, n_elements
 from ..numerics.implicit import attach, stop
 from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
-from ..numerics.result import worst
+from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .equilibrium import (
     LocalState,
@@ -350,6 +350,18 @@ class BearingModel(eqx.Module):
         return _total(row.sum_forces(row.forces()) for row in self.solve(q))
 
     @eqx.filter_jit
+    def force_or_nan(self, q: Ring) -> Ring:
+        """As `force`, but NaN if a rolling element did not converge [N, N m]."""
+        rows = self.solve(q)
+        if self.cage_torque:
+            force = self.force(q)
+        else:
+            force = _total(row.sum_forces(row.forces()) for row in rows)
+        converged = _settled(rows)[1] == Result.CONVERGED
+        # A product: the derivative of a failed case is then NaN too.
+        return force * jnp.where(converged, 1.0, jnp.nan)
+
+    @eqx.filter_jit
     def stiffness(self, q: Ring) -> RingStiffness:
         """Tangent stiffness d(force)/dq [N/m, N, N m]."""
         if self.cage_torque:
@@ -372,15 +384,12 @@ class BearingModel(eqx.Module):
             pairs = zip(rows, shares, strict=True)
             force = _total(row.sum_forces(share) for row, share in pairs)
             stiffness = _total(row.stiffness() for row in rows)
-        loads = [jnp.max(row.solved.contact_load) for row in rows]
-        largest = jnp.max(jnp.stack(loads))
-        states = [settle(row.state, largest) for row in rows]
-        springs = [r.pressed.result[None] for r in rows if r.pressed is not None]
+        states, result = _settled(rows)
         return Evaluated(
             energy=_total(row.energy() for row in rows),
             force=force,
             stiffness=stiffness,
-            result=worst(jnp.concatenate([*springs, *(s.result for s in states)])),
+            result=result,
             steps=jnp.max(jnp.concatenate([s.steps for s in states])),
             residual=jnp.max(jnp.concatenate([s.residual for s in states])),
             magnitude=_total(
@@ -449,6 +458,15 @@ def inertia_load(rows: tuple[Row, ...]) -> Float[Array, "6"]:
                 total + jnp.einsum("lai,la->i", section, parts) @ row.model.placement
             )
     return total
+
+
+def _settled(rows: tuple[Row, ...]) -> tuple[list[LocalState], Int[Array, ""]]:
+    """Solved states of all elements, row by row, and their worst `Result` code."""
+    loads = [jnp.max(row.solved.contact_load) for row in rows]
+    largest = jnp.max(jnp.stack(loads))
+    states = [settle(row.state, largest) for row in rows]
+    springs = [r.pressed.result[None] for r in rows if r.pressed is not None]
+    return states, worst(jnp.concatenate([*springs, *(s.result for s in states)]))
 
 
 def _total(parts) -> Any:

@@ -2,6 +2,8 @@
 
 from .cases import Cases as Cases
 from .cases import solve_case as solve_case
+from .linearise import OperatingPoint as OperatingPoint
+from .linearise import linearise as linearise
 from .load import restrained_freedoms as restrained_freedoms
 from .load import solve_load as solve_load
 from .preload import preload as preload

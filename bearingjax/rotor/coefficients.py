@@ -1,0 +1,126 @@
+"""Stiffness over rotor speed, as programs of linear rotordynamics read it."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..design.checks import check, is_traced
+from ..element.bearing_element import BearingElement
+from ..element.frame import LOADS, RINGS
+from ..element.inertia import Speed
+from ..numerics.result import Result, raise_unless_converged
+from ..numerics.types import as_real
+from ..statics.linearise import OperatingPoint, linearise
+from ..statics.solution import message
+
+TILTS = ("held", "free")
+
+
+def stiffness_table(
+    element: BearingElement,
+    speeds: Any,
+    load: Any,
+    *,
+    tilts: str = "held",
+    fixed_ring: str = "outer",
+) -> Float[Array, "speed 3 3"]:
+    """Stiffness of the moving ring in x, y and z at each rotor speed.
+
+    At every speed the bearing is put in its equilibrium under the load, with the
+    inertia of its rolling elements, and linearised there. The other ring stands
+    still; the rolling elements stand as `first_azimuth` has them.
+
+    Args:
+        element: The bearing.
+        speeds: Speeds of the moving ring, positive from x towards y (speed,) [rad/s].
+        load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring [N, N m], one for all
+            speeds (6,) or one for each (speed, 6).
+        tilts: "held": the moving ring does not tilt, as on a stiff shaft: the block
+            of the full stiffness. "free": its tilts balance the moments of the load
+            and follow (condensed), as on a slender shaft that holds no moment.
+        fixed_ring: "outer" or "inner".
+
+    Returns:
+        d(Fx, Fy, Fz)/d(ux, uy, uz) (speed, 3, 3) [N/m], differentiable with respect
+        to design, speeds and load. uz stays zero where the bearing cannot hold it.
+
+    Raises:
+        ValueError: For wrong shapes, names or non-finite numbers, or moments about
+            tilts that are held.
+        SolveError: If a solve fails; the message names the first such speed.
+    """
+    speeds, load = _checked(element, speeds, load, tilts, fixed_ring)
+    stiffness, result = _sweep(element, speeds, load, tilts, fixed_ring)
+
+    def first_failure():
+        index = int(jnp.argmax(result != Result.CONVERGED))
+        # Solved once more: the sweep keeps no more than it returns.
+        point = _point(element, speeds[index], load[index], tilts, fixed_ring)
+        return (
+            f"stiffness_table: speed {float(speeds[index]):g} rad/s:"
+            f" {Result(int(result[index])).label}:"
+            f" {message(point.solution, point.solution.moving_ring)}"
+        )
+
+    return raise_unless_converged(stiffness, result, first_failure)
+
+
+@eqx.filter_jit
+def _sweep(element, speeds, load, tilts, fixed_ring):
+    """Stiffness (speed, 3, 3) and result code (speed,)."""
+
+    def one(speed, load):
+        point = _point(element, speed, load, tilts, fixed_ring)
+        return point.condensed(), point.solution.result
+
+    return jax.vmap(one)(speeds, load)
+
+
+def _point(element, speed, load, tilts, fixed_ring) -> OperatingPoint:
+    moving = RINGS[1 - RINGS.index(fixed_ring)]
+    return linearise(
+        element,
+        load,
+        prescribed={"gx": 0.0, "gy": 0.0} if tilts == "held" else None,
+        fixed_ring=fixed_ring,
+        speed=Speed(**{moving: speed}),
+        throw=False,
+    )
+
+
+def _checked(element, speeds, load, tilts, fixed_ring):
+    """Speeds (speed,) and loads (speed, 6), or the error that they deserve."""
+    name = "stiffness_table"
+    for what, value, allowed in (
+        ("tilts", tilts, TILTS),
+        ("fixed_ring", fixed_ring, RINGS),
+    ):
+        if value not in allowed:
+            raise ValueError(
+                f"{name}: `{what}` is {value!r}; it must be"
+                f" {' or '.join(map(repr, allowed))}."
+            )
+    speeds, load = as_real(speeds), as_real(load)
+    if speeds.ndim != 1 or speeds.shape[0] == 0:
+        raise ValueError(
+            f"{name}: `speeds` has shape {speeds.shape}; it must be (speed,) in rad/s."
+        )
+    if load.shape not in ((6,), (*speeds.shape, 6)):
+        raise ValueError(
+            f"{name}: `load` has shape {load.shape}; it must be (6,) or"
+            f" {(*speeds.shape, 6)}: {' '.join(LOADS)}, in N and N m."
+        )
+    if not is_traced(speeds):
+        check(name, "speeds", speeds, "rad/s", jnp.isfinite(speeds), "finite")
+    if not is_traced(load):
+        check(name, "load", load, "N, N m", jnp.isfinite(load), "finite")
+        moments = load[..., 3:5]
+        if tilts == "held" and bool(jnp.any(moments != 0)):
+            raise ValueError(
+                f"{name}: `load` has Mx or My, but the tilts are held, whose moments"
+                " are results; take tilts='free', or no moments."
+            )
+    return speeds, jnp.broadcast_to(load, (*speeds.shape, 6))

@@ -1,0 +1,133 @@
+"""The bearing at an operating point, for linear rotordynamics."""
+
+from collections.abc import Mapping, Sequence
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..element.bearing_element import BearingElement
+from ..element.frame import FREEDOMS, RINGS
+from ..element.inertia import Speed
+from ..numerics.types import Ring, RingStiffness
+from .load import Vector, solve_load
+from .solution import Solution
+
+_SLACK = 1e-9
+"""Share of the largest stiffness below which nothing holds a direction [1]."""
+
+
+class OperatingPoint(eqx.Module):
+    """Where a load puts a bearing, and how stiff it is there.
+
+    Small motions about it: force + stiffness (q - motion), the rolling elements
+    where they are.
+
+    Attributes:
+        solution: All that `solve_load` found there; its `result` says whether it is
+            an answer.
+    """
+
+    solution: Solution
+
+    @property
+    def motion(self) -> Ring:
+        """Ring freedoms (12,) [m, rad]."""
+        return self.solution.displacement
+
+    @property
+    def force(self) -> Ring:
+        """External load that holds the rings (12,) [N, N m]."""
+        return self.solution.force
+
+    @property
+    def stiffness(self) -> RingStiffness:
+        """Tangent stiffness d(force)/d(motion) (12, 12) [N/m, N, N m]."""
+        return self.solution.stiffness
+
+    @property
+    def ring_stiffness(self) -> Float[Array, "6 6"]:
+        """That of the moving ring, the other one fixed (6, 6) [N/m, N, N m]."""
+        first = 6 * RINGS.index(self.solution.moving_ring)
+        return self.solution.stiffness[first : first + 6, first : first + 6]
+
+    def condensed(
+        self, keep: Sequence[str] = ("ux", "uy", "uz")
+    ) -> Float[Array, "kept kept"]:
+        """Stiffness of a few freedoms of the moving ring, the others condensed.
+
+        The others were free in the solve and follow without a change of their load,
+        K_kk - K_ko K_oo⁻¹ K_ok; or they were held or prescribed, and stay. A
+        direction that nothing holds (a slack tilt) drops out.
+
+        Args:
+            keep: Freedoms to keep, in this order.
+
+        Returns:
+            (kept, kept) [N/m, N, N m].
+
+        Raises:
+            ValueError: For unknown or repeated names, or none.
+
+        Source: static condensation, Guyan, AIAA J. 3 (1965).
+        """
+        if not keep or len(set(keep)) < len(keep) or not set(keep) <= set(FREEDOMS):
+            raise ValueError(
+                f"OperatingPoint: `keep` is {tuple(keep)}; it must name freedoms, each"
+                f" once, out of {', '.join(FREEDOMS)}."
+            )
+        kept = np.array([FREEDOMS.index(name) for name in keep])
+        others = [name for name in self.solution.free if name not in keep]
+        k = self.ring_stiffness
+        block = k[jnp.ix_(kept, kept)]
+        if not others:
+            return block
+        other = np.array([FREEDOMS.index(name) for name in others])
+        # All in N/m, so that small means the same for forces and moments.
+        radius = self.solution.pitch_radius
+        scale = jnp.diag(jnp.where(other < 3, jnp.ones_like(radius), 1.0 / radius))
+        own = scale @ k[jnp.ix_(other, other)] @ scale
+        across = k[jnp.ix_(kept, other)] @ scale
+        back = scale @ k[jnp.ix_(other, kept)]
+        return block - across @ jnp.linalg.pinv(own, rtol=_SLACK) @ back
+
+
+def linearise(
+    element: BearingElement,
+    load: Vector | None = None,
+    *,
+    prescribed: Mapping[str, float | int | Array] | None = None,
+    free: Sequence[str] | None = None,
+    fixed_ring: str = "outer",
+    speed: Speed | None = None,
+    throw: bool = True,
+) -> OperatingPoint:
+    """The bearing about its equilibrium under a load.
+
+    The static linearisation of `element.as_function`: stiffness is its Jacobian
+    there, with the rolling elements where gz has them (zero: `first_azimuth`).
+
+    Args:
+        element, load, prescribed, free, fixed_ring, speed, throw: As `solve_load`.
+
+    Returns:
+        OperatingPoint, differentiable with respect to design, load and speeds.
+
+    Raises:
+        ValueError, SolveError: As `solve_load`.
+
+    Fails: as `solve_load`; with `throw=False` read `solution.result`.
+    """
+    return OperatingPoint(
+        solve_load(
+            element,
+            load,
+            prescribed=prescribed,
+            free=free,
+            fixed_ring=fixed_ring,
+            speed=speed,
+            points=2,
+            throw=throw,
+        )
+    )

@@ -1,0 +1,89 @@
+"""The operating point: what it condenses, and that it is the function's Jacobian."""
+
+import jax
+import numpy as np
+import pytest
+from registry import balls
+from tolerances import DIFFERENCE, SOLVER
+
+import bearingjax as bj
+
+SPEED = bj.Speed(inner=800.0)
+LOAD = np.array([150.0, -900.0, 700.0, 0.0, 0.0, 0.0])
+ELEMENT = bj.BearingElement(balls(5), raceway_control=bj.CentrifugalOnly())
+
+
+@pytest.fixture(scope="module")
+def point():
+    return bj.linearise(ELEMENT, LOAD, speed=SPEED)
+
+
+def test_it_is_the_static_linearisation_of_the_function(point):
+    function, parameters = ELEMENT.as_function(SPEED)
+    rest = np.zeros(12)
+    force = function(point.motion, rest, 0.0, parameters)
+    np.testing.assert_allclose(force, point.force, atol=SOLVER * 900)
+    np.testing.assert_allclose(force[6:], LOAD, atol=SOLVER * 900)
+    jacobian = jax.jit(jax.jacfwd(function))(point.motion, rest, 0.0, parameters)
+    largest = abs(jacobian).max()
+    np.testing.assert_allclose(jacobian, point.stiffness, atol=SOLVER * largest)
+    np.testing.assert_array_equal(point.ring_stiffness, point.stiffness[6:, 6:])
+
+
+def test_what_is_free_is_condensed_and_what_is_held_stays(point):
+    k = np.asarray(point.ring_stiffness)
+    # By the definition: the compliance of all that is free, seen from what is kept.
+    free = [0, 1, 2, 3, 4]
+    expected = np.linalg.inv(np.linalg.inv(k[np.ix_(free, free)])[:3, :3])
+    scale = abs(expected).max()
+    np.testing.assert_allclose(point.condensed(), expected, atol=SOLVER * scale)
+    np.testing.assert_allclose(
+        point.condensed(("uy", "ux", "uz")),
+        expected[np.ix_([1, 0, 2], [1, 0, 2])],
+        atol=SOLVER * scale,
+    )
+    assert abs(expected - k[:3, :3]).max() > 0.01 * scale
+    given = {name: float(point.motion[6 + i]) for i, name in ((3, "gx"), (4, "gy"))}
+    held = bj.linearise(ELEMENT, LOAD, prescribed=given, speed=SPEED)
+    np.testing.assert_allclose(held.condensed(), k[:3, :3], atol=SOLVER * abs(k).max())
+    four = held.condensed(("ux", "uy", "uz", "gx"))
+    np.testing.assert_array_equal(four, held.ring_stiffness[:4, :4])
+
+
+def test_a_direction_that_nothing_holds_drops_out():
+    rollers = bj.CylindricalRollerBearing(
+        7, 0.065, 0.010, 0.010, radial_internal_clearance=-4e-6
+    )
+    element = bj.BearingElement(rollers, quadrature=bj.Midpoint(8))
+    free = ("ux", "uy", "uz", "gx", "gy")  # nothing holds uz
+    point = bj.linearise(element, [0, -2000.0, 0, 0, 0, 0], free=free)
+    k = np.asarray(point.ring_stiffness)
+    tilts = np.ix_([3, 4], [3, 4])
+    expected = k[:2, :2] - k[:2, 3:5] @ np.linalg.inv(k[tilts]) @ k[3:5, :2]
+    kept = point.condensed(("ux", "uy"))
+    np.testing.assert_allclose(kept, expected, atol=SOLVER * abs(k).max())
+
+
+def test_under_jit_and_grad():
+    """d(condensed stiffness)/d(load), through the solve and the condensation."""
+
+    @jax.jit
+    def stiffness(load):
+        point = bj.linearise(ELEMENT, load, speed=SPEED, throw=False)
+        return point.condensed(("ux", "uy"))[1, 1]
+
+    slope = jax.jit(jax.grad(stiffness))(LOAD)
+    change = 90.0 * np.array([0.5, -1.0, 0.7, 0, 0, 0])
+    errors = []
+    for h in (1e-2, 1e-3, 1e-4):
+        difference = stiffness(LOAD + h * change) - stiffness(LOAD - h * change)
+        errors.append(abs(difference / (2 * h) - slope @ change))
+    assert min(errors) < DIFFERENCE * abs(slope @ change)
+
+
+def test_bad_names_and_failures(point):
+    for keep in ((), ("ux", "ux"), ("x",)):
+        with pytest.raises(ValueError, match="`keep`"):
+            point.condensed(keep)
+    with pytest.raises(bj.SolveError, match="uz"):
+        bj.linearise(ELEMENT, -LOAD, speed=SPEED)
