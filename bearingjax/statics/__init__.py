@@ -11,3 +11,16 @@ from .solution import Solution as Solution
 from .solution import Stats as Stats
 from .solution import message as message
 from .solution import warnings as warnings
+from .measure import Constraint as Constraint
+from .measure import Displacement as Displacement
+from .measure import EdgeLoad as EdgeLoad
+from .measure import MeanPressure as MeanPressure
+from .measure import PeakPressure as PeakPressure
+from .measure import Stiffness as Stiffness
+from .measure import StiffnessTarget as StiffnessTarget
+from .optimise import History as History
+from .optimise import Optimised as Optimised
+from .optimise import Outcome as Outcome
+from .optimise import optimise as optimise
+from .variable import Variable as Variable
+from .variable import design_numbers as design_numbers

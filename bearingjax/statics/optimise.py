@@ -1,0 +1,498 @@
+"""Design optimisation: the free numbers of a drawing that make a measure least.
+
+One compiled program solves all operating cases of a design and pulls the gradient of
+objective and constraints back through the equilibria (implicit function theorem,
+reverse mode): it costs little more than the solves.
+"""
+
+import dataclasses
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..element.bearing_element import BearingElement
+from ..numerics.result import Result, SolveError
+from .cases import Cases, solve_case
+from .measure import Constraint, exact_of
+from .search import METHODS, Trial, search, stationarity
+from .solution import Solution, message
+from .variable import Variable, check_variables, with_values
+
+CHUNK = 64
+"""Most cases that are solved side by side."""
+
+Measure = Callable[[BearingElement[Any], Cases, Solution], Any]
+Build = Callable[[BearingElement[Any]], BearingElement[Any]]
+
+
+class Outcome(NamedTuple):
+    """A design and how it fares.
+
+    Attributes:
+        values: Of the variables (variable,) [SI].
+        objective: The smooth objective.
+        exact: What it stands for: the true maximum.
+        constraints: The smooth measures that are bounded (constraint,).
+        exact_constraints: What they stand for (constraint,).
+        solution: Of all cases, leading axis case.
+    """
+
+    values: np.ndarray
+    objective: float
+    exact: float
+    constraints: np.ndarray
+    exact_constraints: np.ndarray
+    solution: Any
+
+
+class History(NamedTuple):
+    """The accepted steps of a search; step 0 is the start.
+
+    Attributes:
+        values: Of the variables (step, variable) [SI].
+        objective: The smooth objective (step,).
+        violation: Miss of the worst constraint over the size of its bound (step,).
+        gradient: Largest part of the gradient that neither bound nor constraint holds
+            back (step,), of the objective over its size at the start by variables over
+            their range [1]; NaN with a method without gradients.
+        evaluations: Designs evaluated so far (step,).
+    """
+
+    values: np.ndarray
+    objective: np.ndarray
+    violation: np.ndarray
+    gradient: np.ndarray
+    evaluations: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True)
+class Optimised:
+    """What an optimisation found.
+
+    Attributes:
+        element: The best design, its checks passed.
+        variables: What was free.
+        values: Its numbers (variable,) [SI].
+        before: The starting design and how it fared.
+        after: The best design, likewise.
+        history: The way from one to the other.
+        n_evaluations: Designs that were evaluated, every case of each solved once.
+        n_gradients: Those of which the gradient was asked for.
+        rejected: Why designs were rejected, in order; empty if none was.
+        result: "converged", "step_limit", "stalled" (the method could not go on), or
+            "infeasible" (no design was found that keeps the constraints).
+        message: The same in words.
+    """
+
+    element: BearingElement[Any]
+    variables: tuple[Variable, ...]
+    values: np.ndarray
+    before: Outcome
+    after: Outcome
+    history: History
+    n_evaluations: int
+    n_gradients: int
+    rejected: tuple[str, ...]
+    result: str
+    message: str
+
+    @property
+    def converged(self) -> bool:
+        """Whether `result` is "converged"."""
+        return self.result == "converged"
+
+
+def optimise(
+    element: BearingElement[Any],
+    cases: Cases,
+    variables: Sequence[Variable],
+    objective: Measure,
+    constraints: Sequence[Constraint] = (),
+    method: Any = None,
+    *,
+    max_steps: int = 200,
+    tolerance: float = 1e-5,
+    points: int = 101,
+    free: Sequence[str] | None = None,
+    fixed_ring: str = "outer",
+    solve_tolerance: float | None = None,
+    build: Build | None = None,
+    progress: bool = False,
+) -> Optimised:
+    """The design within bounds that makes an objective least over operating cases.
+
+    A design with a case that does not solve, with a number that is not finite, or
+    that the drawing does not allow is rejected: the search is told of a slope that
+    rises away from its last step, and turns back. `rejected` lists the reasons.
+
+    Args:
+        element: The design to start from.
+        cases: Operating cases, all of this design.
+        variables: Its free numbers.
+        objective: What is made least: a measure such as `PeakPressure()`, or any
+            smooth function (element, cases, solution) -> scalar.
+        constraints: Bounds on measures.
+        method: "l-bfgs-b" (the default without constraints), "slsqp" (with them),
+            "adam" or any Optax gradient transformation, projected onto the bounds, or
+            "nelder-mead", which asks for no gradients and is there to compare. Only
+            "slsqp" keeps constraints.
+        max_steps: Step limit of the search.
+        tolerance: Gradient at which the search ends, of the objective over its size
+            at the start, by variables over their range; constraints are kept to this
+            share of their bound. Of "nelder-mead": size of the simplex, likewise.
+        points: Positions along the rollers at which pressures are sampled.
+        free, fixed_ring: As of `solve_load`.
+        solve_tolerance: `tolerance` of `solve_load`.
+        build: What is done to a changed design before it is solved, for example
+            `lambda e: bj.preload(e, 400.0, throw=False)`.
+        progress: Show a progress bar on standard error.
+
+    Returns:
+        The best design and the way to it; read `result`.
+
+    Raises:
+        TypeError, ValueError: For wrong variables, measures, methods or numbers.
+        SolveError: If the starting design does not solve.
+    """
+    if not isinstance(element, BearingElement):
+        raise TypeError(
+            f"optimise: `element` is a {type(element).__name__}; it must be a"
+            " BearingElement."
+        )
+    variables, constraints = tuple(variables), tuple(constraints)
+    method = _check_method(method, constraints)
+    _check_call(cases, objective, constraints, max_steps, tolerance)
+    start = check_variables(element, variables)
+    options = Options(
+        None if free is None else tuple(free), fixed_ring, points, solve_tolerance, build
+    )
+    problem = Problem(element, cases, variables, objective, constraints, options)
+    unit = problem.scaled(start)
+    slopes = method != "nelder-mead"
+    problem.begin(unit, slopes)
+
+    from tqdm import tqdm
+
+    bar = tqdm(total=max_steps, disable=not progress, desc="optimise", unit="step")
+    with bar:
+
+        def step(x):
+            problem.accept(x)
+            bar.set_postfix_str(f"{problem.steps[-1].objective:.6g} of the start")
+            bar.update()
+
+        ending = search(
+            method,
+            lambda x: problem.attempt(x, slopes),
+            unit,
+            len(problem.bounds),
+            max_steps,
+            tolerance,
+            step,
+        )
+    return _conclude(problem, ending, slopes, max_steps, tolerance)
+
+
+class Options(NamedTuple):
+    """How cases are solved; as of `optimise`."""
+
+    free: tuple[str, ...] | None
+    fixed_ring: str
+    points: int
+    solve_tolerance: float | None
+    build: Build | None
+
+
+class Bound(NamedTuple):
+    """One bound of a constraint: sign * (measure - limit)/size ≥ 0."""
+
+    measure: int
+    sign: float
+    limit: float
+    size: float
+
+
+class Problem:
+    """A design with free numbers, and a record of what was tried.
+
+    Args:
+        element, cases, variables, objective, constraints: As of `optimise`, checked.
+        options: How cases are solved.
+    """
+
+    def __init__(self, element, cases, variables, objective, constraints, options):
+        self.element, self.variables = element, variables
+        self.cases = jax.tree.map(jnp.asarray, cases)
+        self.measures = (objective, *(c.measure for c in constraints))
+        self.options = options
+        self.paths = tuple(variable.path for variable in variables)
+        self.lower = np.array([v.lower for v in variables])
+        self.width = np.array([v.upper - v.lower for v in variables])
+        self.bounds = tuple(_bounds(constraints))
+        self.size = 1.0
+        self.steps: list[Trial] = []
+        self.evaluations: list[int] = []
+        self.n_evaluations = self.n_gradients = 0
+        self.rejected: list[str] = []
+        self._last: tuple[bytes, bool, Trial] | None = None
+
+    def scaled(self, values) -> np.ndarray:
+        """Values of the variables in the unit box."""
+        return (np.asarray(values) - self.lower) / self.width
+
+    def values(self, unit) -> np.ndarray:
+        """Values of the variables [SI], exact at the bounds."""
+        upper = self.lower + self.width
+        return np.clip(self.lower + self.width * unit, self.lower, upper)
+
+    def begin(self, unit: np.ndarray, slopes: bool) -> None:
+        """Evaluate the start, and take the size of its objective as the scale.
+
+        Raises:
+            SolveError: If it does not solve.
+        """
+        trial = self._evaluate(unit, slopes)
+        if trial.fault:
+            raise SolveError(f"optimise: the starting design fails: {trial.fault}")
+        self.size = abs(trial.objective) or 1.0
+        slope = None if trial.slope is None else trial.slope / self.size
+        trial = trial._replace(objective=trial.objective / self.size, slope=slope)
+        self._last = (unit.tobytes(), slopes, trial)
+        self.accept(unit)
+
+    def attempt(self, unit: np.ndarray, slopes: bool) -> Trial:
+        """The trial of a design, evaluated once though a search asks repeatedly."""
+        key = unit.tobytes()
+        if self._last is None or self._last[:2] != (key, slopes):
+            trial = self._evaluate(np.array(unit), slopes)
+            if trial.fault:
+                self.rejected.append(trial.fault)
+                trial = self._cone(trial, slopes)
+            self._last = (key, slopes, trial)
+        return self._last[2]
+
+    def accept(self, unit: np.ndarray) -> None:
+        """Note that the search has moved here."""
+        slopes = self._last is not None and self._last[1]
+        self.steps.append(self.attempt(unit, slopes))
+        self.evaluations.append(self.n_evaluations)
+
+    def outcome(self, trial: Trial) -> tuple[BearingElement[Any], Outcome]:
+        """The design of a trial, and how it fares."""
+        values = self.values(trial.unit)
+        element = with_values(self.element, self.paths, values)
+        if self.options.build is not None:
+            element = self.options.build(element)
+        smooth, exact, solution, _ = self._run(trial.unit, False)
+        return element, Outcome(
+            values, smooth[0].item(), exact[0].item(), smooth[1:], exact[1:], solution
+        )
+
+    def _run(self, unit, slopes):
+        return _program(
+            self.element,
+            self.cases,
+            self.measures,
+            self.paths,
+            self.options,
+            jnp.asarray(unit),
+            jnp.asarray(self.lower),
+            jnp.asarray(self.width),
+            slopes,
+        )
+
+    def _evaluate(self, unit, slopes) -> Trial:
+        nothing = np.zeros(0)
+        failed = Trial(unit, np.nan, None, nothing, None)
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                with_values(self.element, self.paths, self.values(unit))
+        except ValueError as error:
+            return failed._replace(fault=f"not a design: {error}")
+        self.n_evaluations += 1
+        self.n_gradients += slopes
+        values, _, solution, jacobian = self._run(unit, slopes)
+        fault = _fault(solution, values, jacobian)
+        if fault:
+            return failed._replace(fault=fault)
+        values = np.asarray(values)
+        margins = [b.sign * (values[b.measure] - b.limit) / b.size for b in self.bounds]
+        slope = margin_slopes = None
+        if slopes:
+            jacobian = np.asarray(jacobian)
+            slope = jacobian[0] / self.size
+            rows = [b.sign * jacobian[b.measure] / b.size for b in self.bounds]
+            margin_slopes = np.array(rows).reshape(len(rows), unit.size)
+        objective = float(values[0]) / self.size
+        return Trial(unit, objective, slope, np.array(margins), margin_slopes)
+
+    def _cone(self, failed: Trial, slopes: bool) -> Trial:
+        """Numbers for a rejected design: those of the last step, rising from there."""
+        last = self.steps[-1]
+        away = failed.unit - last.unit
+        distance = float(np.linalg.norm(away)) or 1.0
+        steep = 1.0 if last.slope is None else max(1.0, np.abs(last.slope).max())
+        return last._replace(
+            unit=failed.unit,
+            objective=last.objective + steep * distance,
+            slope=steep * away / distance if slopes else None,
+            fault=failed.fault,
+        )
+
+
+@eqx.filter_jit
+def _program(element, cases, measures, paths, options, unit, lower, width, slopes):
+    """Measures, their exact values, solutions and, if asked for, the Jacobian."""
+
+    def outputs(unit):
+        design = with_values(element, paths, lower + width * unit)
+        if options.build is not None:
+            design = options.build(design)
+
+        def one(case):
+            return solve_case(
+                design,
+                case,
+                free=options.free,
+                fixed_ring=options.fixed_ring,
+                points=options.points,
+                tolerance=options.solve_tolerance,
+            )
+
+        if cases.count <= CHUNK:
+            solution = jax.vmap(one)(cases)
+        else:
+            solution = jax.lax.map(one, cases, batch_size=CHUNK)
+        values = [_scalar(m, m(design, cases, solution)) for m in measures]
+        exact = [exact_of(m, design, cases, solution) for m in measures]
+        values = jnp.stack(values)
+        return values, (values, jnp.stack(exact), solution)
+
+    if slopes:
+        jacobian, found = jax.jacrev(outputs, has_aux=True)(unit)
+    else:
+        jacobian, found = None, outputs(unit)[1]
+    return *found, jacobian
+
+
+def _scalar(measure, value):
+    if jnp.shape(value) != ():
+        raise ValueError(
+            f"optimise: the measure {measure} returns shape {jnp.shape(value)}; it must"
+            " return one number."
+        )
+    return jnp.asarray(value)
+
+
+def _bounds(constraints):
+    for k, constraint in enumerate(constraints):
+        for sign, limit in ((1.0, constraint.lower), (-1.0, constraint.upper)):
+            if limit is not None:
+                yield Bound(k + 1, sign, float(limit), abs(float(limit)) or 1.0)
+
+
+def _fault(solution, values, jacobian) -> str:
+    """Why an evaluated design is no good, in words; empty if it is good."""
+    results = np.asarray(solution.result)
+    if results.any():
+        k = int(np.argmax(results))
+        one = jax.tree.map(lambda leaf: leaf[k], solution)
+        label = Result(int(results[k])).label
+        return f"case {k}: {label}: {message(one, solution.moving_ring)}"
+    if not np.isfinite(values).all():
+        return f"a measure is not finite: {np.asarray(values).tolist()}"
+    if jacobian is not None and not np.isfinite(jacobian).all():
+        return f"a gradient is not finite: {np.asarray(jacobian).tolist()}"
+    return ""
+
+
+def _conclude(problem, ending, slopes, max_steps, tolerance) -> Optimised:
+    trial = problem.attempt(ending.unit, slopes)
+    if trial.fault:
+        trial = problem.steps[-1]
+    flat = stationarity(trial) <= tolerance
+    if trial.violation > tolerance:
+        result = "infeasible"
+        text = f"constraints are missed by {trial.violation:.1e} of their bounds"
+    elif trial.fault == "" and (ending.settled or flat):
+        result, text = "converged", ending.text
+    elif len(problem.steps) > max_steps:
+        result = "step_limit"
+        text = f"step limit reached after {max_steps} steps: raise `max_steps`"
+    else:
+        result, text = "stalled", f"the search could not go on: {ending.text}"
+    steps = problem.steps
+    history = History(
+        values=np.stack([problem.values(s.unit) for s in steps]),
+        objective=problem.size * np.array([s.objective for s in steps]),
+        violation=np.array([s.violation for s in steps]),
+        gradient=np.array([stationarity(s) for s in steps]),
+        evaluations=np.array(problem.evaluations),
+    )
+    _, before = problem.outcome(steps[0])
+    element, after = problem.outcome(trial)
+    return Optimised(
+        element,
+        problem.variables,
+        after.values,
+        before,
+        after,
+        history,
+        problem.n_evaluations,
+        problem.n_gradients,
+        tuple(problem.rejected),
+        result,
+        text,
+    )
+
+
+def _check_method(method, constraints):
+    if method is None:
+        return "slsqp" if constraints else "l-bfgs-b"
+    descent = hasattr(method, "init") and hasattr(method, "update")
+    if not descent and method not in METHODS:
+        raise ValueError(
+            f"optimise: `method` is {method!r}; it must be one of"
+            f" {', '.join(METHODS)}, or an Optax gradient transformation."
+        )
+    if constraints and method != "slsqp":
+        raise ValueError(
+            f"optimise: `method` is {method!r}, which keeps no constraints; take"
+            " 'slsqp'."
+        )
+    return method
+
+
+def _check_call(cases, objective, constraints, max_steps, tolerance):
+    if not isinstance(cases, Cases):
+        raise TypeError(
+            f"optimise: `cases` is a {type(cases).__name__}; it must be a Cases."
+        )
+    if cases.design is not None:
+        raise ValueError("optimise: `cases` have several designs; give one element.")
+    if not callable(objective):
+        raise TypeError(
+            f"optimise: `objective` is a {type(objective).__name__}; it must be a"
+            " function (element, cases, solution) -> scalar, such as PeakPressure()."
+        )
+    for constraint in constraints:
+        if not isinstance(constraint, Constraint):
+            raise TypeError(
+                f"optimise: `constraints` holds a {type(constraint).__name__}; it must"
+                " hold Constraints."
+            )
+    if isinstance(max_steps, bool) or not isinstance(max_steps, int) or max_steps < 1:
+        raise ValueError(
+            f"optimise: `max_steps` is {max_steps!r}; it must be a whole number of at"
+            " least 1."
+        )
+    if not 0.0 < tolerance < 0.1:
+        raise ValueError(
+            f"optimise: `tolerance` is {tolerance!r}; it must be above 0 and below 0.1."
+        )
