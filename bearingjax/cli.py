@@ -1,4 +1,4 @@
-"""The command line: `bearingjax solve SCENE.toml`."""
+"""The command line: `bearingjax solve SCENE.toml`, `bearingjax optimise …`."""
 
 import argparse
 import gc
@@ -29,7 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     collecting = gc.isenabled()
     gc.disable()
     try:
-        return _solve(options)
+        return options.command_line(options)
     except SceneError as error:
         print(f"bearingjax: {error}", file=sys.stderr)
         return BAD_INPUT
@@ -56,19 +56,33 @@ def _parser():
         description="Solve the bearing of a scene file and print a report.",
         epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
     )
-    solve.add_argument("scene", metavar="SCENE", help=".toml file or a shipped scene")
-    solve.add_argument("--json", metavar="OUT", type=Path, help="write numbers in SI")
-    solve.add_argument(
+    solve.set_defaults(command_line=_solve)
+    _add_common(solve)
+    optimise = commands.add_parser(
+        "optimise",
+        help="the free numbers of a design that make a measure least",
+        description="Optimise the bearing of a scene file, as its [optimise] says.",
+        epilog="Exit status: 0 optimised, 2 bad input, 3 not solved or not converged.",
+    )
+    optimise.set_defaults(command_line=_optimise)
+    _add_common(optimise)
+    optimise.add_argument("--progress", action="store_true", help="show progress")
+    return parser
+
+
+def _add_common(parser):
+    parser.add_argument("scene", metavar="SCENE", help=".toml file or a shipped scene")
+    parser.add_argument("--json", metavar="OUT", type=Path, help="write numbers in SI")
+    parser.add_argument(
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
     )
-    solve.add_argument(
+    parser.add_argument(
         "--set",
         metavar="KEY=VALUE",
         action="append",
         default=[],
         help='change the scene, such as "operating.load.Fz=-6 kN"; may be repeated',
     )
-    return parser
 
 
 def _configure_jax():
@@ -114,6 +128,47 @@ def _solve(options) -> int:
         print(f"bearingjax: {result.label}: {text}", file=sys.stderr)
         return NOT_SOLVED
     print(report(scene, solution), flush=True)
+    return SOLVED
+
+
+def _optimise(options) -> int:
+    import json
+
+    from .numerics import SolveError
+    from .scene import (
+        SceneError,
+        optimisation_as_dict,
+        optimisation_report,
+        read_scene,
+        run_optimisation,
+    )
+
+    for path in (options.json, options.plot):
+        _check_writable(path)
+    if options.plot is not None:
+        _check_plot(options.plot)
+    scene = read_scene(options.scene, options.set)
+    try:
+        found = run_optimisation(scene, progress=options.progress)
+    except SolveError as error:
+        print(f"bearingjax: {error}", file=sys.stderr)
+        return NOT_SOLVED
+    try:
+        if options.json is not None:
+            numbers = optimisation_as_dict(scene, found)
+            text = json.dumps(numbers, indent=1, allow_nan=False)
+            options.json.write_text(text + "\n", encoding="utf-8")
+        if options.plot is not None and found.converged:
+            from .plot import optimised
+
+            figure = optimised(found, title=scene.name)
+            figure.savefig(options.plot, dpi=150)
+    except OSError as error:
+        raise SceneError(f"{error.filename}: cannot be written: {error}") from error
+    if not found.converged:
+        print(f"bearingjax: {found.result}: {found.message}", file=sys.stderr)
+        return NOT_SOLVED
+    print(optimisation_report(scene, found), flush=True)
     return SOLVED
 
 

@@ -1,5 +1,7 @@
 """Scene files: reading, running, reporting."""
 
+from .optimise_report import optimisation_as_dict as optimisation_as_dict
+from .optimise_report import optimisation_report as optimisation_report
 from .output import as_dict as as_dict
 from .output import write_json as write_json
 from .quantity import SceneError as SceneError
@@ -8,4 +10,5 @@ from .read import load_bearing as load_bearing
 from .read import read_scene as read_scene
 from .read import shipped_scenes as shipped_scenes
 from .report import report as report
+from .run import run_optimisation as run_optimisation
 from .run import run_scene as run_scene

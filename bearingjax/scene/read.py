@@ -39,6 +39,7 @@ from ..element import (
 )
 from ..numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
 from .bearing_table import read_bearing
+from .optimise_table import Optimisation, read_optimisation
 from .quantity import SceneError
 from .table import Table
 
@@ -77,6 +78,7 @@ class Scene:
         tolerance: Relative residual of the load solve, or `None` for the default.
         points: Positions along the rollers at which loads are reported.
         warnings: What the validation found odd but possible.
+        optimisation: What is to be optimised, or `None`.
     """
 
     name: str
@@ -90,6 +92,7 @@ class Scene:
     tolerance: float | None
     points: int
     warnings: tuple[str, ...]
+    optimisation: Optimisation | None = None
 
     @property
     def moving_ring(self) -> str:
@@ -234,7 +237,14 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         tolerance=tolerance,
         points=_points(top.table("output"), bearing),
         warnings=odd,
+        optimisation=_optimisation(top, element),
     )
+
+
+def _optimisation(top: Table, element) -> Optimisation | None:
+    if "optimise" not in top:
+        return None
+    return read_optimisation(top.table("optimise"), element)
 
 
 def _components(operating, key, names, kinds) -> dict[str, float]:

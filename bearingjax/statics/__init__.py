@@ -4,13 +4,6 @@ from .cases import Cases as Cases
 from .cases import solve_case as solve_case
 from .load import restrained_freedoms as restrained_freedoms
 from .load import solve_load as solve_load
-from .preload import preload as preload
-from .solution import BallSolution as BallSolution
-from .solution import RollerSolution as RollerSolution
-from .solution import Solution as Solution
-from .solution import Stats as Stats
-from .solution import message as message
-from .solution import warnings as warnings
 from .measure import Constraint as Constraint
 from .measure import Displacement as Displacement
 from .measure import EdgeLoad as EdgeLoad
@@ -22,5 +15,12 @@ from .optimise import History as History
 from .optimise import Optimised as Optimised
 from .optimise import Outcome as Outcome
 from .optimise import optimise as optimise
+from .preload import preload as preload
+from .solution import BallSolution as BallSolution
+from .solution import RollerSolution as RollerSolution
+from .solution import Solution as Solution
+from .solution import Stats as Stats
+from .solution import message as message
+from .solution import warnings as warnings
 from .variable import Variable as Variable
 from .variable import design_numbers as design_numbers

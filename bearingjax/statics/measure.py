@@ -377,7 +377,9 @@ def hour_weights(cases: Cases) -> Float[Array, " case"]:
 
 def _ends(solution):
     if not isinstance(solution, RollerSolution):
-        raise ValueError("EdgeLoad: balls have no ends; the bearing must be of rollers.")
+        raise ValueError(
+            "EdgeLoad: balls have no ends; the bearing must be of rollers."
+        )
     return solution.line_load[..., np.array([0, -1])]
 
 

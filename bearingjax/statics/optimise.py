@@ -19,7 +19,7 @@ from ..element.bearing_element import BearingElement
 from ..numerics.result import Result, SolveError
 from .cases import Cases, solve_case
 from .measure import Constraint, exact_of
-from .search import METHODS, Trial, search, stationarity
+from .search import METHODS, Trial, search, stationarity, takes_gradients
 from .solution import Solution, message
 from .variable import Variable, check_variables, with_values
 
@@ -76,7 +76,10 @@ class Optimised:
 
     Attributes:
         element: The best design, its checks passed.
+        initial: The starting design.
         variables: What was free.
+        objective: What was made least.
+        constraints: What was kept.
         values: Its numbers (variable,) [SI].
         before: The starting design and how it fared.
         after: The best design, likewise.
@@ -90,7 +93,10 @@ class Optimised:
     """
 
     element: BearingElement[Any]
+    initial: BearingElement[Any]
     variables: tuple[Variable, ...]
+    objective: Measure
+    constraints: tuple[Constraint, ...]
     values: np.ndarray
     before: Outcome
     after: Outcome
@@ -138,9 +144,9 @@ def optimise(
             smooth function (element, cases, solution) -> scalar.
         constraints: Bounds on measures.
         method: "l-bfgs-b" (the default without constraints), "slsqp" (with them),
-            "adam" or any Optax gradient transformation, projected onto the bounds, or
-            "nelder-mead", which asks for no gradients and is there to compare. Only
-            "slsqp" keeps constraints.
+            "adam" or any Optax gradient transformation, projected onto the bounds;
+            "nelder-mead", which asks for no gradients and is there to compare, or a
+            function like it (see `statics.search`). Only "slsqp" keeps constraints.
         max_steps: Step limit of the search.
         tolerance: Gradient at which the search ends, of the objective over its size
             at the start, by variables over their range; constraints are kept to this
@@ -169,11 +175,15 @@ def optimise(
     _check_call(cases, objective, constraints, max_steps, tolerance)
     start = check_variables(element, variables)
     options = Options(
-        None if free is None else tuple(free), fixed_ring, points, solve_tolerance, build
+        None if free is None else tuple(free),
+        fixed_ring,
+        points,
+        solve_tolerance,
+        build,
     )
     problem = Problem(element, cases, variables, objective, constraints, options)
     unit = problem.scaled(start)
-    slopes = method != "nelder-mead"
+    slopes = takes_gradients(method)
     problem.begin(unit, slopes)
 
     from tqdm import tqdm
@@ -227,6 +237,7 @@ class Problem:
 
     def __init__(self, element, cases, variables, objective, constraints, options):
         self.element, self.variables = element, variables
+        self.constraints = constraints
         self.cases = jax.tree.map(jnp.asarray, cases)
         self.measures = (objective, *(c.measure for c in constraints))
         self.options = options
@@ -435,11 +446,14 @@ def _conclude(problem, ending, slopes, max_steps, tolerance) -> Optimised:
         gradient=np.array([stationarity(s) for s in steps]),
         evaluations=np.array(problem.evaluations),
     )
-    _, before = problem.outcome(steps[0])
+    initial, before = problem.outcome(steps[0])
     element, after = problem.outcome(trial)
     return Optimised(
         element,
+        initial,
         problem.variables,
+        problem.measures[0],
+        problem.constraints,
         after.values,
         before,
         after,
@@ -456,7 +470,7 @@ def _check_method(method, constraints):
     if method is None:
         return "slsqp" if constraints else "l-bfgs-b"
     descent = hasattr(method, "init") and hasattr(method, "update")
-    if not descent and method not in METHODS:
+    if not (descent or callable(method) or method in METHODS):
         raise ValueError(
             f"optimise: `method` is {method!r}; it must be one of"
             f" {', '.join(METHODS)}, or an Optax gradient transformation."

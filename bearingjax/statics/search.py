@@ -13,6 +13,15 @@ FIRST_STEP = 0.1
 """Size of the first simplex, and about that of Adam's first steps, of the box."""
 
 
+def takes_gradients(method: Any) -> bool:
+    """Whether a search asks for gradients; one's own does not.
+
+    Args:
+        method: As of `search`.
+    """
+    return not (method == "nelder-mead" or callable(method))
+
+
 class Trial(NamedTuple):
     """One design that was tried, in scaled numbers.
 
@@ -69,7 +78,8 @@ def search(
     """Look for the least objective with all margins at least 0.
 
     Args:
-        method: One of `METHODS`, or an Optax gradient transformation.
+        method: One of `METHODS`, an Optax gradient transformation, or a search of
+            one's own: attempt, start, max_steps, tolerance, step -> `Ending`.
         attempt: From a point in the box to its trial; a rejected one has the numbers
             of a cone that rises away from the last step, so that searches turn back.
         start: First point (variable,).
@@ -83,7 +93,9 @@ def search(
             method, attempt, start, n_bounds, max_steps, tolerance, step
         )
     if method == "nelder-mead":
-        return _simplex(attempt, start, max_steps, tolerance, step)
+        method = _simplex
+    if callable(method):
+        return method(attempt, start, max_steps, tolerance, step)
     if method == "adam":
         import optax
 

@@ -101,13 +101,13 @@ class Variable:
         return start
 
 
-def design_numbers(element: BearingElement[Any]) -> dict[str, Array]:
-    """Every single real number of an element, by its dotted path.
+def design_numbers(design: Any) -> dict[str, Array]:
+    """Every single real number of a design, by its dotted path.
 
     Args:
-        element: The design.
+        design: An element, bearing or part.
     """
-    leaves, _ = jax.tree_util.tree_flatten_with_path(element)
+    leaves, _ = jax.tree_util.tree_flatten_with_path(design)
     return {
         ".".join(str(getattr(k, "name", getattr(k, "idx", k))) for k in keys): leaf
         for keys, leaf in leaves
@@ -133,7 +133,9 @@ def changed(design: Any, values: Mapping[str, Any]) -> Any:
         inner.setdefault(head, {})[rest] = value
     if isinstance(design, tuple):
         parts = enumerate(design)
-        return tuple(changed(p, inner[str(k)]) if str(k) in inner else p for k, p in parts)
+        return tuple(
+            changed(p, inner[str(k)]) if str(k) in inner else p for k, p in parts
+        )
     parts = {k: changed(getattr(design, k), v) for k, v in inner.items()}
     return dataclasses.replace(design, **parts)
 
