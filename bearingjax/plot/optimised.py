@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from ..design import AbstractRollerBearing, rows_of
@@ -35,19 +36,17 @@ def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
     rollers = isinstance(
         rows_of(found.element.bearing)[0].bearing, AbstractRollerBearing
     )
-    names = [["cases", "history"]]
-    if rollers:
-        names.insert(0, ["profile", "pressure"])
+    names = "pa;ch" if rollers else "ch"
     height = 8.4 if rollers else 4.6
     figure = pyplot().figure(figsize=(12.0, height))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
     axes = figure.subplot_mosaic(names)
     if rollers:
         case, roller, raceway = worst(found.before.solution)
-        _profiles(found, roller, raceway, axes["profile"])
-        _pressures(found, case, axes["pressure"])
-    _cases(found, axes["cases"])
-    _history(found, axes["history"])
+        _profiles(found, roller, raceway, axes["p"])
+        _pressures(found, case, axes["a"])
+    _cases(found, axes["c"])
+    _history(found, axes["h"])
     for ax in axes.values():
         ax.grid(color="0.9")
         ax.set_axisbelow(True)
@@ -70,21 +69,23 @@ def worst(solution: Any) -> tuple[int, int, int]:
 def _profiles(found, roller, raceway, ax):
     """Drop of the pair [µm], on the row of a roller; it points downwards."""
     ring = RACEWAYS[raceway]
+    row = next(
+        k
+        for k, mine in enumerate(row_slices(found.after.solution))
+        if mine.start <= roller < mine.stop
+    )
     limit = 0.0
     for side, element in (("before", found.initial), ("after", found.element)):
-        rows = row_slices(_one(found.after.solution, 0))
-        row = next(k for k, mine in enumerate(rows) if mine.start <= roller < mine.stop)
-        bearing = rows_of(element.bearing)[row].bearing
+        bearing: Any = rows_of(element.bearing)[row].bearing
         length, diameter = bearing.roller_length, bearing.roller_diameter
-        turn = np.linspace(0.0, np.pi, 801)
-        position = -0.5 * float(length) * np.cos(turn)
+        # Points gather at the ends, where profiles are steep.
+        position = -0.5 * length * jnp.cos(jnp.linspace(0.0, jnp.pi, 801))
         profiles = (bearing.roller_profile, getattr(bearing, f"{ring}_raceway_profile"))
-        drop = sum(np.asarray(p.drop(position, length, diameter)) for p in profiles)
+        drops = [p.drop(position, length, diameter) for p in profiles]
+        drop, along = np.sum(drops, axis=0), np.asarray(position)
         colour, style = _SIDES[side]
-        ax.plot(
-            1e3 * position, 1e6 * drop, style, color=colour, linewidth=2, label=side
-        )
-        near = np.abs(position) <= 0.97 * position[-1]
+        ax.plot(1e3 * along, 1e6 * drop, style, color=colour, linewidth=2, label=side)
+        near = np.abs(along) <= 0.97 * along[-1]
         limit = max(limit, min(float(drop.max()), 3.0 * float(drop[near].max())))
     limit = 1e6 * limit or 1.0
     ax.set_ylim(1.1 * limit, -0.1 * limit)

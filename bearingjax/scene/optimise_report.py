@@ -40,7 +40,7 @@ def optimisation_report(scene: Scene, found: Optimised) -> str:
         f" {len(found.history.objective) - 1} steps,\n{found.n_evaluations} designs"
         f" evaluated, {found.n_gradients} with gradient, {len(found.rejected)} rejected"
     )
-    parts = [head, _variables(found), _measures(scene, found), _pressures(found)]
+    parts = [head, _variables(found), _measures(found), _pressures(found)]
     warned = [f"warning: rejected: {why}" for why in dict.fromkeys(found.rejected)]
     warned += [f"warning: {text}" for text in scene.warnings]
     flat = found.history.gradient[-1]
@@ -69,7 +69,7 @@ def optimisation_as_dict(scene: Scene, found: Optimised) -> dict[str, Any]:
         if np.isfinite(values).all()
     }
     return {
-        **(_numbers(scene, found) if found.converged else {}),
+        **(_numbers(found) if found.converged else {}),
         "result": found.result,
         "message": found.message,
         "history": history,
@@ -81,7 +81,7 @@ def optimisation_as_dict(scene: Scene, found: Optimised) -> dict[str, Any]:
     }
 
 
-def _numbers(scene, found):
+def _numbers(found):
     before, after = found.before, found.after
     variables = [
         {
@@ -98,8 +98,6 @@ def _numbers(scene, found):
         pairs = {"before": _measured(before)[k], "after": _measured(after)[k]}
         return {side: {"smooth": x, "exact": y} for side, (x, y) in pairs.items()}
 
-    task = scene.optimisation
-    assert task is not None
     constraints = [
         {
             "measure": label_of(c.measure),
@@ -107,11 +105,11 @@ def _numbers(scene, found):
             "upper": None if c.upper is None else float(c.upper),
             **sides(k),
         }
-        for k, c in enumerate(task.constraints, start=1)
+        for k, c in enumerate(found.constraints, start=1)
     ]
     return {
         "variables": variables,
-        "objective": {"measure": label_of(task.objective), **sides(0)},
+        "objective": {"measure": label_of(found.objective), **sides(0)},
         "constraints": constraints,
         "peak_pressure": {
             "before": _peaks(before).tolist(),
@@ -164,24 +162,23 @@ def display_unit(name: str, largest: float) -> tuple[float, str]:
     return _OF_KIND[kind]
 
 
-def _measures(scene, found):
-    task = scene.optimisation
-    measures = [task.objective, *(c.measure for c in task.constraints)]
+def _measures(found):
+    measures = [found.objective, *(c.measure for c in found.constraints)]
     lines = [f"{'':29}       before        after"]
     pairs = zip(_measured(found.before), _measured(found.after), strict=True)
     for k, (measure, (first, last)) in enumerate(zip(measures, pairs, strict=True)):
         scale, unit = _unit(measure)
         what = f"{label_of(measure)} {f'[{unit}]' if unit else ''}"
         line = f"{what:29} {scale * first[1]:12.5g} {scale * last[1]:12.5g}"
-        lines.append(line + ("   made least" if k == 0 else _kept(task, k - 1, scale)))
+        lines.append(line + ("   made least" if k == 0 else _kept(found, k - 1, scale)))
         if first[0] != first[1]:
             smooth = f"{'  smooth':29} {scale * first[0]:12.5g} {scale * last[0]:12.5g}"
             lines.append(smooth)
     return "\n".join(lines)
 
 
-def _kept(task, k, scale):
-    constraint = task.constraints[k]
+def _kept(found, k, scale):
+    constraint = found.constraints[k]
     words = []
     for word, bound in (("at least", constraint.lower), ("at most", constraint.upper)):
         if bound is not None:

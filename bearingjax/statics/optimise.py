@@ -243,7 +243,8 @@ class Problem:
         self.options = options
         self.paths = tuple(variable.path for variable in variables)
         self.lower = np.array([v.lower for v in variables])
-        self.width = np.array([v.upper - v.lower for v in variables])
+        self.upper = np.array([v.upper for v in variables])
+        self.width = self.upper - self.lower
         self.bounds = tuple(_bounds(constraints))
         self.size = 1.0
         self.steps: list[Trial] = []
@@ -258,8 +259,8 @@ class Problem:
 
     def values(self, unit) -> np.ndarray:
         """Values of the variables [SI], exact at the bounds."""
-        upper = self.lower + self.width
-        return np.clip(self.lower + self.width * unit, self.lower, upper)
+        inside = np.clip(self.lower + self.width * unit, self.lower, self.upper)
+        return np.where(unit >= 1.0, self.upper, inside)
 
     def begin(self, unit: np.ndarray, slopes: bool) -> None:
         """Evaluate the start, and take the size of its objective as the scale.
@@ -288,10 +289,13 @@ class Problem:
         return self._last[2]
 
     def accept(self, unit: np.ndarray) -> None:
-        """Note that the search has moved here."""
+        """Note that the search has moved here, unless it stands still."""
         slopes = self._last is not None and self._last[1]
-        self.steps.append(self.attempt(unit, slopes))
-        self.evaluations.append(self.n_evaluations)
+        trial = self.attempt(unit, slopes)
+        moved = not self.steps or np.any(unit != self.steps[-1].unit)
+        if moved and not trial.fault:
+            self.steps.append(trial)
+            self.evaluations.append(self.n_evaluations)
 
     def outcome(self, trial: Trial) -> tuple[BearingElement[Any], Outcome]:
         """The design of a trial, and how it fares."""
@@ -299,12 +303,19 @@ class Problem:
         element = with_values(self.element, self.paths, values)
         if self.options.build is not None:
             element = self.options.build(element)
-        smooth, exact, solution, _ = self._run(trial.unit, False)
+        found = self.run(trial.unit, False)
+        smooth, exact = np.asarray(found.measures), np.asarray(found.exact)
         return element, Outcome(
-            values, smooth[0].item(), exact[0].item(), smooth[1:], exact[1:], solution
+            values,
+            float(smooth[0]),
+            float(exact[0]),
+            smooth[1:],
+            exact[1:],
+            found.solution,
         )
 
-    def _run(self, unit, slopes):
+    def run(self, unit, slopes: bool) -> "Run":
+        """Solve the cases of a design, with gradients or without."""
         return _program(
             self.element,
             self.cases,
@@ -328,15 +339,15 @@ class Problem:
             return failed._replace(fault=f"not a design: {error}")
         self.n_evaluations += 1
         self.n_gradients += slopes
-        values, _, solution, jacobian = self._run(unit, slopes)
-        fault = _fault(solution, values, jacobian)
+        found = self.run(unit, slopes)
+        fault = _fault(found)
         if fault:
             return failed._replace(fault=fault)
-        values = np.asarray(values)
+        values = np.asarray(found.measures)
         margins = [b.sign * (values[b.measure] - b.limit) / b.size for b in self.bounds]
         slope = margin_slopes = None
         if slopes:
-            jacobian = np.asarray(jacobian)
+            jacobian = np.asarray(found.jacobian)
             slope = jacobian[0] / self.size
             rows = [b.sign * jacobian[b.measure] / b.size for b in self.bounds]
             margin_slopes = np.array(rows).reshape(len(rows), unit.size)
@@ -357,9 +368,26 @@ class Problem:
         )
 
 
+class Run(NamedTuple):
+    """What the compiled program finds.
+
+    Attributes:
+        measures: Objective and constrained measures (measure,).
+        exact: What they stand for (measure,).
+        solution: Of all cases, leading axis case.
+        jacobian: d(measures)/d(unit) (measure, variable), if asked for.
+    """
+
+    measures: Any
+    exact: Any
+    solution: Any
+    jacobian: Any
+
+
 @eqx.filter_jit
-def _program(element, cases, measures, paths, options, unit, lower, width, slopes):
-    """Measures, their exact values, solutions and, if asked for, the Jacobian."""
+def _program(
+    element, cases, measures, paths, options, unit, lower, width, slopes
+) -> Run:
 
     def outputs(unit):
         design = with_values(element, paths, lower + width * unit)
@@ -389,7 +417,8 @@ def _program(element, cases, measures, paths, options, unit, lower, width, slope
         jacobian, found = jax.jacrev(outputs, has_aux=True)(unit)
     else:
         jacobian, found = None, outputs(unit)[1]
-    return *found, jacobian
+    measured, exact, solution = found
+    return Run(measured, exact, solution, jacobian)
 
 
 def _scalar(measure, value):
@@ -408,18 +437,18 @@ def _bounds(constraints):
                 yield Bound(k + 1, sign, float(limit), abs(float(limit)) or 1.0)
 
 
-def _fault(solution, values, jacobian) -> str:
+def _fault(found: Run) -> str:
     """Why an evaluated design is no good, in words; empty if it is good."""
-    results = np.asarray(solution.result)
+    results = np.asarray(found.solution.result)
     if results.any():
         k = int(np.argmax(results))
-        one = jax.tree.map(lambda leaf: leaf[k], solution)
+        one = jax.tree.map(lambda leaf: leaf[k], found.solution)
         label = Result(int(results[k])).label
-        return f"case {k}: {label}: {message(one, solution.moving_ring)}"
-    if not np.isfinite(values).all():
-        return f"a measure is not finite: {np.asarray(values).tolist()}"
-    if jacobian is not None and not np.isfinite(jacobian).all():
-        return f"a gradient is not finite: {np.asarray(jacobian).tolist()}"
+        return f"case {k}: {label}: {message(one, one.moving_ring)}"
+    if not np.isfinite(found.measures).all():
+        return f"a measure is not finite: {np.asarray(found.measures).tolist()}"
+    if found.jacobian is not None and not np.isfinite(found.jacobian).all():
+        return f"a gradient is not finite: {np.asarray(found.jacobian).tolist()}"
     return ""
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -86,7 +87,7 @@ def search(
         n_bounds: Number of margins.
         max_steps: Step limit.
         tolerance: See `optimise`.
-        step: Told every point that the search accepts.
+        step: Told every point that the search moves to.
     """
     if method in ("l-bfgs-b", "slsqp"):
         return _quasi_newton(
@@ -94,7 +95,7 @@ def search(
         )
     if method == "nelder-mead":
         method = _simplex
-    if callable(method):
+    if not takes_gradients(method):
         return method(attempt, start, max_steps, tolerance, step)
     if method == "adam":
         import optax
@@ -146,19 +147,22 @@ def _quasi_newton(method, attempt, start, n_bounds, max_steps, tolerance, step):
         "jac": lambda x: attempt(x).margin_slopes,
     }
 
-    def both(x):
-        trial = attempt(x)
-        return trial.objective, trial.slope
+    def slope(x):
+        # SLSQP asks for gradients where it has arrived; its callback tells of every
+        # full step, taken or not.
+        if method == "slsqp":
+            step(x)
+        return attempt(x).slope
 
     found = minimize(
-        both,
+        lambda x: attempt(x).objective,
         start,
-        jac=True,
+        jac=slope,
         method=method,
         bounds=[(0.0, 1.0)] * start.size,
         constraints=[kept] if n_bounds else (),
         options={**options, "maxiter": max_steps},
-        callback=step,
+        callback=step if method == "l-bfgs-b" else None,
     )
     return Ending(np.clip(found.x, 0.0, 1.0), bool(found.success), str(found.message))
 
@@ -194,7 +198,9 @@ def _descent(transformation, attempt, start, max_steps, tolerance, step):
     from optax.projections import projection_box
 
     point = jnp.asarray(start)
-    state = transformation.init(point)
+    # Optax counts on JAX's standard promotion of dtypes.
+    with jax.numpy_dtype_promotion("standard"):
+        state = transformation.init(point)
     here = best = attempt(start)
     share = 1.0
     for _ in range(max_steps):
@@ -202,7 +208,9 @@ def _descent(transformation, attempt, start, max_steps, tolerance, step):
         if stationarity(here) <= tolerance:
             text = f"gradient below {tolerance:g}"
             return Ending(here.unit, True, text)
-        updates, state = transformation.update(jnp.asarray(here.slope), state, point)
+        slope = jnp.asarray(here.slope)
+        with jax.numpy_dtype_promotion("standard"):
+            updates, state = transformation.update(slope, state, point)
         target = projection_box(point + share * updates, 0.0, 1.0)
         new = attempt(np.asarray(target))
         if new.fault:

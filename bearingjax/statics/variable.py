@@ -30,10 +30,10 @@ class Variable:
         ValueError: For bounds that are not finite or not ascending, or a start outside.
     """
 
-    path: str | tuple[str, ...]
-    lower: float
-    upper: float
-    start: float | None = None
+    path: Any  # a text, or several; afterwards a tuple of texts
+    lower: Any  # numbers; afterwards floats
+    upper: Any
+    start: Any = None
     name: str = ""
 
     def __post_init__(self):
