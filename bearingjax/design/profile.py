@@ -355,9 +355,31 @@ class Tabulated(AbstractProfile):
         check(self, "positions", positions, "m", covers, allowed)
 
 
+@jax.custom_jvp
 def _arc(x, radius):
     """Drop of a circle, R - sqrt(R² - x²), without cancellation."""
     return x * x / (radius + jnp.sqrt(radius * radius - x * x))
+
+
+@_arc.defjvp
+def _arc_rule(primals, tangents):
+    # By hand, as quotients cost a division for each derivative of each derivative.
+    (x, radius), (dx, dradius) = primals, tangents
+    drop = _arc(x, radius)
+    inverse = _inverse_root(radius * radius - x * x)
+    return drop, inverse * (x * dx - drop * dradius)
+
+
+@jax.custom_jvp
+def _inverse_root(x):
+    return 1.0 / jnp.sqrt(x)
+
+
+@_inverse_root.defjvp
+def _inverse_root_rule(primals, tangents):
+    (x,), (dx,) = primals, tangents
+    value = _inverse_root(x)
+    return value, -0.5 * value * value * value * dx
 
 
 def _log_one_over(x, part):

@@ -87,6 +87,20 @@ class AbstractMinimiser(eqx.Module):
         """
 
 
+class Pull(NamedTuple):
+    """A constant force on x, approached from a larger one.
+
+    Attributes:
+        force: The function to be minimised is value - force·x (n,) [J/unit of x].
+        factor: How many times the force the search begins with, at least 1. Each time
+            the gradient is down to a hundredth of the force, the factor falls to a
+            tenth.
+    """
+
+    force: Float[Array, " n"]
+    factor: Float[Array, ""]
+
+
 class _State(NamedTuple):
     x: Array
     now: Evaluation
@@ -94,6 +108,7 @@ class _State(NamedTuple):
     steps: Array
     stalled: Array
     reach: Array
+    factor: Array
 
 
 def _pack(state: _State) -> Array:
@@ -111,9 +126,10 @@ def _unpack(packed: Array, n: int, with_hessian: bool = True) -> _State:
     h = jnp.zeros((0,), packed.dtype)
     if with_hessian:
         h, rest = rest[: n * n].reshape(n, n), rest[n * n :]
-    value, scale, noise, radius, steps, stalled, reach = (rest[i] for i in range(7))
+    value, scale, noise, *others = (rest[i] for i in range(8))
+    radius, steps, stalled, reach, factor = others
     now = Evaluation(value, g, h, scale, noise)
-    return _State(x, now, radius, steps, stalled > 0, reach)
+    return _State(x, now, radius, steps, stalled > 0, reach, factor)
 
 
 class TrustRegionNewton(AbstractMinimiser):
@@ -152,6 +168,7 @@ class TrustRegionNewton(AbstractMinimiser):
         direction: Float[Array, " n"] | None,
         limit: Float[Array, ""] | None,
         shape: Shape | None = None,
+        pull: Pull | None = None,
     ) -> Minimum:
         """As `minimise`, for functions that may be flat at the start.
 
@@ -164,6 +181,8 @@ class TrustRegionNewton(AbstractMinimiser):
                 method then comes from the stiff side, where it is at its best.
             limit: |x| beyond which the function counts as unbounded below; the
                 solve then ends with `NO_LOAD_PATH`.
+            pull: A force on x beside `function`, which the scale of the latter then
+                is not: the force is, unless it is zero.
 
         Fails: as `minimise`, and `NO_LOAD_PATH`.
         """
@@ -173,12 +192,20 @@ class TrustRegionNewton(AbstractMinimiser):
         identity = jnp.eye(n, dtype=start.dtype)
         radius = jnp.asarray(radius, dtype=start.dtype)
 
+        def off_goal(state):
+            now, goal = _pulled(state.now, state, pull), tolerance
+            if pull is not None:
+                early = jnp.maximum(tolerance, 1e-2)
+                goal = jnp.where(state.factor > 1.0, early, tolerance)
+            # NaN compares false: the loop ends at once and the code says why.
+            return (norm(now.gradient) > goal * now.scale + now.noise) & ~state.stalled
+
         def unfinished(packed):
             state = _unpack(packed, n)
-            size = norm(state.now.gradient)
-            goal = tolerance * state.now.scale + state.now.noise
-            # NaN compares false: the loop ends at once and the code says why.
-            going = (size > goal) & (state.steps < self.max_steps) & ~state.stalled
+            going = off_goal(state)
+            if pull is not None:
+                going = going | (state.factor > 1.0)
+            going = going & (state.steps < self.max_steps)
             if limit is not None:
                 going = going & (norm(state.x) < limit)
             return going | (state.steps < 0)
@@ -187,7 +214,16 @@ class TrustRegionNewton(AbstractMinimiser):
             # The first pass (steps = -1) only evaluates the start: one copy of
             # `function` in the compiled loop instead of two.
             state = _unpack(packed, n)
-            now, first = state.now, state.steps < 0
+            first = state.steps < 0
+            if pull is not None:
+                near = (state.factor > 1.0) & ~off_goal(state) & ~first
+                lower = jnp.maximum(0.1 * state.factor, 1.0)
+                state = state._replace(
+                    factor=jnp.where(near, lower, state.factor),
+                    radius=jnp.where(near, radius, state.radius),
+                    stalled=state.stalled & ~near,
+                )
+            now = _pulled(state.now, state, pull)
             size = norm(now.gradient)
             shift = size / state.radius + eps * trace(now.hessian) / n
             shifted = now.hessian + shift * identity
@@ -201,7 +237,8 @@ class TrustRegionNewton(AbstractMinimiser):
                 p = shape(state.x, p, size)
             p = jnp.where(first, 0.0, p)
             length = norm(p)
-            new = function(state.x + p, True)
+            there = function(state.x + p, True)
+            new = _pulled(there, state._replace(x=state.x + p), pull)
             slope = dot(now.gradient, p)
             predicted = slope + 0.5 * quadratic(now.hessian, p)
             actual = new.value - now.value
@@ -219,7 +256,7 @@ class TrustRegionNewton(AbstractMinimiser):
             # far end, says where.
             stiff = jnp.maximum(quadratic(new.hessian, p), tiny)
             shorter = jnp.clip(1.0 - dot(new.gradient, p) / stiff, 0.1, 0.9)
-            radius = jnp.where(accept, grown, shorter * length)
+            next_radius = jnp.where(accept, grown, shorter * length)
             reach = state.reach
             if direction is not None:
                 fall = -dot(new.gradient, direction)
@@ -230,19 +267,21 @@ class TrustRegionNewton(AbstractMinimiser):
                     jnp.where(begin, state.radius, 0.0),
                     jnp.where(searching & (fall > 0), 4.0 * reach, 0.0),
                 )
-            radius = jnp.where(first, state.radius, radius)
+            next_radius = jnp.where(first, state.radius, next_radius)
             # Steps of round-off that no longer help.
             settled = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
             stalled = settled & ~first & ~searching
-            rest = (radius, state.steps + 1.0, stalled, reach)
-            taken = _pack(_State(state.x + p, new, *rest))
-            stayed = _pack(_State(state.x, now, *rest))
+            rest = (next_radius, state.steps + 1.0, stalled, reach, state.factor)
+            taken = _pack(_State(state.x + p, there, *rest))
+            stayed = _pack(_State(state.x, state.now, *rest))
             return jnp.where(accept, taken, stayed)
 
         zero = jnp.zeros((), start.dtype)
+        factor = zero + 1.0 if pull is None else pull.factor
         begin = Evaluation(zero, 0.0 * start, identity, zero, zero)
-        packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero))
+        packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero, factor))
         state = _unpack(lax.while_loop(unfinished, step, packed), n)
+        state = state._replace(now=_pulled(state.now, state, pull))
         return _finish(state, tolerance, limit)
 
 
@@ -304,7 +343,7 @@ class BFGS(AbstractMinimiser):
             longer = jnp.maximum(state.radius, 4.0 * norm(s))
             radius_now = jnp.where(full, longer, state.radius)
             stalled = ~accept & (norm(s) <= 4 * eps * norm(state.x))
-            rest = (radius_now, state.steps + 1.0, stalled, state.reach)
+            rest = (radius_now, state.steps + 1.0, stalled, *state[-2:])
             new = new._replace(hessian=now.hessian)
             taken = _pack(_State(state.x + s, new, *rest))
             stayed = _pack(_State(state.x, now, *rest))
@@ -315,7 +354,7 @@ class BFGS(AbstractMinimiser):
         zero = jnp.zeros((), start.dtype)
         nothing = jnp.zeros((0,), start.dtype)
         begin = Evaluation(zero, 0.0 * start, nothing, zero, zero)
-        packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero))
+        packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero, zero))
         carry = (packed, identity, jnp.ones((), start.dtype))
         packed, _, _ = lax.while_loop(unfinished, step, carry)
         return _finish(_unpack(packed, n, False), tolerance, None)
@@ -340,6 +379,19 @@ def inverse_update(
     left = jnp.eye(s.shape[0], dtype=s.dtype) - jnp.outer(s, z) / safe
     new = left @ inverse @ left.T + jnp.outer(s, s) / safe
     return jnp.where(usable, new, inverse)
+
+
+def _pulled(now: Evaluation, state: _State, pull: Pull | None) -> Evaluation:
+    """The evaluation of value - factor·force·x from that of value."""
+    if pull is None:
+        return now
+    force = state.factor * pull.force
+    size = norm(force)
+    return now._replace(
+        value=now.value - dot(force, state.x),
+        gradient=now.gradient - force,
+        scale=jnp.where(size > 0, size, now.scale),
+    )
 
 
 def _tolerance(tolerance, dtype):

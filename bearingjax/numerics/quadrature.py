@@ -211,8 +211,8 @@ def _loaded_interval(offset, start, end, at, fixed, slope, a, b):
     def slope_of(x):
         return jax.jvp(offset, (x,), (one,))
 
-    def refine(_, packed):
-        x, inside, outside = packed
+    def refine(_, state):
+        x, inside, outside = state
         (h, h1), (_, h2) = jax.jvp(slope_of, (x,), (one,))
         value, first, second = a + b * x - h, b - h1, -h2
         inside = jnp.where(value > 0, x, inside)
@@ -233,11 +233,9 @@ def _loaded_interval(offset, start, end, at, fixed, slope, a, b):
         past = some[None, :] & ((new - inside) * (inside - outside) > 0)
         safe = jnp.where(past, inside, 0.5 * (inside + outside))
         new = jnp.where(between, new, safe)
-        return jnp.stack([new, inside, outside])
+        return new, inside, outside
 
-    x, _, _ = lax.fori_loop(
-        0, _REFINEMENTS, refine, jnp.stack([outside, inside, outside])
-    )
+    x, *_ = lax.fori_loop(0, _REFINEMENTS, refine, (outside, inside, outside))
     inner = jnp.stack([f[:, 0] <= 0, f[:, -1] <= 0])
     left = jnp.where(inner[0], x[0], start)
     right = jnp.where(inner[1], x[1], end)

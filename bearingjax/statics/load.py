@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jax import lax
 from jaxtyping import Array, Float
 
 from ..design import (
@@ -29,7 +28,7 @@ from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..element.inertia import Speed
 from ..numerics.implicit import attach, stop
-from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
+from ..numerics.minimise import Evaluation, Pull, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_array
 from .solution import BallSolution, RollerSolution, Solution, Stats, describe, message
@@ -207,55 +206,38 @@ def _solve(
     frozen = stop(args)
     symmetric = model.has_potential
 
-    def function(y, factor):
-        model, load, _, fixed, scale, free = frozen
+    def function(y, _):
+        model, _, _, fixed, scale, free = frozen
         e = model.evaluate(ring_freedoms(y, scale, fixed))
-        pull = factor * free * scale * load
-        g = free * (scale * e.force[moving]) - pull
+        g = free * (scale * e.force[moving])
         h = jnp.outer(free * scale, free * scale) * e.stiffness[moving, moving]
         trace = jnp.trace(h)
         h = h + jnp.diag(1.0 - free)
-        size = jnp.sqrt(pull @ pull)
         eps = jnp.finfo(load.dtype).eps
         # Round-off of forces that cancel, and of positions in a stiff bearing.
         noise = eps * (e.magnitude + trace * jnp.sqrt(y @ y))
-        reference = jnp.where(size > 0, size, e.magnitude)
-        value = e.energy - pull @ y if symmetric else jnp.full_like(size, jnp.nan)
-        return Evaluation(value, g, h, reference, noise)
+        value = e.energy if symmetric else jnp.full_like(e.energy, jnp.nan)
+        return Evaluation(value, g, h, e.magnitude, noise)
 
     pull = free * stop(scale) * stop(load)
     size = jnp.sqrt(pull @ pull)
     direction = pull / jnp.where(size > 0, size, 1.0)
     play = _play(frozen[0])
-    first_radius = 1e-7 * stop(radius) + play
-    solver = TrustRegionNewton(max_steps=max_steps, symmetric=symmetric)
     # A load that presses the contacts by far less than the play that it takes up is
     # approached from a larger one, by tens: with it, as with a barrier method, all
     # contacts that matter are found early and Newton's method stays on their side.
     pressing = _load_for(frozen[0], play)
     factor = jnp.where(size > 0, jnp.maximum(1.0, pressing / size), 1.0)
-
-    def unfinished(state):
-        minimum, factor, _ = state
-        return (factor > 0) & (minimum.result == Result.CONVERGED)
-
-    def at_factor(state):
-        minimum, factor, steps = state
-        new = solver.search(
-            lambda y, _: function(y, factor),
-            minimum.x,
-            first_radius,
-            jnp.where(factor > 1.0, jnp.maximum(tolerance, 1e-2), tolerance),
-            direction,
-            8.0 * stop(radius),
-        )
-        lower = jnp.where(factor > 1.0, jnp.maximum(0.1 * factor, 1.0), 0.0)
-        return new, lower, steps + new.steps
-
-    zero = jnp.zeros((), load.dtype)
-    none = jnp.zeros((), jnp.int32)
-    begin = Minimum(stop(start), zero, zero, none, none, first_radius)
-    minimum, _, steps = lax.while_loop(unfinished, at_factor, (begin, factor, none))
+    solver = TrustRegionNewton(max_steps=max_steps, symmetric=symmetric)
+    minimum = solver.search(
+        function,
+        stop(start),
+        1e-7 * stop(radius) + play,
+        tolerance,
+        direction,
+        8.0 * stop(radius),
+        pull=Pull(pull, factor),
+    )
 
     def residual(y, args):
         model, load, given, fixed, scale, free = args
@@ -273,7 +255,7 @@ def _solve(
     reference = jnp.where(size > 0, size, evaluated.magnitude)
     tiny = jnp.finfo(load.dtype).tiny
     final = jnp.sqrt(stop(out) @ stop(out)) / jnp.maximum(reference, tiny)
-    stats = Stats(final, steps, evaluated.residual, evaluated.steps)
+    stats = Stats(final, minimum.steps, evaluated.residual, evaluated.steps)
 
     result = jnp.maximum(minimum.result, evaluated.result)
     # A load on a freedom that the type of bearing cannot restrain.
