@@ -298,12 +298,12 @@ class Problem:
             self.evaluations.append(self.n_evaluations)
 
     def outcome(self, trial: Trial) -> tuple[BearingElement[Any], Outcome]:
-        """The design of a trial, and how it fares."""
+        """The design of a trial, and how it fares, by the program already compiled."""
         values = self.values(trial.unit)
         element = with_values(self.element, self.paths, values)
         if self.options.build is not None:
             element = self.options.build(element)
-        found = self.run(trial.unit, False)
+        found = self.run(trial.unit, trial.slope is not None)
         smooth, exact = np.asarray(found.measures), np.asarray(found.exact)
         return element, Outcome(
             values,
