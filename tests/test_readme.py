@@ -10,7 +10,7 @@ README = (Path(__file__).parent.parent / "README.md").read_text()
 
 def test_python_examples(capsys):
     blocks = re.findall(r"```python\n(.*?)```", README, re.S)
-    assert len(blocks) == 3
+    assert len(blocks) == 4
     names: dict = {}
     for block in blocks[:2]:
         exec(block, names)
@@ -20,6 +20,10 @@ def test_python_examples(capsys):
     exec(blocks[2], names)
     assert type(names["solution"]) is bj.BallSolution
     assert bool(names["solution"].converged)
+    exec(blocks[3], names)
+    best = names["best"]
+    assert best.converged and best.after.exact < best.before.exact
+    assert best.before.exact_constraints[0] > 10e3 >= best.after.exact_constraints[0]
 
 
 def test_two_commands_and_their_scene():
@@ -37,4 +41,4 @@ def test_picture_and_folders_exist():
         assert (root / target).exists(), target
     for folder in re.findall(r"^(bearingjax/\w+/|tests/|benchmarks/) ", README, re.M):
         assert (root / folder).is_dir(), folder
-    assert len(bj.scene.shipped_scenes()) == 11
+    assert len(bj.scene.shipped_scenes()) == 12

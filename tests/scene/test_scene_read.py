@@ -20,6 +20,7 @@ SHIPPED = (
     "cylindrical_ribs",
     "cylindrical_rig",
     "deep_groove",
+    "fujiwara_kawase",
     "hybrid_spindle",
     "needle",
     "nj_axial",
