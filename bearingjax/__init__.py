@@ -78,10 +78,13 @@ from .statics import RollerSolution as RollerSolution
 from .statics import Solution as Solution
 from .statics import Stiffness as Stiffness
 from .statics import StiffnessTarget as StiffnessTarget
+from .statics import Sweep as Sweep
 from .statics import Variable as Variable
 from .statics import optimise as optimise
 from .statics import preload as preload
 from .statics import restrained_freedoms as restrained_freedoms
 from .statics import solve_load as solve_load
+from .statics import stack_designs as stack_designs
+from .statics import sweep as sweep
 
 __version__ = _version("bearingjax")

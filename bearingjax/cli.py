@@ -1,9 +1,11 @@
-"""The command line: `bearingjax solve SCENE.toml`, `bearingjax optimise …`."""
+"""The command line: `bearingjax solve SCENE.toml`, and `sweep` and `optimise`."""
 
 import argparse
+import contextlib
 import gc
 import os
 import sys
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -21,7 +23,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit status: 0 solved, 2 bad input, 3 not solved.
     """
     options = _parser().parse_args(arguments)
-    _configure_jax()
+    _configure_jax(options)
     from .scene import SceneError
 
     # Tracing makes many small objects; searching them for cycles takes a seventh of the
@@ -29,7 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     collecting = gc.isenabled()
     gc.disable()
     try:
-        return options.command_line(options)
+        return options.run(options)
     except SceneError as error:
         print(f"bearingjax: {error}", file=sys.stderr)
         return BAD_INPUT
@@ -56,27 +58,54 @@ def _parser():
         description="Solve the bearing of a scene file and print a report.",
         epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
     )
-    solve.set_defaults(command_line=_solve)
+    solve.set_defaults(run=_solve)
     _add_common(solve)
+    solve.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
+    sweep = commands.add_parser(
+        "sweep",
+        help="many cases: loads, displacements, speeds, designs",
+        description="Solve the [cases] of a scene file.",
+        epilog="Exit status: 0 all solved, 2 bad input, 3 some not solved (the table"
+        " holds a result for each case).",
+    )
+    sweep.set_defaults(run=_sweep)
+    _add_common(sweep)
+    sweep.add_argument(
+        "--table",
+        metavar="OUT",
+        type=Path,
+        help="write a row per case (.csv, .parquet)",
+    )
+    sweep.add_argument("--quiet", action="store_true", help="no progress bar")
+    sweep.add_argument(
+        "--devices",
+        metavar="N",
+        type=int,
+        default=None,
+        help="parts of the processor to spread the cases over; default: all its cores",
+    )
     optimise = commands.add_parser(
         "optimise",
         help="the free numbers of a design that make a measure least",
-        description="Optimise the bearing of a scene file, as its [optimise] says.",
+        description="Optimise the bearing of a scene file, as its [optimise] says, over"
+        " its [cases].",
         epilog="Exit status: 0 optimised, 2 bad input, 3 not solved or not converged.",
     )
-    optimise.set_defaults(command_line=_optimise)
+    optimise.set_defaults(run=_optimise)
     _add_common(optimise)
+    optimise.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
     optimise.add_argument("--progress", action="store_true", help="show progress")
     return parser
 
 
-def _add_common(parser):
-    parser.add_argument("scene", metavar="SCENE", help=".toml file or a shipped scene")
-    parser.add_argument("--json", metavar="OUT", type=Path, help="write numbers in SI")
-    parser.add_argument(
-        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
-    )
-    parser.add_argument(
+def _add_common(command):
+    command.add_argument("scene", metavar="SCENE", help=".toml file or a shipped scene")
+    command.add_argument("--json", metavar="OUT", type=Path, help="write numbers in SI")
+    command.add_argument(
         "--set",
         metavar="KEY=VALUE",
         action="append",
@@ -85,7 +114,7 @@ def _add_common(parser):
     )
 
 
-def _configure_jax():
+def _configure_jax(options):
     """float64, and compiled programs kept from one run to the next."""
     import jax
 
@@ -93,6 +122,13 @@ def _configure_jax():
     jax.config.update("jax_logging_level", "CRITICAL")
 
     jax.config.update("jax_enable_x64", True)
+    if options.command == "sweep":
+        cores = (
+            len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count()
+        )
+        wanted = cores if options.devices is None else options.devices
+        with contextlib.suppress(RuntimeError):  # JAX runs already, in a test
+            jax.config.update("jax_num_cpu_devices", max(1, wanted or 1))
     if getattr(jax.config, "jax_compilation_cache_dir", None) is None:
         base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         cache = Path(base) / "bearingjax" / "jax"
@@ -131,6 +167,47 @@ def _solve(options) -> int:
     return SOLVED
 
 
+def _sweep(options) -> int:
+    from .scene import (
+        SceneError,
+        design_columns,
+        read_cases,
+        run_cases,
+        sweep_report,
+        write_sweep_json,
+    )
+    from .statics.sweep_table import ENDINGS, write
+
+    for path in (options.json, options.table):
+        _check_writable(path)
+    if options.table is not None and options.table.suffix not in ENDINGS:
+        problem = f"a table ends in {' or '.join(ENDINGS)}"
+        raise SceneError(f"{options.table}: {problem}")
+    if options.devices is not None and options.devices < 1:
+        raise SceneError(f"--devices is {options.devices}; it must be at least 1")
+    begin = time.perf_counter()
+    table = read_cases(options.scene, options.set)
+    shown = not options.quiet and sys.stderr.isatty()
+    solved = run_cases(table, progress=shown)
+    try:
+        if options.table is not None:
+            write(solved, options.table, design_columns(table))
+        if options.json is not None:
+            write_sweep_json(options.json, table, solved)
+    except OSError as error:
+        raise SceneError(f"{error.filename}: cannot be written: {error}") from error
+    except ImportError as error:
+        raise SceneError(str(error)) from error
+    print(sweep_report(table, solved, time.perf_counter() - begin), flush=True)
+    if solved.converged.all():
+        return SOLVED
+    lost = int((~solved.converged).sum())
+    print(
+        f"bearingjax: {lost} of {solved.cases.count} cases not solved", file=sys.stderr
+    )
+    return NOT_SOLVED
+
+
 def _optimise(options) -> int:
     import json
 
@@ -139,7 +216,7 @@ def _optimise(options) -> int:
         SceneError,
         optimisation_as_dict,
         optimisation_report,
-        read_scene,
+        read_optimisation,
         run_optimisation,
     )
 
@@ -147,28 +224,28 @@ def _optimise(options) -> int:
         _check_writable(path)
     if options.plot is not None:
         _check_plot(options.plot)
-    scene = read_scene(options.scene, options.set)
+    task = read_optimisation(options.scene, options.set)
     try:
-        found = run_optimisation(scene, progress=options.progress)
+        found = run_optimisation(task, progress=options.progress)
     except SolveError as error:
         print(f"bearingjax: {error}", file=sys.stderr)
         return NOT_SOLVED
     try:
         if options.json is not None:
-            numbers = optimisation_as_dict(scene, found)
+            numbers = optimisation_as_dict(task, found)
             text = json.dumps(numbers, indent=1, allow_nan=False)
             options.json.write_text(text + "\n", encoding="utf-8")
         if options.plot is not None and found.converged:
             from .plot import optimised
 
-            figure = optimised(found, title=scene.name)
+            figure = optimised(found, title=task.scene.name)
             figure.savefig(options.plot, dpi=150)
     except OSError as error:
         raise SceneError(f"{error.filename}: cannot be written: {error}") from error
     if not found.converged:
         print(f"bearingjax: {found.result}: {found.message}", file=sys.stderr)
         return NOT_SOLVED
-    print(optimisation_report(scene, found), flush=True)
+    print(optimisation_report(task, found), flush=True)
     return SOLVED
 
 

@@ -249,7 +249,7 @@ def show(rows, grid, best):
         f"\nbest design: K1 = {k1:.4g}, K2 = {k2:.4g}, zm = {1e6 * zm:.4g} µm;"
         f" smooth peak {1e-6 * best['peak']:.1f} MPa (reference"
         f" {1e-6 * first['reference']:.1f}), true peak {1e-6 * best['true_peak']:.1f}"
-        f"\nleast on a grid around it: {grid:.1e} above it; {len(rows)} searches;"
+        f"\nleast on a grid of ±0.1 of the ranges around it, over it: {grid:+.1e}; {len(rows)} searches;"
         f" {processor()}"
     )
 

@@ -41,4 +41,4 @@ def test_picture_and_folders_exist():
         assert (root / target).exists(), target
     for folder in re.findall(r"^(bearingjax/\w+/|tests/|benchmarks/) ", README, re.M):
         assert (root / folder).is_dir(), folder
-    assert len(bj.scene.shipped_scenes()) == 12
+    assert len(bj.scene.shipped_scenes()) == 13

@@ -73,13 +73,20 @@ class RowModel(eqx.Module):
         """Ring freedoms in the row's own axes, from those at the node."""
         return placement(self.position, self.part.mirrored)
 
-    def solve(self, q: Ring, minimiser: AbstractMinimiser, turns: bool) -> "Row":
+    def solve(
+        self,
+        q: Ring,
+        minimiser: AbstractMinimiser,
+        turns: bool,
+        guess: Float[Array, "element n"] | None,
+    ) -> "Row":
         """Equilibrium of every rolling element at given ring freedoms.
 
         Args:
             q: Ring freedoms at the node [m, rad].
             minimiser: Local solver. Static.
             turns: Whether derivatives see the azimuth move with gz. Static.
+            guess: `Row.offsets` at rings near by, or `None` [m].
         """
         part = self.part
         azimuth = azimuths(part.bearing, q if turns else lax.stop_gradient(q))
@@ -99,18 +106,23 @@ class RowModel(eqx.Module):
         if part.spring is not None:
             pressed = self._pressed(part.spring, local, transform, minimiser)
             local = local.at[_CLOSING].add(pressed.travel)
-        row = self._at(local, azimuth, transform, minimiser)
+        row = self._at(local, azimuth, transform, minimiser, guess)
         if place is not None:
             row = dataclasses.replace(row, transform=transform @ place)
         return dataclasses.replace(row, pressed=pressed)
 
-    def _at(self, local, azimuth, transform, minimiser) -> "Row":
+    def _at(self, local, azimuth, transform, minimiser, guess=None) -> "Row":
         """The elements at given motions in the row's own axes."""
         magnitude = jnp.max(jnp.abs(local[jnp.array([0, 1, 2, 6, 7, 8])]))
         tilt = jnp.max(jnp.abs(local[jnp.array([3, 4, 9, 10])]))
         magnitude = magnitude + 0.5 * self.part.bearing.pitch_diameter * tilt
         rings = transform @ local
-        state = self.each(lambda m, r: solve_element(m, r, magnitude, minimiser), rings)
+        guesses = () if guess is None else (guess,)
+        state = self.each(
+            lambda m, r, *x: solve_element(m, r, magnitude, minimiser, *x),
+            rings,
+            *guesses,
+        )
         solved = self.each(
             lambda m, r, x: solved_derivatives(m, r, magnitude, x), rings, state.x
         )
@@ -240,6 +252,12 @@ class Row(eqx.Module):
         share = jnp.where(held, 1.0 / jnp.where(held, own, 1.0), 0.0)
         return total - share * jnp.outer(right, left)
 
+    def offsets(self) -> Float[Array, "element n"]:
+        """Unknowns less where the rings take them [m]; NaN for loose elements."""
+        amid = self.model.each(lambda m, r: m.amid(r), self.rings)
+        held = jnp.any(self.solved.contact_load > 0, axis=1, keepdims=True)
+        return jnp.where(held, self.state.x - amid, jnp.nan)
+
     def energy(self) -> Scalar:
         """Energy of the elements, and of the spring [J]."""
         energy = jnp.sum(self.solved.energy)
@@ -258,6 +276,7 @@ class Evaluated(NamedTuple):
         residual: Largest relative residual of one [1].
         magnitude: Sum of the sizes of what the elements pass to the rings, in which
             the ring force may cancel [N].
+        offsets: `Row.offsets` of every row [m].
     """
 
     energy: Scalar
@@ -267,6 +286,7 @@ class Evaluated(NamedTuple):
     steps: Int[Array, ""]
     residual: Scalar
     magnitude: Scalar
+    offsets: tuple[Float[Array, "element n"], ...]
 
 
 class BearingModel(eqx.Module):
@@ -293,8 +313,14 @@ class BearingModel(eqx.Module):
         return all(row.element.has_potential for row in self.rows)
 
     @eqx.filter_jit
-    def solve(self, q: Ring) -> tuple[Row, ...]:
+    def solve(
+        self, q: Ring, guess: tuple[Float[Array, "element n"], ...] | None = None
+    ) -> tuple[Row, ...]:
         """Solve every rolling element at given ring freedoms.
+
+        Args:
+            q: Ring freedoms [m, rad].
+            guess: `Evaluated.offsets` at ring freedoms near by: fewer steps.
 
         Raises:
             ValueError: If `q` is not of shape (12,).
@@ -305,7 +331,11 @@ class BearingModel(eqx.Module):
                 f"BearingElement: `q` has shape {q.shape}; it must be (12,): outer"
                 " ring (ux uy uz gx gy gz), then inner ring."
             )
-        return tuple(r.solve(q, self.equilibrium, self.cage_torque) for r in self.rows)
+        guesses = [None] * len(self.rows) if guess is None else guess
+        return tuple(
+            row.solve(q, self.equilibrium, self.cage_torque, one)
+            for row, one in zip(self.rows, guesses, strict=True)
+        )
 
     @eqx.filter_jit
     def energy(self, q: Ring) -> Scalar:
@@ -357,6 +387,18 @@ class BearingModel(eqx.Module):
                 jnp.sum(jnp.abs(share[:, : row.model.element.n_forces]))
                 for row, share in zip(rows, shares, strict=True)
             ),
+            offsets=tuple(row.offsets() for row in rows),
+        )
+
+    def no_offsets(self) -> tuple[Float[Array, "element n"], ...]:
+        """`Evaluated.offsets` of which nothing is known yet: NaN."""
+        return tuple(
+            jnp.full(
+                (n_elements(row.part.bearing), row.element.n_unknowns),
+                jnp.nan,
+                row.part.position.dtype,
+            )
+            for row in self.rows
         )
 
 

@@ -41,6 +41,7 @@ def solve_element(
     rings: Rings,
     magnitude: Scalar,
     minimiser: AbstractMinimiser,
+    guess: Unknowns | None = None,
 ) -> LocalState:
     """Equilibrium of one rolling element in its own unknowns.
 
@@ -50,6 +51,8 @@ def solve_element(
         magnitude: Size of the displacements from which `rings` was computed, for
             the round-off floor of the residual [m].
         minimiser: Local solver.
+        guess: Its unknowns less `model.amid`, solved for rings near by, NaN if they
+            are not known; `None`: never known [m].
 
     Returns:
         State whose `x` is differentiable, to every order, with respect to the model
@@ -69,7 +72,8 @@ def solve_element(
                 " operating angle have none. Use TrustRegionNewton()."
             )
         minimiser = TrustRegionNewton(minimiser.tolerance, minimiser.max_steps, False)
-    state = _solve(stop(model), stop(rings), stop(magnitude), minimiser)
+    frozen = stop((model, rings, magnitude))
+    state = _solve(*frozen, minimiser, stop(guess))
 
     def residual(x, args):
         model, rings = args
@@ -137,7 +141,7 @@ def solved_derivatives(
     return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), d)
 
 
-def _solve(model, rings, magnitude, minimiser):
+def _solve(model, rings, magnitude, minimiser, guess):
     eps = jnp.finfo(rings.dtype).eps
 
     def function(x, with_hessian):
@@ -155,6 +159,9 @@ def _solve(model, rings, magnitude, minimiser):
 
     radius = model.reach(rings) + model.gap + 1e-6 * model.diameter
     start, centre = model.first(rings), model.amid(rings)
+    if guess is not None:
+        known = jnp.all(jnp.isfinite(guess))
+        start = jnp.where(known, centre + jnp.where(known, guess, 0.0), start)
 
     def shape(x, step, size):
         return model.shape(rings, x, step, size)

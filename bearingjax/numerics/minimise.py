@@ -6,9 +6,10 @@ minimiser is one `while_loop` with one evaluation per pass and returns a status.
 
 import abc
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Float, Int
@@ -28,6 +29,7 @@ class Evaluation(NamedTuple):
         scale: What the gradient is measured against, for example the sum of the
             forces that cancel in it.
         noise: Absolute round-off floor of the gradient's norm.
+        memory: What the next evaluation may start from, any pytree.
     """
 
     value: Float[Array, ""]
@@ -35,6 +37,7 @@ class Evaluation(NamedTuple):
     hessian: Float[Array, "..."]
     scale: Float[Array, ""]
     noise: Float[Array, ""]
+    memory: Any = ()
 
 
 class Minimum(NamedTuple):
@@ -46,7 +49,7 @@ class Minimum(NamedTuple):
         unbalanced: |gradient|.
         steps: Evaluations after the first.
         result: `Result` code.
-        radius: Last trust radius, unit of x.
+        memory: Of the evaluation at x.
     """
 
     x: Float[Array, " n"]
@@ -54,10 +57,10 @@ class Minimum(NamedTuple):
     unbalanced: Float[Array, ""]
     steps: Int[Array, ""]
     result: Int[Array, ""]
-    radius: Float[Array, ""]
+    memory: Any = ()
 
 
-Function = Callable[[Float[Array, " n"], bool], Evaluation]
+Function = Callable[..., Evaluation]
 Shape = Callable[
     [Float[Array, " n"], Float[Array, " n"], Float[Array, ""]], Float[Array, " n"]
 ]
@@ -169,6 +172,8 @@ class TrustRegionNewton(AbstractMinimiser):
         limit: Float[Array, ""] | None,
         shape: Shape | None = None,
         pull: Pull | None = None,
+        memory: Any = (),
+        max_steps: Int[Array, ""] | int | None = None,
     ) -> Minimum:
         """As `minimise`, for functions that may be flat at the start.
 
@@ -183,6 +188,9 @@ class TrustRegionNewton(AbstractMinimiser):
                 solve then ends with `NO_LOAD_PATH`.
             pull: A force on x beside `function`, which the scale of the latter then
                 is not: the force is, unless it is zero.
+            memory: Of the start. With it, `function` takes the memory of where the
+                step began as its third argument.
+            max_steps: Instead of the attribute; may be traced.
 
         Fails: as `minimise`, and `NO_LOAD_PATH`.
         """
@@ -200,17 +208,21 @@ class TrustRegionNewton(AbstractMinimiser):
             # NaN compares false: the loop ends at once and the code says why.
             return (norm(now.gradient) > goal * now.scale + now.noise) & ~state.stalled
 
-        def unfinished(packed):
-            state = _unpack(packed, n)
+        limit_of_steps = self.max_steps if max_steps is None else max_steps
+        remembers = bool(jax.tree.leaves(memory))
+
+        def unfinished(carry):
+            state = _unpack(carry[0], n)
             going = off_goal(state)
             if pull is not None:
                 going = going | (state.factor > 1.0)
-            going = going & (state.steps < self.max_steps)
+            going = going & (state.steps < limit_of_steps)
             if limit is not None:
                 going = going & (norm(state.x) < limit)
             return going | (state.steps < 0)
 
-        def step(packed):
+        def step(carry):
+            packed, memory = carry
             # The first pass (steps = -1) only evaluates the start: one copy of
             # `function` in the compiled loop instead of two.
             state = _unpack(packed, n)
@@ -237,7 +249,8 @@ class TrustRegionNewton(AbstractMinimiser):
                 p = shape(state.x, p, size)
             p = jnp.where(first, 0.0, p)
             length = norm(p)
-            there = function(state.x + p, True)
+            past = (memory,) if remembers else ()
+            there = function(state.x + p, True, *past)
             new = _pulled(there, state._replace(x=state.x + p), pull)
             slope = dot(now.gradient, p)
             predicted = slope + 0.5 * quadratic(now.hessian, p)
@@ -274,14 +287,18 @@ class TrustRegionNewton(AbstractMinimiser):
             rest = (next_radius, state.steps + 1.0, stalled, reach, state.factor)
             taken = _pack(_State(state.x + p, there, *rest))
             stayed = _pack(_State(state.x, state.now, *rest))
-            return jnp.where(accept, taken, stayed)
+            return jnp.where(accept, taken, stayed), jax.tree.map(
+                lambda new, old: jnp.where(accept, new, old), there.memory, memory
+            )
 
         zero = jnp.zeros((), start.dtype)
         factor = zero + 1.0 if pull is None else pull.factor
         begin = Evaluation(zero, 0.0 * start, identity, zero, zero)
         packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero, factor))
-        state = _unpack(lax.while_loop(unfinished, step, packed), n)
-        state = state._replace(now=_pulled(state.now, state, pull))
+        packed, memory = lax.while_loop(unfinished, step, (packed, memory))
+        state = _unpack(packed, n)
+        now = _pulled(state.now, state, pull)._replace(memory=memory)
+        state = state._replace(now=now)
         return _finish(state, tolerance, limit)
 
 
@@ -420,5 +437,5 @@ def _finish(state, tolerance, limit):
         unbalanced=size,
         steps=state.steps.astype(jnp.int32),
         result=result.astype(jnp.int32),
-        radius=state.radius,
+        memory=now.memory,
     )

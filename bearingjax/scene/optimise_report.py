@@ -6,8 +6,7 @@ import numpy as np
 
 from ..statics.measure import AbstractMeasure, EdgeLoad, label_of
 from ..statics.optimise import Optimised, Outcome
-from .optimise_table import KIND_OF
-from .read import Scene
+from .optimise_table import KIND_OF, Optimisation
 
 _RULE = "-" * 78
 _OF_KIND = {
@@ -27,22 +26,23 @@ _OF_UNIT = {
 }
 
 
-def optimisation_report(scene: Scene, found: Optimised) -> str:
+def optimisation_report(task: Optimisation, found: Optimised) -> str:
     """Readable report, before and after.
 
     Args:
-        scene: What was optimised.
+        task: What was asked.
         found: What came of it, converged.
     """
     cases = len(found.after.solution.result)
+    plural = "s" * (cases != 1)
     head = (
-        f"{scene.name}: optimised over {cases} operating case{'s' * (cases != 1)} in"
+        f"{task.scene.name}: optimised over {cases} operating case{plural} in"
         f" {len(found.history.objective) - 1} steps,\n{found.n_evaluations} designs"
         f" evaluated, {found.n_gradients} with gradient, {len(found.rejected)} rejected"
     )
     parts = [head, _variables(found), _measures(found), _pressures(found)]
     warned = [f"warning: rejected: {why}" for why in dict.fromkeys(found.rejected)]
-    warned += [f"warning: {text}" for text in scene.warnings]
+    warned += [f"warning: {text}" for text in task.scene.warnings]
     flat = found.history.gradient[-1]
     ending = f"converged: {found.message}"
     if np.isfinite(flat):
@@ -50,11 +50,11 @@ def optimisation_report(scene: Scene, found: Optimised) -> str:
     return f"\n{_RULE}\n".join([*parts, "\n".join([ending, *warned])])
 
 
-def optimisation_as_dict(scene: Scene, found: Optimised) -> dict[str, Any]:
+def optimisation_as_dict(task: Optimisation, found: Optimised) -> dict[str, Any]:
     """An optimised scene as plain numbers and lists, in SI.
 
     Args:
-        scene: What was optimised.
+        task: What was asked.
         found: What came of it.
 
     Returns:
@@ -76,7 +76,7 @@ def optimisation_as_dict(scene: Scene, found: Optimised) -> dict[str, Any]:
         "evaluations": found.n_evaluations,
         "gradients": found.n_gradients,
         "rejected": list(found.rejected),
-        "warnings": list(scene.warnings),
+        "warnings": list(task.scene.warnings),
         "version": __version__,
     }
 

@@ -1,10 +1,13 @@
 """The [optimise] table of a scene: what is free, what is made least, what is kept."""
 
 import dataclasses
+from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 from ..design import BearingSet, is_ball, rows_of
 from ..element import FREEDOMS, BearingElement
+from ..statics.cases import Cases
 from ..statics.measure import (
     EXPONENT,
     Constraint,
@@ -17,6 +20,9 @@ from ..statics.measure import (
 )
 from ..statics.search import METHODS
 from ..statics.variable import Variable, check_variables, design_numbers
+from .cases_table import read_cases
+from .quantity import SceneError
+from .read import Scene, find_scene, parse_scene, scene_of
 from .table import Table, not_among
 
 KIND_OF = {
@@ -62,6 +68,8 @@ class Optimisation:
     """What a scene wants optimised; as of `optimise`.
 
     Attributes:
+        scene: The scene without it.
+        cases: Its operating cases; without [cases] the one of [operating].
         variables: The free numbers, named as in the scene.
         objective: What is made least.
         constraints: Bounds on measures.
@@ -70,6 +78,8 @@ class Optimisation:
         tolerance: Gradient at which the search ends.
     """
 
+    scene: Scene
+    cases: Cases
     variables: tuple[Variable, ...]
     objective: Any
     constraints: tuple[Constraint, ...]
@@ -78,16 +88,49 @@ class Optimisation:
     tolerance: float
 
 
-def read_optimisation(table: Table, element: BearingElement[Any]) -> Optimisation:
-    """Read the [optimise] table.
+def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optimisation:
+    """Read a scene with [optimise].
 
     Args:
-        table: That table.
-        element: The bearing of the scene.
+        source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: One line that names file, key, fault and what is allowed.
     """
+    settings = tuple(settings)
+    path = find_scene(source)
+    data = parse_scene(path, settings)
+    if "optimise" not in data:
+        raise SceneError(
+            f"{path.name}: `optimise` is missing; it must be a table that names"
+            " `objective` and `variables`"
+        )
+    top = Table(data, path.name)
+    scene = scene_of(data, path)
+    cases = _operating(scene)
+    if "cases" in data:
+        cases = read_cases(source, settings).cases
+        if cases.design is not None:
+            problem = "vary the design, which [optimise] is to find"
+            raise top.error("cases", problem)
+    table = top.table("optimise")
+    task = _optimisation(table, scene, cases)
+    table.finish()
+    return task
+
+
+def _operating(scene: Scene) -> Cases:
+    speed = scene.speed
+    return Cases(
+        [scene.load],
+        prescribed=scene.prescribed,
+        inner_speed=None if speed is None else speed.inner,
+        outer_speed=None if speed is None else speed.outer,
+    )
+
+
+def _optimisation(table: Table, scene: Scene, cases: Cases) -> Optimisation:
+    element = scene.element
     kind = table.choice("objective", OBJECTIVES)
     balls = is_ball(element.bearing)
     exponent = table.number("exponent", EXPONENT)
@@ -109,7 +152,9 @@ def read_optimisation(table: Table, element: BearingElement[Any]) -> Optimisatio
         problem = f"{tolerance:g} is not allowed; above 0 and below 0.1"
         raise table.error("tolerance", problem)
     steps = table.integer("max_steps", 200)
-    return Optimisation(variables, objective, constraints, method, steps, tolerance)
+    return Optimisation(
+        scene, cases, variables, objective, constraints, method, steps, tolerance
+    )
 
 
 def scene_numbers(element: BearingElement[Any]) -> dict[str, tuple[str, ...]]:

@@ -15,6 +15,7 @@ KINDS = {
     "force": ("N", "kN"),
     "moment": ("N m", "N m"),
     "speed": ("rad/s", "rpm"),
+    "duration": ("hour", "h"),
     "pressure": ("Pa", "GPa"),
     "density": ("kg/m^3", "kg/m^3"),
     "stiffness": ("N/m", "N/mm"),

@@ -39,7 +39,6 @@ from ..element import (
 )
 from ..numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
 from .bearing_table import read_bearing
-from .optimise_table import Optimisation, read_optimisation
 from .quantity import SceneError
 from .table import Table
 
@@ -78,7 +77,6 @@ class Scene:
         tolerance: Relative residual of the load solve, or `None` for the default.
         points: Positions along the rollers at which loads are reported.
         warnings: What the validation found odd but possible.
-        optimisation: What is to be optimised, or `None`.
     """
 
     name: str
@@ -92,7 +90,6 @@ class Scene:
     tolerance: float | None
     points: int
     warnings: tuple[str, ...]
-    optimisation: Optimisation | None = None
 
     @property
     def moving_ring(self) -> str:
@@ -132,16 +129,23 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
     Raises:
         SceneError: One line that names file, key, fault and what is allowed.
     """
-    if not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
-        raise SceneError(
-            "scenes are solved in float64, which is off: call"
-            ' jax.config.update("jax_enable_x64", True) before anything else'
-        )
-    path = _find(source)
-    data = _parse(path)
-    for setting in settings:
-        _set(data, setting, path.name)
+    path = find_scene(source)
+    return scene_of(parse_scene(path, settings), path)
+
+
+def scene_of(data: dict[str, Any], path: Path) -> Scene:
+    """The scene in parsed data.
+
+    Args:
+        data: From `parse_scene`.
+        path: Where from, for messages.
+
+    Raises:
+        SceneError: As `read_scene`.
+    """
     top = Table(data, path.name)
+    # What other commands ask for.
+    top.skip("cases", "optimise")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         bearing, preload = read_bearing(top)
@@ -152,7 +156,17 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
     return scene
 
 
-def _find(source):
+def find_scene(source: str | Path) -> Path:
+    """Path of a scene file or of a shipped scene.
+
+    Raises:
+        SceneError: If there is none, or float64 is off.
+    """
+    if not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
+        raise SceneError(
+            "scenes are solved in float64, which is off: call"
+            ' jax.config.update("jax_enable_x64", True) before anything else'
+        )
     path = Path(source)
     if path.suffix != ".toml" and not path.is_file():
         shipped = shipped_scenes()
@@ -164,6 +178,22 @@ def _find(source):
     if not path.is_file():
         raise SceneError(f"{source}: no such file")
     return path
+
+
+def parse_scene(path: Path, settings: Iterable[str]) -> dict[str, Any]:
+    """A scene file as parsed, with its settings changed.
+
+    Args:
+        path: Of the file.
+        settings: As in `read_scene`.
+
+    Raises:
+        SceneError: If it is no TOML, or a setting does not fit.
+    """
+    data = _parse(path)
+    for setting in settings:
+        _set(data, setting, path.name)
+    return data
 
 
 def _parse(path):
@@ -182,15 +212,32 @@ def _set(data: dict, setting: str, file: str) -> None:
             f"{file}: {setting!r} is not a setting; write key=value, such as"
             ' "operating.load.Fy=-4 kN"'
         )
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except ValueError:
+        value = text.strip()
+    assign(data, ".".join(parts), value, file)
+
+
+def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
+    """Set a dotted key in parsed data.
+
+    Args:
+        data: Changed in place.
+        key: Dotted key.
+        value: As parsed.
+        file: For the message.
+
+    Raises:
+        SceneError: If the key leads through what is no table.
+    """
+    parts = key.split(".")
     for depth, part in enumerate(parts[:-1]):
         data = data.setdefault(part, {})
         if not isinstance(data, dict):
             inner = ".".join(parts[: depth + 1])
             raise SceneError(f"{file}: `{inner}` is not a table, so {key!r} fails")
-    try:
-        data[parts[-1]] = tomllib.loads(f"value = {text}")["value"]
-    except ValueError:
-        data[parts[-1]] = text.strip()
+    data[parts[-1]] = value
 
 
 def _scene(top, name, bearing, preload, odd) -> Scene:
@@ -237,14 +284,7 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         tolerance=tolerance,
         points=_points(top.table("output"), bearing),
         warnings=odd,
-        optimisation=_optimisation(top, element),
     )
-
-
-def _optimisation(top: Table, element) -> Optimisation | None:
-    if "optimise" not in top:
-        return None
-    return read_optimisation(top.table("optimise"), element)
 
 
 def _components(operating, key, names, kinds) -> dict[str, float]:

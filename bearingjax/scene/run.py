@@ -2,12 +2,11 @@
 
 import functools
 
-from ..statics.cases import Cases
 from ..statics.load import solve_load
 from ..statics.optimise import Optimised, optimise
 from ..statics.preload import preload
 from ..statics.solution import Solution
-from .quantity import SceneError
+from .optimise_table import Optimisation
 from .read import Scene
 
 
@@ -38,35 +37,26 @@ def run_scene(scene: Scene) -> Solution:
     )
 
 
-def run_optimisation(
-    scene: Scene, cases: Cases | None = None, progress: bool = False
-) -> Optimised:
+def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
     """Optimise the bearing of a scene.
 
     Args:
-        scene: From `read_scene`.
-        cases: Operating cases; default: the one of [operating].
+        task: From `read_optimisation`.
         progress: Show a progress bar on standard error.
 
     Returns:
         The best design; read its `result`.
 
     Raises:
-        SceneError: If the scene has no [optimise] table.
         SolveError: If the design of the scene does not solve.
     """
-    task = scene.optimisation
-    if task is None:
-        raise SceneError(
-            f"{scene.name}: `optimise` is missing; it must be a table that names"
-            " `objective` and `variables`"
-        )
+    scene = task.scene
     build = None
     if scene.preload_force is not None:
         build = functools.partial(preload, force=scene.preload_force, throw=False)
     return optimise(
         scene.element,
-        _operating(scene) if cases is None else cases,
+        task.cases,
         task.variables,
         task.objective,
         task.constraints,
@@ -79,14 +69,4 @@ def run_optimisation(
         solve_tolerance=scene.tolerance,
         build=build,
         progress=progress,
-    )
-
-
-def _operating(scene):
-    speed = scene.speed
-    return Cases(
-        [scene.load],
-        prescribed=scene.prescribed,
-        inner_speed=None if speed is None else speed.inner,
-        outer_speed=None if speed is None else speed.outer,
     )

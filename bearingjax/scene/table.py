@@ -9,7 +9,7 @@ from typing import Any
 from .quantity import SceneError, to_si
 
 _MISSING: Any = object()
-_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_BARE = re.compile(r"[A-Za-z0-9_.\[\]-]+")
 LARGEST = 1e9
 """Largest bare number that a scene may hold."""
 
@@ -106,6 +106,15 @@ class Table:
         self._known.append(key)
         value = self._data.get(key)
         return value if isinstance(value, str) else None
+
+    def raw(self, key: str, default: Any = _MISSING) -> Any:
+        """What stands at a key, as parsed."""
+        return self._get(key, default, "given")
+
+    def skip(self, *keys: str) -> None:
+        """Let keys be that somebody else reads."""
+        self._asked += keys
+        self._known += keys
 
     def words(self, key: str, choices: Sequence[str]) -> tuple[str, ...] | None:
         """List of distinct words, or `None` if absent."""

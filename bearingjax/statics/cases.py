@@ -147,14 +147,15 @@ def solve_case(
     fixed_ring: str = "outer",
     points: int = 101,
     tolerance: float | None = None,
-    max_steps: int = 200,
+    max_steps: int | Int[Array, ""] = 200,
+    start: Float[Array, "6"] | None = None,
 ) -> Solution:
     """One case of many, to be mapped: `jax.vmap(lambda c: solve_case(element, c))`.
 
     Args:
         element: The bearing of this case.
         case: Cases without their leading axis, as `vmap` hands them out.
-        free, fixed_ring, points, tolerance, max_steps: As in `solve_load`.
+        free, fixed_ring, points, tolerance, max_steps, start: As in `solve_load`.
 
     Returns:
         Solution with its result code; nothing is raised for a failed solve.
@@ -175,5 +176,6 @@ def solve_case(
         points=points,
         tolerance=tolerance,
         max_steps=max_steps,
+        start=start,
         throw=False,
     )

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from ..design import (
     AbstractBallBearing,
@@ -72,7 +72,8 @@ def solve_load(
     speed: Speed | None = None,
     points: int = 101,
     tolerance: float | None = None,
-    max_steps: int = 200,
+    max_steps: int | Int[Array, ""] = 200,
+    start: Vector | None = None,
     throw: bool = True,
 ) -> Solution:
     """Equilibrium of a bearing under any mix of loads and displacements.
@@ -94,7 +95,9 @@ def solve_load(
         points: Positions along the rollers at which loads are reported.
         tolerance: Relative residual at which the solve ends; default 1e-11 in
             float64, 1e-4 in float32. Static.
-        max_steps: Step limit of the load solve. Static.
+        max_steps: Step limit of the load solve. Static, unless an array.
+        start: Displacement of the moving ring (6,) from which the solve starts, such
+            as that under a load near by; NaN or `None`: from first contact [m, rad].
         throw: Raise if the solve fails, outside or under `jit`; otherwise read
             `solution.result`.
 
@@ -164,6 +167,7 @@ def solve_load(
         points,
         tolerance,
         max_steps,
+        None if start is None else _six("start", start, dtype),
     )
     if throw:
         moving = RINGS[1 - RINGS.index(fixed_ring)]
@@ -186,6 +190,7 @@ def _solve(
     points,
     tolerance,
     max_steps,
+    start,
 ):
     radius = pitch_radius(element.bearing)
     one = jnp.ones_like(radius)
@@ -193,7 +198,7 @@ def _solve(
     scale = jnp.concatenate([jnp.tile(one, 3), jnp.tile(1.0 / radius, 3)])
     free = jnp.asarray(np.array(is_free, dtype=float), dtype=load.dtype)
     moving = slice(6, 12) if fixed_ring == "outer" else slice(0, 6)
-    start = (1.0 - free) * given / scale
+    begin = (1.0 - free) * given / scale
 
     def ring_freedoms(y, scale, fixed):
         mine = scale * y
@@ -206,9 +211,10 @@ def _solve(
     frozen = stop(args)
     symmetric = model.has_potential
 
-    def function(y, _):
+    def function(y, _, offsets):
         model, _, _, fixed, scale, free = frozen
-        e = model.evaluate(ring_freedoms(y, scale, fixed))
+        q = ring_freedoms(y, scale, fixed)
+        e = model.evaluate(q, model.solve(q, offsets))
         g = free * (scale * e.force[moving])
         h = jnp.outer(free * scale, free * scale) * e.stiffness[moving, moving]
         trace = jnp.trace(h)
@@ -217,7 +223,7 @@ def _solve(
         # Round-off of forces that cancel, and of positions in a stiff bearing.
         noise = eps * (e.magnitude + trace * jnp.sqrt(y @ y))
         value = e.energy if symmetric else jnp.full_like(e.energy, jnp.nan)
-        return Evaluation(value, g, h, e.magnitude, noise)
+        return Evaluation(value, g, h, e.magnitude, noise, e.offsets)
 
     pull = free * stop(scale) * stop(load)
     size = jnp.sqrt(pull @ pull)
@@ -228,15 +234,22 @@ def _solve(
     # contacts that matter are found early and Newton's method stays on their side.
     pressing = _load_for(frozen[0], play)
     factor = jnp.where(size > 0, jnp.maximum(1.0, pressing / size), 1.0)
-    solver = TrustRegionNewton(max_steps=max_steps, symmetric=symmetric)
+    if start is not None:
+        known = jnp.all(jnp.isfinite(start))
+        near = free * jnp.where(known, start, 0.0) / scale
+        begin = begin + near
+        factor = jnp.where(known, 1.0, factor)
+    solver = TrustRegionNewton(symmetric=symmetric)
     minimum = solver.search(
         function,
-        stop(start),
+        stop(begin),
         1e-7 * stop(radius) + play,
         tolerance,
         direction,
         8.0 * stop(radius),
         pull=Pull(pull, factor),
+        memory=frozen[0].no_offsets(),
+        max_steps=max_steps,
     )
 
     def residual(y, args):
@@ -249,7 +262,7 @@ def _solve(
 
     y = attach(residual, minimum.x, args, symmetric)
     q = ring_freedoms(y, scale, fixed)
-    fields, evaluated = describe(element, model, q, points)
+    fields, evaluated = describe(element, model, q, points, minimum.memory)
 
     out = free * scale * (fields["force"][moving] - load)
     reference = jnp.where(size > 0, size, evaluated.magnitude)

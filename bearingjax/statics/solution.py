@@ -195,7 +195,11 @@ def _slack(solution: Solution) -> list[str]:
 
 
 def describe(
-    element: BearingElement, model: BearingModel, q: Ring, points: int
+    element: BearingElement,
+    model: BearingModel,
+    q: Ring,
+    points: int,
+    offsets: tuple[Float[Array, "element n"], ...],
 ) -> tuple[dict, Evaluated]:
     """All fields of a `Solution` that follow from the ring freedoms.
 
@@ -204,8 +208,9 @@ def describe(
         model: Its model at the speeds.
         q: Ring freedoms [m, rad].
         points: Positions along a roller.
+        offsets: `Evaluated.offsets` at q or near by.
     """
-    rows = model.solve(q)
+    rows = model.solve(q, offsets)
     evaluated = model.evaluate(q, rows)
     if element.point_law is not None:
         special = ball_results(rows, element.point_law)

@@ -18,7 +18,7 @@ class Run(NamedTuple):
 @pytest.fixture
 def run(monkeypatch, capsys):
     """Call `bearingjax` with arguments."""
-    monkeypatch.setattr(cli, "_configure_jax", lambda: None)
+    monkeypatch.setattr(cli, "_configure_jax", lambda options: None)
 
     def call(*arguments):
         status = cli.main([str(a) for a in arguments])

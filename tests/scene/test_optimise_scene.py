@@ -9,7 +9,11 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import SceneError, read_scene
-from bearingjax.scene import optimisation_report, shipped_scenes
+from bearingjax.scene import (
+    optimisation_report,
+    read_optimisation,
+    shipped_scenes,
+)
 from bearingjax.scene.optimise_table import KIND_OF, scene_numbers
 
 BEARING = """
@@ -97,8 +101,7 @@ def test_start_without_a_solution(run, scene):
 
 
 def test_shipped_scene_says_what_it_wants():
-    task = read_scene("fujiwara_kawase").optimisation
-    assert task is not None
+    task = read_optimisation("fujiwara_kawase")
     assert [v.name.rpartition(".")[2] for v in task.variables] == [
         "load_factor",
         "crowned_fraction",
@@ -106,6 +109,10 @@ def test_shipped_scene_says_what_it_wants():
     ]
     assert np.isclose(task.variables[2].upper, 60e-6)
     assert isinstance(task.objective, bj.PeakPressure)
+    assert task.cases.count == 4
+    assert np.allclose(task.cases.load[:, 1], [-18e3, -12e3, -8e3, -4e3])
+    assert np.allclose(task.cases.prescribed["gx"], [2e-3, 1.5e-3, 1e-3, 5e-4])
+    assert task.cases.hours is not None and task.cases.hours[2] == 4000.0
     (constraint,) = task.constraints
     assert isinstance(constraint.measure, bj.EdgeLoad)
     assert constraint.lower is None and float(constraint.upper) == 10e3
@@ -139,16 +146,15 @@ def test_all_ribs_and_all_rows_share_a_number():
 def test_report_needs_no_unit_of_a_plain_measure(scene):
     """A function of one's own has a name, and no unit."""
     path = scene(GOOD)
-    asked = read_scene(path)
-    task = asked.optimisation
-    assert task is not None
+    task = read_optimisation(path)
+    asked = task.scene
 
     def own(element, cases, solution):
         return jnp.sum(solution.displacement[:, 7] ** 2)
 
     found = bj.optimise(
         asked.element,
-        bj.Cases([asked.load]),
+        task.cases,
         task.variables,
         own,
         method="nelder-mead",
@@ -156,7 +162,7 @@ def test_report_needs_no_unit_of_a_plain_measure(scene):
         points=2,
         max_steps=3,
     )
-    assert "\nown " in optimisation_report(asked, found)
+    assert "\nown " in optimisation_report(task, found)
 
 
 FILES = {
@@ -185,16 +191,16 @@ FILES = {
     ),
     "no unit": (
         GOOD.replace('"40 um"', "40"),
-        "clearance'.to`: 40 has no unit; a length with its unit is wanted",
+        "clearance.to`: 40 has no unit; a length with its unit is wanted",
     ),
     "wrong unit": (GOOD.replace("40 um", "40 N"), "'40 N' is not a length"),
     "no upper bound": (
         GOOD.replace(', to = "40 um"', ""),
-        "clearance'.to`: is missing",
+        "clearance.to`: is missing",
     ),
     "unknown bound": (
         GOOD.replace('to = "40 um"', 'to = "40 um", step = "1 um"'),
-        "clearance'.step`: unknown key",
+        "clearance.step`: unknown key",
     ),
     "bounds upside down": (
         GOOD.replace('"0 um"', '"50 um"'),
@@ -269,7 +275,7 @@ FILES = {
 def test_wrong_tables(scene, name):
     table, text = FILES[name]
     with pytest.raises(SceneError) as caught:
-        read_scene(scene(table))
+        read_optimisation(scene(table))
     message = str(caught.value)
     assert message.startswith("free.toml: ") and "\n" not in message
     assert text in message, message
@@ -277,13 +283,19 @@ def test_wrong_tables(scene, name):
 
 def test_edge_load_of_balls():
     with pytest.raises(SceneError, match="balls have no ends"):
-        read_scene("deep_groove", ["optimise.objective=edge_load"])
+        read_optimisation("deep_groove", ["optimise.objective=edge_load"])
+
+
+def test_cases_of_several_designs(scene):
+    grid = "bearing.n_rollers = [5, 6]"
+    with pytest.raises(SceneError, match="`cases`: vary the design"):
+        read_optimisation(scene(f"{GOOD}\n[cases.grid]\n{grid}"))
 
 
 def test_scene_without_the_table(run):
     done = run("optimise", "cylindrical_rig")
     assert done.status == 2
-    assert "cylindrical_rig: `optimise` is missing" in done.err
+    assert "cylindrical_rig.toml: `optimise` is missing" in done.err
 
 
 def test_picture_only_where_it_can_be_written(run, tmp_path):

@@ -22,6 +22,7 @@ SHIPPED = (
     "deep_groove",
     "fujiwara_kawase",
     "hybrid_spindle",
+    "load_map",
     "needle",
     "nj_axial",
     "self_aligning",

@@ -1,0 +1,360 @@
+"""`[cases]` of a scene: many loads, displacements, speeds and designs.
+
+A grid, a list (CSV) or a load spectrum. What varies is named as in the scene file,
+`operating.load.Fy` or `bearing.radial_internal_clearance`.
+"""
+
+import copy
+import csv
+import dataclasses
+import itertools
+import math
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..element import FREEDOMS, LOADS, RINGS, BearingElement
+from ..statics.cases import Cases
+from ..statics.preload import preload
+from ..statics.sweep import stack_designs
+from .quantity import SceneError, to_si
+from .read import Scene, assign, find_scene, parse_scene, scene_of
+from .table import Table
+
+OPERATING = {
+    **{
+        f"operating.load.{name}": "force" if name.startswith("F") else "moment"
+        for name in LOADS
+    },
+    **{
+        f"operating.prescribed.{name}": "length" if name.startswith("u") else "angle"
+        for name in FREEDOMS
+    },
+    **{f"operating.{ring}_speed": "speed" for ring in RINGS},
+    "hours": "duration",
+}
+"""What may vary from case to case without changing the design, and its kind."""
+
+DESIGN = ("bearing", "set", "contact")
+"""Tables of the scene whose keys make a design."""
+
+LARGEST = 10**8
+"""Most cases of a scene."""
+
+
+@dataclasses.dataclass(frozen=True)
+class CaseTable:
+    """What `[cases]` asks for.
+
+    Attributes:
+        scene: The scene without its cases.
+        element: The bearing, preloaded; of several designs, `stack_designs`.
+        cases: The cases.
+        varied: Keys that vary, in order.
+        settings: Of each design, the settings that make it.
+        outputs: Names of what is kept, or `None` for the usual.
+        neighbours: Whether cases that follow each other are alike.
+        warnings: What the validation found odd but possible, of all designs.
+    """
+
+    scene: Scene
+    element: BearingElement[Any]
+    cases: Cases
+    varied: tuple[str, ...]
+    settings: tuple[dict[str, Any], ...]
+    outputs: tuple[str, ...] | None
+    neighbours: bool
+    warnings: tuple[str, ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class _Column:
+    """Values of one key: case k has `values[index[k]]`."""
+
+    key: str
+    values: Sequence[Any] | np.ndarray
+    index: np.ndarray
+
+
+def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
+    """Read a scene with `[cases]`.
+
+    Args:
+        source, settings: As in `read_scene`.
+
+    Raises:
+        SceneError: One line that names file, key, fault and what is allowed.
+    """
+    path = find_scene(source)
+    data = parse_scene(path, settings)
+    if "cases" not in data:
+        raise SceneError(
+            f"{path.name}: `cases` is missing; it must be a table with one of `grid`,"
+            " `file` or `spectrum`"
+        )
+    top = Table(data, path.name)
+    table = top.table("cases")
+    kind = [k for k in ("grid", "file", "spectrum") if k in table]
+    if len(kind) != 1:
+        raise top.error("cases", "must have one of `grid`, `file` or `spectrum`")
+    if kind[0] == "grid":
+        columns = _grid(table, table.raw("grid"))
+    elif kind[0] == "file":
+        columns = _listed(table, path.parent)
+    else:
+        columns = _spectrum(table, table.raw("spectrum"))
+    neighbours = table.flag("neighbours", kind[0] == "grid")
+    outputs = table.raw("outputs", None)
+    if outputs is not None and not (
+        isinstance(outputs, list) and all(isinstance(name, str) for name in outputs)
+    ):
+        raise table.error("outputs", f"{outputs!r} is not a list of names")
+    table.finish()
+    scene = scene_of(data, path)
+    for column in columns:
+        _check_key(table, column.key, scene)
+    element, design, made, odd = _designs(data, path, columns)
+    return CaseTable(
+        scene=scene,
+        element=element,
+        cases=_cases(table, scene, columns, design),
+        varied=tuple(column.key for column in columns),
+        settings=made,
+        outputs=None if outputs is None else tuple(outputs),
+        neighbours=neighbours,
+        warnings=tuple(dict.fromkeys((*scene.warnings, *odd))),
+    )
+
+
+def _check_key(table, key, scene):
+    if key in OPERATING:
+        name = key.rpartition(".")[2]
+        if key.startswith("operating.prescribed.") and name in (scene.free or ()):
+            raise table.error(key, f"{name} is free in this scene; choose one")
+        if name in LOADS and FREEDOMS[LOADS.index(name)] in scene.prescribed:
+            freedom = FREEDOMS[LOADS.index(name)]
+            problem = f"{name} acts on {freedom}, which is prescribed; choose one"
+            raise table.error(key, problem)
+        return
+    if key.partition(".")[0] in DESIGN and "." in key:
+        return
+    allowed = ", ".join(
+        ["operating.load.Fx", "operating.prescribed.ux", "operating.inner_speed"]
+    )
+    raise table.error(
+        key,
+        f"cannot vary; what can: {allowed} and the like, hours (file and spectrum),"
+        f" and keys of {', '.join(DESIGN)}",
+    )
+
+
+def _flat(data: dict, prefix: str = "") -> dict[str, Any]:
+    """Nested tables as dotted keys; a range {start, stop, count} is a value."""
+    out: dict[str, Any] = {}
+    for key, value in data.items():
+        name = f"{prefix}{key}"
+        if isinstance(value, dict) and not {"start", "stop", "count"} & set(value):
+            out |= _flat(value, f"{name}.")
+        else:
+            out[name] = value
+    return out
+
+
+def _grid(table, data) -> list[_Column]:
+    if not isinstance(data, dict) or not data:
+        raise table.error("grid", f"{data!r} is not a table of keys with their values")
+    axes = {}
+    for key, value in _flat(data).items():
+        if isinstance(value, dict):
+            value = _range(table, key, value)
+        elif not isinstance(value, list) or not value:
+            problem = f"{value!r} is not a list of values, nor {{start, stop, count}}"
+            raise table.error(f"grid.{key}", problem)
+        axes[key] = value
+    sizes = [len(values) for values in axes.values()]
+    if math.prod(sizes) > LARGEST:
+        problem = f"has {math.prod(sizes)} cases; at most {LARGEST}"
+        raise table.error("grid", problem)
+    grid = np.indices(sizes).reshape(len(sizes), -1)
+    pairs = zip(axes.items(), grid, strict=True)
+    return [_Column(key, values, index) for (key, values), index in pairs]
+
+
+def _range(table, key, data) -> Any:
+    path = f"grid.{key}"
+    wanted = {"start", "stop", "count"}
+    if set(data) != wanted:
+        problem = f"has the keys {', '.join(data)}; a range has start, stop and count"
+        raise table.error(path, problem)
+    count = data["count"]
+    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= 10**6:
+        raise table.error(path, f"`count` is {count!r}; a whole number from 2 to 10^6")
+    ends = [data["start"], data["stop"]]
+    if key in OPERATING:
+        return np.linspace(*_numbers(table, _Column(key, ends, np.arange(2))), count)
+    # Of a design's numbers the kind is not known here: the unit stays as it is.
+    parts = [_split(end) for end in ends]
+    if None in parts or parts[0][1] != parts[1][1]:
+        problem = "`start` and `stop` must be numbers with one and the same unit"
+        raise table.error(path, problem)
+    unit = parts[0][1]
+    numbers = np.linspace(parts[0][0], parts[1][0], count)
+    return [float(x) if unit is None else f"{float(x)!r} {unit}" for x in numbers]
+
+
+def _split(value) -> Any:
+    """(number, unit), unit `None` of a bare number; `None` if it is neither."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return float(value), None
+    match = re.fullmatch(r"\s*([-+\d.eE]+)\s*(\D.*?)\s*", str(value))
+    try:
+        return (float(match[1]), match[2]) if match else None
+    except ValueError:
+        return None
+
+
+def _spectrum(table, data) -> list[_Column]:
+    if not isinstance(data, list) or not all(isinstance(e, dict) for e in data):
+        raise table.error("spectrum", "must be a list of tables, [[cases.spectrum]]")
+    entries = [_flat(entry) for entry in data]
+    keys = list(dict.fromkeys(itertools.chain(*entries)))
+    for k, entry in enumerate(entries):
+        for key in keys:
+            if key not in entry:
+                problem = f"is missing; every entry must have {', '.join(keys)}"
+                raise table.error(f"spectrum[{k}].{key}", problem)
+    if "hours" not in keys:
+        raise table.error("spectrum[0].hours", "is missing; a spectrum has hours")
+    index = np.arange(len(entries))
+    return [_Column(key, [entry[key] for entry in entries], index) for key in keys]
+
+
+def _listed(table, folder) -> list[_Column]:
+    name = table.raw("file")
+    path = folder / str(name)
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = [row for row in csv.reader(file) if row]
+    except (OSError, UnicodeDecodeError) as error:
+        raise table.error("file", f"{name}: cannot be read: {error}") from error
+    if len(rows) < 2:
+        raise table.error("file", f"{name}: has no cases; a header and rows are wanted")
+    header, *cells = rows
+    if len(set(header)) < len(header):
+        raise table.error("file", f"{name}: names a column twice")
+    for k, row in enumerate(cells):
+        if len(row) != len(header):
+            problem = f"{name}: line {k + 2} has {len(row)} values, not {len(header)}"
+            raise table.error("file", problem)
+    index = np.arange(len(cells))
+    columns = []
+    for title, values in zip(header, zip(*cells, strict=True), strict=True):
+        match = re.fullmatch(r"\s*([\w.]+)\s*(?:\[(.*)\])?\s*", title)
+        if match is None:
+            problem = f'{name}: {title!r} is no header such as "operating.load.Fy [kN]"'
+            raise table.error("file", problem)
+        key, unit = match.groups()
+        columns.append(_Column(key, _cells(table, name, key, unit, values), index))
+    return columns
+
+
+def _cells(table, name, key, unit, values):
+    """SI numbers of operating data; settings of a design."""
+    if key in OPERATING:
+        try:
+            factor = to_si(f"1 {unit or ''}".strip(), OPERATING[key])
+            return np.array([float(value) for value in values]) * factor
+        except (SceneError, ValueError) as error:
+            raise table.error("file", f"{name}: {key}: {error}") from error
+    if unit is not None:
+        return [f"{value} {unit}" for value in values]
+    return [_bare(value) for value in values]
+
+
+def _bare(text):
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
+
+
+def _designs(data, path, columns):
+    """Element, design of each case, settings and warnings of all designs."""
+    varied = [column for column in columns if column.key not in OPERATING]
+    if not varied:
+        scene = scene_of(data, path)
+        return _preloaded(scene), None, ({},), ()
+    # Values that repeat are one value; designs that repeat are one design.
+    codes = []
+    for column in varied:
+        distinct = {v: k for k, v in enumerate(dict.fromkeys(map(repr, column.values)))}
+        code = np.array([distinct[repr(value)] for value in column.values])
+        codes.append(code[column.index])
+    _, first, design = np.unique(
+        np.stack(codes), axis=1, return_index=True, return_inverse=True
+    )
+    made, elements, odd = [], [], []
+    for case in first:
+        settings = {c.key: c.values[c.index[case]] for c in varied}
+        changed = copy.deepcopy(data)
+        for key, value in settings.items():
+            assign(changed, key, value, path.name)
+        scene = scene_of(changed, path)
+        made.append(settings)
+        elements.append(_preloaded(scene))
+        odd += scene.warnings
+    try:
+        element = stack_designs(elements)
+    except ValueError as error:
+        raise SceneError(f"{path.name}: `cases`: {error}") from error
+    return element, design.reshape(-1), tuple(made), tuple(odd)
+
+
+def _preloaded(scene):
+    if scene.preload_force is None:
+        return scene.element
+    return preload(scene.element, scene.preload_force, throw=False)
+
+
+def _cases(table, scene, columns, design) -> Cases:
+    count = columns[0].index.size
+    load = np.tile(np.array(scene.load), (count, 1))
+    prescribed: dict[str, Any] = {
+        name: np.full(count, value) for name, value in scene.prescribed.items()
+    }
+    speeds: dict[str, Any] = {}
+    if scene.speed is not None:
+        for ring in RINGS:
+            value = float(getattr(scene.speed, ring))
+            speeds[f"{ring}_speed"] = np.full(count, value)
+    hours = None
+    for column in columns:
+        if column.key not in OPERATING:
+            continue
+        values = _numbers(table, column)[column.index]
+        name = column.key.rpartition(".")[2]
+        if column.key == "hours":
+            hours = values
+        elif name in LOADS:
+            load[:, LOADS.index(name)] = values
+        elif name in FREEDOMS:
+            prescribed[name] = values
+        else:
+            speeds[name] = values
+    with table.building():
+        return Cases(load, prescribed=prescribed, hours=hours, design=design, **speeds)
+
+
+def _numbers(table, column):
+    if isinstance(column.values, np.ndarray):
+        return column.values
+    try:
+        kind = OPERATING[column.key]
+        return np.array([to_si(value, kind) for value in column.values])
+    except SceneError as error:
+        raise table.error(column.key, error) from error

@@ -1,0 +1,132 @@
+"""Running the cases of a scene, and what is told of them."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..statics.sweep import Sweep, sweep
+from ..statics.sweep_table import columns
+from .cases_table import CaseTable
+from .quantity import SceneError
+
+OUTPUTS = (
+    "displacement",
+    "largest_load",
+    "peak_pressure",
+    "n_loaded",
+    "iterations",
+    "residual",
+)
+"""What is kept of each case if the scene does not say."""
+
+_SHOWN = {
+    "m": (1e6, "µm"),
+    "rad": (1e3, "mrad"),
+    "Pa": (1e-6, "MPa"),
+    "N": (1e-3, "kN"),
+}
+
+
+def run_cases(table: CaseTable, progress: bool = False) -> Sweep:
+    """Solve the cases of a scene.
+
+    Args:
+        table: From `read_cases`.
+        progress: Show a bar.
+
+    Returns:
+        Sweep with a result code for each case.
+
+    Raises:
+        SceneError: For outputs that do not exist or would not fit memory.
+    """
+    scene = table.scene
+    try:
+        return sweep(
+            table.element,
+            table.cases,
+            outputs=OUTPUTS if table.outputs is None else table.outputs,
+            free=scene.free,
+            fixed_ring=scene.fixed_ring,
+            points=scene.points,
+            tolerance=scene.tolerance,
+            neighbours=table.neighbours,
+            progress=progress,
+        )
+    except ValueError as error:
+        raise SceneError(f"{scene.name}: {error}") from error
+
+
+def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
+    """How many cases ended how, and the range of every output over those solved.
+
+    Args:
+        table: What was asked.
+        solved: What came out.
+        seconds: How long it took [s].
+    """
+    counts = ", ".join(f"{n} {label}" for label, n in solved.counts().items())
+    count = solved.cases.count
+    lines = [
+        f"{table.scene.name}: {count} cases over {', '.join(table.varied)}",
+        f"{counts}; {seconds:.3g} s, compiling included",
+    ]
+    if len(table.settings) > 1:
+        lines.append(f"{len(table.settings)} designs")
+    lines.append(f"\n{'':<38}{'least':>14}{'largest':>14}  unit")
+    for header, column in columns(solved).items():
+        values = np.asarray(column)
+        if values.dtype.kind not in "fi" or header == "design":
+            continue
+        values = values[solved.converged & np.isfinite(values)]
+        if values.size == 0 or not values.any():
+            continue
+        name, _, unit = header.partition(" [")
+        factor, shown = _SHOWN.get(unit.rstrip("]"), (1.0, unit.rstrip("]")))
+        ends = "".join(f"{factor * x:>14.5g}" for x in (values.min(), values.max()))
+        lines.append(f"{name:<38}{ends}  {shown}".rstrip())
+    lines += [f"warning: {text}" for text in table.warnings]
+    return "\n".join(lines)
+
+
+def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
+    """What makes the design of each case, as the scene writes it, by key."""
+    if table.cases.design is None:
+        return {}
+    design = np.asarray(table.cases.design)
+    return {
+        key: np.array([str(made[key]) for made in table.settings])[design]
+        for key in table.settings[0]
+    }
+
+
+def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
+    """A sweep as plain lists, in SI: a column each, null where a case failed."""
+    from .. import __version__
+
+    def listed(column):
+        if column.dtype.kind != "f":
+            return column.tolist()
+        return [float(x) if np.isfinite(x) else None for x in column]
+
+    return {
+        "columns": {
+            name: listed(column)
+            for name, column in columns(solved, design_columns(table)).items()
+        },
+        "counts": solved.counts(),
+        "warnings": list(table.warnings),
+        "version": __version__,
+    }
+
+
+def write_sweep_json(path: str | Path, table: CaseTable, solved: Sweep) -> None:
+    """Write `sweep_as_dict` to a file.
+
+    Raises:
+        OSError: If the file cannot be written.
+    """
+    text = json.dumps(sweep_as_dict(table, solved), indent=1, allow_nan=False)
+    Path(path).write_text(text + "\n", encoding="utf-8")

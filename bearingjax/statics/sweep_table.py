@@ -1,0 +1,158 @@
+"""A sweep as a flat table: one row per case, units in the header."""
+
+import itertools
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ..design.rib import RIB_NAMES
+from ..element.frame import FREEDOMS, LOADS, RINGS
+from ..numerics.result import Result
+from .sweep import Sweep
+
+ENDINGS = (".csv", ".parquet")
+
+_LENGTHS, _LOAD_UNITS = ("m", "m", "m", "rad", "rad", "rad"), ("N",) * 3 + ("N m",) * 3
+_RING = [f"{ring}_{f}" for ring in RINGS for f in FREEDOMS]
+_RING_LOADS = [f"{ring}_{c}" for ring in RINGS for c in LOADS]
+# Units of the scalars and of what has axes that nothing names.
+_UNITS = {
+    "peak_pressure": "Pa",
+    "largest_load": "N",
+    "pitch_radius": "m",
+    "roller_load": "N",
+    "rib_load": "N",
+    "contact_load": "N",
+    "azimuth": "rad",
+    "position": "m",
+    "line_load": "N/m",
+    "contact_pressure": "Pa",
+    "contact_half_width": "m",
+    "contact_angle": "rad",
+    "semi_axes": "m",
+    "approach": "m",
+    "shoulder_margin": "rad",
+    "centrifugal_force": "N",
+    "gyroscopic_moment": "N m",
+    "spring_travel": "m",
+    "spring_force": "N",
+}
+_LAST_AXIS = {
+    "roller_load": RINGS,
+    "rib_load": RIB_NAMES,
+}
+
+
+def columns(
+    sweep: Sweep, beside: Mapping[str, np.ndarray] | None = None
+) -> dict[str, np.ndarray]:
+    """Columns by their header, "name [unit]": what was asked, then what came out.
+
+    Arrays are spread over columns, `displacement_inner_uy [m]`. The result is the
+    code's label; where it is not "converged", numbers are NaN.
+
+    Args:
+        sweep: From `sweep`.
+        beside: More columns, which come first (case,).
+
+    Returns:
+        Header -> array (case,), in SI.
+    """
+    asked = _asked(sweep)
+    found = {
+        header: column
+        for name, values in sweep.outputs.items()
+        if name not in ("result", "unrestrained")
+        for header, column in _spread(name, values)
+    }
+    labels = np.array([code.label for code in Result])
+    return {
+        **(beside or {}),
+        **asked,
+        "result": labels[np.asarray(sweep.result)],
+        **found,
+    }
+
+
+def write(
+    sweep: Sweep,
+    path: str | Path,
+    beside: Mapping[str, np.ndarray] | None = None,
+) -> None:
+    """Write `columns` to a .csv or .parquet file (with pyarrow).
+
+    Args:
+        sweep: From `sweep`.
+        path: Its ending says the format.
+        beside: As in `columns`.
+
+    Raises:
+        ValueError: For another ending.
+        ImportError: Without pyarrow.
+        OSError: If the file cannot be written.
+    """
+    path = Path(path)
+    if path.suffix not in ENDINGS:
+        raise ValueError(f"{path}: a table ends in {' or '.join(ENDINGS)}")
+    try:
+        import pyarrow
+        import pyarrow.csv
+        import pyarrow.parquet
+    except ImportError as error:
+        problem = 'tables need pyarrow: pip install "bearingjax[table]"'
+        raise ImportError(problem) from error
+    table = pyarrow.table(columns(sweep, beside))
+    if path.suffix == ".csv":
+        pyarrow.csv.write_csv(table, path)
+    else:
+        pyarrow.parquet.write_table(table, path)
+
+
+def _asked(sweep):
+    cases = sweep.cases
+    out = {}
+    for k, (name, unit) in enumerate(zip(LOADS, _LOAD_UNITS, strict=True)):
+        if np.any(np.nan_to_num(np.asarray(cases.load)[:, k]) != 0):
+            out[f"{name} [{unit}]"] = np.asarray(cases.load)[:, k]
+    for name, values in cases.prescribed.items():
+        unit = _LENGTHS[FREEDOMS.index(name)]
+        out[f"prescribed_{name} [{unit}]"] = np.asarray(values)
+    if cases.fixed_displacement is not None:
+        for k, (name, unit) in enumerate(zip(FREEDOMS, _LENGTHS, strict=True)):
+            out[f"fixed_{name} [{unit}]"] = np.asarray(cases.fixed_displacement)[:, k]
+    units = {"inner_speed": "rad/s", "outer_speed": "rad/s", "hours": "h"}
+    for name, unit in units.items():
+        if getattr(cases, name) is not None:
+            out[f"{name} [{unit}]"] = np.asarray(getattr(cases, name))
+    if cases.design is not None:
+        out["design"] = np.asarray(cases.design)
+    return out
+
+
+def _spread(name, values):
+    """(header, column) of an output with any number of axes."""
+    values = np.asarray(values)
+    for index in itertools.product(*(range(n) for n in values.shape[1:])):
+        label, unit = _label(name, index, values.shape[1:])
+        yield f"{label} [{unit}]" if unit else label, values[(slice(None), *index)]
+
+
+def _label(name, index, shape):
+    if name == "displacement" and shape == (12,):
+        return f"{name}_{_RING[index[0]]}", _LENGTHS[index[0] % 6]
+    if name == "force" and shape == (12,):
+        return f"{name}_{_RING_LOADS[index[0]]}", _LOAD_UNITS[index[0] % 6]
+    if name == "stiffness" and shape == (12, 12):
+        row, column = index
+        per = ("N/m", "N") if row % 6 < 3 else ("N", "N m")
+        return f"{name}_{_RING[row]}_{_RING[column]}", per[column % 6 >= 3]
+    if name == "roller_motion" and index:
+        return f"{name}_{index[0]}_{'u v theta'.split()[index[1]]}", (
+            "m" if index[1] < 2 else "rad"
+        )
+    words = [str(k) for k in index]
+    last = _LAST_AXIS.get(name)
+    if last is not None and shape[-1:] == (len(last),):
+        words[-1] = last[index[-1]]
+    return "_".join([name, *words]), _UNITS.get(name, "")

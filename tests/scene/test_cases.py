@@ -1,0 +1,239 @@
+"""`[cases]` of a scene: grid, list and spectrum, what is wrong with them, the command."""
+
+import json
+
+import numpy as np
+import pyarrow.csv
+import pytest
+
+import bearingjax as bj
+from bearingjax.scene import SceneError, read_cases, read_scene
+
+HEAD = """
+[bearing]
+type = "cylindrical_roller"
+n_rollers = 6
+pitch_diameter = "65 mm"
+roller_diameter = "10 mm"
+roller_length = "10 mm"
+radial_internal_clearance = "25 um"
+
+[numerics]
+quadrature = "midpoint"
+points = 8
+
+[operating]
+load = { Fy = "-2 kN" }
+"""
+GRID = """
+[cases.grid]
+bearing.radial_internal_clearance = ["0 um", "20 um"]
+operating.prescribed.gx = { start = "0 mrad", stop = "1 mrad", count = 3 }
+operating.load.Fy = ["-1 kN", "-2000 N"]
+"""
+SPECTRUM = """
+[[cases.spectrum]]
+hours = "100 h"
+operating.load.Fy = "-1 kN"
+operating.inner_speed = "600 rpm"
+[[cases.spectrum]]
+hours = "30 min"
+operating.load.Fy = "-4 kN"
+operating.inner_speed = "60 rpm"
+"""
+LIST = """operating.load.Fy [kN],operating.load.Mx [N m],hours [h],bearing.n_rollers
+-1,0.5,10,6
+-2,0,20,6
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """Write a scene with these cases; its path."""
+
+    def write(text, head=HEAD, files=None):
+        for name, content in (files or {}).items():
+            (tmp_path / name).write_text(content)
+        path = tmp_path / "many.toml"
+        path.write_text(head + text)
+        return path
+
+    return write
+
+
+def test_grid_runs_its_last_key_fastest(scene):
+    table = read_cases(scene(GRID))
+    cases = table.cases
+    assert cases.count == 12 and table.neighbours
+    assert table.varied == (
+        "bearing.radial_internal_clearance",
+        "operating.prescribed.gx",
+        "operating.load.Fy",
+    )
+    np.testing.assert_array_equal(cases.load[:, 1], [-1e3, -2e3] * 6)
+    tilts = np.repeat([0.0, 0.5e-3, 1e-3, 0.0, 0.5e-3, 1e-3], 2)
+    np.testing.assert_allclose(cases.prescribed["gx"], tilts, atol=1e-18)
+    np.testing.assert_array_equal(cases.design, np.repeat([0, 1], 6))
+    stacked = table.element.bearing.radial_internal_clearance
+    np.testing.assert_allclose(stacked, [0.0, 20e-6], atol=1e-18)
+    assert table.settings[1] == {"bearing.radial_internal_clearance": "20 um"}
+
+
+def test_spectrum_has_hours(scene):
+    table = read_cases(scene(SPECTRUM))
+    np.testing.assert_allclose(table.cases.hours, [100.0, 0.5])
+    np.testing.assert_allclose(table.cases.load[:, 1], [-1e3, -4e3])
+    np.testing.assert_allclose(table.cases.inner_speed, [20 * np.pi, 2 * np.pi])
+    assert table.cases.design is None and not table.neighbours
+
+
+def test_list_has_units_in_its_header(scene):
+    table = read_cases(scene('[cases]\nfile = "l.csv"', files={"l.csv": LIST}))
+    np.testing.assert_allclose(table.cases.load[:, 1], [-1e3, -2e3])
+    np.testing.assert_allclose(table.cases.load[:, 3], [0.5, 0.0])
+    np.testing.assert_allclose(table.cases.hours, [10.0, 20.0])
+    np.testing.assert_array_equal(table.cases.design, [0, 0])
+
+
+def test_solve_leaves_the_cases_alone(scene):
+    with_cases, without = read_scene(scene(GRID)), read_scene(scene(""))
+    assert with_cases.load == without.load
+
+
+def test_command_writes_a_row_per_case(run, scene, tmp_path):
+    path = scene(GRID)
+    csv, out = tmp_path / "t.csv", tmp_path / "t.json"
+    ended = run("sweep", path, "--table", csv, "--json", out)
+    assert ended.status == 0 and "12 converged" in ended.out
+    table = pyarrow.csv.read_csv(csv).to_pydict()
+    assert list(table)[0] == "bearing.radial_internal_clearance"
+    assert table["result"] == ["converged"] * 12
+    one = bj.run_scene(
+        read_scene(
+            path,
+            [
+                "bearing.radial_internal_clearance=20 um",
+                "operating.prescribed.gx=1 mrad",
+                "operating.load.Fy=-1 kN",
+            ],
+        )
+    )
+    for header, want in [
+        ("displacement_inner_uy [m]", one.displacement[7]),
+        ("largest_load [N]", one.roller_load.max()),
+        ("peak_pressure [Pa]", one.contact_pressure.max()),
+    ]:
+        assert table[header][10] == pytest.approx(float(want), rel=1e-8)
+    numbers = json.loads(out.read_text())
+    assert numbers["counts"] == {"converged": 12}
+    assert numbers["columns"]["largest_load [N]"] == table["largest_load [N]"]
+
+
+def test_command_tells_of_cases_that_fail(run, scene, tmp_path):
+    cases = '[cases.grid]\noperating.load.Fz = ["0 N", "100 N"]'
+    ended = run("sweep", scene(cases), "--table", tmp_path / "t.csv")
+    assert ended.status == 3 and "1 of 2 cases not solved" in ended.err
+    table = pyarrow.csv.read_csv(tmp_path / "t.csv").to_pydict()
+    assert table["result"] == ["converged", "no_load_path"]
+
+
+def entry(text):
+    return f'[[cases.spectrum]]\nhours = "1 h"\n{text}'
+
+
+WRONG = {
+    "none": ("", "`cases` is missing"),
+    "nothing": ("[cases]\nneighbours = true", "must have one of `grid`, `file`"),
+    "two": (GRID + SPECTRUM, "must have one of `grid`, `file`"),
+    "empty grid": ("[cases.grid]", "is not a table of keys with their values"),
+    "no list": (
+        '[cases.grid]\noperating.load.Fy = "1 kN"',
+        "`cases.grid.operating.load.Fy`: '1 kN' is not a list of values",
+    ),
+    "no unit": ("[cases.grid]\noperating.load.Fy = [1]", "has no unit; a force"),
+    "wrong unit": ('[cases.grid]\noperating.load.Fy = ["1 mm"]', "is not a force"),
+    "unknown key": ('[cases.grid]\noperating.load.Fq = ["1 kN"]', "cannot vary; what"),
+    "numerics": ("[cases.grid]\nnumerics.points = [8]", "cannot vary; what can"),
+    "bearing alone": ("[cases.grid]\nbearing = [8]", "cannot vary; what can"),
+    "range key": (
+        '[cases.grid]\noperating.load.Fy = { start = "0 N", end = "1 N", count = 3 }',
+        "a range has start, stop and count",
+    ),
+    "range count": (
+        '[cases.grid]\noperating.load.Fy = { start = "0 N", stop = "1 N", count = 1 }',
+        "`count` is 1; a whole number from 2",
+    ),
+    "range units": (
+        "[cases.grid]\nbearing.roller_length ="
+        ' { start = "9 mm", stop = "1 cm", count = 3 }',
+        "one and the same unit",
+    ),
+    "design value": ('[cases.grid]\nbearing.roller_length = ["-1 mm"]', "above 0 m"),
+    "structure": ("[cases.grid]\nbearing.n_rollers = [6, 7]", "another structure"),
+    "unknown table key": ("[cases]\ngird = 3\n" + GRID, "unknown key"),
+    "no hours": (
+        '[[cases.spectrum]]\noperating.load.Fy = "1 kN"',
+        "`cases.spectrum[0].hours`: is missing",
+    ),
+    "uneven": (
+        entry('operating.load.Fy = "1 kN"') + "\n" + entry(""),
+        "`cases.spectrum[1].operating.load.Fy`: is missing",
+    ),
+    "no hours in all": ('[[cases.spectrum]]\nhours = "0 h"', "above 0 h in all"),
+    "no file": ('[cases]\nfile = "none.csv"', "none.csv: cannot be read"),
+    "header only": ('[cases]\nfile = "head.csv"', "has no cases"),
+    "short row": ('[cases]\nfile = "short.csv"', "line 3 has 1 values, not 2"),
+    "bad header": ('[cases]\nfile = "bad.csv"', "is no header such as"),
+    "bad cell": ('[cases]\nfile = "cell.csv"', "could not convert string"),
+    "unit missing": ('[cases]\nfile = "unit.csv"', "has no unit"),
+    "twice": ('[cases]\nfile = "twice.csv"', "names a column twice"),
+    "outputs": ('[cases]\noutputs = "all"\n' + GRID, "is not a list of names"),
+}
+FILES = {
+    "head.csv": "operating.load.Fy [N]\n",
+    "short.csv": "operating.load.Fy [N],operating.load.Fx [N]\n1,2\n1\n",
+    "bad.csv": "load in y!\n1\n",
+    "cell.csv": "operating.load.Fy [N]\nmuch\n",
+    "unit.csv": "operating.load.Fy\n1\n",
+    "twice.csv": "operating.load.Fy [N],operating.load.Fy [N]\n1,1\n",
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_wrong_cases(scene, what):
+    text, message = WRONG[what]
+    with pytest.raises(SceneError) as caught:
+        read_cases(scene(text, files=FILES))
+    assert message in str(caught.value) and str(caught.value).startswith("many.toml: ")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ('prescribed = { uy = "1 um" }', "Fy acts on uy, which is prescribed"),
+        ('free = ["uy", "gx"]', "gx is free in this scene"),
+    ],
+)
+def test_cases_against_the_scene(scene, change, message):
+    head = HEAD.replace('load = { Fy = "-2 kN" }', change)
+    with pytest.raises(SceneError, match=message):
+        read_cases(scene(GRID, head))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--table", "x.xlsx"], "a table ends in .csv or .parquet"),
+        (["--devices", "0"], "must be at least 1"),
+        (["--table", "nowhere/x.csv"], "its folder does not exist"),
+    ],
+)
+def test_wrong_command(run, scene, arguments, message):
+    ended = run("sweep", scene(GRID), *arguments)
+    assert ended.status == 2 and message in ended.err
+
+
+def test_wrong_outputs(run, scene):
+    ended = run("sweep", scene('[cases]\noutputs = ["presure"]\n' + GRID))
+    assert ended.status == 2 and "names 'presure'; there are" in ended.err

@@ -1,0 +1,245 @@
+"""Sweeps against single solves, over devices and processes, and as tables."""
+
+import socket
+import subprocess
+import sys
+from functools import partial
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pyarrow.csv
+import pyarrow.parquet
+import pytest
+from sweep_in_process import loads, small_element
+
+import bearingjax as bj
+from bearingjax.statics import sweep_table
+from bearingjax.statics.sweep import n_designs
+
+# The function of the same name hides the module.
+MODULE = sys.modules["bearingjax.statics.sweep"]
+SCRIPT = Path(__file__).with_name("sweep_in_process.py")
+ELEMENT = small_element()
+BAD = {5: "non_finite", 7: "no_load_path"}
+
+
+@pytest.fixture(scope="module")
+def swept():
+    """Fifty loads, two of them bad, in chunks that do not divide fifty."""
+    names = ["displacement", "stiffness", "largest_load", "iterations"]
+    return bj.sweep(ELEMENT, loads(), outputs=names, chunk=8)
+
+
+def test_each_case_is_the_single_solve(swept):
+    single = jax.jit(partial(bj.solve_load, ELEMENT, throw=False))
+    for k, load in enumerate(loads()):
+        solution = single(jnp.asarray(load))
+        assert swept.result[k] == solution.result
+        if k in BAD:
+            continue
+        for name in ("displacement", "stiffness"):
+            want = np.asarray(getattr(solution, name))
+            error = np.abs(getattr(swept, name)[k] - want).max()
+            assert error <= 1e-9 * np.abs(want).max()
+        assert swept.largest_load[k] == pytest.approx(float(solution.roller_load.max()))
+
+
+def test_a_bad_case_is_named_and_spoils_no_other(swept):
+    assert swept.counts() == {"converged": 48, "no_load_path": 1, "non_finite": 1}
+    for k, label in BAD.items():
+        assert bj.Result(int(swept.result[k])).label == label
+        assert np.isnan(swept.displacement[k]).all()
+    assert swept.unrestrained[7] == 2
+    assert np.isfinite(swept.displacement[swept.converged]).all()
+
+
+def test_neighbours_start_from_each_other(swept):
+    names = ["displacement", "iterations"]
+    warm = bj.sweep(ELEMENT, loads(), outputs=names, neighbours=True, chunk=5)
+    np.testing.assert_array_equal(warm.result, swept.result)
+    good = swept.converged
+    np.testing.assert_allclose(
+        warm.displacement[good], swept.displacement[good], rtol=1e-8, atol=1e-14
+    )
+    # The first of each lane of ten has no neighbour.
+    assert warm.iterations[good].mean() < 0.6 * swept.iterations[good].mean()
+
+
+def test_a_case_lost_from_its_neighbour_is_solved_again(monkeypatch):
+    runs = []
+    honest = MODULE._Program.run
+
+    def lossy(self, cases, max_steps, neighbours, progress):
+        found = honest(self, cases, max_steps, neighbours, progress)
+        runs.append(cases.count)
+        if neighbours:
+            found["result"][3] = bj.Result.STEP_LIMIT
+            found["displacement"][3] = np.nan
+        return found
+
+    monkeypatch.setattr(MODULE._Program, "run", lossy)
+    some = loads()[8:13]
+    solved = bj.sweep(ELEMENT, some, outputs=["displacement"], neighbours=True)
+    assert runs == [5, 1] and solved.converged.all()
+    want = bj.solve_load(ELEMENT, some[3]).displacement
+    np.testing.assert_allclose(solved.displacement[3], want, rtol=1e-8, atol=1e-14)
+
+
+def test_blocks_follow_each_other(swept, monkeypatch):
+    monkeypatch.setattr(MODULE, "BLOCK", 2)
+    short = bj.sweep(ELEMENT, loads(), outputs=["displacement"], chunk=8)
+    np.testing.assert_allclose(
+        short.displacement, swept.displacement, rtol=1e-9, atol=1e-16
+    )
+
+
+def test_designs_speeds_and_displacements_vary():
+    def made(clearance):
+        bearing = bj.CylindricalRollerBearing(
+            6, 0.065, 0.010, 0.010, radial_internal_clearance=clearance
+        )
+        return bj.BearingElement(bearing, quadrature=bj.Midpoint(8))
+
+    clearances = np.array([0.0, 10e-6, 30e-6])
+    stacked = bj.stack_designs([made(c) for c in clearances])
+    assert n_designs(stacked) == 3 and n_designs(made(0.0)) is None
+    speeds, tilts = np.array([0.0, 300.0, 600.0]), np.array([0.0, 1e-4, 3e-4])
+    cases = bj.Cases(
+        [0, -2e3, 0, 0, 0, 0],
+        prescribed={"gx": tilts},
+        inner_speed=speeds,
+        design=[2, 0, 1],
+        hours=[1.0, 2.0, 3.0],
+    )
+    solved = bj.sweep(stacked, cases, outputs=["displacement"])
+    under_vmap = bj.sweep(
+        jax.vmap(made)(jnp.asarray(clearances[[2, 0, 1]])),
+        bj.Cases(cases.load, prescribed={"gx": tilts}, inner_speed=speeds),
+        outputs=["displacement"],
+    )
+    for k, design in enumerate(cases.design):
+        one = bj.solve_load(
+            made(clearances[design]),
+            cases.load[k],
+            prescribed={"gx": tilts[k]},
+            speed=bj.Speed(inner=speeds[k]),
+        )
+        for found in (solved, under_vmap):
+            np.testing.assert_allclose(
+                found.displacement[k], one.displacement, rtol=1e-8, atol=1e-14
+            )
+
+
+def test_all_fields_or_a_function_of_the_solution():
+    whole = bj.sweep(ELEMENT, loads()[:3], points=5)
+    assert whole.contact_pressure.shape == (3, 6, 2, 5)
+    chosen = bj.sweep(
+        ELEMENT, loads()[:3], outputs=lambda s: {"sag": s.displacement[7]}
+    )
+    assert set(chosen.outputs) == {"sag", "result", "unrestrained"}
+    np.testing.assert_allclose(chosen.sag, whole.displacement[:, 7], rtol=1e-9)
+    with pytest.raises(
+        AttributeError, match="no output 'pressure'; it has result, sag"
+    ):
+        _ = chosen.pressure
+
+
+@pytest.fixture(scope="module")
+def started(tmp_path_factory):
+    """Two devices of one process; and two processes with a device each."""
+    folder = tmp_path_factory.mktemp("processes")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    runs = {
+        "devices": ["2"],
+        "first": ["1", str(port), "2", "0"],
+        "second": ["1", str(port), "2", "1"],
+    }
+    processes = {
+        name: subprocess.Popen(
+            [sys.executable, str(SCRIPT), str(folder / f"{name}.npz"), *arguments],
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        for name, arguments in runs.items()
+    }
+    for name, process in processes.items():
+        _, errors = process.communicate(timeout=300)
+        assert process.returncode == 0, f"{name}: {errors}"
+    return {name: np.load(folder / f"{name}.npz") for name in runs}
+
+
+@pytest.mark.parametrize("name", ["devices", "first", "second"])
+def test_devices_and_processes_share_the_cases(started, swept, name):
+    found = started[name]
+    assert found["devices"] == 2
+    np.testing.assert_array_equal(found["result"], swept.result)
+    np.testing.assert_allclose(
+        found["displacement"], swept.displacement, rtol=1e-9, atol=1e-16
+    )
+
+
+@pytest.mark.parametrize("ending", [".csv", ".parquet"])
+def test_table_has_units_and_a_result_for_each_case(swept, tmp_path, ending):
+    path = tmp_path / f"table{ending}"
+    sweep_table.write(swept, path)
+    read = pyarrow.csv.read_csv if ending == ".csv" else pyarrow.parquet.read_table
+    table = read(path).to_pydict()
+    assert list(table)[:4] == ["Fy [N]", "Fz [N]", "Mx [N m]", "result"]
+    for header in ("displacement_inner_uy [m]", "stiffness_inner_ux_inner_gy [N]"):
+        assert header in table
+    assert table["result"][5] == "non_finite" and table["result"][7] == "no_load_path"
+    np.testing.assert_allclose(
+        np.array(table["displacement_inner_uy [m]"], dtype=float),
+        swept.displacement[:, 7],
+        rtol=1e-12,
+    )
+
+
+LOADS = np.zeros((3, 6))
+WRONG = {
+    "outputs name": (dict(outputs=["presure"]), "names 'presure'; there are rib_load"),
+    "outputs text": (dict(outputs="result"), "must be a list of names"),
+    "ring": (dict(fixed_ring="middle"), "must be 'outer' or 'inner'"),
+    "chunk": (dict(chunk=0), "whole number of at least 1"),
+    "memory": (dict(points=10**8), "GiB, more than"),
+    "design": (dict(cases=bj.Cases(LOADS, design=[0, 0, 0])), "`element` is one"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_bad_calls(what):
+    change, message = WRONG[what]
+    with pytest.raises(ValueError, match=message):
+        bj.sweep(ELEMENT, **{"cases": LOADS, **change})
+
+
+def test_bad_cases():
+    for wrong, message in [
+        (dict(hours=[1.0, 2.0]), "not one number of cases: hours 2, load 3"),
+        (dict(hours=[0.0, 0.0, 0.0]), "above 0 h in all"),
+        (dict(hours=[1.0, -1.0, 1.0]), "at least 0 h each"),
+        (dict(prescribed={"uw": 0.0}), "names 'uw'"),
+        (dict(load=np.zeros((3, 5))), r"shape \(3, 5\)"),
+        (dict(load=np.zeros(6)), "nothing has a case axis"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            bj.Cases(**{"load": LOADS, **wrong})
+
+
+def test_bad_designs(swept):
+    stacked = bj.stack_designs([ELEMENT, ELEMENT])
+    with pytest.raises(ValueError, match="2 designs for 3 cases"):
+        bj.sweep(stacked, LOADS)
+    with pytest.raises(ValueError, match="from 0 to 2; there are designs 0 to 1"):
+        bj.sweep(stacked, bj.Cases(LOADS, design=[0, 1, 2]))
+    other = bj.BearingElement(bj.CylindricalRollerBearing(7, 0.065, 0.01, 0.01))
+    with pytest.raises(ValueError, match="design 1 is of another structure"):
+        bj.stack_designs([ELEMENT, other])
+    with pytest.raises(ValueError, match="is empty"):
+        bj.stack_designs([])
+    with pytest.raises(ValueError, match="ends in .csv or .parquet"):
+        sweep_table.write(swept, "table.xlsx")
