@@ -262,7 +262,8 @@ def show(rows, grid, best, published):
         f" smooth peak {1e-6 * best['peak']:.1f} MPa (reference"
         f" {1e-6 * first['reference']:.1f}), true peak {1e-6 * best['true_peak']:.1f}"
         f"\nJohns and Gohar's (K1 = K2 = 1, zm = {1e6 * johns_gohar()[2]:.3g} µm):"
-        f" smooth peak {1e-6 * published[0]:.1f} MPa, edge load {1e-3 * published[1]:.0f} N/mm"
+        f" smooth peak {1e-6 * published[0]:.1f} MPa,"
+        f" edge load {1e-3 * published[1]:.0f} N/mm"
         "\nleast on a grid of ±0.1 of the ranges around the best, over the best:"
         f" {grid:+.1e}\n{len(rows)} searches; {processor()}"
     )
