@@ -26,15 +26,15 @@ rosenbrock        158       92      215     632    3.48     4.3  1.9e-05  3.1e-0
 
 best design: K1 = 1.539, K2 = 1, zm = 21.66 µm;
 smooth peak 2217.0 MPa (reference 2234.8), true peak 2121.3
-Johns and Gohar's (K1 = K2 = 1, zm = 7.82 µm): smooth peak 2222.1 MPa, edge load 515
-N/mm
+Johns and Gohar's (K1 = K2 = 1, zm = 7.82 µm): smooth peak 2222.1 MPa,
+edge load 515 N/mm
 least on a grid of ±0.1 of the ranges around the best, over the best: +0.0e+00
 24 searches; AMD EPYC
 
 (On a busy machine: "first call" compiles, the more the earlier in the run; a single
 search does not earn the price of the gradient's program, which the command line keeps
-from run to run. L-BFGS-B: the square of a large miss dwarfs the peak, and it ends early.
-Above an end drop of 20 µm next to nothing depends on it: SLSQP may end at 36 µm.)
+from run to run. L-BFGS-B: the square of a large miss dwarfs the peak; two of six end
+early. Above an end drop of 20 µm little depends on it: SLSQP may end at 36 µm.)
 """
 
 import argparse

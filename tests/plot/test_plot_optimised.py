@@ -4,6 +4,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.patches import Rectangle
 
 import bearingjax as bj
 from bearingjax import plot
@@ -53,7 +54,7 @@ def test_before_and_after(found):
     exact = [1e-6 * found.before.exact, 1e-6 * found.after.exact]
     assert np.allclose(tops, exact) and tops[1] < tops[0]
     assert "case 1" in pressure.get_title()
-    heights = [bar.get_bbox().height for bar in cases.patches]
+    heights = [bar.get_height() for bar in cases.patches if isinstance(bar, Rectangle)]
     assert len(heights) == 4 and max(heights) == pytest.approx(exact[0])
     (line,) = history.get_lines()
     steps, objective = line.get_xdata(), np.asarray(line.get_ydata())
