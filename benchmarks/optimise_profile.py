@@ -52,7 +52,7 @@ import numpy as np  # noqa: E402
 from quadrature import processor  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.statics.optimise import Options, Problem  # noqa: E402
+from bearingjax.statics.design_problem import Options, Problem  # noqa: E402
 from bearingjax.statics.search import Ending  # noqa: E402
 
 REFERENCE = (1.0, 0.6, 8e-6)

@@ -4,8 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from ..statics.design_problem import Outcome
 from ..statics.measure import AbstractMeasure, EdgeLoad, label_of
-from ..statics.optimise import Optimised, Outcome
+from ..statics.optimise import Optimised
 from .optimise_table import KIND_OF, Optimisation
 
 _RULE = "-" * 78

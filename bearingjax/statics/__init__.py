@@ -2,6 +2,7 @@
 
 from .cases import Cases as Cases
 from .cases import solve_case as solve_case
+from .design_problem import Outcome as Outcome
 from .load import restrained_freedoms as restrained_freedoms
 from .load import solve_load as solve_load
 from .measure import Constraint as Constraint
@@ -13,7 +14,6 @@ from .measure import Stiffness as Stiffness
 from .measure import StiffnessTarget as StiffnessTarget
 from .optimise import History as History
 from .optimise import Optimised as Optimised
-from .optimise import Outcome as Outcome
 from .optimise import optimise as optimise
 from .preload import preload as preload
 from .solution import BallSolution as BallSolution

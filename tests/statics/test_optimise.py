@@ -10,8 +10,8 @@ from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
 from bearingjax.statics import design_numbers
+from bearingjax.statics.design_problem import Options, Problem
 from bearingjax.statics.measure import smooth_maximum, smooth_minimum
-from bearingjax.statics.optimise import Options, Problem
 from bearingjax.statics.search import Trial, stationarity
 from bearingjax.statics.variable import changed
 
