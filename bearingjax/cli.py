@@ -1,4 +1,4 @@
-"""The command line: `bearingjax solve SCENE.toml`, `bearingjax sweep SCENE.toml`."""
+"""The command line: `bearingjax solve SCENE.toml`, and `sweep` and `optimise`."""
 
 import argparse
 import contextlib
@@ -86,6 +86,19 @@ def _parser():
         default=None,
         help="parts of the processor to spread the cases over; default: all its cores",
     )
+    optimise = commands.add_parser(
+        "optimise",
+        help="the free numbers of a design that make a measure least",
+        description="Optimise the bearing of a scene file, as its [optimise] says, over"
+        " its [cases].",
+        epilog="Exit status: 0 optimised, 2 bad input, 3 not solved or not converged.",
+    )
+    optimise.set_defaults(run=_optimise)
+    _add_common(optimise)
+    optimise.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
+    optimise.add_argument("--progress", action="store_true", help="show progress")
     return parser
 
 
@@ -193,6 +206,47 @@ def _sweep(options) -> int:
         f"bearingjax: {lost} of {solved.cases.count} cases not solved", file=sys.stderr
     )
     return NOT_SOLVED
+
+
+def _optimise(options) -> int:
+    import json
+
+    from .numerics import SolveError
+    from .scene import (
+        SceneError,
+        optimisation_as_dict,
+        optimisation_report,
+        read_optimisation,
+        run_optimisation,
+    )
+
+    for path in (options.json, options.plot):
+        _check_writable(path)
+    if options.plot is not None:
+        _check_plot(options.plot)
+    task = read_optimisation(options.scene, options.set)
+    try:
+        found = run_optimisation(task, progress=options.progress)
+    except SolveError as error:
+        print(f"bearingjax: {error}", file=sys.stderr)
+        return NOT_SOLVED
+    try:
+        if options.json is not None:
+            numbers = optimisation_as_dict(task, found)
+            text = json.dumps(numbers, indent=1, allow_nan=False)
+            options.json.write_text(text + "\n", encoding="utf-8")
+        if options.plot is not None and found.converged:
+            from .plot import optimised
+
+            figure = optimised(found, title=task.scene.name)
+            figure.savefig(options.plot, dpi=150)
+    except OSError as error:
+        raise SceneError(f"{error.filename}: cannot be written: {error}") from error
+    if not found.converged:
+        print(f"bearingjax: {found.result}: {found.message}", file=sys.stderr)
+        return NOT_SOLVED
+    print(optimisation_report(task, found), flush=True)
+    return SOLVED
 
 
 def _check_writable(path: Path | None) -> None:

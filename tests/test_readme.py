@@ -10,7 +10,7 @@ README = (Path(__file__).parent.parent / "README.md").read_text()
 
 def test_python_examples(capsys):
     blocks = re.findall(r"```python\n(.*?)```", README, re.S)
-    assert len(blocks) == 5
+    assert len(blocks) == 7
     names: dict = {}
     for block in blocks[:2]:
         exec(block, names)
@@ -20,11 +20,17 @@ def test_python_examples(capsys):
     exec(blocks[2], names)
     assert type(names["solution"]) is bj.BallSolution
     assert bool(names["solution"].converged)
-    for block in blocks[3:]:
+    exec(blocks[3], names)
+    assert names["swept"].counts() == {"converged": 60}
+    for block in blocks[4:6]:
         exec(block, names)
     assert names["f"][7] < -100.0  # the inner ring is held down
     whole, pair = names["k6"], names["k2"]
     assert 0 < pair[1, 1] < whole[1, 1]
+    exec(blocks[6], names)
+    best = names["best"]
+    assert best.converged and best.after.exact < best.before.exact
+    assert best.before.exact_constraints[0] > 10e3 >= best.after.exact_constraints[0]
 
 
 def test_two_commands_and_their_scene():
@@ -44,4 +50,4 @@ def test_picture_and_folders_exist():
         r"^(bearingjax/\w+/|tests/|notebooks/|benchmarks/) ", README, re.M
     ):
         assert (root / folder).is_dir(), folder
-    assert len(bj.scene.shipped_scenes()) == 11
+    assert len(bj.scene.shipped_scenes()) == 13

@@ -265,6 +265,7 @@ class FujiwaraKawase(AbstractProfile):
 
     With A = K1 Q/(π L E*) and x running from 0 where the crowning begins to 1 at the
     end of the roller, drop = A ln(1/(1 - (1 - exp(-zm/A)) x²)); the middle is straight.
+    The end drop is limited to some 350 A, which no load reaches.
 
     Attributes:
         design_load: Load Q of the contact [N].
@@ -296,10 +297,11 @@ class FujiwaraKawase(AbstractProfile):
     def drop(self, position, length, diameter):
         load = self.load_factor * self.design_load
         unit = load / (jnp.pi * length * self.contact_modulus)
-        begin = 0.5 * length * (1.0 - self.crowned_fraction)
-        out = jnp.maximum(jnp.abs(position) - begin, 0.0)
-        x = out / (0.5 * length * self.crowned_fraction)
-        return -unit * jnp.log1p(jnp.expm1(-self.end_drop / unit) * x * x)
+        # From the end of the roller, where 1 - x² would cancel: x = 1 - out.
+        crowned = 0.5 * length * self.crowned_fraction
+        out = jnp.minimum((0.5 * length - jnp.abs(position)) / crowned, 1.0)
+        rest = out * (2.0 - out) + jnp.exp(-self.end_drop / unit) * (1.0 - out) ** 2
+        return -unit * jnp.log(_floored(rest))
 
     def kinks(self, length):
         begin = 0.5 * length * (1.0 - self.crowned_fraction)
@@ -394,9 +396,13 @@ def _log_one_over(x, part):
     """ln(1/(1 - part x²)), limited where the argument vanishes."""
     root = jnp.sqrt(part)
     rest = (1.0 - root * x) * (1.0 + root * x)
-    # The root of the smallest number keeps first and second derivatives in range.
-    floor = jnp.sqrt(jnp.finfo(x.dtype).tiny)
-    return -jnp.log(jnp.maximum(rest, floor))
+    return -jnp.log(_floored(rest))
+
+
+def _floored(rest):
+    """At least the root of the smallest number, which keeps first and second
+    derivatives of its logarithm in range."""
+    return jnp.maximum(rest, jnp.sqrt(jnp.finfo(rest.dtype).tiny))
 
 
 def _check_radius(owner, name, radius, reach):

@@ -5,6 +5,7 @@ from .balls import ellipses as ellipses
 from .load import load_displacement as load_displacement
 from .load import load_zone as load_zone
 from .load import stiffness_over_speed as stiffness_over_speed
+from .optimised import optimised as optimised
 from .page import overview as overview
 from .pressure import pressure_map as pressure_map
 from .pressure import pressure_profiles as pressure_profiles

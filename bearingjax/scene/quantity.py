@@ -19,6 +19,8 @@ KINDS = {
     "pressure": ("Pa", "GPa"),
     "density": ("kg/m^3", "kg/m^3"),
     "stiffness": ("N/m", "N/mm"),
+    "tilting stiffness": ("N m/rad", "kN m/rad"),
+    "line load": ("N/m", "N/mm"),
     "line constant": ("N/m^(19/9)", "N/m^(19/9)"),
     "point constant": ("N/m^(3/2)", "N/m^(3/2)"),
 }

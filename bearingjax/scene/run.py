@@ -1,8 +1,12 @@
 """Running what a scene asks for."""
 
+import functools
+
 from ..statics.load import solve_load
+from ..statics.optimise import Optimised, optimise
 from ..statics.preload import preload
 from ..statics.solution import Solution
+from .optimise_table import Optimisation
 from .read import Scene
 
 
@@ -30,4 +34,39 @@ def run_scene(scene: Scene) -> Solution:
         points=scene.points,
         tolerance=scene.tolerance,
         throw=False,
+    )
+
+
+def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
+    """Optimise the bearing of a scene.
+
+    Args:
+        task: From `read_optimisation`.
+        progress: Show a progress bar on standard error.
+
+    Returns:
+        The best design; read its `result`.
+
+    Raises:
+        SolveError: If the design of the scene does not solve.
+    """
+    scene = task.scene
+    build = None
+    if scene.preload_force is not None:
+        build = functools.partial(preload, force=scene.preload_force, throw=False)
+    return optimise(
+        scene.element,
+        task.cases,
+        task.variables,
+        task.objective,
+        task.constraints,
+        task.method,
+        max_steps=task.max_steps,
+        tolerance=task.tolerance,
+        points=scene.points,
+        free=scene.free,
+        fixed_ring=scene.fixed_ring,
+        solve_tolerance=scene.tolerance,
+        build=build,
+        progress=progress,
     )

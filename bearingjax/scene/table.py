@@ -36,6 +36,11 @@ class Table:
         self._known.append(key)
         return key in self._data
 
+    def keys(self) -> tuple[str, ...]:
+        """All keys that stand here, for tables whose keys are names; each must yet be
+        asked for."""
+        return tuple(self._data)
+
     def error(self, key: str, problem: object) -> SceneError:
         """Error that names file and key."""
         return SceneError(f"{self._file}: `{self._full(key)}`: {problem}")
@@ -93,7 +98,7 @@ class Table:
         """One of several words."""
         value = self._get(key, default, f"one of {', '.join(choices)}")
         if key in self._data and value not in choices:
-            raise self.error(key, _not_among(value, choices))
+            raise self.error(key, not_among(value, choices))
         return value
 
     def word(self, key: str) -> str | None:
@@ -121,7 +126,7 @@ class Table:
             raise self.error(key, f"{value!r} is not a list of words out of {words}")
         for word in value:
             if word not in choices:
-                raise self.error(key, _not_among(word, choices))
+                raise self.error(key, not_among(word, choices))
         if len(set(value)) < len(value):
             raise self.error(key, f"{value!r} names something twice")
         return tuple(value)
@@ -205,7 +210,13 @@ class Table:
         return f"{self._path}.{shown}" if self._path else shown
 
 
-def _not_among(value, choices):
+def not_among(value: object, choices: Sequence[str]) -> str:
+    """Problem of a word that is not one of several.
+
+    Args:
+        value: What stands there.
+        choices: What may.
+    """
     hint = _suggest(value, choices) if isinstance(value, str) else ""
     return f"{value!r} is not known{hint}; it must be one of {', '.join(choices)}"
 

@@ -2,10 +2,21 @@
 
 from .cases import Cases as Cases
 from .cases import solve_case as solve_case
+from .design_problem import Outcome as Outcome
 from .linearise import OperatingPoint as OperatingPoint
 from .linearise import linearise as linearise
 from .load import restrained_freedoms as restrained_freedoms
 from .load import solve_load as solve_load
+from .measure import Constraint as Constraint
+from .measure import Displacement as Displacement
+from .measure import EdgeLoad as EdgeLoad
+from .measure import MeanPressure as MeanPressure
+from .measure import PeakPressure as PeakPressure
+from .measure import Stiffness as Stiffness
+from .measure import StiffnessTarget as StiffnessTarget
+from .optimise import History as History
+from .optimise import Optimised as Optimised
+from .optimise import optimise as optimise
 from .preload import preload as preload
 from .solution import BallSolution as BallSolution
 from .solution import RollerSolution as RollerSolution
@@ -16,3 +27,5 @@ from .solution import warnings as warnings
 from .sweep import Sweep as Sweep
 from .sweep import stack_designs as stack_designs
 from .sweep import sweep as sweep
+from .variable import Variable as Variable
+from .variable import design_numbers as design_numbers

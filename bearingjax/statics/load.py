@@ -254,9 +254,11 @@ def _solve(
 
     def residual(y, args):
         model, load, given, fixed, scale, free = args
-        force = model.force(ring_freedoms(y, scale, fixed))[moving]
-        # A held freedom follows what is prescribed for it.
-        return free * scale * (force - load) + (1.0 - free) * (y - given / scale)
+        # A held freedom follows what is prescribed for it, not `y`: between it and the
+        # free ones the Jacobian would not be symmetric.
+        held = (1.0 - free) * (given / scale)
+        force = model.force(ring_freedoms(free * y + held, scale, fixed))[moving]
+        return free * scale * (force - load) + (1.0 - free) * y - held
 
     y = attach(residual, minimum.x, args, symmetric)
     q = ring_freedoms(y, scale, fixed)

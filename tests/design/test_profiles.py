@@ -246,3 +246,21 @@ def test_table_is_linear_in_its_drops():
     np.testing.assert_allclose(
         slope @ jnp.asarray(TABLE**2), np.asarray(s) ** 2, rtol=1e-9, atol=1e-18
     )
+
+
+def test_fujiwara_kawase_ends_at_its_drop_however_sharp():
+    """Beyond 37 A the argument of the logarithm is lost against 1 unless it is built
+    up from the end; beyond some 350 A the drop is limited."""
+    unit = 1e3 / (np.pi * L * 206e9 / (2 * (1 - 0.3**2)))
+    for ratio in (1.0, 36.0, 40.0, 300.0):
+        profile = FujiwaraKawase(1e3, 1.0, 0.4, ratio * unit)
+        ends = jnp.array([-0.5, 0.5]) * L
+
+        def drop(zm, profile=profile, ends=ends):
+            changed = FujiwaraKawase(profile.design_load, 1.0, 0.4, zm)
+            return changed.drop(ends, jnp.asarray(L), jnp.asarray(D))
+
+        got, slope = jax.jvp(drop, (profile.end_drop,), (jnp.ones(()),))
+        assert np.allclose(got, ratio * unit, rtol=1e-12)
+        assert np.allclose(slope, 1.0, rtol=1e-12)
+    assert np.all(np.isfinite(drop(jnp.asarray(1e-3))))

@@ -33,7 +33,7 @@ SETTINGS = {
         "cylindrical_rig",
         "bearings.n_rollers=3",
         "`bearings`: unknown key (did you mean `bearing`?); known at the top level:"
-        " bearing, contact, numerics, operating, output",
+        " bearing, cases, contact, numerics, operating, optimise, output",
     ),
     "unknown key in bearing": (
         "cylindrical_rig",

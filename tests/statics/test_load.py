@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import robust_loads
 from registry import bearings, taper
-from tolerances import SOLVER
+from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
 from bearingjax.element import azimuths
@@ -224,6 +224,23 @@ def test_design_gradients_of_displacement_and_stiffness():
         slope = np.asarray(of(at + move) - of(at - move)) / (2 * step)
         # Differences of solves that end at 1e-11 of the load.
         assert np.allclose(forward[:, k], slope, rtol=1e-5), name
+
+
+def test_design_gradient_past_a_freedom_that_is_held():
+    """Five rollers, none opposite another: ux is coupled to uy, and held at zero."""
+
+    def sag(clearance):
+        bearing = bj.CylindricalRollerBearing(
+            5, 0.046, 0.0095, 0.0095, radial_internal_clearance=clearance
+        )
+        element = bj.BearingElement(bearing, quadrature=bj.Midpoint(5))
+        load = jnp.array([0.0, -500.0, 0.0, 0.0, 0.0, 0.0])
+        return bj.solve_load(element, load, free=["uy"]).displacement[7]
+
+    slope = jax.jit(jax.value_and_grad(sag))
+    at, h = 1e-6, 1e-8
+    difference = (slope(at + h)[0] - slope(at - h)[0]) / (2 * h)
+    assert abs(slope(at)[1] - difference) < DIFFERENCE * abs(difference)
 
 
 def test_gradient_with_respect_to_load_is_the_compliance(tapered):

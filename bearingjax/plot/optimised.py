@@ -1,0 +1,176 @@
+"""A design before and after it was optimised."""
+
+from typing import TYPE_CHECKING, Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..design import AbstractRollerBearing, rows_of
+from ..statics.measure import label_of
+from ..statics.optimise import Optimised
+from .style import COLOURS, GREY, RACEWAYS, ROLLER, SMALL, degrees, pyplot, row_slices
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import matplotlib.figure
+
+_SIDES = {"before": (GREY, "--"), "after": (ROLLER, "-")}
+
+
+def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
+    """Profile, pressure and the way of the search, before and after.
+
+    Top left the profile, roller and the busier raceway together; top right the
+    pressure along the roller with the highest pressure, of the case where that was
+    before; bottom left the peak pressure of every case; bottom right the objective
+    over the steps of the search. Balls have no profile and no pressure along it.
+
+    Args:
+        found: From `optimise`.
+        title: Head of the page.
+
+    Returns:
+        The figure, 12 by 8.4 inches; of balls 12 by 4.6.
+    """
+    rollers = isinstance(
+        rows_of(found.element.bearing)[0].bearing, AbstractRollerBearing
+    )
+    names = "pa;ch" if rollers else "ch"
+    height = 8.4 if rollers else 4.6
+    figure = pyplot().figure(figsize=(12.0, height))
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    axes = figure.subplot_mosaic(names)
+    if rollers:
+        case, roller, raceway = worst(found.before.solution)
+        _profiles(found, roller, raceway, axes["p"])
+        _pressures(found, case, axes["a"])
+    _cases(found, axes["c"])
+    _history(found, axes["h"])
+    for ax in axes.values():
+        ax.grid(color="0.9")
+        ax.set_axisbelow(True)
+    figure.suptitle(title or "Optimised design", fontsize=14, fontweight="bold")
+    return figure
+
+
+def worst(solution: Any) -> tuple[int, int, int]:
+    """Case, rolling element and raceway of the highest pressure of rollers.
+
+    Args:
+        solution: With a leading case axis.
+    """
+    pressure = np.asarray(solution.contact_pressure)
+    place = np.unravel_index(np.argmax(pressure), pressure.shape)
+    case, roller, raceway = (int(k) for k in place[:3])
+    return case, roller, raceway
+
+
+def _profiles(found, roller, raceway, ax):
+    """Drop of the pair [µm], on the row of a roller; it points downwards."""
+    ring = RACEWAYS[raceway]
+    row = next(
+        k
+        for k, mine in enumerate(row_slices(found.after.solution))
+        if mine.start <= roller < mine.stop
+    )
+    limit = 0.0
+    for side, element in (("before", found.initial), ("after", found.element)):
+        bearing: Any = rows_of(element.bearing)[row].bearing
+        length, diameter = bearing.roller_length, bearing.roller_diameter
+        # Points gather at the ends, where profiles are steep.
+        position = -0.5 * length * jnp.cos(jnp.linspace(0.0, jnp.pi, 801))
+        profiles = (bearing.roller_profile, getattr(bearing, f"{ring}_raceway_profile"))
+        drops = [p.drop(position, length, diameter) for p in profiles]
+        drop, along = np.sum(drops, axis=0), np.asarray(position)
+        colour, style = _SIDES[side]
+        ax.plot(1e3 * along, 1e6 * drop, style, color=colour, linewidth=2, label=side)
+        near = np.abs(along) <= 0.97 * along[-1]
+        limit = max(limit, min(float(drop.max()), 3.0 * float(drop[near].max())))
+    limit = 1e6 * limit or 1.0
+    ax.set_ylim(1.1 * limit, -0.1 * limit)
+    ax.margins(x=0)
+    ax.set_xlabel("position along the roller [mm]")
+    ax.set_ylabel("drop [µm]")
+    ax.set_title(f"Profile of roller and {ring} raceway")
+    ax.legend(fontsize=SMALL)
+
+
+def _pressures(found, case, ax):
+    """Pressure [MPa] along the roller that is pressed most, in one case."""
+    for side, outcome in (("before", found.before), ("after", found.after)):
+        one = _one(outcome.solution, case)
+        pressure = np.asarray(one.contact_pressure)
+        roller, raceway, _ = np.unravel_index(np.argmax(pressure), pressure.shape)
+        position = np.asarray(one.position)
+        position = position if position.ndim == 1 else position[roller]
+        colour, style = _SIDES[side]
+        angle = degrees(one.azimuth)[roller]
+        ax.plot(
+            1e3 * position,
+            1e-6 * pressure[roller, raceway],
+            style,
+            color=colour,
+            linewidth=2,
+            label=f"{side}: roller at {angle:.4g}°, {RACEWAYS[raceway]} raceway",
+        )
+    ax.set_ylim(bottom=0.0)
+    ax.margins(x=0)
+    ax.set_xlabel("position along the roller [mm]")
+    ax.set_ylabel("contact pressure [MPa]")
+    ax.set_title(f"Pressure along the most pressed roller, case {case}")
+    ax.legend(fontsize=SMALL)
+
+
+def _cases(found, ax):
+    """Peak pressure [MPa] of every case."""
+    for shift, side in ((-0.2, "before"), (0.2, "after")):
+        pressure = np.asarray(getattr(found, side).solution.contact_pressure)
+        peaks = 1e-6 * pressure.reshape(len(pressure), -1).max(axis=1)
+        colour, _ = _SIDES[side]
+        bars = ax.bar(
+            np.arange(len(peaks)) + shift, peaks, 0.38, color=colour, label=side
+        )
+        if len(peaks) <= 8:
+            ax.bar_label(bars, fmt="%.0f", fontsize=SMALL, padding=2)
+    if len(peaks) <= 12:
+        ax.set_xticks(np.arange(len(peaks)))
+    ax.margins(y=0.16)
+    ax.set_xlabel("operating case")
+    ax.set_ylabel("peak pressure [MPa]")
+    ax.set_title("Peak pressure of the cases")
+    ax.legend(fontsize=SMALL, ncols=2, loc="upper right")
+
+
+def _history(found, ax):
+    """Objective over its start and, where there are constraints, their miss."""
+    history = found.history
+    steps = np.arange(len(history.objective))
+    size = abs(history.objective[0]) or 1.0
+    name = label_of(found.objective)
+    ax.plot(
+        steps, history.objective / size, "o-", color=ROLLER, markersize=4, label=name
+    )
+    ax.set_xlabel("step of the search")
+    ax.set_ylabel(f"smooth {name} over its start")
+    title = f"{found.n_evaluations} designs evaluated"
+    ax.set_title(f"The search: {title}")
+    ax.xaxis.get_major_locator().set_params(integer=True)
+    if history.violation.any():
+        other = ax.twinx()
+        other.plot(
+            steps,
+            history.violation,
+            "s:",
+            color=COLOURS["inner"],
+            markersize=4,
+            label="miss of the worst constraint",
+        )
+        other.set_ylabel("miss over the bound", color=COLOURS["inner"])
+        other.set_ylim(bottom=0.0)
+        lines = [*ax.get_lines(), *other.get_lines()]
+        ax.legend(lines, [str(line.get_label()) for line in lines], fontsize=SMALL)
+
+
+def _one(solution, case):
+    return jax.tree.map(lambda leaf: leaf[case], solution)

@@ -1,0 +1,254 @@
+"""The [optimise] table of a scene: what is free, what is made least, what is kept."""
+
+import dataclasses
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from ..design import BearingSet, is_ball, rows_of
+from ..element import FREEDOMS, BearingElement
+from ..statics.cases import Cases
+from ..statics.measure import (
+    EXPONENT,
+    Constraint,
+    Displacement,
+    EdgeLoad,
+    MeanPressure,
+    PeakPressure,
+    Stiffness,
+    StiffnessTarget,
+)
+from ..statics.search import METHODS
+from ..statics.variable import Variable, check_variables, design_numbers
+from .cases_table import read_cases
+from .quantity import SceneError
+from .read import Scene, find_scene, parse_scene, scene_of
+from .table import Table, not_among
+
+KIND_OF = {
+    **dict.fromkeys(
+        (
+            "pitch_diameter roller_diameter roller_length ball_diameter crown_radius"
+            " radial_internal_clearance straight_length dub_off_length dub_off_radius"
+            " half_width end_drop end_radius contact_height axial_gap row_offset"
+        ).split(),
+        "length",
+    ),
+    **dict.fromkeys(
+        (
+            "first_azimuth roller_axis_angle roller_half_angle contact_angle shim_angle"
+            " outer_shoulder inner_shoulder"
+        ).split(),
+        "angle",
+    ),
+    **dict.fromkeys(("contact_modulus", "elastic_modulus"), "pressure"),
+    **dict.fromkeys(
+        (
+            "coefficient load_factor crowned_fraction outer_osculation inner_osculation"
+            " poisson_ratio"
+        ).split(),
+        "number",
+    ),
+    "design_load": "force",
+    "density": "density",
+}
+"""Kind of quantity of a number on the drawing, by its key."""
+
+OBJECTIVES = (
+    "peak_pressure",
+    "mean_pressure",
+    "edge_load",
+    "displacement",
+    "stiffness",
+)
+
+
+@dataclasses.dataclass(frozen=True)
+class Optimisation:
+    """What a scene wants optimised; as of `optimise`.
+
+    Attributes:
+        scene: The scene without it.
+        cases: Its operating cases; without [cases] the one of [operating].
+        variables: The free numbers, named as in the scene.
+        objective: What is made least.
+        constraints: Bounds on measures.
+        method: Search, or `None` for the default.
+        max_steps: Step limit.
+        tolerance: Gradient at which the search ends.
+    """
+
+    scene: Scene
+    cases: Cases
+    variables: tuple[Variable, ...]
+    objective: Any
+    constraints: tuple[Constraint, ...]
+    method: str | None
+    max_steps: int
+    tolerance: float
+
+
+def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optimisation:
+    """Read a scene with [optimise].
+
+    Args:
+        source, settings: As in `read_scene`.
+
+    Raises:
+        SceneError: One line that names file, key, fault and what is allowed.
+    """
+    settings = tuple(settings)
+    path = find_scene(source)
+    data = parse_scene(path, settings)
+    if "optimise" not in data:
+        raise SceneError(
+            f"{path.name}: `optimise` is missing; it must be a table that names"
+            " `objective` and `variables`"
+        )
+    top = Table(data, path.name)
+    scene = scene_of(data, path)
+    cases = _operating(scene)
+    if "cases" in data:
+        cases = read_cases(source, settings).cases
+        if cases.design is not None:
+            problem = "vary the design, which [optimise] is to find"
+            raise top.error("cases", problem)
+    table = top.table("optimise")
+    task = _optimisation(table, scene, cases)
+    table.finish()
+    return task
+
+
+def _operating(scene: Scene) -> Cases:
+    speed = scene.speed
+    return Cases(
+        [scene.load],
+        prescribed=scene.prescribed,
+        inner_speed=None if speed is None else speed.inner,
+        outer_speed=None if speed is None else speed.outer,
+    )
+
+
+def _optimisation(table: Table, scene: Scene, cases: Cases) -> Optimisation:
+    element = scene.element
+    kind = table.choice("objective", OBJECTIVES)
+    balls = is_ball(element.bearing)
+    exponent = table.number("exponent", EXPONENT)
+    with table.building():
+        PeakPressure(exponent)
+    objective = _measure(table, "objective", kind, exponent, balls, target=True)
+    constraints = ()
+    if "constraints" in table:
+        constraints = tuple(
+            _constraint(part, exponent, balls) for part in table.tables("constraints")
+        )
+    variables = _variables(table.table("variables", required=True), element)
+    method = table.choice("method", METHODS, None)
+    if constraints and method not in (None, "slsqp"):
+        problem = f'{method!r} keeps no constraints; take "slsqp" or leave it out'
+        raise table.error("method", problem)
+    tolerance = table.number("tolerance", 1e-5)
+    if not 0.0 < tolerance < 0.1:
+        problem = f"{tolerance:g} is not allowed; above 0 and below 0.1"
+        raise table.error("tolerance", problem)
+    steps = table.integer("max_steps", 200)
+    return Optimisation(
+        scene, cases, variables, objective, constraints, method, steps, tolerance
+    )
+
+
+def scene_numbers(element: BearingElement[Any]) -> dict[str, tuple[str, ...]]:
+    """Numbers on the drawing by their key in a scene, with their paths in the element.
+
+    Args:
+        element: The bearing; a key stands for all rows of a set.
+    """
+    row = rows_of(element.bearing)[0].bearing
+    in_set = isinstance(element.bearing, BearingSet)
+    rows = range(len(element.bearing.rows)) if in_set else ()
+    heads = [f"bearing.rows.{k}.bearing" for k in rows] or ["bearing"]
+    found: dict[str, tuple[str, ...]] = {}
+    for name in design_numbers(row):
+        # The rows of a self-aligning bearing are staggered.
+        if name == "first_azimuth" and in_set:
+            continue
+        paths = tuple(f"{head}.{name}" for head in heads)
+        head, _, rest = name.partition(".")
+        if head.endswith("_raceway_profile"):
+            head = f"raceway_profile.{head.removesuffix('_raceway_profile')}"
+        key = f"bearing.{head}.{rest}" if rest else f"bearing.{head}"
+        found[key] = paths
+        if head == "ribs":
+            common = f"bearing.rib.{rest.partition('.')[2]}"
+            found[common] = (*found.get(common, ()), *paths)
+    return found
+
+
+def _variables(table: Table, element) -> tuple[Variable, ...]:
+    numbers = scene_numbers(element)
+    variables = []
+    for key in table.keys():
+        if key not in numbers:
+            raise table.error(key, _no_number(key, table, numbers))
+        kind = KIND_OF[key.rpartition(".")[2]]
+        part = table.table(key)
+        low, high, start = (
+            _value(part, name, kind, *default)
+            for name, default in (("from", ()), ("to", ()), ("start", (None,)))
+        )
+        with part.building():
+            variables.append(Variable(numbers[key], low, high, start, key))
+    with table.building():
+        check_variables(element, variables)
+    return tuple(variables)
+
+
+def _no_number(key, table, numbers):
+    if key == "bearing":
+        example = next(iter(numbers))
+        return f'write the dotted key in quotes, such as "{example}" = {{from, to}}'
+    return not_among(key, tuple(numbers))
+
+
+def _value(table: Table, key: str, kind: str, *default):
+    if kind == "number":
+        return table.number(key, *default)
+    return table.quantity(key, kind, *default)
+
+
+def _constraint(table: Table, exponent, balls) -> Constraint:
+    kind = table.choice("measure", OBJECTIVES)
+    measure = _measure(table, "measure", kind, exponent, balls)
+    unit = {
+        "Pa": "pressure",
+        "N/m": "line load" if kind == "edge_load" else "stiffness",
+        "N m": "tilting stiffness",
+        "m": "length",
+        "rad": "angle",
+    }[measure.unit]
+    least = table.quantity("at_least", unit, None)
+    most = table.quantity("at_most", unit, None)
+    if least is None and most is None:
+        raise table.error("measure", "give `at_least`, `at_most` or both")
+    with table.building():
+        return Constraint(measure, least, most)
+
+
+def _measure(table: Table, key, kind, exponent, balls, target=False) -> Any:
+    if kind == "peak_pressure":
+        return PeakPressure(exponent)
+    if kind == "mean_pressure":
+        return MeanPressure(exponent)
+    if kind == "edge_load":
+        if balls:
+            raise table.error(key, "balls have no ends; `edge_load` is for rollers")
+        return EdgeLoad(exponent)
+    freedom = table.choice("freedom", FREEDOMS[:5])
+    if kind == "displacement":
+        return Displacement(freedom, exponent)
+    if not target:
+        return Stiffness(freedom, exponent)
+    unit = "stiffness" if freedom[0] == "u" else "tilting stiffness"
+    wanted = table.quantity("target", unit)
+    with table.building():
+        return StiffnessTarget(wanted, freedom)

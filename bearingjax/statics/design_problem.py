@@ -1,0 +1,288 @@
+"""A design with free numbers: evaluated over its cases, and what was tried."""
+
+import warnings
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..element.bearing_element import BearingElement
+from ..numerics.result import Result, SolveError
+from .cases import Cases, solve_case
+from .measure import exact_of
+from .search import Trial
+from .solution import Solution, message
+from .variable import with_values
+
+CHUNK = 64
+"""Most cases that are solved side by side."""
+
+Measure = Callable[[BearingElement[Any], Cases, Solution], Any]
+Build = Callable[[BearingElement[Any]], BearingElement[Any]]
+
+
+class Outcome(NamedTuple):
+    """A design and how it fares.
+
+    Attributes:
+        values: Of the variables (variable,) [SI].
+        objective: The smooth objective.
+        exact: What it stands for: the true maximum.
+        constraints: The smooth measures that are bounded (constraint,).
+        exact_constraints: What they stand for (constraint,).
+        solution: Of all cases, leading axis case.
+    """
+
+    values: np.ndarray
+    objective: float
+    exact: float
+    constraints: np.ndarray
+    exact_constraints: np.ndarray
+    solution: Any
+
+
+class Options(NamedTuple):
+    """How cases are solved; as of `optimise`."""
+
+    free: tuple[str, ...] | None
+    fixed_ring: str
+    points: int
+    solve_tolerance: float | None
+    build: Build | None
+
+
+class Bound(NamedTuple):
+    """One bound of a constraint: sign * (measure - limit)/size ≥ 0."""
+
+    measure: int
+    sign: float
+    limit: float
+    size: float
+
+
+class Problem:
+    """A design with free numbers, and a record of what was tried.
+
+    Args:
+        element, cases, variables, objective, constraints: As of `optimise`, checked.
+        options: How cases are solved.
+    """
+
+    def __init__(self, element, cases, variables, objective, constraints, options):
+        self.element, self.variables = element, variables
+        self.constraints = constraints
+        self.cases = jax.tree.map(jnp.asarray, cases)
+        self.measures = (objective, *(c.measure for c in constraints))
+        self.options = options
+        self.paths = tuple(variable.path for variable in variables)
+        self.lower = np.array([v.lower for v in variables])
+        self.upper = np.array([v.upper for v in variables])
+        self.width = self.upper - self.lower
+        self.bounds = tuple(_bounds(constraints))
+        self.size = 1.0
+        self.steps: list[Trial] = []
+        self.evaluations: list[int] = []
+        self.n_evaluations = self.n_gradients = 0
+        self.rejected: list[str] = []
+        self._last: tuple[bytes, bool, Trial] | None = None
+
+    def scaled(self, values) -> np.ndarray:
+        """Values of the variables in the unit box."""
+        return (np.asarray(values) - self.lower) / self.width
+
+    def values(self, unit) -> np.ndarray:
+        """Values of the variables [SI], exact at the bounds."""
+        inside = np.clip(self.lower + self.width * unit, self.lower, self.upper)
+        return np.where(unit >= 1.0, self.upper, inside)
+
+    def begin(self, unit: np.ndarray, slopes: bool) -> None:
+        """Evaluate the start, and take the size of its objective as the scale.
+
+        Raises:
+            SolveError: If it does not solve.
+        """
+        trial = self._evaluate(unit, slopes)
+        if trial.fault:
+            raise SolveError(f"optimise: the starting design fails: {trial.fault}")
+        self.size = abs(trial.objective) or 1.0
+        slope = None if trial.slope is None else trial.slope / self.size
+        trial = trial._replace(objective=trial.objective / self.size, slope=slope)
+        self._last = (unit.tobytes(), slopes, trial)
+        self.accept(unit)
+
+    def attempt(self, unit: np.ndarray, slopes: bool) -> Trial:
+        """The trial of a design, evaluated once though a search asks repeatedly."""
+        key = unit.tobytes()
+        if self._last is None or self._last[:2] != (key, slopes):
+            trial = self._evaluate(np.array(unit), slopes)
+            if trial.fault:
+                self.rejected.append(trial.fault)
+                trial = self._cone(trial, slopes)
+            self._last = (key, slopes, trial)
+        return self._last[2]
+
+    def accept(self, unit: np.ndarray) -> None:
+        """Note that the search has moved here, unless it stands still."""
+        slopes = self._last is not None and self._last[1]
+        trial = self.attempt(unit, slopes)
+        moved = not self.steps or np.any(unit != self.steps[-1].unit)
+        if moved and not trial.fault:
+            self.steps.append(trial)
+            self.evaluations.append(self.n_evaluations)
+
+    def outcome(self, trial: Trial) -> tuple[BearingElement[Any], Outcome]:
+        """The design of a trial, and how it fares, by the program already compiled."""
+        values = self.values(trial.unit)
+        element = with_values(self.element, self.paths, values)
+        if self.options.build is not None:
+            element = self.options.build(element)
+        found = self.run(trial.unit, trial.slope is not None)
+        smooth, exact = np.asarray(found.measures), np.asarray(found.exact)
+        return element, Outcome(
+            values,
+            float(smooth[0]),
+            float(exact[0]),
+            smooth[1:],
+            exact[1:],
+            found.solution,
+        )
+
+    def run(self, unit, slopes: bool) -> "Run":
+        """Solve the cases of a design, with gradients or without."""
+        return _program(
+            self.element,
+            self.cases,
+            self.measures,
+            self.paths,
+            self.options,
+            jnp.asarray(unit),
+            jnp.asarray(self.lower),
+            jnp.asarray(self.width),
+            slopes,
+        )
+
+    def _evaluate(self, unit, slopes) -> Trial:
+        nothing = np.zeros(0)
+        failed = Trial(unit, np.nan, None, nothing, None)
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                with_values(self.element, self.paths, self.values(unit))
+        except ValueError as error:
+            return failed._replace(fault=f"not a design: {error}")
+        self.n_evaluations += 1
+        self.n_gradients += slopes
+        found = self.run(unit, slopes)
+        fault = _fault(found)
+        if fault:
+            return failed._replace(fault=fault)
+        values = np.asarray(found.measures)
+        margins = [b.sign * (values[b.measure] - b.limit) / b.size for b in self.bounds]
+        slope = margin_slopes = None
+        if slopes:
+            jacobian = np.asarray(found.jacobian)
+            slope = jacobian[0] / self.size
+            rows = [b.sign * jacobian[b.measure] / b.size for b in self.bounds]
+            margin_slopes = np.array(rows).reshape(len(rows), unit.size)
+        objective = float(values[0]) / self.size
+        return Trial(unit, objective, slope, np.array(margins), margin_slopes)
+
+    def _cone(self, failed: Trial, slopes: bool) -> Trial:
+        """Numbers for a rejected design: those of the last step, rising from there."""
+        last = self.steps[-1]
+        away = failed.unit - last.unit
+        distance = float(np.linalg.norm(away)) or 1.0
+        steep = 1.0 if last.slope is None else max(1.0, np.abs(last.slope).max())
+        return last._replace(
+            unit=failed.unit,
+            objective=last.objective + steep * distance,
+            slope=steep * away / distance if slopes else None,
+            fault=failed.fault,
+        )
+
+
+class Run(NamedTuple):
+    """What the compiled program finds.
+
+    Attributes:
+        measures: Objective and constrained measures (measure,).
+        exact: What they stand for (measure,).
+        solution: Of all cases, leading axis case.
+        jacobian: d(measures)/d(unit) (measure, variable), if asked for.
+    """
+
+    measures: Any
+    exact: Any
+    solution: Any
+    jacobian: Any
+
+
+@eqx.filter_jit
+def _program(
+    element, cases, measures, paths, options, unit, lower, width, slopes
+) -> Run:
+
+    def outputs(unit):
+        design = with_values(element, paths, lower + width * unit)
+        if options.build is not None:
+            design = options.build(design)
+
+        def one(case):
+            return solve_case(
+                design,
+                case,
+                free=options.free,
+                fixed_ring=options.fixed_ring,
+                points=options.points,
+                tolerance=options.solve_tolerance,
+            )
+
+        if cases.count <= CHUNK:
+            solution = jax.vmap(one)(cases)
+        else:
+            solution = jax.lax.map(one, cases, batch_size=CHUNK)
+        values = [_scalar(m, m(design, cases, solution)) for m in measures]
+        exact = [exact_of(m, design, cases, solution) for m in measures]
+        values = jnp.stack(values)
+        return values, (values, jnp.stack(exact), solution)
+
+    if slopes:
+        jacobian, found = jax.jacrev(outputs, has_aux=True)(unit)
+    else:
+        jacobian, found = None, outputs(unit)[1]
+    measured, exact, solution = found
+    return Run(measured, exact, solution, jacobian)
+
+
+def _scalar(measure, value):
+    if jnp.shape(value) != ():
+        raise ValueError(
+            f"optimise: the measure {measure} returns shape {jnp.shape(value)}; it must"
+            " return one number."
+        )
+    return jnp.asarray(value)
+
+
+def _bounds(constraints):
+    for k, constraint in enumerate(constraints):
+        for sign, limit in ((1.0, constraint.lower), (-1.0, constraint.upper)):
+            if limit is not None:
+                yield Bound(k + 1, sign, float(limit), abs(float(limit)) or 1.0)
+
+
+def _fault(found: Run) -> str:
+    """Why an evaluated design is no good, in words; empty if it is good."""
+    results = np.asarray(found.solution.result)
+    if results.any():
+        k = int(np.argmax(results))
+        one = jax.tree.map(lambda leaf: leaf[k], found.solution)
+        label = Result(int(results[k])).label
+        return f"case {k}: {label}: {message(one, one.moving_ring)}"
+    if not np.isfinite(found.measures).all():
+        return f"a measure is not finite: {np.asarray(found.measures).tolist()}"
+    if found.jacobian is not None and not np.isfinite(found.jacobian).all():
+        return f"a gradient is not finite: {np.asarray(found.jacobian).tolist()}"
+    return ""

@@ -1,0 +1,403 @@
+"""What is asked of a design over its operating cases: one number each, smooth.
+
+A measure is any function (element, cases, solution) -> scalar, where the solution has
+a leading case axis; those here are Modules. Life over a load spectrum would be one
+more: the element has the design, the cases their hours and speeds.
+
+Maxima are p-norms of many samples, so that they have a derivative wherever the peak
+stands: never below the true maximum of the samples, and above it by a factor of at
+most (number of samples)^(1/exponent); minima likewise, never above.
+"""
+
+import abc
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design.checks import check, number
+from ..element.bearing_element import BearingElement
+from ..element.frame import FREEDOMS, RINGS
+from ..numerics.types import Scalar, as_real
+from .cases import Cases
+from .solution import RollerSolution, Solution
+
+EXPONENT = 64.0
+"""Of smooth maxima: with the 100 samples that stand near a peak, 7 % above it."""
+
+
+def smooth_maximum(values: Float[Array, "..."], exponent: float = EXPONENT) -> Scalar:
+    """p-norm of numbers ≥ 0: max ≤ result ≤ count^(1/exponent) max.
+
+    Args:
+        values: Numbers of at least 0 [any unit].
+        exponent: p, above 1. Static.
+
+    Returns:
+        The norm, in the unit of `values`; 0 with derivative 0 if all are 0.
+    """
+    top = jax.lax.stop_gradient(jnp.max(values))
+    none = top <= 0
+    share = values / jnp.where(none, 1.0, top)
+    total = jnp.where(none, 1.0, jnp.sum(share**exponent))
+    return top * total ** (1.0 / exponent)
+
+
+def smooth_minimum(values: Float[Array, "..."], exponent: float = EXPONENT) -> Scalar:
+    """Norm of order -p of numbers > 0: min/count^(1/exponent) ≤ result ≤ min.
+
+    Args:
+        values: Numbers [any unit]; if one is not above 0, the result is the minimum.
+        exponent: p, above 1. Static.
+    """
+    low = jax.lax.stop_gradient(jnp.min(values))
+    none = low <= 0
+    share = low / jnp.where(none, 1.0, values)
+    total = jnp.where(none, 1.0, jnp.sum(share**exponent))
+    return jnp.where(none, jnp.min(values), low * total ** (-1.0 / exponent))
+
+
+class AbstractMeasure(eqx.Module):
+    """One number of a design over its cases."""
+
+    @abc.abstractmethod
+    def __call__(
+        self, element: BearingElement[Any], cases: Cases, solution: Solution
+    ) -> Scalar:
+        """The measure, smooth in the design.
+
+        Args:
+            element: The design.
+            cases: Its operating cases.
+            solution: Their solutions, leading axis case.
+        """
+
+    def exact(
+        self, element: BearingElement[Any], cases: Cases, solution: Solution
+    ) -> Scalar:
+        """What the smooth number stands for: the true maximum or minimum.
+
+        Args:
+            element, cases, solution: As of a call.
+        """
+        return self(element, cases, solution)
+
+    @property
+    @abc.abstractmethod
+    def label(self) -> str:
+        """Name in reports."""
+
+    @property
+    @abc.abstractmethod
+    def unit(self) -> str:
+        """SI unit."""
+
+
+class PeakPressure(AbstractMeasure):
+    """Largest contact pressure of all cases, elements, raceways and positions [Pa].
+
+    Along a roller it is sampled at the `points` positions of the solution. Hours do
+    not count.
+
+    Attributes:
+        exponent: Of the smooth maximum; the larger, the closer and the stiffer.
+
+    Static: exponent.
+    """
+
+    exponent: float = eqx.field(static=True, default=EXPONENT)
+
+    def __check_init__(self):
+        _check_exponent(self)
+
+    def __call__(self, element, cases, solution):
+        return smooth_maximum(solution.contact_pressure, self.exponent)
+
+    def exact(self, element, cases, solution):
+        return jnp.max(solution.contact_pressure)
+
+    @property
+    def label(self):
+        return "peak pressure"
+
+    @property
+    def unit(self):
+        return "Pa"
+
+
+class MeanPressure(AbstractMeasure):
+    """Peak pressure of each case, its mean over the hours of the cases [Pa].
+
+    Without hours all cases count alike.
+
+    Attributes:
+        exponent: Of the smooth maximum within a case.
+
+    Static: exponent.
+    """
+
+    exponent: float = eqx.field(static=True, default=EXPONENT)
+
+    def __check_init__(self):
+        _check_exponent(self)
+
+    def __call__(self, element, cases, solution):
+        pressure = solution.contact_pressure
+        peaks = jax.vmap(lambda p: smooth_maximum(p, self.exponent))(pressure)
+        return jnp.sum(hour_weights(cases) * peaks)
+
+    def exact(self, element, cases, solution):
+        pressure = solution.contact_pressure
+        peaks = jnp.max(pressure.reshape(pressure.shape[0], -1), axis=1)
+        return jnp.sum(hour_weights(cases) * peaks)
+
+    @property
+    def label(self):
+        return "mean peak pressure"
+
+    @property
+    def unit(self):
+        return "Pa"
+
+
+class EdgeLoad(AbstractMeasure):
+    """Largest load per length at a roller end, of all cases and raceways [N/m].
+
+    Attributes:
+        exponent: Of the smooth maximum.
+
+    Static: exponent.
+    """
+
+    exponent: float = eqx.field(static=True, default=EXPONENT)
+
+    def __check_init__(self):
+        _check_exponent(self)
+
+    def __call__(self, element, cases, solution):
+        return smooth_maximum(_ends(solution), self.exponent)
+
+    def exact(self, element, cases, solution):
+        return jnp.max(_ends(solution))
+
+    @property
+    def label(self):
+        return "edge load"
+
+    @property
+    def unit(self):
+        return "N/m"
+
+
+class Displacement(AbstractMeasure):
+    """Largest size of a displacement of the moving ring against the other [m, rad].
+
+    Attributes:
+        freedom: One of ux, uy, uz, gx, gy.
+        exponent: Of the smooth maximum over the cases.
+
+    Static: all.
+    """
+
+    freedom: str = eqx.field(static=True)
+    exponent: float = eqx.field(static=True, default=EXPONENT)
+
+    def __check_init__(self):
+        _check_freedom(self, self.freedom)
+        _check_exponent(self)
+
+    def _sizes(self, solution):
+        moved = solution.displacement[:, 6:] - solution.displacement[:, :6]
+        return jnp.abs(moved[:, FREEDOMS.index(self.freedom)])
+
+    def __call__(self, element, cases, solution):
+        return smooth_maximum(self._sizes(solution), self.exponent)
+
+    def exact(self, element, cases, solution):
+        return jnp.max(self._sizes(solution))
+
+    @property
+    def label(self):
+        return f"displacement {self.freedom}"
+
+    @property
+    def unit(self):
+        return "m" if self.freedom[0] == "u" else "rad"
+
+
+class Stiffness(AbstractMeasure):
+    """Smallest stiffness of the moving ring in one freedom, of all cases [N/m, N m].
+
+    The diagonal of the tangent stiffness: the other freedoms are held.
+
+    Attributes:
+        freedom: One of ux, uy, uz, gx, gy.
+        exponent: Of the smooth minimum over the cases.
+
+    Static: all.
+    """
+
+    freedom: str = eqx.field(static=True)
+    exponent: float = eqx.field(static=True, default=EXPONENT)
+
+    def __check_init__(self):
+        _check_freedom(self, self.freedom)
+        _check_exponent(self)
+
+    def __call__(self, element, cases, solution):
+        values = _stiffness(solution, self.freedom, self.freedom)
+        return smooth_minimum(values, self.exponent)
+
+    def exact(self, element, cases, solution):
+        return jnp.min(_stiffness(solution, self.freedom, self.freedom))
+
+    @property
+    def label(self):
+        return f"stiffness {self.freedom}"
+
+    @property
+    def unit(self):
+        return "N/m" if self.freedom[0] == "u" else "N m"
+
+
+class StiffnessTarget(AbstractMeasure):
+    """How far a stiffness is from what is wanted, (k/target - 1)² [1].
+
+    The mean over the hours of the cases; without hours all count alike.
+
+    Attributes:
+        target: Wanted stiffness, not zero [N/m, N, N m].
+        freedom: Row of the stiffness of the moving ring, one of ux, uy, uz, gx, gy.
+        other: Its column; `None`: the diagonal.
+
+    Traced: target. Static: the freedoms.
+    """
+
+    target: Scalar = eqx.field(converter=as_real)
+    freedom: str = eqx.field(static=True)
+    other: str | None = eqx.field(static=True, default=None)
+
+    def __check_init__(self):
+        number(self, "target", self.target, "N/m")
+        check(self, "target", self.target, "N/m", self.target != 0, "other than 0 N/m")
+        for freedom in (self.freedom, self.other or self.freedom):
+            _check_freedom(self, freedom)
+
+    def __call__(self, element, cases, solution):
+        value = _stiffness(solution, self.freedom, self.other or self.freedom)
+        return jnp.sum(hour_weights(cases) * (value / self.target - 1.0) ** 2)
+
+    @property
+    def label(self):
+        pair = self.freedom if self.other is None else f"{self.freedom} {self.other}"
+        return f"miss of stiffness {pair}"
+
+    @property
+    def unit(self):
+        return ""
+
+
+class Constraint(eqx.Module):
+    """Bounds on a measure.
+
+    Attributes:
+        measure: What is bounded: a measure of this module, or any function
+            (element, cases, solution) -> scalar.
+        lower: Least value, or `None` [unit of the measure].
+        upper: Largest value, or `None` [unit of the measure].
+
+    Traced: the bounds. Static: whether there are such.
+    """
+
+    measure: Any
+    lower: Scalar | None = eqx.field(
+        converter=lambda x: None if x is None else as_real(x), default=None
+    )
+    upper: Scalar | None = eqx.field(
+        converter=lambda x: None if x is None else as_real(x), default=None
+    )
+
+    def __check_init__(self):
+        if not callable(self.measure):
+            raise TypeError(
+                f"Constraint: `measure` is a {type(self.measure).__name__}; it must be"
+                " a function (element, cases, solution) -> scalar, such as"
+                " Stiffness('uy')."
+            )
+        bounds = {"lower": self.lower, "upper": self.upper}
+        if all(bound is None for bound in bounds.values()):
+            raise ValueError("Constraint: give `lower`, `upper` or both.")
+        for name, bound in bounds.items():
+            if bound is not None:
+                number(self, name, bound, "")
+        if self.lower is not None and self.upper is not None:
+            above = self.upper > self.lower
+            check(self, "upper", self.upper, "", above, "above `lower`")
+
+    @property
+    def label(self) -> str:
+        """Name in reports."""
+        return label_of(self.measure)
+
+
+def label_of(measure: Any) -> str:
+    """Name of a measure, or of a plain function.
+
+    Args:
+        measure: Any measure.
+    """
+    if isinstance(measure, AbstractMeasure):
+        return measure.label
+    return getattr(measure, "__name__", type(measure).__name__)
+
+
+def exact_of(measure: Any, element, cases: Cases, solution: Solution) -> Scalar:
+    """The exact value of a measure; of a plain function its value.
+
+    Args:
+        measure: Any measure.
+        element, cases, solution: As of a call.
+    """
+    call = measure.exact if isinstance(measure, AbstractMeasure) else measure
+    return call(element, cases, solution)
+
+
+def hour_weights(cases: Cases) -> Float[Array, " case"]:
+    """Share of each case in the hours; of cases without hours, all alike.
+
+    Args:
+        cases: Operating cases.
+    """
+    hours = jnp.ones(cases.count) if cases.hours is None else jnp.asarray(cases.hours)
+    return hours / jnp.sum(hours)
+
+
+def _ends(solution):
+    if not isinstance(solution, RollerSolution):
+        raise ValueError(
+            "EdgeLoad: balls have no ends; the bearing must be of rollers."
+        )
+    return solution.line_load[..., np.array([0, -1])]
+
+
+def _stiffness(solution, row, column):
+    first = 6 * RINGS.index(solution.moving_ring)
+    i, j = (first + FREEDOMS.index(name) for name in (row, column))
+    return solution.stiffness[:, i, j]
+
+
+def _check_freedom(owner, freedom):
+    if freedom not in FREEDOMS[:5]:
+        raise ValueError(
+            f"{type(owner).__name__}: `freedom` is {freedom!r}; it must be one of"
+            f" {', '.join(FREEDOMS[:5])}."
+        )
+
+
+def _check_exponent(owner):
+    number(owner, "exponent", owner.exponent, "")
+    above = 1.0 < owner.exponent <= 1e4
+    check(owner, "exponent", owner.exponent, "", above, "above 1 and at most 10000")

@@ -1,0 +1,266 @@
+"""Design optimisation: the free numbers of a drawing that make a measure least.
+
+One compiled program solves all operating cases of a design and pulls the gradient of
+objective and constraints back through the equilibria (implicit function theorem,
+reverse mode): it costs little more than the solves.
+"""
+
+import dataclasses
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..element.bearing_element import BearingElement
+from .cases import Cases
+from .design_problem import Build, Measure, Options, Outcome, Problem
+from .measure import Constraint
+from .search import METHODS, search, stationarity, takes_gradients
+from .variable import Variable, check_variables
+
+
+class History(NamedTuple):
+    """The accepted steps of a search; step 0 is the start.
+
+    Attributes:
+        values: Of the variables (step, variable) [SI].
+        objective: The smooth objective (step,).
+        violation: Miss of the worst constraint over the size of its bound (step,).
+        gradient: Largest part of the gradient that neither bound nor constraint holds
+            back (step,), of the objective over its size at the start by variables over
+            their range [1]; NaN with a method without gradients.
+        evaluations: Designs evaluated so far (step,).
+    """
+
+    values: np.ndarray
+    objective: np.ndarray
+    violation: np.ndarray
+    gradient: np.ndarray
+    evaluations: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True)
+class Optimised:
+    """What an optimisation found.
+
+    Attributes:
+        element: The best design, its checks passed.
+        initial: The starting design.
+        variables: What was free.
+        objective: What was made least.
+        constraints: What was kept.
+        values: Its numbers (variable,) [SI].
+        before: The starting design and how it fared.
+        after: The best design, likewise.
+        history: The way from one to the other.
+        n_evaluations: Designs that were evaluated, every case of each solved once.
+        n_gradients: Those of which the gradient was asked for.
+        rejected: Why designs were rejected, in order; empty if none was.
+        result: "converged", "step_limit", "stalled" (the method could not go on), or
+            "infeasible" (no design was found that keeps the constraints).
+        message: The same in words.
+    """
+
+    element: BearingElement[Any]
+    initial: BearingElement[Any]
+    variables: tuple[Variable, ...]
+    objective: Measure
+    constraints: tuple[Constraint, ...]
+    values: np.ndarray
+    before: Outcome
+    after: Outcome
+    history: History
+    n_evaluations: int
+    n_gradients: int
+    rejected: tuple[str, ...]
+    result: str
+    message: str
+
+    @property
+    def converged(self) -> bool:
+        """Whether `result` is "converged"."""
+        return self.result == "converged"
+
+
+def optimise(
+    element: BearingElement[Any],
+    cases: Cases,
+    variables: Sequence[Variable],
+    objective: Measure,
+    constraints: Sequence[Constraint] = (),
+    method: Any = None,
+    *,
+    max_steps: int = 200,
+    tolerance: float = 1e-5,
+    points: int = 101,
+    free: Sequence[str] | None = None,
+    fixed_ring: str = "outer",
+    solve_tolerance: float | None = None,
+    build: Build | None = None,
+    progress: bool = False,
+) -> Optimised:
+    """The design within bounds that makes an objective least over operating cases.
+
+    A design with a case that does not solve, with a number that is not finite, or
+    that the drawing does not allow is rejected: the search is told of a slope that
+    rises away from its last step, and turns back. `rejected` lists the reasons.
+
+    Args:
+        element: The design to start from.
+        cases: Operating cases, all of this design.
+        variables: Its free numbers.
+        objective: What is made least: a measure such as `PeakPressure()`, or any
+            smooth function (element, cases, solution) -> scalar.
+        constraints: Bounds on measures.
+        method: "l-bfgs-b" (the default without constraints), "slsqp" (with them),
+            "adam" or any Optax gradient transformation, projected onto the bounds;
+            "nelder-mead", which asks for no gradients and is there to compare, or a
+            function like it (see `statics.search`). Only "slsqp" keeps constraints.
+        max_steps: Step limit of the search.
+        tolerance: Gradient at which the search ends, of the objective over its size
+            at the start, by variables over their range; constraints are kept to this
+            share of their bound. Of "nelder-mead": size of the simplex, likewise.
+        points: Positions along the rollers at which pressures are sampled.
+        free, fixed_ring: As of `solve_load`.
+        solve_tolerance: `tolerance` of `solve_load`.
+        build: What is done to a changed design before it is solved, for example
+            `lambda e: bj.preload(e, 400.0, throw=False)`.
+        progress: Show a progress bar on standard error.
+
+    Returns:
+        The best design and the way to it; read `result`.
+
+    Raises:
+        TypeError, ValueError: For wrong variables, measures, methods or numbers.
+        SolveError: If the starting design does not solve.
+    """
+    if not isinstance(element, BearingElement):
+        raise TypeError(
+            f"optimise: `element` is a {type(element).__name__}; it must be a"
+            " BearingElement."
+        )
+    variables, constraints = tuple(variables), tuple(constraints)
+    method = _check_method(method, constraints)
+    _check_call(cases, objective, constraints, max_steps, tolerance)
+    start = check_variables(element, variables)
+    options = Options(
+        None if free is None else tuple(free),
+        fixed_ring,
+        points,
+        solve_tolerance,
+        build,
+    )
+    problem = Problem(element, cases, variables, objective, constraints, options)
+    unit = problem.scaled(start)
+    slopes = takes_gradients(method)
+    problem.begin(unit, slopes)
+
+    from tqdm import tqdm
+
+    bar = tqdm(total=max_steps, disable=not progress, desc="optimise", unit="step")
+    with bar:
+
+        def step(x):
+            problem.accept(x)
+            bar.set_postfix_str(f"{problem.steps[-1].objective:.6g} of the start")
+            bar.update()
+
+        ending = search(
+            method,
+            lambda x: problem.attempt(x, slopes),
+            unit,
+            len(problem.bounds),
+            max_steps,
+            tolerance,
+            step,
+        )
+    return _conclude(problem, ending, slopes, max_steps, tolerance)
+
+
+def _conclude(problem, ending, slopes, max_steps, tolerance) -> Optimised:
+    trial = problem.attempt(ending.unit, slopes)
+    if trial.fault:
+        trial = problem.steps[-1]
+    flat = stationarity(trial) <= tolerance
+    if trial.violation > tolerance:
+        result = "infeasible"
+        text = f"constraints are missed by {trial.violation:.1e} of their bounds"
+    elif trial.fault == "" and (ending.settled or flat):
+        result, text = "converged", ending.text
+    elif len(problem.steps) > max_steps:
+        result = "step_limit"
+        text = f"step limit reached after {max_steps} steps: raise `max_steps`"
+    else:
+        result, text = "stalled", f"the search could not go on: {ending.text}"
+    steps = problem.steps
+    history = History(
+        values=np.stack([problem.values(s.unit) for s in steps]),
+        objective=problem.size * np.array([s.objective for s in steps]),
+        violation=np.array([s.violation for s in steps]),
+        gradient=np.array([stationarity(s) for s in steps]),
+        evaluations=np.array(problem.evaluations),
+    )
+    initial, before = problem.outcome(steps[0])
+    element, after = problem.outcome(trial)
+    return Optimised(
+        element,
+        initial,
+        problem.variables,
+        problem.measures[0],
+        problem.constraints,
+        after.values,
+        before,
+        after,
+        history,
+        problem.n_evaluations,
+        problem.n_gradients,
+        tuple(problem.rejected),
+        result,
+        text,
+    )
+
+
+def _check_method(method, constraints):
+    if method is None:
+        return "slsqp" if constraints else "l-bfgs-b"
+    descent = hasattr(method, "init") and hasattr(method, "update")
+    if not (descent or callable(method) or method in METHODS):
+        raise ValueError(
+            f"optimise: `method` is {method!r}; it must be one of"
+            f" {', '.join(METHODS)}, or an Optax gradient transformation."
+        )
+    if constraints and method != "slsqp":
+        raise ValueError(
+            f"optimise: `method` is {method!r}, which keeps no constraints; take"
+            " 'slsqp'."
+        )
+    return method
+
+
+def _check_call(cases, objective, constraints, max_steps, tolerance):
+    if not isinstance(cases, Cases):
+        raise TypeError(
+            f"optimise: `cases` is a {type(cases).__name__}; it must be a Cases."
+        )
+    if cases.design is not None:
+        raise ValueError("optimise: `cases` have several designs; give one element.")
+    if not callable(objective):
+        raise TypeError(
+            f"optimise: `objective` is a {type(objective).__name__}; it must be a"
+            " function (element, cases, solution) -> scalar, such as PeakPressure()."
+        )
+    for constraint in constraints:
+        if not isinstance(constraint, Constraint):
+            raise TypeError(
+                f"optimise: `constraints` holds a {type(constraint).__name__}; it must"
+                " hold Constraints."
+            )
+    if isinstance(max_steps, bool) or not isinstance(max_steps, int) or max_steps < 1:
+        raise ValueError(
+            f"optimise: `max_steps` is {max_steps!r}; it must be a whole number of at"
+            " least 1."
+        )
+    if not 0.0 < tolerance < 0.1:
+        raise ValueError(
+            f"optimise: `tolerance` is {tolerance!r}; it must be above 0 and below 0.1."
+        )

@@ -1,0 +1,206 @@
+"""Free numbers of a design: where they stand, and between which bounds."""
+
+import dataclasses
+import difflib
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array
+
+from ..element.bearing_element import BearingElement
+
+
+@dataclasses.dataclass(frozen=True)
+class Variable:
+    """A number of the design that may change.
+
+    Attributes:
+        path: Where it stands in the element, "bearing.roller_profile.crown_radius"; in
+            a set "bearing.rows.0.bearing.…". Several paths share one value.
+        lower: Least value [SI].
+        upper: Largest value [SI].
+        start: First value [SI]; `None`: what the design has.
+        name: In messages and reports; default: the first path.
+
+    Raises:
+        TypeError: If a bound is no number, or a path no text.
+        ValueError: For bounds that are not finite or not ascending, or a start outside.
+    """
+
+    path: Any  # a text, or several; afterwards a tuple of texts
+    lower: Any  # numbers; afterwards floats
+    upper: Any
+    start: Any = None
+    name: str = ""
+
+    def __post_init__(self):
+        paths = (self.path,) if isinstance(self.path, str) else tuple(self.path)
+        if not paths or not all(isinstance(p, str) and p for p in paths):
+            raise TypeError(
+                f"Variable: `path` is {self.path!r}; it must be a dotted text such as"
+                " 'bearing.roller_profile.crown_radius', or several."
+            )
+        object.__setattr__(self, "path", paths)
+        object.__setattr__(self, "name", self.name or paths[0])
+        for key in ("lower", "upper", "start"):
+            value = getattr(self, key)
+            if key == "start" and value is None:
+                continue
+            try:
+                plain = float(value)
+            except (TypeError, ValueError):
+                raise TypeError(
+                    f"Variable: `{key}` of {self.name} is {value!r}; it must be a"
+                    " number in SI (units belong in scene files)."
+                ) from None
+            if not math.isfinite(plain):
+                raise ValueError(
+                    f"Variable: `{key}` of {self.name} is {plain}; it must be finite."
+                )
+            object.__setattr__(self, key, plain)
+        if not self.lower < self.upper:
+            raise ValueError(
+                f"Variable: `lower` of {self.name} is {self.lower:g}; it must be below"
+                f" `upper`, {self.upper:g}."
+            )
+        if self.start is not None:
+            self._check_start(self.start)
+
+    def _check_start(self, start):
+        if not self.lower <= start <= self.upper:
+            raise ValueError(
+                f"Variable: the start of {self.name} is {start:g}; it must lie between"
+                f" its bounds, {self.lower:g} and {self.upper:g}."
+            )
+
+    def start_in(self, element: BearingElement[Any]) -> float:
+        """First value: `start`, or what stands in the design [SI].
+
+        Args:
+            element: The design.
+
+        Raises:
+            ValueError: If the path does not lead to a number, or the number of the
+                design lies outside the bounds.
+        """
+        there = design_numbers(element)
+        for path in self.path:
+            if path not in there:
+                raise ValueError(
+                    f"Variable: `path` is {path!r}, where the design has no"
+                    f" number{_suggest(path, there)}; there are"
+                    f" {', '.join(there)}."
+                )
+        if self.start is not None:
+            return self.start
+        start = float(there[self.path[0]])
+        self._check_start(start)
+        return start
+
+
+def design_numbers(design: Any) -> dict[str, Array]:
+    """Every single real number of a design, by its dotted path.
+
+    Args:
+        design: An element, bearing or part.
+    """
+    leaves, _ = jax.tree_util.tree_flatten_with_path(design)
+    return {
+        ".".join(str(getattr(k, "name", getattr(k, "idx", k))) for k in keys): leaf
+        for keys, leaf in leaves
+        if jnp.shape(leaf) == () and jnp.issubdtype(jnp.result_type(leaf), jnp.floating)
+    }
+
+
+def changed(design: Any, values: Mapping[str, Any]) -> Any:
+    """The design with other numbers, made anew, so that its checks run again.
+
+    Args:
+        design: An element, bearing or part.
+        values: New numbers by dotted path [SI]; traced ones pass unchecked.
+
+    Raises:
+        ValueError: If a part does not allow its new number.
+    """
+    if "" in values:
+        return values[""]
+    inner: dict[str, dict[str, Any]] = {}
+    for path, value in values.items():
+        head, _, rest = path.partition(".")
+        inner.setdefault(head, {})[rest] = value
+    if isinstance(design, tuple):
+        parts = enumerate(design)
+        return tuple(
+            changed(p, inner[str(k)]) if str(k) in inner else p for k, p in parts
+        )
+    parts = {k: changed(getattr(design, k), v) for k, v in inner.items()}
+    return dataclasses.replace(design, **parts)
+
+
+def with_values(
+    element: BearingElement[Any], paths: Sequence[Sequence[str]], values: Any
+) -> BearingElement[Any]:
+    """The element with other numbers, each at all of its paths.
+
+    Args:
+        element: The design.
+        paths: Where each number stands, one sequence of dotted paths a number.
+        values: The numbers [SI].
+
+    Raises:
+        ValueError: If the design does not allow them.
+    """
+    pairs = zip(paths, values, strict=True)
+    return changed(element, {path: v for several, v in pairs for path in several})
+
+
+def check_variables(
+    element: BearingElement[Any], variables: Sequence[Variable]
+) -> list[float]:
+    """Raise unless the design allows the start and each bound by itself.
+
+    Args:
+        element: The design.
+        variables: Its free numbers.
+
+    Returns:
+        The first values [SI].
+
+    Raises:
+        TypeError: If one is no Variable.
+        ValueError: As above, if there is none, or if a number is named twice.
+    """
+    if not variables:
+        raise ValueError("optimise: `variables` is empty; name at least one Variable.")
+    for variable in variables:
+        if not isinstance(variable, Variable):
+            raise TypeError(
+                f"optimise: `variables` holds a {type(variable).__name__}; it must hold"
+                " Variables."
+            )
+    start = [variable.start_in(element) for variable in variables]
+    paths = [path for variable in variables for path in variable.path]
+    twice = sorted({path for path in paths if paths.count(path) > 1})
+    if twice:
+        raise ValueError(f"optimise: {', '.join(twice)} is a variable twice.")
+    where = [variable.path for variable in variables]
+    with_values(element, where, start)
+    for k, variable in enumerate(variables):
+        for key in ("lower", "upper"):
+            bound = getattr(variable, key)
+            try:
+                with_values(element, where, [*start[:k], bound, *start[k + 1 :]])
+            except ValueError as error:
+                raise ValueError(
+                    f"Variable: `{key}` of {variable.name} is {bound:g}, which the"
+                    f" design does not allow: {error}"
+                ) from error
+    return start
+
+
+def _suggest(word, known):
+    close = difflib.get_close_matches(word, known, 1, 0.6)
+    return f" (did you mean {close[0]!r}?)" if close else ""
