@@ -74,8 +74,8 @@ def solve_element(
                 " operating angle have none. Use TrustRegionNewton()."
             )
         minimiser = TrustRegionNewton(minimiser.tolerance, minimiser.max_steps, False)
-    frozen = stop((model, rings, magnitude))
-    state = _solve(*frozen, minimiser, stop(guess))
+    frozen = stop((model, rings, magnitude, guess))
+    state = _solve(minimiser, *frozen)
 
     def residual(x, args):
         model, rings = args
@@ -148,7 +148,7 @@ def solved_derivatives(
     return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), d)
 
 
-def _solve(model, rings, magnitude, minimiser, guess):
+def _solve(minimiser, model, rings, magnitude, guess):
     eps = jnp.finfo(rings.dtype).eps
 
     def function(x, with_hessian, *_):

@@ -153,9 +153,9 @@ class ContactMapped(AbstractQuadrature):
     def nodes(self, offset, args, table, a, b, arcs=False):
         start, end, *_ = table
         left, right, inner = _loaded_interval(
+            _OF_ARCS if arcs else _OF_ANY,
             lambda x: offset(stop(args), x),
             *stop((*table, a, b)),
-            _OF_ARCS if arcs else _OF_ANY,
         )
 
         def argument(x, traced):
@@ -179,15 +179,15 @@ def _scan_point(index, start, end, count):
     return (start * right + end * left) / (left + right)
 
 
-def _loaded_interval(offset, start, end, at, fixed, slope, a, b, steps):
+def _loaded_interval(steps, offset, start, end, at, fixed, slope, a, b):
     """First and last zero of a + b ξ - h in each panel, and which are inside.
 
     Args:
+        steps: How many times an edge is refined.
         offset: h, elementwise.
         start, end: Panel ends (panel,).
         at, fixed, slope: Scan points, h and its derivative there (panel, scan).
         a, b: Scalars.
-        steps: How many times an edge is refined.
 
     Returns:
         left, right (panel,), right ≥ left, and inner (2, panel): the edge is a root

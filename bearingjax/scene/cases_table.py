@@ -194,7 +194,8 @@ def _range(table, key, data) -> Any:
         raise table.error(path, f"`count` is {count!r}; a whole number from 2 to 10^6")
     ends = [data["start"], data["stop"]]
     if key in OPERATING:
-        return np.linspace(*_numbers(table, _Column(key, ends, np.arange(2))), count)
+        start, stop = _numbers(table, _Column(key, ends, np.arange(2)))
+        return np.linspace(start, stop, count)
     # Of a design's numbers the kind is not known here: the unit stays as it is.
     parts = [_split(end) for end in ends]
     if None in parts or parts[0][1] != parts[1][1]:

@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..design.checks import is_traced
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
@@ -95,7 +96,7 @@ class Cases(eqx.Module):
         count = next(iter(lead.values()))
         arrays.setdefault("load", np.zeros(6))
 
-        def full(name):
+        def full(name) -> Any:
             if name not in arrays:
                 return None
             tail = (6,) if name in vectors else ()
@@ -130,7 +131,7 @@ def _array(name, value, tail):
 
 
 def _check_hours(hours):
-    if hours is None or isinstance(hours, jax.core.Tracer):
+    if hours is None or is_traced(hours):
         return
     values = np.asarray(hours)
     if not (np.isfinite(values).all() and (values >= 0).all() and values.sum() > 0):

@@ -65,7 +65,7 @@ def solve_load(
     element: BearingElement,
     load: Vector | None = None,
     *,
-    prescribed: Mapping[str, float | int | Array] | None = None,
+    prescribed: Mapping[str, float | int | Array | np.ndarray] | None = None,
     free: Sequence[str] | None = None,
     fixed_ring: str = "outer",
     fixed_displacement: Vector | None = None,

@@ -8,7 +8,7 @@ over the devices of one process or of many (`jax.distributed`).
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -18,7 +18,7 @@ from jax import lax
 from jax.experimental import multihost_utils
 from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Array, Bool, Float
 
 from ..design import rows_of
 from ..element.bearing_element import BearingElement
@@ -74,9 +74,6 @@ class Sweep(eqx.Module):
             f"Sweep has no output {name!r}; it has {', '.join(outputs)}"
         )
 
-    if TYPE_CHECKING:
-        result: Int[np.ndarray, " case"]
-
     @property
     def converged(self) -> Bool[np.ndarray, " case"]:
         """Which cases were solved."""
@@ -130,7 +127,7 @@ def sweep(
     neighbours: bool = False,
     chunk: int | None = None,
     progress: bool = False,
-    devices: Sequence[jax.Device] | None = None,
+    devices: Sequence[Any] | None = None,
 ) -> Sweep:
     """Solve many cases. One bad case never spoils another: each has its own code.
 
@@ -160,13 +157,12 @@ def sweep(
 
     Fails: as `solve_load`, in `Sweep.result`, case by case.
     """
-    if not isinstance(cases, Cases):
-        cases = Cases(cases)
+    every = cases if isinstance(cases, Cases) else Cases(cases)
     if fixed_ring not in RINGS:
         raise ValueError(
             f"sweep: `fixed_ring` is {fixed_ring!r}; it must be 'outer' or 'inner'."
         )
-    cases = _with_designs(element, cases)
+    every = _with_designs(element, every)
     size = CHUNK if chunk is None else chunk
     if not isinstance(size, int) or size < 1:
         raise ValueError(f"sweep: `chunk` is {chunk!r}; a whole number of at least 1.")
@@ -175,16 +171,16 @@ def sweep(
     options = _Options(free, fixed_ring, points, tolerance, keep)
     places = np.array(jax.devices() if devices is None else list(devices))
     program = _Program(element, options, size, places)
-    found = program.run(cases, max_steps, neighbours, progress)
+    found = program.run(every, max_steps, neighbours, progress)
     if neighbours:
         codes = found["result"]
         lost = np.flatnonzero((codes == Result.STEP_LIMIT) | (codes == Result.SADDLE))
         if lost.size:
-            again = jax.tree.map(lambda a: np.asarray(a)[lost], cases)
+            again = jax.tree.map(lambda a: np.asarray(a)[lost], every)
             anew = program.run(again, max_steps, False, False)
             for name, values in found.items():
                 values[lost] = anew[name]
-    return Sweep(cases, found, RINGS[1 - RINGS.index(fixed_ring)])
+    return Sweep(every, found, RINGS[1 - RINGS.index(fixed_ring)])
 
 
 class Keep(eqx.Module):
@@ -193,15 +189,15 @@ class Keep(eqx.Module):
     names: tuple[str, ...] | None = eqx.field(static=True)
 
     def __call__(self, solution: Solution) -> dict[str, Array]:
-        names = self.names
-        if names is None:
+        names = list(self.names or ())
+        if self.names is None:
             fields = vars(solution).items()
             names = [name for name, value in fields if eqx.is_array(value)]
             names += ["iterations", "residual"]
         return {name: _output(solution, name) for name in names}
 
 
-def _output(solution, name):
+def _output(solution, name) -> Any:
     if name in SUMMARIES:
         return SUMMARIES[name](solution)
     value = getattr(solution, name, None)

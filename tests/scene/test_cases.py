@@ -81,9 +81,11 @@ def test_grid_runs_its_last_key_fastest(scene):
 
 def test_spectrum_has_hours(scene):
     table = read_cases(scene(SPECTRUM))
-    np.testing.assert_allclose(table.cases.hours, [100.0, 0.5])
+    np.testing.assert_allclose(np.array(table.cases.hours), [100.0, 0.5])
     np.testing.assert_allclose(table.cases.load[:, 1], [-1e3, -4e3])
-    np.testing.assert_allclose(table.cases.inner_speed, [20 * np.pi, 2 * np.pi])
+    np.testing.assert_allclose(
+        np.array(table.cases.inner_speed), [20 * np.pi, 2 * np.pi]
+    )
     assert table.cases.design is None and not table.neighbours
 
 
@@ -91,7 +93,7 @@ def test_list_has_units_in_its_header(scene):
     table = read_cases(scene('[cases]\nfile = "l.csv"', files={"l.csv": LIST}))
     np.testing.assert_allclose(table.cases.load[:, 1], [-1e3, -2e3])
     np.testing.assert_allclose(table.cases.load[:, 3], [0.5, 0.0])
-    np.testing.assert_allclose(table.cases.hours, [10.0, 20.0])
+    np.testing.assert_allclose(np.array(table.cases.hours), [10.0, 20.0])
     np.testing.assert_array_equal(table.cases.design, [0, 0])
 
 
