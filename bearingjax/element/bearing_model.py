@@ -23,9 +23,11 @@ from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .equilibrium import (
     LocalState,
+    Near,
     condensed_force,
     condensed_stiffness,
     settle,
+    near_by,
     solve_element,
     solved_derivatives,
 )
@@ -78,7 +80,7 @@ class RowModel(eqx.Module):
         q: Ring,
         minimiser: AbstractMinimiser,
         turns: bool,
-        guess: Float[Array, "element n"] | None,
+        near: Near | None,
     ) -> "Row":
         """Equilibrium of every rolling element at given ring freedoms.
 
@@ -86,7 +88,7 @@ class RowModel(eqx.Module):
             q: Ring freedoms at the node [m, rad].
             minimiser: Local solver. Static.
             turns: Whether derivatives see the azimuth move with gz. Static.
-            guess: `Row.offsets` at rings near by, or `None` [m].
+            near: `Row.near` at ring freedoms near by, or `None`.
         """
         part = self.part
         azimuth = azimuths(part.bearing, q if turns else lax.stop_gradient(q))
@@ -106,22 +108,22 @@ class RowModel(eqx.Module):
         if part.spring is not None:
             pressed = self._pressed(part.spring, local, transform, minimiser)
             local = local.at[_CLOSING].add(pressed.travel)
-        row = self._at(local, azimuth, transform, minimiser, guess)
+        row = self._at(local, azimuth, transform, minimiser, near)
         if place is not None:
             row = dataclasses.replace(row, transform=transform @ place)
         return dataclasses.replace(row, pressed=pressed)
 
-    def _at(self, local, azimuth, transform, minimiser, guess=None) -> "Row":
+    def _at(self, local, azimuth, transform, minimiser, near=None) -> "Row":
         """The elements at given motions in the row's own axes."""
         magnitude = jnp.max(jnp.abs(local[jnp.array([0, 1, 2, 6, 7, 8])]))
         tilt = jnp.max(jnp.abs(local[jnp.array([3, 4, 9, 10])]))
         magnitude = magnitude + 0.5 * self.part.bearing.pitch_diameter * tilt
         rings = transform @ local
-        guesses = () if guess is None else (guess,)
+        known = () if near is None else (near,)
         state = self.each(
-            lambda m, r, *x: solve_element(m, r, magnitude, minimiser, *x),
+            lambda m, r, *near: solve_element(m, r, magnitude, minimiser, *near),
             rings,
-            *guesses,
+            *known,
         )
         solved = self.each(
             lambda m, r, s: solved_derivatives(m, r, magnitude, s), rings, state
@@ -252,11 +254,9 @@ class Row(eqx.Module):
         share = jnp.where(held, 1.0 / jnp.where(held, own, 1.0), 0.0)
         return total - share * jnp.outer(right, left)
 
-    def offsets(self) -> Float[Array, "element n"]:
-        """Unknowns less where the rings take them [m]; NaN for loose elements."""
-        amid = self.model.each(lambda m, r: m.amid(r), self.rings)
-        held = jnp.any(self.solved.contact_load > 0, axis=1, keepdims=True)
-        return jnp.where(held, self.state.x - amid, jnp.nan)
+    def near(self) -> Near:
+        """What solves at ring freedoms near by may start from, leading axis element."""
+        return self.model.each(near_by, self.rings, self.state, self.solved)
 
     def energy(self) -> Scalar:
         """Energy of the elements, and of the spring [J]."""
@@ -276,7 +276,7 @@ class Evaluated(NamedTuple):
         residual: Largest relative residual of one [1].
         magnitude: Sum of the sizes of what the elements pass to the rings, in which
             the ring force may cancel [N].
-        offsets: `Row.offsets` of every row [m].
+        near: `Row.near` of every row.
     """
 
     energy: Scalar
@@ -286,7 +286,7 @@ class Evaluated(NamedTuple):
     steps: Int[Array, ""]
     residual: Scalar
     magnitude: Scalar
-    offsets: tuple[Float[Array, "element n"], ...]
+    near: tuple[Near, ...]
 
 
 class BearingModel(eqx.Module):
@@ -313,14 +313,12 @@ class BearingModel(eqx.Module):
         return all(row.element.has_potential for row in self.rows)
 
     @eqx.filter_jit
-    def solve(
-        self, q: Ring, guess: tuple[Float[Array, "element n"], ...] | None = None
-    ) -> tuple[Row, ...]:
+    def solve(self, q: Ring, near: tuple[Near, ...] | None = None) -> tuple[Row, ...]:
         """Solve every rolling element at given ring freedoms.
 
         Args:
             q: Ring freedoms [m, rad].
-            guess: `Evaluated.offsets` at ring freedoms near by: fewer steps.
+            near: `Evaluated.near` at ring freedoms near by: fewer steps.
 
         Raises:
             ValueError: If `q` is not of shape (12,).
@@ -331,10 +329,10 @@ class BearingModel(eqx.Module):
                 f"BearingElement: `q` has shape {q.shape}; it must be (12,): outer"
                 " ring (ux uy uz gx gy gz), then inner ring."
             )
-        guesses = [None] * len(self.rows) if guess is None else guess
+        known = [None] * len(self.rows) if near is None else near
         return tuple(
             row.solve(q, self.equilibrium, self.cage_torque, one)
-            for row, one in zip(self.rows, guesses, strict=True)
+            for row, one in zip(self.rows, known, strict=True)
         )
 
     @eqx.filter_jit
@@ -396,19 +394,24 @@ class BearingModel(eqx.Module):
                 jnp.sum(jnp.abs(share[:, : row.model.element.n_forces]))
                 for row, share in zip(rows, shares, strict=True)
             ),
-            offsets=tuple(row.offsets() for row in rows),
+            near=tuple(row.near() for row in rows),
         )
 
-    def no_offsets(self) -> tuple[Float[Array, "element n"], ...]:
-        """`Evaluated.offsets` of which nothing is known yet: NaN."""
-        return tuple(
-            jnp.full(
-                (n_elements(row.part.bearing), row.element.n_unknowns),
-                jnp.nan,
-                row.part.position.dtype,
+    def nothing_near(self) -> tuple[Near, ...]:
+        """`Evaluated.near` of which nothing is known yet."""
+
+        def unknown(row):
+            dtype = row.part.position.dtype
+            shapes = jax.eval_shape(row.element.transform, jnp.zeros((), dtype))
+            many = (n_elements(row.part.bearing),)
+            n, r = row.element.n_unknowns, shapes.shape[0]
+            return Near(
+                jnp.full((*many, n), jnp.nan, dtype),
+                jnp.zeros((*many, n, r), dtype),
+                jnp.zeros((*many, r), dtype),
             )
-            for row in self.rows
-        )
+
+        return tuple(unknown(row) for row in self.rows)
 
 
 def azimuths(bearing: Bearing, q: Ring) -> Float[Array, " element"]:

@@ -38,12 +38,26 @@ class LocalState(NamedTuple):
     responses: Any = ()
 
 
+class Near(NamedTuple):
+    """A rolling element solved at rings near by, from which it may start.
+
+    Attributes:
+        offset: Its unknowns less `AbstractModel.amid`, NaN if not known (n,) [m].
+        follow: How its unknowns follow the rings (n, r).
+        rings: Motion of both rings then (r,) [m, rad].
+    """
+
+    offset: Unknowns
+    follow: Float[Array, "n r"]
+    rings: Rings
+
+
 def solve_element(
     model: AbstractModel,
     rings: Rings,
     magnitude: Scalar,
     minimiser: AbstractMinimiser,
-    guess: Unknowns | None = None,
+    near: Near | None = None,
 ) -> LocalState:
     """Equilibrium of one rolling element in its own unknowns.
 
@@ -53,8 +67,7 @@ def solve_element(
         magnitude: Size of the displacements from which `rings` was computed, for
             the round-off floor of the residual [m].
         minimiser: Local solver.
-        guess: Its unknowns less `model.amid`, solved for rings near by, NaN if they
-            are not known; `None`: never known [m].
+        near: Its state at rings near by; `None`: not known.
 
     Returns:
         State whose `x` is differentiable, to every order, with respect to the model
@@ -74,7 +87,7 @@ def solve_element(
                 " operating angle have none. Use TrustRegionNewton()."
             )
         minimiser = TrustRegionNewton(minimiser.tolerance, minimiser.max_steps, False)
-    frozen = stop((model, rings, magnitude, guess))
+    frozen = stop((model, rings, magnitude, near))
     state = _solve(minimiser, *frozen)
 
     def residual(x, args):
@@ -148,7 +161,7 @@ def solved_derivatives(
     return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), d)
 
 
-def _solve(minimiser, model, rings, magnitude, guess):
+def _solve(minimiser, model, rings, magnitude, near):
     eps = jnp.finfo(rings.dtype).eps
 
     def function(x, with_hessian, *_):
@@ -168,9 +181,8 @@ def _solve(minimiser, model, rings, magnitude, guess):
 
     radius = model.reach(rings) + model.gap + 1e-6 * model.diameter
     start, centre = model.first(rings), model.amid(rings)
-    if guess is not None:
-        known = jnp.all(jnp.isfinite(guess))
-        start = jnp.where(known, centre + jnp.where(known, guess, 0.0), start)
+    if near is not None:
+        start = _followed(model, near, rings, start)
 
     def shape(x, step, size):
         return model.shape(rings, x, step, size)
@@ -200,6 +212,32 @@ def _solve(minimiser, model, rings, magnitude, guess):
         result,
         minimum.memory,
     )
+
+
+def _followed(model, near, rings, otherwise):
+    """Where an element gets to that follows the rings from near by."""
+    moved = rings - near.rings
+    step = near.follow @ moved
+    reach, length = model.reach(moved), norm(step)
+    # Barely held, it would go astray.
+    step = step * jnp.minimum(1.0, reach / jnp.where(length > 0, length, 1.0))
+    x = near.offset + model.amid(near.rings) + step
+    return jnp.where(jnp.all(jnp.isfinite(x)), x, otherwise)
+
+
+def near_by(model: AbstractModel, rings: Rings, state: LocalState, solved) -> Near:
+    """What a solve at rings near by may start from.
+
+    Args:
+        model, rings, state: As solved.
+        solved: Its `solved_derivatives`.
+    """
+    n = model.n_unknowns
+    h = solved.hessian
+    held = jnp.any(solved.contact_load > 0)
+    offset = jnp.where(held, state.x - model.amid(rings), jnp.nan)
+    follow = -solve(h[-n:, -n:], h[-n:, :-n], model.has_potential)
+    return stop(Near(offset, jnp.where(held, follow, 0.0), rings))
 
 
 def settle(state: LocalState, load: Scalar) -> LocalState:

@@ -211,10 +211,10 @@ def _solve(
     frozen = stop(args)
     symmetric = model.has_potential
 
-    def function(y, _, offsets):
+    def function(y, _, near):
         model, _, _, fixed, scale, free = frozen
         q = ring_freedoms(y, scale, fixed)
-        e = model.evaluate(q, model.solve(q, offsets))
+        e = model.evaluate(q, model.solve(q, near))
         g = free * (scale * e.force[moving])
         h = jnp.outer(free * scale, free * scale) * e.stiffness[moving, moving]
         trace = jnp.trace(h)
@@ -223,7 +223,7 @@ def _solve(
         # Round-off of forces that cancel, and of positions in a stiff bearing.
         noise = eps * (e.magnitude + trace * jnp.sqrt(y @ y))
         value = e.energy if symmetric else jnp.full_like(e.energy, jnp.nan)
-        return Evaluation(value, g, h, e.magnitude, noise, e.offsets)
+        return Evaluation(value, g, h, e.magnitude, noise, e.near)
 
     pull = free * stop(scale) * stop(load)
     size = jnp.sqrt(pull @ pull)
@@ -248,7 +248,7 @@ def _solve(
         direction,
         8.0 * stop(radius),
         pull=Pull(pull, factor),
-        memory=frozen[0].no_offsets(),
+        memory=frozen[0].nothing_near(),
         max_steps=max_steps,
     )
 

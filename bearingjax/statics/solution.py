@@ -9,6 +9,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel, Evaluated, Row, motions
+from ..element.equilibrium import Near
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
@@ -199,7 +200,7 @@ def describe(
     model: BearingModel,
     q: Ring,
     points: int,
-    offsets: tuple[Float[Array, "element n"], ...],
+    near: tuple[Near, ...],
 ) -> tuple[dict, Evaluated]:
     """All fields of a `Solution` that follow from the ring freedoms.
 
@@ -208,9 +209,9 @@ def describe(
         model: Its model at the speeds.
         q: Ring freedoms [m, rad].
         points: Positions along a roller.
-        offsets: `Evaluated.offsets` at q or near by.
+        near: `Evaluated.near` at q or near by.
     """
-    rows = model.solve(q, offsets)
+    rows = model.solve(q, near)
     evaluated = model.evaluate(q, rows)
     if element.point_law is not None:
         special = ball_results(rows, element.point_law)
