@@ -26,8 +26,8 @@ from .equilibrium import (
     Near,
     condensed_force,
     condensed_stiffness,
-    settle,
     near_by,
+    settle,
     solve_element,
     solved_derivatives,
 )
