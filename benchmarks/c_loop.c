@@ -1,6 +1,6 @@
 /* Force and stiffness of a cylindrical roller bearing, the algorithm of bearingjax.
 
-The yardstick of c_loop.py. Same mathematics as `BearingElement.evaluate` with
+The yardstick of single_call.py. Same mathematics as `BearingElement.evaluate` with
 linearised kinematics, `ContactMapped` quadrature, `TrustRegionNewton` and no ribs,
 written as a C programmer would for one bearing at a time: an open raceway is left after
 one comparison, an open roller after two; edges that lie at the roller's end are not

@@ -9,7 +9,8 @@ import pytest
 import robust_rollers
 
 FOLDER = Path(__file__).parent.parent.parent / "benchmarks"
-SCRIPTS = sorted(p.name for p in FOLDER.glob("*.py"))
+HELPERS = {"timing.py", "peers.py"}
+SCRIPTS = sorted({p.name for p in FOLDER.glob("*.py")} - HELPERS)
 
 
 def test_rollers_always_find_their_equilibrium():
@@ -35,7 +36,7 @@ def test_script_asks_a_question_and_explains_itself(script):
     assert done.returncode == 0 and "usage" in done.stdout
 
 
-@pytest.mark.parametrize("script", ["power.py", "c_loop.py", "ball_speed.py"])
+@pytest.mark.parametrize("script", ["power.py", "single_call.py", "ball_speed.py"])
 def test_smoke(script):
     if script != "power.py" and not any(map(shutil.which, ("cc", "gcc", "clang"))):
         pytest.skip("no C compiler")

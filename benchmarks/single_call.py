@@ -15,7 +15,7 @@ element as an argument, so that any design may come; and `jit` with the element 
 over (constants folded), as is and compiled ahead of time; and one bearing's share of a
 call with 256 motions, in chunks of 32, where the overhead of a call is shared.
 
-Run: python benchmarks/c_loop.py [--json] [--smoke]
+Run: python benchmarks/single_call.py [--json] [--smoke]
 
 Last run:
 
@@ -344,7 +344,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         library = compile_c(folder, element())
         if library is None:
-            print("c_loop: no C compiler (cc, gcc, clang); skipped.", file=sys.stderr)
+            print(
+                "single_call: no C compiler (cc, gcc, clang); skipped.", file=sys.stderr
+            )
             return 0
         results = {
             case: study(CLoop(library, el), el, q, rounds, block, jax_calls(el, q))
@@ -357,7 +359,7 @@ def main():
             show(case, result)
         print(f"\ngoal: hot ≤ {GOAL['hot']:g}, cold ≤ {GOAL['cold']:g}")
     if not agrees(results):
-        print("c_loop: C and JAX disagree.", file=sys.stderr)
+        print("single_call: C and JAX disagree.", file=sys.stderr)
         return 1
     return 0
 

@@ -10,7 +10,7 @@ ratios within one run count. Kernels: instructions of the compiled program outsi
 fusions, a loop's body counted once. Trace and compile: shortest of the repeats, nothing
 kept. Steps: most Newton steps of a roller.
 
-Run: python benchmarks/skip.py [--json] [--smoke]
+Run: python benchmarks/skip_what_is_absent.py [--json] [--smoke]
 
 Last run:
 
@@ -35,7 +35,6 @@ import random
 import re
 import sys
 import time
-from pathlib import Path
 from typing import NamedTuple
 
 import jax
@@ -45,6 +44,7 @@ jax.config.update("jax_enable_x64", True)
 import equinox as eqx  # noqa: E402
 import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
+from timing import processor  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 
@@ -215,15 +215,6 @@ def show(rows):
     print(f"\n{processor()}")
 
 
-def processor():
-    """Model of the processor."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return "processor unknown"
-    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", action="store_true", help="one line per result")
@@ -239,7 +230,7 @@ def main():
     else:
         show(rows)
     if any(r["result"] != "converged" for r in rows):
-        print("skip: a variant did not converge.", file=sys.stderr)
+        print("skip_what_is_absent: a variant did not converge.", file=sys.stderr)
         return 1
     return 0
 
