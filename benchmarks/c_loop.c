@@ -1,7 +1,7 @@
 /* Force and stiffness of a cylindrical roller bearing, the algorithm of bearingjax.
 
 The yardstick of single_call.py. Same mathematics as `BearingElement.evaluate` with
-linearised kinematics, `ContactMapped` quadrature, `TrustRegionNewton` and no ribs,
+linearised kinematics, `ContactMapped` or `Midpoint` quadrature, `TrustRegionNewton` and no ribs,
 written as a C programmer would for one bearing at a time: an open raceway is left after
 one comparison, an open roller after two; edges that lie at the roller's end are not
 searched for; Newton loops on the edges end when they have converged; the last
@@ -31,13 +31,16 @@ change no result. SI units: m, N, rad.
 #ifndef SCAN
 #define SCAN 25 /* fixed points on which the loaded zone is looked for */
 #endif
+#ifndef MIDPOINT
+#define MIDPOINT 0 /* 1: equal slices instead; the scan points are their middles */
+#endif
 #define CLIMB 4         /* most Newton steps to the maximum of the approach */
 #define REFINE 6        /* most Newton steps to an edge of the loaded zone */
 #define ENOUGH 1e-9     /* Newton step after which the next would be below round-off */
 #define MAX_STEPS 100   /* most trust-region steps */
 #define TOLERANCE 1e-13 /* force out of balance, relative to the contact loads */
 #define UNBALANCED 0.03 /* a loose roller's contacts do not cancel to this part */
-#define LOOSE 1e3       /* load of a loose roller against the guide's */
+#define LOOSE 1e2       /* load of a loose roller against the guide's */
 
 typedef struct {
     double n_rollers, constant, half_length, diameter, crown_radius, gap, guide;
@@ -171,6 +174,7 @@ static int loaded(const Contact *c, double *left, double *right)
     *left = -1.0;
     *right = 1.0;
     if (a + fabs(b) <= 0) return 0;
+    if (MIDPOINT) return 1;
     int at_start = a - b - fixed[0] > 0, at_end = a + b - fixed[last] > 0;
     if (at_start && at_end) return 1;
     for (int i = 0; i < SCAN; i++) f[i] = a + b * d->at[i] - fixed[i];
@@ -216,8 +220,10 @@ static inline void integrate(
 #pragma omp simd reduction(+ : e0, p0, p1, k0, k1, k2)
     for (int i = 0; i < POINTS; i++) {
         double xi = middle + half * d->tau[i], s = length * xi;
-        double x = a + b * xi - crown(s, r);
-        if (crowned) x -= crown(s, other);
+        double x = a + b * xi;
+        if (MIDPOINT) x -= c->fixed[i];
+        else x -= crown(s, r);
+        if (crowned && !MIDPOINT) x -= crown(s, other);
         double base = x > DBL_MIN ? x : DBL_MIN;
         double root = ninth_root(base);
         root = x > 0 ? root : 0.0;
@@ -524,6 +530,15 @@ void force_stiffness(
         add_share(d, c, s, f, k, sum, block);
     }
     spread(sum, block, force, stiffness);
+}
+
+/* The same at many ring freedoms (count, 12). */
+void batch(
+    int count, const Design *d, const double *q, double *force, double *stiffness)
+{
+    int steps;
+    for (int i = 0; i < count; i++)
+        force_stiffness(d, q + 12 * i, force + 12 * i, stiffness + 144 * i, &steps);
 }
 
 int design_size(void) { return (int)sizeof(Design); }

@@ -95,7 +95,7 @@ BATCH, CHUNK = 256, 32
 IN_BATCH = f"one of {BATCH} in a call"
 
 
-def element(**profiles):
+def element(quadrature=None, **profiles):
     """The bearing that is measured, with profiles of the raceways if wanted."""
     return bj.BearingElement(
         bj.CylindricalRollerBearing(
@@ -103,8 +103,15 @@ def element(**profiles):
             radial_internal_clearance=25e-6,
             roller_profile=bj.CircularCrown(1.0),
             **profiles,
-        )
+        ),
+        quadrature=quadrature,
     )  # fmt: skip
+
+
+UNLIKE = {
+    "outer_raceway_profile": bj.CircularCrown(2.0),
+    "inner_raceway_profile": bj.CircularCrown(6.0),
+}
 
 
 def cases():
@@ -112,10 +119,7 @@ def cases():
     load = jnp.array([RADIAL_LOAD, 0.0, 0.0, 0.0, 0.0, 0.0])
     tilted = {"gx": 0.3 * TILT, "gy": TILT}
     plain = element()
-    uneven = element(
-        outer_raceway_profile=bj.CircularCrown(2.0),
-        inner_raceway_profile=bj.CircularCrown(6.0),
-    )
+    uneven = element(**UNLIKE)
     return {
         "radial": (plain, bj.solve_load(plain, load).displacement),
         "misaligned": (
@@ -135,7 +139,7 @@ class CLoop:
     def __init__(self, library, el):
         constants = el.model().rows[0].element.constants
         quadrature, b = el.quadrature, el.bearing
-        line, table = constants.lines[0], constants.tables[0]
+        line = constants.lines[0]
         numbers = {
             "n_rollers": b.n_rollers,
             "constant": line.constant,
@@ -158,7 +162,7 @@ class CLoop:
         library.prepare(
             _pointer(np.array([float(numbers[name]) for name in NUMBERS])),
             *(_pointer(x) for x in quadrature.reference()),
-            _pointer(np.asarray(table[2])[0]),
+            _pointer(scan_points(el)),
             self.design,
         )
 
@@ -168,10 +172,21 @@ class CLoop:
         out = (_pointer(self.force), _pointer(self.stiffness))
         return self.design, _pointer(self.q), *out, ctypes.byref(self.steps)
 
+    def batch(self, q, force, stiffness):
+        """Force and stiffness of many cases, into arrays; other threads go on."""
+        self.loop.batch(len(q), self.design, *map(_pointer, (q, force, stiffness)))
+
     def results(self, q):
         """Force [N, N m], stiffness and most steps of a roller."""
         self.loop.force_stiffness(*self.arguments(q))
         return self.force.copy(), self.stiffness.copy(), self.steps.value
+
+
+def scan_points(el):
+    """Where C looks for the loaded zone; of equal slices their middles."""
+    if isinstance(el.quadrature, bj.Midpoint):
+        return el.quadrature.reference()[0]
+    return np.asarray(el.model().rows[0].element.constants.tables[0][2])[0]
 
 
 def _pointer(array):
@@ -188,10 +203,15 @@ def compile_c(folder, el):
     """Shared library from `c_loop.c`, or `None` without a compiler."""
     if compiler() is None:
         return None
-    scan = el.model().rows[0].element.constants.tables[0][2].shape[1]
-    sizes = [f"-DPOINTS={el.quadrature.points}", f"-DSCAN={scan}"]
-    target = os.path.join(folder, "c_loop.so")
-    command = [compiler(), *FLAGS, *sizes, "-o", target, str(SOURCE), "-lm"]
+    rule = el.quadrature
+    sizes = {
+        "POINTS": rule.points,
+        "SCAN": len(scan_points(el)),
+        "MIDPOINT": int(isinstance(rule, bj.Midpoint)),
+    }
+    target = os.path.join(folder, f"c_{type(rule).__name__}.so")
+    given = [f"-D{name}={value}" for name, value in sizes.items()]
+    command = [compiler(), *FLAGS, *given, "-o", target, str(SOURCE), "-lm"]
     subprocess.run(command, check=True)
     return ctypes.CDLL(target)
 

@@ -40,19 +40,21 @@ def timed(call: Callable[[], Any]) -> tuple[float, Any]:
 
 
 def shuffled(
-    calls: dict[str, Callable[[], Any]], rounds: int, seed: int = 0
-) -> dict[str, list[float]]:
-    """Seconds of every call, in shuffled order, each warm from a call before.
+    calls: dict[Any, Callable[[], Any]], rounds: int, seed: int = 0, warm: bool = True
+) -> dict[Any, list[float]]:
+    """Seconds of every call, in shuffled order.
 
     Args:
         calls: By name; compiled.
         rounds: How often each is timed.
         seed: Of the order.
+        warm: Whether each is called once before.
     """
     rng = random.Random(seed)
-    found: dict[str, list[float]] = {name: [] for name in calls}
-    for call in calls.values():
-        timed(call)
+    found: dict[Any, list[float]] = {name: [] for name in calls}
+    if warm:
+        for call in calls.values():
+            timed(call)
     order = list(calls)
     for _ in range(rounds):
         rng.shuffle(order)
