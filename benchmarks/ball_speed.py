@@ -4,9 +4,9 @@ An angular contact bearing with 16 balls under axial, combined and radial load w
 tilt. `c_ball.c` is the same algorithm, compiled on demand; its result is checked
 against JAX. Variants and clocks as in `single_call.py`; here the constants of the
 contacts are known ("model given"), or worked out in every call ("filter_jit"). In the
-same table: a call of ROSS's `BallBearingElement`, a closed formula for the radial stiffness
-of a deep groove bearing, beside ours for the bearing that the formula is about; its
-"error" is its stiffness against ours. ROSS is timed if it can be imported.
+same table: a call of ROSS's `BallBearingElement`, a closed formula for the radial
+stiffness of a deep groove bearing, beside ours for the bearing that the formula is
+about; its "error" is its stiffness against ours. ROSS is timed if it can be imported.
 
 Run: python benchmarks/ball_speed.py [--json] [--smoke]
 

@@ -181,13 +181,13 @@ def beside_peers(sizes, chunk, device, folder):
     count = sizes["peers"]
     if not count:
         return []
-    element = single_call.element(RULES["midpoint"], **single_call.UNLIKE)
+    element = single_call.element(RULES["midpoint"], **single_call.unlike())
     c = single_call.CLoop(single_call.compile_c(folder, element), element)
     ours = Ours(element, chunk, [device])
     bearing = peers.plain(element, RULES["midpoint"].points)
-    q, few = motions(BLOCK[device.platform]), motions(4)
+    q = motions(BLOCK[device.platform])
     want, by_c = room(len(q)), room(len(q))
-    small = q[:count]
+    small, few = q[:count], q[:4]
     calls = {
         "ours": (lambda: ours(q, want), len(q)),
         "C": (lambda: c.batch(q, *by_c), len(q)),

@@ -381,13 +381,13 @@ static double newton_step(const Evaluation *now, double radius, double *p)
     return -part * length;
 }
 
-/* Equilibrium of one roller from x = 0; returns the evaluations after the first. */
+/* Equilibrium of one roller from x, where it is left; returns the evaluations
+after the first. */
 static int solve_roller(
-    const Design *d, const double *start, double magnitude, double radius,
+    const Design *d, const double *start, double magnitude, double radius, double *x,
     Evaluation *state)
 {
     Evaluation buffer, *now = state, *new = &buffer;
-    double x[3] = {0, 0, 0};
     int steps = 0, stalled = 0;
     evaluate(d, start, magnitude, x, now);
     while (!now->loose && now->size > TOLERANCE * now->scale + now->noise
@@ -405,7 +405,7 @@ static int solve_roller(
             Evaluation *old = now;
             now = new;
             new = old;
-            memcpy(x, there, sizeof x);
+            memcpy(x, there, sizeof there);
         } else {
             double bend = fmax(form(new->h, p), DBL_MIN);
             double part = 1.0 - dot3(new->g, p) / bend;
@@ -495,11 +495,24 @@ static void spread(
     }
 }
 
+/* How the rollers fared: energy, sizes of what they pass to the rings, most steps. */
+typedef struct {
+    double energy, magnitude;
+    int steps;
+} Course;
+
+/* Where a roller was found, if it was. */
+typedef struct {
+    double x[3];
+    int known;
+} Place;
+
 /* Force (12) and stiffness (12, 12) at ring freedoms q (12), outer then inner ring.
 
-`steps` gets the most evaluations that a roller took after its first. */
-void force_stiffness(
-    const Design *d, const double *q, double *force, double *stiffness, int *steps)
+`places` (n_rollers) are where rollers start, and where they end; NULL: from 0. */
+static void bearing(
+    const Design *d, const double *q, Place *places, double *force, double *stiffness,
+    Course *course)
 {
     const Numbers *n = &d->n;
     const double magnitude = magnitude_of(d, q);
@@ -507,7 +520,7 @@ void force_stiffness(
     const double first = n->first_azimuth
         + 0.5 * ((1.0 - n->ratio) * q[11] + (1.0 + n->ratio) * q[5]);
     double y[6], sum[6] = {0}, block[6][6] = {{0}};
-    *steps = 0;
+    memset(course, 0, sizeof *course);
     for (int i = 0; i < 6; i++) y[i] = q[i] - q[6 + i];
     for (int l = 0; l < (int)n->n_rollers; l++) {
         const double c = cos(first + l * pitch), s = sin(first + l * pitch);
@@ -523,13 +536,30 @@ void force_stiffness(
         const double radius = fabs(between[0]) + fabs(between[1])
             + fabs(between[2]) * n->half_length + fabs(n->gap) + 1e-6 * n->diameter;
         Evaluation state;
-        int taken = solve_roller(d, start, magnitude, radius, &state);
-        *steps = taken > *steps ? taken : *steps;
+        double x[3] = {0, 0, 0};
+        if (places && places[l].known) memcpy(x, places[l].x, sizeof x);
+        int taken = solve_roller(d, start, magnitude, radius, x, &state);
+        course->steps = taken > course->steps ? taken : course->steps;
+        if (places) {
+            memcpy(places[l].x, x, sizeof x);
+            places[l].known = !state.loose;
+        }
         if (state.loose) continue;
         condense(d, &state, f, k);
+        course->energy += state.value;
+        course->magnitude += 2.0 * (fabs(f[0]) + fabs(f[1]));
         add_share(d, c, s, f, k, sum, block);
     }
     spread(sum, block, force, stiffness);
+}
+
+/* The same; `steps` gets the most evaluations of a roller after its first. */
+void force_stiffness(
+    const Design *d, const double *q, double *force, double *stiffness, int *steps)
+{
+    Course course;
+    bearing(d, q, NULL, force, stiffness, &course);
+    *steps = course.steps;
 }
 
 /* The same at many ring freedoms (count, 12). */

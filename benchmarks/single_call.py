@@ -108,10 +108,12 @@ def element(quadrature=None, **profiles):
     )  # fmt: skip
 
 
-UNLIKE = {
-    "outer_raceway_profile": bj.CircularCrown(2.0),
-    "inner_raceway_profile": bj.CircularCrown(6.0),
-}
+def unlike():
+    """Profiles of raceways between which a roller does not rest midway."""
+    return {
+        "outer_raceway_profile": bj.CircularCrown(2.0),
+        "inner_raceway_profile": bj.CircularCrown(6.0),
+    }
 
 
 def cases():
@@ -119,7 +121,7 @@ def cases():
     load = jnp.array([RADIAL_LOAD, 0.0, 0.0, 0.0, 0.0, 0.0])
     tilted = {"gx": 0.3 * TILT, "gy": TILT}
     plain = element()
-    uneven = element(**UNLIKE)
+    uneven = element(**unlike())
     return {
         "radial": (plain, bj.solve_load(plain, load).displacement),
         "misaligned": (
@@ -160,21 +162,21 @@ class CLoop:
         library.repeat.restype = ctypes.c_double
         self.design = ctypes.create_string_buffer(library.design_size())
         library.prepare(
-            _pointer(np.array([float(numbers[name]) for name in NUMBERS])),
-            *(_pointer(x) for x in quadrature.reference()),
-            _pointer(scan_points(el)),
+            pointer(np.array([float(numbers[name]) for name in NUMBERS])),
+            *(pointer(x) for x in quadrature.reference()),
+            pointer(scan_points(el)),
             self.design,
         )
 
     def arguments(self, q):
         """What a C call takes; results land in `force` and `stiffness`."""
         self.q = np.array(q)
-        out = (_pointer(self.force), _pointer(self.stiffness))
-        return self.design, _pointer(self.q), *out, ctypes.byref(self.steps)
+        out = (pointer(self.force), pointer(self.stiffness))
+        return self.design, pointer(self.q), *out, ctypes.byref(self.steps)
 
     def batch(self, q, force, stiffness):
         """Force and stiffness of many cases, into arrays; other threads go on."""
-        self.loop.batch(len(q), self.design, *map(_pointer, (q, force, stiffness)))
+        self.loop.batch(len(q), self.design, *map(pointer, (q, force, stiffness)))
 
     def results(self, q):
         """Force [N, N m], stiffness and most steps of a roller."""
@@ -189,7 +191,8 @@ def scan_points(el):
     return np.asarray(el.model().rows[0].element.constants.tables[0][2])[0]
 
 
-def _pointer(array):
+def pointer(array):
+    """What ctypes hands over for an array of real numbers."""
     array = np.ascontiguousarray(array, dtype=np.float64)
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
@@ -199,7 +202,7 @@ def compiler():
     return next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
 
 
-def compile_c(folder, el):
+def compile_c(folder, el, source=SOURCE):
     """Shared library from `c_loop.c`, or `None` without a compiler."""
     if compiler() is None:
         return None
@@ -209,9 +212,9 @@ def compile_c(folder, el):
         "SCAN": len(scan_points(el)),
         "MIDPOINT": int(isinstance(rule, bj.Midpoint)),
     }
-    target = os.path.join(folder, f"c_{type(rule).__name__}.so")
+    target = os.path.join(folder, f"{source.stem}_{type(rule).__name__}.so")
     given = [f"-D{name}={value}" for name, value in sizes.items()]
-    command = [compiler(), *FLAGS, *given, "-o", target, str(SOURCE), "-lm"]
+    command = [compiler(), *FLAGS, *given, "-o", target, str(source), "-lm"]
     subprocess.run(command, check=True)
     return ctypes.CDLL(target)
 

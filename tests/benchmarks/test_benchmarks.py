@@ -36,7 +36,12 @@ def test_script_asks_a_question_and_explains_itself(script):
     assert done.returncode == 0 and "usage" in done.stdout
 
 
-NEED_C = {"single_call.py", "ball_speed.py", "batch_throughput.py"}
+NEED_C = {
+    "single_call.py",
+    "ball_speed.py",
+    "batch_throughput.py",
+    "load_solve_throughput.py",
+}
 
 
 @pytest.mark.parametrize("script", ["power.py", *sorted(NEED_C)])
