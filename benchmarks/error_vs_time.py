@@ -231,7 +231,9 @@ def show(rows, doubt):
     for target in TARGETS[1:]:
         reached = price(rows, "mapped", target) is not None
         print(f"{target:g} in stiffness reached: {'met' if reached else 'MISSED'}")
-    print(f"\nreference and {REFERENCE} mapped nodes differ by {doubt:.0e}; {machine()}")
+    print(
+        f"\nreference and {REFERENCE} mapped nodes differ by {doubt:.0e}; {machine()}"
+    )
 
 
 def plot(rows, target):

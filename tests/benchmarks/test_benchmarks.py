@@ -44,7 +44,10 @@ NEED_C = {
 }
 
 
-@pytest.mark.parametrize("script", ["power.py", *sorted(NEED_C)])
+PLAIN = ("power.py", "error_vs_time.py", "gradient_cost.py", "robust_sweep.py")
+
+
+@pytest.mark.parametrize("script", [*PLAIN, *sorted(NEED_C)])
 def test_smoke(script):
     if script in NEED_C and not any(map(shutil.which, ("cc", "gcc", "clang"))):
         pytest.skip("no C compiler")
