@@ -193,8 +193,7 @@ def plot(rows, teeth, target):
     right.set_ylabel("N/m²")
     if teeth:
         smooth = teeth["mapped nodes, 32"]
-        middle, room = np.mean(smooth), np.ptp(smooth) + abs(np.mean(smooth))
-        right.set_ylim(middle - 2 * room, middle + 2 * room)
+        right.set_ylim(0.0, 2.5 * np.max(smooth))
     for axis in (left, right):
         axis.legend(frameon=False)
         axis.grid(alpha=0.3)

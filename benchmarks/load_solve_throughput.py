@@ -10,8 +10,8 @@ Ours is `bj.sweep` on one core. Beside it on that core, in shuffled order: C wit
 same algorithm (`c_load.c`; it leaves open rollers out, and solves one case at a time),
 and a loop of `scipy.optimize.root` from first contact, which calls our compiled force
 and stiffness, or a NumPy bearing (`peers.py`, slices). Error: of the displacement,
-relative to its largest of all cases, against C. A SciPy answer counts as failed if SciPy
-says so.
+relative to its largest of all cases, against C. A SciPy answer counts as failed if
+SciPy says so.
 
 Run: python benchmarks/load_solve_throughput.py [--json] [--smoke]
 

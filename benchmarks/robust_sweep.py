@@ -1,10 +1,10 @@
 """Does a bad case spoil a sweep? A million loads and speeds, one in a hundred bad.
 
 A cylindrical roller bearing (NU) under random loads, 1e2 to 1e5 N, at random speeds, on
-two host devices. The bad cases: a load that is not a number, or infinite; an axial load,
-which an NU does not carry; a load far beyond all bearings; an absurd speed; a speed that
-is not a number. All good cases must be solved (residual of each; a random sample is
-solved again, one by one, and compared), all bad ones must say so.
+two host devices. The bad cases: a load that is not a number, or infinite; an axial
+load, which an NU does not carry; a load far beyond all bearings; an absurd speed; a
+speed that is not a number. All good cases must be solved (residual of each; a random
+sample is solved again, one by one, and compared), all bad ones must say so.
 
 Then what bad cases cost the good ones in their chunks: time of a smaller sweep without
 any, and with one in a hundred of each kind, in shuffled order.
@@ -160,9 +160,10 @@ def figures(found, held):
 
 
 def show(found, held):
+    seconds, count = found["seconds"], found["cases"]
     print(
-        f"{found['cases']} cases, {len(jax.devices())} devices: {found['seconds']:.1f} s"
-        f" with compiling, {1e6 * found['seconds'] / found['cases']:.0f} µs each\n\n"
+        f"{count} cases, {len(jax.devices())} devices: {seconds:.1f} s with compiling,"
+        f" {1e6 * seconds / count:.0f} µs each\n\n"
         f"{'':20}{'cases':>9}{'steps':>7}{'most':>6}{'µs/case with 1 %':>18}  results"
     )
     for r in found["rows"]:

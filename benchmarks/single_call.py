@@ -15,6 +15,10 @@ element as an argument, so that any design may come; and `jit` with the element 
 over (constants folded), as is and compiled ahead of time; and one bearing's share of a
 call with 256 motions, in chunks of 32, where the overhead of a call is shared.
 
+Then the third case with 32 slices, as others would solve it (`peers.py`): NumPy,
+`scipy.optimize.root`, `jax.scipy` BFGS and `optimistix.BFGS`, one of each per roller
+and all from midway; median of a call, first call (which compiles) apart.
+
 Run: python benchmarks/single_call.py [--json] [--smoke]
 
 Last run:
@@ -74,6 +78,8 @@ jax.config.update("jax_enable_x64", True)
 import equinox as eqx  # noqa: E402
 import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
+import peers  # noqa: E402
+from timing import machine, relative, shuffled, timed  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 
@@ -327,6 +333,50 @@ def study(c, el, q, rounds, block, calls):
     return {"steps": steps, "jax_steps": int(el.evaluate(q).steps), "rows": rows}
 
 
+def beside_peers(library, el, q, rounds):
+    """Rows: the same bearing with slices as others would solve it."""
+    c, model = CLoop(library, el), el.model()
+    ours = jax.jit(functools.partial(both, model))
+    bearing = peers.plain(el, el.quadrature.points)
+    solvers = {
+        "NumPy": peers.with_numpy(bearing),
+        "SciPy root": peers.with_scipy(bearing),
+        "jax.scipy BFGS": peers.with_jax_bfgs(bearing),
+        "optimistix BFGS": peers.with_optimistix(bearing),
+    }
+    calls = {C_CALL: lambda: c.results(q)[:2], "ours": lambda: ours(q)}
+    for name, solver in solvers.items():
+        if solver is None:
+            print(f"{name} is not installed: not timed.", file=sys.stderr)
+        else:
+            calls[name] = lambda solver=solver: [x[0] for x in solver(q[None])]
+    first = {name: timed(call) for name, call in calls.items()}
+    times = shuffled(calls, rounds, warm=False)
+    want = first[C_CALL][1]
+    return [
+        {
+            "solver": name,
+            "us": 1e6 * float(np.median(times[name])),
+            "first_s": seconds,
+            "error_force": relative(got[0], want[0]),
+            "error_stiffness": relative(got[1], want[1]),
+        }
+        for name, (seconds, got) in first.items()
+    ]
+
+
+def show_peers(rows):
+    print(
+        f"\n{'raceways unlike, 32 slices':28}{'µs':>10}{'ratio':>8}{'first, s':>10}"
+        f"{'error: force':>14}{'stiffness':>11}"
+    )
+    for r in rows:
+        print(
+            f"{r['solver']:28}{r['us']:10.1f}{r['us'] / rows[1]['us']:8.2f}"
+            f"{r['first_s']:10.2f}{r['error_force']:14.0e}{r['error_stiffness']:11.0e}"
+        )
+
+
 def show(case, result):
     print(f"\n{case}: most steps {result['steps']} (JAX {result['jax_steps']})")
     print(
@@ -375,12 +425,18 @@ def main():
             case: study(CLoop(library, el), el, q, rounds, block, jax_calls(el, q))
             for case, (el, q) in cases().items()
         }
+        sliced = element(bj.Midpoint(32), **unlike())
+        *_, (_, q) = cases().values()
+        others = beside_peers(compile_c(folder, sliced), sliced, q, rounds)
     if args.json:
-        print(json.dumps({"goal": GOAL, "agrees": agrees(results), "cases": results}))
+        report = {"goal": GOAL, "agrees": agrees(results), "cases": results}
+        print(json.dumps(report | {"peers": others}))
     else:
         for case, result in results.items():
             show(case, result)
         print(f"\ngoal: hot ≤ {GOAL['hot']:g}, cold ≤ {GOAL['cold']:g}")
+        show_peers(others)
+        print(f"\n{machine()}")
     if not agrees(results):
         print("single_call: C and JAX disagree.", file=sys.stderr)
         return 1
