@@ -45,7 +45,7 @@ RESIDUAL = 1e-8
 AGREEMENT = 1e-9  # of a displacement, relative to the largest of the case
 GOALS = {"wrong": 0, "missed": 0, "hold": 1.1, "memory": 2.0}
 SAMPLE = 50
-TIMED = 2048
+TIMED = 1024
 SMOKE = {"sample": 2, "timed": 0}
 
 
