@@ -2,11 +2,11 @@
 
 An angular contact bearing with 16 balls under axial, combined and radial load with a
 tilt. `c_ball.c` is the same algorithm, compiled on demand; its result is checked
-against JAX. Variants and clocks as in `c_loop.py`; here the constants of the contacts
-are known ("model given"), or worked out in every call ("filter_jit"). In the same
-table: a call of ROSS's `BallBearingElement`, a closed formula for the radial stiffness
-of a deep groove bearing, beside ours for the bearing that the formula is about; its
-"error" is its stiffness against ours. ROSS is timed if it can be imported.
+against JAX. Variants and clocks as in `single_call.py`; here the constants of the
+contacts are known ("model given"), or worked out in every call ("filter_jit"). In the
+same table: a call of ROSS's `BallBearingElement`, a closed formula for the radial
+stiffness of a deep groove bearing, beside ours for the bearing that the formula is
+about; its "error" is its stiffness against ours. ROSS is timed if it can be imported.
 
 Run: python benchmarks/ball_speed.py [--json] [--smoke]
 
@@ -69,10 +69,10 @@ import jax
 
 jax.config.update("jax_enable_x64", True)
 
-import c_loop  # noqa: E402
 import equinox as eqx  # noqa: E402
 import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
+import single_call  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 
@@ -131,20 +131,20 @@ class CBall:
 
 def compile_c(folder):
     """Shared library from `c_ball.c`, or `None` without a compiler."""
-    compiler = c_loop.compiler()
+    compiler = single_call.compiler()
     if compiler is None:
         return None
     target = str(Path(folder) / "c_ball.so")
-    command = [compiler, *c_loop.FLAGS, "-o", target, str(SOURCE), "-lm"]
+    command = [compiler, *single_call.FLAGS, "-o", target, str(SOURCE), "-lm"]
     subprocess.run(command, check=True)
     return ctypes.CDLL(target)
 
 
 def calls_of(el, q):
     """The JAX variants: name -> function of q."""
-    filtered = eqx.filter_jit(c_loop.both)
+    filtered = eqx.filter_jit(single_call.both)
     model = el.model()
-    given = jax.jit(lambda q: c_loop.both(model, q))
+    given = jax.jit(lambda q: single_call.both(model, q))
     return {
         "filter_jit(element, q)": lambda q: filtered(el, q),
         "jit(q), model given": given,
@@ -189,7 +189,7 @@ def beside_ross(rounds, block):
     if call is None:
         return None
     model = el.model()
-    given = jax.jit(lambda q: c_loop.both(model, q))
+    given = jax.jit(lambda q: single_call.both(model, q))
     load = jax.jit(
         lambda f: (
             bj.solve_load(
@@ -239,15 +239,15 @@ def main():
             q = bj.solve_load(el, load, prescribed=tilt).displacement
             calls = calls_of(el, q)
             c = CBall(library, el)
-            results[name] = c_loop.study(c, el, q, rounds, block, calls)
+            results[name] = single_call.study(c, el, q, rounds, block, calls)
     formula = beside_ross(rounds, block)
-    agrees = c_loop.agrees(results)
+    agrees = single_call.agrees(results)
     if args.json:
         report = {"goal": GOAL, "agrees": agrees, "cases": results, "ross": formula}
         print(json.dumps(report))
     else:
         for name, result in results.items():
-            c_loop.show(name, result)
+            single_call.show(name, result)
         print(f"\ngoal: hot ≤ {GOAL['hot']:g}, in a batch ≤ {GOAL['batch']:.2f}")
         if formula is None:
             print("\nROSS is not installed: its formula is not timed.")

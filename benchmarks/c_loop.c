@@ -1,7 +1,7 @@
 /* Force and stiffness of a cylindrical roller bearing, the algorithm of bearingjax.
 
-The yardstick of c_loop.py. Same mathematics as `BearingElement.evaluate` with
-linearised kinematics, `ContactMapped` quadrature, `TrustRegionNewton` and no ribs,
+The yardstick of single_call.py. Same mathematics as `BearingElement.evaluate` with
+linearised kinematics, `ContactMapped` or `Midpoint` quadrature, `TrustRegionNewton` and no ribs,
 written as a C programmer would for one bearing at a time: an open raceway is left after
 one comparison, an open roller after two; edges that lie at the roller's end are not
 searched for; Newton loops on the edges end when they have converged; the last
@@ -31,13 +31,16 @@ change no result. SI units: m, N, rad.
 #ifndef SCAN
 #define SCAN 25 /* fixed points on which the loaded zone is looked for */
 #endif
+#ifndef MIDPOINT
+#define MIDPOINT 0 /* 1: equal slices instead; the scan points are their middles */
+#endif
 #define CLIMB 4         /* most Newton steps to the maximum of the approach */
 #define REFINE 6        /* most Newton steps to an edge of the loaded zone */
 #define ENOUGH 1e-9     /* Newton step after which the next would be below round-off */
 #define MAX_STEPS 100   /* most trust-region steps */
 #define TOLERANCE 1e-13 /* force out of balance, relative to the contact loads */
 #define UNBALANCED 0.03 /* a loose roller's contacts do not cancel to this part */
-#define LOOSE 1e3       /* load of a loose roller against the guide's */
+#define LOOSE 1e2       /* load of a loose roller against the guide's */
 
 typedef struct {
     double n_rollers, constant, half_length, diameter, crown_radius, gap, guide;
@@ -171,6 +174,7 @@ static int loaded(const Contact *c, double *left, double *right)
     *left = -1.0;
     *right = 1.0;
     if (a + fabs(b) <= 0) return 0;
+    if (MIDPOINT) return 1;
     int at_start = a - b - fixed[0] > 0, at_end = a + b - fixed[last] > 0;
     if (at_start && at_end) return 1;
     for (int i = 0; i < SCAN; i++) f[i] = a + b * d->at[i] - fixed[i];
@@ -216,8 +220,10 @@ static inline void integrate(
 #pragma omp simd reduction(+ : e0, p0, p1, k0, k1, k2)
     for (int i = 0; i < POINTS; i++) {
         double xi = middle + half * d->tau[i], s = length * xi;
-        double x = a + b * xi - crown(s, r);
-        if (crowned) x -= crown(s, other);
+        double x = a + b * xi;
+        if (MIDPOINT) x -= c->fixed[i];
+        else x -= crown(s, r);
+        if (crowned && !MIDPOINT) x -= crown(s, other);
         double base = x > DBL_MIN ? x : DBL_MIN;
         double root = ninth_root(base);
         root = x > 0 ? root : 0.0;
@@ -375,13 +381,13 @@ static double newton_step(const Evaluation *now, double radius, double *p)
     return -part * length;
 }
 
-/* Equilibrium of one roller from x = 0; returns the evaluations after the first. */
+/* Equilibrium of one roller from x, where it is left; returns the evaluations
+after the first. */
 static int solve_roller(
-    const Design *d, const double *start, double magnitude, double radius,
+    const Design *d, const double *start, double magnitude, double radius, double *x,
     Evaluation *state)
 {
     Evaluation buffer, *now = state, *new = &buffer;
-    double x[3] = {0, 0, 0};
     int steps = 0, stalled = 0;
     evaluate(d, start, magnitude, x, now);
     while (!now->loose && now->size > TOLERANCE * now->scale + now->noise
@@ -399,7 +405,7 @@ static int solve_roller(
             Evaluation *old = now;
             now = new;
             new = old;
-            memcpy(x, there, sizeof x);
+            memcpy(x, there, sizeof there);
         } else {
             double bend = fmax(form(new->h, p), DBL_MIN);
             double part = 1.0 - dot3(new->g, p) / bend;
@@ -489,11 +495,24 @@ static void spread(
     }
 }
 
+/* How the rollers fared: energy, sizes of what they pass to the rings, most steps. */
+typedef struct {
+    double energy, magnitude;
+    int steps;
+} Course;
+
+/* Where a roller was found, if it was. */
+typedef struct {
+    double x[3];
+    int known;
+} Place;
+
 /* Force (12) and stiffness (12, 12) at ring freedoms q (12), outer then inner ring.
 
-`steps` gets the most evaluations that a roller took after its first. */
-void force_stiffness(
-    const Design *d, const double *q, double *force, double *stiffness, int *steps)
+`places` (n_rollers) are where rollers start, and where they end; NULL: from 0. */
+static void bearing(
+    const Design *d, const double *q, Place *places, double *force, double *stiffness,
+    Course *course)
 {
     const Numbers *n = &d->n;
     const double magnitude = magnitude_of(d, q);
@@ -501,7 +520,7 @@ void force_stiffness(
     const double first = n->first_azimuth
         + 0.5 * ((1.0 - n->ratio) * q[11] + (1.0 + n->ratio) * q[5]);
     double y[6], sum[6] = {0}, block[6][6] = {{0}};
-    *steps = 0;
+    memset(course, 0, sizeof *course);
     for (int i = 0; i < 6; i++) y[i] = q[i] - q[6 + i];
     for (int l = 0; l < (int)n->n_rollers; l++) {
         const double c = cos(first + l * pitch), s = sin(first + l * pitch);
@@ -517,13 +536,39 @@ void force_stiffness(
         const double radius = fabs(between[0]) + fabs(between[1])
             + fabs(between[2]) * n->half_length + fabs(n->gap) + 1e-6 * n->diameter;
         Evaluation state;
-        int taken = solve_roller(d, start, magnitude, radius, &state);
-        *steps = taken > *steps ? taken : *steps;
+        double x[3] = {0, 0, 0};
+        if (places && places[l].known) memcpy(x, places[l].x, sizeof x);
+        int taken = solve_roller(d, start, magnitude, radius, x, &state);
+        course->steps = taken > course->steps ? taken : course->steps;
+        if (places) {
+            memcpy(places[l].x, x, sizeof x);
+            places[l].known = !state.loose;
+        }
         if (state.loose) continue;
         condense(d, &state, f, k);
+        course->energy += state.value;
+        course->magnitude += 2.0 * (fabs(f[0]) + fabs(f[1]));
         add_share(d, c, s, f, k, sum, block);
     }
     spread(sum, block, force, stiffness);
+}
+
+/* The same; `steps` gets the most evaluations of a roller after its first. */
+void force_stiffness(
+    const Design *d, const double *q, double *force, double *stiffness, int *steps)
+{
+    Course course;
+    bearing(d, q, NULL, force, stiffness, &course);
+    *steps = course.steps;
+}
+
+/* The same at many ring freedoms (count, 12). */
+void batch(
+    int count, const Design *d, const double *q, double *force, double *stiffness)
+{
+    int steps;
+    for (int i = 0; i < count; i++)
+        force_stiffness(d, q + 12 * i, force + 12 * i, stiffness + 144 * i, &steps);
 }
 
 int design_size(void) { return (int)sizeof(Design); }

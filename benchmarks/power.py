@@ -41,7 +41,6 @@ import json
 import random
 import sys
 import time
-from pathlib import Path
 
 import jax
 
@@ -49,6 +48,7 @@ jax.config.update("jax_enable_x64", True)
 
 import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
+from timing import processor  # noqa: E402
 
 from bearingjax.numerics import ninth_root  # noqa: E402
 
@@ -156,15 +156,6 @@ def show(rows):
             + ("" if r["error"] is None else f"{r['error']:10.0e}")
         )
     print(f"\n{processor()}")
-
-
-def processor():
-    """Model of the processor."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return "processor unknown"
-    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
 
 
 def main():

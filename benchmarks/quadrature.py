@@ -51,6 +51,7 @@ import numpy as np  # noqa: E402
 import oracle  # noqa: E402
 from from_oracle import bearing  # noqa: E402
 from test_against_oracle import errors  # noqa: E402
+from timing import processor  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 
@@ -196,15 +197,6 @@ def show(rows):
 
 def _rows_of(rows, label):
     return [r for r in rows if r["profile"] == label]
-
-
-def processor():
-    """Model of the processor."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return "processor unknown"
-    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
 
 
 def plot(rows, target):

@@ -9,7 +9,8 @@ import pytest
 import robust_rollers
 
 FOLDER = Path(__file__).parent.parent.parent / "benchmarks"
-SCRIPTS = sorted(p.name for p in FOLDER.glob("*.py"))
+HELPERS = {"timing.py", "peers.py"}
+SCRIPTS = sorted({p.name for p in FOLDER.glob("*.py")} - HELPERS)
 
 
 def test_rollers_always_find_their_equilibrium():
@@ -35,9 +36,20 @@ def test_script_asks_a_question_and_explains_itself(script):
     assert done.returncode == 0 and "usage" in done.stdout
 
 
-@pytest.mark.parametrize("script", ["power.py", "c_loop.py", "ball_speed.py"])
+NEED_C = {
+    "single_call.py",
+    "ball_speed.py",
+    "batch_throughput.py",
+    "load_solve_throughput.py",
+}
+
+
+PLAIN = ("power.py", "error_vs_time.py", "gradient_cost.py", "robust_sweep.py")
+
+
+@pytest.mark.parametrize("script", [*PLAIN, *sorted(NEED_C)])
 def test_smoke(script):
-    if script != "power.py" and not any(map(shutil.which, ("cc", "gcc", "clang"))):
+    if script in NEED_C and not any(map(shutil.which, ("cc", "gcc", "clang"))):
         pytest.skip("no C compiler")
     command = [sys.executable, str(FOLDER / script), "--smoke", "--json"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)

@@ -7,7 +7,7 @@ whole, by the clock outside: once with an empty cache of compiled programs, then
 again. Medians of the repeats, and of the processor time (both cores: above the wall
 time where the compiler has both, below it where others use the machine).
 
-Run: python benchmarks/first_call.py [--json] [--smoke] [--repeats N]
+Run: python benchmarks/compile_time.py [--json] [--smoke] [--repeats N]
 
 Last run:
 
@@ -38,9 +38,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from pathlib import Path
 
 import numpy as np
+from timing import processor
 
 GOALS = {
     "first force and stiffness": 4.0,
@@ -158,15 +158,6 @@ def show(rows, repeats, load):
         f"\n{repeats} repeats; {processor()}, {os.cpu_count()} cores,"
         f" load average before {load:.1f}"
     )
-
-
-def processor():
-    """Model of the processor."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return "processor unknown"
-    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
 
 
 def main():

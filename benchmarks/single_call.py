@@ -15,7 +15,11 @@ element as an argument, so that any design may come; and `jit` with the element 
 over (constants folded), as is and compiled ahead of time; and one bearing's share of a
 call with 256 motions, in chunks of 32, where the overhead of a call is shared.
 
-Run: python benchmarks/c_loop.py [--json] [--smoke]
+Then the third case with 32 slices, as others would solve it (`peers.py`): NumPy,
+`scipy.optimize.root`, `jax.scipy` BFGS and `optimistix.BFGS`, one of each per roller
+and all from midway; median of a call, first call (which compiles) apart.
+
+Run: python benchmarks/single_call.py [--json] [--smoke]
 
 Last run:
 
@@ -74,6 +78,8 @@ jax.config.update("jax_enable_x64", True)
 import equinox as eqx  # noqa: E402
 import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
+import peers  # noqa: E402
+from timing import machine, relative, shuffled, timed  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 
@@ -95,7 +101,7 @@ BATCH, CHUNK = 256, 32
 IN_BATCH = f"one of {BATCH} in a call"
 
 
-def element(**profiles):
+def element(quadrature=None, **profiles):
     """The bearing that is measured, with profiles of the raceways if wanted."""
     return bj.BearingElement(
         bj.CylindricalRollerBearing(
@@ -103,8 +109,17 @@ def element(**profiles):
             radial_internal_clearance=25e-6,
             roller_profile=bj.CircularCrown(1.0),
             **profiles,
-        )
+        ),
+        quadrature=quadrature,
     )  # fmt: skip
+
+
+def unlike():
+    """Profiles of raceways between which a roller does not rest midway."""
+    return {
+        "outer_raceway_profile": bj.CircularCrown(2.0),
+        "inner_raceway_profile": bj.CircularCrown(6.0),
+    }
 
 
 def cases():
@@ -112,10 +127,7 @@ def cases():
     load = jnp.array([RADIAL_LOAD, 0.0, 0.0, 0.0, 0.0, 0.0])
     tilted = {"gx": 0.3 * TILT, "gy": TILT}
     plain = element()
-    uneven = element(
-        outer_raceway_profile=bj.CircularCrown(2.0),
-        inner_raceway_profile=bj.CircularCrown(6.0),
-    )
+    uneven = element(**unlike())
     return {
         "radial": (plain, bj.solve_load(plain, load).displacement),
         "misaligned": (
@@ -135,7 +147,7 @@ class CLoop:
     def __init__(self, library, el):
         constants = el.model().rows[0].element.constants
         quadrature, b = el.quadrature, el.bearing
-        line, table = constants.lines[0], constants.tables[0]
+        line = constants.lines[0]
         numbers = {
             "n_rollers": b.n_rollers,
             "constant": line.constant,
@@ -156,17 +168,21 @@ class CLoop:
         library.repeat.restype = ctypes.c_double
         self.design = ctypes.create_string_buffer(library.design_size())
         library.prepare(
-            _pointer(np.array([float(numbers[name]) for name in NUMBERS])),
-            *(_pointer(x) for x in quadrature.reference()),
-            _pointer(np.asarray(table[2])[0]),
+            pointer(np.array([float(numbers[name]) for name in NUMBERS])),
+            *(pointer(x) for x in quadrature.reference()),
+            pointer(scan_points(el)),
             self.design,
         )
 
     def arguments(self, q):
         """What a C call takes; results land in `force` and `stiffness`."""
         self.q = np.array(q)
-        out = (_pointer(self.force), _pointer(self.stiffness))
-        return self.design, _pointer(self.q), *out, ctypes.byref(self.steps)
+        out = (pointer(self.force), pointer(self.stiffness))
+        return self.design, pointer(self.q), *out, ctypes.byref(self.steps)
+
+    def batch(self, q, force, stiffness):
+        """Force and stiffness of many cases, into arrays; other threads go on."""
+        self.loop.batch(len(q), self.design, *map(pointer, (q, force, stiffness)))
 
     def results(self, q):
         """Force [N, N m], stiffness and most steps of a roller."""
@@ -174,7 +190,15 @@ class CLoop:
         return self.force.copy(), self.stiffness.copy(), self.steps.value
 
 
-def _pointer(array):
+def scan_points(el):
+    """Where C looks for the loaded zone; of equal slices their middles."""
+    if isinstance(el.quadrature, bj.Midpoint):
+        return el.quadrature.reference()[0]
+    return np.asarray(el.model().rows[0].element.constants.tables[0][2])[0]
+
+
+def pointer(array):
+    """What ctypes hands over for an array of real numbers."""
     array = np.ascontiguousarray(array, dtype=np.float64)
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
@@ -184,14 +208,19 @@ def compiler():
     return next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
 
 
-def compile_c(folder, el):
+def compile_c(folder, el, source=SOURCE):
     """Shared library from `c_loop.c`, or `None` without a compiler."""
     if compiler() is None:
         return None
-    scan = el.model().rows[0].element.constants.tables[0][2].shape[1]
-    sizes = [f"-DPOINTS={el.quadrature.points}", f"-DSCAN={scan}"]
-    target = os.path.join(folder, "c_loop.so")
-    command = [compiler(), *FLAGS, *sizes, "-o", target, str(SOURCE), "-lm"]
+    rule = el.quadrature
+    sizes = {
+        "POINTS": rule.points,
+        "SCAN": len(scan_points(el)),
+        "MIDPOINT": int(isinstance(rule, bj.Midpoint)),
+    }
+    target = os.path.join(folder, f"{source.stem}_{type(rule).__name__}.so")
+    given = [f"-D{name}={value}" for name, value in sizes.items()]
+    command = [compiler(), *FLAGS, *given, "-o", target, str(source), "-lm"]
     subprocess.run(command, check=True)
     return ctypes.CDLL(target)
 
@@ -304,6 +333,50 @@ def study(c, el, q, rounds, block, calls):
     return {"steps": steps, "jax_steps": int(el.evaluate(q).steps), "rows": rows}
 
 
+def beside_peers(library, el, q, rounds):
+    """Rows: the same bearing with slices as others would solve it."""
+    c, model = CLoop(library, el), el.model()
+    ours = jax.jit(functools.partial(both, model))
+    bearing = peers.plain(el, el.quadrature.points)
+    solvers = {
+        "NumPy": peers.with_numpy(bearing),
+        "SciPy root": peers.with_scipy(bearing),
+        "jax.scipy BFGS": peers.with_jax_bfgs(bearing),
+        "optimistix BFGS": peers.with_optimistix(bearing),
+    }
+    calls = {C_CALL: lambda: c.results(q)[:2], "ours": lambda: ours(q)}
+    for name, solver in solvers.items():
+        if solver is None:
+            print(f"{name} is not installed: not timed.", file=sys.stderr)
+        else:
+            calls[name] = lambda solver=solver: [x[0] for x in solver(q[None])]
+    first = {name: timed(call) for name, call in calls.items()}
+    times = shuffled(calls, rounds, warm=False)
+    want = first[C_CALL][1]
+    return [
+        {
+            "solver": name,
+            "us": 1e6 * float(np.median(times[name])),
+            "first_s": seconds,
+            "error_force": relative(got[0], want[0]),
+            "error_stiffness": relative(got[1], want[1]),
+        }
+        for name, (seconds, got) in first.items()
+    ]
+
+
+def show_peers(rows):
+    print(
+        f"\n{'raceways unlike, 32 slices':28}{'µs':>10}{'ratio':>8}{'first, s':>10}"
+        f"{'error: force':>14}{'stiffness':>11}"
+    )
+    for r in rows:
+        print(
+            f"{r['solver']:28}{r['us']:10.1f}{r['us'] / rows[1]['us']:8.2f}"
+            f"{r['first_s']:10.2f}{r['error_force']:14.0e}{r['error_stiffness']:11.0e}"
+        )
+
+
 def show(case, result):
     print(f"\n{case}: most steps {result['steps']} (JAX {result['jax_steps']})")
     print(
@@ -344,20 +417,28 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         library = compile_c(folder, element())
         if library is None:
-            print("c_loop: no C compiler (cc, gcc, clang); skipped.", file=sys.stderr)
+            print(
+                "single_call: no C compiler (cc, gcc, clang); skipped.", file=sys.stderr
+            )
             return 0
         results = {
             case: study(CLoop(library, el), el, q, rounds, block, jax_calls(el, q))
             for case, (el, q) in cases().items()
         }
+        sliced = element(bj.Midpoint(32), **unlike())
+        *_, (_, q) = cases().values()
+        others = beside_peers(compile_c(folder, sliced), sliced, q, rounds)
     if args.json:
-        print(json.dumps({"goal": GOAL, "agrees": agrees(results), "cases": results}))
+        report = {"goal": GOAL, "agrees": agrees(results), "cases": results}
+        print(json.dumps(report | {"peers": others}))
     else:
         for case, result in results.items():
             show(case, result)
         print(f"\ngoal: hot ≤ {GOAL['hot']:g}, cold ≤ {GOAL['cold']:g}")
+        show_peers(others)
+        print(f"\n{machine()}")
     if not agrees(results):
-        print("c_loop: C and JAX disagree.", file=sys.stderr)
+        print("single_call: C and JAX disagree.", file=sys.stderr)
         return 1
     return 0
 

@@ -7,7 +7,7 @@ relative to sqrt(K_ii K_jj). "Input" is what remains if only design and motion a
 rounded to float32 and everything is computed in float64: no code can do better.
 "Conv.": motions whose result code is `CONVERGED`. Steps: most of a roller.
 
-Run: python benchmarks/float32.py [--json] [--smoke]
+Run: python benchmarks/float32_error.py [--json] [--smoke]
 
 Last run:
 
@@ -42,6 +42,7 @@ import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
 import registry  # noqa: E402
 from test_against_oracle import errors  # noqa: E402
+from timing import processor  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 
@@ -134,15 +135,6 @@ def show(rows):
             f"{converged:4d}/{r['motions']}"
         )
     print(f"\nworst of up to {MOTIONS} motions; {processor()}")
-
-
-def processor():
-    """Model of the processor."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return "processor unknown"
-    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
 
 
 def measure(bearings, quadratures, motions):

@@ -10,7 +10,11 @@ ratios within one run count. Kernels: instructions of the compiled program outsi
 fusions, a loop's body counted once. Trace and compile: shortest of the repeats, nothing
 kept. Steps: most Newton steps of a roller.
 
-Run: python benchmarks/skip.py [--json] [--smoke]
+Then sweeps of load solves, where outputs are what may be absent, and the moments of the
+loads: microseconds a case, shortest of the rounds; the first
+call, which compiles, apart.
+
+Run: python benchmarks/skip_what_is_absent.py [--json] [--smoke]
 
 Last run:
 
@@ -35,7 +39,7 @@ import random
 import re
 import sys
 import time
-from pathlib import Path
+from functools import partial
 from typing import NamedTuple
 
 import jax
@@ -45,6 +49,7 @@ jax.config.update("jax_enable_x64", True)
 import equinox as eqx  # noqa: E402
 import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
+from timing import machine, shuffled, timed  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 
@@ -64,6 +69,7 @@ class Variant(NamedTuple):
     ribs: bool = True
     speed: bool = True
     loaded: str = "all"
+    tilted: bool = True
 
 
 VARIANTS = {
@@ -72,12 +78,25 @@ VARIANTS = {
     "no ribs": Variant(ribs=False),
     "no speed, no ribs": Variant(speed=False, ribs=False),
     "  and few rollers loaded": Variant(speed=False, ribs=False, loaded="few"),
+    "  and rings in line": Variant(speed=False, ribs=False, tilted=False),
     "  and force only": Variant("force", ribs=False, speed=False),
     "  and energy only": Variant("energy", ribs=False, speed=False),
     "force only": Variant("force"),
     "energy only": Variant("energy"),
 }
 SMOKE = (FULL, "no speed, no ribs")
+# Outputs that are kept, and whether loads have moments.
+SWEEPS = {
+    "all outputs": (None, True),
+    "displacement, stiffness, roller loads": (
+        ("displacement", "stiffness", "roller_load"),
+        True,
+    ),
+    "displacement and stiffness": (("displacement", "stiffness"), True),
+    "displacement": (("displacement",), True),
+    "displacement, loads without moments": (("displacement",), False),
+}
+SWEPT = 2048
 
 
 def element(variant):
@@ -97,7 +116,9 @@ def element(variant):
 def motion(variant):
     """Ring freedoms (12,): the inner ring moves and tilts."""
     shift = {"all": 5e-6, "few": 35e-6}[variant.loaded]
-    return jnp.zeros(12).at[6].set(shift).at[9].set(2e-4).at[10].set(6e-4)
+    tilt = 1.0 if variant.tilted else 0.0
+    q = jnp.zeros(12).at[6].set(shift)
+    return q.at[9].set(2e-4 * tilt).at[10].set(6e-4 * tilt)
 
 
 class Case:
@@ -199,6 +220,45 @@ def row(name, case, built, times, full):
     }
 
 
+def swept_loads(moments):
+    """Radial loads (case, 6) [N, N m], with or without moments."""
+    rng = np.random.default_rng(0)
+    size, way = 10 ** rng.uniform(2, 5, SWEPT), rng.uniform(0, 2 * np.pi, SWEPT)
+    arms = rng.uniform(-1e-3, 1e-3, (2, SWEPT)) * moments
+    loads = np.zeros((SWEPT, 6))
+    loads[:, 0], loads[:, 1] = size * np.cos(way), size * np.sin(way)
+    loads[:, 3:5] = (size * arms).T
+    return loads
+
+
+def sweeps(rounds):
+    """A row for every sweep: time a case, time of the first call, steps."""
+    el = element(Variant(ribs=False, loaded="few"))
+    calls = {
+        name: partial(bj.sweep, el, swept_loads(moments), outputs=outputs)
+        for name, (outputs, moments) in SWEEPS.items()
+    }
+    first = {name: timed(call)[0] for name, call in calls.items()}
+    times = shuffled(calls, rounds, warm=False)
+    best = {name: min(t) / SWEPT for name, t in times.items()}
+    base = next(iter(best.values()))
+    return [
+        {
+            "sweep": name,
+            "us": 1e6 * t,
+            "ratio": t / base,
+            "compile_s": first[name] - t * SWEPT,
+        }
+        for name, t in best.items()
+    ]
+
+
+def show_sweeps(rows):
+    print(f"\n{'load solves, kept':40}{'µs/case':>9}{'ratio':>7}{'compile, s':>12}")
+    for r in rows:
+        print(f"{r['sweep']:40}{r['us']:9.1f}{r['ratio']:7.2f}{r['compile_s']:12.1f}")
+
+
 def show(rows):
     print(
         f"{'':27}{'loaded':>7}{'':>6}{'hot, µs':^16}{'ratio':>6}{'':>8}"
@@ -212,16 +272,6 @@ def show(rows):
             f"{r['hot_us']:8.0f}{r['median_us']:8.0f}{r['ratio']:6.2f}"
             f"{r['kernels']:8d}{r['trace_s']:8.2f}{r['compile_s']:8.2f}"
         )
-    print(f"\n{processor()}")
-
-
-def processor():
-    """Model of the processor."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return "processor unknown"
-    return next((x.split(": ")[1] for x in lines if "model name" in x), "unknown")
 
 
 def main():
@@ -230,16 +280,19 @@ def main():
     parser.add_argument("--smoke", action="store_true", help="two variants")
     args = parser.parse_args()
     if args.smoke:
-        rows = measure(SMOKE, rounds=5, block=20, repeats=1)
+        rows, swept = measure(SMOKE, rounds=5, block=20, repeats=1), []
     else:
         rows = measure(tuple(VARIANTS), rounds=40, block=50, repeats=3)
+        swept = sweeps(rounds=5)
     if args.json:
-        for r in rows:
+        for r in [*rows, *swept]:
             print(json.dumps(r))
     else:
         show(rows)
+        show_sweeps(swept)
+        print(f"\n{machine()}")
     if any(r["result"] != "converged" for r in rows):
-        print("skip: a variant did not converge.", file=sys.stderr)
+        print("skip_what_is_absent: a variant did not converge.", file=sys.stderr)
         return 1
     return 0
 

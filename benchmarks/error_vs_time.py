@@ -1,0 +1,293 @@
+"""What does an error cost? Force, stiffness and peak pressure against time per call.
+
+Cylindrical bearings of three rollers, crowned, logarithmic, and flat and arc, between a
+straight and a crowned raceway; the rings hold them so that a roller touches along its
+whole length, on a part of it, or on one end. Rules: equal slices, Gauss-Legendre nodes
+on the whole length, and nodes mapped to the contact; in float64 and float32.
+
+Errors are the worst of all nine cases, as in `quadrature.py`: of the force relative to
+the largest, of K_ij relative to sqrt(K_ii K_jj), of the peak pressure relative to it.
+Reference: the test oracle's Gauss-Legendre nodes graded to the ends of every loaded
+interval; of the pressure, 96 mapped nodes. Time: one call of a compiled program, jitted
+with the element closed over, shortest of the repeats, mean of the cases.
+
+Run: python benchmarks/error_vs_time.py [--json] [--smoke] [--plot OUT.png]
+
+Last run:
+
+(to be run)
+"""
+
+import argparse
+import functools
+import json
+import sys
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+import oracle  # noqa: E402
+from float32_error import cast  # noqa: E402
+from from_oracle import bearing  # noqa: E402
+from test_against_oracle import errors  # noqa: E402
+from timing import compiled, machine, shuffled, verdict  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+from bearingjax.numerics.quadrature import AbstractQuadrature, Nodes  # noqa: E402
+from bearingjax.statics.rollers import roller_results  # noqa: E402
+
+PROFILES = {
+    "crowned": {"type": "circular", "radius": 1.0},
+    "logarithmic": {"type": "logarithmic"},
+    "flat and arc": {"type": "crowned_ends", "straight_length": 5e-3, "radius": 0.5},
+}
+# Push [m] and tilt [rad] of the inner ring.
+CONTACTS = {"full": (60e-6, 2e-4), "partial": (3e-6, 2e-4), "edge": (4e-6, 3e-3)}
+POINTS = 101  # along a roller, at which the pressure is looked for
+REFERENCE = 96
+TARGETS = (1e-4, 1e-6, 1e-8)
+GOAL = 20.0  # times cheaper than slices at the first target
+ASKED = ("force", "stiffness", "pressure")
+
+
+class WholeLength(AbstractQuadrature):
+    """Gauss-Legendre nodes on the whole length, wherever the contact ends."""
+
+    points: int
+
+    def reference(self):
+        return np.polynomial.legendre.leggauss(self.points)
+
+    def table(self, offset, kinks, dtype):
+        return (offset(jnp.asarray(self.reference()[0], dtype)),)
+
+    def nodes(self, offset, args, table, a, b):
+        one = jnp.ones((1,), a.dtype)
+        tau = jnp.asarray(self.reference()[0], a.dtype)
+        return Nodes(0.0 * one, one, (a + b * tau - table[0])[None, :])
+
+
+RULES = {
+    "slices": bj.Midpoint,
+    "whole length": WholeLength,
+    "mapped": bj.ContactMapped,
+}
+COLORS = {"slices": "#D55E00", "whole length": "#009E73", "mapped": "#0072B2"}
+FULL = {
+    ("slices", "float64"): (10, 30, 100, 1000, 10_000, 100_000),
+    ("whole length", "float64"): (10, 30, 100, 300, 1000),
+    ("mapped", "float64"): (6, 8, 12, 16, 24, 32, 64),
+    ("slices", "float32"): (30, 1000, 10_000),
+    ("mapped", "float32"): (8, 16, 32),
+}
+SMOKE = {("slices", "float64"): (30,), ("mapped", "float64"): (16,)}
+
+
+def design(profile):
+    """The bearing as the oracle describes it."""
+    length = 0.010
+    return {
+        "kind": "cylindrical",
+        "n_rollers": 3,
+        "pitch_diameter": 0.065,
+        "roller_diameter": 0.010,
+        "roller_length": length,
+        "roller_axis_angle": 0.0,
+        "roller_half_angle": 0.0,
+        "clearance": 0.0,
+        "first_azimuth": 0.2,
+        "line_constant": 8.06e4 * 1e3 ** (19 / 9) * (1e3 * length) ** (-1 / 9),
+        "young": 206e9,
+        "poisson": 0.3,
+        "profile": PROFILES[profile],
+        "raceway_profile": {
+            "outer": {"type": "straight"},
+            "inner": {"type": "circular", "radius": 6.0},
+        },
+        "ribs": {},
+    }
+
+
+def motion(contact):
+    """Ring freedoms (12,) [m, rad]."""
+    push, tilt = CONTACTS[contact]
+    q = np.zeros(12)
+    q[6], q[7], q[9], q[10] = push, 0.3 * push, -0.3 * tilt, tilt
+    return q
+
+
+def element(info, quadrature):
+    law = bj.LineConstant(info["line_constant"])
+    return bj.BearingElement(bearing(info), law, quadrature=quadrature)
+
+
+def answer(element, q):
+    """Force and stiffness, and the largest contact pressure [Pa]."""
+    model = element.model()
+    rows = model.solve(q)
+    pressure = jnp.max(roller_results(rows, POINTS)["contact_pressure"])
+    return model.evaluate(q, rows), pressure
+
+
+def references(profiles):
+    """(profile, contact) -> force, stiffness and pressure; and how sure they are."""
+    found, doubt = {}, []
+    for profile in profiles:
+        info = design(profile)
+        truth = oracle.build(info)
+        fine = element(info, bj.ContactMapped(REFERENCE))
+        call = jax.jit(functools.partial(answer, fine))
+        for contact in CONTACTS:
+            q = motion(contact)
+            want = oracle.evaluate(truth, q, oracle.graded(truth))
+            got, pressure = call(jnp.asarray(q))
+            found[profile, contact] = want, float(pressure)
+            doubt.append(max(errors(got, want)))
+    return found, max(doubt)
+
+
+class Numbers:
+    """An evaluation in NumPy float64, as `errors` wants it."""
+
+    def __init__(self, evaluated):
+        self.force = np.asarray(evaluated.force, np.float64)
+        self.stiffness = np.asarray(evaluated.stiffness, np.float64)
+
+
+def study(rule, dtype, nodes, references, repeats):
+    """Worst errors, mean time and time to compile of one rule and count of nodes."""
+    found, times, building = [], [], []
+    single = dtype == "float32"
+    with jax.enable_x64(not single):
+        for profile in dict.fromkeys(name for name, _ in references):
+            with jax.enable_x64(True):
+                one = element(design(profile), RULES[rule](nodes))
+            one = cast(one, jnp.float32) if single else one
+            q = {c: jnp.asarray(motion(c), dtype) for c in CONTACTS}
+            call, seconds = compiled(functools.partial(answer, one), q["full"])
+            building.append(seconds)
+            calls = {c: functools.partial(call, q[c]) for c in CONTACTS}
+            times += [min(t) for t in shuffled(calls, repeats).values()]
+            for contact, run in calls.items():
+                got, pressure = run()
+                want, peak = references[profile, contact]
+                off = abs(float(pressure) / peak - 1.0)
+                found.append((*errors(Numbers(got), want), off))
+    worst = np.max(found, axis=0)
+    return {
+        "rule": rule,
+        "dtype": dtype,
+        "nodes": nodes,
+        **{name: float(x) for name, x in zip(ASKED, worst, strict=True)},
+        "time_us": 1e6 * float(np.mean(times)),
+        "compile_s": float(np.mean(building)),
+    }
+
+
+def price(rows, rule, target, asked="stiffness"):
+    """Least time [µs] at which a rule reaches an error; `None` if it does not."""
+    mine = [r for r in rows if (r["rule"], r["dtype"]) == (rule, "float64")]
+    return min((r["time_us"] for r in mine if r[asked] <= target), default=None)
+
+
+def advantage(rows):
+    """How much cheaper mapped nodes are at the first target; and whether slices
+    reach it at all (if not: their dearest call is what they take at least)."""
+    slices, mapped = (price(rows, rule, TARGETS[0]) for rule in ("slices", "mapped"))
+    most = max(r["time_us"] for r in rows if r["rule"] == "slices")
+    if mapped is None:
+        return 0.0, slices is not None
+    return (slices or most) / mapped, slices is not None
+
+
+def show(rows, doubt):
+    print(
+        f"{'':28}{'worst error':^27}{'time':>9}{'compile':>9}\n"
+        f"{'rule':13}{'':9}{'nodes':>6}"
+        + "".join(f"{name:>10}" for name in ASKED)
+        + f"{'µs':>6}{'s':>9}"
+    )
+    for r in rows:
+        print(
+            f"{r['rule']:13}{r['dtype']:9}{r['nodes']:6d}"
+            + "".join(f"{r[name]:10.0e}" for name in ASKED)
+            + f"{r['time_us']:6.0f}{r['compile_s']:9.1f}"
+        )
+    print(f"\nprice of an error in stiffness, µs\n{'':14}", end="")
+    print("".join(f"{target:>9.0e}" for target in TARGETS))
+    for rule in dict.fromkeys(r["rule"] for r in rows):
+        prices = [price(rows, rule, target) for target in TARGETS]
+        told = ["-" if p is None else f"{p:.0f}" for p in prices]
+        print(f"{rule:14}" + "".join(f"{p:>9}" for p in told))
+    ratio, reached = advantage(rows)
+    what = f"slices' time over mapped nodes' at {TARGETS[0]:g} in stiffness"
+    print()
+    print(verdict(what + ("" if reached else ", at least"), ratio, GOAL, False))
+    for target in TARGETS[1:]:
+        reached = price(rows, "mapped", target) is not None
+        print(f"{target:g} in stiffness reached: {'met' if reached else 'MISSED'}")
+    print(
+        f"\nreference and {REFERENCE} mapped nodes differ by {doubt:.0e}; {machine()}"
+    )
+
+
+def plot(rows, target):
+    """Error against time, one panel for each quantity."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(1, 3, figsize=(11, 4), sharex=True, sharey=True)
+    for axis, asked in zip(axes, ASKED, strict=True):
+        for rule, dtype in dict.fromkeys((r["rule"], r["dtype"]) for r in rows):
+            mine = [r for r in rows if (r["rule"], r["dtype"]) == (rule, dtype)]
+            axis.loglog(
+                [r["time_us"] for r in mine],
+                [max(r[asked], 1e-16) for r in mine],
+                "o-" if dtype == "float64" else "o--",
+                color=COLORS[rule],
+                markersize=4,
+                markerfacecolor=COLORS[rule] if dtype == "float64" else "white",
+                label=f"{rule}, {dtype}",
+            )
+        axis.set_title(f"Error of the {asked}, worst of nine cases", loc="left")
+        axis.set_xlabel("time of a call, µs")
+        axis.grid(alpha=0.3)
+        axis.spines[["top", "right"]].set_visible(False)
+    axes[0].set_ylabel("relative error")
+    axes[0].legend(frameon=False)
+    figure.tight_layout()
+    figure.savefig(target, dpi=150)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line per result")
+    parser.add_argument("--smoke", action="store_true", help="one profile, few nodes")
+    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
+    args = parser.parse_args()
+    profiles = list(PROFILES)[:1] if args.smoke else PROFILES
+    wanted, doubt = references(profiles)
+    rows = [
+        study(rule, dtype, nodes, wanted, 3 if args.smoke else 30)
+        for (rule, dtype), counts in (SMOKE if args.smoke else FULL).items()
+        for nodes in counts
+    ]
+    if args.json:
+        for r in rows:
+            print(json.dumps(r))
+    else:
+        show(rows, doubt)
+    if args.plot:
+        plot(rows, args.plot)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

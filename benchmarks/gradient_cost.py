@@ -1,0 +1,225 @@
+"""What does a gradient of a load solve cost, and how true is it?
+
+A cylindrical roller bearing with 14 crowned rollers under a radial load and a moment.
+Reverse-mode derivatives of a displacement, of the peak contact pressure and of a
+stiffness entry with respect to all real numbers of the design, beside the solve that
+gives the value alone: time and compile time of both, in shuffled order.
+
+Truth: derivatives along random directions (every number that is not zero changes by a
+part of itself) against differences of fourth order. Over shrinking steps the error
+falls, then rises; its least value counts. And the comb: d(stiffness)/d(crown radius)
+over crown radii, mapped nodes and 30 slices; each slice that touches down is a spike.
+
+Run: python benchmarks/gradient_cost.py [--json] [--smoke] [--plot OUT.png]
+
+Last run:
+
+(to be run)
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+from timing import compiled, machine, shuffled, verdict  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+LOAD = (0.0, -4000.0, 0.0, 10.0, 0.0, 0.0)
+GOALS = {"ratio": 1.3, "displacement": 1e-8, "peak pressure": 1e-8, "stiffness": 1e-6}
+QUANTITIES = {
+    "displacement": lambda s: s.displacement[7],
+    "peak pressure": lambda s: jnp.max(s.contact_pressure),
+    "stiffness": lambda s: s.stiffness[7, 7],
+}
+STEPS = tuple(10.0**-k for k in np.arange(1.5, 8.1, 0.5))
+COMB = {"mapped nodes, 32": bj.ContactMapped(32), "slices, 30": bj.Midpoint(30)}
+COLORS = {"mapped nodes, 32": "#0072B2", "slices, 30": "#D55E00"}
+RADII = (0.6, 1.4)  # m
+FULL = {"rounds": 40, "directions": 3, "radii": 600, "quantities": tuple(QUANTITIES)}
+SMOKE = {"rounds": 3, "directions": 1, "radii": 0, "quantities": ("displacement",)}
+
+
+def bearing():
+    return bj.CylindricalRollerBearing(
+        14, 0.065, 0.010, 0.010,
+        radial_internal_clearance=25e-6,
+        roller_profile=bj.CircularCrown(1.0),
+    )  # fmt: skip
+
+
+def solved(name, numbers, structure, quadrature=None):
+    """A quantity of the solution, as a function of the numbers of the design."""
+    design = eqx.combine(numbers, structure)
+    element = bj.BearingElement(design, quadrature=quadrature)
+    return QUANTITIES[name](bj.solve_load(element, LOAD, throw=False))
+
+
+def directions(numbers, count):
+    """Changes of all numbers in proportion to themselves (leading axis: direction)."""
+    rng = np.random.default_rng(0)
+    return [
+        jax.tree.map(lambda x: x * rng.uniform(-1, 1, x.shape), numbers)
+        for _ in range(count)
+    ]
+
+
+def along(numbers, way, step):
+    return jax.tree.map(lambda x, d: x + step * d, numbers, way)
+
+
+def difference(value, numbers, way, step):
+    """Derivative along a direction, by differences of fourth order."""
+    f = [float(value(along(numbers, way, k * step))) for k in (-2, -1, 1, 2)]
+    return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step)
+
+
+def truth(value, gradient, numbers, count):
+    """Worst error over the directions for every step, relative to the derivative."""
+    g, worst = gradient(numbers), np.zeros(len(STEPS))
+    for way in directions(numbers, count):
+        products = jax.tree.map(lambda a, d: jnp.sum(a * d), g, way)
+        exact = float(sum(jax.tree.leaves(products)))
+        found = [difference(value, numbers, way, step) for step in STEPS]
+        worst = np.maximum(worst, np.abs(np.array(found) / exact - 1.0))
+    return worst.tolist()
+
+
+def study(name, sizes):
+    """Times of value and gradient, and the error of the gradient."""
+    numbers, structure = eqx.partition(bearing(), eqx.is_inexact_array)
+
+    def function(x):
+        return solved(name, x, structure)
+
+    value, value_s = compiled(function, numbers)
+    both, gradient_s = compiled(jax.value_and_grad(function), numbers)
+    calls = {"value": lambda: value(numbers), "gradient": lambda: both(numbers)}
+    times = {k: np.median(t) for k, t in shuffled(calls, sizes["rounds"]).items()}
+    errors = truth(value, lambda x: both(x)[1], numbers, sizes["directions"])
+    return {
+        "quantity": name,
+        "numbers": len(jax.tree.leaves(numbers)),
+        "value_us": 1e6 * float(times["value"]),
+        "gradient_us": 1e6 * float(times["gradient"]),
+        "ratio": float(times["gradient"] / times["value"]),
+        "value_compile_s": value_s,
+        "gradient_compile_s": gradient_s,
+        "errors": errors,
+        "least_error": min(errors),
+    }
+
+
+def comb(count):
+    """d(stiffness)/d(crown radius) over crown radii, by rule."""
+    if not count:
+        return {}
+    radii = np.linspace(*RADII, count)
+    numbers, structure = eqx.partition(bearing(), eqx.is_inexact_array)
+    found = {}
+    for name, quadrature in COMB.items():
+
+        def function(radius, quadrature=quadrature):
+            there = eqx.tree_at(
+                lambda b: b.roller_profile.crown_radius, numbers, radius
+            )
+            return solved("stiffness", there, structure, quadrature)
+
+        slope = jax.jit(
+            lambda radii, f=function: jax.lax.map(jax.grad(f), radii, batch_size=50)
+        )
+        found[name] = np.asarray(slope(jnp.asarray(radii)))
+    return {"radius": radii, **found}
+
+
+def roughness(values):
+    """Largest change between neighbours, in shares of the median size."""
+    return float(np.max(np.abs(np.diff(values))) / np.median(np.abs(values)))
+
+
+def show(rows, teeth):
+    print(
+        f"{'':15}{'time, µs':^18}{'':7}{'compile, s':^16}{'least':>8}\n"
+        f"{'of':15}{'value':>9}{'gradient':>9}{'ratio':>7}{'value':>8}{'gradient':>8}"
+        f"{'error':>8}{'at step':>9}"
+    )
+    for r in rows:
+        step = STEPS[int(np.argmin(r["errors"]))]
+        print(
+            f"{r['quantity']:15}{r['value_us']:9.0f}{r['gradient_us']:9.0f}"
+            f"{r['ratio']:7.2f}{r['value_compile_s']:8.1f}{r['gradient_compile_s']:8.1f}"
+            f"{r['least_error']:8.0e}{step:9.0e}"
+        )
+    print(f"\nwith respect to {rows[0]['numbers']} numbers of the design")
+    for name in COMB if teeth else ():
+        print(
+            f"d(stiffness)/d(crown radius), {name}: largest change between"
+            f" {len(teeth['radius'])} radii {roughness(teeth[name]):.2g} of the median"
+        )
+    print()
+    for r in rows:
+        name = r["quantity"]
+        print(verdict(f"gradient over value, {name}", r["ratio"], GOALS["ratio"]))
+        print(verdict(f"least error, {name}", r["least_error"], GOALS[name]))
+    print(f"\n{machine()}")
+
+
+def plot(rows, teeth, target):
+    """Error against step, and the comb."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(10, 4))
+    for r in rows:
+        left.loglog(STEPS, r["errors"], "o-", markersize=4, label=r["quantity"])
+    left.set_title("Gradient against differences", loc="left")
+    left.set_xlabel("step, share of every number")
+    left.set_ylabel("relative error of the derivative")
+    for name in reversed(COMB) if teeth else ():
+        color = COLORS[name]
+        right.plot(teeth["radius"], teeth[name], color=color, label=name, linewidth=1)
+    right.set_title("d(stiffness)/d(crown radius)", loc="left")
+    right.set_xlabel("crown radius, m")
+    right.set_ylabel("N/m²")
+    if teeth:
+        smooth = teeth["mapped nodes, 32"]
+        right.set_ylim(0.0, 2.5 * np.max(smooth))
+    for axis in (left, right):
+        axis.legend(frameon=False)
+        axis.grid(alpha=0.3)
+        axis.spines[["top", "right"]].set_visible(False)
+    figure.tight_layout()
+    figure.savefig(target, dpi=150)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line of figures")
+    parser.add_argument("--smoke", action="store_true", help="displacement alone")
+    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
+    args = parser.parse_args()
+    sizes = SMOKE if args.smoke else FULL
+    rows = [study(name, sizes) for name in sizes["quantities"]]
+    teeth = comb(sizes["radii"])
+    if args.json:
+        told = {name: roughness(teeth[name]) for name in COMB if teeth}
+        print(json.dumps({"goals": GOALS, "rows": rows, "roughness": told}))
+    else:
+        show(rows, teeth)
+    if args.plot:
+        plot(rows, teeth, args.plot)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

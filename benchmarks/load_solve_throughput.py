@@ -1,0 +1,262 @@
+"""How many load solves a second: displacement and stiffness under many loads?
+
+A cylindrical roller bearing (NU), 14 crowned rollers, 32 nodes per raceway contact;
+outer ring fixed; ux, uy, gx and gy of the inner ring free. Random loads, 1e2 to 1e5 N,
+each solved from first contact; and a path of loads (a spiral), each from the solution
+before it (`neighbours=True`). With straight raceways the rollers rest midway; with
+crowned ones, outer and inner unlike, each takes Newton steps of its own.
+
+Ours is `bj.sweep` on one core. Beside it on that core, in shuffled order: C with the
+same algorithm (`c_load.c`; it leaves open rollers out, and solves one case at a time),
+and a loop of `scipy.optimize.root` from first contact, which calls our compiled force
+and stiffness, or a NumPy bearing (`peers.py`, slices). Error: of the displacement,
+relative to its largest of all cases, against C. A SciPy answer counts as failed if
+SciPy says so.
+
+Run: python benchmarks/load_solve_throughput.py [--json] [--smoke]
+
+Last run:
+
+(to be run)
+"""
+
+import argparse
+import ctypes
+import functools
+import json
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+import peers  # noqa: E402
+import scipy.optimize  # noqa: E402
+import single_call  # noqa: E402
+from timing import machine, relative, shuffled, timed, verdict  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+SOURCE = Path(__file__).with_name("c_load.c")
+GOALS = {"of_c": 2.0, "scipy": 100.0}
+OUTPUTS = ("displacement", "stiffness", "iterations")
+FREE = (0, 1, 3, 4)
+ARM = 1e-3  # m, of the moments
+FULL = {"cases": 2048, "scipy": 64, "rounds": 3}
+SMOKE = {"cases": 128, "scipy": 2, "rounds": 1}
+AGREEMENT = 1e-8
+OURS, C = "bj.sweep", "C"
+SCIPY, SCIPY_NUMPY = "SciPy root, our stiffness", "SciPy root, NumPy bearing"
+
+
+def random_loads(count, seed=0):
+    """On the inner ring (count, 6) [N, N m]."""
+    rng = np.random.default_rng(seed)
+    size, way = 10 ** rng.uniform(2, 5, count), rng.uniform(0, 2 * np.pi, count)
+    return _loads(size, way, rng.uniform(-ARM, ARM, (2, count)))
+
+
+def path_of_loads(count):
+    """Loads that follow each other: a spiral of ten turns, 1 kN to 20 kN."""
+    along = np.linspace(0, 1, count)
+    way = 20 * np.pi * along
+    return _loads(1e3 * 20**along, way, ARM * np.stack([np.sin(way), np.cos(way)]))
+
+
+def _loads(size, way, arms):
+    loads = np.zeros((len(size), 6))
+    loads[:, 0], loads[:, 1] = size * np.cos(way), size * np.sin(way)
+    loads[:, 3:5] = (size * arms).T
+    return loads
+
+
+LOADS = {"random": (random_loads, False), "path": (path_of_loads, True)}
+
+
+class CLoad:
+    """The load solve in C: loads -> displacement, stiffness, steps, failures."""
+
+    def __init__(self, library, element):
+        self.loop = single_call.CLoop(library, element)
+
+    def __call__(self, loads, neighbours):
+        n = len(loads)
+        q, k, steps = np.empty((n, 12)), np.empty((n, 12, 12)), np.zeros(n, np.int32)
+        failed = self.loop.loop.sweep(
+            n,
+            self.loop.design,
+            single_call.pointer(loads),
+            neighbours,
+            single_call.pointer(q),
+            single_call.pointer(k),
+            steps.ctypes.data_as(ctypes.POINTER(ctypes.c_int)),
+        )
+        return q, k, steps, failed
+
+
+def ours(element, loads, neighbours):
+    """As `CLoad`."""
+    s = bj.sweep(
+        element,
+        loads,
+        outputs=OUTPUTS,
+        neighbours=neighbours,
+        devices=jax.devices()[:1],
+    )
+    return s.displacement, s.stiffness, s.iterations, int(np.sum(~s.converged))
+
+
+def by_scipy(element, evaluate, loads, _=False):
+    """As `CLoad`: one `scipy.optimize.root` a load, from first contact."""
+    radius = 0.5 * float(element.bearing.pitch_diameter)
+    play = 0.5 * float(element.bearing.radial_internal_clearance)
+    scale, moving = np.array([1.0, 1.0, 1 / radius, 1 / radius]), np.array(FREE)
+    inner = 6 + moving
+    found, steps, failed = np.zeros((len(loads), 12)), [], 0
+    for q, load in zip(found, loads, strict=True):
+        pull = scale * load[moving]
+        size = np.linalg.norm(pull)
+
+        def balance(y, q=q, pull=pull, size=size):
+            q[inner] = scale * 1e-6 * y
+            force, stiffness = evaluate(q)
+            k = np.asarray(stiffness)[np.ix_(inner, inner)]
+            g = scale * np.asarray(force)[inner] - pull
+            return g / size, 1e-6 * scale[:, None] * k * scale / size
+
+        start = 1e6 * (play + 1e-6) * pull / size
+        answer = scipy.optimize.root(balance, start, jac=True, tol=1e-10)
+        q[inner] = scale * 1e-6 * answer.x
+        steps.append(answer.nfev)
+        failed += not answer.success
+    return found, None, np.array(steps), failed
+
+
+def callers(element, c):
+    """Name -> function of loads and `neighbours`."""
+    model = element.model()
+    compiled = jax.jit(functools.partial(single_call.both, model))
+    plain = peers.with_numpy(peers.plain(element, element.quadrature.points))
+
+    def with_numpy(q):
+        force, stiffness = plain(q[None])
+        return force[0], stiffness[0]
+
+    return {
+        OURS: functools.partial(ours, element),
+        C: c,
+        SCIPY: functools.partial(by_scipy, element, lambda q: compiled(jnp.asarray(q))),
+        SCIPY_NUMPY: functools.partial(by_scipy, element, with_numpy),
+    }
+
+
+def study(element, kind, sizes, folder):
+    """A row for every solver."""
+    make, neighbours = LOADS[kind]
+    loads = make(sizes["cases"])
+    library = single_call.compile_c(folder, element, SOURCE)
+    every = callers(element, CLoad(library, element))
+    few = loads[:: max(1, len(loads) // sizes["scipy"])][: sizes["scipy"]]
+    given = {name: few if name in (SCIPY, SCIPY_NUMPY) else loads for name in every}
+    calls = {
+        name: functools.partial(call, given[name], neighbours)
+        for name, call in every.items()
+    }
+    first, _ = timed(calls[OURS])
+    times = shuffled(calls, sizes["rounds"])
+    rows = []
+    for name, call in calls.items():
+        displacement, _, steps, failed = call()
+        each = 1e6 * float(np.median(times[name])) / len(given[name])
+        want, *_ = every[C](given[name], False)
+        rows.append(
+            {
+                "solver": name,
+                "us": each,
+                "cases": len(given[name]),
+                "steps": float(np.mean(steps)),
+                "most_steps": int(np.max(steps)),
+                "failed": failed,
+                "error": relative(displacement, want),
+            }
+        )
+    again = rows[0]["us"] * 1e-6 * len(loads)
+    return {"compile_s": first - again, "rows": rows}
+
+
+def measure(sizes):
+    """(bearing, kind of loads) -> rows."""
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for name, profiles in (("straight", {}), ("unlike", single_call.unlike())):
+            element = single_call.element(**profiles)
+            for kind in LOADS:
+                found[f"{name} raceways, {kind}"] = study(element, kind, sizes, folder)
+                if sizes is SMOKE:
+                    return found
+    return found
+
+
+def figures(results):
+    """Worst of all: time against C, times faster than SciPy with our stiffness."""
+    each = [{r["solver"]: r["us"] for r in x["rows"]} for x in results.values()]
+    return {
+        "of_c": max(us[OURS] / us[C] for us in each),
+        "scipy": min(us[SCIPY] / us[OURS] for us in each),
+    }
+
+
+def show(results):
+    for name, result in results.items():
+        print(f"\n{name} (trace and compile {result['compile_s']:.1f} s)")
+        print(
+            f"{'solver':27}{'cases':>7}{'µs/case':>10}{'cases/s':>9}{'ratio':>8}"
+            f"{'steps':>7}{'most':>6}{'failed':>8}{'error':>8}"
+        )
+        for r in result["rows"]:
+            print(
+                f"{r['solver']:27}{r['cases']:7d}{r['us']:10.1f}{1e6 / r['us']:9.0f}"
+                f"{r['us'] / result['rows'][0]['us']:8.2f}{r['steps']:7.1f}"
+                f"{r['most_steps']:6d}{r['failed']:8d}{r['error']:8.0e}"
+            )
+    worst = figures(results)
+    print()
+    print(verdict("time against C, worst", worst["of_c"], GOALS["of_c"]))
+    print(verdict("times faster than SciPy", worst["scipy"], GOALS["scipy"], False))
+    print(f"\none core; {machine()}")
+
+
+def agrees(results):
+    """Whether ours ends where C ends, and neither fails."""
+    rows = [r for x in results.values() for r in x["rows"] if r["solver"] in (OURS, C)]
+    return all(r["error"] <= AGREEMENT and not r["failed"] for r in rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line of figures")
+    parser.add_argument("--smoke", action="store_true", help="few loads")
+    args = parser.parse_args()
+    if single_call.compiler() is None:
+        print("load_solve_throughput: no C compiler; skipped.", file=sys.stderr)
+        return 0
+    # Before JAX starts its threads: one core for everyone.
+    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    results = measure(SMOKE if args.smoke else FULL)
+    if args.json:
+        print(json.dumps({"goals": GOALS, "figures": figures(results)} | results))
+    else:
+        show(results)
+    if not agrees(results):
+        print("load_solve_throughput: C and JAX disagree.", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,217 @@
+"""Does a bad case spoil a sweep? A million loads and speeds, one in a hundred bad.
+
+A cylindrical roller bearing (NU) under random loads, 1e2 to 1e5 N, at random speeds, on
+two host devices. The bad cases: a load that is not a number, or infinite; an axial
+load, which an NU does not carry; a load far beyond all bearings; an absurd speed; a
+speed that is not a number. All good cases must be solved (residual of each; a random
+sample is solved again, one by one, and compared), all bad ones must say so.
+
+Then what bad cases cost the good ones in their chunks: time of a smaller sweep without
+any, and with one in a hundred of each kind, in shuffled order.
+
+Run: python benchmarks/robust_sweep.py [--count 1000000] [--json] [--smoke]
+
+Last run:
+
+(to be run)
+"""
+
+import argparse
+import functools
+import json
+import sys
+import time
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import numpy as np  # noqa: E402
+from timing import machine, peak_memory, shuffled, verdict  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+BAD = {
+    "load not a number": {"load": (0, np.nan)},
+    "load infinite": {"load": (1, np.inf)},
+    "axial load": {"load": (2, 500.0)},
+    "load of 1e30 N": {"load": (0, 1e30)},
+    "speed of 1e9 rad/s": {"speed": 1e9},
+    "speed not a number": {"speed": np.nan},
+}
+EVERY = 100  # one bad case in so many
+OUTPUTS = ("displacement", "residual", "iterations")
+RESIDUAL = 1e-8
+AGREEMENT = 1e-9  # of a displacement, relative to the largest of the case
+GOALS = {"wrong": 0, "missed": 0, "hold": 1.1, "memory": 2.0}
+SAMPLE = 50
+TIMED = 1024
+SMOKE = {"sample": 2, "timed": 0}
+
+
+def bearing():
+    return bj.CylindricalRollerBearing(
+        14, 0.065, 0.010, 0.010,
+        radial_internal_clearance=25e-6,
+        roller_profile=bj.CircularCrown(1.0),
+    )  # fmt: skip
+
+
+def good_cases(count, seed=0):
+    """Loads (count, 6) [N, N m] and speeds of the inner ring (count,) [rad/s]."""
+    rng = np.random.default_rng(seed)
+    size, way = 10 ** rng.uniform(2, 5, count), rng.uniform(0, 2 * np.pi, count)
+    loads = np.zeros((count, 6))
+    loads[:, 0], loads[:, 1] = size * np.cos(way), size * np.sin(way)
+    loads[:, 3:5] = (size * rng.uniform(-1e-3, 1e-3, (2, count))).T
+    return loads, rng.uniform(0, 600, count)
+
+
+def spoiled(count, kinds, seed=0):
+    """Cases, and the kind of fault of each (index into `kinds`, -1: good)."""
+    loads, speeds = good_cases(count, seed)
+    fault = np.full(count, -1)
+    rng = np.random.default_rng(seed + 1)
+    if kinds:
+        places = rng.choice(count, max(len(kinds), count // EVERY), replace=False)
+        fault[places] = np.arange(len(places)) % len(kinds)
+    for index, kind in enumerate(kinds):
+        for name, value in BAD[kind].items():
+            if name == "load":
+                loads[fault == index, value[0]] = value[1]
+            else:
+                speeds[fault == index] = value
+    return bj.Cases(loads, inner_speed=speeds), fault
+
+
+def wrong_of(element, cases, sweep, good, sample):
+    """How many good cases are wrong: by their residual, and solved again singly."""
+    solved = sweep.converged & (sweep.residual <= RESIDUAL)
+    unsolved = int(np.sum(good & ~solved))
+    rng = np.random.default_rng(2)
+    off = 0.0
+    for i in rng.choice(np.flatnonzero(good), sample, replace=False):
+        speed = bj.Speed(inner=cases.inner_speed[i])
+        alone = bj.solve_load(element, cases.load[i], speed=speed, throw=False)
+        want = np.asarray(alone.displacement)
+        error = np.max(np.abs(sweep.displacement[i] - want)) / np.max(np.abs(want))
+        off = max(off, float(error))
+    return unsolved, off
+
+
+def survey(element, count, sample):
+    """The whole sweep: what became of good and bad cases, time and memory."""
+    cases, fault = spoiled(count, list(BAD))
+    begin = time.perf_counter()
+    sweep = bj.sweep(element, cases, outputs=OUTPUTS)
+    seconds = time.perf_counter() - begin
+    good = fault < 0
+    unsolved, off = wrong_of(element, cases, sweep, good, sample)
+    rows = [_row("good", sweep, good)]
+    rows += [_row(kind, sweep, fault == k) for k, kind in enumerate(BAD)]
+    return {
+        "cases": count,
+        "seconds": seconds,
+        "GiB": peak_memory(),
+        "wrong": unsolved + int(off > AGREEMENT),
+        "missed": int(np.sum(~good & sweep.converged)),
+        "worst_residual": float(np.nanmax(sweep.residual[good])),
+        "sample": sample,
+        "sample_error": off,
+        "rows": rows,
+    }
+
+
+def _row(kind, sweep, mine):
+    codes, counts = np.unique(sweep.result[mine], return_counts=True)
+    return {
+        "kind": kind,
+        "cases": int(np.sum(mine)),
+        "results": {
+            bj.Result(int(code)).label: int(n)
+            for code, n in zip(codes, counts, strict=True)
+        },
+        "mean_steps": float(np.mean(sweep.iterations[mine])),
+        "most_steps": int(np.max(sweep.iterations[mine])),
+    }
+
+
+def holding(element, count, rounds=2):
+    """Microseconds a case of sweeps with bad cases of one kind, and without any."""
+    if not count:
+        return {}
+    kinds = {"none": [], **{kind: [kind] for kind in BAD}, "all kinds": list(BAD)}
+    calls = {
+        name: functools.partial(
+            bj.sweep, element, spoiled(count, list(bad))[0], outputs=OUTPUTS
+        )
+        for name, bad in kinds.items()
+    }
+    calls["none"]()
+    times = shuffled(calls, rounds, warm=False)
+    return {name: 1e6 * float(np.median(t)) / count for name, t in times.items()}
+
+
+def figures(found, held):
+    """What the goals are about."""
+    told = {name: found[name] for name in ("wrong", "missed")}
+    if held:
+        told["hold"] = held["all kinds"] / held["none"]
+    return told | {"memory": found["GiB"]}
+
+
+def show(found, held):
+    seconds, count = found["seconds"], found["cases"]
+    print(
+        f"{count} cases, {len(jax.devices())} devices: {seconds:.1f} s with compiling,"
+        f" {1e6 * seconds / count:.0f} µs each\n\n"
+        f"{'':20}{'cases':>9}{'steps':>7}{'most':>6}{'µs/case with 1 %':>18}  results"
+    )
+    for r in found["rows"]:
+        us = held.get("none" if r["kind"] == "good" else r["kind"])
+        results = ", ".join(f"{n} {label}" for label, n in r["results"].items())
+        print(
+            f"{r['kind']:20}{r['cases']:9d}{r['mean_steps']:7.1f}{r['most_steps']:6d}"
+            + (f"{us:18.1f}" if us else f"{'':18}")
+            + f"  {results}"
+        )
+    print(
+        f"\nworst residual of a good case {found['worst_residual']:.0e};"
+        f" {found['sample']} solved singly: largest difference"
+        f" {found['sample_error']:.0e}\n"
+    )
+    words = {
+        "wrong": "good cases wrong",
+        "missed": "bad cases not flagged",
+        "hold": "time with bad cases of all kinds over time without",
+        "memory": "peak memory, GiB",
+    }
+    for name, figure in figures(found, held).items():
+        print(verdict(words[name], figure, GOALS[name]))
+    print(f"\n{machine()}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=1_000_000)
+    parser.add_argument("--json", action="store_true", help="one line of figures")
+    parser.add_argument("--smoke", action="store_true", help="600 cases")
+    args = parser.parse_args()
+    jax.config.update("jax_num_cpu_devices", 2)
+    element = bj.BearingElement(bearing())
+    sizes = SMOKE if args.smoke else {"sample": SAMPLE, "timed": TIMED}
+    found = survey(element, 600 if args.smoke else args.count, sizes["sample"])
+    held = holding(element, sizes["timed"])
+    if args.json:
+        told = figures(found, held)
+        print(json.dumps({"goals": GOALS, "figures": told, "us": held} | found))
+    else:
+        show(found, held)
+    if found["wrong"] or found["missed"]:
+        print("robust_sweep: a case is wrong or not flagged.", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
