@@ -30,7 +30,7 @@ CHUNK = 5000
 class PlainNewton(AbstractMinimiser):
     """Newton's method without safeguards, for comparison."""
 
-    def minimise(self, function, start, radius, shape=None):
+    def minimise(self, function, start, radius, shape=None, memory=()):
         def body(_, x):
             e = function(x, True)
             return x - solve_symmetric(e.hessian, e.gradient)
@@ -41,7 +41,7 @@ class PlainNewton(AbstractMinimiser):
         good = size <= 1e-9 * e.scale + 10 * e.noise
         code = jnp.where(good, 0, 1).astype(jnp.int32)
         residual = size / (e.scale + 1e-300)
-        return Minimum(x, residual, size, jnp.asarray(60), code, radius)
+        return Minimum(x, residual, size, jnp.asarray(60), code)
 
 
 SOLVERS = {

@@ -207,7 +207,7 @@ def test_folder_to_write_to(run, tmp_path, option):
 
 def test_reader_that_left(monkeypatch):
     """As in `bearingjax solve tapered | true`."""
-    monkeypatch.setattr(cli, "_configure_jax", lambda: None)
+    monkeypatch.setattr(cli, "_configure_jax", lambda options: None)
     back, front = os.pipe()
     os.close(back)
     out = os.fdopen(front, "w")
