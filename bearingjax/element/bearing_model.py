@@ -401,15 +401,11 @@ class BearingModel(eqx.Module):
         """`Evaluated.near` of which nothing is known yet."""
 
         def unknown(row):
-            dtype = row.part.position.dtype
-            shapes = jax.eval_shape(row.element.transform, jnp.zeros((), dtype))
-            many = (n_elements(row.part.bearing),)
-            n, r = row.element.n_unknowns, shapes.shape[0]
-            return Near(
-                jnp.full((*many, n), jnp.nan, dtype),
-                jnp.zeros((*many, n, r), dtype),
-                jnp.zeros((*many, r), dtype),
-            )
+            zero = jnp.zeros((n_elements(row.part.bearing),), row.part.position.dtype)
+            motions = row.each(lambda m, phi: m.transform(phi)[:, 0] * 0.0, zero)
+            n = row.element.n_unknowns
+            follow = jnp.repeat(motions[:, None], n, axis=1)
+            return Near(jnp.nan + follow[..., 0], follow, motions)
 
         return tuple(unknown(row) for row in self.rows)
 
