@@ -176,13 +176,15 @@ def _sweep(options) -> int:
         sweep_report,
         write_sweep_json,
     )
-    from .statics.sweep_table import ENDINGS, write
+    from .statics.sweep_table import check_writable, write
 
     for path in (options.json, options.table):
         _check_writable(path)
-    if options.table is not None and options.table.suffix not in ENDINGS:
-        problem = f"a table ends in {' or '.join(ENDINGS)}"
-        raise SceneError(f"{options.table}: {problem}")
+    if options.table is not None:
+        try:
+            check_writable(options.table)
+        except (ValueError, ImportError) as error:
+            raise SceneError(str(error)) from error
     if options.devices is not None and options.devices < 1:
         raise SceneError(f"--devices is {options.devices}; it must be at least 1")
     begin = time.perf_counter()
@@ -196,8 +198,6 @@ def _sweep(options) -> int:
             write_sweep_json(options.json, table, solved)
     except OSError as error:
         raise SceneError(f"{error.filename}: cannot be written: {error}") from error
-    except ImportError as error:
-        raise SceneError(str(error)) from error
     print(sweep_report(table, solved, time.perf_counter() - begin), flush=True)
     if solved.converged.all():
         return SOLVED

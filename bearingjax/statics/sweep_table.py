@@ -1,5 +1,6 @@
 """A sweep as a flat table: one row per case, units in the header."""
 
+import importlib.util
 import itertools
 from collections.abc import Mapping
 from pathlib import Path
@@ -75,6 +76,22 @@ def columns(
     }
 
 
+def check_writable(path: Path) -> None:
+    """Raise unless `write` knows the format: to be asked before a long sweep.
+
+    Args:
+        path: Of the table.
+
+    Raises:
+        ValueError: For an ending other than .csv and .parquet.
+        ImportError: Without pyarrow.
+    """
+    if path.suffix not in ENDINGS:
+        raise ValueError(f"{path}: a table ends in {' or '.join(ENDINGS)}")
+    if importlib.util.find_spec("pyarrow") is None:
+        raise ImportError('tables need pyarrow: pip install "bearingjax[table]"')
+
+
 def write(
     sweep: Sweep,
     path: str | Path,
@@ -88,20 +105,15 @@ def write(
         beside: As in `columns`.
 
     Raises:
-        ValueError: For another ending.
-        ImportError: Without pyarrow.
+        ValueError, ImportError: As `check_writable`.
         OSError: If the file cannot be written.
     """
     path = Path(path)
-    if path.suffix not in ENDINGS:
-        raise ValueError(f"{path}: a table ends in {' or '.join(ENDINGS)}")
-    try:
-        import pyarrow
-        import pyarrow.csv
-        import pyarrow.parquet
-    except ImportError as error:
-        problem = 'tables need pyarrow: pip install "bearingjax[table]"'
-        raise ImportError(problem) from error
+    check_writable(path)
+    import pyarrow
+    import pyarrow.csv
+    import pyarrow.parquet
+
     table = pyarrow.table(columns(sweep, beside))
     if path.suffix == ".csv":
         pyarrow.csv.write_csv(table, path)

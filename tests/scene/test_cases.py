@@ -236,6 +236,13 @@ def test_wrong_command(run, scene, arguments, message):
     assert ended.status == 2 and message in ended.err
 
 
+def test_a_table_without_pyarrow_is_refused_before_the_sweep(run, scene, monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    monkeypatch.setattr(bj.scene, "run_cases", None)
+    ended = run("sweep", scene(GRID), "--table", "x.csv")
+    assert ended.status == 2 and "tables need pyarrow" in ended.err
+
+
 def test_wrong_outputs(run, scene):
     ended = run("sweep", scene('[cases]\noutputs = ["presure"]\n' + GRID))
     assert ended.status == 2 and "names 'presure'; there are" in ended.err
