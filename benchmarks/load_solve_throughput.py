@@ -17,7 +17,38 @@ Run: python benchmarks/load_solve_throughput.py [--json] [--smoke]
 
 Last run:
 
-(to be run)
+straight raceways, random (trace and compile 10.2 s)
+solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
+bj.sweep                  2048     870.6     1149    1.00   14.7    25       0   6e-16
+C                         2048      79.7    12551    0.09   14.7    25       0   0e+00
+SciPy root, our stiffness   64   14262.8       70   16.38   50.1    97       1   3e-01
+SciPy root, NumPy bearing   64   17942.8       56   20.61   49.5   107       3   4e-01
+
+straight raceways, path (trace and compile 16.4 s)
+solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
+bj.sweep                  2048     324.8     3078    1.00    6.0    17       0   4e-10
+C                         2048      46.2    21625    0.14    5.8    15       0   4e-10
+SciPy root, our stiffness   64   15183.3       66   46.74   47.7    86       2   5e-01
+SciPy root, NumPy bearing   64   19536.9       51   60.14   47.0    79       2   5e-01
+
+unlike raceways, random (trace and compile 12.6 s)
+solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
+bj.sweep                  2048    6777.8      148    1.00   14.9    25       0   6e-15
+C                         2048     272.4     3671    0.04   14.9    25       0   0e+00
+SciPy root, our stiffness   64   21399.3       47    3.16   52.8   105       1   3e-01
+SciPy root, NumPy bearing   64   72189.0       14   10.65   49.8    96       5   4e-01
+
+unlike raceways, path (trace and compile 15.4 s)
+solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
+bj.sweep                  2048    3715.0      269    1.00    6.1    18       0   4e-10
+C                         2048     140.2     7133    0.04    5.8    15       0   4e-10
+SciPy root, our stiffness   64   21801.8       46    5.87   47.7    68       2   5e-01
+SciPy root, NumPy bearing   64   98655.3       10   26.56   49.2    76       2   5e-01
+
+time against C, worst: 26.5 (at most 2): MISSED
+times faster than SciPy: 3.16 (at least 100): MISSED
+
+one core; AMD EPYC, 2 cores, load average 2.2; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
