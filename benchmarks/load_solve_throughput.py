@@ -246,12 +246,12 @@ def show(results):
     for name, result in results.items():
         print(f"\n{name} (trace and compile {result['compile_s']:.1f} s)")
         print(
-            f"{'solver':27}{'cases':>7}{'µs/case':>10}{'cases/s':>9}{'ratio':>8}"
+            f"{'solver':25}{'cases':>5}{'µs/case':>10}{'cases/s':>9}{'ratio':>8}"
             f"{'steps':>7}{'most':>6}{'failed':>8}{'error':>8}"
         )
         for r in result["rows"]:
             print(
-                f"{r['solver']:27}{r['cases']:7d}{r['us']:10.1f}{1e6 / r['us']:9.0f}"
+                f"{r['solver']:25}{r['cases']:5d}{r['us']:10.1f}{1e6 / r['us']:9.0f}"
                 f"{r['us'] / result['rows'][0]['us']:8.2f}{r['steps']:7.1f}"
                 f"{r['most_steps']:6d}{r['failed']:8d}{r['error']:8.0e}"
             )
