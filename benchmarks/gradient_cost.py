@@ -21,8 +21,10 @@ peak pressure       1753     2339   1.33     4.7    12.4   4e-11    1e-04
 stiffness           1863     2588   1.39     4.6    14.5   5e-10    3e-06
 
 with respect to 9 numbers of the design
-d(stiffness)/d(crown radius), mapped nodes, 32: largest change between 600 radii 0.54 of the median
-d(stiffness)/d(crown radius), slices, 30: largest change between 600 radii 1.8e+02 of the median
+d(stiffness)/d(crown radius), mapped nodes, 32:
+  largest change between 600 radii 0.54 of the median
+d(stiffness)/d(crown radius), slices, 30:
+  largest change between 600 radii 1.8e+02 of the median
 
 gradient over value, displacement: 1.27 (at most 1.3): met
 least error, displacement: 1.63e-09 (at most 1e-08): met
