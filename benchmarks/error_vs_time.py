@@ -66,7 +66,7 @@ class WholeLength(AbstractQuadrature):
     def table(self, offset, kinks, dtype):
         return (offset(jnp.asarray(self.reference()[0], dtype)),)
 
-    def nodes(self, offset, args, table, a, b):
+    def nodes(self, offset, args, table, a, b, arcs=False):
         one = jnp.ones((1,), a.dtype)
         tau = jnp.asarray(self.reference()[0], a.dtype)
         return Nodes(0.0 * one, one, (a + b * tau - table[0])[None, :])
