@@ -3,7 +3,8 @@
 Loads from 1e-3 N to 1e7 N in random directions that the bearing can carry, with and
 without clearance, on a crowned cylindrical bearing, an NUP and a taper; then loads
 that nothing can carry (a taper pulled apart, axial load on an NU), each of which must
-be named. Every answer is checked by the residual of a fresh evaluation.
+be named. Every answer is checked by the residual of a fresh evaluation: at most 1e-8
+of the load, or 1e-13 of the forces that cancel in it.
 
 Run: python benchmarks/robust_loads.py [--count 700] [--smoke]
 """
@@ -85,7 +86,11 @@ def solve(element, loads):
         out = jnp.where(free, scale * (fresh - load), 0.0)
         size = jnp.sqrt(jnp.sum((scale * jnp.where(free, load, 0.0)) ** 2))
         residual = jnp.sqrt(jnp.sum(out**2)) / size
-        return s.result, s.unrestrained, residual, s.stats.iterations
+        # Elements are balanced to 1e-13 of their contact loads, which may be a million
+        # times what they cancel to: a fresh evaluation comes out elsewhere by that.
+        cancel = element.model().evaluate(s.displacement).magnitude
+        floor = 1e-13 * cancel / size
+        return s.result, s.unrestrained, residual, floor, s.stats.iterations
 
     return jax.lax.map(one, loads, batch_size=50)
 
@@ -100,13 +105,14 @@ def run(count, seed=0, only=None):
             rng = np.random.default_rng([seed, index])
             for decade in DECADES:
                 loads = jnp.asarray(random_loads(rng, name, decade, count))
-                code, _, residual, steps = map(np.asarray, solve(element, loads))
+                code, _, residual, floor, steps = map(np.asarray, solve(element, loads))
                 good = code == bj.Result.CONVERGED
+                right = residual < np.maximum(1e-8, floor)
                 yield (
                     dict(design=name, clearance_um=1e6 * clearance, decade=decade,
                          loads=count, failed=int((~good).sum()),
                          codes=sorted(set(code[~good].tolist())),
-                         silently_wrong=int((good & ~(residual < 1e-8)).sum()),
+                         silently_wrong=int((good & ~right).sum()),
                          worst_residual=float(residual[good].max(initial=0.0)),
                          most_steps=int(steps.max()),
                          mean_steps=round(float(steps.mean()), 1))
@@ -119,7 +125,7 @@ def run(count, seed=0, only=None):
             for d in DECADES
         ]
         loads = jnp.asarray(np.concatenate(share))
-        code, freedom, _, steps = map(np.asarray, solve(element, loads))
+        code, freedom, _, _, steps = map(np.asarray, solve(element, loads))
         named = (code == bj.Result.NO_LOAD_PATH) & (freedom == 2)
         yield (
             dict(design=name, uncarried_loads=len(loads), named_uz=int(named.sum()),

@@ -10,6 +10,7 @@ Run: python benchmarks/robust_rollers.py [--count 1000000] [--solver newton|bfgs
 
 import argparse
 import json
+from functools import partial
 
 import jax
 
@@ -21,6 +22,7 @@ import numpy as np  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 from bearingjax.element.equilibrium import is_loose, solve_element  # noqa: E402
+from bearingjax.numerics.lanes import Loop  # noqa: E402
 from bearingjax.numerics.linear import solve_symmetric  # noqa: E402
 from bearingjax.numerics.minimise import AbstractMinimiser, Minimum  # noqa: E402
 
@@ -30,12 +32,18 @@ CHUNK = 5000
 class PlainNewton(AbstractMinimiser):
     """Newton's method without safeguards, for comparison."""
 
-    def minimise(self, function, start, radius, shape=None, memory=()):
-        def body(_, x):
+    def loop(self, function, start, radius, shape=None, memory=()):
+        def step(state):
+            k, x = state
             e = function(x, True)
-            return x - solve_symmetric(e.hessian, e.gradient)
+            return k + 1, x - solve_symmetric(e.hessian, e.gradient)
 
-        x = jax.lax.fori_loop(0, 60, body, start)
+        begin = (jnp.asarray(0), start)
+        return Loop(begin, lambda s: s[0] < 60, step, partial(self.finish, function))
+
+    @staticmethod
+    def finish(function, state):
+        _, x = state
         e = function(x, True)
         size = jnp.sqrt(e.gradient @ e.gradient)
         good = size <= 1e-9 * e.scale + 10 * e.noise

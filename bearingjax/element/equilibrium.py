@@ -4,12 +4,14 @@ Its own unknowns are those that minimise its energy, a convex problem with linea
 kinematics; where part of the forces has no potential, those that balance them.
 """
 
+import dataclasses
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
+from ..numerics import lanes
 from ..numerics.implicit import attach, recall, stop
 from ..numerics.linear import dot, norm, smallest_pivot, solve, trace
 from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
@@ -86,9 +88,9 @@ def solve_element(
                 " minimises an energy; gyroscopic moments and contact constants at the"
                 " operating angle have none. Use TrustRegionNewton()."
             )
-        minimiser = TrustRegionNewton(minimiser.tolerance, minimiser.max_steps, False)
+        minimiser = dataclasses.replace(minimiser, symmetric=False)
     frozen = stop((model, rings, magnitude, near))
-    state = _solve(minimiser, *frozen)
+    state = lanes.run(_loop, minimiser, *frozen)
 
     def residual(x, args):
         model, rings = args
@@ -161,7 +163,7 @@ def solved_derivatives(
     return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), d)
 
 
-def _solve(minimiser, model, rings, magnitude, near):
+def _loop(minimiser, model, rings, magnitude, near) -> lanes.Loop:
     eps = jnp.finfo(rings.dtype).eps
 
     def function(x, with_hessian, *_):
@@ -192,7 +194,15 @@ def _solve(minimiser, model, rings, magnitude, near):
         lambda a: jnp.zeros(a.shape, a.dtype),
         jax.eval_shape(model.responses, rings, start),
     )
-    minimum = minimiser.minimise(function, start, radius, shaping, memory)
+    loop = minimiser.loop(function, start, radius, shaping, memory)
+
+    def finish(state):
+        return _solved(model, rings, loop.finish(state))
+
+    return loop._replace(finish=finish)
+
+
+def _solved(model, rings, minimum) -> LocalState:
     result = minimum.result
     # Where part of the forces has no potential a pivot says nothing.
     if model.has_potential and not model.is_convex:

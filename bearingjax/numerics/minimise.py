@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jax import lax
 from jaxtyping import Array, Float, Int
 
+from .lanes import Loop
 from .linear import dot, norm, quadratic, solve, trace
 from .result import Result
 
@@ -69,16 +69,20 @@ Shape = Callable[
 class AbstractMinimiser(eqx.Module):
     """Minimises a smooth function of a few unknowns, scaled to one unit."""
 
+    def minimise(self, *args, **choices) -> Minimum:
+        """Minimise a function: `loop` from begin to end."""
+        return self.loop(*args, **choices).run()
+
     @abc.abstractmethod
-    def minimise(
+    def loop(
         self,
         function: Function,
         start: Float[Array, " n"],
         radius: Float[Array, ""],
         shape: Shape | None = None,
         memory: Any = (),
-    ) -> Minimum:
-        """Minimise `function`.
+    ) -> Loop:
+        """The iteration that minimises `function`, and ends with a `Minimum`.
 
         Args:
             function: (x, with_hessian) -> `Evaluation`; with a `memory`, that of
@@ -139,12 +143,13 @@ def _unpack(packed: Array, n: int, with_hessian: bool = True) -> _State:
 
 
 class TrustRegionNewton(AbstractMinimiser):
-    """Newton's method on H + |g|/radius, with the radius adapted.
+    """Newton's method on H + D |g|/radius, with the radius adapted.
 
-    The shift bounds the step by the radius and vanishes with the gradient, so the
-    end is quadratic; singular Hessians (open contacts) do no harm. A step is taken
-    if it lowers the energy, or still falls at its far end or at least halves the
-    gradient, where the energy is lost in round-off.
+    D is the identity, or takes less off directions that are soft in themselves. The
+    shift bounds the step and vanishes with the gradient, so the end is quadratic;
+    singular Hessians (open contacts) do no harm. A step is taken if it lowers the
+    energy, or still falls at its far end or at least halves the gradient, where the
+    energy is lost in round-off.
 
     Attributes:
         tolerance: |gradient| / scale at which the solve ends; `None` picks
@@ -152,22 +157,31 @@ class TrustRegionNewton(AbstractMinimiser):
         max_steps: Step limit.
         symmetric: Whether the Hessian is symmetric; false where part of the forces
             has no potential.
+        softest: D is the diagonal of H relative to its largest element, but at least
+            this. Saves steps where unknowns differ in nature, such as tilt and shift
+            of a ring; rollers of a taper, whose rib alone holds one direction, need 1.
 
     Static: all fields.
-    Source: gradient-regularised Newton, e.g. Ueda and Yamashita (2010).
+    Source: gradient-regularised Newton, e.g. Ueda and Yamashita (2010); D after
+        Marquardt (1963).
     """
 
     tolerance: float | None = eqx.field(static=True, default=None)
     max_steps: int = eqx.field(static=True, default=100)
     symmetric: bool = eqx.field(static=True, default=True)
+    softest: float = eqx.field(static=True, default=1.0)
 
-    def minimise(self, function, start, radius, shape=None, memory=()):
+    def loop(self, function, start, radius, shape=None, memory=()):
         goal = _tolerance(self.tolerance, start.dtype)
-        return self.search(
+        return self.search_loop(
             function, start, radius, goal, None, None, shape, memory=memory
         )
 
-    def search(
+    def search(self, *args, **choices) -> Minimum:
+        """As `minimise`, for functions that may be flat at the start: `search_loop`."""
+        return self.search_loop(*args, **choices).run()
+
+    def search_loop(
         self,
         function: Function,
         start: Float[Array, " n"],
@@ -179,11 +193,11 @@ class TrustRegionNewton(AbstractMinimiser):
         pull: Pull | None = None,
         memory: Any = (),
         max_steps: Int[Array, ""] | int | None = None,
-    ) -> Minimum:
-        """As `minimise`, for functions that may be flat at the start.
+    ) -> Loop:
+        """As `loop`, for functions that may be flat at the start.
 
         Args:
-            function, start, radius, shape, memory: As in `minimise`.
+            function, start, radius, shape, memory: As in `loop`.
             tolerance: |gradient| / scale at which the search ends; may be traced.
             direction: Unit vector (n,), or zero. If the function falls along it and
                 too little curvature is felt within `radius` to end the fall, it is
@@ -195,7 +209,7 @@ class TrustRegionNewton(AbstractMinimiser):
                 is not: the force is, unless it is zero.
             max_steps: Instead of the attribute; may be traced.
 
-        Fails: as `minimise`, and `NO_LOAD_PATH`.
+        Fails: as `loop`, and `NO_LOAD_PATH`.
         """
         eps = jnp.finfo(start.dtype).eps
         tiny = jnp.finfo(start.dtype).tiny
@@ -241,7 +255,7 @@ class TrustRegionNewton(AbstractMinimiser):
             now = _pulled(state.now, state, pull)
             size = norm(now.gradient)
             shift = size / state.radius + eps * trace(now.hessian) / n
-            shifted = now.hessian + shift * identity
+            shifted = now.hessian + shift * self._metric(now.hessian)
             p = -solve(shifted, now.gradient, self.symmetric)
             # An indefinite Hessian (finite kinematics) may still give a long step.
             p = p * jnp.minimum(1.0, state.radius / jnp.maximum(norm(p), tiny))
@@ -298,11 +312,20 @@ class TrustRegionNewton(AbstractMinimiser):
         factor = zero + 1.0 if pull is None else pull.factor
         begin = Evaluation(zero, 0.0 * start, identity, zero, zero)
         packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero, factor))
-        packed, memory = lax.while_loop(unfinished, step, (packed, memory))
-        state = _unpack(packed, n)
-        now = _pulled(state.now, state, pull)._replace(memory=memory)
-        state = state._replace(now=now)
-        return _finish(state, tolerance, limit)
+
+        def finish(carry):
+            state = _unpack(carry[0], n)
+            now = _pulled(state.now, state, pull)._replace(memory=carry[1])
+            return _finish(state._replace(now=now), tolerance, limit)
+
+        return Loop((packed, memory), unfinished, step, finish)
+
+    def _metric(self, hessian):
+        if self.softest == 1.0:
+            return jnp.eye(hessian.shape[0], dtype=hessian.dtype)
+        own = jnp.diag(hessian)
+        stiffest = jnp.maximum(jnp.max(own), jnp.finfo(own.dtype).tiny)
+        return jnp.diag(jnp.clip(own / stiffest, self.softest, 1.0))
 
 
 class BFGS(AbstractMinimiser):
@@ -324,7 +347,7 @@ class BFGS(AbstractMinimiser):
     tolerance: float | None = eqx.field(static=True, default=None)
     max_steps: int = eqx.field(static=True, default=400)
 
-    def minimise(self, function, start, radius, shape=None, memory=()):
+    def loop(self, function, start, radius, shape=None, memory=()):
         default = 1e-9 if start.dtype == jnp.float64 else 1e-4
         tolerance = default if self.tolerance is None else self.tolerance
         eps = jnp.finfo(start.dtype).eps
@@ -377,8 +400,11 @@ class BFGS(AbstractMinimiser):
         begin = Evaluation(zero, 0.0 * start, nothing, zero, zero)
         packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero, zero))
         carry = (packed, identity, jnp.ones((), start.dtype))
-        packed, _, _ = lax.while_loop(unfinished, step, carry)
-        return _finish(_unpack(packed, n, False), tolerance, None)
+
+        def finish(carry):
+            return _finish(_unpack(carry[0], n, False), tolerance, None)
+
+        return Loop(carry, unfinished, step, finish)
 
 
 def inverse_update(

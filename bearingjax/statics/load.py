@@ -239,7 +239,7 @@ def _solve(
         near = free * jnp.where(known, start, 0.0) / scale
         begin = begin + near
         factor = jnp.where(known, 1.0, factor)
-    solver = TrustRegionNewton(symmetric=symmetric)
+    solver = TrustRegionNewton(symmetric=symmetric, softest=0.03)
     minimum = solver.search(
         function,
         stop(begin),
