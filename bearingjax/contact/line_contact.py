@@ -75,6 +75,11 @@ class LineContact(eqx.Module):
         """Whether the drop is made of straight lines and flat arcs. Static."""
         return self.roller_profile.arcs and self.raceway_profile.arcs
 
+    @property
+    def proud(self) -> bool:
+        """Whether the drop may be negative somewhere. Static."""
+        return self.roller_profile.proud or self.raceway_profile.proud
+
     def line_load(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
         """Load per length at a given approach [N/m]."""
         return self.constant * positive_power(approach, _N, _D)

@@ -27,6 +27,9 @@ class AbstractProfile(eqx.Module):
     arcs: ClassVar[bool] = False
     """Whether it is made of straight lines and flat arcs, kinks between them."""
 
+    proud: ClassVar[bool] = False
+    """Whether the drop may be negative somewhere."""
+
     @abc.abstractmethod
     def drop(
         self, position: Float[Array, "..."], length: Scalar, diameter: Scalar
@@ -324,6 +327,9 @@ class Tabulated(AbstractProfile):
 
     positions: Float[Array, " table"] = eqx.field(converter=as_real)
     drops: Float[Array, " table"] = eqx.field(converter=as_real)
+
+    proud: ClassVar[bool] = True
+    """Between its points a parabola may swing out."""
 
     def __check_init__(self):
         shape = jnp.shape(self.positions)

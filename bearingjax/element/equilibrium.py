@@ -185,6 +185,9 @@ def _loop(minimiser, model, rings, magnitude, near) -> lanes.Loop:
     start, centre = model.first(rings), model.amid(rings)
     if near is not None:
         start = _followed(model, near, rings, start)
+    open_ = model.is_open(rings)
+    if open_ is not None:
+        start = jnp.where(open_, centre, start)
 
     def shape(x, step, size):
         return model.shape(rings, x, step, size)
@@ -196,10 +199,23 @@ def _loop(minimiser, model, rings, magnitude, near) -> lanes.Loop:
     )
     loop = minimiser.loop(function, start, radius, shaping, memory)
 
-    def finish(state):
-        return _solved(model, rings, loop.finish(state))
+    def unfinished(state):
+        going = loop.unfinished(state)
+        return going if open_ is None else going & ~open_
 
-    return loop._replace(finish=finish)
+    def finish(state):
+        minimum = loop.finish(state)
+        if open_ is not None:
+            # Its loop has not run.
+            minimum = minimum._replace(
+                residual=jnp.where(open_, 0.0, minimum.residual),
+                unbalanced=jnp.where(open_, 0.0, minimum.unbalanced),
+                steps=jnp.where(open_, 0, minimum.steps),
+                result=jnp.where(open_, int(Result.CONVERGED), minimum.result),
+            )
+        return _solved(model, rings, minimum)
+
+    return loop._replace(unfinished=unfinished, finish=finish)
 
 
 def _solved(model, rings, minimum) -> LocalState:

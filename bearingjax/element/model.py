@@ -115,6 +115,19 @@ class AbstractModel(eqx.Module):
         """
         return jnp.zeros((self.n_unknowns,), rings.dtype)
 
+    def is_open(self, rings: Rings) -> Bool[Array, ""] | None:
+        """Whether nothing touches the element `amid` the rings, nor pulls it away.
+
+        It then is at rest there. Cheap, and never true of one that carries load.
+
+        Args:
+            rings: Motion of both rings in the element's axes (r,) [m, rad].
+
+        Returns:
+            False for NaN; `None` if it cannot be told cheaply. Structure decides.
+        """
+        return None
+
     def first(self, rings: Rings) -> Unknowns:
         """Where a search for the equilibrium starts (n,) [m].
 

@@ -74,6 +74,14 @@ class RollerModel(AbstractModel):
         reach = jnp.abs(between[0]) + jnp.abs(between[1])
         return reach + jnp.abs(between[2]) * self.constants.half_length
 
+    def is_open(self, rings):
+        if self.body_force is not None or any(c.proud for c in self.constants.lines):
+            return None
+        approaches = self.kinematics.approaches(self.prepared, rings, 0.0 * rings[:3])
+        # No profile stands out: nowhere along a raceway is the approach larger.
+        raceways = approaches[:4:2] + jnp.abs(approaches[1:4:2])
+        return jnp.all(jnp.concatenate([raceways, approaches[4:]]) <= 0)
+
     def pressed(self, approach):
         line = self.constants.lines[0]
         return line.length * line.line_load(approach)

@@ -25,7 +25,7 @@ class Loop(NamedTuple):
 
     Attributes:
         begin: First state, any pytree of arrays.
-        unfinished: state -> whether to go on; true of `begin`.
+        unfinished: state -> whether to go on.
         step: state -> next state.
         finish: last state -> what is wanted of it.
     """
@@ -114,9 +114,8 @@ def _in_lanes(build, flags, leaves):
         rest, mine = iter(common), iter(mine)
         return build([next(mine if flag else rest) for flag in flags])
 
-    count = own[0].shape[0]
     begin = jax.vmap(lambda mine: loop(mine).begin)(own)
-    going = jnp.ones((count,), bool)
+    going = jax.vmap(lambda mine, state: loop(mine).unfinished(state))(own, begin)
     ended = _compacting(loop, own, begin, going)
     return jax.vmap(lambda mine, state: loop(mine).finish(state))(own, ended)
 

@@ -1,0 +1,98 @@
+"""Rollers that are told to be open before they are solved."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import bearingjax as bj
+from bearingjax.element.roller import RollerModel
+
+MOTIONS = 40
+
+
+def cylindrical(**more):
+    return bj.CylindricalRollerBearing(
+        11, 0.065, 0.010, 0.010, radial_internal_clearance=20e-6, **more
+    )
+
+
+def taper():
+    return bj.TaperedRollerBearing(
+        17, 0.06, 0.008, 0.012, roller_half_angle=0.033, roller_axis_angle=0.25,
+        roller_profile=bj.CircularCrown(2.0),
+        ribs=bj.Ribs(inner_minus=bj.Rib(0.15, 0.0, 1e-3)),
+    )  # fmt: skip
+
+
+DESIGNS = {
+    "crowned": lambda: cylindrical(roller_profile=bj.CircularCrown(1.0)),
+    "logarithmic, NUP": lambda: cylindrical(
+        roller_profile=bj.Logarithmic(),
+        ribs=bj.Ribs.arrangement("NUP", bj.Rib(0.3, 10e-6, 1e-3)),
+    ),
+    "taper": taper,
+}
+
+
+def ring_motions():
+    rng = np.random.default_rng(4)
+    q = rng.normal(size=(MOTIONS, 12)) * np.tile([8e-6] * 3 + [2e-4] * 3, 2)
+    return jnp.asarray(q)
+
+
+def evaluated(element, q):
+    """Of one motion at a time, and of all in a batch, where lanes are gathered."""
+    model = element.model()
+
+    def one(q):
+        e = model.evaluate(q)
+        return e.energy, e.force, e.stiffness, e.result
+
+    return jax.lax.map(one, q), jax.vmap(one)(q)
+
+
+@pytest.mark.parametrize("design", DESIGNS)
+def test_open_rollers_carry_nothing(design, monkeypatch):
+    element = bj.BearingElement(DESIGNS[design]())
+    q = ring_motions()
+    model = element.model()
+    (row,) = jax.vmap(model.solve)(q)
+    is_open = jax.vmap(jax.vmap(model.rows[0].element.is_open))(row.rings)
+    assert 0.1 < np.mean(is_open) < 0.9
+    assert np.all(np.asarray(row.state.result) == bj.Result.CONVERGED)
+    assert np.all(np.asarray(row.solved.contact_load)[np.asarray(is_open)] == 0.0)
+    got = evaluated(element, q)
+    jax.clear_caches()
+    monkeypatch.setattr(RollerModel, "is_open", lambda self, rings: None)
+    want = evaluated(bj.BearingElement(DESIGNS[design]()), q)
+    for mine, theirs in zip(jax.tree.leaves(got), jax.tree.leaves(want), strict=True):
+        scale = np.max(np.abs(theirs))
+        np.testing.assert_allclose(mine, theirs, rtol=1e-9, atol=1e-9 * scale)
+    jax.clear_caches()
+
+
+def test_a_profile_that_may_stand_out_is_not_told():
+    # Between the points the parabolas swing out to 0.6 um above the generator.
+    s = jnp.array([-5.0, -1.5, 1.5, 5.0]) * 1e-3
+    profile = bj.Tabulated(s, jnp.array([15e-6, 0.0, 0.0, 15e-6]))
+    element = bj.BearingElement(cylindrical(roller_profile=profile))
+    assert float(profile.drop(jnp.zeros(()), 0.01, 0.01)) < -5e-7
+    model = element.model().rows[0].element
+    assert model.is_open(jnp.zeros(6)) is None
+
+
+def test_what_is_not_a_number_is_not_open():
+    model = bj.BearingElement(DESIGNS["crowned"]()).model()
+    assert not model.rows[0].element.is_open(jnp.full(6, jnp.nan))
+    e = model.evaluate(jnp.full(12, jnp.nan))
+    assert int(e.result) == bj.Result.NON_FINITE
+
+
+def test_derivatives_of_an_open_bearing_are_finite():
+    element = bj.BearingElement(DESIGNS["crowned"]())
+    energy, force = jax.value_and_grad(element.energy)(jnp.zeros(12))
+    assert float(energy) == 0.0
+    np.testing.assert_array_equal(force, np.zeros(12))
+    slopes = jax.grad(lambda e: jnp.sum(e.force(jnp.zeros(12))))(element)
+    assert all(np.all(np.isfinite(x)) for x in jax.tree.leaves(slopes))
