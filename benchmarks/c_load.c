@@ -45,17 +45,20 @@ static double trace(double h[FREE][FREE])
     return sum;
 }
 
-/* x = (h + shift)^-1 rhs by L D L' of the matrix scaled to a unit diagonal. */
+/* x = (h + shift D)^-1 rhs by L D L' of the matrix scaled to a unit diagonal; D: its
+   diagonal over the largest element, at least 0.03. */
 static void solve_shifted(
     double h[FREE][FREE], double shift, const double *rhs, double *x)
 {
-    double s[FREE], l[FREE][FREE], d[FREE];
+    double s[FREE], l[FREE][FREE], d[FREE], own[FREE], stiffest = DBL_MIN;
+    for (int i = 0; i < FREE; i++) stiffest = fmax(stiffest, h[i][i]);
     for (int i = 0; i < FREE; i++) {
-        double diagonal = h[i][i] + shift;
+        own[i] = h[i][i] + shift * fmin(fmax(h[i][i] / stiffest, 0.03), 1.0);
+        double diagonal = own[i];
         s[i] = diagonal > DBL_MIN ? 1.0 / sqrt(diagonal) : 1.0;
     }
     for (int j = 0; j < FREE; j++) {
-        d[j] = (h[j][j] + shift) * s[j] * s[j];
+        d[j] = own[j] * s[j] * s[j];
         for (int k = 0; k < j; k++) d[j] -= l[j][k] * l[j][k] * d[k];
         d[j] = lifted(d[j]);
         for (int i = j + 1; i < FREE; i++) {

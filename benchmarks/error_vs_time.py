@@ -256,11 +256,11 @@ def plot(rows, target):
                 markerfacecolor=COLORS[rule] if dtype == "float64" else "white",
                 label=f"{rule}, {dtype}",
             )
-        axis.set_title(f"Error of the {asked}, worst of nine cases", loc="left")
+        axis.set_title(asked.capitalize(), loc="left")
         axis.set_xlabel("time of a call, µs")
         axis.grid(alpha=0.3)
         axis.spines[["top", "right"]].set_visible(False)
-    axes[0].set_ylabel("relative error")
+    axes[0].set_ylabel("relative error, worst of nine cases")
     axes[0].legend(frameon=False)
     figure.tight_layout()
     figure.savefig(target, dpi=150)

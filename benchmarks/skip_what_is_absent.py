@@ -8,7 +8,8 @@ taken away, one by one.
 Hot: the same compiled call in a block, shortest of the rounds, in shuffled order; only
 ratios within one run count. Kernels: instructions of the compiled program outside of
 fusions, a loop's body counted once. Trace and compile: shortest of the repeats, nothing
-kept. Steps: most Newton steps of a roller.
+kept. Steps: most Newton steps of a roller. Of 256: the same in one call for a batch,
+where open rollers are left out.
 
 Then sweeps of load solves, where outputs are what may be absent, and the moments of the
 loads: microseconds a case, shortest of the rounds; the first
@@ -97,6 +98,7 @@ SWEEPS = {
     "displacement, loads without moments": (("displacement",), False),
 }
 SWEPT = 2048
+BATCH = 256  # bearings in one call
 
 
 def element(variant):
@@ -139,7 +141,7 @@ class Case:
             e = el.evaluate(q, speed)
             return e.force, e.stiffness
 
-        self.wanted = wanted
+        self.wanted, self.batched = wanted, None
 
     def compile(self):
         """Trace and compile anew; seconds of both."""
@@ -157,6 +159,18 @@ class Case:
         for _ in range(count):
             jax.block_until_ready(self.compiled(*self.arguments))
         return (time.perf_counter() - begin) / count
+
+    def batch(self):
+        """Microseconds a bearing of one call for many, the rings' places alike."""
+        numbers, q, speed = self.arguments
+        many = q * (1.0 + 1e-3 * jnp.linspace(-1.0, 1.0, BATCH)[:, None])
+        if self.batched is None:
+            all_of = jax.vmap(self.wanted, in_axes=(None, 0, None))
+            self.batched = jax.jit(all_of).lower(numbers, many, speed).compile()
+            jax.block_until_ready(self.batched(numbers, many, speed))
+        begin = time.perf_counter()
+        jax.block_until_ready(self.batched(numbers, many, speed))
+        return 1e6 * (time.perf_counter() - begin) / BATCH
 
     def course(self):
         """Most steps, loaded rollers, and how the solve ended."""
@@ -188,6 +202,7 @@ def measure(names, rounds, block, repeats):
     cases = {name: Case(VARIANTS[name]) for name in names}
     built = {name: [] for name in names}
     times = {name: [] for name in names}
+    batches = {name: [] for name in names}
     order = list(names)
     jax.jit(jnp.linalg.norm).lower(jnp.ones(3)).compile()  # JAX itself warms up
     for _ in range(repeats):
@@ -199,7 +214,12 @@ def measure(names, rounds, block, repeats):
         for name in order:
             cases[name].block(max(1, block // 10))
             times[name].append(cases[name].block(block))
-    return [row(n, cases[n], built[n], times[n], times[FULL]) for n in names]
+            batches[name].append(cases[name].batch())
+    return [
+        row(n, cases[n], built[n], times[n], times[FULL])
+        | {"batch_us": min(batches[n])}
+        for n in names
+    ]
 
 
 def row(name, case, built, times, full):
@@ -261,15 +281,15 @@ def show_sweeps(rows):
 
 def show(rows):
     print(
-        f"{'':27}{'loaded':>7}{'':>6}{'hot, µs':^16}{'ratio':>6}{'':>8}"
-        f"{'trace':>8}{'compile':>8}\n"
+        f"{'':27}{'loaded':>7}{'':>6}{'hot, µs':^16}{'ratio':>6}{'of ' + str(BATCH):>8}"
+        f"{'':>8}{'trace':>8}{'compile':>8}\n"
         f"{'variant':27}{'rollers':>7}{'steps':>6}{'min':>8}{'median':>8}"
-        f"{'':>6}{'kernels':>8}{'s':>8}{'s':>8}"
+        f"{'':>6}{'µs each':>8}{'kernels':>8}{'s':>8}{'s':>8}"
     )
     for r in rows:
         print(
             f"{r['variant']:27}{r['loaded_rollers']:7d}{r['steps']:6d}"
-            f"{r['hot_us']:8.0f}{r['median_us']:8.0f}{r['ratio']:6.2f}"
+            f"{r['hot_us']:8.0f}{r['median_us']:8.0f}{r['ratio']:6.2f}{r['batch_us']:8.1f}"
             f"{r['kernels']:8d}{r['trace_s']:8.2f}{r['compile_s']:8.2f}"
         )
 

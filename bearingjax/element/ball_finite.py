@@ -47,14 +47,14 @@ class FiniteBall(AbstractBallModel):
     def n_forces(self):
         return 3
 
-    def transform(self, azimuth):
+    def section(self, azimuth):
         c, s = jnp.cos(azimuth), jnp.sin(azimuth)
         o, i = jnp.zeros_like(c), jnp.ones_like(c)
         rows = [[c, s, o], [-s, c, o], [o, o, i]]
         turn = jnp.stack([jnp.stack(row) for row in rows])
         # A body of revolution does not feel a turn about its own axis.
         tilt = turn.at[2, 2].set(0.0)
-        return jax.scipy.linalg.block_diag(turn, tilt, turn, tilt)
+        return jax.scipy.linalg.block_diag(turn, tilt)
 
     def _against(self, seen):
         """Motion (z, r) of the ball in the axes of a ring.

@@ -23,17 +23,17 @@ class LinearisedBall(AbstractBallModel):
 
     lever: Float[Array, "contact 2"]
 
-    def transform(self, azimuth):
+    def section(self, azimuth):
         shift = jnp.eye(3, dtype=self.diameter.dtype).at[0, 2].set(-self.pitch_radius)
-        section = shift @ section_matrix(azimuth)
-        if self.turning is None:
-            return jnp.concatenate([-section, section], axis=1)
-        zero = jnp.zeros_like(section)
-        return jnp.block([[section, zero], [zero, section]])
+        return shift @ section_matrix(azimuth)
+
+    @property
+    def relative(self):
+        return self.turning is None
 
     def _between(self, rings):
         """Motion of the inner ring against the outer one, at the ball centre."""
-        return rings if self.turning is None else rings[3:] - rings[:3]
+        return rings if self.relative else rings[3:] - rings[:3]
 
     def reach(self, rings):
         between = self._between(rings)

@@ -93,32 +93,30 @@ class RowModel(eqx.Module):
         part = self.part
         azimuth = azimuths(part.bearing, q if turns else lax.stop_gradient(q))
         # gz moves the elements only through the azimuth: its columns are zero.
-        transform = self.each(lambda m, phi: m.transform(phi), azimuth)
+        section = self.each(lambda m, phi: m.section(phi), azimuth)
         local = q
         place = None
         if not self.alone:
             place = self.placement
-            zero = jnp.zeros_like(place)
-            place = jnp.block([[place, zero], [zero, place]])
-            local = place @ q
+            local = jnp.concatenate([place @ q[:6], place @ q[6:]])
             if not self.element.places_itself:
                 offset = -part.inner_offset if part.mirrored else part.inner_offset
                 local = local.at[_CLOSING].add(offset)
         pressed = None
         if part.spring is not None:
-            pressed = self._pressed(part.spring, local, transform, minimiser)
+            pressed = self._pressed(part.spring, local, section, minimiser)
             local = local.at[_CLOSING].add(pressed.travel)
-        row = self._at(local, azimuth, transform, minimiser, near)
+        row = self._at(local, azimuth, section, minimiser, near)
         if place is not None:
-            row = dataclasses.replace(row, transform=transform @ place)
+            row = dataclasses.replace(row, section=section @ place)
         return dataclasses.replace(row, pressed=pressed)
 
-    def _at(self, local, azimuth, transform, minimiser, near=None) -> "Row":
+    def _at(self, local, azimuth, section, minimiser, near=None) -> "Row":
         """The elements at given motions in the row's own axes."""
         magnitude = jnp.max(jnp.abs(local[jnp.array([0, 1, 2, 6, 7, 8])]))
         tilt = jnp.max(jnp.abs(local[jnp.array([3, 4, 9, 10])]))
         magnitude = magnitude + 0.5 * self.part.bearing.pitch_diameter * tilt
-        rings = transform @ local
+        rings = self.seen(section, local)
         known = () if near is None else (near,)
         state = self.each(
             lambda m, r, *near: solve_element(m, r, magnitude, minimiser, *near),
@@ -128,22 +126,35 @@ class RowModel(eqx.Module):
         solved = self.each(
             lambda m, r, s: solved_derivatives(m, r, magnitude, s), rings, state
         )
-        return Row(self, local, azimuth, transform, rings, state, solved, None)
+        return Row(self, local, azimuth, section, rings, state, solved, None)
 
-    def _pressed(self, spring, local, transform, minimiser) -> "Pressed":
+    def seen(
+        self, section: Float[Array, "element h 6"], q: Ring
+    ) -> Float[Array, "element r"]:
+        """Ring motions in the elements' axes.
+
+        Args:
+            section: Motion of one ring in an element's axes from its freedoms.
+            q: Ring freedoms in the axes of `section` [m, rad].
+        """
+        if self.element.relative:
+            return section @ (q[6:] - q[:6])
+        return jnp.concatenate([section @ q[:6], section @ q[6:]], axis=1)
+
+    def _pressed(self, spring, local, section, minimiser) -> "Pressed":
         """Travel of a spring that the row balances, and how it follows the rings."""
-        column = transform[:, :, _CLOSING]
-        azimuth = jnp.zeros(transform.shape[:1], local.dtype)  # nothing asks for it
+        column = self.seen(section, jnp.zeros_like(local).at[_CLOSING].set(1.0))
+        azimuth = jnp.zeros(section.shape[:1], local.dtype)  # nothing asks for it
 
         def balance(travel, args):
-            model, transform, local, column = args
+            model, section, local, column = args
             moved = local.at[_CLOSING].add(travel[0])
-            row = model._at(moved, azimuth, transform, minimiser)
+            row = model._at(moved, azimuth, section, minimiser)
             energy, force, rate = model.part.spring.push(travel[0])
             pull = jnp.einsum("la,la->", column, row.forces()) - force
             return row, jnp.stack([pull]), energy, rate, force
 
-        args = (self, transform, local, column)
+        args = (self, section, local, column)
         frozen = stop(args)
         symmetric = self.element.has_potential
 
@@ -197,7 +208,8 @@ class Row(eqx.Module):
         model: What they are.
         local: Ring freedoms at the row's origin, mirrored with it (12,) [m, rad].
         azimuth: (element,) [rad].
-        transform: Ring motions in an element's axes from q (element, r, 12).
+        section: Motion of one ring in an element's axes from its six freedoms at the
+            node (element, h, 6).
         rings: Ring motions in an element's axes (element, r).
         state: Solved elements, leading axis element.
         solved: Their energies, forces and derivatives there, likewise.
@@ -207,7 +219,7 @@ class Row(eqx.Module):
     model: RowModel
     local: Ring
     azimuth: Float[Array, " element"]
-    transform: Float[Array, "element r 12"]
+    section: Float[Array, "element h 6"]
     rings: Float[Array, "element r"]
     state: LocalState
     solved: Derivatives
@@ -233,7 +245,11 @@ class Row(eqx.Module):
 
     def sum_forces(self, shares: Float[Array, "element r"]) -> Ring:
         """Forces on both nodes from `forces` [N, N m]."""
-        return jnp.einsum("lai,la->i", self.transform, shares)
+        if self.model.element.relative:
+            inner = jnp.einsum("lai,la->i", self.section, shares)
+            return jnp.concatenate([-inner, inner])
+        pairs = shares.reshape(shares.shape[0], 2, -1)
+        return jnp.einsum("lai,lka->ki", self.section, pairs).reshape(-1)
 
     def blocks(self) -> Float[Array, "element r r"]:
         """Condensed stiffness of each element, in its axes [N/m, N, N m]."""
@@ -242,17 +258,29 @@ class Row(eqx.Module):
     def stiffness(self) -> RingStiffness:
         """Stiffness between both nodes, springs condensed [N/m, N, N m]."""
         blocks = self.blocks()
-        half = jnp.einsum("lab,lbj->laj", blocks, self.transform)
-        total = jnp.einsum("lai,laj->ij", self.transform, half)
+        total = self._sum_blocks(blocks)
         if self.pressed is None:
             return total
         column = self.pressed.column
-        right = jnp.einsum("lai,lab,lb->i", self.transform, blocks, column)
-        left = jnp.einsum("la,laj->j", column, half)
+        right = self.sum_forces(jnp.einsum("lab,lb->la", blocks, column))
+        left = self.sum_forces(jnp.einsum("la,lab->lb", column, blocks))
         own = jnp.einsum("la,lab,lb->", column, blocks, column) + self.pressed.rate
         held = own > 0
         share = jnp.where(held, 1.0 / jnp.where(held, own, 1.0), 0.0)
         return total - share * jnp.outer(right, left)
+
+    def _sum_blocks(self, blocks):
+        """Stiffness between both nodes (12, 12) from `blocks`."""
+        section = self.section
+        if self.model.element.relative:
+            half = jnp.einsum("lab,lbj->laj", blocks, section)
+            k = jnp.einsum("lai,laj->ij", section, half)
+            return jnp.block([[k, -k], [-k, k]])
+        n, h, _ = section.shape
+        pairs = blocks.reshape(n, 2, h, 2, h)
+        half = jnp.einsum("lkamb,lbj->lakmj", pairs, section)
+        total = jnp.einsum("lai,lakmj->kimj", section, half)
+        return total.reshape(12, 12)
 
     def near(self) -> Near:
         """What solves at ring freedoms near by may start from, leading axis element."""
@@ -402,7 +430,8 @@ class BearingModel(eqx.Module):
 
         def unknown(row):
             zero = jnp.zeros((n_elements(row.part.bearing),), row.part.position.dtype)
-            motions = row.each(lambda m, phi: m.transform(phi)[:, 0] * 0.0, zero)
+            section = row.each(lambda m, phi: m.section(phi), zero)
+            motions = row.seen(section, jnp.zeros((12,), zero.dtype))
             n = row.element.n_unknowns
             follow = jnp.repeat(motions[:, None], n, axis=1)
             return Near(jnp.nan + follow[..., 0], follow, motions)

@@ -5,9 +5,11 @@ raceway contact has two approach coordinates: a at the middle of the roller and 
 part from tilt at its +ξ end; each rib has one. In order: (a, b) outer, (a, b) inner,
 ribs. All are in metres.
 
-Motions are in roller axes (`frame.to_roller_axes`). The roller's own three unknowns x
-are counted from the mean of both rings, with the tilt times half the length, so that
-all are in metres: motion = (outer + inner)/2 + (x_t, x_m, x_θ/(L/2)).
+Motions are in roller axes (`frame.to_roller_axes`): of both rings (6,), outer first;
+linearised kinematics take that of the inner against the outer one (3,) as well. The
+roller's own three unknowns x are counted from the mean of both rings, with the tilt
+times half the length, so that all are in metres:
+motion = (outer + inner)/2 + (x_t, x_m, x_θ/(L/2)).
 """
 
 import abc
@@ -20,7 +22,7 @@ from jaxtyping import Array, Float
 from .constants import ContactConstants
 from .frame import from_roller_axes
 
-Rings = Float[Array, "6"]
+Rings = Float[Array, " r"]
 Unknowns = Float[Array, "3"]
 Approaches = Float[Array, " contact"]
 
@@ -55,13 +57,13 @@ class AbstractKinematics(eqx.Module):
     @abc.abstractmethod
     def jacobian(
         self, prepared, rings: Rings, x: Unknowns
-    ) -> Float[Array, "contact 9"]:
+    ) -> Float[Array, "contact r+3"]:
         """Their derivatives with respect to (rings, x)."""
 
     @abc.abstractmethod
     def curvature(
         self, prepared, rings: Rings, x: Unknowns, forces: Approaches
-    ) -> Float[Array, "9 9"] | None:
+    ) -> Float[Array, "r+3 r+3"] | None:
         """Σ force · second derivative of the approach, or `None` if it is zero."""
 
 
@@ -79,12 +81,10 @@ class Linearised(AbstractKinematics):
         rows = _rows(constants)
         k = rows.shape[0]
         outer = jnp.asarray(_on_outer(constants), dtype=rows.dtype)[:, None]
-        # Ring minus roller = ±(outer - inner)/2 - x.
-        sign = 2.0 * outer - 1.0
+        # Ring minus roller = ±(inner - outer)/2 - x.
+        sign = 1.0 - 2.0 * outer
         scale = jnp.ones((3,), rows.dtype).at[2].set(1.0 / constants.half_length)
-        jacobian = jnp.concatenate(
-            [0.5 * sign * rows, -0.5 * sign * rows, -scale[None, :] * rows], axis=1
-        )
+        jacobian = jnp.concatenate([0.5 * sign * rows, -scale[None, :] * rows], axis=1)
         start = jnp.full((k,), 0.0, rows.dtype)
         start = start.at[jnp.array([0, 2])].set(-constants.gap)
         if constants.ribs is not None:
@@ -94,12 +94,15 @@ class Linearised(AbstractKinematics):
     def approaches(self, prepared, rings, x):
         start, jacobian = prepared
         # The difference first: a common motion then costs nothing, to round-off.
-        between = rings[:3] - rings[3:]
-        moved = jacobian[:, :3] * between[None, :] + jacobian[:, 6:] * x[None, :]
+        between = rings if rings.shape[0] == 3 else rings[3:] - rings[:3]
+        moved = jacobian[:, :3] * between[None, :] + jacobian[:, 3:] * x[None, :]
         return start + jnp.sum(moved, axis=1)
 
     def jacobian(self, prepared, rings, x):
-        return prepared[1]
+        _, jacobian = prepared
+        if rings.shape[0] == 3:
+            return jacobian
+        return jnp.concatenate([-jacobian[:, :3], jacobian], axis=1)
 
     def curvature(self, prepared, rings, x, forces):
         return None

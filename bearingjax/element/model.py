@@ -1,7 +1,8 @@
 """What the equilibrium asks of one rolling element, roller or ball.
 
-`rings` are the motions of both rings in the element's own axes (r,), `x` its own
-unknowns (n,) [m]. All derivatives are with respect to (rings, x), in this order.
+`rings` are the motions of both rings in the element's own axes (r,), or that of the
+inner one against the outer one where no more matters; `x` its own unknowns (n,) [m].
+All derivatives are with respect to (rings, x), in this order.
 """
 
 import abc
@@ -73,8 +74,16 @@ class AbstractModel(eqx.Module):
         return False
 
     @abc.abstractmethod
-    def transform(self, azimuth: Scalar) -> Float[Array, "r 12"]:
-        """Ring motions in the element's axes from q."""
+    def section(self, azimuth: Scalar) -> Float[Array, "h 6"]:
+        """Motion of one ring in the element's axes from its freedoms."""
+
+    @property
+    def relative(self) -> bool:
+        """Whether `rings` is the motion of the inner ring against the outer one.
+
+        Otherwise of the outer, then of the inner ring. Static.
+        """
+        return False
 
     def responses(self, rings: Rings, x: Unknowns) -> Any:
         """What is dear in `derivatives`, to be kept from the last step of a solve.

@@ -61,23 +61,27 @@ class RollerModel(AbstractModel):
     def is_convex(self):
         return isinstance(self.kinematics, Linearised)
 
-    def transform(self, azimuth):
-        section = self._axes() @ section_matrix(azimuth)
-        zero = jnp.zeros_like(section)
-        return jnp.block([[section, zero], [zero, section]])
+    def section(self, azimuth):
+        return self._axes() @ section_matrix(azimuth)
+
+    @property
+    def relative(self):
+        # Inertia does work on the motion of both rings.
+        return isinstance(self.kinematics, Linearised) and self.body_force is None
 
     def _axes(self):
         return to_roller_axes(self.constants.axis_angle, self.constants.pitch_radius)
 
     def reach(self, rings):
-        between = rings[:3] - rings[3:]
+        between = rings if self.relative else rings[3:] - rings[:3]
         reach = jnp.abs(between[0]) + jnp.abs(between[1])
         return reach + jnp.abs(between[2]) * self.constants.half_length
 
     def is_open(self, rings):
         if self.body_force is not None or any(c.proud for c in self.constants.lines):
             return None
-        approaches = self.kinematics.approaches(self.prepared, rings, 0.0 * rings[:3])
+        midway = self.amid(rings)
+        approaches = self.kinematics.approaches(self.prepared, rings, midway)
         # No profile stands out: nowhere along a raceway is the approach larger.
         raceways = approaches[:4:2] + jnp.abs(approaches[1:4:2])
         return jnp.all(jnp.concatenate([raceways, approaches[4:]]) <= 0)
@@ -91,6 +95,9 @@ class RollerModel(AbstractModel):
 
     def motion(self, rings, x, outer):
         c = self.constants
+        if self.relative:
+            first = self._axes() @ outer
+            rings = jnp.concatenate([first, first + rings])
         back = from_roller_axes(c.axis_angle, c.pitch_radius)
         return back @ roller_motion(c, rings, x)
 
@@ -124,9 +131,9 @@ class RollerModel(AbstractModel):
         kinematics, prepared, c = self.kinematics, self.prepared, self.constants
         energies, forces, stiffness = responses or self.responses(rings, x)
         contact_load = jnp.concatenate([forces[:4:2], forces[4:]])
-        first = 6 if of_own else 0
+        first = rings.shape[0] if of_own else 0
         jacobian = kinematics.jacobian(prepared, rings, x)[:, first:]
-        size = 9 - first
+        size = jacobian.shape[1]
         hessian = (stiffness @ _squares(jacobian)).reshape(size, size)
         curvature = kinematics.curvature(prepared, rings, x, forces)
         if curvature is not None:
