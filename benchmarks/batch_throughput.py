@@ -19,39 +19,39 @@ Run: python benchmarks/batch_throughput.py [--json] [--smoke] [--device cpu|gpu]
 Last run:
 
 chunk         16      32      64     128     256
-µs/case     27.8    31.6    31.4    33.1    37.9
+µs/case     18.3    17.0    15.9    15.9    17.0
 
-in chunks of 16, one core
+in chunks of 128, one core
 rule          cases  ours, µs   C, µs   of C    error
-mapped         1000      27.2     4.6    17 %    5e-16
-mapped        10000      33.3     5.1    15 %    5e-16
-mapped       100000      29.6     5.0    17 %    5e-16
-mapped      1000000      34.2     4.5    13 %    5e-16
-midpoint       1000      16.0     2.5    16 %    1e-15
-midpoint      10000      16.0     2.4    15 %    1e-15
-midpoint     100000      16.5     2.3    14 %    1e-15
-midpoint    1000000      21.4     3.1    14 %    1e-15
+mapped         1000      16.7     5.6    34 %    5e-16
+mapped        10000      15.7     5.0    32 %    5e-16
+mapped       100000      16.8     5.1    30 %    5e-16
+mapped      1000000      20.8     5.4    26 %    5e-16
+midpoint       1000      11.6     2.8    24 %    1e-15
+midpoint      10000      10.1     2.6    26 %    1e-15
+midpoint     100000      10.4     2.6    25 %    1e-15
+midpoint    1000000      12.9     2.7    21 %    1e-15
 
 raceways unlike, midpoint     µs/case   ratio  error: force  stiffness
-ours                             58.3     1.0         0e+00      0e+00
-C                                 9.3     0.2         4e-16      1e-14
-NumPy, vectorised               162.3     2.8         1e-15      9e-14
-jax.scipy BFGS, vmapped       82013.3  1406.6         5e-07      4e-04
-SciPy root                     4730.7    81.1         8e-16      1e-15
-optimistix BFGS, vmapped       3987.5    68.4         5e-11      6e-10
+ours                             23.5     1.0         0e+00      0e+00
+C                                 8.6     0.4         4e-16      1e-14
+NumPy, vectorised               142.0     6.0         1e-15      9e-14
+jax.scipy BFGS, vmapped       88419.9  3756.9         5e-07      4e-04
+SciPy root                     4418.1   187.7         8e-16      1e-15
+optimistix BFGS, vmapped       3943.3   167.5         5e-11      6e-10
 
 µs/case       cases   one device    2 devices            C C, 2 threads
-mapped        50000         38.0         24.4          5.1          2.6
-midpoint      50000         20.9         15.2          2.5          1.4
+mapped        50000         15.4          8.7          5.1          2.6
+midpoint      50000         11.6          6.3          2.7          1.4
 
-1000000 cases kept: 22.7 s, peak memory 1.72 GiB
+1000000 cases kept: 10.9 s, peak memory 1.89 GiB
 
-speed against the C loop, one core, worst batch: 0.13 (at least 1): MISSED
-times faster than jax.scipy BFGS: 1.41e+03 (at least 50): met
-speed-up on two cores, worse rule: 1.38 (at least 1.8): MISSED
-peak memory, GiB: 1.72 (at most 2): met
+speed against the C loop, one core, worst batch: 0.213 (at least 1): MISSED
+times faster than jax.scipy BFGS: 3.76e+03 (at least 50): met
+speed-up on two cores, worse rule: 1.77 (at least 1.8): MISSED
+peak memory, GiB: 1.89 (at most 2): met
 
-AMD EPYC, 2 cores, load average 1.2; devices: 2 cpu; jax 0.10.1
+AMD EPYC, 2 cores, load average 1.4; devices: 2 cpu; jax 0.10.1
 """
 
 import argparse

@@ -15,7 +15,44 @@ Run: python benchmarks/error_vs_time.py [--json] [--smoke] [--plot OUT.png]
 
 Last run:
 
-(to be run)
+                                    worst error             time  compile
+rule                   nodes     force stiffness  pressure    µs        s
+slices       float64      10     5e-01     5e-01     4e-03   142      2.4
+slices       float64      30     3e-02     8e-02     9e-04   135      2.6
+slices       float64     100     8e-04     2e-02     2e-04   149      2.8
+slices       float64    1000     3e-04     2e-03     1e-06   332      2.9
+slices       float64   10000     4e-06     1e-04     2e-07  1557      2.8
+slices       float64  100000     1e-06     6e-06     8e-10 17883      2.9
+whole length float64      10     4e-01     4e-01     5e-03   206      3.1
+whole length float64      30     1e-01     1e-01     7e-04   195      3.3
+whole length float64     100     6e-03     3e-02     1e-04   206      3.1
+whole length float64     300     4e-04     1e-02     9e-06   191      2.9
+whole length float64    1000     6e-06     2e-03     5e-07   319      3.8
+mapped       float64       6     7e-03     3e-03     2e-04   324      7.8
+mapped       float64       8     3e-04     3e-05     2e-05   329      6.4
+mapped       float64      12     1e-04     7e-06     4e-07   271      5.6
+mapped       float64      16     1e-05     2e-06     5e-08   198      4.3
+mapped       float64      24     7e-07     8e-08     2e-09   232      3.4
+mapped       float64      32     3e-07     1e-08     1e-09   249      2.9
+mapped       float64      64     9e-11     6e-11     4e-13   274      4.0
+slices       float32      30     3e-02     8e-02     9e-04   166      2.7
+slices       float32    1000     3e-04     2e-03     1e-06   283      2.7
+slices       float32   10000     3e-05     1e-04     5e-07  1197      2.6
+mapped       float32       8     3e-04     3e-05     2e-05   152      4.0
+mapped       float32      16     1e-05     3e-06     5e-07   197      4.4
+mapped       float32      32     4e-06     2e-07     5e-07   195      3.4
+
+price of an error in stiffness, µs
+                  1e-04    1e-06    1e-08
+slices            17883        -        -
+whole length          -        -        -
+mapped              198      232      274
+
+slices' time over mapped nodes' at 0.0001 in stiffness: 90.3 (at least 20): met
+1e-06 in stiffness reached: met
+1e-08 in stiffness reached: met
+
+reference and 96 mapped nodes differ by 4e-12; AMD EPYC, 2 cores, load average 1.6; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse

@@ -14,24 +14,22 @@ Run: python benchmarks/gradient_cost.py [--json] [--smoke] [--plot OUT.png]
 
 Last run:
 
-time, µs               compile, s      least
+                    time, µs               compile, s      least
 of                 value gradient  ratio   valuegradient   error  at step
-displacement        1303     1649   1.27     4.9    12.6   2e-09    1e-03
-peak pressure       1753     2339   1.33     4.7    12.4   4e-11    1e-04
-stiffness           1863     2588   1.39     4.6    14.5   5e-10    3e-06
+displacement         765     1034   1.35     5.2    14.2   1e-09    1e-03
+peak pressure       1542     2329   1.51     5.2    12.9   3e-11    1e-05
+stiffness           1320     2191   1.66     6.3    15.1   4e-10    1e-06
 
 with respect to 9 numbers of the design
-d(stiffness)/d(crown radius), mapped nodes, 32:
-  largest change between 600 radii 0.54 of the median
-d(stiffness)/d(crown radius), slices, 30:
-  largest change between 600 radii 1.8e+02 of the median
+d(stiffness)/d(crown radius), mapped nodes, 32: largest change between 600 radii 0.54 of the median
+d(stiffness)/d(crown radius), slices, 30: largest change between 600 radii 1.8e+02 of the median
 
-gradient over value, displacement: 1.27 (at most 1.3): met
-least error, displacement: 1.63e-09 (at most 1e-08): met
-gradient over value, peak pressure: 1.33 (at most 1.3): MISSED
-least error, peak pressure: 3.93e-11 (at most 1e-08): met
-gradient over value, stiffness: 1.39 (at most 1.3): MISSED
-least error, stiffness: 5.48e-10 (at most 1e-06): met
+gradient over value, displacement: 1.35 (at most 1.3): MISSED
+least error, displacement: 9.88e-10 (at most 1e-08): met
+gradient over value, peak pressure: 1.51 (at most 1.3): MISSED
+least error, peak pressure: 3.19e-11 (at most 1e-08): met
+gradient over value, stiffness: 1.66 (at most 1.3): MISSED
+least error, stiffness: 3.92e-10 (at most 1e-06): met
 
 AMD EPYC, 2 cores, load average 1.5; devices: 1 cpu; jax 0.10.1
 """

@@ -17,38 +17,38 @@ Run: python benchmarks/load_solve_throughput.py [--json] [--smoke]
 
 Last run:
 
-straight raceways, random (trace and compile 10.2 s)
+straight raceways, random (trace and compile 19.4 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     870.6     1149    1.00   14.7    25       0   6e-16
-C                         2048      79.7    12551    0.09   14.7    25       0   0e+00
-SciPy root, our stiffness   64   14262.8       70   16.38   50.1    97       1   3e-01
-SciPy root, NumPy bearing   64   17942.8       56   20.61   49.5   107       3   4e-01
+bj.sweep                  2048     410.5     2436    1.00   11.5    21       0   6e-16
+C                         2048      59.9    16691    0.15   11.5    21       0   0e+00
+SciPy root, our stiffness   64   12987.9       77   31.64   50.1    97       1   3e-01
+SciPy root, NumPy bearing   64   16765.3       60   40.84   49.5   107       3   4e-01
 
-straight raceways, path (trace and compile 16.4 s)
+straight raceways, path (trace and compile 17.5 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     324.8     3078    1.00    6.0    17       0   4e-10
-C                         2048      46.2    21625    0.14    5.8    15       0   4e-10
-SciPy root, our stiffness   64   15183.3       66   46.74   47.7    86       2   5e-01
-SciPy root, NumPy bearing   64   19536.9       51   60.14   47.0    79       2   5e-01
+bj.sweep                  2048     185.9     5378    1.00    4.2    13       0   1e-10
+C                         2048      34.8    28718    0.19    4.1    13       0   1e-10
+SciPy root, our stiffness   64   15926.4       63   85.65   47.7    86       2   5e-01
+SciPy root, NumPy bearing   64   20868.9       48  112.23   47.0    79       2   5e-01
 
-unlike raceways, random (trace and compile 12.6 s)
+unlike raceways, random (trace and compile 17.3 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048    6777.8      148    1.00   14.9    25       0   6e-15
-C                         2048     272.4     3671    0.04   14.9    25       0   0e+00
-SciPy root, our stiffness   64   21399.3       47    3.16   52.8   105       1   3e-01
-SciPy root, NumPy bearing   64   72189.0       14   10.65   49.8    96       5   4e-01
+bj.sweep                  2048    1248.2      801    1.00   11.6    22       0   5e-15
+C                         2048     226.0     4425    0.18   11.6    22       0   0e+00
+SciPy root, our stiffness   64   26242.9       38   21.02   52.8   105       1   3e-01
+SciPy root, NumPy bearing   64   90273.8       11   72.32   49.8    96       5   4e-01
 
-unlike raceways, path (trace and compile 15.4 s)
+unlike raceways, path (trace and compile 16.8 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048    3715.0      269    1.00    6.1    18       0   4e-10
-C                         2048     140.2     7133    0.04    5.8    15       0   4e-10
-SciPy root, our stiffness   64   21801.8       46    5.87   47.7    68       2   5e-01
-SciPy root, NumPy bearing   64   98655.3       10   26.56   49.2    76       2   5e-01
+bj.sweep                  2048     505.2     1979    1.00    4.3    13       0   1e-10
+C                         2048      97.2    10286    0.19    4.1    13       0   1e-10
+SciPy root, our stiffness   64   17222.6       58   34.09   47.7    68       2   5e-01
+SciPy root, NumPy bearing   64   77337.6       13  153.07   49.2    76       2   5e-01
 
-time against C, worst: 26.5 (at most 2): MISSED
-times faster than SciPy: 3.16 (at least 100): MISSED
+time against C, worst: 6.85 (at most 2): MISSED
+times faster than SciPy: 21 (at least 100): MISSED
 
-one core; AMD EPYC, 2 cores, load average 2.2; devices: 1 cpu; jax 0.10.1
+one core; AMD EPYC, 2 cores, load average 1.2; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
