@@ -52,7 +52,8 @@ slices' time over mapped nodes' at 0.0001 in stiffness: 90.3 (at least 20): met
 1e-06 in stiffness reached: met
 1e-08 in stiffness reached: met
 
-reference and 96 mapped nodes differ by 4e-12; AMD EPYC, 2 cores, load average 1.6; devices: 1 cpu; jax 0.10.1
+reference and 96 mapped nodes differ by 4e-12
+AMD EPYC, 2 cores, load average 1.6; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
@@ -269,7 +270,7 @@ def show(rows, doubt):
         reached = price(rows, "mapped", target) is not None
         print(f"{target:g} in stiffness reached: {'met' if reached else 'MISSED'}")
     print(
-        f"\nreference and {REFERENCE} mapped nodes differ by {doubt:.0e}; {machine()}"
+        f"\nreference and {REFERENCE} mapped nodes differ by {doubt:.0e}\n{machine()}"
     )
 
 

@@ -21,8 +21,10 @@ peak pressure       1542     2329   1.51     5.2    12.9   3e-11    1e-05
 stiffness           1320     2191   1.66     6.3    15.1   4e-10    1e-06
 
 with respect to 9 numbers of the design
-d(stiffness)/d(crown radius), mapped nodes, 32: largest change between 600 radii 0.54 of the median
-d(stiffness)/d(crown radius), slices, 30: largest change between 600 radii 1.8e+02 of the median
+d(stiffness)/d(crown radius), mapped nodes, 32: largest change between
+  600 radii 0.54 of the median
+d(stiffness)/d(crown radius), slices, 30: largest change between
+  600 radii 1.8e+02 of the median
 
 gradient over value, displacement: 1.35 (at most 1.3): MISSED
 least error, displacement: 9.88e-10 (at most 1e-08): met
@@ -178,7 +180,7 @@ def show(rows, teeth):
     print(f"\nwith respect to {rows[0]['numbers']} numbers of the design")
     for name in COMB if teeth else ():
         print(
-            f"d(stiffness)/d(crown radius), {name}: largest change between"
+            f"d(stiffness)/d(crown radius), {name}: largest change between\n "
             f" {len(teeth['radius'])} radii {roughness(teeth[name]):.2g} of the median"
         )
     print()
