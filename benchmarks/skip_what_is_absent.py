@@ -19,19 +19,27 @@ Run: python benchmarks/skip_what_is_absent.py [--json] [--smoke]
 
 Last run:
 
-                            loaded          hot, µs      ratio           trace compile
-variant                    rollers steps     min  median       kernels       s       s
-full                            14     4     376     429  1.00     199    0.80    2.16
-no speed                        14     4     372     418  0.99     195    0.73    2.35
-no ribs                         14     4     371     447  0.99     185    0.91    1.99
-no speed, no ribs               14     4     370     422  0.98     181    0.76    2.08
-  and few rollers loaded         3     3     323     383  0.86     181    0.87    2.17
-  and force only                14     4     354     380  0.94     155    0.69    1.62
-  and energy only               14     4     352     406  0.94     157    0.74    1.79
-force only                      14     4     373     420  0.99     172    0.74    1.92
-energy only                     14     4     383     433  1.02     175    0.78    1.95
+                            loaded          hot, µs      ratio  of 256           trace compile
+variant                    rollers steps     min  median       µs each kernels       s       s
+full                            14     4     271     363  1.00    67.4     164    1.00    2.17
+no speed                        14     4     259     395  0.95    64.2     169    0.97    1.97
+no ribs                         14     4     250     373  0.92    64.6     153    0.88    1.88
+no speed, no ribs               14     4     248     356  0.92    61.9     158    0.81    1.71
+  and few rollers loaded         3     3     231     323  0.85    20.9     158    0.95    1.77
+  and rings in line             14     4     246     344  0.91    62.8     158    0.84    1.71
+  and force only                14     4     227     349  0.84    61.5     132    0.77    1.47
+  and energy only               14     4     235     338  0.87    60.6     131    0.84    1.58
+force only                      14     4     255     367  0.94    62.9     140    0.86    1.51
+energy only                     14     4     256     384  0.94    61.8     138    0.88    1.65
 
-AMD EPYC
+load solves, kept                         µs/case  ratio  compile, s
+all outputs                                1858.7   1.00        10.4
+displacement, stiffness, roller loads      1640.7   0.88         7.9
+displacement and stiffness                 1475.7   0.79         9.6
+displacement                               1683.6   0.91        10.8
+displacement, loads without moments         473.0   0.25         0.3
+
+AMD EPYC, 2 cores, load average 1.5; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
