@@ -19,18 +19,18 @@ Run: python benchmarks/skip_what_is_absent.py [--json] [--smoke]
 
 Last run:
 
-                            loaded          hot, µs      ratio  of 256           trace compile
-variant                    rollers steps     min  median       µs each kernels       s       s
-full                            14     4     271     363  1.00    67.4     164    1.00    2.17
-no speed                        14     4     259     395  0.95    64.2     169    0.97    1.97
-no ribs                         14     4     250     373  0.92    64.6     153    0.88    1.88
-no speed, no ribs               14     4     248     356  0.92    61.9     158    0.81    1.71
-  and few rollers loaded         3     3     231     323  0.85    20.9     158    0.95    1.77
-  and rings in line             14     4     246     344  0.91    62.8     158    0.84    1.71
-  and force only                14     4     227     349  0.84    61.5     132    0.77    1.47
-  and energy only               14     4     235     338  0.87    60.6     131    0.84    1.58
-force only                      14     4     255     367  0.94    62.9     140    0.86    1.51
-energy only                     14     4     256     384  0.94    61.8     138    0.88    1.65
+                          loaded         hot,µs     ratio  of 256          trace compile
+variant                  rollers steps    min median      µs each kernels      s       s
+full                          14     4    271    363 1.00    67.4     164   1.00    2.17
+no speed                      14     4    259    395 0.95    64.2     169   0.97    1.97
+no ribs                       14     4    250    373 0.92    64.6     153   0.88    1.88
+no speed, no ribs             14     4    248    356 0.92    61.9     158   0.81    1.71
+  and few rollers loaded       3     3    231    323 0.85    20.9     158   0.95    1.77
+  and rings in line           14     4    246    344 0.91    62.8     158   0.84    1.71
+  and force only              14     4    227    349 0.84    61.5     132   0.77    1.47
+  and energy only             14     4    235    338 0.87    60.6     131   0.84    1.58
+force only                    14     4    255    367 0.94    62.9     140   0.86    1.51
+energy only                   14     4    256    384 0.94    61.8     138   0.88    1.65
 
 load solves, kept                         µs/case  ratio  compile, s
 all outputs                                1858.7   1.00        10.4
@@ -289,16 +289,16 @@ def show_sweeps(rows):
 
 def show(rows):
     print(
-        f"{'':27}{'loaded':>7}{'':>6}{'hot, µs':^16}{'ratio':>6}{'of ' + str(BATCH):>8}"
-        f"{'':>8}{'trace':>8}{'compile':>8}\n"
-        f"{'variant':27}{'rollers':>7}{'steps':>6}{'min':>8}{'median':>8}"
-        f"{'':>6}{'µs each':>8}{'kernels':>8}{'s':>8}{'s':>8}"
+        f"{'':25}{'loaded':>7}{'':>6}{'hot, µs':^14}{'ratio':>5}{'of ' + str(BATCH):>8}"
+        f"{'':>8}{'trace':>7}{'compile':>8}\n"
+        f"{'variant':25}{'rollers':>7}{'steps':>6}{'min':>7}{'median':>7}"
+        f"{'':>5}{'µs each':>8}{'kernels':>8}{'s':>7}{'s':>8}"
     )
     for r in rows:
         print(
-            f"{r['variant']:27}{r['loaded_rollers']:7d}{r['steps']:6d}"
-            f"{r['hot_us']:8.0f}{r['median_us']:8.0f}{r['ratio']:6.2f}{r['batch_us']:8.1f}"
-            f"{r['kernels']:8d}{r['trace_s']:8.2f}{r['compile_s']:8.2f}"
+            f"{r['variant']:25}{r['loaded_rollers']:7d}{r['steps']:6d}"
+            f"{r['hot_us']:7.0f}{r['median_us']:7.0f}{r['ratio']:5.2f}{r['batch_us']:8.1f}"
+            f"{r['kernels']:8d}{r['trace_s']:7.2f}{r['compile_s']:8.2f}"
         )
 
 
