@@ -19,7 +19,7 @@ Run: python benchmarks/skip_what_is_absent.py [--json] [--smoke]
 
 Last run:
 
-                          loaded         hot,µs     ratio  of 256          trace compile
+                          loaded         hot, µs    ratio  of 256          trace compile
 variant                  rollers steps    min median      µs each kernels      s       s
 full                          14     4    271    363 1.00    67.4     164   1.00    2.17
 no speed                      14     4    259    395 0.95    64.2     169   0.97    1.97
