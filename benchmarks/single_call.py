@@ -26,36 +26,44 @@ Last run:
 radial: most steps 0 (JAX 0)
                                      hot, µs         cold, µs         ratio to C
                                  min  median      min  median    hot  cold  call
-C loop                           4.3     4.3      9.4    11.1    1.0   1.0   0.3
-C through ctypes                 4.6     4.7     18.4    38.2    1.1   3.5   1.0
-filter_jit(element, q)         213.8   247.4    803.1  2083.6   57.7 188.4  54.6
-jit(q), element closed over    169.4   216.0    391.8   624.8   50.3  56.5  16.4
-the same, ahead of time        188.7   209.8    343.1   588.4   48.9  53.2  15.4
-one of 256 in a call            45.1    49.1     46.7    51.8   11.4   4.7   1.4
+C loop                           4.3     5.0     11.1    14.2    1.0   1.0   0.3
+C through ctypes                 4.6     5.9     25.3    45.6    1.2   3.2   1.0
+filter_jit(element, q)         255.8   368.6   1096.3  1480.5   73.9 104.1  32.5
+jit(q), element closed over    147.8   220.9    512.8   654.6   44.3  46.0  14.4
+the same, ahead of time        152.5   207.3    281.9   736.0   41.6  51.7  16.2
+one of 256 in a call            14.6    18.2     15.3    21.9    3.7   1.5   0.5
 
 misaligned: most steps 0 (JAX 0)
                                      hot, µs         cold, µs         ratio to C
                                  min  median      min  median    hot  cold  call
-C loop                           4.2     4.2      7.2    10.3    1.0   1.0   0.3
-C through ctypes                 4.5     4.5     15.8    34.7    1.1   3.4   1.0
-filter_jit(element, q)         211.5   247.9    795.8  2140.7   59.3 207.2  61.8
-jit(q), element closed over    156.2   207.4    352.0   514.1   49.6  49.8  14.8
-the same, ahead of time        172.2   206.6    309.7   556.4   49.4  53.9  16.1
-one of 256 in a call            44.9    46.5     45.5    47.9   11.1   4.6   1.4
+C loop                           4.2     4.6      9.4    13.2    1.0   1.0   0.3
+C through ctypes                 4.5     4.9     16.4    45.7    1.1   3.5   1.0
+filter_jit(element, q)         219.8   315.4    865.8  1440.4   68.9 108.7  31.5
+jit(q), element closed over    136.2   186.5    414.0   668.0   40.7  50.4  14.6
+the same, ahead of time        136.5   192.3    431.7   664.2   42.0  50.1  14.5
+one of 256 in a call            12.0    17.4     14.2    20.4    3.8   1.5   0.4
 
 misaligned, raceways unlike: most steps 4 (JAX 4)
                                      hot, µs         cold, µs         ratio to C
                                  min  median      min  median    hot  cold  call
-C loop                          18.1    18.7     22.7    25.3    1.0   1.0   0.5
-C through ctypes                18.5    19.4     34.3    53.1    1.0   2.1   1.0
-filter_jit(element, q)         419.1   504.2   1055.2  2486.4   27.0  98.1  46.8
-jit(q), element closed over    317.9   399.1    596.2   927.7   21.3  36.6  17.5
-the same, ahead of time        328.2   382.6    562.7   818.5   20.5  32.3  15.4
-one of 256 in a call           162.3   180.9    161.3   191.2    9.7   7.5   3.6
+C loop                          18.1    18.9     21.7    26.0    1.0   1.0   0.5
+C through ctypes                18.5    19.2     37.8    55.5    1.0   2.1   1.0
+filter_jit(element, q)         304.8   397.7    983.9  2101.8   21.1  80.9  37.9
+jit(q), element closed over    229.9   283.7    384.0   856.2   15.0  33.0  15.4
+the same, ahead of time        226.8   279.3    368.3   813.1   14.8  31.3  14.6
+one of 256 in a call            50.8    61.0     52.1    66.0    3.2   2.5   1.2
 
 goal: hot ≤ 5, cold ≤ 8
 
-force and stiffness equal those of the C loop to 3e-16; AMD EPYC, 2 cores; one core used
+raceways unlike, 32 slices          µs   ratio  first, s  error: force  stiffness
+C through ctypes                 159.1    0.33      0.00         0e+00      0e+00
+ours                             474.8    1.00      1.65         5e-17      3e-16
+NumPy                           2375.7    5.00      0.05         6e-16      9e-16
+SciPy root                      6299.6   13.27      0.00         7e-16      7e-16
+jax.scipy BFGS                 14558.9   30.66      3.74         4e-08      6e-09
+optimistix BFGS                 6481.8   13.65      1.94         7e-11      2e-12
+
+AMD EPYC, 2 cores, load average 1.5; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
