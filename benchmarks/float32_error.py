@@ -13,16 +13,16 @@ Last run:
 
                                             force         stiffness     steps
 bearing                       rule      float32   input float32   input  32  64  conv.
-cylindrical, crowned ends     midpoint    2e-06   9e-08   1e-06   3e-08   0   0  20/20
-cylindrical NUP, logarithmic  midpoint    4e-06   1e-07   9e-07   9e-08  14  17  20/20
-needle, crowned, preloaded    midpoint    3e-06   9e-08   2e-06   5e-07   3   4  20/20
+cylindrical, crowned ends     midpoint    1e-06   9e-08   9e-07   3e-08   0   0  20/20
+cylindrical NUP, logarithmic  midpoint    5e-06   1e-07   8e-07   9e-08  14  17  20/20
+needle, crowned, preloaded    midpoint    2e-06   9e-08   6e-06   5e-07   3   4  20/20
 taper, large rib              midpoint    6e-06   7e-08   1e-06   2e-07  14  17  20/20
-taper, half angle zero        midpoint    7e-07   7e-08   9e-07   8e-08   0   0  20/20
+taper, half angle zero        midpoint    8e-07   7e-08   1e-06   8e-08   0   0  20/20
 cylindrical, crowned ends     contact     1e-06   9e-08   1e-06   7e-08   0   0  20/20
-cylindrical NUP, logarithmic  contact     3e-06   1e-07   8e-07   1e-07  13  18  20/20
-needle, crowned, preloaded    contact     2e-06   8e-08   1e-06   4e-08   2   4  20/20
-taper, large rib              contact     6e-06   6e-08   8e-07   7e-08  14  18  20/20
-taper, half angle zero        contact     7e-07   7e-08   9e-07   6e-08   0   0  20/20
+cylindrical NUP, logarithmic  contact     2e-06   1e-07   9e-07   1e-07  13  18  20/20
+needle, crowned, preloaded    contact     1e-06   8e-08   1e-06   4e-08   2   4  20/20
+taper, large rib              contact     6e-06   6e-08   9e-07   7e-08  14  18  20/20
+taper, half angle zero        contact     8e-07   7e-08   9e-07   6e-08   0   0  20/20
 
 worst of up to 20 motions; AMD EPYC
 """
