@@ -17,38 +17,38 @@ Last run:
 
                                     worst error             time  compile
 rule                   nodes     force stiffness  pressure    µs        s
-slices       float64      10     5e-01     5e-01     4e-03   142      2.4
-slices       float64      30     3e-02     8e-02     9e-04   135      2.6
-slices       float64     100     8e-04     2e-02     2e-04   149      2.8
-slices       float64    1000     3e-04     2e-03     1e-06   332      2.9
-slices       float64   10000     4e-06     1e-04     2e-07  1557      2.8
-slices       float64  100000     1e-06     6e-06     8e-10 17883      2.9
-whole length float64      10     4e-01     4e-01     5e-03   206      3.1
-whole length float64      30     1e-01     1e-01     7e-04   195      3.3
-whole length float64     100     6e-03     3e-02     1e-04   206      3.1
-whole length float64     300     4e-04     1e-02     9e-06   191      2.9
-whole length float64    1000     6e-06     2e-03     5e-07   319      3.8
-mapped       float64       6     7e-03     3e-03     2e-04   324      7.8
-mapped       float64       8     3e-04     3e-05     2e-05   329      6.4
-mapped       float64      12     1e-04     7e-06     4e-07   271      5.6
-mapped       float64      16     1e-05     2e-06     5e-08   198      4.3
-mapped       float64      24     7e-07     8e-08     2e-09   232      3.4
-mapped       float64      32     3e-07     1e-08     1e-09   249      2.9
-mapped       float64      64     9e-11     6e-11     4e-13   274      4.0
-slices       float32      30     3e-02     8e-02     9e-04   166      2.7
-slices       float32    1000     3e-04     2e-03     1e-06   283      2.7
-slices       float32   10000     3e-05     1e-04     5e-07  1197      2.6
-mapped       float32       8     3e-04     3e-05     2e-05   152      4.0
-mapped       float32      16     1e-05     3e-06     5e-07   197      4.4
-mapped       float32      32     4e-06     2e-07     5e-07   195      3.4
+slices       float64      10     5e-01     5e-01     4e-03   167      2.5
+slices       float64      30     3e-02     8e-02     9e-04   127      2.8
+slices       float64     100     8e-04     2e-02     2e-04   174      2.8
+slices       float64    1000     3e-04     2e-03     1e-06   326      3.0
+slices       float64   10000     4e-06     1e-04     2e-07  1471      2.9
+slices       float64  100000     1e-06     6e-06     8e-10 15485      2.9
+whole length float64      10     4e-01     4e-01     5e-03   133      2.6
+whole length float64      30     1e-01     1e-01     7e-04   156      2.5
+whole length float64     100     6e-03     3e-02     1e-04   155      2.7
+whole length float64     300     4e-04     1e-02     9e-06   180      2.8
+whole length float64    1000     6e-06     2e-03     5e-07   329      3.4
+mapped       float64       6     7e-03     3e-03     2e-04   247      4.0
+mapped       float64       8     3e-04     3e-05     2e-05   266      3.6
+mapped       float64      12     1e-04     7e-06     4e-07   269      3.7
+mapped       float64      16     1e-05     2e-06     5e-08   281      3.9
+mapped       float64      24     7e-07     8e-08     2e-09   256      3.3
+mapped       float64      32     3e-07     1e-08     1e-09   256      3.6
+mapped       float64      64     9e-11     6e-11     4e-13   248      3.8
+slices       float32      30     3e-02     8e-02     9e-04   129      3.4
+slices       float32    1000     3e-04     2e-03     1e-06   288      2.7
+slices       float32   10000     3e-05     1e-04     5e-07  1143      2.6
+mapped       float32       8     3e-04     3e-05     2e-05   150      3.6
+mapped       float32      16     1e-05     3e-06     5e-07   166      2.9
+mapped       float32      32     4e-06     2e-07     5e-07   176      3.8
 
 price of an error in stiffness, µs
                   1e-04    1e-06    1e-08
-slices            17883        -        -
+slices            15485        -        -
 whole length          -        -        -
-mapped              198      232      274
+mapped              248      248      248
 
-slices' time over mapped nodes' at 0.0001 in stiffness: 90.3 (at least 20): met
+slices' time over mapped nodes' at 0.0001 in stiffness: 62.5 (at least 20): met
 1e-06 in stiffness reached: met
 1e-08 in stiffness reached: met
 
