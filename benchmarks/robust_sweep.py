@@ -45,6 +45,7 @@ RESIDUAL = 1e-8
 AGREEMENT = 1e-9  # of a displacement, relative to the largest of the case
 GOALS = {"wrong": 0, "missed": 0, "hold": 1.1, "memory": 2.0}
 SAMPLE = 50
+NAMED = 10  # lost cases that are printed
 TIMED = 1024
 SMOKE = {"sample": 2, "timed": 0}
 
@@ -87,7 +88,13 @@ def spoiled(count, kinds, seed=0):
 def wrong_of(element, cases, sweep, good, sample):
     """How many good cases are wrong: by their residual, and solved again singly."""
     solved = sweep.converged & (sweep.residual <= RESIDUAL)
-    unsolved = int(np.sum(good & ~solved))
+    lost = np.flatnonzero(good & ~solved)
+    for i in lost[:NAMED]:
+        print(
+            f"case {i} is lost: {bj.Result(int(sweep.result[i])).label}, load"
+            f" {cases.load[i].tolist()} N, N m, {float(cases.inner_speed[i])!r} rad/s",
+            file=sys.stderr,
+        )
     rng = np.random.default_rng(2)
     off = 0.0
     for i in rng.choice(np.flatnonzero(good), sample, replace=False):
@@ -96,7 +103,7 @@ def wrong_of(element, cases, sweep, good, sample):
         want = np.asarray(alone.displacement)
         error = np.max(np.abs(sweep.displacement[i] - want)) / np.max(np.abs(want))
         off = max(off, float(error))
-    return unsolved, off
+    return len(lost), off
 
 
 def survey(element, count, sample):

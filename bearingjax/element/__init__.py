@@ -13,9 +13,6 @@ from .ball_speed import ball_mass as ball_mass
 from .bearing_element import BearingElement as BearingElement
 from .bearing_model import BearingModel as BearingModel
 from .bearing_model import Evaluated as Evaluated
-from .bearing_model import Row as Row
-from .bearing_model import azimuths as azimuths
-from .bearing_model import inertia_load as inertia_load
 from .constants import ContactConstants as ContactConstants
 from .constants import contact_constants as contact_constants
 from .frame import FREEDOMS as FREEDOMS
@@ -31,3 +28,6 @@ from .inertia import roller_speeds as roller_speeds
 from .kinematics import AbstractKinematics as AbstractKinematics
 from .kinematics import Finite as Finite
 from .kinematics import Linearised as Linearised
+from .row import Row as Row
+from .row import azimuths as azimuths
+from .row import inertia_load as inertia_load

@@ -24,13 +24,14 @@ from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .ball_model import ball_model
 from .ball_speed import AbstractRacewayControl, OuterControl
-from .bearing_model import BearingModel, Evaluated, Row, RowModel
+from .bearing_model import BearingModel, Evaluated
 from .constants import contact_constants
 from .function import FunctionParameters, RingFunction, as_function
 from .inertia import Speed, inertia_force
 from .kinematics import AbstractKinematics, Finite, Linearised
 from .model import AbstractModel
 from .roller import RollerModel
+from .row import Row, RowModel
 
 AnyBearing = TypeVar("AnyBearing", bound=Bearing | BearingSet)
 

@@ -18,8 +18,8 @@ from jaxtyping import Array, Float
 from ..design import BearingSet, rows_of
 from ..design.checks import check
 from ..numerics.types import Ring, Scalar, as_real
-from .bearing_model import azimuths
 from .inertia import Speed
+from .row import azimuths
 
 
 class FunctionParameters(eqx.Module):

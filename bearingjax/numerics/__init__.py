@@ -1,17 +1,17 @@
 """Numerical tools without bearing words: powers, quadrature, minimisers and more."""
 
+from .bfgs import BFGS as BFGS
+from .bfgs import inverse_update as inverse_update
 from .elliptic import carlson_rd as carlson_rd
 from .elliptic import complete as complete
 from .implicit import attach as attach
 from .implicit import attach_roots as attach_roots
 from .linear import smallest_pivot as smallest_pivot
 from .linear import solve_symmetric as solve_symmetric
-from .minimise import BFGS as BFGS
 from .minimise import AbstractMinimiser as AbstractMinimiser
 from .minimise import Evaluation as Evaluation
 from .minimise import Minimum as Minimum
 from .minimise import TrustRegionNewton as TrustRegionNewton
-from .minimise import inverse_update as inverse_update
 from .power import ninth_root as ninth_root
 from .power import positive_power as positive_power
 from .quadrature import AbstractQuadrature as AbstractQuadrature

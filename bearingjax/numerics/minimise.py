@@ -111,7 +111,7 @@ class Pull(NamedTuple):
     factor: Float[Array, ""]
 
 
-class _State(NamedTuple):
+class State(NamedTuple):
     x: Array
     now: Evaluation
     radius: Array
@@ -121,7 +121,7 @@ class _State(NamedTuple):
     factor: Array
 
 
-def _pack(state: _State) -> Array:
+def pack(state: State) -> Array:
     """All of a state in one array, so that a pass ends in one kernel, not in ten."""
     now = state.now
     parts = [state.x, now.gradient, now.hessian.reshape(-1)]
@@ -131,7 +131,7 @@ def _pack(state: _State) -> Array:
     )
 
 
-def _unpack(packed: Array, n: int, with_hessian: bool = True) -> _State:
+def unpack(packed: Array, n: int, with_hessian: bool = True) -> State:
     x, g, rest = packed[:n], packed[n : 2 * n], packed[2 * n :]
     h = jnp.zeros((0,), packed.dtype)
     if with_hessian:
@@ -139,7 +139,7 @@ def _unpack(packed: Array, n: int, with_hessian: bool = True) -> _State:
     value, scale, noise, *others = (rest[i] for i in range(8))
     radius, steps, stalled, reach, factor = others
     now = Evaluation(value, g, h, scale, noise)
-    return _State(x, now, radius, steps, stalled > 0, reach, factor)
+    return State(x, now, radius, steps, stalled > 0, reach, factor)
 
 
 class TrustRegionNewton(AbstractMinimiser):
@@ -229,7 +229,7 @@ class TrustRegionNewton(AbstractMinimiser):
         remembers = bool(jax.tree.leaves(memory))
 
         def unfinished(carry):
-            state = _unpack(carry[0], n)
+            state = unpack(carry[0], n)
             going = off_goal(state)
             if pull is not None:
                 going = going | (state.factor > 1.0)
@@ -242,7 +242,7 @@ class TrustRegionNewton(AbstractMinimiser):
             packed, memory = carry
             # The first pass (steps = -1) only evaluates the start: one copy of
             # `function` in the compiled loop instead of two.
-            state = _unpack(packed, n)
+            state = unpack(packed, n)
             first = state.steps < 0
             if pull is not None:
                 near = (state.factor > 1.0) & ~off_goal(state) & ~first
@@ -302,8 +302,8 @@ class TrustRegionNewton(AbstractMinimiser):
             settled = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
             stalled = settled & ~first & ~searching
             rest = (next_radius, state.steps + 1.0, stalled, reach, state.factor)
-            taken = _pack(_State(state.x + p, there, *rest))
-            stayed = _pack(_State(state.x, state.now, *rest))
+            taken = pack(State(state.x + p, there, *rest))
+            stayed = pack(State(state.x, state.now, *rest))
             return jnp.where(accept, taken, stayed), jax.tree.map(
                 lambda new, old: jnp.where(accept, new, old), there.memory, memory
             )
@@ -311,14 +311,14 @@ class TrustRegionNewton(AbstractMinimiser):
         zero = jnp.zeros((), start.dtype)
         factor = zero + 1.0 if pull is None else pull.factor
         begin = Evaluation(zero, 0.0 * start, identity, zero, zero)
-        packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero, factor))
+        packed = pack(State(start, begin, radius, zero - 1.0, zero, zero, factor))
 
-        def finish(carry):
-            state = _unpack(carry[0], n)
+        def end(carry):
+            state = unpack(carry[0], n)
             now = _pulled(state.now, state, pull)._replace(memory=carry[1])
-            return _finish(state._replace(now=now), tolerance, limit)
+            return finish(state._replace(now=now), tolerance, limit)
 
-        return Loop((packed, memory), unfinished, step, finish)
+        return Loop((packed, memory), unfinished, step, end)
 
     def _metric(self, hessian):
         if self.softest == 1.0:
@@ -328,107 +328,7 @@ class TrustRegionNewton(AbstractMinimiser):
         return jnp.diag(jnp.clip(own / stiffest, self.softest, 1.0))
 
 
-class BFGS(AbstractMinimiser):
-    """Quasi-Newton with the inverse update of the energy paper.
-
-    Kept to compare with the paper; on rollers that are barely held it needs many
-    steps or fails, and then says so.
-
-    Attributes:
-        tolerance: As in `TrustRegionNewton`; `None` picks 1e-9 (float32: 1e-4).
-        max_steps: Limit of evaluations.
-
-    Static: all fields.
-    Source: Sorokin, Zhang, Ivannikov (2018), quasi-Newton formula, restored:
-        B⁻¹ ← (E - s zᵀ/r) B⁻¹ (E - z sᵀ/r) + s sᵀ/r with r = s·z; skipped if r ≤ 0.
-        Backtracking line search added.
-    """
-
-    tolerance: float | None = eqx.field(static=True, default=None)
-    max_steps: int = eqx.field(static=True, default=400)
-
-    def loop(self, function, start, radius, shape=None, memory=()):
-        default = 1e-9 if start.dtype == jnp.float64 else 1e-4
-        tolerance = default if self.tolerance is None else self.tolerance
-        eps = jnp.finfo(start.dtype).eps
-        tiny = jnp.finfo(start.dtype).tiny
-        n = start.shape[0]
-        identity = jnp.eye(n, dtype=start.dtype)
-        radius = jnp.asarray(radius, dtype=start.dtype)
-
-        def unfinished(carry):
-            state = _unpack(carry[0], n, False)
-            size = norm(state.now.gradient)
-            goal = tolerance * state.now.scale + state.now.noise
-            going = (size > goal) & (state.steps < self.max_steps) & ~state.stalled
-            return going | (state.steps < 0)
-
-        def step(carry):
-            packed, inverse, fraction = carry
-            state = _unpack(packed, n, False)
-            first = state.steps < 0
-            now = state.now
-            direction = -inverse @ now.gradient
-            direction = direction * jnp.minimum(
-                1.0, state.radius / jnp.maximum(norm(direction), tiny)
-            )
-            s = jnp.where(first, 0.0, fraction * direction)
-            past = (memory,) if jax.tree.leaves(memory) else ()
-            new = function(state.x + s, False, *past)
-            accept = (new.value - now.value <= 1e-4 * (now.gradient @ s)) | (
-                norm(new.gradient) <= 0.5 * norm(now.gradient)
-            )
-            accept = accept | first
-            updated = inverse_update(inverse, s, new.gradient - now.gradient)
-            # First metric: down the gradient, as long as the radius.
-            steep = identity * radius / jnp.maximum(norm(new.gradient), tiny)
-            updated = jnp.where(first, steep, updated)
-            full = accept & (fraction == 1.0)
-            longer = jnp.maximum(state.radius, 4.0 * norm(s))
-            radius_now = jnp.where(full, longer, state.radius)
-            stalled = ~accept & (norm(s) <= 4 * eps * norm(state.x))
-            rest = (radius_now, state.steps + 1.0, stalled, *state[-2:])
-            new = new._replace(hessian=now.hessian)
-            taken = _pack(_State(state.x + s, new, *rest))
-            stayed = _pack(_State(state.x, now, *rest))
-            packed = jnp.where(accept, taken, stayed)
-            inverse = jnp.where(accept, updated, inverse)
-            return packed, inverse, jnp.where(accept, 1.0, 0.3 * fraction)
-
-        zero = jnp.zeros((), start.dtype)
-        nothing = jnp.zeros((0,), start.dtype)
-        begin = Evaluation(zero, 0.0 * start, nothing, zero, zero)
-        packed = _pack(_State(start, begin, radius, zero - 1.0, zero, zero, zero))
-        carry = (packed, identity, jnp.ones((), start.dtype))
-
-        def finish(carry):
-            return _finish(_unpack(carry[0], n, False), tolerance, None)
-
-        return Loop(carry, unfinished, step, finish)
-
-
-def inverse_update(
-    inverse: Float[Array, "n n"], s: Float[Array, " n"], z: Float[Array, " n"]
-) -> Float[Array, "n n"]:
-    """Inverse BFGS update: maps z to s, symmetric, positive definite if s·z > 0.
-
-    Args:
-        inverse: Current approximation of the inverse Hessian (n, n).
-        s: Step (n,).
-        z: Change of the gradient over it (n,).
-
-    Returns:
-        Updated inverse (n, n); the old one where s·z is not positive.
-    """
-    r = s @ z
-    usable = r > 0
-    safe = jnp.where(usable, r, 1.0)
-    left = jnp.eye(s.shape[0], dtype=s.dtype) - jnp.outer(s, z) / safe
-    new = left @ inverse @ left.T + jnp.outer(s, s) / safe
-    return jnp.where(usable, new, inverse)
-
-
-def _pulled(now: Evaluation, state: _State, pull: Pull | None) -> Evaluation:
+def _pulled(now: Evaluation, state: State, pull: Pull | None) -> Evaluation:
     """The evaluation of value - factor·force·x from that of value."""
     if pull is None:
         return now
@@ -447,7 +347,7 @@ def _tolerance(tolerance, dtype):
     return 1e-13 if dtype == jnp.float64 else 1e-6
 
 
-def _finish(state, tolerance, limit):
+def finish(state, tolerance, limit):
     now = state.now
     size = norm(now.gradient)
     # A stall at round-off is as good as it gets; anything above is a failure.

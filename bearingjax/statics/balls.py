@@ -10,7 +10,7 @@ from ..design import AbstractBallBearing
 from ..element.ball import AbstractBallModel
 from ..element.ball_inertia import gyroscopic_moment
 from ..element.ball_speed import BallKinematics
-from ..element.bearing_model import Row
+from ..element.row import Row
 
 
 class BallResults(eqx.Module):

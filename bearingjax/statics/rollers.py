@@ -8,9 +8,9 @@ from jaxtyping import Array, Bool, Float
 
 from ..contact.line import half_width, peak_pressure
 from ..design.rib import RIB_NAMES
-from ..element.bearing_model import Row
 from ..element.constants import relative_radii
 from ..element.roller import RollerModel
+from ..element.row import Row
 
 
 class RollerResults(eqx.Module):

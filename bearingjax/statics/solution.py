@@ -8,9 +8,10 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from ..element.bearing_element import BearingElement
-from ..element.bearing_model import BearingModel, Evaluated, Row, motions
+from ..element.bearing_model import BearingModel, Evaluated
 from ..element.equilibrium import Near
 from ..element.frame import FREEDOMS, RINGS
+from ..element.row import Row, motions
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .balls import BallResults, ball_results, ball_warnings

@@ -6,7 +6,6 @@ host, so that memory stays bounded however long the sweep is. JAX does the distr
 over the devices of one process or of many (`jax.distributed`).
 """
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -14,27 +13,18 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import lax
-from jax.experimental import multihost_utils
-from jax.sharding import Mesh, NamedSharding
-from jax.sharding import PartitionSpec as Spec
 from jaxtyping import Array, Bool, Float
 
 from ..design import rows_of
 from ..element.bearing_element import BearingElement
 from ..element.frame import RINGS
 from ..numerics.result import Result
-from .cases import Cases, solve_case
+from .cases import Cases
 from .solution import Solution
+from .sweep_program import Options, Program
 
 CHUNK = 64
 """Cases of a batch: what fits the cache (benchmarks/batch_throughput.py)."""
-
-BLOCK = 64
-"""Chunks of a device between two visits of the host."""
-
-LARGEST = 4 * 2**30
-"""Bytes that the outputs of a sweep may take."""
 
 SUMMARIES: dict[str, Callable[[Solution], Array]] = {
     "peak_pressure": lambda s: jnp.max(s.contact_pressure),
@@ -46,8 +36,6 @@ SUMMARIES: dict[str, Callable[[Solution], Array]] = {
 """Outputs beside the fields of a Solution: largest contact pressure [Pa], largest load
 of a rolling element [N], number of loaded elements, steps of the load solve, residual.
 """
-
-ALWAYS = ("result", "unrestrained")
 
 
 class Sweep(eqx.Module):
@@ -168,9 +156,9 @@ def sweep(
         raise ValueError(f"sweep: `chunk` is {chunk!r}; a whole number of at least 1.")
     keep = outputs if callable(outputs) else Keep(_checked(outputs))
     free = None if free is None else tuple(free)
-    options = _Options(free, fixed_ring, points, tolerance, keep)
+    options = Options(free, fixed_ring, points, tolerance, keep)
     places = np.array(jax.devices() if devices is None else list(devices))
-    program = _Program(element, options, size, places)
+    program = Program(element, options, size, places)
     found = program.run(every, max_steps, neighbours, progress)
     if neighbours:
         codes = found["result"]
@@ -245,186 +233,3 @@ def _with_designs(element, cases):
 
 def _is_none(x):
     return x is None
-
-
-class _Options(eqx.Module):
-    """What is the same for all cases. Static."""
-
-    free: tuple[str, ...] | None = eqx.field(static=True)
-    fixed_ring: str = eqx.field(static=True)
-    points: int = eqx.field(static=True)
-    tolerance: float | None = eqx.field(static=True)
-    keep: Any = eqx.field(static=True)
-
-    def solve(self, element, case, max_steps, start=None):
-        if case.design is not None:
-            element = jax.tree.map(lambda leaf: leaf[case.design], element)
-        return solve_case(
-            element,
-            case,
-            free=self.free,
-            fixed_ring=self.fixed_ring,
-            points=self.points,
-            tolerance=self.tolerance,
-            max_steps=max_steps,
-            start=start,
-        )
-
-    def outputs(self, solution):
-        solved = solution.converged
-
-        def told(value):
-            if jnp.issubdtype(value.dtype, jnp.floating):
-                return jnp.where(solved, value, jnp.nan)
-            return value
-
-        kept = jax.tree.map(told, self.keep(solution))
-        return {**kept, **{name: getattr(solution, name) for name in ALWAYS}}
-
-
-class _Program:
-    """Blocks of cases over devices.
-
-    Args:
-        element: The bearing or designs.
-        options: What is the same for all cases.
-        chunk: Cases of a batch.
-        devices: Where to.
-    """
-
-    def __init__(self, element, options, chunk, devices):
-        self.element, self.options, self.chunk = element, options, chunk
-        self.mesh = Mesh(devices, ("case",))
-
-    def run(self, cases, max_steps, neighbours, progress):
-        """All outputs of all cases, NumPy arrays by name."""
-        n = cases.count
-        lanes = self.mesh.size * min(self.chunk, math.ceil(n / self.mesh.size))
-        block = lanes * min(BLOCK, math.ceil(n / lanes))
-        shard = NamedSharding(self.mesh, Spec("case"))
-        held = jax.tree.map(np.asarray, cases)
-        found: dict[str, np.ndarray] = {}
-        pending = None
-        with _bar(n if progress else None) as advance:
-            for begin in [*range(0, n, block), None]:
-                if begin is not None:
-                    end = min(begin + block, n)
-                    part = jax.tree.map(lambda a: _padded(a[begin:end], block), held)  # noqa: B023
-                    given = jax.tree.map(lambda a: _spread(a, shard), part)
-                    given = (
-                        self.element,
-                        given,
-                        jnp.asarray(max_steps),
-                        self.options,
-                        lanes // self.mesh.size,
-                        neighbours,
-                        self.mesh,
-                    )
-                    if not found:
-                        shapes = eqx.filter_eval_shape(_solve_block, *given)
-                        found = _room(shapes, n, block)
-                    out = _solve_block(*given)
-                    submitted = (out, begin, end)
-                else:
-                    submitted = None
-                # The next block is on its way while this one is fetched.
-                if pending is not None:
-                    values, first, last = pending
-                    for name, value in values.items():
-                        found[name][first:last] = _whole(value)[: last - first]
-                    advance(last - first)
-                pending = submitted
-        return found
-
-
-@eqx.filter_jit
-def _solve_block(element, cases, max_steps, options, lanes, neighbours, mesh):
-    """A block of cases, each device its share in chunks of `lanes`."""
-    arrays, static = eqx.partition((element, max_steps), eqx.is_array)
-
-    def share(arrays, cases):
-        element, max_steps = eqx.combine(arrays, static)
-
-        def one(case, start=None):
-            return options.solve(element, case, max_steps, start)
-
-        if neighbours:
-            return _in_turn(one, options, cases, lanes)
-        return lax.map(lambda c: options.outputs(one(c)), cases, batch_size=lanes)
-
-    spread = jax.shard_map(
-        share,
-        mesh=mesh,
-        in_specs=(Spec(), Spec("case")),
-        out_specs=Spec("case"),
-        check_vma=False,
-    )
-    return spread(arrays, cases)
-
-
-def _in_turn(one, options, cases, lanes):
-    """Each lane takes a run of cases, each case from the solution before it."""
-    moving = slice(6, 12) if options.fixed_ring == "outer" else slice(0, 6)
-    # (lane, turn) -> turn first, for the scan.
-    runs = jax.tree.map(
-        lambda a: jnp.swapaxes(a.reshape(lanes, -1, *a.shape[1:]), 0, 1), cases
-    )
-
-    def lane(start, case):
-        solution = one(case, start)
-        there = jnp.where(solution.converged, solution.displacement[moving], jnp.nan)
-        return there, options.outputs(solution)
-
-    begin = jnp.full((lanes, 6), jnp.nan, cases.load.dtype)
-    _, outputs = lax.scan(jax.vmap(lane), begin, runs)
-    return jax.tree.map(
-        lambda a: jnp.swapaxes(a, 0, 1).reshape(-1, *a.shape[2:]), outputs
-    )
-
-
-def _padded(array, size):
-    missing = size - array.shape[0]
-    if missing == 0:
-        return array
-    return np.concatenate([array, np.repeat(array[-1:], missing, axis=0)])
-
-
-def _spread(array, sharding):
-    return jax.make_array_from_callback(array.shape, sharding, lambda i: array[i])
-
-
-def _whole(array):
-    """A global array on this host."""
-    if array.is_fully_addressable:
-        return np.asarray(array)
-    return np.asarray(multihost_utils.process_allgather(array, tiled=True))
-
-
-def _room(out, n, block):
-    """Empty arrays for the outputs of all cases."""
-    needed = sum(v.dtype.itemsize * v.size // block * n for v in out.values())
-    if needed > LARGEST:
-        raise ValueError(
-            f"sweep: the outputs of {n} cases take {needed / 2**30:.3g} GiB, more than"
-            f" {LARGEST / 2**30:g}; name those that you need in `outputs`, or use fewer"
-            " `points`."
-        )
-    return {name: np.empty((n, *v.shape[1:]), v.dtype) for name, v in out.items()}
-
-
-class _bar:
-    """Progress in cases; nothing if `total` is `None`."""
-
-    def __init__(self, total):
-        self.bar = None
-        if total is not None:
-            from tqdm import tqdm
-
-            self.bar = tqdm(total=total, unit="case", unit_scale=True)
-
-    def __enter__(self):
-        return self.bar.update if self.bar is not None else lambda n: None
-
-    def __exit__(self, *_):
-        if self.bar is not None:
-            self.bar.close()

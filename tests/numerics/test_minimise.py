@@ -12,8 +12,13 @@ import numpy as np
 import pytest
 from tolerances import ROUNDING
 
-from bearingjax.numerics import BFGS, Evaluation, Result, TrustRegionNewton
-from bearingjax.numerics.minimise import inverse_update
+from bearingjax.numerics import (
+    BFGS,
+    Evaluation,
+    Result,
+    TrustRegionNewton,
+    inverse_update,
+)
 
 N, COUNT = 3, 40
 NEWTON, QUASI = TrustRegionNewton(), BFGS()

@@ -15,11 +15,9 @@ import pytest
 from sweep_in_process import loads, small_element
 
 import bearingjax as bj
-from bearingjax.statics import sweep_table
+from bearingjax.statics import sweep_program, sweep_table
 from bearingjax.statics.sweep import n_designs
 
-# The function of the same name hides the module.
-MODULE = sys.modules["bearingjax.statics.sweep"]
 SCRIPT = Path(__file__).with_name("sweep_in_process.py")
 ELEMENT = small_element()
 BAD = {5: "non_finite", 7: "no_load_path"}
@@ -69,7 +67,7 @@ def test_neighbours_start_from_each_other(swept):
 
 def test_a_case_lost_from_its_neighbour_is_solved_again(monkeypatch):
     runs = []
-    honest = MODULE._Program.run
+    honest = sweep_program.Program.run
 
     def lossy(self, cases, max_steps, neighbours, progress):
         found = honest(self, cases, max_steps, neighbours, progress)
@@ -79,7 +77,7 @@ def test_a_case_lost_from_its_neighbour_is_solved_again(monkeypatch):
             found["displacement"][3] = np.nan
         return found
 
-    monkeypatch.setattr(MODULE._Program, "run", lossy)
+    monkeypatch.setattr(sweep_program.Program, "run", lossy)
     some = loads()[8:13]
     solved = bj.sweep(ELEMENT, some, outputs=["displacement"], neighbours=True)
     assert runs == [5, 1] and solved.converged.all()
@@ -88,7 +86,7 @@ def test_a_case_lost_from_its_neighbour_is_solved_again(monkeypatch):
 
 
 def test_blocks_follow_each_other(swept, monkeypatch):
-    monkeypatch.setattr(MODULE, "BLOCK", 2)
+    monkeypatch.setattr(sweep_program, "BLOCK", 2)
     short = bj.sweep(ELEMENT, loads(), outputs=["displacement"], chunk=8)
     np.testing.assert_allclose(
         short.displacement, swept.displacement, rtol=1e-9, atol=1e-16
