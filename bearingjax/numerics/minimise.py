@@ -1,4 +1,4 @@
-"""Minimisers for a handful of unknowns, built to run inside `vmap`.
+"""Minimiser of a function of a handful of unknowns, built to run inside `vmap`.
 
 Equilibria are minimisations that must lower an energy, not bare root finds. Each
 minimiser is one `while_loop` with one evaluation per pass and returns a status.
@@ -112,6 +112,8 @@ class Pull(NamedTuple):
 
 
 class State(NamedTuple):
+    """Where a minimiser is: point, its evaluation, and what steps are chosen by."""
+
     x: Array
     now: Evaluation
     radius: Array
@@ -132,6 +134,7 @@ def pack(state: State) -> Array:
 
 
 def unpack(packed: Array, n: int, with_hessian: bool = True) -> State:
+    """The state that `pack` made one array of."""
     x, g, rest = packed[:n], packed[n : 2 * n], packed[2 * n :]
     h = jnp.zeros((0,), packed.dtype)
     if with_hessian:
@@ -347,7 +350,8 @@ def _tolerance(tolerance, dtype):
     return 1e-13 if dtype == jnp.float64 else 1e-6
 
 
-def finish(state, tolerance, limit):
+def finish(state: State, tolerance, limit) -> Minimum:
+    """What came of it: `Minimum` with its result code."""
     now = state.now
     size = norm(now.gradient)
     # A stall at round-off is as good as it gets; anything above is a failure.
