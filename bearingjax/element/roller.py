@@ -86,6 +86,31 @@ class RollerModel(AbstractModel):
         raceways = approaches[:4:2] + jnp.abs(approaches[1:4:2])
         return jnp.all(jnp.concatenate([raceways, approaches[4:]]) <= 0)
 
+    def first(self, rings):
+        midway = self.amid(rings)
+        if self.body_force is None:
+            return midway
+        # A loose roller is thrown on the outer raceway: from anywhere but flat on it,
+        # or as near to that as the inner one leaves it, a slow one would creep along
+        # its crown for hundreds of steps.
+        there = self.kinematics.approaches(self.prepared, rings, midway)
+        rates = self.kinematics.jacobian(self.prepared, rings, midway)[:2, -2:]
+        seat = jnp.concatenate(
+            [jnp.zeros((1,), rings.dtype), _solve2(rates, -there[:2])]
+        )
+        way = midway + seat
+        inner = self.kinematics.approaches(self.prepared, rings, way)
+        places = jnp.linspace(-1.0, 1.0, 9, dtype=rings.dtype)
+        drop = self.constants.lines[1].drop(places)
+        before, after = (jnp.max(v[2] + v[3] * places - drop) for v in (there, inner))
+        # Convex between: no more than touching at this share of the way.
+        closing = jnp.where(after > before, after - before, 1.0)
+        share = jnp.where(after <= 0, 1.0, jnp.clip(-before / closing, 0.0, 1.0))
+        # What the guide could hold is loose (`equilibrium.is_loose`), and stays midway.
+        size = self.gap + self.reach(rings) + norm(seat)
+        thrown = self.inertia_size() > 10.0 * self.guide * size
+        return midway + jnp.where(thrown & (before < 0), share, 0.0) * seat
+
     def pressed(self, approach):
         line = self.constants.lines[0]
         return line.length * line.line_load(approach)
@@ -152,6 +177,13 @@ class RollerModel(AbstractModel):
         guided = np.arange(size) >= size - 3
         hessian = hessian + c.guide * jnp.asarray(np.diag(guided), x.dtype)
         return Derivatives(energy, gradient, hessian, contact_load)
+
+
+def _solve2(matrix, rhs):
+    """Cramer's rule."""
+    (a, b), (c, d) = matrix
+    x, y = rhs
+    return jnp.stack([d * x - b * y, a * y - c * x]) / (a * d - b * c)
 
 
 def _squares(jacobian):

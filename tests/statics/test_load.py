@@ -6,6 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import robust_loads
+import robust_sweep
 from registry import bearings, taper
 from tolerances import DIFFERENCE, SOLVER
 
@@ -283,6 +284,15 @@ def test_millinewtons_on_a_wedged_roller(load):
     s = bj.solve_load(element, load)
     out = (np.asarray(s.force)[6:] - load) / np.array([1, 1, 1, *[0.0325] * 3])
     assert np.linalg.norm(out[:5]) < 1e-8 * np.linalg.norm(load)
+
+
+def test_rollers_that_a_crawling_bearing_throws_out():
+    """6e-8 N on an unloaded roller: it once crept along its crown beyond all steps."""
+    element = bj.BearingElement(robust_sweep.bearing())
+    load = [-4109.0207, -6304.7216, 0.0, -2.9155, 7.2852, 0.0]
+    cases = bj.Cases(np.array([load] * 4), inner_speed=[0.0383802, 0.0406, 0.041, 0.05])
+    solved = bj.sweep(element, cases, outputs=["residual"])
+    assert solved.converged.all() and solved.residual.max() < SOLVER
 
 
 def test_small_robustness_run():
