@@ -19,6 +19,9 @@ jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")
 
+# Tracing makes many small objects; searching them for cycles took a sixth of the time.
+gc.set_threshold(200_000, 20, 50)
+
 # Shapes and dtypes of annotated functions are checked at every call of the tests.
 install_import_hook("bearingjax", "beartype.beartype").__enter__()
 

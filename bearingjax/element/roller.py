@@ -108,7 +108,7 @@ class RollerModel(AbstractModel):
         share = jnp.where(after <= 0, 1.0, jnp.clip(-before / closing, 0.0, 1.0))
         # What the guide could hold is loose (`equilibrium.is_loose`), and stays midway.
         size = self.gap + self.reach(rings) + norm(seat)
-        thrown = self.inertia_size() > 10.0 * self.guide * size
+        thrown = norm(self._on_unknowns()) > 10.0 * self.guide * size
         return midway + jnp.where(thrown & (before < 0), share, 0.0) * seat
 
     def pressed(self, approach):

@@ -34,10 +34,10 @@ def attach(residual, solution, args, symmetric: bool = True):
         step instead would be wrong in the second derivative.
     """
 
-    def correction(of_y, y, change):
+    def correction(of_y, y, change, _):
         return -solve(jax.jacfwd(of_y)(y), change, symmetric)
 
-    return _attach(residual, solution, args, correction)
+    return attach_by(residual, solution, args, correction)
 
 
 def attach_roots(residual, solution, args):
@@ -54,12 +54,48 @@ def attach_roots(residual, solution, args):
         vanished) the derivative is zero.
     """
 
-    def correction(of_y, y, change):
+    def correction(of_y, y, change, _):
         _, slope = jax.jvp(of_y, (y,), (jnp.ones_like(y),))
         flat = slope == 0
         return jnp.where(flat, 0.0, -change / jnp.where(flat, 1.0, slope))
 
-    return _attach(residual, solution, args, correction)
+    return attach_by(residual, solution, args, correction)
+
+
+def attach_by(residual, solution, args, correction):
+    """`attach` with a linear solver of one's own, for any pytree of unknowns.
+
+    Args:
+        residual: Function (y, args) -> pytree like `y`.
+        solution: Solved y; its own derivative is ignored.
+        args: As in `attach`. What the rule needs and is traced must be a floating
+            array, flags too.
+        correction: (residual as a function of y alone, y, change, args) -> change of y
+            that undoes the change of the residual, -(∂residual/∂y)⁻¹·change; linear in
+            `change`, and transposable for reverse mode.
+
+    Returns:
+        `solution`, differentiable with respect to `args`.
+    """
+    traced, static = eqx.partition(args, eqx.is_inexact_array)
+
+    def bound(y, traced):
+        return residual(y, eqx.combine(traced, static))
+
+    @jax.custom_jvp
+    def attached(y, traced):
+        return y
+
+    @attached.defjvp
+    def _rule(primals, tangents):
+        y0, traced = primals
+        _, dtraced = tangents
+        y = attached(y0, traced)
+        _, change = jax.jvp(lambda t: bound(y, t), (traced,), (dtraced,))
+        now = eqx.combine(traced, static)
+        return y, correction(lambda v: bound(v, traced), y, change, now)
+
+    return attached(stop(solution), traced)
 
 
 def recall(function, values, args):
@@ -91,27 +127,6 @@ def recall(function, values, args):
         return recalled(values, traced), change
 
     return recalled(stop(values), traced)
-
-
-def _attach(residual, solution, args, correction):
-    traced, static = eqx.partition(args, eqx.is_inexact_array)
-
-    def bound(y, traced):
-        return residual(y, eqx.combine(traced, static))
-
-    @jax.custom_jvp
-    def attached(y, traced):
-        return y
-
-    @attached.defjvp
-    def _rule(primals, tangents):
-        y0, traced = primals
-        _, dtraced = tangents
-        y = attached(y0, traced)
-        _, change = jax.jvp(lambda t: bound(y, t), (traced,), (dtraced,))
-        return y, correction(lambda v: bound(v, traced), y, change)
-
-    return attached(lax.stop_gradient(solution), traced)
 
 
 def stop(tree):

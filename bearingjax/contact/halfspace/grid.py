@@ -1,0 +1,130 @@
+"""Cells of a contact: rectangles, all of a width, of even or graded lengths."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ...design.checks import check, positive
+from ...numerics.types import Scalar, as_real
+
+
+class Grid(eqx.Module):
+    """Rectangular cells on the plane of contact, x across the roller, y along it.
+
+    Where everything is symmetric about x = 0, which it is for a roller that is not
+    skewed, only cells with x ≥ 0 are kept: half the work.
+
+    Attributes:
+        half_width: Half of the grid's width across the roller [m].
+        edges: Ends of the cells along the roller, ascending (n+1,) [m].
+        n_across: Cells across the whole width.
+        symmetric: Whether only cells with x ≥ 0 are kept.
+        even: Whether all cells are equally long.
+
+    Static: n_across, symmetric, even.
+    """
+
+    half_width: Scalar = eqx.field(converter=as_real)
+    edges: Float[Array, " edge"] = eqx.field(converter=as_real)
+    n_across: int = eqx.field(static=True)
+    symmetric: bool = eqx.field(static=True)
+    even: bool = eqx.field(static=True)
+
+    def __check_init__(self):
+        positive(self, "half_width", self.half_width, "m")
+        check(self, "n_across", self.n_across, "", self.n_across >= 3, "at least 3")
+        rising = jnp.all(jnp.diff(self.edges) > 0)
+        check(self, "edges", self.edges, "m", rising, "ascending")
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of cells kept: across, along."""
+        across = (self.n_across + 1) // 2 if self.symmetric else self.n_across
+        return across, self.edges.shape[0] - 1
+
+    @property
+    def half_x(self) -> Scalar:
+        """Half the width of a cell [m]."""
+        return self.half_width / self.n_across
+
+    @property
+    def half_y(self) -> Float[Array, " n"]:
+        """Half the length of each cell [m]."""
+        return 0.5 * jnp.diff(self.edges)
+
+    @property
+    def x(self) -> Float[Array, " m"]:
+        """Middles of the cells across the roller [m]."""
+        count = self.shape[0]
+        first = 0.5 * (1 - self.n_across % 2) if self.symmetric else 0.5 * (1 - count)
+        place = jnp.arange(count, dtype=self.half_width.dtype) + first
+        return 2.0 * self.half_x * place
+
+    @property
+    def y(self) -> Float[Array, " n"]:
+        """Middles of the cells along the roller [m]."""
+        return 0.5 * (self.edges[1:] + self.edges[:-1])
+
+    @property
+    def times(self) -> Float[Array, " m"]:
+        """How many cells each cell across stands for: two, but one in the middle."""
+        twice = 2.0 * jnp.ones((self.shape[0],), self.half_width.dtype)
+        if not self.symmetric:
+            return 0.5 * twice
+        return twice.at[0].set(1.0) if self.n_across % 2 else twice
+
+    @property
+    def area(self) -> Float[Array, "m n"]:
+        """Area that each cell stands for [m²]."""
+        return 4.0 * self.half_x * self.times[:, None] * self.half_y[None]
+
+
+def even_grid(
+    length: Scalar | float,
+    half_width: Scalar | float,
+    n_across: int,
+    n_along: int,
+    *,
+    symmetric: bool = True,
+) -> Grid:
+    """Cells of one size.
+
+    Args:
+        length: Along the roller [m]; the cells fill it from -length/2 on.
+        half_width: Half the width across the roller [m].
+        n_across, n_along: Number of cells across the whole width, and along.
+        symmetric: Whether the contact is symmetric about x = 0.
+    """
+    return _grid(length, half_width, n_across, n_along, 1.0, symmetric)
+
+
+def graded_grid(
+    length: Scalar | float,
+    half_width: Scalar | float,
+    n_across: int,
+    n_along: int,
+    *,
+    grading: float = 2.0,
+    symmetric: bool = True,
+) -> Grid:
+    """Cells that are shorter towards both ends of the roller, as s^grading.
+
+    Args:
+        length, half_width, n_across, n_along, symmetric: As of `even_grid`.
+        grading: Exponent, at least 1: cells in the middle are so many times longer
+            than even ones; the length of the end cells is about
+            length·n_along^(-grading).
+    """
+    check("graded_grid", "grading", grading, "", grading >= 1, "at least 1")
+    return _grid(length, half_width, n_across, n_along, grading, symmetric)
+
+
+def _grid(length, half_width, n_across, n_along, grading, symmetric):
+    check("grid", "n_along", n_along, "", n_along >= 3, "at least 3")
+    length = as_real(length)
+    t = jnp.linspace(0.0, 1.0, n_along + 1, dtype=length.dtype)
+    # From the nearer end, so that cells at both ends are equally long.
+    near = jnp.minimum(t, 1.0 - t)
+    part = near**grading / (near**grading + (1.0 - near) ** grading)
+    place = jnp.where(t <= 0.5, part - 0.5, 0.5 - part)
+    return Grid(half_width, length * place, n_across, symmetric, grading == 1.0)

@@ -1,0 +1,292 @@
+"""One roller on one raceway, as the contact of two half-spaces."""
+
+import warnings
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ...design.checks import check, concrete, in_range, is_traced, positive
+from ...design.material import Material, contact_modulus
+from ...design.profile import AbstractProfile, Straight
+from ...numerics.types import Scalar, as_real
+from .gradients import AbstractPressureSolver, ConjugateGradients
+from .grid import Grid, even_grid, graded_grid
+from .influence import influence
+from .pressure import ContactSolution, solve_pressure
+
+MARGIN = 1.6
+"""Half width of the grid over that of the contact: sharp ends bulge."""
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+class RollerContact(eqx.Module):
+    """A roller on a raceway, pressed together along a common generatrix.
+
+    y runs along the generatrix from the middle of the roller to its large end, x across
+    it.
+
+    Attributes:
+        roller_length: Effective length L [m].
+        small_diameter, large_diameter: Of the roller at y = -L/2 and L/2 [m].
+        half_angle: Half cone angle of the roller [rad]; `None`: from the diameters,
+            arctan of their difference over 2L.
+        raceway_radius: Radius of curvature of the raceway normal to the generatrix, at
+            y = 0: positive for a convex one (inner ring), negative for a hollow one
+            (outer ring), infinite for a plane [m].
+        raceway_half_angle: Half cone angle of the raceway, which widens towards y > 0
+            [rad].
+        roller_profile, raceway_profile: Profiles.
+        material, raceway_material: Materials.
+
+    Traced: all fields.
+    Source: sections of a cone normal to its generatrix: Mi & Xia (2011), eq. (10) to
+        (13), with the exact ellipse in place of (12).
+    """
+
+    roller_length: Scalar = eqx.field(converter=as_real)
+    small_diameter: Scalar = eqx.field(converter=as_real)
+    large_diameter: Scalar = eqx.field(converter=as_real)
+    half_angle: Scalar | None = eqx.field(converter=as_real, default=None, kw_only=True)
+    raceway_radius: Scalar = eqx.field(converter=as_real, default=np.inf, kw_only=True)
+    raceway_half_angle: Scalar = eqx.field(converter=as_real, default=0.0, kw_only=True)
+    roller_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
+    raceway_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
+    material: Material = eqx.field(default_factory=Material, kw_only=True)
+    raceway_material: Material = eqx.field(default_factory=Material, kw_only=True)
+
+    def __check_init__(self):
+        positive(self, "roller_length", self.roller_length, "m")
+        positive(self, "small_diameter", self.small_diameter, "m")
+        positive(self, "large_diameter", self.large_diameter, "m")
+        radius = self.raceway_radius
+        check(
+            self,
+            "raceway_radius",
+            radius,
+            "m",
+            radius != 0,
+            "positive (convex), negative (hollow) or infinite (plane)",
+        )
+        for name in ("half_angle", "raceway_half_angle"):
+            if getattr(self, name) is not None:
+                in_range(self, name, getattr(self, name), "rad", -0.7, 0.7)
+        numbers = concrete(
+            self.roller_length, self.small_diameter, self.large_diameter, self.angle
+        )
+        if numbers is not None:
+            self._check_against(numbers, concrete(radius))
+        length, diameter = self.roller_length, self.diameter
+        self.roller_profile.check(length, diameter)
+        self.raceway_profile.check(length, diameter)
+
+    def _check_against(self, numbers, radius):
+        length, small, large, angle = numbers
+        check(
+            self,
+            "large_diameter",
+            large,
+            "m",
+            large >= small,
+            f"at least `small_diameter`, {small:g} m",
+        )
+        if radius is not None and radius[0] < 0:
+            check(
+                self,
+                "raceway_radius",
+                radius[0],
+                "m",
+                -radius[0] > 0.5 * large / np.cos(angle),
+                "larger in size than the roller's own radius, if it is hollow",
+            )
+        taper = np.arctan((large - small) / (2.0 * length))
+        if abs(angle - taper) > 0.01 * max(abs(angle), abs(taper)):
+            warnings.warn(
+                f"RollerContact: `half_angle` is {np.rad2deg(angle):.4g} deg, but"
+                f" diameters of {small:g} and {large:g} m over {length:g} m make"
+                f" {np.rad2deg(taper):.4g} deg; both are used as they are.",
+                stacklevel=4,
+            )
+
+    @property
+    def diameter(self) -> Scalar:
+        """Mean diameter [m]."""
+        return 0.5 * (self.small_diameter + self.large_diameter)
+
+    @property
+    def angle(self) -> Scalar:
+        """Half cone angle, given or from the diameters [rad]."""
+        if self.half_angle is not None:
+            return self.half_angle
+        taper = self.large_diameter - self.small_diameter
+        return jnp.arctan2(0.5 * taper, self.roller_length)
+
+    @property
+    def modulus(self) -> Scalar:
+        """Contact modulus E* [Pa]."""
+        return contact_modulus(self.material, self.raceway_material)
+
+    def roller_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
+        """Radius of curvature of the roller normal to the generatrix at y [m]."""
+        slope = (self.large_diameter - self.small_diameter) / self.roller_length
+        return 0.5 * (self.diameter + slope * y) / jnp.cos(self.angle)
+
+    def relative_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
+        """Radius of relative curvature 1/(1/roller + 1/raceway) at y [m]."""
+        return 1.0 / (1.0 / self.roller_radius(y) + 1.0 / self._raceway_radius(y))
+
+    def _raceway_radius(self, y):
+        wider = y * jnp.tan(self.raceway_half_angle)
+        return self.raceway_radius + jnp.sign(self.raceway_radius) * wider
+
+    def drop(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
+        """Material removed from both bodies at y [m]."""
+        length, diameter = self.roller_length, self.diameter
+        return self.roller_profile.drop(
+            y, length, diameter
+        ) + self.raceway_profile.drop(y, length, diameter)
+
+    def gap(self, grid: Grid) -> Float[Array, "m n"]:
+        """Distance of roller and raceway as they touch, at each cell [m].
+
+        Along even cells at their middles, along graded ones the mean of the drop.
+
+        Args:
+            grid: The cells, as long as the roller.
+        """
+        x, y = grid.x, grid.y
+        drop = self.drop(y)
+        if not grid.even:
+            nodes = jnp.asarray(_NODES, y.dtype)[:, None]
+            weights = jnp.asarray(0.5 * _WEIGHTS, y.dtype)
+            drop = weights @ self.drop(y[None] + nodes * grid.half_y[None])
+        roller = _section(x, self.roller_radius(y), self.angle)
+        raceway = _section(x, self._raceway_radius(y), self.raceway_half_angle)
+        return roller + raceway + drop[None]
+
+    def grid(
+        self,
+        half_width: Scalar | float,
+        n_across: int = 35,
+        n_along: int = 64,
+        grading: float = 2.0,
+    ) -> Grid:
+        """Cells for this roller.
+
+        Args:
+            half_width: Half the width across the roller [m].
+            n_across, n_along: Number of cells.
+            grading: As of `graded_grid`; 1: even cells.
+        """
+        if grading == 1.0:
+            return even_grid(self.roller_length, half_width, n_across, n_along)
+        return graded_grid(
+            self.roller_length, half_width, n_across, n_along, grading=grading
+        )
+
+    def line_half_width(self, load: Scalar | float) -> Scalar:
+        """Half width of an endless roller under the mean line load (Hertz) [m]."""
+        radius = self.relative_radius(jnp.zeros_like(self.roller_length))
+        line_load = as_real(load) / self.roller_length
+        return jnp.sqrt(4.0 * line_load * radius / (jnp.pi * self.modulus))
+
+    def solve(
+        self,
+        load: Scalar | float | None = None,
+        *,
+        approach: Scalar | float | None = None,
+        moment: Scalar | float | None = None,
+        tilt: Scalar | float | None = None,
+        grid: Grid | None = None,
+        solver: AbstractPressureSolver | None = None,
+        throw: bool = True,
+    ) -> ContactSolution:
+        """Pressure between roller and raceway.
+
+        Args:
+            load, approach, moment, tilt, solver, throw: As of `solve_pressure`; the
+                tilt closes the gap at the large end.
+            grid: The cells; `None`: `self.grid` of a width found by coarse solves,
+                which takes concrete numbers.
+
+        Returns:
+            ContactSolution.
+
+        Raises:
+            ValueError: As `solve_pressure`; if `grid` is wider than the roller; if
+                `grid` is `None` under a JAX transformation.
+            SolveError: If `throw` and it did not converge.
+
+        Fails: as `solve_pressure`.
+        """
+        given: dict[str, Any] = {
+            "load": load,
+            "approach": approach,
+            "moment": moment,
+            "tilt": tilt,
+        }
+        if grid is None:
+            grid = self.grid(self._half_width(given))
+        widest = _widest(self, grid)
+        check(
+            self, "half_width", grid.half_width, "m", widest, "less than the roller's"
+        )
+        return solve_pressure(
+            influence(grid, self.modulus),
+            self.gap(grid),
+            **given,
+            solver=solver,
+            throw=throw,
+        )
+
+    def _half_width(self, given):
+        """Half width of a grid that holds the contact, by coarse solves."""
+        numbers = [v for v in given.values() if v is not None]
+        if any(is_traced(v) for v in (*numbers, self.roller_length)):
+            raise ValueError(
+                "RollerContact.solve: give a `grid` under jit, grad and vmap, for"
+                " example `contact.grid(1.6 * half_width)`."
+            )
+        radius = float(self.relative_radius(jnp.zeros_like(self.roller_length)))
+        width = 1e-2 * radius
+        most = 0.98 * float(_reach(self, jnp.zeros_like(self.roller_length)))
+        for _ in range(24):
+            width = min(width, most)
+            coarse = self.grid(width, 16, 32)
+            found = solve_pressure(
+                influence(coarse, self.modulus),
+                self.gap(coarse),
+                **given,
+                solver=ConjugateGradients(tolerance=1e-4),
+                throw=False,
+            )
+            touched = jnp.any(found.touching, axis=1)
+            inside = float(jnp.max(jnp.where(touched, coarse.x, 0.0) + coarse.half_x))
+            if bool(found.truncated) and width < most:
+                width *= 4.0
+            elif inside < 0.25 * width and found.touching.any():
+                width = max(MARGIN * inside, 0.1 * width)
+            else:
+                break
+        return min(MARGIN * inside, most)
+
+
+def _section(x, radius, angle):
+    """Height of a cone's sections normal to its generatrix (m, n) [m]."""
+    x, radius = x[:, None], radius[None]
+    rest = 1.0 - x * x * jnp.cos(2.0 * angle) / (radius * jnp.cos(angle)) ** 2
+    return x * x / (radius * (1.0 + jnp.sqrt(rest)))
+
+
+def _reach(contact, y):
+    """Half the width of the roller's section at y [m]."""
+    angle = contact.angle
+    roller = contact.roller_radius(y) * jnp.cos(angle) / jnp.sqrt(jnp.cos(2.0 * angle))
+    return jnp.minimum(roller, jnp.abs(contact._raceway_radius(y)))
+
+
+def _widest(contact, grid):
+    return grid.half_width < jnp.min(_reach(contact, grid.y))
