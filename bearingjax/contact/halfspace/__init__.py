@@ -13,3 +13,4 @@ from .pressure import solve_pressure as solve_pressure
 from .problem import Pressed as Pressed
 from .problem import Problem as Problem
 from .roller import RollerContact as RollerContact
+from .strips import Strips as Strips

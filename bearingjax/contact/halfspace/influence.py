@@ -73,7 +73,7 @@ class EvenInfluence(AbstractInfluence):
 
     def _along(self, kernel, waves):
         n = self.grid.shape[1]
-        padded = _padded_size(n)
+        padded = padded_size(n)
         if jnp.iscomplexobj(waves):
             spectrum = jnp.fft.fft(waves, padded, axis=-1)
             both = jnp.concatenate([kernel, kernel[:, -2:0:-1]], axis=1)
@@ -113,13 +113,13 @@ def influence(grid: Grid, modulus: Scalar | float) -> AbstractInfluence:
     half_x, edges, modulus = (
         xp.asarray(v, dtype=work) for v in (grid.half_x, grid.edges, modulus)
     )
-    across = _padded_size(grid.n_across)
+    across = padded_size(grid.n_across)
     lags = across // 2 + 1
     values = table(xp, lags, half_x, edges).reshape(lags, -1)
-    kernel = xp.asarray(_cosine_sums(across), work) @ values / (np.pi * modulus)
+    kernel = xp.asarray(cosine_sums(across), work) @ values / (np.pi * modulus)
     if grid.even:
-        along = _padded_size(grid.shape[1])
-        kernel = kernel @ xp.asarray(_cosine_sums(along), work).T
+        along = padded_size(grid.shape[1])
+        kernel = kernel @ xp.asarray(cosine_sums(along), work).T
         least = 1e-6 * xp.max(kernel, axis=1, keepdims=True)
         inverse, kind = 1.0 / xp.maximum(kernel, least), EvenInfluence
     else:
@@ -139,7 +139,7 @@ def _even_table(xp, lags, half_x, edges):
     n = len(edges) - 1
     half_y = 0.5 * (edges[-1] - edges[0]) / n
     u = half_x * _odd(xp, lags, half_x.dtype)
-    v = half_y * _odd(xp, _padded_size(n) // 2 + 1, half_x.dtype)
+    v = half_y * _odd(xp, padded_size(n) // 2 + 1, half_x.dtype)
     table = corner(u[:, None], v[None], xp)
     table = table[1:] - table[:-1]
     return table[:, 1:] - table[:, :-1]
@@ -159,7 +159,7 @@ def _odd(xp, count, dtype):
     return xp.asarray(2.0 * np.arange(count + 1) - 1.0, dtype)
 
 
-def _padded_size(n):
+def padded_size(n):
     """Even length, at least 2n, of factors 2, 3 and 5."""
     size = 2 * n
     while not _is_smooth(size):
@@ -174,7 +174,7 @@ def _is_smooth(n):
     return n == 1
 
 
-def _cosine_sums(size):
+def cosine_sums(size):
     """Transform of an even sequence, given from distance 0 to size/2 (f, lag)."""
     lag = np.arange(size // 2 + 1)
     twice = np.where((lag == 0) | (lag == size // 2), 1.0, 2.0)
@@ -185,7 +185,7 @@ class _Cosines:
     """Transform across of what is symmetric about x = 0: products with cosines."""
 
     def __init__(self, grid, dtype):
-        size = _padded_size(grid.n_across)
+        size = padded_size(grid.n_across)
         m = grid.shape[0]
         # Twice the place in cells, a whole number for odd and even counts.
         place = 2 * np.arange(m) + 1 - grid.n_across % 2
@@ -209,7 +209,7 @@ class _Waves:
     """Transform across of any field."""
 
     def __init__(self, grid, dtype):
-        self.size, self.count = _padded_size(grid.n_across), grid.n_across
+        self.size, self.count = padded_size(grid.n_across), grid.n_across
 
     def to(self, field):
         return jnp.fft.rfft(field, self.size, axis=-2)
