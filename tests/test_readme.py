@@ -10,7 +10,7 @@ README = (Path(__file__).parent.parent / "README.md").read_text()
 
 def test_python_examples(capsys):
     blocks = re.findall(r"```python\n(.*?)```", README, re.S)
-    assert len(blocks) == 7
+    assert len(blocks) == 9
     names: dict = {}
     for block in blocks[:2]:
         exec(block, names)
@@ -20,14 +20,20 @@ def test_python_examples(capsys):
     exec(blocks[2], names)
     assert type(names["solution"]) is bj.BallSolution
     assert bool(names["solution"].converged)
-    exec(blocks[3], names)
+    for block in blocks[3:5]:
+        exec(block, names)
+    contact = names["contact"]
+    assert contact.converged and 1.2e9 < float(contact.peak_pressure) < 1.6e9
+    # A flatter crown spreads the load.
+    assert float(capsys.readouterr().out.splitlines()[-1]) < 0
+    exec(blocks[5], names)
     assert names["swept"].counts() == {"converged": 60}
-    for block in blocks[4:6]:
+    for block in blocks[6:8]:
         exec(block, names)
     assert names["f"][7] < -100.0  # the inner ring is held down
     whole, pair = names["k6"], names["k2"]
     assert 0 < pair[1, 1] < whole[1, 1]
-    exec(blocks[6], names)
+    exec(blocks[8], names)
     best = names["best"]
     assert best.converged and best.after.exact < best.before.exact
     assert best.before.exact_constraints[0] > 10e3 >= best.after.exact_constraints[0]

@@ -44,7 +44,13 @@ NEED_C = {
 }
 
 
-PLAIN = ("power.py", "error_vs_time.py", "gradient_cost.py", "robust_sweep.py")
+PLAIN = (
+    "power.py",
+    "error_vs_time.py",
+    "gradient_cost.py",
+    "robust_sweep.py",
+    "robust_halfspace.py",
+)
 
 
 @pytest.mark.parametrize("script", [*PLAIN, *sorted(NEED_C)])
