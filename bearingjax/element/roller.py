@@ -15,7 +15,7 @@ from jaxtyping import Array, Float
 
 from ..contact import line_contact
 from ..contact.hertz import EXPONENT
-from ..numerics.linear import dot, norm
+from ..numerics.linear import dot, norm, solve
 from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature
 from .constants import ContactConstants
@@ -96,7 +96,7 @@ class RollerModel(AbstractModel):
         there = self.kinematics.approaches(self.prepared, rings, midway)
         rates = self.kinematics.jacobian(self.prepared, rings, midway)[:2, -2:]
         seat = jnp.concatenate(
-            [jnp.zeros((1,), rings.dtype), _solve2(rates, -there[:2])]
+            [jnp.zeros((1,), rings.dtype), solve(rates, -there[:2], symmetric=False)]
         )
         way = midway + seat
         inner = self.kinematics.approaches(self.prepared, rings, way)
@@ -177,13 +177,6 @@ class RollerModel(AbstractModel):
         guided = np.arange(size) >= size - 3
         hessian = hessian + c.guide * jnp.asarray(np.diag(guided), x.dtype)
         return Derivatives(energy, gradient, hessian, contact_load)
-
-
-def _solve2(matrix, rhs):
-    """Cramer's rule."""
-    (a, b), (c, d) = matrix
-    x, y = rhs
-    return jnp.stack([d * x - b * y, a * y - c * x]) / (a * d - b * c)
 
 
 def _squares(jacobian):

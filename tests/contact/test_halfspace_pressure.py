@@ -110,9 +110,22 @@ def test_graded_cells_are_as_good_as_many(taper):
     assert float(fine.approach) == pytest.approx(6.321e-6, rel=1e-4)
     converged = (1299.30, 1207.06, 1104.20, 1098.25)
     assert at(fine, 0.5, 14.5, 7.5, 11.25) == pytest.approx(converged, rel=1e-3)
+    # AF004-10: the middle lies below Hertz's endless roller, for the ends carry more.
+    hertz = bj.contact.peak_pressure(
+        jnp.asarray(3000.0 / 0.015),
+        taper.relative_radius(jnp.asarray(0.0)),
+        taper.modulus,
+    )
+    assert float(hertz) == pytest.approx(1154.9e6, rel=1e-4)
+    assert 1e6 * at(fine, 7.5) / float(hertz) == pytest.approx(0.956, abs=1e-3)
+    edges = np.asarray(fine.grid.edges)
+    carried = np.cumsum(np.asarray(fine.line_load) * np.diff(edges)) / 3000.0
+    small, large = np.interp([-6.5e-3, 6.5e-3], edges[1:], carried)
+    assert (small, 1 - large) == pytest.approx((0.087, 0.089), abs=2e-3)
     # AF004-8: nearly even between the ends, least at 10.07 mm.
     between = at(fine, *np.linspace(2.0, 13.0, 1101))
     assert (between.min(), between.max()) == pytest.approx((1095.9, 1186.0), rel=1e-3)
+    # Between middles of cells that are 0.45 mm apart there.
     assert 2.0 + 0.01 * between.argmin() == pytest.approx(10.07, abs=0.3)
     tilted = taper.solve(3000.0, moment=0.0, grid=taper.grid(HALF_WIDTH))
     assert float(tilted.tilt) == pytest.approx(-7.54e-6, rel=1e-2)
