@@ -18,6 +18,7 @@ from . import rotor as rotor
 from . import scene as scene
 from . import statics as statics
 from .contact import ISO16281 as ISO16281
+from .contact import CoupledSlices as CoupledSlices
 from .contact import FreeAngle as FreeAngle
 from .contact import LineConstant as LineConstant
 from .contact import OperatingAngle as OperatingAngle

@@ -1,4 +1,4 @@
-"""The command line: `bearingjax solve SCENE.toml`, and `sweep` and `optimise`."""
+"""The command line: `bearingjax solve SCENE.toml`, `sweep`, `optimise`, `contact`."""
 
 import argparse
 import contextlib
@@ -99,6 +99,18 @@ def _parser():
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
     )
     optimise.add_argument("--progress", action="store_true", help="show progress")
+    contact = commands.add_parser(
+        "contact",
+        help="one roller on one raceway, its ends included",
+        description="Solve the contact of one roller and one raceway, both elastic"
+        " half-spaces, cell by cell; beside it what independent slices give.",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
+    )
+    contact.set_defaults(run=_contact)
+    _add_common(contact)
+    contact.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
     return parser
 
 
@@ -247,6 +259,61 @@ def _optimise(options) -> int:
         return NOT_SOLVED
     print(optimisation_report(task, found), flush=True)
     return SOLVED
+
+
+def _contact(options) -> int:
+    from .scene import (
+        SceneError,
+        contact_report,
+        contact_warnings,
+        read_contact,
+        run_contact,
+        write_contact_json,
+    )
+
+    for path in (options.json, options.plot):
+        _check_writable(path)
+    if options.plot is not None:
+        _check_plot(options.plot)
+    scene = read_contact(options.scene, options.set)
+    cases = run_contact(scene)
+    lost = [case.solution for case in cases if not case.solution.converged]
+    try:
+        if options.json is not None:
+            write_contact_json(options.json, scene, cases)
+        if options.plot is not None and not lost:
+            from .plot import contact_overview
+
+            figure = contact_overview(
+                [case.solution for case in cases],
+                [case.slices for case in cases],
+                title=scene.name,
+            )
+            figure.savefig(options.plot, dpi=150)
+    except OSError as error:
+        raise SceneError(f"{error.filename}: cannot be written: {error}") from error
+    if len(lost) < len(cases):
+        print(contact_report(scene, cases), flush=True)
+    for text in contact_warnings(scene, cases):
+        print(f"bearingjax: warning: {text}", file=sys.stderr)
+    return _tell_lost(scene, cases)
+
+
+def _tell_lost(scene, cases) -> int:
+    """Name the loads of a contact that were not solved; exit status."""
+    from .contact.halfspace.pressure import message
+    from .numerics import Result
+
+    status = SOLVED
+    for given, case in zip(scene.cases, cases, strict=True):
+        if case.solution.converged:
+            continue
+        status = NOT_SOLVED
+        where = f" {given['load']:.5g} N:" if scene.listed else ""
+        label = Result(int(case.solution.result)).label
+        text = f"{label}:{where} {message(case.solution)}"
+        print(f"bearingjax: {text}", file=sys.stderr)
+    return status
 
 
 def _check_writable(path: Path | None) -> None:

@@ -57,7 +57,7 @@ def balls(n=6, kind=bj.AngularContactBallBearing, **change):
 
 
 def ball_elements():
-    """Name to element of balls, or of a set, and the speed to run it at."""
+    """Name to element of balls, a set, or coupled slices, and its speed."""
     element = bj.BearingElement
     angular = balls()
     deep = balls(7, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6)
@@ -101,6 +101,7 @@ def ball_elements():
             element(tapers, quadrature=bj.ContactMapped(24)),
             "still",
         ),
+        "taper, coupled slices": (element(taper(5), bj.CoupledSlices(12)), "turning"),
     }
 
 

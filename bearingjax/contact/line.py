@@ -1,6 +1,8 @@
 """Line contact of a roller on a raceway: load law, half width, pressure."""
 
 import abc
+from collections.abc import Callable
+from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -15,7 +17,7 @@ EXPONENT = (10, 9)
 
 
 class AbstractLineLaw(eqx.Module):
-    """Gives the constant C of q = C·approach^(10/9), per raceway contact."""
+    """What a roller's slices bear: C of q = C·approach^(10/9), per raceway contact."""
 
     @abc.abstractmethod
     def constant(self, roller: Material, ring: Material, length: Scalar) -> Scalar:
@@ -29,6 +31,16 @@ class AbstractLineLaw(eqx.Module):
         Returns:
             C [N/m^(19/9)].
         """
+
+    def contact(self, line: Any, radius: Callable, modulus: Scalar) -> Any:
+        """The contact as this law has it: in independent slices.
+
+        Args:
+            line: The `LineContact` with `constant`.
+            radius: Radius of relative curvature [m] at positions s [m].
+            modulus: Contact modulus E* [Pa].
+        """
+        return line
 
 
 class Palmgren(AbstractLineLaw):

@@ -10,8 +10,9 @@ and φ'' (line stiffness). Each order is discretised as the integral that it is,
 the derivative rule leads from one order to the next.
 """
 
+import abc
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -32,8 +33,55 @@ _N, _D = EXPONENT
 _FACTORS = (_D / (_N + _D), 1.0, _N / _D)
 
 
-class LineContact(eqx.Module):
-    """One raceway contact of one roller.
+class Response(NamedTuple):
+    """Energy of a raceway contact and its derivatives with respect to (a, b).
+
+    Attributes:
+        energy: W [J].
+        load: (∂W/∂a, ∂W/∂b) (2,) [N]; the first is the contact load.
+        stiffness: Second derivatives (aa, ab, bb) (3,) [N/m].
+    """
+
+    energy: Scalar
+    load: Float[Array, "2"]
+    stiffness: Float[Array, "3"]
+
+
+class AbstractLineContact(eqx.Module):
+    """One raceway contact of one roller: its energy as a function of (a, b)."""
+
+    @property
+    @abc.abstractmethod
+    def proud(self) -> bool:
+        """Whether the drop may be negative somewhere. Static."""
+
+    @abc.abstractmethod
+    def drop(self, xi: Float[Array, "..."]) -> Float[Array, "..."]:
+        """Material removed from both bodies at ξ [m]."""
+
+    @abc.abstractmethod
+    def pressed(self, approach: Scalar) -> Scalar:
+        """About the load of a roller without profile at an even approach [N]."""
+
+    @abc.abstractmethod
+    def table(self, quadrature: AbstractQuadrature) -> Any:
+        """What the profile alone decides, once per design."""
+
+    @abc.abstractmethod
+    def integrals(
+        self, table: Any, quadrature: AbstractQuadrature, a: Scalar, b: Scalar
+    ) -> Response:
+        """Energy, load and stiffness; `response` adds the derivative rule."""
+
+    @abc.abstractmethod
+    def along(
+        self, table: Any, xi: Float[Array, " point"], a: Scalar, b: Scalar
+    ) -> Float[Array, " point"]:
+        """Load per length at ξ [N/m]."""
+
+
+class LineContact(AbstractLineContact):
+    """One raceway contact of one roller, in independent slices.
 
     Attributes:
         constant: Line constant C [N/m^(19/9)].
@@ -84,29 +132,22 @@ class LineContact(eqx.Module):
         """Load per length at a given approach [N/m]."""
         return self.constant * positive_power(approach, _N, _D)
 
+    def pressed(self, approach):
+        return self.length * self.line_load(approach)
+
+    def table(self, quadrature):
+        return quadrature.table(self.drop, self.kinks(), self.length.dtype)
+
+    def integrals(self, table, quadrature, a, b):
+        nodes = quadrature.nodes(_offset, self, table, a, b, self.arcs)
+        return _integrals(self, nodes, quadrature)
+
+    def along(self, table, xi, a, b):
+        return self.line_load(a + b * xi - self.drop(xi))
+
 
 def _offset(line, xi):
     return line.drop(xi)
-
-
-def table(line: LineContact, quadrature: AbstractQuadrature) -> tuple:
-    """What the quadrature needs of the profile alone, once per design."""
-    kinks = line.kinks()
-    return quadrature.table(line.drop, kinks, line.length.dtype)
-
-
-class Response(NamedTuple):
-    """Energy of a raceway contact and its derivatives with respect to (a, b).
-
-    Attributes:
-        energy: W [J].
-        load: (∂W/∂a, ∂W/∂b) (2,) [N]; the first is the contact load.
-        stiffness: Second derivatives (aa, ab, bb) (3,) [N/m].
-    """
-
-    energy: Scalar
-    load: Float[Array, "2"]
-    stiffness: Float[Array, "3"]
 
 
 def _integrals(line, nodes, quadrature) -> Response:
@@ -139,8 +180,8 @@ def _integrals(line, nodes, quadrature) -> Response:
 
 
 def response(
-    line: LineContact,
-    table: tuple,
+    line: AbstractLineContact,
+    table: Any,
     quadrature: AbstractQuadrature,
     a: Scalar,
     b: Scalar,
@@ -154,7 +195,7 @@ def response(
 
     Args:
         line: The contact.
-        table: From `table`.
+        table: `line.table(quadrature)`.
         quadrature: Rule.
         a: Approach at the middle of the roller without drop [m].
         b: Additional approach at the roller's end ξ = 1 from tilt [m].
@@ -170,8 +211,7 @@ def response(
 def _plain(static, a, b, numbers) -> Response:
     structure, quadrature = static
     line, table = jax.tree.unflatten(structure, numbers)
-    nodes = quadrature.nodes(_offset, line, table, a, b, line.arcs)
-    return _integrals(line, nodes, quadrature)
+    return line.integrals(table, quadrature, a, b)
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(0,))

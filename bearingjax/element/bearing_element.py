@@ -7,6 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
+from ..contact.coupled import CoupledSlices
 from ..contact.line import AbstractLineLaw, Palmgren
 from ..contact.point_law import AbstractPointLaw, FreeAngle
 from ..design import (
@@ -54,7 +55,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
     Attributes:
         bearing: The design, or a `BearingSet`.
-        line_law: Law of the raceway contacts of rollers; `Palmgren()`.
+        line_law: Law of the raceway contacts of rollers; `Palmgren()`. With
+            `CoupledSlices()` slices press on each other; it takes no `quadrature`.
         kinematics: Small ring rotations, `Linearised()`, or `Finite()`: of balls
             exact, of rollers the paper's formula. Self-aligning bearings: `Finite()`.
         quadrature: Of roller contacts, `ContactMapped(points)` or `Midpoint(points)`.
@@ -115,6 +117,11 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                     f" {'rollers' if balls else 'balls'}, but the bearing is a"
                     f" {type(bearing).__name__}."
                 )
+        if quadrature and isinstance(line_law, CoupledSlices):
+            raise ValueError(
+                "BearingElement: `quadrature` is for independent slices, but `line_law`"
+                " is CoupledSlices(), which has slices of its own."
+            )
         self.bearing = bearing
         self.line_law = None if balls else line_law or Palmgren()
         aligning = has_sphere(bearing)

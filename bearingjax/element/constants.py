@@ -4,13 +4,15 @@ Everything stands in the roller's own axes: t along the roller axis, m across it
 (outwards), origin at the roller centre.
 """
 
+import dataclasses
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..contact.hertz import sphere_constant
 from ..contact.line import AbstractLineLaw, relative_radius
-from ..contact.line_contact import LineContact, table
+from ..contact.line_contact import AbstractLineContact, LineContact
 from ..design.bearing import AbstractRollerBearing
 from ..design.material import contact_modulus
 from ..numerics.quadrature import AbstractQuadrature
@@ -67,7 +69,7 @@ class ContactConstants(eqx.Module):
         modulus: Contact modulus E* of roller and ring [Pa].
     """
 
-    lines: tuple[LineContact, LineContact]
+    lines: tuple[AbstractLineContact, AbstractLineContact]
     tables: tuple
     ribs: RibContacts | None
     axis_angle: Scalar
@@ -107,9 +109,9 @@ def contact_constants(
     lines = line(bearing.outer_raceway_profile), line(bearing.inner_raceway_profile)
     # Stiffness of a contact pressed by a ten-thousandth of the roller diameter.
     stiffness = constant * length * (1e-4 * diameter) ** (1.0 / 9.0)
-    return ContactConstants(
+    constants = ContactConstants(
         lines=lines,
-        tables=tuple(table(line, quadrature) for line in lines),
+        tables=(),
         ribs=_rib_contacts(bearing),
         axis_angle=bearing.axis_angle,
         half_angle=bearing.half_angle,
@@ -120,6 +122,18 @@ def contact_constants(
         guide=GUIDE * stiffness,
         density=bearing.material.density,
         modulus=contact_modulus(bearing.material, bearing.rings),
+    )
+
+    def radius(raceway):
+        return lambda position: relative_radii(constants, position)[raceway]
+
+    contacts = [
+        line_law.contact(line, radius(k), constants.modulus)
+        for k, line in enumerate(lines)
+    ]
+    tables = tuple(contact.table(quadrature) for contact in contacts)
+    return dataclasses.replace(
+        constants, lines=(contacts[0], contacts[1]), tables=tables
     )
 
 

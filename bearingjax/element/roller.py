@@ -112,8 +112,7 @@ class RollerModel(AbstractModel):
         return midway + jnp.where(thrown & (before < 0), share, 0.0) * seat
 
     def pressed(self, approach):
-        line = self.constants.lines[0]
-        return line.length * line.line_load(approach)
+        return self.constants.lines[0].pressed(approach)
 
     def inertia_size(self):
         return None if self.body_force is None else norm(self._on_unknowns())

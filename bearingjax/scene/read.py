@@ -11,6 +11,7 @@ from typing import Any
 
 import jax
 
+from ..contact.coupled import CoupledSlices
 from ..contact.line import ISO16281, AbstractLineLaw, LineConstant, Palmgren
 from ..contact.point_law import (
     AbstractPointLaw,
@@ -38,11 +39,16 @@ from ..element import (
     Speed,
 )
 from ..numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
+from ..numerics.quadrature import AbstractQuadrature
 from .bearing_table import read_bearing
 from .quantity import SceneError
 from .table import Table
 
-LINE_LAWS = {"palmgren": Palmgren, "iso16281": ISO16281}
+LINE_LAWS = {
+    "palmgren": Palmgren,
+    "iso16281": ISO16281,
+    "coupled_slices": CoupledSlices,
+}
 QUADRATURES = {"contact_mapped": ContactMapped, "midpoint": Midpoint}
 KINEMATICS = {"linearised": Linearised, "finite": Finite}
 POINT_LAWS = {
@@ -251,7 +257,10 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         if "kinematics" in numerics:
             choices["kinematics"] = _kinematics(numerics)
     else:
-        choices = {"line_law": _line_law(contact), **_roller_numerics(numerics)}
+        law = _line_law(contact)
+        choices = {"line_law": law, "kinematics": _kinematics(numerics)}
+        if not isinstance(law, CoupledSlices):
+            choices["quadrature"] = _quadrature(numerics)
     solver = numerics.choice("equilibrium", tuple(EQUILIBRIA), "newton")
     with numerics.building():
         element = BearingElement(bearing, equilibrium=EQUILIBRIA[solver](), **choices)
@@ -300,6 +309,9 @@ def _components(operating, key, names, kinds) -> dict[str, float]:
 
 def _line_law(contact: Table) -> AbstractLineLaw:
     law = contact.choice("line_law", tuple(LINE_LAWS), "palmgren")
+    if law == "coupled_slices":
+        with contact.building():
+            return CoupledSlices(contact.integer("slices", CoupledSlices().slices))
     constant = contact.quantity("line_constant", "line constant", None)
     if constant is None:
         return LINE_LAWS[law]()
@@ -307,15 +319,11 @@ def _line_law(contact: Table) -> AbstractLineLaw:
         return LineConstant(constant)
 
 
-def _roller_numerics(numerics: Table) -> dict[str, Any]:
+def _quadrature(numerics: Table) -> AbstractQuadrature:
     rule = numerics.choice("quadrature", tuple(QUADRATURES), "contact_mapped")
     points = numerics.integer("points", None)
-    kinematics = _kinematics(numerics)
     with numerics.building():
-        quadrature = (
-            QUADRATURES[rule]() if points is None else QUADRATURES[rule](points)
-        )
-    return {"kinematics": kinematics, "quadrature": quadrature}
+        return QUADRATURES[rule]() if points is None else QUADRATURES[rule](points)
 
 
 def _kinematics(numerics: Table) -> AbstractKinematics:

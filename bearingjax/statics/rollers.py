@@ -94,12 +94,16 @@ def distribution(row: Row, points: int) -> tuple[Array, Array, Array, Array]:
     c = row.model.element.constants
     xi = jnp.linspace(-1.0, 1.0, points, dtype=c.half_length.dtype)
     position = c.half_length * xi
-    drops = jnp.stack([line.drop(xi) for line in c.lines])
-    approaches = _approaches(row)[:, :4].reshape(-1, 2, 2)
-    along = approaches[..., :1] + approaches[..., 1:] * xi[None, None, :] - drops[None]
-    load = jax.vmap(
-        lambda a: jnp.stack([line.line_load(a[k]) for k, line in enumerate(c.lines)])
-    )(along)
+    pairs = list(zip(c.lines, c.tables, strict=True))
+
+    def along(approaches):
+        loads = [
+            line.along(table, xi, *approaches[2 * k : 2 * k + 2])
+            for k, (line, table) in enumerate(pairs)
+        ]
+        return jnp.stack(loads)
+
+    load = jax.vmap(along)(_approaches(row))
     radius = relative_radii(c, position)
     radius = radius[None]
     return (

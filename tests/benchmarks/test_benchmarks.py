@@ -50,6 +50,11 @@ PLAIN = (
     "gradient_cost.py",
     "robust_sweep.py",
     "robust_halfspace.py",
+    "paper_mi_xia.py",
+    "peers_halfspace.py",
+    "error_vs_time_halfspace.py",
+    "strips_halfspace.py",
+    "quarter_space.py",
 )
 
 

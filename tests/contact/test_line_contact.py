@@ -12,7 +12,6 @@ import pytest
 from tolerances import DIFFERENCE, QUADRATURE_FORCE, ROUNDING
 
 from bearingjax.contact import LineContact, response
-from bearingjax.contact.line_contact import table
 from bearingjax.design import (
     CircularCrown,
     CrownedEnds,
@@ -48,7 +47,7 @@ def contact(x):
 def flat(rule, x, motion):
     """Energy, two loads, three stiffnesses."""
     line = contact(x)
-    got = response(line, table(line, rule), rule, motion[0], motion[1])
+    got = response(line, line.table(rule), rule, motion[0], motion[1])
     return jnp.concatenate([got.energy[None], got.load, got.stiffness])
 
 
@@ -239,7 +238,7 @@ def test_straight_roller_in_closed_form():
     rule = ContactMapped(16)
     line = line_of(Straight(), Straight())
     depth = 1e-5
-    got = response(line, table(line, rule), rule, jnp.asarray(depth), jnp.asarray(0.0))
+    got = response(line, line.table(rule), rule, jnp.asarray(depth), jnp.asarray(0.0))
     load = 1.3e11 * depth ** (10 / 9) * 0.01372
     np.testing.assert_allclose(got.load, [load, 0.0], rtol=1e-12, atol=1e-12 * load)
     np.testing.assert_allclose(got.energy, 9 / 19 * load * depth, rtol=1e-12)

@@ -1,5 +1,6 @@
 """Elastic contact without Hertz's assumptions: bodies as half-spaces, cell by cell."""
 
+from .ends import FreeEnds as FreeEnds
 from .gradients import AbstractPressureSolver as AbstractPressureSolver
 from .gradients import ConjugateGradients as ConjugateGradients
 from .grid import Grid as Grid
@@ -13,4 +14,6 @@ from .pressure import solve_pressure as solve_pressure
 from .problem import Pressed as Pressed
 from .problem import Problem as Problem
 from .roller import RollerContact as RollerContact
+from .stress import Stress as Stress
+from .stress import stress_below as stress_below
 from .strips import Strips as Strips

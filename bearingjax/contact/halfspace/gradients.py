@@ -14,8 +14,11 @@ from ...numerics.linear import dot, solve_symmetric
 from ...numerics.result import Result
 from .problem import Pressed, Problem
 
-_ROUNDING = 1e-12
-"""Share of the load that may be lacking before round-off is no excuse."""
+
+def _rounding(dtype) -> float:
+    """Share of the load that may be lacking: round-off, with something to spare."""
+    return 1e-12 if dtype == jnp.float64 else 1e-6
+
 
 _BOLD = 40
 """Steps in which the energy may rise: most problems are solved in fewer."""
@@ -143,7 +146,9 @@ class ConjugateGradients(AbstractPressureSolver):
             displacement = problem.influence(pressure)
             energy = _energy(problem, pressure, displacement)
             lower = (energy < state.energy) | (state.steps < _BOLD)
-            lower = lower & (_unbalanced(problem, pressure) <= 10.0 * _ROUNDING)
+            lower = lower & (
+                _unbalanced(problem, pressure) <= 10.0 * _rounding(pressure.dtype)
+            )
             # As far as the first that leaves.
             ratio = state.pressure / jnp.where(leaves, whole, 1.0)
             share = jnp.min(jnp.where(leaves, ratio, 1.0))
@@ -276,7 +281,7 @@ def _balanced(problem, pressure, weight):
 
     def unfinished(carry):
         _, missing, _, count = carry
-        worst = jnp.max(jnp.abs(missing)) > _ROUNDING * problem.load
+        worst = jnp.max(jnp.abs(missing)) > _rounding(pressure.dtype) * problem.load
         return worst & (count < 60)
 
     def newton(carry):

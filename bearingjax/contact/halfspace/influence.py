@@ -14,6 +14,7 @@ Source: zero padding: Liu, Wang, Liu, Wear 243 (2000); preconditioning by the in
 """
 
 import abc
+from functools import partial
 from typing import Any
 
 import equinox as eqx
@@ -21,6 +22,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ...design.checks import in_range
 from ...numerics.types import Scalar, as_real
 from .grid import Grid
 from .love import corner, namespace, strip
@@ -96,17 +98,29 @@ class GradedInfluence(AbstractInfluence):
         return jnp.einsum("fjk,...fk->...fj", kernel, waves)
 
 
-def influence(grid: Grid, modulus: Scalar | float) -> AbstractInfluence:
+def influence(
+    grid: Grid, modulus: Scalar | float, mirrored: Scalar | float | None = None
+) -> AbstractInfluence:
     """Influence of pressure on a grid.
 
     Args:
         grid: The cells; the kernel of a graded grid has about n_across·n_along²
             numbers.
         modulus: Contact modulus E* of both bodies [Pa].
+        mirrored: Share with which the pressure acts once more, mirrored at both ends
+            of the grid, see `FreeEnds`; `None`: none. With it the kernel of an even
+            grid is that of a graded one.
+
+    Raises:
+        ValueError: If `mirrored` is not in [0, 1): beyond, no contact is stable.
     """
     modulus = as_real(modulus)
-    xp = namespace(grid.half_width, grid.edges, modulus)
-    table = _even_table if grid.even else _graded_table
+    if mirrored is not None:
+        mirrored = as_real(mirrored)
+        in_range("influence", "mirrored", mirrored, "", 0.0, 0.999)
+    xp = namespace(grid.half_width, grid.edges, modulus, mirrored)
+    even = grid.even and mirrored is None
+    table = _even_table if even else partial(_graded_table, mirrored=mirrored)
     dtype = grid.half_width.dtype
     # NumPy's double precision where nothing is traced, whatever JAX's.
     work = np.dtype(float) if xp is np else dtype
@@ -117,7 +131,7 @@ def influence(grid: Grid, modulus: Scalar | float) -> AbstractInfluence:
     lags = across // 2 + 1
     values = table(xp, lags, half_x, edges).reshape(lags, -1)
     kernel = xp.asarray(cosine_sums(across), work) @ values / (np.pi * modulus)
-    if grid.even:
+    if even:
         along = padded_size(grid.shape[1])
         kernel = kernel @ xp.asarray(cosine_sums(along), work).T
         least = 1e-6 * xp.max(kernel, axis=1, keepdims=True)
@@ -145,13 +159,21 @@ def _even_table(xp, lags, half_x, edges):
     return table[:, 1:] - table[:, :-1]
 
 
-def _graded_table(xp, lags, half_x, edges):
+def _graded_table(xp, lags, half_x, edges, mirrored=None):
     """Means of ∫∫ dA/r over cells, for distances across and pairs of cells along."""
     u = half_x * _odd(xp, lags, half_x.dtype)
-    table = strip(u[:, None, None], (edges[:, None] - edges[None, :])[None], xp)
-    table = table[1:] - table[:-1]
-    table = table[:, 1:] - table[:, :-1]
-    return (table[..., :-1] - table[..., 1:]) / xp.diff(edges)[None, :, None]
+
+    def means(sources):
+        table = strip(u[:, None, None], (edges[:, None] - sources[None, :])[None], xp)
+        table = table[1:] - table[:-1]
+        table = table[:, 1:] - table[:, :-1]
+        return (table[..., :-1] - table[..., 1:]) / xp.diff(edges)[None, :, None]
+
+    total = means(edges)
+    if mirrored is None:
+        return total
+    images = [means(2.0 * end - edges[::-1])[..., ::-1] for end in edges[[0, -1]]]
+    return total + xp.asarray(mirrored, half_x.dtype) * (images[0] + images[1])
 
 
 def _odd(xp, count, dtype):

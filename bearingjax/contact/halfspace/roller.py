@@ -12,9 +12,10 @@ from ...design.checks import check, concrete, in_range, is_traced, positive
 from ...design.material import Material, contact_modulus
 from ...design.profile import AbstractProfile, Straight
 from ...numerics.types import Scalar, as_real
+from .ends import FreeEnds
 from .gradients import AbstractPressureSolver, ConjugateGradients
 from .grid import Grid, even_grid, graded_grid
-from .influence import influence
+from .influence import AbstractInfluence, influence
 from .pressure import ContactSolution, solve_pressure
 
 MARGIN = 1.6
@@ -41,6 +42,8 @@ class RollerContact(eqx.Module):
             [rad].
         roller_profile, raceway_profile: Profiles.
         material, raceway_material: Materials.
+        free_ends: `FreeEnds()`: the roller's end faces are free; `None`: it is taken as
+            a half-space, too stiff at its ends.
 
     Traced: all fields.
     Source: sections of a cone normal to its generatrix: Mi & Xia (2011), eq. (10) to
@@ -57,6 +60,7 @@ class RollerContact(eqx.Module):
     raceway_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
     material: Material = eqx.field(default_factory=Material, kw_only=True)
     raceway_material: Material = eqx.field(default_factory=Material, kw_only=True)
+    free_ends: FreeEnds | None = eqx.field(default=None, kw_only=True)
 
     def __check_init__(self):
         positive(self, "roller_length", self.roller_length, "m")
@@ -128,6 +132,17 @@ class RollerContact(eqx.Module):
     def modulus(self) -> Scalar:
         """Contact modulus E* [Pa]."""
         return contact_modulus(self.material, self.raceway_material)
+
+    def influence(self, grid: Grid) -> AbstractInfluence:
+        """Influence of pressure between this roller and its raceway.
+
+        Args:
+            grid: The cells, as long as the roller.
+        """
+        share = None
+        if self.free_ends is not None:
+            share = self.free_ends.share(self.material, self.raceway_material)
+        return influence(grid, self.modulus, share)
 
     def roller_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
         """Radius of curvature of the roller normal to the generatrix at y [m]."""
@@ -235,7 +250,7 @@ class RollerContact(eqx.Module):
             self, "half_width", grid.half_width, "m", widest, "less than the roller's"
         )
         return solve_pressure(
-            influence(grid, self.modulus),
+            self.influence(grid),
             self.gap(grid),
             **given,
             solver=solver,
@@ -257,7 +272,7 @@ class RollerContact(eqx.Module):
             width = min(width, most)
             coarse = self.grid(width, 16, 32)
             found = solve_pressure(
-                influence(coarse, self.modulus),
+                self.influence(coarse),
                 self.gap(coarse),
                 **given,
                 solver=ConjugateGradients(tolerance=1e-4),

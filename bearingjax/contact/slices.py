@@ -1,0 +1,91 @@
+"""A roller as independent slices: what a solved contact is compared with."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Float
+
+from ..numerics.quadrature import ContactMapped
+from ..numerics.types import Scalar, as_real
+from .halfspace.roller import RollerContact
+from .line import EXPONENT, AbstractLineLaw, Palmgren, peak_pressure
+from .line_contact import LineContact, response
+
+_ENOUGH = 1e-13
+"""Share of the approach by which the last step may still move."""
+
+_STEPS = 60
+
+
+class Slices(eqx.Module):
+    """Line contact under the load and tilt of a contact.
+
+    Attributes:
+        approach: At y = 0 [m].
+        line_load: Load per length (n,) [N/m].
+        pressure: Hertz's largest pressure across the contact (n,) [Pa].
+    """
+
+    approach: Scalar
+    line_load: Float[Array, " n"]
+    pressure: Float[Array, " n"]
+
+    @property
+    def peak_pressure(self) -> Scalar:
+        """Largest pressure [Pa]."""
+        return jnp.max(self.pressure)
+
+
+@eqx.filter_jit
+def slices(
+    contact: RollerContact,
+    load: Scalar | float,
+    tilt: Scalar | float,
+    position: Float[Array, " n"],
+    law: AbstractLineLaw | None = None,
+) -> Slices:
+    """What slices that know nothing of their neighbours give.
+
+    The approach is found by Newton's method: the load is a convex function of it, so
+    that steps come from above after the first.
+
+    Args:
+        contact: Roller and raceway.
+        load: Load, zero or more [N].
+        tilt: Tilt, positive where it closes the gap at y > 0 [rad].
+        position: Where along the roller, y (n,) [m].
+        law: Line law; default `Palmgren()`.
+    """
+    law = Palmgren() if law is None else law
+    length, load, tilt = contact.roller_length, as_real(load), as_real(tilt)
+    line = LineContact(
+        constant=law.constant(contact.material, contact.raceway_material, length),
+        length=length,
+        diameter=contact.diameter,
+        roller_profile=contact.roller_profile,
+        raceway_profile=contact.raceway_profile,
+    )
+    rule = ContactMapped()
+    made = line.table(rule)
+    end, xi = 0.5 * length * tilt, 2.0 * position / length
+    # The approach of an even load, counted from where the bodies touch first.
+    first = jnp.min(line.drop(xi) - tilt * position)
+    even = (load / (line.constant * length)) ** (EXPONENT[1] / EXPONENT[0])
+
+    def step(state):
+        approach, _, steps = state
+        found = response(line, made, rule, approach, end)
+        slope = jnp.where(found.stiffness[0] > 0, found.stiffness[0], 1.0)
+        change = (load - found.load[0]) / slope
+        return approach + change, change, steps + 1
+
+    def unfinished(state):
+        _, change, steps = state
+        return (jnp.abs(change) > _ENOUGH * (even + jnp.abs(end))) & (steps < _STEPS)
+
+    begin = step((first + even, even, 0))
+    approach, *_ = lax.while_loop(unfinished, step, begin)
+    line_load = line.along(made, xi, approach, end)
+    radius = contact.relative_radius(position)
+    pressure = peak_pressure(line_load, radius, contact.modulus)
+    return Slices(approach, line_load, pressure)

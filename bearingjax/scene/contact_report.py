@@ -1,0 +1,260 @@
+"""What is told of a solved contact: a report for people, JSON in SI for programs."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..contact.halfspace.pressure import message
+from ..numerics.result import Result
+from .contact_run import ContactCase
+from .contact_table import ContactScene
+
+_RULE = "-" * 78
+
+WIDE = 0.2
+"""Half width of a contact over the radius of the roller from which it is said."""
+
+PLACES = (1 / 30, 1 / 15, 1 / 4, 1 / 2, 3 / 4, 14 / 15, 29 / 30)
+"""Where the report gives the pressure: from the small end, over the length."""
+
+
+def contact_warnings(scene: ContactScene, cases: list[ContactCase]) -> list[str]:
+    """What a reader should know before the numbers are used.
+
+    Args:
+        scene: What was asked.
+        cases: What came of it; those that are not solved are passed over.
+    """
+    found = list(scene.warnings)
+    solved = [case for case in cases if case.solution.converged]
+    for case in solved:
+        if not case.touches:
+            approach = 1e6 * float(case.solution.approach)
+            found.append(f"approach {approach:.4g} um: the bodies do not touch")
+    narrow = [case for case in solved if case.solution.truncated]
+    if narrow:
+        cure = "it is as wide as the roller or its raceway"
+        if scene.half_width is not None:
+            cure = "give a larger `numerics.half_width`, or none"
+        found.append(
+            f"{_named(narrow)}: the contact reaches the sides of the grid; what it"
+            f" carries beyond them is missing; {cure}"
+        )
+    radius = 0.5 * float(scene.contact.small_diameter)
+    wide = [case for case in solved if case.half_width.max() > WIDE * radius]
+    if wide:
+        found.append(
+            f"{_named(wide)}: the contact is too wide beside the roller, more than"
+            f" {WIDE:g} of its radius to each side, for both bodies to be half-spaces"
+        )
+    ends = (0, scene.along - 1)
+    sharp = [case for case in solved if case.touches and case.peak in ends]
+    if sharp:
+        length = 2e6 * float(sharp[0].solution.grid.half_y[0])
+        found.append(
+            f"{_named(sharp)}: the peak pressure is that of an end cell, {length:.4g}"
+            " um long; under a sharp end it grows without limit as cells shrink:"
+            " compare at fixed distances from the end"
+        )
+    return found
+
+
+def _named(cases):
+    return ", ".join(f"{float(case.solution.load):.5g}" for case in cases) + " N"
+
+
+def contact_as_dict(scene: ContactScene, cases: list[ContactCase]) -> dict[str, Any]:
+    """A solved contact as plain numbers and lists, in SI.
+
+    Args:
+        scene: What was asked.
+        cases: What came of it.
+
+    Returns:
+        position and cell_length along the roller, end_cell_length, what `_numbers`
+        lists, result, message, residual, iterations, warnings and version. If the scene
+        lists its loads, each but the first three and last two is a list over them, null
+        where a load was not solved. If nothing was solved the numbers are left out.
+    """
+    from .. import __version__
+
+    rows = [_numbers(scene, case) if case.solution.converged else {} for case in cases]
+    found: dict[str, Any] = {}
+    if any(rows):
+        grid = cases[0].solution.grid
+        lengths = 2.0 * np.asarray(grid.half_y)
+        found = {
+            "position": np.asarray(grid.y).tolist(),
+            "cell_length": lengths.tolist(),
+            "end_cell_length": float(lengths[0]),
+        }
+        names = next(row for row in rows if row)
+        found |= {name: [row.get(name) for row in rows] for name in names}
+    stats = [_status(case.solution) for case in cases]
+    found |= {name: [row[name] for row in stats] for name in stats[0]}
+    if not scene.listed:
+        shared = ("position", "cell_length", "end_cell_length")
+        found = {k: v if k in shared else v[0] for k, v in found.items()}
+    return {
+        **found,
+        "warnings": contact_warnings(scene, cases),
+        "version": __version__,
+    }
+
+
+def write_contact_json(
+    path: str | Path, scene: ContactScene, cases: list[ContactCase]
+) -> None:
+    """Write `contact_as_dict` to a file.
+
+    Raises:
+        OSError: If the file cannot be written.
+    """
+    text = json.dumps(contact_as_dict(scene, cases), indent=1, allow_nan=False)
+    Path(path).write_text(text + "\n", encoding="utf-8")
+
+
+def _status(solution) -> dict[str, Any]:
+    residual = float(solution.residual)
+    return {
+        "result": Result(int(solution.result)).label,
+        "message": message(solution),
+        "residual": residual if np.isfinite(residual) else None,
+        "iterations": int(solution.steps),
+    }
+
+
+def _numbers(scene, case: ContactCase) -> dict[str, Any]:
+    solution, slices, peak = case.solution, case.slices, case.peak
+    grid = solution.grid
+    numbers = {
+        "load": float(solution.load),
+        "approach": float(solution.approach),
+        "moment": float(solution.moment),
+        "tilt": float(solution.tilt),
+        "peak_pressure": float(solution.peak_pressure),
+        "peak_position": float(grid.y[peak]) if case.touches else None,
+        "peak_cell_length": 2.0 * float(grid.half_y[peak]) if case.touches else None,
+        "centre_pressure": np.asarray(solution.centre_pressure).tolist(),
+        "line_load": np.asarray(solution.line_load).tolist(),
+        "half_width": case.half_width.tolist(),
+        "cell_width": 2.0 * float(grid.half_x),
+        "grid_half_width": float(grid.half_width),
+        "truncated": bool(solution.truncated),
+        "slices": {
+            "approach": float(slices.approach) if case.touches else None,
+            "line_load": np.asarray(slices.line_load).tolist(),
+            "contact_pressure": np.asarray(slices.pressure).tolist(),
+            "peak_pressure": float(slices.peak_pressure),
+        },
+        "edge_factor": case.edge_factor if case.touches else None,
+    }
+    if scene.field:
+        numbers["field"] = {
+            "x": np.asarray(grid.x).tolist(),
+            "pressure": np.asarray(solution.pressure).tolist(),
+        }
+    return numbers
+
+
+def contact_report(scene: ContactScene, cases: list[ContactCase]) -> str:
+    """Readable report of a solved contact.
+
+    Args:
+        scene: What was asked.
+        cases: What came of it; those that are not solved are left out.
+    """
+    solved = [case for case in cases if case.solution.converged]
+    parts = [
+        _contact(scene, solved),
+        _loads(solved),
+        _places(scene, solved),
+        _ending(solved),
+    ]
+    return f"\n{_RULE}\n".join(parts)
+
+
+def _contact(scene, cases):
+    contact, grid = scene.contact, cases[0].solution.grid
+    small, large, length = (
+        1e3 * float(v)
+        for v in (contact.small_diameter, contact.large_diameter, contact.roller_length)
+    )
+    size = f"{small:.4g}" if small == large else f"{small:.4g} to {large:.4g}"
+    radius = 1e3 * float(contact.raceway_radius)
+    raceway = "a plane"
+    if np.isfinite(radius):
+        side = "an inner" if radius > 0 else "an outer"
+        raceway = f"{side} raceway of radius {abs(radius):.4g} mm"
+    profiles = [
+        type(p).__name__ for p in (contact.roller_profile, contact.raceway_profile)
+    ]
+    kind = "even" if grid.even else f"graded ({scene.grading:g})"
+    return "\n".join(
+        [
+            f"{scene.name}: roller {size} x {length:.4g} mm, half angle"
+            f" {np.rad2deg(float(contact.angle)):.4g} deg, on {raceway}",
+            f"profile of the roller: {profiles[0]}, of the raceway: {profiles[1]};"
+            f" contact modulus {1e-9 * float(contact.modulus):.4g} GPa",
+            f"{scene.across} x {scene.along} {kind} cells: at the ends"
+            f" {2e6 * float(grid.half_y[0]):.4g} µm long, in the middle"
+            f" {2e6 * float(grid.half_y[scene.along // 2]):.4g} µm",
+        ]
+    )
+
+
+def _loads(cases):
+    lines = [
+        "    load  approach    tilt   moment    peak      at  in cell  slices    edge",
+        "       N        µm    mrad      N m     MPa      mm       µm     MPa  factor",
+    ]
+    for case in cases:
+        s, place = case.solution, case.peak
+        tail = f" {'-':>7} {'-':>8} {'-':>7} {'-':>7}"
+        if case.touches:
+            peak, cell = 1e3 * float(s.grid.y[place]), 2e6 * float(s.grid.half_y[place])
+            sliced = 1e-6 * float(case.slices.peak_pressure)
+            tail = f" {peak:7.4g} {cell:8.4g} {sliced:7.0f} {case.edge_factor:7.3f}"
+        lines.append(
+            f"{float(s.load):8.5g} {1e6 * float(s.approach):9.5g}"
+            f" {1e3 * _clean(s.tilt):7.4g} {_clean(s.moment):8.4g}"
+            f" {1e-6 * float(s.peak_pressure):7.0f}{tail}"
+        )
+    return "\n".join(lines)
+
+
+def _places(scene, cases):
+    """Pressure at x = 0 at fixed places, which do not depend on the cells there."""
+    length = float(scene.contact.roller_length)
+    places = np.array(PLACES) * length
+    lines = [
+        "pressure at x = 0 (MPa) at distances from the small end (mm)",
+        f"{'load, N':>8}" + "".join(f"{1e3 * v:9.4g}" for v in places),
+    ]
+    for case in cases:
+        pressure = 1e-6 * _at(case.solution, places - 0.5 * length)
+        lines.append(
+            f"{float(case.solution.load):8.5g}" + "".join(f"{p:9.1f}" for p in pressure)
+        )
+    return "\n".join(lines)
+
+
+def _ending(cases):
+    steps = max(int(case.solution.steps) for case in cases)
+    residual = max(float(case.solution.residual) for case in cases)
+    return (
+        f"converged in {steps} steps, largest gap left {residual:.1e} of the mean"
+        " displacement"
+    )
+
+
+def _at(solution, y):
+    grid = solution.grid
+    return np.interp(y, np.asarray(grid.y), np.asarray(solution.centre_pressure))
+
+
+def _clean(value):
+    """Round-off of what cancels is shown as zero."""
+    return 0.0 if abs(float(value)) < 1e-12 else float(value)

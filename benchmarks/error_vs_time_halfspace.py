@@ -1,0 +1,294 @@
+"""What does an error cost in the pressure of half-spaces, with even and graded cells?
+
+The tapered roller of method 004 (15 mm long, 10 and 12 mm thick, on a plane) at 3000 N,
+whose sharp ends have an infinite pressure: cells over 15 x 0.3528 mm, of one length, or
+shorter towards the ends (exponent 2). Only the half that symmetry leaves is kept.
+
+Errors, relative: of the approach; of the pressure at x = 0, 0.5 mm from either end (the
+larger error), and in the middle of the roller, by cubic interpolation between the
+middles of cells, of the pressure times the root of the distance from the ends.
+Reference: graded cells, exponent 2.5, with how much coarser ones
+differ. Length: of the cell at the end, and of that in the middle. Time: a compiled
+solve to 1e-10, kernel made before, shortest of the repeats.
+
+Run: python benchmarks/error_vs_time_halfspace.py [--json] [--smoke] [--plot OUT.png]
+
+Last run:
+
+                        worst relative error          cell, mm
+cells              approach   0.5 mm in    middle     end  middle  steps       ms
+even     17 x 16      9e-03       4e-02     7e-03  0.9375  0.9375     16     0.78
+even     35 x 32      6e-03       1e-02     4e-03  0.4688  0.4688     23     1.82
+even     35 x 64      3e-03       2e-03     2e-03  0.2344  0.2344     24     3.21
+even     35 x 128     2e-03       3e-03     1e-03  0.1172  0.1172     26     6.61
+even     35 x 256     9e-04       2e-03     6e-04  0.0586  0.0586     25    29.31
+even     35 x 512     4e-04       1e-03     3e-04  0.0293  0.0293     26    92.05
+even     35 x 1024    2e-04       6e-04     1e-04  0.0146  0.0146     26   138.52
+even    256 x 512     5e-04       1e-03     3e-04  0.0293  0.0293     42  1615.25
+graded   17 x 16      3e-04       3e-04     1e-03  0.0664  1.8462     18     0.55
+graded   17 x 32      2e-04       5e-03     7e-04  0.0156  0.9339     20     0.91
+graded   35 x 32      1e-04       4e-03     3e-05  0.0156  0.9339     23     1.59
+graded   35 x 48      2e-06       6e-04     1e-05  0.0068  0.6239     24     2.67
+graded   35 x 64      4e-05       3e-04     3e-05  0.0038  0.4683     25     4.67
+graded   35 x 128     7e-05       1e-04     4e-05  0.0009  0.2343     25    57.25
+graded   65 x 128     1e-05       1e-04     2e-05  0.0009  0.2343     27   167.17
+
+all errors below      1e-02    1e-03    3e-04
+even, ms                3.2    138.5        -
+graded, ms              0.5      0.5     57.2
+
+time of even 256 x 512 over graded 35 x 48, no worse: 605 (at least 10): met
+of even 35 x 512: 34.5
+of even 35 x 1024: 51.8
+
+reference: approach 6.32121 µm, at 0.5, 7.5, 14.5 mm 1299.00, 1104.12, 1206.77 MPa
+coarser reference differs by 2e-05
+AMD EPYC, 2 cores, load average 7.7; devices: 1 cpu; jax 0.10.1
+"""
+
+import argparse
+import functools
+import json
+import sys
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+from scipy.interpolate import CubicSpline  # noqa: E402
+from strips_halfspace import HALF_WIDTH, LENGTH, LOAD, MODULUS, taper  # noqa: E402
+from timing import compiled, machine, shuffled, verdict  # noqa: E402
+
+from bearingjax.contact.halfspace import (  # noqa: E402
+    graded_grid,
+    influence,
+    solve_pressure,
+)
+
+# Cells across and along.
+FULL = {
+    "even": (
+        (17, 16),
+        (35, 32),
+        (35, 64),
+        (35, 128),
+        (35, 256),
+        (35, 512),
+        (35, 1024),
+        (256, 512),
+    ),
+    "graded": ((17, 16), (17, 32), (35, 32), (35, 48), (35, 64), (35, 128), (65, 128)),
+}
+SMOKE = {"even": ((9, 16), (9, 32)), "graded": ((9, 16),)}
+# Cells and exponent of the reference, and of what it is judged by.
+REFERENCE = ((129, 384, 2.5), (89, 256, 2.5))
+COARSE = ((9, 48, 2.5), (9, 32, 2.5))
+ASKED = ("approach", "near_ends", "middle")
+NAMES = ("approach", "0.5 mm from ends", "middle")
+TARGETS = (1e-2, 1e-3, 3e-4)
+GOAL = 10.0  # times cheaper than even cells that are as good
+MODEL = (256, 512)  # the even cells that the goal is about
+COLORS = {"even": "#D55E00", "graded": "#0072B2"}
+PLACES = (0.5e-3, 7.5e-3, 14.5e-3)  # from the small end [m]
+
+
+def answer(grid):
+    """Compiled solve -> approach, pressure at x = 0, steps; seconds of compiling."""
+    matrix, gap = influence(grid, MODULUS), taper().gap(grid)
+
+    def solve(matrix, gap, load):
+        found = solve_pressure(matrix, gap, load=load, throw=False)
+        return found.approach, found.centre_pressure, found.steps, found.converged
+
+    given = matrix, gap, jnp.asarray(LOAD)
+    call, seconds = compiled(solve, *given)
+    return functools.partial(call, *given), seconds
+
+
+def values(grid, found):
+    """Approach, and pressures at `PLACES`."""
+    approach, pressure, steps, converged = found
+    if not converged:
+        raise RuntimeError(f"not converged in {int(steps)} steps")
+    y = np.asarray(grid.y - grid.edges[0])
+    # Without its infinite ends, it is smooth.
+    smooth = CubicSpline(y, _root(y) * np.asarray(pressure))
+    places = np.array(PLACES)
+    return np.array([float(approach), *(smooth(places) / _root(places))])
+
+
+def _root(y):
+    """What the pressure is like near the ends, inverse."""
+    return np.sqrt(y * (LENGTH - y))
+
+
+def errors(got, want):
+    """Of the approach, near the ends (the larger), in the middle."""
+    approach, small, middle, large = np.abs(got / want - 1)
+    found = (approach, max(small, large), middle)
+    return {name: float(x) for name, x in zip(ASKED, found, strict=True)}
+
+
+def reference(asked):
+    """Values, and how much those of coarser cells differ."""
+    found = []
+    for across, along, grading in asked:
+        grid = graded_grid(LENGTH, HALF_WIDTH, across, along, grading=grading)
+        found.append(values(grid, answer(grid)[0]()))
+    return found[0], max(errors(found[1], found[0]).values())
+
+
+def study(sizes, want, rounds):
+    """A row for each kind and number of cells."""
+    calls, rows = {}, []
+    for kind, asked in sizes.items():
+        for across, along in asked:
+            grading = 1.0 if kind == "even" else 2.0
+            grid = taper().grid(HALF_WIDTH, across, along, grading=grading)
+            call, seconds = answer(grid)
+            found = call()
+            half = 1e3 * np.asarray(grid.half_y)
+            rows.append(
+                {
+                    "kind": kind,
+                    "across": across,
+                    "along": along,
+                    **errors(values(grid, found), want),
+                    "end_mm": 2 * float(half[0]),
+                    "middle_mm": 2 * float(half[along // 2]),
+                    "steps": int(found[2]),
+                    "compile_s": seconds,
+                }
+            )
+            calls[kind, across, along] = call
+    times = shuffled(calls, rounds)
+    for row in rows:
+        row["ms"] = 1e3 * min(times[row["kind"], row["across"], row["along"]])
+    return rows
+
+
+def price(rows, kind, target):
+    """Least time [ms] at which all errors are below a target; `None` if never."""
+    good = [r for r in rows if max(r[a] for a in ASKED) <= target]
+    return min((r["ms"] for r in good if r["kind"] == kind), default=None)
+
+
+def advantage(rows):
+    """Time of the even cells of the goal over that of graded ones that are no worse in
+    anything, and these."""
+    model = next((r for r in rows if (r["across"], r["along"]) == MODEL), rows[0])
+    good = [
+        r
+        for r in rows
+        if r["kind"] == "graded" and all(r[a] <= model[a] for a in ASKED)
+    ]
+    if not good:
+        return 0.0, None
+    best = min(good, key=lambda r: r["ms"])
+    return model["ms"] / best["ms"], best
+
+
+def show(rows, want, doubt):
+    print(
+        f"{'':18}{'worst relative error':^33}{'cell, mm':^15}\n"
+        f"{'cells':18}{'approach':>9}{'0.5 mm in':>12}{'middle':>10}"
+        f"{'end':>8}{'middle':>8}{'steps':>7}{'ms':>9}"
+    )
+    for r in rows:
+        print(
+            f"{r['kind']:7}{r['across']:4d} x {r['along']:<4d}{r['approach']:9.0e}"
+            f"{r['near_ends']:12.0e}{r['middle']:10.0e}{r['end_mm']:8.4f}"
+            f"{r['middle_mm']:8.4f}{r['steps']:7d}{r['ms']:9.2f}"
+        )
+    print(f"\n{'all errors below':18}" + "".join(f"{t:>9.0e}" for t in TARGETS))
+    for kind in dict.fromkeys(r["kind"] for r in rows):
+        prices = [price(rows, kind, target) for target in TARGETS]
+        told = ["-" if p is None else f"{p:.1f}" for p in prices]
+        print(f"{kind + ', ms':18}" + "".join(f"{p:>9}" for p in told))
+    ratio, best = advantage(rows)
+    print()
+    what = f"time of even {MODEL[0]} x {MODEL[1]} over graded "
+    if best is not None:
+        what += f"{best['across']} x {best['along']}, no worse"
+    print(verdict(what, ratio, GOAL, most=False))
+    for row in rows:
+        if best is None or (row["kind"], row["across"]) != ("even", best["across"]):
+            continue
+        if row["along"] >= MODEL[1]:
+            ratio = row["ms"] / best["ms"]
+            print(f"of even {row['across']} x {row['along']}: {ratio:.3g}")
+    print(
+        f"\nreference: approach {1e6 * want[0]:.5f} µm, at 0.5, 7.5, 14.5 mm "
+        + ", ".join(f"{1e-6 * p:.2f}" for p in want[1:])
+        + f" MPa\ncoarser reference differs by {doubt:.0e}"
+        f"\n{machine()}"
+    )
+
+
+def plot(rows, target):
+    """Error against time, one panel for each quantity."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(1, 3, figsize=(11, 4), sharex=True, sharey=True)
+    for axis, asked, name in zip(axes, ASKED, NAMES, strict=True):
+        for kind in dict.fromkeys(r["kind"] for r in rows):
+            mine = [r for r in rows if r["kind"] == kind]
+            axis.loglog(
+                [r["ms"] for r in mine],
+                [r[asked] for r in mine],
+                "o",
+                color=COLORS[kind],
+                markersize=5,
+                label=f"{kind} cells",
+            )
+            for r in mine:
+                axis.annotate(
+                    f"{r['across']}×{r['along']}",
+                    (r["ms"], r[asked]),
+                    # Graded ones lie below: there is room.
+                    xytext=(4, 3) if kind == "even" else (-3, -4),
+                    ha="left" if kind == "even" else "right",
+                    va="bottom" if kind == "even" else "top",
+                    textcoords="offset points",
+                    fontsize=6.5,
+                    color=COLORS[kind],
+                )
+        axis.set_title(name[0].upper() + name[1:], loc="left")
+        axis.set_xlabel("time of a solve, ms")
+        axis.grid(alpha=0.3)
+        axis.spines[["top", "right"]].set_visible(False)
+    spent = [r["ms"] for r in rows]
+    axes[0].set_xlim(0.2 * min(spent), 5 * max(spent))
+    axes[0].set_ylabel("relative error")
+    axes[0].legend(frameon=False)
+    figure.tight_layout()
+    figure.savefig(target, dpi=150)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line per result")
+    parser.add_argument("--smoke", action="store_true", help="few cells")
+    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
+    args = parser.parse_args()
+    want, doubt = reference(COARSE if args.smoke else REFERENCE)
+    sizes, rounds = (SMOKE, 2) if args.smoke else (FULL, 9)
+    rows = study(sizes, want, rounds)
+    if args.json:
+        for r in rows:
+            print(json.dumps(r))
+    else:
+        show(rows, want, doubt)
+    if args.plot:
+        plot(rows, args.plot)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
