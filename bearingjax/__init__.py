@@ -88,6 +88,7 @@ from .statics import Variable as Variable
 from .statics import linearise as linearise
 from .statics import optimise as optimise
 from .statics import preload as preload
+from .statics import refine as refine
 from .statics import restrained_freedoms as restrained_freedoms
 from .statics import solve_load as solve_load
 from .statics import stack_designs as stack_designs

@@ -109,6 +109,14 @@ def _parser():
     contact.set_defaults(run=_contact)
     _add_common(contact)
     contact.add_argument(
+        "--roller",
+        type=int,
+        help="of a bearing's scene; default: the one with the largest load",
+    )
+    contact.add_argument(
+        "--raceway", choices=("inner", "outer"), help="likewise; default: inner"
+    )
+    contact.add_argument(
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
     )
     return parser
@@ -152,7 +160,6 @@ def _configure_jax(options):
 def _solve(options) -> int:
     from .numerics import Result
     from .scene import SceneError, read_scene, report, run_scene, write_json
-    from .statics.solution import message
 
     for path in (options.json, options.plot):
         _check_writable(path)
@@ -172,11 +179,20 @@ def _solve(options) -> int:
     except OSError as error:
         raise SceneError(f"{error.filename}: cannot be written: {error}") from error
     if result is not Result.CONVERGED:
-        text = message(solution, scene.moving_ring)
-        print(f"bearingjax: {result.label}: {text}", file=sys.stderr)
-        return NOT_SOLVED
+        return _tell_unsolved(scene, solution)
     print(report(scene, solution), flush=True)
     return SOLVED
+
+
+def _tell_unsolved(scene, solution) -> int:
+    """Say why a bearing was not solved; exit status."""
+    from .numerics import Result
+    from .statics.solution import message
+
+    label = Result(int(solution.result)).label
+    text = message(solution, scene.moving_ring)
+    print(f"bearingjax: {label}: {text}", file=sys.stderr)
+    return NOT_SOLVED
 
 
 def _sweep(options) -> int:
@@ -266,8 +282,12 @@ def _contact(options) -> int:
         SceneError,
         contact_report,
         contact_warnings,
+        is_bearing,
         read_contact,
+        read_scene,
         run_contact,
+        run_refined,
+        run_scene,
         write_contact_json,
     )
 
@@ -275,8 +295,17 @@ def _contact(options) -> int:
         _check_writable(path)
     if options.plot is not None:
         _check_plot(options.plot)
-    scene = read_contact(options.scene, options.set)
-    cases = run_contact(scene)
+    if is_bearing(options.scene, options.set):
+        bearing = read_scene(options.scene, options.set)
+        solution = run_scene(bearing)
+        if not solution.converged:
+            return _tell_unsolved(bearing, solution)
+        scene, cases = run_refined(bearing, solution, options.roller, options.raceway)
+    elif options.roller is not None or options.raceway is not None:
+        raise SceneError("--roller and --raceway are for the scene of a bearing")
+    else:
+        scene = read_contact(options.scene, options.set)
+        cases = run_contact(scene)
     lost = [case.solution for case in cases if not case.solution.converged]
     try:
         if options.json is not None:

@@ -1,12 +1,14 @@
-"""A roller as independent slices: what a solved contact is compared with."""
+"""A roller in slices, beside its contact cell by cell."""
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
 from ..numerics.quadrature import ContactMapped
 from ..numerics.types import Scalar, as_real
+from .halfspace.pressure import ContactSolution
 from .halfspace.roller import RollerContact
 from .line import EXPONENT, AbstractLineLaw, Palmgren, peak_pressure
 from .line_contact import LineContact, response
@@ -89,3 +91,51 @@ def slices(
     radius = contact.relative_radius(position)
     pressure = peak_pressure(line_load, radius, contact.modulus)
     return Slices(approach, line_load, pressure)
+
+
+class Compared(eqx.Module):
+    """A solved contact beside slices under the same load and tilt; a single one.
+
+    Attributes:
+        solution: Read its result code.
+        slices: What slices give.
+    """
+
+    solution: ContactSolution
+    slices: Slices
+
+    @property
+    def half_width(self) -> np.ndarray:
+        """Half width of the contact along the roller (n,) [m].
+
+        Hertz's pressure squared is linear in x²: where that line through the two
+        outermost cells in contact meets zero, within a cell.
+        """
+        grid = self.solution.grid
+        pressure = np.asarray(self.solution.pressure)
+        x, cell = np.asarray(grid.x), 2.0 * float(grid.half_x)
+        count, columns = (pressure > 0).sum(axis=0), np.arange(pressure.shape[1])
+        last = np.maximum(count - 1, 0)
+        before = np.maximum(last - 1, 0)
+        outer, inner = pressure[last, columns] ** 2, pressure[before, columns] ** 2
+        fall = np.where(inner > outer, inner - outer, np.inf)
+        square = x[last] ** 2 + outer * (x[last] ** 2 - x[before] ** 2) / fall
+        found = np.where(count > 1, np.sqrt(square), x[last] + 0.5 * cell)
+        limited = np.clip(found, x[last], x[last] + cell)
+        return np.where(count > 0, limited, 0.0)
+
+    @property
+    def peak(self) -> int:
+        """Place along the roller of the cell with the largest pressure."""
+        pressure = np.asarray(self.solution.pressure)
+        return int(np.argmax(pressure.max(axis=0)))
+
+    @property
+    def edge_factor(self) -> float:
+        """Largest pressure over that of the slices [1]."""
+        return float(self.solution.peak_pressure / self.slices.peak_pressure)
+
+    @property
+    def touches(self) -> bool:
+        """Whether there is a contact."""
+        return bool(np.asarray(self.solution.pressure).any())

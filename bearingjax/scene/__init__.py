@@ -6,9 +6,10 @@ from .contact_report import contact_as_dict as contact_as_dict
 from .contact_report import contact_report as contact_report
 from .contact_report import contact_warnings as contact_warnings
 from .contact_report import write_contact_json as write_contact_json
-from .contact_run import ContactCase as ContactCase
 from .contact_run import run_contact as run_contact
+from .contact_run import run_refined as run_refined
 from .contact_table import ContactScene as ContactScene
+from .contact_table import is_bearing as is_bearing
 from .contact_table import read_contact as read_contact
 from .optimise_report import optimisation_as_dict as optimisation_as_dict
 from .optimise_report import optimisation_report as optimisation_report

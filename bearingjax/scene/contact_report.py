@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from ..contact.halfspace.pressure import message
+from ..contact.slices import Compared
 from ..numerics.result import Result
-from .contact_run import ContactCase
 from .contact_table import ContactScene
 
 _RULE = "-" * 78
@@ -20,7 +20,7 @@ PLACES = (1 / 30, 1 / 15, 1 / 4, 1 / 2, 3 / 4, 14 / 15, 29 / 30)
 """Where the report gives the pressure: from the small end, over the length."""
 
 
-def contact_warnings(scene: ContactScene, cases: list[ContactCase]) -> list[str]:
+def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
     """What a reader should know before the numbers are used.
 
     Args:
@@ -65,7 +65,7 @@ def _named(cases):
     return ", ".join(f"{float(case.solution.load):.5g}" for case in cases) + " N"
 
 
-def contact_as_dict(scene: ContactScene, cases: list[ContactCase]) -> dict[str, Any]:
+def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any]:
     """A solved contact as plain numbers and lists, in SI.
 
     Args:
@@ -105,7 +105,7 @@ def contact_as_dict(scene: ContactScene, cases: list[ContactCase]) -> dict[str, 
 
 
 def write_contact_json(
-    path: str | Path, scene: ContactScene, cases: list[ContactCase]
+    path: str | Path, scene: ContactScene, cases: list[Compared]
 ) -> None:
     """Write `contact_as_dict` to a file.
 
@@ -126,7 +126,7 @@ def _status(solution) -> dict[str, Any]:
     }
 
 
-def _numbers(scene, case: ContactCase) -> dict[str, Any]:
+def _numbers(scene, case: Compared) -> dict[str, Any]:
     solution, slices, peak = case.solution, case.slices, case.peak
     grid = solution.grid
     numbers = {
@@ -159,7 +159,7 @@ def _numbers(scene, case: ContactCase) -> dict[str, Any]:
     return numbers
 
 
-def contact_report(scene: ContactScene, cases: list[ContactCase]) -> str:
+def contact_report(scene: ContactScene, cases: list[Compared]) -> str:
     """Readable report of a solved contact.
 
     Args:

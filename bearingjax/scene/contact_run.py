@@ -1,68 +1,24 @@
-"""Running a scene of one contact: all its loads in one call."""
+"""Running a scene of one contact, or a roller of a bearing's scene."""
 
-import dataclasses
 from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 
-from ..contact.halfspace import ConjugateGradients, ContactSolution
-from ..contact.slices import Slices, slices
+from ..contact.halfspace import ConjugateGradients
+from ..contact.line import Palmgren
+from ..contact.slices import Compared, slices
+from ..element import RINGS
+from ..statics.refine import refine
+from ..statics.solution import Solution
 from .contact_table import ContactScene
+from .quantity import SceneError
+from .read import Scene
+from .run import scene_element
 
 
-@dataclasses.dataclass(frozen=True)
-class ContactCase:
-    """One solved load of a scene.
-
-    Attributes:
-        solution: Read its result code.
-        slices: What independent slices give under the same load and tilt.
-    """
-
-    solution: ContactSolution
-    slices: Slices
-
-    @property
-    def half_width(self) -> np.ndarray:
-        """Half width of the contact along the roller (n,) [m].
-
-        Hertz's pressure squared is linear in x²: where that line through the two
-        outermost cells in contact meets zero, within a cell.
-        """
-        grid = self.solution.grid
-        pressure = np.asarray(self.solution.pressure)
-        x, cell = np.asarray(grid.x), 2.0 * float(grid.half_x)
-        count, columns = (pressure > 0).sum(axis=0), np.arange(pressure.shape[1])
-        last = np.maximum(count - 1, 0)
-        before = np.maximum(last - 1, 0)
-        outer, inner = pressure[last, columns] ** 2, pressure[before, columns] ** 2
-        fall = np.where(inner > outer, inner - outer, np.inf)
-        square = x[last] ** 2 + outer * (x[last] ** 2 - x[before] ** 2) / fall
-        found = np.where(count > 1, np.sqrt(square), x[last] + 0.5 * cell)
-        limited = np.clip(found, x[last], x[last] + cell)
-        return np.where(count > 0, limited, 0.0)
-
-    @property
-    def peak(self) -> int:
-        """Place along the roller of the cell with the largest pressure."""
-        pressure = np.asarray(self.solution.pressure)
-        return int(np.argmax(pressure.max(axis=0)))
-
-    @property
-    def edge_factor(self) -> float:
-        """Largest pressure over that of the slices [1]."""
-        return float(self.solution.peak_pressure / self.slices.peak_pressure)
-
-    @property
-    def touches(self) -> bool:
-        """Whether there is a contact."""
-        return bool(np.asarray(self.solution.pressure).any())
-
-
-def run_contact(scene: ContactScene) -> list[ContactCase]:
+def run_contact(scene: ContactScene) -> list[Compared]:
     """Solve the contact of a scene for each of its loads.
 
     Args:
@@ -83,7 +39,62 @@ def run_contact(scene: ContactScene) -> list[ContactCase]:
     sizes = (scene.across, scene.along, scene.grading)
     solved = _solved(contact, jnp.asarray(widths), given, solver, sizes)
     sliced = _sliced(contact, solved, scene.law)
-    return [ContactCase(_one(solved, k), _one(sliced, k)) for k in range(len(cases))]
+    return [Compared(_one(solved, k), _one(sliced, k)) for k in range(len(cases))]
+
+
+def run_refined(
+    scene: Scene,
+    solution: Solution,
+    roller: int | None = None,
+    raceway: str | None = None,
+) -> tuple[ContactScene, list[Compared]]:
+    """Contact of one roller of a bearing's scene, on cells as by default.
+
+    Args:
+        scene: From `read_scene`.
+        solution: From `run_scene`, converged.
+        roller, raceway: As of `refine`; default: the inner one.
+
+    Returns:
+        The scene of that contact, and its one case.
+
+    Raises:
+        SceneError: For a bearing with balls, or an unknown or unloaded roller.
+
+    Fails: as `solve_pressure`.
+    """
+    try:
+        found = refine(
+            scene_element(scene),
+            solution,
+            roller,
+            "inner" if raceway is None else raceway,
+            speed=scene.speed,
+            throw=False,
+        )
+    except (TypeError, ValueError) as error:
+        raise SceneError(f"{scene.name}: {error}") from error
+    solved = found.solution
+    across, along = solved.grid.n_across, solved.grid.shape[1]
+    contact = ContactScene(
+        name=f"{scene.name}, roller {found.roller}, {found.raceway} raceway",
+        contact=found.contact,
+        loads=(float(solution.roller_load[found.roller, RINGS.index(found.raceway)]),),
+        approach=None,
+        moment=None,
+        tilt=float(solved.tilt),
+        listed=False,
+        law=scene.element.line_law or Palmgren(),
+        across=across,
+        along=along,
+        grading=2.0,
+        half_width=None,
+        tolerance=None,
+        max_steps=ConjugateGradients().max_steps,
+        field=False,
+        warnings=scene.warnings,
+    )
+    return contact, [found]
 
 
 @eqx.filter_jit

@@ -72,6 +72,19 @@ class ContactScene:
         return [{"load": load, **rest} for load in self.loads] or [rest]
 
 
+def is_bearing(source: str | Path, settings: Iterable[str] = ()) -> bool:
+    """Whether a scene is one of a bearing, not of a single contact.
+
+    Args:
+        source, settings: As in `read_scene`.
+
+    Raises:
+        SceneError: If there is no such scene, or it cannot be read.
+    """
+    data = parse_scene(find_scene(source), settings)
+    return "bearing" in data and not {"roller", "raceway"} & set(data)
+
+
 def read_contact(source: str | Path, settings: Iterable[str] = ()) -> ContactScene:
     """Read a scene of one roller on one raceway.
 
@@ -85,7 +98,7 @@ def read_contact(source: str | Path, settings: Iterable[str] = ()) -> ContactSce
     data = parse_scene(path, settings)
     top = Table(data, path.name)
     if "bearing" in data:
-        problem = "a contact is one [roller] on one [raceway]; `solve` takes bearings"
+        problem = "a contact is one [roller] on one [raceway], or a roller of a bearing"
         raise top.error("bearing", problem)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

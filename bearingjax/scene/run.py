@@ -2,6 +2,7 @@
 
 import functools
 
+from ..element import BearingElement
 from ..statics.load import solve_load
 from ..statics.optimise import Optimised, optimise
 from ..statics.preload import preload
@@ -21,11 +22,8 @@ def run_scene(scene: Scene) -> Solution:
 
     Fails: as `solve_load`.
     """
-    element = scene.element
-    if scene.preload_force is not None:
-        element = preload(element, scene.preload_force, throw=False)
     return solve_load(
-        element,
+        scene_element(scene),
         scene.load,
         prescribed=scene.prescribed,
         free=scene.free,
@@ -35,6 +33,13 @@ def run_scene(scene: Scene) -> Solution:
         tolerance=scene.tolerance,
         throw=False,
     )
+
+
+def scene_element(scene: Scene) -> BearingElement:
+    """The bearing of a scene, with its preload set."""
+    if scene.preload_force is None:
+        return scene.element
+    return preload(scene.element, scene.preload_force, throw=False)
 
 
 def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:

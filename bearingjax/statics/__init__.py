@@ -18,6 +18,8 @@ from .optimise import History as History
 from .optimise import Optimised as Optimised
 from .optimise import optimise as optimise
 from .preload import preload as preload
+from .refine import Refined as Refined
+from .refine import refine as refine
 from .solution import BallSolution as BallSolution
 from .solution import RollerSolution as RollerSolution
 from .solution import Solution as Solution

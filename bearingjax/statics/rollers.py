@@ -96,14 +96,14 @@ def distribution(row: Row, points: int) -> tuple[Array, Array, Array, Array]:
     position = c.half_length * xi
     pairs = list(zip(c.lines, c.tables, strict=True))
 
-    def along(approaches):
+    def along(each):
         loads = [
-            line.along(table, xi, *approaches[2 * k : 2 * k + 2])
+            line.along(table, xi, *each[2 * k : 2 * k + 2])
             for k, (line, table) in enumerate(pairs)
         ]
         return jnp.stack(loads)
 
-    load = jax.vmap(along)(_approaches(row))
+    load = jax.vmap(along)(approaches(row))
     radius = relative_radii(c, position)
     radius = radius[None]
     return (
@@ -128,8 +128,17 @@ def contact_loads(
     return raceways, all_ribs
 
 
-def _approaches(row):
+def approaches(row: Row) -> Float[Array, "roller contact"]:
+    """Approaches of every roller: a and b at the outer, at the inner raceway, ribs.
+
+    Args:
+        row: Solved rollers.
+
+    Returns:
+        (roller, 4 + rib) [m]; a in the middle, b more of it at +L/2.
+    """
     model = row.model.element
+    assert isinstance(model, RollerModel)
     return jax.vmap(lambda r, x: model.kinematics.approaches(model.prepared, r, x))(
         row.rings, row.state.x
     )

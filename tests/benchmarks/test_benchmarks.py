@@ -54,6 +54,7 @@ PLAIN = (
     "peers_halfspace.py",
     "error_vs_time_halfspace.py",
     "strips_halfspace.py",
+    "crown_on_halfspace.py",
     "quarter_space.py",
 )
 

@@ -22,7 +22,8 @@ WORDS = {"result", "message", "residual", "iterations", "warnings", "version"}
 WRONG = {
     "bearing": (
         ["bearing.type=tapered_roller"],
-        "`bearing`: a contact is one [roller] on one [raceway]; `solve` takes bearings",
+        "`bearing`: a contact is one [roller] on one [raceway], or a roller of a"
+        " bearing",
     ),
     "unknown table": (
         ["rollers.length=3 mm"],
@@ -263,3 +264,31 @@ def test_nowhere_to_write(run, tmp_path):
         assert done == (2, "", f"bearingjax: {path}: its folder does not exist\n")
     done = run(*ONE, "--plot", tmp_path / "out.gif")
     assert done.status == 2 and "ends in .png, .pdf or .svg" in done.err
+
+
+def test_a_roller_of_a_bearing(run, tmp_path):
+    """The scene of a bearing: solved, and one of its rollers looked at."""
+    out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    done = run(
+        "contact",
+        "cylindrical_rig",
+        "--raceway",
+        "outer",
+        "--json",
+        out,
+        "--plot",
+        picture,
+    )
+    assert done.status == 0
+    assert done.out.startswith("cylindrical_rig, roller 0, outer raceway: roller")
+    numbers = read(out)
+    solved = bj.run_scene(bj.read_scene("cylindrical_rig"))
+    assert numbers["load"] == pytest.approx(float(solved.roller_load[0, 0]), rel=1e-9)
+    assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    done = run("contact", "cylindrical_rig", "--roller", "5")
+    assert done.status == 2
+    assert "roller 5 bears no load on the inner raceway" in done.err
+    done = run("contact", "deep_groove")
+    assert done.status == 2 and "the bearing has balls" in done.err
+    done = run(*ONE, "--roller", "2")
+    assert done.status == 2 and "are for the scene of a bearing" in done.err

@@ -18,9 +18,9 @@ class FreeEnds(eqx.Module):
     left on it; freeing the face of that as well (Hetényi's alternation of two
     half-spaces) makes the mirrored load's displacement `factor` times as large. The
     factor is not one number: for Poisson's ratio 0.3 it is 1.85 where point and load
-    are equally far from the face, 1.5 where one is much farther, and rises to 2.36 where
-    they are apart along the edge. Without a number given it is that of a narrow contact
-    with one twice as far from the face as the other, 1.80 of steel.
+    are equally far from the face, 1.5 where one is much farther, and rises to 2.36
+    where they are apart along the edge. Without a number given it is that of a narrow
+    contact with one twice as far from the face as the other, 1.80 of steel.
 
     Only the roller ends; the raceway goes on as a half-space. The factor is spread over
     both bodies by their compliances.

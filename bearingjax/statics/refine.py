@@ -1,0 +1,190 @@
+"""One roller of a solved bearing, its contact with a raceway cell by cell."""
+
+import warnings
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from ..contact.halfspace import (
+    AbstractPressureSolver,
+    FreeEnds,
+    Grid,
+    RollerContact,
+)
+from ..contact.line import peak_pressure
+from ..contact.line_contact import AbstractLineContact
+from ..contact.slices import Compared, Slices
+from ..design import AbstractRollerBearing
+from ..design.profile import AbstractProfile, Tabulated
+from ..element.bearing_element import BearingElement
+from ..element.constants import relative_radii
+from ..element.frame import RINGS
+from ..element.inertia import Speed
+from ..element.roller import RollerModel
+from ..element.row import Row
+from ..numerics.types import Scalar, as_real
+from .rollers import approaches
+from .solution import RollerSolution, Solution
+
+
+class Refined(Compared):
+    """A roller's contact on the half-space, beside the slices of the bearing.
+
+    y runs along the generatrix from the middle of the roller to its large end: it is
+    minus the `position` of a `RollerSolution`.
+
+    Attributes:
+        contact: Roller and raceway.
+        roller: Which rolling element.
+        raceway: "outer" or "inner".
+
+    Static: roller, raceway.
+    """
+
+    contact: RollerContact
+    roller: int = eqx.field(static=True)
+    raceway: str = eqx.field(static=True)
+
+
+def refine(
+    element: BearingElement,
+    solution: Solution,
+    roller: int | None = None,
+    raceway: str = "inner",
+    *,
+    speed: Speed | None = None,
+    free_ends: FreeEnds | None = None,
+    grid: Grid | None = None,
+    solver: AbstractPressureSolver | None = None,
+    throw: bool = True,
+) -> Refined:
+    """Contact of one roller of a solved bearing, both bodies elastic half-spaces.
+
+    Load and tilt are those of the bearing's slices; the half-space says what the
+    pressure is under them, ends included. The approach comes out anew.
+
+    Args:
+        element: The bearing that was solved.
+        solution: Its solution, a single one.
+        roller: Which rolling element, of a set counted row by row; default: that with
+            the largest load on the raceway.
+        raceway: "inner" or "outer".
+        speed: Ring speeds of the solution.
+        free_ends: As of `RollerContact`.
+        grid: The cells; `None`: 35 by 64, graded, of a width found by coarse solves,
+            which takes concrete numbers.
+        solver: As of `solve_pressure`.
+        throw: Whether to raise if it does not converge.
+
+    Returns:
+        Refined: pressure field, edge factor against the slices.
+
+    Raises:
+        TypeError: For balls.
+        ValueError: For an unknown roller or raceway, a solution that did not converge,
+            or a roller that is not loaded there.
+        SolveError: If `throw` and it did not converge.
+
+    Fails: as `solve_pressure`.
+    """
+    if not isinstance(solution, RollerSolution):
+        raise TypeError("refine: the bearing has balls; it takes one with rollers.")
+    if raceway not in RINGS:
+        raise ValueError(
+            f"refine: `raceway` is {raceway!r}; it must be 'outer' or 'inner'."
+        )
+    if jnp.ndim(solution.result) or not bool(solution.converged):
+        raise ValueError("refine: `solution` must be a single one that converged.")
+    ring = RINGS.index(raceway)
+    loads = solution.roller_load[:, ring]
+    if roller is None:
+        roller = int(jnp.argmax(loads))
+    count = loads.shape[0]
+    if not 0 <= roller < count:
+        raise ValueError(
+            f"refine: `roller` is {roller}; it must be from 0 to {count - 1}."
+        )
+    # Above round-off.
+    if not float(loads[roller]) > 1e-9 * float(jnp.max(solution.roller_load)):
+        raise ValueError(
+            f"refine: roller {roller} bears no load on the {raceway} raceway."
+        )
+    row, place = _row_of(element, solution, roller, speed)
+    a, b = approaches(row)[place, 2 * ring : 2 * ring + 2]
+    contact = roller_contact(row, ring, free_ends)
+    # Tilt of the element closes towards ξ = 1, which is y = -L/2.
+    tilt = -2.0 * b / contact.roller_length
+    solved = contact.solve(
+        loads[roller], tilt=tilt, grid=grid, solver=solver, throw=throw
+    )
+    sliced = _slices(row, ring, a, b, solved.grid.y)
+    return Refined(solved, sliced, contact, roller, raceway)
+
+
+def roller_contact(
+    row: Row, ring: int, free_ends: FreeEnds | None = None
+) -> RollerContact:
+    """Roller and raceway of a row as a contact of its own.
+
+    Args:
+        row: Solved rollers of one row.
+        ring: 0: outer, 1: inner raceway.
+        free_ends: As of `RollerContact`.
+    """
+    bearing, constants = row.part.bearing, _constants(row)
+    assert isinstance(bearing, AbstractRollerBearing)
+    half, sign = bearing.half_angle, 1.0 - 2.0 * ring
+    zero = jnp.zeros((1,), constants.diameter.dtype)
+    roller_radius = 0.5 * constants.diameter / jnp.cos(half)
+    relative = relative_radii(constants, zero)[ring, 0]
+    taper = bearing.roller_length * jnp.sin(half)
+    profiles = (bearing.outer_raceway_profile, bearing.inner_raceway_profile)
+    with warnings.catch_warnings():
+        # Half angle and diameters agree: the length is that of the generatrix.
+        warnings.simplefilter("ignore")
+        return RollerContact(
+            bearing.roller_length,
+            constants.diameter - taper,
+            constants.diameter + taper,
+            half_angle=half,
+            raceway_radius=1.0 / (1.0 / relative - 1.0 / roller_radius),
+            raceway_half_angle=bearing.axis_angle + sign * half,
+            roller_profile=_turned(bearing.roller_profile),
+            raceway_profile=_turned(profiles[ring]),
+            material=bearing.material,
+            raceway_material=bearing.rings,
+            free_ends=free_ends,
+        )
+
+
+def _turned(profile: AbstractProfile) -> AbstractProfile:
+    """A profile counted from the other end; all but tables are symmetric."""
+    if isinstance(profile, Tabulated):
+        return Tabulated(-profile.positions[::-1], profile.drops[::-1])
+    return profile
+
+
+def _constants(row):
+    assert isinstance(row.model.element, RollerModel)
+    return row.model.element.constants
+
+
+def _row_of(element, solution, roller, speed):
+    """The row that a rolling element belongs to, solved, and its number there."""
+    rows = element.model(speed).solve(solution.displacement)
+    ends = np.cumsum(solution.row_sizes)
+    k = int(np.searchsorted(ends, roller, side="right"))
+    return rows[k], roller - int(ends[k] - solution.row_sizes[k])
+
+
+def _slices(row, ring, a, b, y) -> Slices:
+    """What the bearing's own slices give at y."""
+    constants = _constants(row)
+    line: AbstractLineContact = constants.lines[ring]
+    xi = -y / constants.half_length
+    # Ascending positions for the interpolation between slices.
+    load: Scalar = line.along(constants.tables[ring], xi[::-1], a, b)[::-1]
+    radius = relative_radii(constants, -y)[ring]
+    pressure = peak_pressure(load, radius, constants.modulus)
+    return Slices(as_real(a), load, pressure)
