@@ -10,7 +10,7 @@ README = (Path(__file__).parent.parent / "README.md").read_text()
 
 def test_python_examples(capsys):
     blocks = re.findall(r"```python\n(.*?)```", README, re.S)
-    assert len(blocks) == 9
+    assert len(blocks) == 10
     names: dict = {}
     for block in blocks[:2]:
         exec(block, names)
@@ -27,13 +27,17 @@ def test_python_examples(capsys):
     # A flatter crown spreads the load.
     assert float(capsys.readouterr().out.splitlines()[-1]) < 0
     exec(blocks[5], names)
+    refined = names["refined"]
+    assert refined.solution.converged and 0.7 < refined.edge_factor < 1.3
+    assert 0.4 < float(names["below"].von_mises.max() / refined.solution.peak_pressure)
+    exec(blocks[6], names)
     assert names["swept"].counts() == {"converged": 60}
-    for block in blocks[6:8]:
+    for block in blocks[7:9]:
         exec(block, names)
     assert names["f"][7] < -100.0  # the inner ring is held down
     whole, pair = names["k6"], names["k2"]
     assert 0 < pair[1, 1] < whole[1, 1]
-    exec(blocks[8], names)
+    exec(blocks[9], names)
     best = names["best"]
     assert best.converged and best.after.exact < best.before.exact
     assert best.before.exact_constraints[0] > 10e3 >= best.after.exact_constraints[0]

@@ -56,6 +56,7 @@ PLAIN = (
     "strips_halfspace.py",
     "crown_on_halfspace.py",
     "quarter_space.py",
+    "coupled_slices.py",
 )
 
 

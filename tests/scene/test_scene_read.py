@@ -500,3 +500,14 @@ def test_point_constants():
     law = bj.read_scene("deep_groove", settings).element.point_law
     assert type(law) is bj.PointConstant
     assert [float(law.outer), float(law.inner)] == pytest.approx([3e10, 2.0])
+
+
+def test_slices_that_press_on_each_other():
+    setting = ("contact.line_law=coupled_slices", "contact.slices=12")
+    element = bj.read_scene("tapered", setting).element
+    assert element.line_law == bj.CoupledSlices(12)
+    # The rule of independent slices has no place beside it.
+    with pytest.raises(bj.SceneError, match="`numerics.points`: unknown key"):
+        bj.read_scene("tapered", (*setting, "numerics.points=30"))
+    with pytest.raises(bj.SceneError, match="`slices` is 2; it must be a whole number"):
+        bj.read_scene("tapered", (setting[0], "contact.slices=2"))

@@ -159,7 +159,9 @@ def solve_pressure(
 
     Fails: `STEP_LIMIT`, `NO_LOAD_PATH` (a negative load; a moment that no pressure on
         the grid balances), `NON_FINITE`.
-    Valid: Contact small beside the bodies, no friction.
+    Valid: Contact small beside the bodies, no friction. float32: of a roller on 35 by
+        64 graded cells pressures are good to 3e-4 of the peak, the peak to 3e-5 and
+        the approach to 3e-6; fine even grids to 1e-4 in the approach.
     """
     name = "solve_pressure"
     if (load is None) == (approach is None):
