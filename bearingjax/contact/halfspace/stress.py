@@ -11,6 +11,7 @@ Source: A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929); potentials: Johnson, C
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
@@ -18,6 +19,9 @@ from ...design.checks import check
 from ...numerics.types import Scalar, as_real
 from .grid import Grid
 from .pressure import ContactSolution
+
+Places = Float[Array | np.ndarray, "..."] | float | int
+"""Numbers of any shape."""
 
 
 class Stress(eqx.Module):
@@ -68,9 +72,9 @@ class Stress(eqx.Module):
 
 def stress_below(
     solution: ContactSolution,
-    x: Float[Array, "..."] | float,
-    y: Float[Array, "..."] | float,
-    z: Float[Array, "..."] | float,
+    x: Places,
+    y: Places,
+    z: Places,
     poisson: Scalar | float = 0.3,
 ) -> Stress:
     """Stress under a solved contact, in either body.
