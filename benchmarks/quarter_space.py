@@ -69,11 +69,10 @@ class Quarter:
         self.poisson = poisson
         ys = np.concatenate([[0.0], np.geomspace(least, reach, along)])
         xs = np.concatenate([[0.0], np.geomspace(2 * least, reach, across)])
-        pick = {"indexing": "ij"}
-        x, y = np.meshgrid(_middles(xs), _middles(ys), **pick)
+        x, y = _pairs(_middles(xs), _middles(ys))
         self.x, self.y = x.ravel(), y.ravel()
-        low = [v.ravel() for v in np.meshgrid(xs[:-1], ys[:-1], **pick)]
-        high = [v.ravel() for v in np.meshgrid(xs[1:], ys[1:], **pick)]
+        low = [v.ravel() for v in _pairs(xs[:-1], ys[:-1])]
+        high = [v.ravel() for v in _pairs(xs[1:], ys[1:])]
         self.cells = (low[0], high[0], low[1], high[1])
         self.twins = (-high[0], -low[0], low[1], high[1])
         self.turn = self._pressed(*self.cells) + self._pressed(*self.twins)
@@ -106,14 +105,17 @@ class Quarter:
         return np.array(found)
 
 
+def _pairs(x, y):
+    return np.meshgrid(x, y, indexing="ij")
+
+
 def _middles(edges):
     return np.concatenate([[edges[1] / 2], np.sqrt(edges[1:-1] * edges[2:])])
 
 
 def _cornered(function, x, y, x0, x1, y0, y1):
-    terms = ((1, x0, y0), (-1, x1, y0), (-1, x0, y1), (1, x1, y1))
-    total = 0.0
-    for sign, a, b in terms:
+    total = np.zeros(np.broadcast_shapes(np.shape(x - x0), np.shape(y - y0)))
+    for sign, a, b in ((1, x0, y0), (-1, x1, y0), (-1, x0, y1), (1, x1, y1)):
         u, v = np.broadcast_arrays(x - a, y - b)
         total = total + sign * np.asarray(function(jnp.asarray(u), jnp.asarray(v)))
     return total

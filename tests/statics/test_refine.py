@@ -12,6 +12,7 @@ from registry import balls, taper
 from tolerances import ROUNDING
 
 import bearingjax as bj
+from bearingjax.contact.halfspace import FreeEnds
 from bearingjax.element.constants import relative_radii
 
 FREE = ("ux", "uy", "gx", "gy")
@@ -85,7 +86,7 @@ def test_independent_slices_miss_the_end():
     got = bj.refine(element, solution)
     end = 2 * float(got.solution.grid.half_y[0])
     assert got.edge_factor > 2 and end < 5e-6
-    softer = bj.refine(element, solution, free_ends=bj.contact.halfspace.FreeEnds())
+    softer = bj.refine(element, solution, free_ends=FreeEnds())
     assert 1 < softer.edge_factor < 0.7 * got.edge_factor
 
 
