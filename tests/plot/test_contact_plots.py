@@ -11,7 +11,12 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import plot
-from bearingjax.contact.halfspace import RollerContact, even_grid, graded_grid
+from bearingjax.contact.halfspace import (
+    RollerContact,
+    even_grid,
+    graded_grid,
+    stress_below,
+)
 from bearingjax.contact.slices import slices
 
 matplotlib.use("Agg")
@@ -159,3 +164,27 @@ def test_no_contact(solutions, sliced):
     )
     plot.contact_overview([zero], [none])
     plot.contact_surface(zero)
+
+
+@pytest.mark.parametrize("section", ["across", "along"])
+@pytest.mark.parametrize("kind", ["von_mises", "greatest_shear"])
+def test_stress_marks_its_largest_value(solutions, section, kind):
+    """The cross stands where the stress is what the head says."""
+    solution = solutions[1]
+    ax = plot.contact_stress(solution, section=section, y=1e-3, kind=kind)
+    place, depth = (float(v[0]) for v in data(ax.get_lines()[0]))
+    x, y = (1e-6 * place, 1e-3) if section == "across" else (0.0, 1e-3 * place)
+    there = stress_below(solution, x, y, 1e-6 * depth)
+    largest = 1e-6 * float(getattr(there, kind))
+    assert f"largest {largest:.0f} MPa" in ax.get_title()
+    assert ax.get_ylabel() == "depth [µm]" and ax.yaxis_inverted()
+
+
+def test_stress_refuses(solutions, contact):
+    with pytest.raises(ValueError, match="`section` is 'up'; it must be"):
+        plot.contact_stress(solutions[0], section="up")
+    with pytest.raises(ValueError, match="`kind` is 'tresca'; it must be one of"):
+        plot.contact_stress(solutions[0], kind="tresca")
+    apart = contact.solve(approach=-1e-6, grid=solutions[0].grid)
+    with pytest.raises(ValueError, match="there is no contact"):
+        plot.contact_stress(apart)
