@@ -7,8 +7,7 @@ import numpy as np
 
 from ..contact.halfspace import ContactSolution
 from ..contact.slices import Slices
-from .pressure import _towards_white
-from .style import GREY, OUTER, SMALL, axes_or_new, force_text
+from .style import GREY, OUTER, SMALL, axes_or_new, force_text, towards_white
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -93,7 +92,7 @@ def _lines(solutions, values, others, ax, told):
     fade = dict(zip(np.argsort(loads).tolist(), shades, strict=True))
     for k, (solution, line) in enumerate(zip(solutions, values, strict=True)):
         y = 1e3 * np.asarray(solution.grid.y)
-        colour = _towards_white(OUTER, fade[k])
+        colour = towards_white(OUTER, fade[k])
         if others:
             ax.plot(y, others[k], "--", color=GREY, linewidth=1.0, label="_slices")
         label = load_text(solution)

@@ -14,6 +14,7 @@ from .style import (
     pyplot,
     raceway_index,
     row_slice,
+    towards_white,
 )
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def pressure_profiles(
     for name, ring in zip(names, rings, strict=True):
         for rank, roller in enumerate(rollers):
             fade = 0.6 * rank / max(len(rollers) - 1, 1)
-            colour = _towards_white(COLOURS[name], fade)
+            colour = towards_white(COLOURS[name], fade)
             label = f"{angle[roller]:.4g}°: {force_text(float(load[roller, ring]))}"
             ax.plot(
                 position,
@@ -183,9 +184,3 @@ def _edges(centres):
     return np.concatenate(
         [[2.0 * centres[0] - middle[0]], middle, [2.0 * centres[-1] - middle[-1]]]
     )
-
-
-def _towards_white(colour, share):
-    from matplotlib.colors import to_rgb
-
-    return tuple(c + share * (1.0 - c) for c in to_rgb(colour))

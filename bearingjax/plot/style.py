@@ -116,3 +116,15 @@ def force_text(force: float) -> str:
     if abs(force) < 1e3:
         return f"{force:.3g} N"
     return f"{1e-3 * force:.3g} kN"
+
+
+def towards_white(colour, share: float) -> tuple[float, ...]:
+    """A colour made lighter.
+
+    Args:
+        colour: As matplotlib takes it.
+        share: 0: as it is, 1: white.
+    """
+    from matplotlib.colors import to_rgb
+
+    return tuple(c + share * (1.0 - c) for c in to_rgb(colour))

@@ -151,8 +151,8 @@ def _balls(table: Table, kind: str) -> Bearing:
     if kind == "self_aligning_ball":
         values["row_offset"] = table.quantity("row_offset", "length")
         values[play] = table.quantity(play, "length", 0.0)
-    values["material"] = _material(table, "material") or Material()
-    values["ring_material"] = _material(table, "ring_material")
+    values["material"] = read_material(table, "material") or Material()
+    values["ring_material"] = read_material(table, "ring_material")
     with table.building():
         return BALLS[kind](**values)
 
@@ -167,18 +167,19 @@ def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
     if kind == "tapered_roller":
         values["roller_axis_angle"] = table.quantity("roller_axis_angle", "angle")
         values["roller_half_angle"] = table.quantity("roller_half_angle", "angle")
-    values["roller_profile"] = _profile(table.table("roller_profile"))
+    values["roller_profile"] = read_profile(table.table("roller_profile"))
     raceways = table.table("raceway_profile")
     for ring in RINGS:
-        values[f"{ring}_raceway_profile"] = _profile(raceways.table(ring))
+        values[f"{ring}_raceway_profile"] = read_profile(raceways.table(ring))
     values["ribs"] = _ribs(table, kind)
-    values["material"] = _material(table, "material") or Material()
-    values["ring_material"] = _material(table, "ring_material")
+    values["material"] = read_material(table, "material") or Material()
+    values["ring_material"] = read_material(table, "ring_material")
     with table.building():
         return ROLLERS[kind](**values)
 
 
-def _material(table: Table, key: str) -> Material | None:
+def read_material(table: Table, key: str) -> Material | None:
+    """Material at a key, by its name or its numbers; `None` if absent."""
     given = table.table_or_word(key, tuple(MATERIALS))
     if given is None:
         return None
@@ -231,7 +232,8 @@ def _rib(table: Table) -> Rib:
         return Rib(*values)
 
 
-def _profile(table: Table) -> AbstractProfile:
+def read_profile(table: Table) -> AbstractProfile:
+    """Profile of a roller or a raceway; straight if the table is empty."""
     kind = table.choice("type", tuple(_PROFILE_READERS), "straight")
     with table.building():
         return _PROFILE_READERS[kind](table)

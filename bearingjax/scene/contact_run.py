@@ -31,7 +31,7 @@ def run_contact(scene: ContactScene) -> list[Compared]:
     """
     contact, cases = scene.contact, scene.cases
     widths = [
-        contact._half_width(case) if scene.half_width is None else scene.half_width
+        contact.grid_half_width(case) if scene.half_width is None else scene.half_width
         for case in cases
     ]
     given = {name: jnp.asarray([case[name] for case in cases]) for name in cases[0]}

@@ -10,8 +10,8 @@ import numpy as np
 from ..contact.halfspace import RollerContact
 from ..contact.line import AbstractLineLaw
 from ..design import Material
-from .bearing_table import _material, _profile
-from .read import _line_law, find_scene, parse_scene
+from .bearing_table import read_material, read_profile
+from .read import find_scene, parse_scene, read_line_law
 from .table import Table
 
 LAWS = ("palmgren", "iso16281")
@@ -112,11 +112,11 @@ def _contact(top: Table) -> RollerContact:
     roller, raceway = top.table("roller", required=True), top.table("raceway")
     length = _positive(roller, "length", "length")
     small, large = _diameters(roller)
-    profile = _profile(roller.table("profile"))
-    material = _material(roller, "material") or Material()
+    profile = read_profile(roller.table("profile"))
+    material = read_material(roller, "material") or Material()
     radius, widening = _raceway(raceway, max(small, large))
-    ring_profile = _profile(raceway.table("profile"))
-    ring_material = _material(raceway, "material") or material
+    ring_profile = read_profile(raceway.table("profile"))
+    ring_material = read_material(raceway, "material") or material
     with roller.building():
         return RollerContact(
             length,
@@ -193,7 +193,7 @@ def _scene(top: Table, name, contact: RollerContact, odd) -> ContactScene:
         loads=loads,
         listed=listed,
         **_motion(operating, loads),
-        law=_line_law(law),
+        law=read_line_law(law),
         **grid,
         tolerance=tolerance,
         max_steps=numerics.integer("max_steps", 500),

@@ -257,7 +257,7 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         if "kinematics" in numerics:
             choices["kinematics"] = _kinematics(numerics)
     else:
-        law = _line_law(contact)
+        law = read_line_law(contact)
         choices = {"line_law": law, "kinematics": _kinematics(numerics)}
         if not isinstance(law, CoupledSlices):
             choices["quadrature"] = _quadrature(numerics)
@@ -307,7 +307,8 @@ def _components(operating, key, names, kinds) -> dict[str, float]:
     return values
 
 
-def _line_law(contact: Table) -> AbstractLineLaw:
+def read_line_law(contact: Table) -> AbstractLineLaw:
+    """Line law of a `[contact]` table."""
     law = contact.choice("line_law", tuple(LINE_LAWS), "palmgren")
     if law == "coupled_slices":
         with contact.building():

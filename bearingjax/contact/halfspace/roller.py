@@ -244,7 +244,7 @@ class RollerContact(eqx.Module):
             "tilt": tilt,
         }
         if grid is None:
-            grid = self.grid(self._half_width(given))
+            grid = self.grid(self.grid_half_width(given))
         widest = _widest(self, grid)
         check(
             self, "half_width", grid.half_width, "m", widest, "less than the roller's"
@@ -257,8 +257,15 @@ class RollerContact(eqx.Module):
             throw=throw,
         )
 
-    def _half_width(self, given):
-        """Half width of a grid that holds the contact, by coarse solves."""
+    def grid_half_width(self, given: dict[str, Any]) -> float:
+        """Half width of a grid that holds the contact, by coarse solves [m].
+
+        Args:
+            given: What `solve` is given of load, approach, moment and tilt.
+
+        Raises:
+            ValueError: If a number is traced.
+        """
         numbers = [v for v in given.values() if v is not None]
         if any(is_traced(v) for v in (*numbers, self.roller_length)):
             raise ValueError(
