@@ -2,7 +2,7 @@
 
 Rollers on planes (10 x 15 and 20 x 20 mm, steel; straight, crowned with 2 m,
 logarithmic, Lundberg's profile for 5 kN), 100 N to 20 kN, upright and tilted by 0.3
-mrad, solved on the half-space (35 x 64 graded cells) and then given the same approach
+mrad, solved on the half-space (65 x 64 graded cells) and then given the same approach
 and tilt in slices: independent ones (Palmgren) and coupled ones. Errors of load, of
 moment (over load and half length) and of the line load in the middle, as median and
 worst of all rollers; the contact is evaluated in a batch of all.
@@ -14,6 +14,15 @@ Run: python benchmarks/coupled_slices.py [--json] [--smoke]
 
 Last run:
 
+                         median, worst error of            bearing, µs   load solve, µs
+slices             load          moment         middle
+independent     0.0813  0.270  0.0007  0.258  0.1294  0.271      22 (1)        402 (1)
+coupled, 16     0.0050  0.105  0.0000  0.067  0.0019  0.146    1057 (48)      14212 (35)
+coupled, 24     0.0035  0.043  0.0001  0.046  0.0012  0.044    1691 (76)      25202 (63)
+
+64 rollers; in brackets: over independent slices
+
+AMD EPYC, 2 cores, load average 1.6; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
@@ -43,10 +52,8 @@ TILTS = (0.0, 3e-4)
 RULE = bj.ContactMapped()
 LAWS = {
     "independent": bj.Palmgren(),
-    "coupled, 8": bj.CoupledSlices(8),
     "coupled, 16": bj.CoupledSlices(16),
     "coupled, 24": bj.CoupledSlices(24),
-    "coupled, 48": bj.CoupledSlices(48),
 }
 
 
@@ -72,8 +79,12 @@ def solved(smoke):
                 raceway_material=STEEL,
             )
             for load in LOADS[1:3] if smoke else LOADS:
+                # Crowned, a light load stands on a part of the length.
+                grid = roller.grid(4.0 * roller.line_half_width(load), 65, 64)
                 for tilt in TILTS:
-                    got = roller.solve(load, tilt=tilt)
+                    got = roller.solve(load, tilt=tilt, grid=grid)
+                    if got.truncated:
+                        got = roller.solve(load, tilt=tilt)
                     y = got.grid.y
                     rows.append(
                         {
@@ -142,7 +153,7 @@ def times(smoke):
         radial_internal_clearance=10e-6,
         roller_profile=bj.Logarithmic(),
     )
-    count = 16 if smoke else 256
+    count = 4 if smoke else 256
     rng = np.random.default_rng(0)
     qs = np.zeros((count, 12))
     qs[:, 6:8] = 2e-5 * rng.uniform(-1, 1, (count, 2))
@@ -166,8 +177,10 @@ def times(smoke):
             )
         )
         at, under = jnp.asarray(qs), jnp.asarray(loads)
-        assert not np.any(solve(under)[1]), name
         calls[name, "batch"] = lambda f=batch, x=at: f(x)
+        if smoke:
+            continue  # compiling load solves takes long
+        assert not np.any(solve(under)[1]), name
         calls[name, "solve"] = lambda f=solve, x=under: f(x)
     found = shuffled(calls, 3 if smoke else 7)
     return {key: 1e6 * min(value) / count for key, value in found.items()}
@@ -187,7 +200,7 @@ def run(smoke=False):
                 "median": median,
                 "worst": worst,
                 "batch": spent[name, "batch"],
-                "solve": spent[name, "solve"],
+                "solve": spent.get((name, "solve")),
             }
         )
     return len(rows), table
@@ -203,12 +216,15 @@ def main():
         print(json.dumps({"rollers": count, "rows": table}))
         return 0
     base = table[0]
-    print(f"{'':14}{'median, worst error of':^45}  bearing, µs     load solve, µs")
+    print(f"{'':14}{'median, worst error of':^44} bearing, µs   load solve, µs")
     print(f"{'slices':14}{'load':^15}{'moment':^15}{'middle':^15}")
     for row in table:
         pairs = zip(row["median"], row["worst"], strict=True)
         shown = "".join(f"{m:8.4f}{w:7.3f}" for m, w in pairs)
-        spent = [f"{row[k]:8.0f} ({row[k] / base[k]:.0f})" for k in ("batch", "solve")]
+        spent = [
+            f"{row[k]:8.0f} ({row[k] / base[k]:.0f})" if row[k] else f"{'-':>12}"
+            for k in ("batch", "solve")
+        ]
         print(f"{row['law']:14}{shown}{spent[0]}   {spent[1]}")
     print(f"\n{count} rollers; in brackets: over independent slices\n\n{machine()}")
     return 0

@@ -27,6 +27,7 @@ def test_python_examples(capsys):
     # A flatter crown spreads the load.
     assert float(capsys.readouterr().out.splitlines()[-1]) < 0
     exec(blocks[5], names)
+    assert type(names["coupled"].line_law) is bj.CoupledSlices
     refined = names["refined"]
     assert refined.solution.converged and 0.7 < refined.edge_factor < 1.3
     assert 0.4 < float(names["below"].von_mises.max() / refined.solution.peak_pressure)
