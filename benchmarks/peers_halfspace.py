@@ -22,7 +22,7 @@ Run: python benchmarks/peers_halfspace.py [--json] [--smoke]
 
 Last run:
 
-(a part of it: the first problem, on a busy machine)
+(in parts: the first problem beside other work, the second and the loads alone)
 
 problem     cells wanted  solver                 ms  ratio  steps  residual  difference
 taper   128 x 128  1e-06  ours, all cells      49.8    1.0     22     4e-07       0e+00
@@ -31,9 +31,28 @@ taper   128 x 128  1e-06  ContactMechanics    325.9    6.6     77     6e-07     
 taper   128 x 128  1e-06  with NuMPI's CG     418.8    8.4     78     5e-07       6e-05
 taper   128 x 128  1e-06  Tamaas              487.1    9.8     78     3e-07       3e-05
 
-least time of a peer over ours, all cells, alone, 128 x 128: 6.55 (at least 1): met
+problem     cells wanted  solver                 ms  ratio  steps  residual  difference
+taper   256 x 256  1e-06  ours, all cells     362.3    1.0     29     8e-07       0e+00
+taper   256 x 256  1e-06  ours, half          221.0    0.6     29     8e-07       3e-13
+taper   256 x 256  1e-06  ContactMechanics   1661.5    4.6     95     4e-07       7e-05
+taper   256 x 256  1e-06  with NuMPI's CG    2275.0    6.3     95     6e-07       9e-05
+taper   256 x 256  1e-06  Tamaas                  -      -    106     6e-07       1e-04
 
-AMD EPYC, 2 cores, load average 5.7; devices: 1 cpu; jax 0.10.1
+least time of a peer over ours, all cells, alone, 256 x 256: 4.59 (at least 1): met
+
+AMD EPYC, 2 cores, load average 1.1; devices: 1 cpu; jax 0.10.1
+
+64 loads of the taper, 128 x 128 cells
+solver               ms/load  ratio  residual  difference
+ours, all cells        117.9    1.0     1e-06       0e+00
+ours, half              58.8    0.5     1e-06       3e-13
+ContactMechanics       461.5    3.9     5e-07       4e-05
+with NuMPI's CG        470.1    4.0     5e-07       5e-05
+Tamaas                 501.8    4.3     4e-07       2e-05
+
+least time of a peer over ours, all cells, many: 3.91 (at least 3): met
+
+AMD EPYC, 2 cores, load average 1.0; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
