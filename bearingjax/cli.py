@@ -161,10 +161,7 @@ def _solve(options) -> int:
     from .numerics import Result
     from .scene import SceneError, read_scene, report, run_scene, write_json
 
-    for path in (options.json, options.plot):
-        _check_writable(path)
-    if options.plot is not None:
-        _check_plot(options.plot)
+    _check_outputs(options)
     scene = read_scene(options.scene, options.set)
     solution = run_scene(scene)
     result = Result(int(solution.result))
@@ -248,10 +245,7 @@ def _optimise(options) -> int:
         run_optimisation,
     )
 
-    for path in (options.json, options.plot):
-        _check_writable(path)
-    if options.plot is not None:
-        _check_plot(options.plot)
+    _check_outputs(options)
     task = read_optimisation(options.scene, options.set)
     try:
         found = run_optimisation(task, progress=options.progress)
@@ -291,10 +285,7 @@ def _contact(options) -> int:
         write_contact_json,
     )
 
-    for path in (options.json, options.plot):
-        _check_writable(path)
-    if options.plot is not None:
-        _check_plot(options.plot)
+    _check_outputs(options)
     if is_bearing(options.scene, options.set):
         bearing = read_scene(options.scene, options.set)
         solution = run_scene(bearing)
@@ -343,6 +334,14 @@ def _tell_lost(scene, cases) -> int:
         text = f"{label}:{where} {message(case.solution)}"
         print(f"bearingjax: {text}", file=sys.stderr)
     return status
+
+
+def _check_outputs(options) -> None:
+    """Fail before anything is solved if JSON or picture cannot be written."""
+    for path in (options.json, options.plot):
+        _check_writable(path)
+    if options.plot is not None:
+        _check_plot(options.plot)
 
 
 def _check_writable(path: Path | None) -> None:

@@ -56,7 +56,9 @@ def slices(
         load: Load, zero or more [N].
         tilt: Tilt, positive where it closes the gap at y > 0 [rad].
         position: Where along the roller, y (n,) [m].
-        law: Line law; default `Palmgren()`.
+        law: Line law of independent slices; default `Palmgren()`.
+
+    Fails: NaN if the approach is not found.
     """
     law = Palmgren() if law is None else law
     length, load, tilt = contact.roller_length, as_real(load), as_real(tilt)
@@ -86,7 +88,12 @@ def slices(
         return (jnp.abs(change) > _ENOUGH * (even + jnp.abs(end))) & (steps < _STEPS)
 
     begin = step((first + even, even, 0))
-    approach, *_ = lax.while_loop(unfinished, step, begin)
+    approach, change, _ = lax.while_loop(unfinished, step, begin)
+    # Round-off may keep the last digits moving; where more than half of them do, it is
+    # no answer.
+    half = jnp.finfo(change.dtype).eps ** 0.5
+    settled = jnp.abs(change) <= half * (even + jnp.abs(end))
+    approach = jnp.where(settled, approach, jnp.nan)
     line_load = line.along(made, xi, approach, end)
     radius = contact.relative_radius(position)
     pressure = peak_pressure(line_load, radius, contact.modulus)
@@ -112,8 +119,9 @@ class Compared(eqx.Module):
         outermost cells in contact meets zero, within a cell.
         """
         grid = self.solution.grid
-        pressure = np.asarray(self.solution.pressure)
-        x, cell = np.asarray(grid.x), 2.0 * float(grid.half_x)
+        side = np.asarray(grid.x) >= 0
+        x, cell = np.asarray(grid.x)[side], 2.0 * float(grid.half_x)
+        pressure = np.asarray(self.solution.pressure)[side]
         count, columns = (pressure > 0).sum(axis=0), np.arange(pressure.shape[1])
         last = np.maximum(count - 1, 0)
         before = np.maximum(last - 1, 0)

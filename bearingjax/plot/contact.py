@@ -30,7 +30,7 @@ def contact_overview(
     slices: Sequence[Slices],
     title: str = "",
 ) -> "matplotlib.figure.Figure":
-    """Pressure over the contact, and along the roller beside independent slices.
+    """Pressure over the contact, and along the roller beside slices.
 
     Args:
         solutions: Of one roller under one load or several.
@@ -175,12 +175,12 @@ def contact_surface(
 def _whole(solution):
     """Middles of cells across (m,) [m], and pressure on both sides (m, n) [MPa]."""
     grid = solution.grid
-    x, pressure = np.asarray(grid.x), 1e-6 * np.asarray(solution.pressure)
-    if not grid.symmetric:
-        return x, pressure
-    other = slice(1 if grid.n_across % 2 else 0, None)
-    mirrored = -x[other][::-1], pressure[other][::-1]
-    return np.concatenate([mirrored[0], x]), np.concatenate([mirrored[1], pressure])
+    x = (
+        2.0
+        * float(grid.half_x)
+        * (np.arange(grid.n_across) - 0.5 * grid.n_across + 0.5)
+    )
+    return x, 1e-6 * np.asarray(grid.whole(solution.pressure))
 
 
 def _results(solution, slices):

@@ -18,7 +18,7 @@ _NEAR = 0.02
 _SHARP = 1.5
 """End values so many times above the scale are left out of it."""
 
-_SLICES = "independent slices"
+_SLICES = "slices"
 
 _ON_THE_LINE: dict[str, Any] = {
     "ha": "center",

@@ -76,6 +76,7 @@ def test_point_contact_is_of_second_order(curvatures, load, last):
     for error in found.T:
         # Measured: -2.09 and -2.11 of the sphere, -2.12 and -2.14 of the ellipse.
         assert -2.3 < order(sizes, error) < -1.9
+    # As measured: an error that grows is noticed, though its order stays.
     np.testing.assert_allclose(found[-1], last, rtol=0.1)
 
 
@@ -109,6 +110,7 @@ def test_endless_line():
     # Measured: -2.15 and -2.04.
     for error in by_size.T:
         assert -2.3 < order(sizes, error) < -1.9
+    # Errors as measured.
     assert by_size[-1] == pytest.approx((5.0e-6, 8e-7), rel=0.1)
 
 

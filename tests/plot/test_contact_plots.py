@@ -123,7 +123,7 @@ def test_centre_lines_beside_slices(solutions, sliced):
     texts = [text.get_text() for text in legend.get_texts()]
     ends = 1e-6 * np.asarray(solutions[0].centre_pressure)[[0, -1]]
     assert texts[0] == f"1 kN: {ends[0]:.0f}, {ends[1]:.0f}"
-    assert texts[1].startswith("3 kN: ") and texts[2] == "independent slices"
+    assert texts[1].startswith("3 kN: ") and texts[2] == "slices"
     marks = [line for line in ax.get_lines() if line.get_marker() == "^"]
     top = ax.get_ylim()[1]
     for mark, (_, found) in zip(marks, solid, strict=True):

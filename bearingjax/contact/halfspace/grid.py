@@ -73,6 +73,13 @@ class Grid(eqx.Module):
             return 0.5 * twice
         return twice.at[0].set(1.0) if self.n_across % 2 else twice
 
+    def whole(self, field: Float[Array, "m n"]) -> Float[Array, "across n"]:
+        """A symmetric field on all cells, from that on those kept [any unit]."""
+        if not self.symmetric:
+            return field
+        other = field[1:] if self.n_across % 2 else field
+        return jnp.concatenate([other[::-1], field])
+
     @property
     def area(self) -> Float[Array, "m n"]:
         """Area that each cell stands for [m²]."""

@@ -178,10 +178,7 @@ def _angle(rise, run):
 
 def _corners(grid: Grid, pressure):
     """Places of all corners of cells, and what they count (m+1, n+1) [Pa]."""
-    if grid.symmetric:
-        mirror = pressure[1:] if grid.n_across % 2 else pressure
-        pressure = jnp.concatenate([mirror[::-1], pressure])
-    m = pressure.shape[0]
+    pressure, m = grid.whole(pressure), grid.n_across
     xs = 2.0 * grid.half_x * (jnp.arange(m + 1, dtype=pressure.dtype) - 0.5 * m)
     padded = jnp.pad(pressure, 1)
     steps = jnp.diff(jnp.diff(padded, axis=0), axis=1)
