@@ -7,13 +7,18 @@ import jax
 import pytest
 from jaxtyping import install_import_hook
 
-# The tests spend their time in the compiler: half of it without LLVM's optimiser and
-# the newer emitters. `XLA_FLAGS= pytest` tests the programs as users compile them. A
-# flag that XLA does not know ends the process: the second one only where it was tried.
+# The tests spend their time in the compiler: a third of it without LLVM's optimiser, the
+# newer emitters, and programs in many parts for threads that other tests need as well.
+# `XLA_FLAGS= pytest` tests the programs as users compile them. A flag that XLA does not
+# know ends the process: the later ones only where they were tried.
 FLAGS = "--xla_backend_optimization_level=0"
 if jax.__version__ == "0.10.1":
     FLAGS += " --xla_cpu_use_fusion_emitters=false"
+    FLAGS += " --xla_cpu_parallel_codegen_split_count=1"
 os.environ.setdefault("XLA_FLAGS", FLAGS)
+
+# Every operation with the calls that led to it: slow to write, read by nobody here.
+jax.config.update("jax_include_full_tracebacks_in_locations", False)
 
 jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_numpy_rank_promotion", "raise")
@@ -24,6 +29,20 @@ gc.set_threshold(200_000, 20, 50)
 
 # Shapes and dtypes of annotated functions are checked at every call of the tests.
 install_import_hook("bearingjax", "beartype.beartype").__enter__()
+
+
+LONGEST = ("test_readme.py", "test_benchmarks.py", "test_notebooks.py")
+"""Begun first: at the end one of them would keep one worker at work alone."""
+
+
+def pytest_configure(config):
+    # pytest-xdist would begin with the files of many tests, not the long ones.
+    if hasattr(config.option, "loadscopereorder"):
+        config.option.loadscopereorder = False
+
+
+def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: item.path.name not in LONGEST)
 
 
 @pytest.fixture(scope="module", autouse=True)
