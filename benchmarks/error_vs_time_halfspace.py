@@ -17,33 +17,33 @@ Last run:
 
                         worst relative error          cell, mm
 cells              approach   0.5 mm in    middle     end  middle  steps       ms
-even     17 x 16      9e-03       4e-02     7e-03  0.9375  0.9375     16     0.78
-even     35 x 32      6e-03       1e-02     4e-03  0.4688  0.4688     23     1.82
-even     35 x 64      3e-03       2e-03     2e-03  0.2344  0.2344     24     3.21
-even     35 x 128     2e-03       3e-03     1e-03  0.1172  0.1172     26     6.61
-even     35 x 256     9e-04       2e-03     6e-04  0.0586  0.0586     25    29.31
-even     35 x 512     4e-04       1e-03     3e-04  0.0293  0.0293     26    92.05
-even     35 x 1024    2e-04       6e-04     1e-04  0.0146  0.0146     26   138.52
-even    256 x 512     5e-04       1e-03     3e-04  0.0293  0.0293     42  1615.25
+even     17 x 16      9e-03       4e-02     7e-03  0.9375  0.9375     16     0.97
+even     35 x 32      6e-03       1e-02     4e-03  0.4688  0.4688     23     2.06
+even     35 x 64      3e-03       2e-03     2e-03  0.2344  0.2344     24     3.61
+even     35 x 128     2e-03       3e-03     1e-03  0.1172  0.1172     26     7.03
+even     35 x 256     9e-04       2e-03     6e-04  0.0586  0.0586     25    14.06
+even     35 x 512     4e-04       1e-03     3e-04  0.0293  0.0293     26    36.46
+even     35 x 1024    2e-04       6e-04     1e-04  0.0146  0.0146     26    85.36
+even    256 x 512     5e-04       1e-03     3e-04  0.0293  0.0293     42   627.65
 graded   17 x 16      3e-04       3e-04     1e-03  0.0664  1.8462     18     0.55
-graded   17 x 32      2e-04       5e-03     7e-04  0.0156  0.9339     20     0.91
-graded   35 x 32      1e-04       4e-03     3e-05  0.0156  0.9339     23     1.59
-graded   35 x 48      2e-06       6e-04     1e-05  0.0068  0.6239     24     2.67
-graded   35 x 64      4e-05       3e-04     3e-05  0.0038  0.4683     25     4.67
-graded   35 x 128     7e-05       1e-04     4e-05  0.0009  0.2343     25    57.25
-graded   65 x 128     1e-05       1e-04     2e-05  0.0009  0.2343     27   167.17
+graded   17 x 32      2e-04       5e-03     7e-04  0.0156  0.9339     20     1.13
+graded   35 x 32      1e-04       4e-03     3e-05  0.0156  0.9339     23     1.86
+graded   35 x 48      2e-06       6e-04     1e-05  0.0068  0.6239     24     3.12
+graded   35 x 64      4e-05       3e-04     3e-05  0.0038  0.4683     25     5.29
+graded   35 x 128     7e-05       1e-04     4e-05  0.0009  0.2343     25    30.29
+graded   65 x 128     1e-05       1e-04     2e-05  0.0009  0.2343     27    74.60
 
 all errors below      1e-02    1e-03    3e-04
-even, ms                3.2    138.5        -
-graded, ms              0.5      0.5     57.2
+even, ms                3.6     85.4        -
+graded, ms              0.6      0.6     30.3
 
-time of even 256 x 512 over graded 35 x 48, no worse: 605 (at least 10): met
-of even 35 x 512: 34.5
-of even 35 x 1024: 51.8
+time of even 256 x 512 over graded 35 x 48, no worse: 201 (at least 10): met
+of even 35 x 512: 11.7
+of even 35 x 1024: 27.4
 
 reference: approach 6.32121 µm, at 0.5, 7.5, 14.5 mm 1299.00, 1104.12, 1206.77 MPa
 coarser reference differs by 2e-05
-AMD EPYC, 2 cores, load average 7.7; devices: 1 cpu; jax 0.10.1
+AMD EPYC, 2 cores, load average 1.6; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse

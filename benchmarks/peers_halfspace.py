@@ -22,37 +22,41 @@ Run: python benchmarks/peers_halfspace.py [--json] [--smoke]
 
 Last run:
 
-(in parts: the first problem beside other work, the second and the loads alone)
-
 problem     cells wanted  solver                 ms  ratio  steps  residual  difference
-taper   128 x 128  1e-06  ours, all cells      49.8    1.0     22     4e-07       0e+00
-taper   128 x 128  1e-06  ours, half           26.4    0.5     22     4e-07       2e-13
-taper   128 x 128  1e-06  ContactMechanics    325.9    6.6     77     6e-07       4e-05
-taper   128 x 128  1e-06  with NuMPI's CG     418.8    8.4     78     5e-07       6e-05
-taper   128 x 128  1e-06  Tamaas              487.1    9.8     78     3e-07       3e-05
-
-problem     cells wanted  solver                 ms  ratio  steps  residual  difference
-taper   256 x 256  1e-06  ours, all cells     362.3    1.0     29     8e-07       0e+00
-taper   256 x 256  1e-06  ours, half          221.0    0.6     29     8e-07       3e-13
-taper   256 x 256  1e-06  ContactMechanics   1661.5    4.6     95     4e-07       7e-05
-taper   256 x 256  1e-06  with NuMPI's CG    2275.0    6.3     95     6e-07       9e-05
+taper   128 x 128  1e-06  ours, all cells      55.8    1.0     22     4e-07       0e+00
+taper   128 x 128  1e-06  ours, half           28.2    0.5     22     4e-07       2e-13
+taper   128 x 128  1e-06  ContactMechanics    502.6    9.0     77     6e-07       4e-05
+taper   128 x 128  1e-06  with NuMPI's CG     431.1    7.7     78     5e-07       6e-05
+taper   128 x 128  1e-06  Tamaas              563.0   10.1     78     3e-07       3e-05
+taper   128 x 128  1e-09  ours, all cells      67.5    1.0     28     3e-10       0e+00
+taper   128 x 128  1e-09  ours, half           35.8    0.5     28     3e-10       2e-13
+taper   128 x 128  1e-09  ContactMechanics    804.5   11.9    130     5e-10       3e-08
+taper   128 x 128  1e-09  with NuMPI's CG     924.9   13.7    135     6e-10       5e-08
+taper   128 x 128  1e-09  Tamaas              912.2   13.5    130     4e-10       3e-08
+taper   256 x 256  1e-06  ours, all cells     354.9    1.0     29     8e-07       0e+00
+taper   256 x 256  1e-06  ours, half          222.9    0.6     29     8e-07       3e-13
+taper   256 x 256  1e-06  ContactMechanics   2012.8    5.7     95     4e-07       7e-05
+taper   256 x 256  1e-06  with NuMPI's CG    2294.7    6.5     95     6e-07       9e-05
 taper   256 x 256  1e-06  Tamaas                  -      -    106     6e-07       1e-04
-
-least time of a peer over ours, all cells, alone, 256 x 256: 4.59 (at least 1): met
-
-AMD EPYC, 2 cores, load average 1.1; devices: 1 cpu; jax 0.10.1
+sphere  128 x 128  1e-06  ours, all cells      30.6    1.0     11     5e-07       0e+00
+sphere  128 x 128  1e-06  ours, half           18.3    0.6     11     5e-07       1e-13
+sphere  128 x 128  1e-06  ContactMechanics    198.6    6.5     33     3e-07       3e-05
+sphere  128 x 128  1e-06  with NuMPI's CG     261.5    8.5     30     4e-07       3e-05
+sphere  128 x 128  1e-06  Tamaas              244.8    8.0     32     4e-07       3e-05
 
 64 loads of the taper, 128 x 128 cells
 solver               ms/load  ratio  residual  difference
-ours, all cells        117.9    1.0     1e-06       0e+00
-ours, half              58.8    0.5     1e-06       3e-13
-ContactMechanics       461.5    3.9     5e-07       4e-05
-with NuMPI's CG        470.1    4.0     5e-07       5e-05
-Tamaas                 501.8    4.3     4e-07       2e-05
+ours, all cells        136.8    1.0     1e-06       0e+00
+ours, half              68.1    0.5     1e-06       3e-13
+ContactMechanics       568.1    4.2     8e-07       1e-04
+with NuMPI's CG        682.6    5.0     5e-07       7e-05
+Tamaas                 736.7    5.4     4e-07       3e-05
 
-least time of a peer over ours, all cells, many: 3.91 (at least 3): met
+least time of a peer over ours, all cells, alone, 128 x 128: 6.49 (at least 1): met
+least time of a peer over ours, all cells, alone, 256 x 256: 5.67 (at least 1): met
+least time of a peer over ours, all cells, many: 4.15 (at least 3): met
 
-AMD EPYC, 2 cores, load average 1.0; devices: 1 cpu; jax 0.10.1
+AMD EPYC, 2 cores, load average 1.2; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse

@@ -19,9 +19,9 @@ tilted         17    54  116 solved
 moment         19    67  129 solved, 1 beyond the ends, and says so
 approach       17    59  127 solved
 
-not solved: 0 (goal 0); 651 s
+not solved: 0 (goal 0); 251 s
 
-AMD EPYC, 2 cores, load average 7.0; devices: 1 cpu; jax 0.10.1
+AMD EPYC, 2 cores, load average 4.3; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
