@@ -149,8 +149,8 @@ def ends(solution: ContactSolution) -> str:
 
 
 def load_text(solution: ContactSolution) -> str:
-    """Load, without the round-off of its sum."""
-    return force_text(float(f"{float(solution.load):.9g}"))
+    """Load, as text."""
+    return force_text(float(solution.load))
 
 
 def end_length(solution: ContactSolution) -> str:

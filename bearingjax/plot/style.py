@@ -113,7 +113,7 @@ def force_text(force: float) -> str:
     Args:
         force: Force [N].
     """
-    if abs(force) < 1e3:
+    if abs(force) < 999.5:  # three digits of more are 1e+03
         return f"{force:.3g} N"
     return f"{1e-3 * force:.3g} kN"
 
