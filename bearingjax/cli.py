@@ -117,6 +117,11 @@ def _parser():
         "--raceway", choices=("inner", "outer"), help="likewise; default: inner"
     )
     contact.add_argument(
+        "--free-ends",
+        action="store_true",
+        help="likewise: the roller's end faces bear no stress",
+    )
+    contact.add_argument(
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
     )
     return parser
@@ -291,9 +296,14 @@ def _contact(options) -> int:
         solution = run_scene(bearing)
         if not solution.converged:
             return _tell_unsolved(bearing, solution)
-        scene, cases = run_refined(bearing, solution, options.roller, options.raceway)
+        scene, cases = run_refined(
+            bearing, solution, options.roller, options.raceway, options.free_ends
+        )
     elif options.roller is not None or options.raceway is not None:
         raise SceneError("--roller and --raceway are for the scene of a bearing")
+    elif options.free_ends:
+        cure = "a contact's scene has `free_ends` in its [roller]"
+        raise SceneError(f"--free-ends is for the scene of a bearing; {cure}")
     else:
         scene = read_contact(options.scene, options.set)
         cases = run_contact(scene)

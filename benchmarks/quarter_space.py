@@ -1,39 +1,48 @@
 """How much softer than a half-space is a roller near its free end face?
 
-A quarter-space, load on one face and the other free, by Hetényi's alternation solved
-as one system: tractions on both faces, each doubled by its mirror image, so that the
-shear stress vanishes on both and the normal stress is what is given. The displacement
-beyond a half-space's, over that of the mirrored load, is the factor of `FreeEnds`. Load
-and point are apart across the roller by x, and at distances y, y' from the end.
-Along the edge the factor tends to 2.36 whatever Poisson's ratio: a wedge of 90 degrees
-has (1/(π/2 + 1) + 1/(π/2 - 1))/(2/π) = 3.36 times the plane compliance of a half-space.
+A quarter-space, load on one face and the other free, by Hetényi's alternation:
+tractions on both faces, each doubled by its mirror image, so that the shear stress
+vanishes on both and the normal stress is what is given. The displacement beyond a
+half-space's, over that of the mirrored load, is the factor of `FreeEnds`. Load and
+point are apart across the roller by x, and at distances y, y' from the end.
 
-Run: python benchmarks/quarter_space.py [--json] [--smoke]
+Solved for one wave along the edge: kernels are Bessel functions then, the alternation
+is one linear system in the logarithm of the distance from the edge, where the
+trapezoidal rule converges as the exponential of the number of points; other waves
+follow by scaling, their sum is the point load. Along the edge the factor tends to 2.363
+whatever Poisson's ratio: a wedge of 90 degrees has (1/(π/2 + 1) + 1/(π/2 - 1))/(2/π)
+= 3.363 times the plane compliance of a half-space.
+
+Run: python benchmarks/quarter_space.py [--json] [--smoke] [--fit]
 
 Last run:
 
-Poisson's ratio 0; FreeEnds uses 1.322
-  y/y'    x/sqrt(y y') =        0       1      10      30
-     1                        1.366   1.374   1.960   2.221
-     2                        1.322   1.337   1.944   2.216
-     5                        1.196   1.220   1.848   2.167
-    20                        1.056   1.070   1.583   2.001
-Poisson's ratio 0.3; FreeEnds uses 1.799
-  y/y'    x/sqrt(y y') =        0       1      10      30
-     1                        1.846   1.845   2.154   2.297
-     2                        1.803   1.810   2.148   2.297
-     5                        1.678   1.697   2.091   2.272
-    20                        1.539   1.552   1.929   2.184
-Poisson's ratio 0.5
-  y/y'    x/sqrt(y y') =        0       1      10      30
-     1                        2.760   2.678   2.397   2.387
-     2                        2.716   2.653   2.399   2.387
-     5                        2.594   2.566   2.398   2.387
-    20                        2.449   2.447   2.396   2.387
+found / used by FreeEnds
+Poisson   y/y'   x/sqrt(y y') =              0             1            10            30
+      0   1.00                   1.3677/1.368  1.3738/1.373  1.9593/1.959  2.2089/2.209
+      0   2.01                   1.3226/1.323  1.3359/1.336  1.9374/1.937  2.1997/2.200
+      0   4.95                   1.1957/1.196  1.2192/1.220  1.8458/1.846  2.1593/2.160
+      0  20.09                   1.0595/1.060  1.0725/1.071  1.5852/1.585  2.0214/2.022
+   0.15   1.00                   1.5176/1.518  1.5326/1.532  2.0392/2.039  2.2402/2.241
+   0.15   2.01                   1.4728/1.474  1.4940/1.494  2.0210/2.021  2.2328/2.233
+   0.15   4.95                   1.3468/1.348  1.3751/1.376  1.9447/1.945  2.2004/2.201
+   0.15  20.09                   1.2113/1.212  1.2259/1.225  1.7201/1.720  2.0883/2.089
+    0.3   1.00                   1.8451/1.844  1.8429/1.842  2.1469/2.147  2.2810/2.281
+    0.3   2.01                   1.7997/1.799  1.8056/1.805  2.1343/2.134  2.2760/2.276
+    0.3   4.95                   1.6717/1.671  1.6904/1.690  2.0809/2.081  2.2540/2.254
+    0.3  20.09                   1.5332/1.532  1.5450/1.543  1.9192/1.919  2.1776/2.178
+    0.4   1.00                   2.2081/2.208  2.1760/2.175  2.2443/2.244  2.3169/2.316
+    0.4   2.01                   2.1618/2.162  2.1411/2.141  2.2369/2.237  2.3140/2.314
+    0.4   4.95                   2.0311/2.032  2.0330/2.034  2.2055/2.206  2.3014/2.301
+    0.4  20.09                   1.8891/1.889  1.8956/1.895  2.1088/2.109  2.2573/2.257
+    0.5   1.00                   2.7560/2.755  2.6724/2.671  2.3762/2.376  2.3645/2.364
+    0.5   2.01                   2.7085/2.708  2.6419/2.641  2.3761/2.376  2.3645/2.364
+    0.5   4.95                   2.5741/2.574  2.5467/2.547  2.3758/2.376  2.3645/2.364
+    0.5  20.09                   2.4274/2.426  2.4245/2.424  2.3742/2.374  2.3644/2.364
 
-(0.15 and 0.4 left out here) 184 s beside other work
+6 s
 
-AMD EPYC, 2 cores, load average 5.7; devices: 1 cpu; jax 0.10.1
+AMD EPYC, 2 cores, load average 0.8; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
@@ -47,116 +56,171 @@ jax.config.update("jax_enable_x64", True)
 
 import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
+from scipy.interpolate import CubicSpline  # noqa: E402
+from scipy.special import k0, k1  # noqa: E402
 from timing import machine  # noqa: E402
 
-import bearingjax as bj  # noqa: E402
-from bearingjax.contact.halfspace import FreeEnds  # noqa: E402
-from bearingjax.contact.halfspace.love import corner  # noqa: E402
-from bearingjax.contact.halfspace.stress import corner_stress  # noqa: E402
+from bearingjax.contact.halfspace.ends import WEDGE, Mirrored  # noqa: E402
 
 POISSON = (0.0, 0.15, 0.3, 0.4, 0.5)
-DISTANCES = (1.0, 2.0, 5.0, 20.0)
+TIMES = (1.0, 2.0, 5.0, 20.0)
 ACROSS = (0.0, 1.0, 10.0, 30.0)
-LOADED = 4.0  # middle of the loaded square, in half sides
-FULL = {"along": 52, "across": 48, "least": 0.02, "reach": 6000.0}
-COARSE = {"along": 26, "across": 24, "least": 0.1, "reach": 600.0}
+LOWEST, HIGHEST = -25.0, 4.0  # logarithms of wave number times distance
+STEP = 0.1
+
+# Of the fit: x over y + y' is the cotangent of the angle's share of 90 degrees.
+ANGLE = (0.0064, 0.013, 0.025, 0.045, 0.064, 0.1, 0.13, 0.19, 0.26, 0.33, 0.41, 0.49)
+ANGLE += (0.59, 0.71, 0.8, 0.87, 1.0)
+LOG_TIMES = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3, 1.6, 2.0, 2.5, 3.0, 3.6, 4.4)
+POWERS = (4, 3, 5)
 
 
-class Quarter:
-    """Both faces in cells that grow away from the edge, symmetric across."""
+class Edge:
+    """Quarter-space under pressure that waves along the edge, wave number 1.
 
-    def __init__(self, poisson, along, across, least, reach):
-        self.poisson = poisson
-        ys = np.concatenate([[0.0], np.geomspace(least, reach, along)])
-        xs = np.concatenate([[0.0], np.geomspace(2 * least, reach, across)])
-        x, y = _pairs(_middles(xs), _middles(ys))
-        self.x, self.y = x.ravel(), y.ravel()
-        low = [v.ravel() for v in _pairs(xs[:-1], ys[:-1])]
-        high = [v.ravel() for v in _pairs(xs[1:], ys[1:])]
-        self.cells = (low[0], high[0], low[1], high[1])
-        self.twins = (-high[0], -low[0], low[1], high[1])
-        self.turn = self._pressed(*self.cells) + self._pressed(*self.twins)
+    Attributes:
+        step: Of the logarithm of distances from the edge.
+        distance: From the edge, of either face (n,).
+        pressed: Pressure on one face by a unit line load on the other and its mirror
+            image (n, n), first axis: where.
+        added: Displacement beyond that of the load and of its image, over that of a
+            unit load's 1/r (n, n).
+    """
 
-    def _pressed(self, x0, x1, y0, y1):
-        """Pressure on the other face by a unit one on rectangles and their images."""
+    def __init__(self, poisson, step=STEP):
+        self.step = step
+        count = round((HIGHEST - LOWEST) / step) + 1
+        self.distance = y = np.exp(LOWEST + step * np.arange(count))
+        weight = step * y
+        self.pressed = _pressed(poisson, y[:, None], y[None])
+        turn = self.pressed * weight
+        held = np.linalg.solve(np.eye(count) - turn @ turn, turn @ self.pressed)
+        self.added = _sunk(y, step) * weight @ held
 
-        depth, poisson = jnp.asarray(self.y)[:, None], jnp.asarray(self.poisson)
-
-        def stress(u, v):
-            return corner_stress(u, v, depth, poisson)[1]
-
-        return -2 * _cornered(stress, self.x[:, None], 0.0, x0, x1, y0, y1)
-
-    def factors(self, points):
-        """Factor at points (x, y) for a square of side 2 loaded."""
-        square = [np.array([v]) for v in (-1.0, 1.0, LOADED - 1, LOADED + 1)]
-        other = self._pressed(*square)[:, 0]
-        # c = -S q, q = -(s + S c): on the loaded face besides what is given.
-        system = np.eye(len(self.x)) - self.turn @ self.turn
-        added = np.linalg.solve(system, self.turn @ other)
-        found = []
-        for x, y in points:
-            image = _sunk(x, y, square[0], square[1], -square[3], -square[2])[0]
-            more = 0.0
-            for x0, x1, y0, y1 in (self.cells, self.twins):
-                more += _sunk(x, y, x0, x1, y0, y1) @ added
-                more += _sunk(x, y, x0, x1, -y1, -y0) @ added
-            found.append((image + more) / image)
-        return np.array(found)
-
-
-def _pairs(x, y):
-    return np.meshgrid(x, y, indexing="ij")
+    def factors(self, log_times, x):
+        """Factor for y = exp(log_times) and y' = 1, x apart (...)."""
+        shift = round(log_times / self.step)
+        y = np.exp(shift * self.step)
+        if not np.isclose(shift * self.step, log_times):
+            raise ValueError(f"{log_times} is no multiple of {self.step}")
+        # Waves of any number: distances of the table over those asked for.
+        found = np.diagonal(self.added, -shift)
+        wave = self.distance[: len(found)]
+        # What is left of the wedge is finite at long waves.
+        rest = found - (WEDGE - 1.0) * 2.0 * k0(wave * (1.0 + y))
+        spline = CubicSpline(np.log(wave), rest)
+        factors = []
+        for apart in x:
+            least = 1e-3 / (1.0 + apart)
+            most = min(45.0 / (1.0 + y), wave[-1])
+            fine = np.linspace(least, most, 60_001)
+            values = np.cos(fine * apart) * spline(np.log(fine))
+            total = np.trapezoid(values, fine) + least * values[0]
+            factors.append(WEDGE + total / np.pi * np.hypot(apart, 1.0 + y))
+        return np.array(factors)
 
 
-def _middles(edges):
-    return np.concatenate([[edges[1] / 2], np.sqrt(edges[1:-1] * edges[2:])])
+def _pressed(poisson, z, y):
+    """Doubled normal stress on the plane of the edge, at depth z, from distance y.
+
+    Boussinesq's stress by the potentials V = 1/r and ∫V dz, their waves: 2K0, whose
+    second derivatives follow from Laplace's equation.
+    """
+    r = np.hypot(z, y)
+    down = -2.0 * k1(r) * z / r
+    across = 2.0 * (k0(r) * y**2 / r**2 + k1(r) * (2.0 * y**2 / r**3 - 1.0 / r))
+    # ∫ from z on, by the double exponential rule.
+    t = np.arange(-4.2, 4.6, 0.05)
+    place = np.exp(t - np.exp(-t))
+    steps = 0.05 * place * (1.0 + np.exp(-t))
+    potential = np.zeros_like(r)
+    for p, s in zip(place, steps, strict=True):
+        potential -= 2.0 * s * k0(np.hypot(y, z + p))
+    spread = potential - down
+    stress = 2.0 * poisson * down - z * across - (1.0 - 2.0 * poisson) * spread
+    return -stress / np.pi
 
 
-def _cornered(function, x, y, x0, x1, y0, y1):
-    total = np.zeros(np.broadcast_shapes(np.shape(x - x0), np.shape(y - y0)))
-    for sign, a, b in ((1, x0, y0), (-1, x1, y0), (-1, x0, y1), (1, x1, y1)):
-        u, v = np.broadcast_arrays(x - a, y - b)
-        total = total + sign * np.asarray(function(jnp.asarray(u), jnp.asarray(v)))
-    return total
+def _sunk(y, step):
+    """Displacement by a line load and its image; the logarithm's own node apart."""
+    apart = np.abs(y[:, None] - y[None])
+    np.fill_diagonal(apart, 1.0)
+    near = k0(apart)
+    own = np.log(4.0 * np.pi / step) - np.log(y) - np.euler_gamma
+    np.fill_diagonal(near, own)
+    return 2.0 * (near + k0(y[:, None] + y[None]))
 
 
-def _sunk(x, y, *rectangles):
-    return _cornered(corner, x, y, *rectangles)
+def given(poisson, x, y, other):
+    """Factor that `FreeEnds` uses."""
+    weight = Mirrored(jnp.asarray(1.0), jnp.asarray(poisson), None)
+    return weight(x, y, other, np)
 
 
-def run(poisson=POISSON, distances=DISTANCES, across=ACROSS, cells=FULL):
-    """Factor by Poisson's ratio, y/y' and x/sqrt(y y')."""
+def run(poisson=POISSON, times=TIMES, across=ACROSS, step=STEP):
+    """Factor by Poisson's ratio, y/y' and x/sqrt(y y'): found here, used there."""
     rows = []
     for nu in poisson:
-        quarter = Quarter(nu, **cells)
-        points = [
-            (s * LOADED * np.sqrt(t), LOADED * t) for t in distances for s in across
-        ]
-        found = quarter.factors(points).reshape(len(distances), len(across))
-        steel = bj.Material(210e9, nu) if nu < 0.5 else None
-        # Of two equal bodies half is the roller's.
-        used = None if steel is None else 2 * float(FreeEnds().share(steel, steel))
-        rows.append({"poisson": nu, "factor": found.tolist(), "used": used})
+        edge = Edge(nu, step)
+        for wanted in times:
+            log_times = step * round(np.log(wanted) / step)
+            y = np.exp(log_times)
+            x = np.array(across) * np.sqrt(y)
+            row = {"poisson": nu, "times": y, "across": list(across)}
+            row["found"] = edge.factors(log_times, x).tolist()
+            row["used"] = given(nu, x, np.array(y), 1.0).tolist()
+            rows.append(row)
     return rows
+
+
+def fit(powers=POWERS):
+    """Coefficients for `FreeEnds` by least squares, and what they leave."""
+    angle = np.array(ANGLE)
+    terms, wanted = [], []
+    for nu in np.linspace(0.0, 0.5, 6):
+        edge = Edge(nu)
+        for log_times in LOG_TIMES:
+            y = np.exp(log_times)
+            wanted.append(
+                edge.factors(log_times, (1.0 + y) / np.tan(0.5 * np.pi * angle))
+            )
+            level = np.full_like(angle, 2.0 * np.sqrt(y) / (1.0 + y))
+            terms.append(
+                [
+                    angle ** (i + 1) * level**j * nu**k
+                    for i in range(powers[0])
+                    for j in range(powers[1])
+                    for k in range(powers[2])
+                ]
+            )
+    terms = np.concatenate(terms, axis=1).T
+    wanted = np.concatenate(wanted) - WEDGE
+    coefficients = np.round(np.linalg.lstsq(terms, wanted, rcond=None)[0], 4)
+    return coefficients.reshape(powers), np.abs(terms @ coefficients - wanted)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", action="store_true", help="one line of figures")
-    parser.add_argument("--smoke", action="store_true", help="few, large cells")
+    parser.add_argument("--smoke", action="store_true", help="one ratio, coarse steps")
+    parser.add_argument("--fit", action="store_true", help="coefficients instead")
     args = parser.parse_args()
     begin = time.perf_counter()
-    rows = run((0.3,), cells=COARSE) if args.smoke else run()
+    if args.fit:
+        coefficients, left = fit()
+        print(np.array2string(coefficients, separator=", ", suppress_small=True))
+        print(f"left: {left.max():.4f} at most, {left.mean():.4f} in the mean")
+        return 0
+    rows = run((0.3,), step=0.2) if args.smoke else run()
     if args.json:
         print(json.dumps({"rows": rows}))
         return 0
+    print("found / used by FreeEnds")
+    print("Poisson   y/y'   x/sqrt(y y') = " + "".join(f"{s:14g}" for s in ACROSS))
     for row in rows:
-        used = "" if row["used"] is None else f"; FreeEnds uses {row['used']:.3f}"
-        print(f"Poisson's ratio {row['poisson']:g}{used}")
-        print("  y/y'    x/sqrt(y y') = " + "".join(f"{s:8g}" for s in ACROSS))
-        for t, line in zip(DISTANCES, row["factor"], strict=True):
-            print(f"  {t:4g}{'':21}" + "".join(f"{v:8.3f}" for v in line))
+        pairs = zip(row["found"], row["used"], strict=True)
+        values = "".join(f"{found:8.4f}/{used:5.3f}" for found, used in pairs)
+        print(f"{row['poisson']:7g} {row['times']:6.2f}{'':17}{values}")
     print(f"\n{time.perf_counter() - begin:.0f} s\n\n{machine()}")
     return 0
 

@@ -197,7 +197,8 @@ def _contact(scene, cases):
             f"{scene.name}: roller {size} x {length:.4g} mm, half angle"
             f" {np.rad2deg(float(contact.angle)):.4g} deg, on {raceway}",
             f"profile of the roller: {profiles[0]}, of the raceway: {profiles[1]};"
-            f" contact modulus {1e-9 * float(contact.modulus):.4g} GPa",
+            f" contact modulus {1e-9 * float(contact.modulus):.4g} GPa"
+            + ("" if contact.free_ends is None else "; free end faces"),
             f"{scene.across} x {scene.along} {kind} cells: at the ends"
             f" {2e6 * float(grid.half_y[0]):.4g} µm long, in the middle"
             f" {2e6 * float(grid.half_y[scene.along // 2]):.4g} µm",

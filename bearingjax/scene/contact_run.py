@@ -6,7 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from ..contact.halfspace import ConjugateGradients
+from ..contact.halfspace import ConjugateGradients, FreeEnds
 from ..contact.line import Palmgren
 from ..contact.slices import Compared, slices
 from ..element import RINGS
@@ -47,6 +47,7 @@ def run_refined(
     solution: Solution,
     roller: int | None = None,
     raceway: str | None = None,
+    free_ends: bool = False,
 ) -> tuple[ContactScene, list[Compared]]:
     """Contact of one roller of a bearing's scene, on cells as by default.
 
@@ -54,6 +55,7 @@ def run_refined(
         scene: From `read_scene`.
         solution: From `run_scene`, converged.
         roller, raceway: As of `refine`; default: the inner one.
+        free_ends: Whether the roller's end faces are free, as `FreeEnds()` has them.
 
     Returns:
         The scene of that contact, and its one case.
@@ -70,6 +72,7 @@ def run_refined(
             roller,
             "inner" if raceway is None else raceway,
             speed=scene.speed,
+            free_ends=FreeEnds() if free_ends else None,
             throw=False,
         )
     except (TypeError, ValueError) as error:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..contact.halfspace import RollerContact
+from ..contact.halfspace import FreeEnds, RollerContact
 from ..contact.line import AbstractLineLaw
 from ..design import Material
 from .bearing_table import read_material, read_profile
@@ -22,7 +22,7 @@ SIDES = {"inner": 1.0, "outer": -1.0}
 
 MOST_ACROSS, MOST_ALONG = 1001, 4001
 MOST_NUMBERS = 5e7
-"""Most numbers in the influence of a grid of graded cells: 0.4 GB."""
+"""Most numbers in the influence of cells graded or with free ends: 0.4 GB."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -129,6 +129,7 @@ def _contact(top: Table) -> RollerContact:
             raceway_profile=ring_profile,
             material=material,
             raceway_material=ring_material,
+            free_ends=FreeEnds() if roller.flag("free_ends", False) else None,
         )
 
 
@@ -175,12 +176,12 @@ def _scene(top: Table, name, contact: RollerContact, odd) -> ContactScene:
     law.choice("line_law", LAWS, "palmgren")
     loads, listed = _loads(operating)
     grid = _grid(numerics, contact)
-    if grid["grading"] > 1.0:
+    if grid["grading"] > 1.0 or contact.free_ends is not None:
         count = max(len(loads), 1) * grid["across"] * grid["along"] ** 2
         if count > MOST_NUMBERS:
             problem = (
-                f"{grid['along']} graded cells take too much memory; fewer do as well,"
-                " or take `grading` = 1"
+                f"{grid['along']} cells take too much memory, graded or with free ends;"
+                " fewer graded ones do as well, or take `grading` = 1 without free ends"
             )
             raise numerics.error("along", problem)
     tolerance = numerics.number("tolerance", None)

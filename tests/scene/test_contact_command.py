@@ -133,8 +133,16 @@ WRONG = {
     ),
     "too many graded cells": (
         ["numerics.along=4000"],
-        "`numerics.along`: 4000 graded cells take too much memory; fewer do as well,"
-        " or take `grading` = 1",
+        "`numerics.along`: 4000 cells take too much memory, graded or with free ends;"
+        " fewer graded ones do as well, or take `grading` = 1 without free ends",
+    ),
+    "too many cells with free ends": (
+        ["numerics.along=4000", "numerics.grading=1", "roller.free_ends=true"],
+        "`numerics.along`: 4000 cells take too much memory, graded or with free ends;",
+    ),
+    "free ends": (
+        ["roller.free_ends=2"],
+        "`roller.free_ends`: ",
     ),
     "grading": (
         ["numerics.grading=0.5"],
@@ -274,6 +282,7 @@ def test_a_roller_of_a_bearing(run, tmp_path):
         "cylindrical_rig",
         "--raceway",
         "outer",
+        "--free-ends",
         "--json",
         out,
         "--plot",
@@ -281,6 +290,7 @@ def test_a_roller_of_a_bearing(run, tmp_path):
     )
     assert done.status == 0
     assert done.out.startswith("cylindrical_rig, roller 0, outer raceway: roller")
+    assert "; free end faces" in done.out
     numbers = read(out)
     solved = bj.run_scene(bj.read_scene("cylindrical_rig"))
     assert numbers["load"] == pytest.approx(float(solved.roller_load[0, 0]), rel=1e-9)
@@ -292,3 +302,5 @@ def test_a_roller_of_a_bearing(run, tmp_path):
     assert done.status == 2 and "the bearing has balls" in done.err
     done = run(*ONE, "--roller", "2")
     assert done.status == 2 and "are for the scene of a bearing" in done.err
+    done = run(*ONE, "--free-ends")
+    assert done.status == 2 and "has `free_ends` in its [roller]" in done.err

@@ -184,6 +184,19 @@ def test_slices_of_a_straight_roller(paper):
     assert numbers["edge_factor"] == near(factor)
 
 
+def test_free_ends(three):
+    """Softer, and with less at the ends, which the report says."""
+    loads = 'operating.load=["500 N", "1 kN", "2 kN"]'
+    scene, cases, freed = solve("taper_contact", *SMALL, loads, "roller.free_ends=true")
+    held = three[2]
+    assert np.all(np.array(freed["approach"]) > 1.02 * np.array(held["approach"]))
+    ends, before = (np.array(v["centre_pressure"])[:, [0, -1]] for v in (freed, held))
+    assert np.all(ends < 0.8 * before)
+    np.testing.assert_allclose(freed["load"], held["load"], rtol=SOLVER)
+    assert "; free end faces" in contact_report(scene, cases)
+    assert "free end" not in contact_report(*three[:2])
+
+
 @pytest.mark.parametrize("tilt", [0.0, 2e-4, -5e-3])
 def test_slices_of_a_tilted_crown(tilt):
     """Load and law again in NumPy, over 40 000 slices; also where part is open."""

@@ -14,18 +14,22 @@ Source: zero padding: Liu, Wang, Liu, Wear 243 (2000); preconditioning by the in
 """
 
 import abc
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ...design.checks import in_range
 from ...numerics.types import Scalar, as_real
 from .grid import Grid
 from .love import corner, namespace, strip
+
+_HALVINGS = 7
+"""Of the nearest cell across, where the weight of mirrored pressure varies."""
 
 
 class AbstractInfluence(eqx.Module):
@@ -99,7 +103,7 @@ class GradedInfluence(AbstractInfluence):
 
 
 def influence(
-    grid: Grid, modulus: Scalar | float, mirrored: Scalar | float | None = None
+    grid: Grid, modulus: Scalar | float, mirrored: Callable[..., Any] | None = None
 ) -> AbstractInfluence:
     """Influence of pressure on a grid.
 
@@ -107,18 +111,13 @@ def influence(
         grid: The cells; the kernel of a graded grid has about n_across·n_along²
             numbers.
         modulus: Contact modulus E* of both bodies [Pa].
-        mirrored: Share with which the pressure acts once more, mirrored at both ends
-            of the grid, see `FreeEnds`; `None`: none. With it the kernel of an even
-            grid is that of a graded one.
-
-    Raises:
-        ValueError: If `mirrored` is not in [0, 1): beyond, no contact is stable.
+        mirrored: Weight with which the pressure acts once more, mirrored at both ends
+            of the grid, a function as `Mirrored` of `FreeEnds`; `None`: none. With it
+            the kernel of an even grid is that of a graded one.
     """
     modulus = as_real(modulus)
-    if mirrored is not None:
-        mirrored = as_real(mirrored)
-        in_range("influence", "mirrored", mirrored, "", 0.0, 0.999)
-    xp = namespace(grid.half_width, grid.edges, modulus, mirrored)
+    leaves = jax.tree.leaves(mirrored)
+    xp = namespace(grid.half_width, grid.edges, modulus, *leaves)
     even = grid.even and mirrored is None
     table = _even_table if even else partial(_graded_table, mirrored=mirrored)
     dtype = grid.half_width.dtype
@@ -161,19 +160,34 @@ def _even_table(xp, lags, half_x, edges):
 
 def _graded_table(xp, lags, half_x, edges, mirrored=None):
     """Means of ∫∫ dA/r over cells, for distances across and pairs of cells along."""
-    u = half_x * _odd(xp, lags, half_x.dtype)
-
-    def means(sources):
-        table = strip(u[:, None, None], (edges[:, None] - sources[None, :])[None], xp)
-        table = table[1:] - table[:-1]
-        table = table[:, 1:] - table[:, :-1]
-        return (table[..., :-1] - table[..., 1:]) / xp.diff(edges)[None, :, None]
-
-    total = means(edges)
+    total = _strips(xp, half_x * _odd(xp, lags, half_x.dtype), edges, edges)
     if mirrored is None:
         return total
-    images = [means(2.0 * end - edges[::-1])[..., ::-1] for end in edges[[0, -1]]]
-    return total + xp.asarray(mirrored, half_x.dtype) * (images[0] + images[1])
+    # The weight goes by distance across over that from the end, which may be much less
+    # than a cell is wide: the nearest cell in parts, both of its halves alike.
+    fine = 0.5 ** np.arange(_HALVINGS, 0, -1)
+    ends = np.concatenate([-fine[:1], fine, 2.0 * np.arange(lags) + 1.0])
+    u = half_x * xp.asarray(ends, half_x.dtype)
+    x = 0.5 * (u[1:] + u[:-1])[:, None, None]
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    parts = 2.0 * np.ones(_HALVINGS + 1)
+    parts[0] = 1.0
+    parts = xp.asarray(parts, half_x.dtype)[:, None, None]
+    for end in (edges[0], edges[-1]):
+        image = _strips(xp, u, edges, 2.0 * end - edges[::-1])[..., ::-1]
+        y = xp.abs(middles - end)
+        image = mirrored(x, y[None, :, None], y[None, None, :], xp) * image
+        nearest = xp.sum(parts * image[: _HALVINGS + 1], axis=0)
+        total = total + xp.concatenate([nearest[None], image[_HALVINGS + 1 :]])
+    return total
+
+
+def _strips(xp, u, edges, sources):
+    """Means over cells along, of pressure on cells across and along (u-1, n, n)."""
+    table = strip(u[:, None, None], (edges[:, None] - sources[None, :])[None], xp)
+    table = table[1:] - table[:-1]
+    table = table[:, 1:] - table[:, :-1]
+    return (table[..., :-1] - table[..., 1:]) / xp.diff(edges)[None, :, None]
 
 
 def _odd(xp, count, dtype):

@@ -139,10 +139,10 @@ class RollerContact(eqx.Module):
         Args:
             grid: The cells, as long as the roller.
         """
-        share = None
+        mirrored = None
         if self.free_ends is not None:
-            share = self.free_ends.share(self.material, self.raceway_material)
-        return influence(grid, self.modulus, share)
+            mirrored = self.free_ends.mirrored(self.material, self.raceway_material)
+        return influence(grid, self.modulus, mirrored)
 
     def roller_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
         """Radius of curvature of the roller normal to the generatrix at y [m]."""
