@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import quarter_space
 from scipy.integrate import quad
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 from scipy.special import k0
 from tolerances import ROUNDING
 
@@ -98,7 +98,7 @@ def order_at_the_edge():
         quarter = 0.5 * np.sin(np.pi * n) / (n**2 - np.sin(0.5 * np.pi * n) ** 2)
         return quarter - 1.0 / np.tan(np.pi * n)
 
-    return 1.0 - brentq(together, 0.6, 0.95)
+    return 1.0 - root_scalar(together, bracket=(0.6, 0.95)).root
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.5])
