@@ -95,7 +95,7 @@ class Edge:
         self.pressed = _pressed(poisson, y[:, None], y[None])
         turn = self.pressed * weight
         held = np.linalg.solve(np.eye(count) - turn @ turn, turn @ self.pressed)
-        self.added = _sunk(y, step) * weight @ held
+        self.added = sunk(y, step) * weight @ held
 
     def factors(self, log_times, x):
         """Factor for y = exp(log_times) and y' = 1, x apart (...)."""
@@ -141,7 +141,7 @@ def _pressed(poisson, z, y):
     return -stress / np.pi
 
 
-def _sunk(y, step):
+def sunk(y, step):
     """Displacement by a line load and its image; the logarithm's own node apart."""
     apart = np.abs(y[:, None] - y[None])
     np.fill_diagonal(apart, 1.0)

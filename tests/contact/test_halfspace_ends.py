@@ -107,7 +107,7 @@ def test_order_of_the_pressure_at_the_edge(poisson):
     assert order_at_the_edge() == pytest.approx(0.226, abs=1e-4)
     edge = quarter_space.Edge(poisson)
     weight = edge.step * edge.distance
-    both = quarter_space._sunk(edge.distance, edge.step)
+    both = quarter_space.sunk(edge.distance, edge.step)
     images = 2.0 * k0(edge.distance[:, None] + edge.distance[None])
     plain = both - images
     for matrix, order in (
