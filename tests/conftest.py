@@ -7,8 +7,8 @@ import jax
 import pytest
 from jaxtyping import install_import_hook
 
-# The tests spend their time in the compiler: less without LLVM's optimiser, the
-# newer emitters, and programs cut in parts for threads that other tests need as well.
+# The tests spend much of their time in the compiler. They do without LLVM's optimiser,
+# the newer emitters, and programs in parts for threads that other tests need as well.
 # `XLA_FLAGS= pytest` tests the programs as users compile them. A flag that XLA does not
 # know ends the process: the later ones only where they were tried.
 FLAGS = "--xla_backend_optimization_level=0"

@@ -7,7 +7,6 @@ import pytest
 import quarter_space
 from scipy.integrate import quad
 from scipy.optimize import root_scalar
-from scipy.special import k0
 from tolerances import ROUNDING
 
 import bearingjax as bj
@@ -83,8 +82,9 @@ def test_far_along_the_edge_it_is_a_wedge(poisson):
     edge = quarter_space.Edge(poisson)
     i, j = 80, 110
     grown = (edge.added[j, j] - edge.added[i, i]) / (edge.step * (i - j))
-    assert 0.5 * grown == pytest.approx(WEDGE - 1.0, rel=0.01)
-    assert edge.added[150, 120] == pytest.approx(edge.added[120, 150], rel=1e-3)
+    # Measured: 1.6e-3, the table's lower end; mutual to 6e-6.
+    assert 0.5 * grown == pytest.approx(WEDGE - 1.0, rel=3e-3)
+    assert edge.added[150, 120] == pytest.approx(edge.added[120, 150], rel=1e-5)
 
 
 def order_at_the_edge():
@@ -105,20 +105,9 @@ def order_at_the_edge():
 def test_order_of_the_pressure_at_the_edge(poisson):
     """Of the quarter-space that the factor comes from, on a half-space, for a wave."""
     assert order_at_the_edge() == pytest.approx(0.226, abs=1e-4)
-    edge = quarter_space.Edge(poisson)
-    weight = edge.step * edge.distance
-    both = quarter_space.sunk(edge.distance, edge.step)
-    images = 2.0 * k0(edge.distance[:, None] + edge.distance[None])
-    plain = both - images
-    for matrix, order in (
-        (plain + both + edge.added, order_at_the_edge()),
-        (plain, 0.5),
-    ):
-        pressed = edge.distance < 0.3
-        some = (matrix * weight)[np.ix_(pressed, pressed)]
-        load = np.linalg.solve(some, np.ones(len(some)))
-        slope = -np.diff(np.log(load)) / edge.step
-        np.testing.assert_allclose(slope[80:130], order, atol=3e-4)
+    found = quarter_space.orders(quarter_space.Edge(poisson))
+    # The ends of the table are too near to the edge, and to the length of the wave.
+    np.testing.assert_allclose(found[80:110], order_at_the_edge(), atol=1.5e-4)
 
 
 def test_order_of_the_pressure_at_a_free_end():
@@ -131,6 +120,7 @@ def test_order_of_the_pressure_at_a_free_end():
         near = (y > 1e-6) & (y < 5e-6)
         pressure = np.asarray(contact.centre_pressure)[near]
         slopes.append(-np.polyfit(np.log(y[near]), np.log(pressure), 1)[0])
+    # Both still fall short of their limits there, as the cells across show.
     assert slopes[0] == pytest.approx(0.5, abs=0.04)
     assert slopes[1] == pytest.approx(0.19, abs=0.03)
 
@@ -154,6 +144,32 @@ def test_mutual_and_as_traced():
 
     size = np.sqrt(product(one, one) * product(other, other))
     assert abs(product(one, other) - product(other, one)) < 1e-12 * size
+
+
+def test_derivatives_by_materials_and_factor():
+    grid = RollerContact(0.015, 0.01, 0.012).grid(2e-4, 9, 12)
+
+    def approach(values, by_place):
+        modulus, poisson, factor = values
+        roller = RollerContact(
+            0.015,
+            0.01,
+            0.012,
+            material=bj.Material(210e9 * modulus, poisson),
+            free_ends=FreeEnds() if by_place else FreeEnds(factor),
+        )
+        return 1e6 * roller.solve(3000.0, grid=grid).approach
+
+    at, step = np.array([1.0, 0.3, 1.5]), 1e-4
+    for by_place in (True, False):
+        value = eqx.filter_jit(lambda v, by=by_place: approach(v, by))
+        slopes = eqx.filter_grad(value)(jnp.asarray(at))
+        for k, slope in enumerate(slopes):
+            move = step * np.eye(3)[k]
+            above, below = (float(value(jnp.asarray(at + m))) for m in (move, -move))
+            assert float(slope) == pytest.approx(
+                (above - below) / (2 * step), rel=1e-6, abs=1e-6
+            )
 
 
 def test_a_soft_roller_with_free_ends():
