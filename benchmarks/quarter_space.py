@@ -40,7 +40,7 @@ Poisson   y/y'   x/sqrt(y y') =              0             1            10      
     0.5   4.95                   2.5741/2.574  2.5467/2.547  2.3758/2.376  2.3645/2.364
     0.5  20.09                   2.4274/2.426  2.4245/2.424  2.3742/2.374  2.3644/2.364
 
-pressure of its edge on a half-space as 1/distance to the power 0.22598  0.22598  0.22598  0.22598  0.22597
+its pressure on a half-space, 1/distance to: 0.22598  0.22598  0.22598  0.22598  0.22597
 
 13 s
 
@@ -239,7 +239,7 @@ def main():
         print(f"{row['poisson']:7g} {row['times']:6.2f}{'':17}{values}")
     near = round((-16.0 - LOWEST) / STEP)
     found = "  ".join(f"{orders(Edge(nu))[near]:.5f}" for nu in POISSON)
-    print(f"\npressure of its edge on a half-space as 1/distance to the power {found}")
+    print(f"\nits pressure on a half-space, 1/distance to: {found}")
     print(f"\n{time.perf_counter() - begin:.0f} s\n\n{machine()}")
     return 0
 
