@@ -3,13 +3,14 @@
 import argparse
 import contextlib
 import gc
+import io
 import os
 import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
 
-SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
+SOLVED, BAD_INPUT, NOT_SOLVED, INTERRUPTED = 0, 2, 3, 130
 """Exit status."""
 
 
@@ -20,10 +21,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: Without the program's name; default: those of the process.
 
     Returns:
-        Exit status: 0 solved, 2 bad input, 3 not solved.
+        Exit status: 0 solved, 2 bad input (or an output that cannot be written), 3 not
+        solved, 130 interrupted.
     """
     options = _parser().parse_args(arguments)
-    _configure_jax(options)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # which may not know "µ"
+            stream.reconfigure(errors="backslashreplace")
     from .scene import SceneError
 
     # Tracing makes many small objects; searching them for cycles takes a seventh of the
@@ -31,17 +35,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     collecting = gc.isenabled()
     gc.disable()
     try:
+        _configure_jax(options)
         return options.run(options)
     except SceneError as error:
         print(f"bearingjax: {error}", file=sys.stderr)
         return BAD_INPUT
+    except KeyboardInterrupt:
+        print("bearingjax: interrupted", file=sys.stderr)
+        return INTERRUPTED
     except BrokenPipeError:
         # The reader of the report has seen enough.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget_output()
         return SOLVED
+    except OSError as error:
+        # Files are dealt with where they are read and written: this is the report.
+        print(f"bearingjax: {error}", file=sys.stderr)
+        _forget_output()
+        return BAD_INPUT
     finally:
         if collecting:
             gc.enable()
+
+
+def _forget_output() -> None:
+    """What standard output still holds goes nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _parser():
@@ -164,23 +182,24 @@ def _configure_jax(options):
 
 def _solve(options) -> int:
     from .numerics import Result
-    from .scene import SceneError, read_scene, report, run_scene, write_json
+    from .scene import read_scene, report, run_scene, write_json
 
     _check_outputs(options)
     scene = read_scene(options.scene, options.set)
     solution = run_scene(scene)
-    result = Result(int(solution.result))
-    try:
-        if options.json is not None:
-            write_json(options.json, scene, solution)
-        if options.plot is not None and result is Result.CONVERGED:
-            from .plot import overview
 
-            figure = overview(scene.element.bearing, solution, title=scene.name)
-            figure.savefig(options.plot, dpi=150)
-    except OSError as error:
-        raise SceneError(f"{error.filename}: cannot be written: {error}") from error
-    if result is not Result.CONVERGED:
+    def draw(path):
+        from .plot import overview
+
+        figure = overview(scene.element.bearing, solution, title=scene.name)
+        figure.savefig(path, dpi=150)
+
+    solved = Result(int(solution.result)) is Result.CONVERGED
+    _write(
+        (options.json, lambda path: write_json(path, scene, solution)),
+        (options.plot, draw if solved else None),
+    )
+    if not solved:
         return _tell_unsolved(scene, solution)
     print(report(scene, solution), flush=True)
     return SOLVED
@@ -208,26 +227,22 @@ def _sweep(options) -> int:
     )
     from .statics.sweep_table import check_writable, write
 
-    for path in (options.json, options.table):
-        _check_writable(path)
     if options.table is not None:
         try:
             check_writable(options.table)
         except (ValueError, ImportError) as error:
             raise SceneError(str(error)) from error
+    _check_outputs(options)
     if options.devices is not None and options.devices < 1:
         raise SceneError(f"--devices is {options.devices}; it must be at least 1")
     begin = time.perf_counter()
     table = read_cases(options.scene, options.set)
     shown = not options.quiet and sys.stderr.isatty()
     solved = run_cases(table, progress=shown)
-    try:
-        if options.table is not None:
-            write(solved, options.table, design_columns(table))
-        if options.json is not None:
-            write_sweep_json(options.json, table, solved)
-    except OSError as error:
-        raise SceneError(f"{error.filename}: cannot be written: {error}") from error
+    _write(
+        (options.table, lambda path: write(solved, path, design_columns(table))),
+        (options.json, lambda path: write_sweep_json(path, table, solved)),
+    )
     print(sweep_report(table, solved, time.perf_counter() - begin), flush=True)
     if solved.converged.all():
         return SOLVED
@@ -239,15 +254,14 @@ def _sweep(options) -> int:
 
 
 def _optimise(options) -> int:
-    import json
-
     from .numerics import SolveError
     from .scene import (
-        SceneError,
         optimisation_as_dict,
         optimisation_report,
         read_optimisation,
         run_optimisation,
+        unsolved_start_as_dict,
+        write_numbers,
     )
 
     _check_outputs(options)
@@ -255,20 +269,26 @@ def _optimise(options) -> int:
     try:
         found = run_optimisation(task, progress=options.progress)
     except SolveError as error:
+        numbers = unsolved_start_as_dict(task, error)
+        _write(
+            (options.json, lambda path: write_numbers(path, numbers)),
+            (options.plot, None),
+        )
         print(f"bearingjax: {error}", file=sys.stderr)
         return NOT_SOLVED
-    try:
-        if options.json is not None:
-            numbers = optimisation_as_dict(task, found)
-            text = json.dumps(numbers, indent=1, allow_nan=False)
-            options.json.write_text(text + "\n", encoding="utf-8")
-        if options.plot is not None and found.converged:
-            from .plot import optimised
 
-            figure = optimised(found, title=task.scene.name)
-            figure.savefig(options.plot, dpi=150)
-    except OSError as error:
-        raise SceneError(f"{error.filename}: cannot be written: {error}") from error
+    def draw(path):
+        from .plot import optimised
+
+        optimised(found, title=task.scene.name).savefig(path, dpi=150)
+
+    _write(
+        (
+            options.json,
+            lambda path: write_numbers(path, optimisation_as_dict(task, found)),
+        ),
+        (options.plot, draw if found.converged else None),
+    )
     if not found.converged:
         print(f"bearingjax: {found.result}: {found.message}", file=sys.stderr)
         return NOT_SOLVED
@@ -288,6 +308,7 @@ def _contact(options) -> int:
         run_refined,
         run_scene,
         write_contact_json,
+        write_json,
     )
 
     _check_outputs(options)
@@ -295,6 +316,10 @@ def _contact(options) -> int:
         bearing = read_scene(options.scene, options.set)
         solution = run_scene(bearing)
         if not solution.converged:
+            _write(
+                (options.json, lambda path: write_json(path, bearing, solution)),
+                (options.plot, None),
+            )
             return _tell_unsolved(bearing, solution)
         scene, cases = run_refined(
             bearing, solution, options.roller, options.raceway, options.free_ends
@@ -308,20 +333,21 @@ def _contact(options) -> int:
         scene = read_contact(options.scene, options.set)
         cases = run_contact(scene)
     lost = [case.solution for case in cases if not case.solution.converged]
-    try:
-        if options.json is not None:
-            write_contact_json(options.json, scene, cases)
-        if options.plot is not None and not lost:
-            from .plot import contact_overview
 
-            figure = contact_overview(
-                [case.solution for case in cases],
-                [case.slices for case in cases],
-                title=scene.name,
-            )
-            figure.savefig(options.plot, dpi=150)
-    except OSError as error:
-        raise SceneError(f"{error.filename}: cannot be written: {error}") from error
+    def draw(path):
+        from .plot import contact_overview
+
+        figure = contact_overview(
+            [case.solution for case in cases],
+            [case.slices for case in cases],
+            title=scene.name,
+        )
+        figure.savefig(path, dpi=150)
+
+    _write(
+        (options.json, lambda path: write_contact_json(path, scene, cases)),
+        (options.plot, None if lost else draw),
+    )
     if len(lost) < len(cases):
         print(contact_report(scene, cases), flush=True)
     for text in contact_warnings(scene, cases):
@@ -347,22 +373,22 @@ def _tell_lost(scene, cases) -> int:
 
 
 def _check_outputs(options) -> None:
-    """Fail before anything is solved if JSON or picture cannot be written."""
-    for path in (options.json, options.plot):
-        _check_writable(path)
-    if options.plot is not None:
-        _check_plot(options.plot)
+    """Fail before anything is solved if outputs cannot be written or hit an input."""
+    from .scene import check_outputs, scene_files
+
+    names = ("json", "plot", "table")
+    outputs = {f"--{name}": getattr(options, name, None) for name in names}
+    if outputs["--plot"] is not None:
+        _check_plot(outputs["--plot"])
+    check_outputs(outputs, scene_files(options.scene, options.set))
 
 
-def _check_writable(path: Path | None) -> None:
-    from .scene import SceneError
+def _write(*outputs) -> None:
+    """Write the outputs of a run; say which of an earlier one were removed."""
+    from .scene import write_outputs
 
-    if path is None:
-        return
-    if not path.absolute().parent.is_dir():
-        raise SceneError(f"{path}: its folder does not exist")
-    if path.is_dir():
-        raise SceneError(f"{path}: is a folder; name a file")
+    for path in write_outputs(outputs):
+        print(f"bearingjax: {path}: of an earlier run, removed", file=sys.stderr)
 
 
 def _check_plot(path: Path) -> None:
@@ -374,5 +400,5 @@ def _check_plot(path: Path) -> None:
         problem = 'pictures need matplotlib: pip install "bearingjax[plot]"'
         raise SceneError(problem) from error
     matplotlib.use("Agg")
-    if path.suffix not in (".png", ".pdf", ".svg"):
+    if path.suffix.lower() not in (".png", ".pdf", ".svg"):
         raise SceneError(f"{path}: a picture ends in .png, .pdf or .svg")

@@ -11,8 +11,13 @@ from .contact_run import run_refined as run_refined
 from .contact_table import ContactScene as ContactScene
 from .contact_table import is_bearing as is_bearing
 from .contact_table import read_contact as read_contact
+from .files import check_outputs as check_outputs
+from .files import scene_files as scene_files
+from .files import write_numbers as write_numbers
+from .files import write_outputs as write_outputs
 from .optimise_report import optimisation_as_dict as optimisation_as_dict
 from .optimise_report import optimisation_report as optimisation_report
+from .optimise_report import unsolved_start_as_dict as unsolved_start_as_dict
 from .optimise_table import Optimisation as Optimisation
 from .optimise_table import read_optimisation as read_optimisation
 from .output import as_dict as as_dict

@@ -1,6 +1,5 @@
 """What is told of a solved contact: a report for people, JSON in SI for programs."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ from ..contact.halfspace.pressure import message
 from ..contact.slices import Compared
 from ..numerics.result import Result
 from .contact_table import ContactScene
+from .files import write_numbers
 
 _RULE = "-" * 78
 
@@ -112,8 +112,7 @@ def write_contact_json(
     Raises:
         OSError: If the file cannot be written.
     """
-    text = json.dumps(contact_as_dict(scene, cases), indent=1, allow_nan=False)
-    Path(path).write_text(text + "\n", encoding="utf-8")
+    write_numbers(path, contact_as_dict(scene, cases))
 
 
 def _status(solution) -> dict[str, Any]:

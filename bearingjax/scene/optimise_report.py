@@ -82,6 +82,26 @@ def optimisation_as_dict(task: Optimisation, found: Optimised) -> dict[str, Any]
     }
 
 
+def unsolved_start_as_dict(task: Optimisation, error: Exception) -> dict[str, Any]:
+    """What is told of a task whose first design does not solve.
+
+    Args:
+        task: What was asked.
+        error: Why not.
+
+    Returns:
+        result ("start_not_solved"), message, warnings and version.
+    """
+    from .. import __version__
+
+    return {
+        "result": "start_not_solved",
+        "message": str(error),
+        "warnings": list(task.scene.warnings),
+        "version": __version__,
+    }
+
+
 def _numbers(found):
     before, after = found.before, found.after
     variables = [

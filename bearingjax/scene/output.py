@@ -1,6 +1,5 @@
 """What other programs read: a solution as JSON, in SI."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +7,7 @@ import numpy as np
 
 from ..numerics.result import Result
 from ..statics.solution import BallSolution, Solution, message, warnings
+from .files import write_numbers
 from .read import Scene
 
 OF_ROLLERS = (
@@ -118,5 +118,4 @@ def write_json(path: str | Path, scene: Scene, solution: Solution) -> None:
     Raises:
         OSError: If the file cannot be written.
     """
-    text = json.dumps(as_dict(scene, solution), indent=1, allow_nan=False)
-    Path(path).write_text(text + "\n", encoding="utf-8")
+    write_numbers(path, as_dict(scene, solution))

@@ -1,6 +1,5 @@
 """Running the cases of a scene, and what is told of them."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +8,7 @@ import numpy as np
 from ..statics.sweep import Sweep, sweep
 from ..statics.sweep_table import columns
 from .cases_table import CaseTable
+from .files import write_numbers
 from .quantity import SceneError
 
 OUTPUTS = (
@@ -128,5 +128,4 @@ def write_sweep_json(path: str | Path, table: CaseTable, solved: Sweep) -> None:
     Raises:
         OSError: If the file cannot be written.
     """
-    text = json.dumps(sweep_as_dict(table, solved), indent=1, allow_nan=False)
-    Path(path).write_text(text + "\n", encoding="utf-8")
+    write_numbers(path, sweep_as_dict(table, solved))

@@ -86,7 +86,7 @@ def check_writable(path: Path) -> None:
         ValueError: For an ending other than .csv and .parquet.
         ImportError: Without pyarrow.
     """
-    if path.suffix not in ENDINGS:
+    if path.suffix.lower() not in ENDINGS:
         raise ValueError(f"{path}: a table ends in {' or '.join(ENDINGS)}")
     if importlib.util.find_spec("pyarrow") is None:
         raise ImportError('tables need pyarrow: pip install "bearingjax[table]"')
@@ -115,7 +115,7 @@ def write(
     import pyarrow.parquet
 
     table = pyarrow.table(columns(sweep, beside))
-    if path.suffix == ".csv":
+    if path.suffix.lower() == ".csv":
         pyarrow.csv.write_csv(table, path)
     else:
         pyarrow.parquet.write_table(table, path)

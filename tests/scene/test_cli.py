@@ -130,12 +130,14 @@ def test_setting_changes_the_load(run, tmp_path):
 
 
 def test_pulled_apart(run, tmp_path):
-    out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    out, picture = tmp_path / "out.json", tmp_path / "out.PNG"
+    picture.write_text("of an earlier run", encoding="utf-8")
     done = run(*PULLED, "--json", out, "--plot", picture)
     assert done.status == 3
     assert done.out == ""
-    assert done.err.startswith("bearingjax: no_load_path: No load path in uz of the")
-    assert done.err.count("\n") == 1
+    said, why = done.err.splitlines()
+    assert said == f"bearingjax: {picture}: of an earlier run, removed"
+    assert why.startswith("bearingjax: no_load_path: No load path in uz of the")
     numbers = read(out)
     assert set(numbers) == WORDS
     assert numbers["result"] == "no_load_path"
@@ -220,6 +222,23 @@ def test_reader_that_left(monkeypatch):
         # What is left in the buffer goes nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), out.fileno())
         out.close()
+
+
+@pytest.mark.parametrize("what", ["the report", "the numbers"])
+def test_full_disk(run, monkeypatch, what):
+    """A full disk behind standard output, and behind a file."""
+    if not os.path.exists("/dev/full"):
+        pytest.skip("no device that is always full")
+    if what == "the numbers":
+        done = run(*TAPER, "--json", "/dev/full")
+        problem = "/dev/full: cannot be written: No space left on device"
+        assert done == (2, "", f"bearingjax: {problem}\n")
+        return
+    monkeypatch.setattr(cli, "_configure_jax", lambda options: None)
+    with open("/dev/full", "w", encoding="utf-8") as out:
+        with monkeypatch.context() as patch:
+            patch.setattr(sys, "stdout", out)
+            assert cli.main(TAPER) == 2
 
 
 @pytest.mark.usefixtures("no_solve")

@@ -240,6 +240,7 @@ def test_solved(run, tmp_path):
 )
 def test_not_solved(run, tmp_path, settings, label):
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    picture.write_text("of an earlier run", encoding="utf-8")
     changes = [word for text in settings for word in ("--set", text)]
     done = run(*ONE, *changes, "--json", out, "--plot", picture)
     assert done.status == 3 and done.out == ""

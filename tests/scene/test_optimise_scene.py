@@ -92,11 +92,15 @@ def test_command_finds_the_clearance_of_a_stiffness(run, scene, tmp_path):
     assert numbers["result"] == "step_limit" and "variables" not in numbers
 
 
-def test_start_without_a_solution(run, scene):
+def test_start_without_a_solution(run, scene, tmp_path):
     pulled = '"operating.load.Fz=1 kN"'
     setting = ("--set", pulled.strip('"'), "--set", 'operating.free=["uy", "uz"]')
-    done = run("optimise", scene(GOOD), *setting)
-    assert done.status == 3 and done.out == ""
+    out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    picture.write_text("of an earlier run", encoding="utf-8")
+    done = run("optimise", scene(GOOD), *setting, "--json", out, "--plot", picture)
+    assert done.status == 3 and done.out == "" and not picture.exists()
+    numbers = json.loads(out.read_text())
+    assert numbers["result"] == "start_not_solved" and "case 0" in numbers["message"]
     assert "starting design fails: case 0: no_load_path: No load path in uz" in done.err
 
 

@@ -1,0 +1,174 @@
+"""Files that a command writes: checked before, made beside their place, then moved.
+
+Whoever reads an output file finds all of the old one or all of the new one.
+"""
+
+import contextlib
+import json
+import math
+import os
+import shutil
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from .quantity import SceneError
+from .read import find_scene, parse_scene
+
+Writer = Callable[[Path], None]
+"""Writes a file at a path."""
+
+_STREAMS = ("/dev/std", "/dev/fd/", "/proc/self/fd/")
+
+
+def check_outputs(
+    outputs: Mapping[str, Path | None], inputs: Iterable[Path] = ()
+) -> None:
+    """Raise unless all outputs can be written and none of them is lost by it.
+
+    Args:
+        outputs: Places by the option that names them; `None` is none.
+        inputs: Files that are read.
+
+    Raises:
+        SceneError: For a folder that does not exist or cannot be written, a folder or
+            a write-protected file in place of a file, an input, or one place twice.
+    """
+    inputs = list(inputs)
+    seen: list[tuple[str, Path]] = []
+    for option, path in outputs.items():
+        if path is None or _is_stream(path):
+            continue
+        target = _target(path)
+        if not target.parent.is_dir():
+            raise SceneError(f"{path}: its folder does not exist")
+        if target.is_dir():
+            raise SceneError(f"{path}: is a folder; name a file")
+        for given in inputs:
+            if _same(target, given):
+                problem = f"is read as {given.name} here; {option} would overwrite it"
+                raise SceneError(f"{path}: {problem}; name another file")
+        for other, place in seen:
+            if _same(target, place):
+                problem = f"is named by {other} and by {option}; name two files"
+                raise SceneError(f"{path}: {problem}")
+        if target.exists() and not os.access(target, os.W_OK):
+            raise SceneError(f"{path}: is write-protected; name another file")
+        if not os.access(target.parent, os.W_OK | os.X_OK):
+            raise SceneError(f"{path}: its folder is write-protected")
+        seen.append((option, target))
+
+
+def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> list[Path]:
+    """Write files beside their places, and move them there once all are complete.
+
+    A file of an earlier run at a place for which this run has nothing is removed: it
+    would be taken for this run's.
+
+    Args:
+        outputs: Place (`None`: not wanted) and what writes it (`None`: nothing to
+            write).
+
+    Returns:
+        What was removed.
+
+    Raises:
+        SceneError: If a file cannot be written; then no file has changed.
+    """
+    moves: list[tuple[Path, Path, Path]] = []
+    stale = []
+    try:
+        for path, writer in outputs:
+            if path is None:
+                continue
+            if writer is None:
+                stale += [path] if path.is_file() else []
+                continue
+            with _naming(path):
+                if _is_stream(path):
+                    writer(path)
+                    continue
+                target = _target(path)
+                # The ending tells the format.
+                name = f".bearingjax-{os.getpid()}-{len(moves)}{target.suffix.lower()}"
+                beside = target.with_name(name)
+                moves.append((path, beside, target))
+                writer(beside)
+                if target.exists():
+                    shutil.copymode(target, beside)
+        for path, beside, target in moves:
+            with _naming(path):
+                os.replace(beside, target)
+    finally:
+        for _, beside, _ in moves:
+            beside.unlink(missing_ok=True)
+    for path in stale:
+        with _naming(path):
+            path.unlink()
+    return stale
+
+
+@contextlib.contextmanager
+def _naming(path: Path):
+    """Names the file, which the error of a full disk does not."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise SceneError(f"{path}: cannot be written: {reason}") from error
+
+
+def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
+    """Files that a scene is read from: itself, and the list of its cases.
+
+    Args:
+        source, settings: As in `read_scene`.
+
+    Raises:
+        SceneError: If there is no such scene, or it cannot be read.
+    """
+    path = find_scene(source)
+    cases = parse_scene(path, settings).get("cases")
+    name = cases.get("file") if isinstance(cases, dict) else None
+    return [path, path.parent / name] if isinstance(name, str) else [path]
+
+
+def write_numbers(path: str | Path, numbers: Mapping[str, Any]) -> None:
+    """Write plain numbers and lists as JSON; what is not finite is null.
+
+    Raises:
+        OSError: If the file cannot be written.
+    """
+    text = json.dumps(_finite(numbers), indent=1, allow_nan=False)
+    Path(path).write_text(text + "\n", encoding="utf-8")
+
+
+def _finite(value):
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {key: _finite(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(inner) for inner in value]
+    return value
+
+
+def _target(path: Path) -> Path:
+    """Where a link leads, so that the link stays."""
+    return Path(os.path.realpath(path))
+
+
+def _is_stream(path: Path) -> bool:
+    """Standard output, a pipe: written straight, nothing can be moved there."""
+    whole = Path(os.path.abspath(path))
+    return str(whole).startswith(_STREAMS) or (
+        whole.exists() and not whole.is_file() and not whole.is_dir()
+    )
+
+
+def _same(one: Path, other: Path) -> bool:
+    """One file, by name or by a hard link."""
+    try:
+        return os.path.samefile(one, other)
+    except OSError:
+        return _target(one) == _target(other)

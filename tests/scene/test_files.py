@@ -1,0 +1,163 @@
+"""Output files: nothing that is read is lost, nothing old is taken for new."""
+
+import errno
+import json
+import os
+
+import pytest
+
+import bearingjax as bj
+from bearingjax.scene import SceneError, check_outputs, write_numbers, write_outputs
+
+LIST = "operating.load.Fy [kN]\n-1\n"
+
+
+@pytest.fixture
+def own(tmp_path, monkeypatch):
+    """A scene with a list of cases in the working folder, and nothing is solved."""
+
+    def refuse(*_, **__):
+        raise AssertionError("solved")
+
+    for name in ("run_scene", "run_cases", "run_contact", "run_optimisation"):
+        monkeypatch.setattr(bj.scene, name, refuse)
+    shipped = bj.scene.shipped_scenes()["cylindrical_rig"].read_text(encoding="utf-8")
+    path = tmp_path / "self.toml"
+    path.write_text(f'{shipped}\n[cases]\nfile = "list.csv"\n', encoding="utf-8")
+    (tmp_path / "list.csv").write_text(LIST, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return path
+
+
+def text(content):
+    return lambda path: path.write_text(content, encoding="utf-8")
+
+
+def fails(code):
+    def write(path):
+        path.write_text("half", encoding="utf-8")
+        raise OSError(code, os.strerror(code))
+
+    return write
+
+
+@pytest.mark.parametrize("command", ["solve", "sweep", "optimise", "contact"])
+def test_the_scene_is_not_overwritten(run, own, command):
+    before = own.read_bytes()
+    done = run(command, "self.toml", "--json", own)
+    problem = "is read as self.toml here; --json would overwrite it; name another file"
+    assert done == (2, "", f"bearingjax: {own}: {problem}\n")
+    assert own.read_bytes() == before
+
+
+def test_nor_by_a_link_or_from_another_folder(run, own, tmp_path):
+    (tmp_path / "deep").mkdir()
+    os.link(own, tmp_path / "hard.toml")
+    (tmp_path / "soft.json").symlink_to(own)
+    for name in ("hard.toml", "soft.json", "deep/../self.toml"):
+        done = run("solve", "self.toml", "--json", name)
+        assert done.status == 2 and "is read as self.toml here" in done.err
+    assert own.read_text(encoding="utf-8").endswith('file = "list.csv"\n')
+
+
+def test_nor_a_shipped_scene(run, own):
+    path = bj.scene.shipped_scenes()["tapered"]
+    done = run("solve", "tapered", "--json", path)
+    assert done.status == 2 and "is read as tapered.toml here" in done.err
+
+
+def test_nor_the_list_of_cases(run, own, tmp_path):
+    done = run("sweep", "self.toml", "--table", "list.csv")
+    assert done.status == 2 and done.err.count("\n") == 1
+    assert "list.csv: is read as list.csv here; --table would overwrite" in done.err
+    assert (tmp_path / "list.csv").read_text(encoding="utf-8") == LIST
+
+
+@pytest.mark.parametrize("place", ["x.png", "./x.png", "link.png"])
+def test_no_place_twice(run, own, tmp_path, place):
+    (tmp_path / "link.png").symlink_to("x.png")
+    done = run("solve", "self.toml", "--json", "x.png", "--plot", place)
+    problem = "is named by --json and by --plot; name two files"
+    assert done.status == 2 and done.err.count("\n") == 1
+    assert done.err.endswith(f"{place[-5:]}: {problem}\n")
+
+
+def test_table_and_json_at_one_place(run, own):
+    done = run("sweep", "self.toml", "--json", "x.csv", "--table", "x.csv")
+    assert done.status == 2 and "x.csv: is named by" in done.err
+
+
+def test_write_protected(own, tmp_path, monkeypatch):
+    """As for somebody who is not the superuser, who may write anywhere."""
+    path = tmp_path / "x.json"
+    path.write_text("old", encoding="utf-8")
+    monkeypatch.setattr(os, "access", lambda place, mode: not place.is_file())
+    with pytest.raises(SceneError, match=r"x\.json: is write-protected"):
+        check_outputs({"--json": path})
+    monkeypatch.setattr(os, "access", lambda place, mode: not place.is_dir())
+    with pytest.raises(SceneError, match=r"x\.json: its folder is write-protected"):
+        check_outputs({"--json": path})
+
+
+def test_files_come_together_or_not_at_all(tmp_path):
+    one, two = tmp_path / "one.json", tmp_path / "two.png"
+    one.write_text("old", encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        write_outputs([(one, text("new")), (two, fails(errno.ENOSPC))])
+    assert str(caught.value) == f"{two}: cannot be written: No space left on device"
+    assert one.read_text(encoding="utf-8") == "old"
+    assert os.listdir(tmp_path) == ["one.json"]
+    assert write_outputs([(one, text("new")), (two, text("2")), (None, None)]) == []
+    assert one.read_text(encoding="utf-8") == "new"
+    assert sorted(os.listdir(tmp_path)) == ["one.json", "two.png"]
+
+
+def test_an_interrupted_writer_leaves_nothing(tmp_path):
+    def stopped(path):
+        path.write_text("half", encoding="utf-8")
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_outputs([(tmp_path / "x.json", stopped)])
+    assert os.listdir(tmp_path) == []
+
+
+def test_what_this_run_does_not_have_is_removed(tmp_path):
+    stale = tmp_path / "old.png"
+    stale.write_text("old", encoding="utf-8")
+    assert write_outputs([(stale, None), (tmp_path / "none.png", None)]) == [stale]
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_link_stays_and_so_do_the_rights(tmp_path):
+    (tmp_path / "far").mkdir()
+    target, link = tmp_path / "far" / "x.json", tmp_path / "x.json"
+    target.write_text("old", encoding="utf-8")
+    target.chmod(0o640)
+    link.symlink_to(target)
+    write_outputs([(link, text("new"))])
+    assert link.is_symlink() and target.read_text(encoding="utf-8") == "new"
+    assert target.stat().st_mode & 0o777 == 0o640
+
+
+def test_a_device_is_written_straight(tmp_path):
+    null = type(tmp_path)(os.devnull)
+    check_outputs({"--json": null, "--plot": null})
+    write_outputs([(null, text("x"))])
+    assert not null.is_file()
+
+
+def test_numbers_that_are_not_finite_are_null(tmp_path):
+    path = tmp_path / "x.json"
+    write_numbers(path, {"a": [1.0, float("nan")], "b": {"c": float("inf"), "d": "x"}})
+    numbers = json.loads(path.read_text(encoding="utf-8"))
+    assert numbers == {"a": [1.0, None], "b": {"c": None, "d": "x"}}
+
+
+@pytest.mark.parametrize("command", ["solve", "sweep", "optimise", "contact"])
+def test_interrupted(run, own, monkeypatch, command):
+    def stop(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(bj.scene, "scene_files", stop)
+    assert run(command, "self.toml") == (130, "", "bearingjax: interrupted\n")
