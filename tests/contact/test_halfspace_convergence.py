@@ -184,6 +184,16 @@ def test_float32(profile, moment):
     assert float(found.moment) == pytest.approx(float(double.moment), abs=3e-4)
 
 
+def test_float32_of_a_given_approach():
+    """Nothing is sought then but pressure: no rigid motion, no load to be met."""
+    roller = RollerContact(0.015, 0.010, 0.010, roller_profile=bj.CircularCrown(3.0))
+    grid = roller.grid(0.2e-3, 9, 12)
+    double = roller.solve(approach=8e-6, grid=grid)
+    found = single(roller).solve(approach=8e-6, grid=single(grid))
+    assert found.load.dtype == jnp.float32
+    assert float(found.load) == pytest.approx(float(double.load), rel=1e-4)
+
+
 def crowned(v):
     """Roller and raceway profiles by eight factors: arcs and a logarithm."""
     return {

@@ -238,19 +238,21 @@ def test_with_and_without_preconditioner(taper, paper, preconditioned):
     ],
 )
 def test_derivatives(given):
-    """With respect to what is given, profile, length and modulus; graded cells."""
+    """By what is given, sizes, profile and modulus; graded cells; three raceways."""
 
-    def outcome(v):
+    def outcome(v, radius):
         kept = {k: x * f for (k, x), f in zip(given.items(), v[:2], strict=True)}
         roller = RollerContact(
             0.012 * v[2],
-            0.010,
-            0.010,
-            roller_profile=bj.CircularCrown(2.0 * v[3]),
-            raceway_radius=-0.05,
-            material=bj.Material(elastic_modulus=210e9 * v[4]),
+            0.010 * v[3],
+            0.011 * v[3],
+            roller_profile=bj.CircularCrown(2.0 * v[4]),
+            raceway_radius=radius + 1e-2 * v[5],
+            raceway_half_angle=0.05 * v[6],
+            material=bj.Material(elastic_modulus=210e9 * v[7]),
         )
-        solution = roller.solve(**kept, grid=roller.grid(0.3e-3, 15, 20), throw=False)
+        grid = roller.grid(0.3e-3 * v[8], 15, 20)
+        solution = roller.solve(**kept, grid=grid, throw=False)
         p = solution.pressure
         return jnp.stack(
             [
@@ -262,21 +264,43 @@ def test_derivatives(given):
             ]
         )
 
-    point = jnp.ones((5,))
     function = jax.jit(outcome)
-    reverse = np.asarray(jax.jit(jax.jacrev(outcome))(point))
-    forward = np.asarray(jax.jit(jax.jacfwd(outcome))(point))
-    size = np.abs(reverse).max(axis=1, keepdims=True)
-    np.testing.assert_allclose(forward / size, reverse / size, atol=SOLVER)
-    # V-shaped: the least error over the steps, where no cell comes or goes.
-    least = np.full(reverse.shape, np.inf)
-    for step in (1e-3, 1e-4, 1e-5, 1e-6):
-        rows = [
-            (function(point + step * e) - function(point - step * e)) / (2 * step)
-            for e in np.eye(5)
-        ]
-        least = np.minimum(least, np.abs(np.stack(rows, 1) - reverse) / size)
-    assert least.max() < DIFFERENCE
+    backward, onward = jax.jit(jax.jacrev(outcome)), jax.jit(jax.jacfwd(outcome))
+    point = jnp.ones((9,))
+    # Plane, convex, hollow.
+    for radius in jnp.array([jnp.inf, 0.03, -0.06]):
+        reverse = np.asarray(backward(point, radius))
+        size = np.abs(reverse).max(axis=1, keepdims=True)
+        forward = np.asarray(onward(point, radius))
+        np.testing.assert_allclose(forward / size, reverse / size, atol=SOLVER)
+        # V-shaped: the least error over the steps, where no cell comes or goes.
+        least = np.full(reverse.shape, np.inf)
+        for step in (1e-3, 1e-4, 1e-5, 1e-6):
+            rows = [
+                (
+                    function(point + step * e, radius)
+                    - function(point - step * e, radius)
+                )
+                / (2 * step)
+                for e in np.eye(9)
+            ]
+            error = np.abs(np.stack(rows, 1) - reverse) / size
+            least = np.minimum(least, error)
+        assert least.max() < DIFFERENCE
+        # Nothing comes of another plane.
+        assert (reverse[0, 5] == 0) == (radius == jnp.inf)
+
+
+def test_a_part_that_is_not_finite_is_no_derivative(taper):
+    """NaN among what a derivative is asked for is not taken for a solved one."""
+    grid = taper.grid(HALF_WIDTH, 9, 12)
+    matrix, gap = influence(grid, taper.modulus), taper.gap(grid)
+
+    def peak(gap):
+        return solve_pressure(matrix, gap, load=3e3, throw=False).peak_pressure
+
+    _, change = jax.jvp(peak, (gap,), (gap.at[0, 3].set(jnp.nan),))
+    assert np.isnan(change)
 
 
 def test_what_cannot_be_carried_and_what_is_nothing(taper):

@@ -326,5 +326,8 @@ def _linear(problem, touching, wanted, carried):
     # Round-off of what `start` displaces bounds what can be had.
     scale = jnp.sum(area * jnp.abs(start * problem.influence(start)))
     begin = (start, rest, steepest, fall, fall + scale, jnp.asarray(0))
-    pressure = lax.while_loop(unfinished, step, begin)[0]
+    pressure, *_, fall, first, _ = lax.while_loop(unfinished, step, begin)
+    # A part that is NaN ends the loop at once, as if there were nothing to do.
+    settled = fall <= jnp.finfo(fall.dtype).eps * first
+    pressure = jnp.where(settled, pressure, jnp.nan)
     return pressure, rest_of(pressure)[1]

@@ -68,7 +68,9 @@ class Problem(eqx.Module):
             fields.append(
                 jnp.broadcast_to((self.grid.y / self.lever)[None], self.gap.shape)
             )
-        return jnp.stack(fields) if fields else jnp.zeros((0, *self.gap.shape))
+        if not fields:
+            return jnp.zeros((0, *self.gap.shape), self.gap.dtype)
+        return jnp.stack(fields)
 
     @property
     def weighted(self) -> Float[Array, "k m n"]:
@@ -83,7 +85,7 @@ class Problem(eqx.Module):
             goals.append(self.load)
         if self.moment is not None:
             goals.append(self.moment / self.lever)
-        return jnp.stack(goals) if goals else jnp.zeros((0,))
+        return jnp.stack(goals) if goals else jnp.zeros((0,), self.gap.dtype)
 
     def motion(self, coefficients: Float[Array, " k"]) -> tuple[Scalar, Scalar]:
         """Approach [m] and tilt [rad] from those of `modes` [m]."""

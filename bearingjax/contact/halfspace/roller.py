@@ -151,11 +151,12 @@ class RollerContact(eqx.Module):
 
     def relative_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
         """Radius of relative curvature 1/(1/roller + 1/raceway) at y [m]."""
-        return 1.0 / (1.0 / self.roller_radius(y) + 1.0 / self._raceway_radius(y))
+        return 1.0 / (1.0 / self.roller_radius(y) + self._raceway_curvature(y))
 
-    def _raceway_radius(self, y):
+    def _raceway_curvature(self, y):
+        """One over the radius, so that a plane is a number like any other."""
         wider = y * jnp.tan(self.raceway_half_angle)
-        return self.raceway_radius + jnp.sign(self.raceway_radius) * wider
+        return 1.0 / (self.raceway_radius + jnp.sign(self.raceway_radius) * wider)
 
     def drop(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
         """Material removed from both bodies at y [m]."""
@@ -178,8 +179,8 @@ class RollerContact(eqx.Module):
             nodes = jnp.asarray(_NODES, y.dtype)[:, None]
             weights = jnp.asarray(0.5 * _WEIGHTS, y.dtype)
             drop = weights @ self.drop(y[None] + nodes * grid.half_y[None])
-        roller = _section(x, self.roller_radius(y), self.angle)
-        raceway = _section(x, self._raceway_radius(y), self.raceway_half_angle)
+        roller = _section(x, 1.0 / self.roller_radius(y), self.angle)
+        raceway = _section(x, self._raceway_curvature(y), self.raceway_half_angle)
         return roller + raceway + drop[None]
 
     def grid(
@@ -296,18 +297,22 @@ class RollerContact(eqx.Module):
         return min(MARGIN * inside, most)
 
 
-def _section(x, radius, angle):
-    """Height of a cone's sections normal to its generatrix (m, n) [m]."""
-    x, radius = x[:, None], radius[None]
-    rest = 1.0 - x * x * jnp.cos(2.0 * angle) / (radius * jnp.cos(angle)) ** 2
-    return x * x / (radius * (1.0 + jnp.sqrt(rest)))
+def _section(x, curvature, angle):
+    """Height of a cone's sections normal to its generatrix (m, n) [m].
+
+    A plane is one of curvature zero: with its radius, which is infinite, derivatives
+    would be NaN.
+    """
+    x, curvature = x[:, None], curvature[None]
+    rest = 1.0 - (x * curvature / jnp.cos(angle)) ** 2 * jnp.cos(2.0 * angle)
+    return x * x * curvature / (1.0 + jnp.sqrt(rest))
 
 
 def _reach(contact, y):
     """Half the width of the roller's section at y [m]."""
     angle = contact.angle
     roller = contact.roller_radius(y) * jnp.cos(angle) / jnp.sqrt(jnp.cos(2.0 * angle))
-    return jnp.minimum(roller, jnp.abs(contact._raceway_radius(y)))
+    return jnp.minimum(roller, 1.0 / jnp.abs(contact._raceway_curvature(y)))
 
 
 def _widest(contact, grid):
