@@ -5,10 +5,14 @@ import contextlib
 import gc
 import io
 import os
+import shlex
+import signal
 import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+
+import numpy as np
 
 SOLVED, BAD_INPUT, NOT_SOLVED, INTERRUPTED = 0, 2, 3, 130
 """Exit status."""
@@ -25,6 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         solved, 130 interrupted.
     """
     options = _parser().parse_args(arguments)
+    options.given = list(sys.argv[1:] if arguments is None else arguments)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # which may not know "µ"
             stream.reconfigure(errors="backslashreplace")
@@ -86,7 +91,7 @@ def _parser():
         help="many cases: loads, displacements, speeds, designs",
         description="Solve the [cases] of a scene file.",
         epilog="Exit status: 0 all solved, 2 bad input, 3 some not solved (the table"
-        " holds a result for each case).",
+        " holds a result for each case), 130 interrupted (what is solved is kept).",
     )
     sweep.set_defaults(run=_sweep)
     _add_common(sweep)
@@ -95,6 +100,11 @@ def _parser():
         metavar="OUT",
         type=Path,
         help="write a row per case (.csv, .parquet)",
+    )
+    sweep.add_argument(
+        "--resume",
+        action="store_true",
+        help="solve only the cases that the table lacks, after an interruption",
     )
     sweep.add_argument("--quiet", action="store_true", help="no progress bar")
     sweep.add_argument(
@@ -217,10 +227,13 @@ def _tell_unsolved(scene, solution) -> int:
 
 
 def _sweep(options) -> int:
+    from .numerics import Result
     from .scene import (
+        Interrupt,
         SceneError,
         design_columns,
         read_cases,
+        resume_cases,
         run_cases,
         sweep_report,
         write_sweep_json,
@@ -235,15 +248,26 @@ def _sweep(options) -> int:
     _check_outputs(options)
     if options.devices is not None and options.devices < 1:
         raise SceneError(f"--devices is {options.devices}; it must be at least 1")
+    if options.resume and options.table is None:
+        raise SceneError("--resume takes up a table; name it with --table")
     begin = time.perf_counter()
     table = read_cases(options.scene, options.set)
     shown = not options.quiet and sys.stderr.isatty()
-    solved = run_cases(table, progress=shown)
+    with Interrupt() as interrupt:
+        done = options.table if options.resume else None
+        if done is not None and done.exists():
+            solved = resume_cases(table, done, shown, interrupt)
+        else:
+            solved = run_cases(table, shown, interrupt)
     _write(
         (options.table, lambda path: write(solved, path, design_columns(table))),
         (options.json, lambda path: write_sweep_json(path, table, solved)),
     )
     print(sweep_report(table, solved, time.perf_counter() - begin), flush=True)
+    left = int((np.asarray(solved.result) == Result.NOT_RUN).sum())
+    if left or interrupt.number is not None:
+        _tell_interrupted(options, left, solved.cases.count)
+        return 128 + (interrupt.number or signal.SIGINT)
     if solved.converged.all():
         return SOLVED
     lost = int((~solved.converged).sum())
@@ -251,6 +275,18 @@ def _sweep(options) -> int:
         f"bearingjax: {lost} of {solved.cases.count} cases not solved", file=sys.stderr
     )
     return NOT_SOLVED
+
+
+def _tell_interrupted(options, left: int, count: int) -> None:
+    """Say how an interrupted sweep goes on."""
+    words = f"interrupted: {left} of {count} cases not run"
+    if left and options.table is not None:
+        given = [word for word in options.given if word != "--resume"]
+        again = shlex.join(["bearingjax", *given, "--resume"])
+        words += f"; go on with: {again}"
+    elif left:
+        words += "; with --table what is solved is kept, and --resume goes on from it"
+    print(f"bearingjax: {words}", file=sys.stderr)
 
 
 def _optimise(options) -> int:

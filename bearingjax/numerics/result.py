@@ -16,6 +16,8 @@ class Result(enum.IntEnum):
     SADDLE = 2
     NO_LOAD_PATH = 3
     NON_FINITE = 4
+    NOT_RUN = 5
+    """A case of a sweep that was ended before its turn; no solver returns it."""
 
     @property
     def label(self) -> str:

@@ -15,6 +15,7 @@ from .files import check_outputs as check_outputs
 from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers
 from .files import write_outputs as write_outputs
+from .interrupt import Interrupt as Interrupt
 from .optimise_report import optimisation_as_dict as optimisation_as_dict
 from .optimise_report import optimisation_report as optimisation_report
 from .optimise_report import unsolved_start_as_dict as unsolved_start_as_dict
@@ -28,6 +29,7 @@ from .read import load_bearing as load_bearing
 from .read import read_scene as read_scene
 from .read import shipped_scenes as shipped_scenes
 from .report import report as report
+from .resume import resume_cases as resume_cases
 from .run import run_optimisation as run_optimisation
 from .run import run_scene as run_scene
 from .sweep_run import design_columns as design_columns

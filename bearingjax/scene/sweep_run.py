@@ -1,5 +1,6 @@
 """Running the cases of a scene, and what is told of them."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -29,12 +30,15 @@ _SHOWN = {
 }
 
 
-def run_cases(table: CaseTable, progress: bool = False) -> Sweep:
+def run_cases(
+    table: CaseTable, progress: bool = False, stop: Callable[[], bool] | None = None
+) -> Sweep:
     """Solve the cases of a scene.
 
     Args:
         table: From `read_cases`.
         progress: Show a bar.
+        stop: As in `sweep`.
 
     Returns:
         Sweep with a result code for each case.
@@ -54,6 +58,7 @@ def run_cases(table: CaseTable, progress: bool = False) -> Sweep:
             tolerance=scene.tolerance,
             neighbours=table.neighbours,
             progress=progress,
+            stop=stop,
         )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error

@@ -116,6 +116,7 @@ def sweep(
     chunk: int | None = None,
     progress: bool = False,
     devices: Sequence[Any] | None = None,
+    stop: Callable[[], bool] | None = None,
 ) -> Sweep:
     """Solve many cases. One bad case never spoils another: each has its own code.
 
@@ -135,6 +136,9 @@ def sweep(
         devices: Over which the cases are spread; default all of `jax.devices()`, of
             all processes. (`jax.config.update("jax_num_cpu_devices", 2)` before all
             else makes two of a processor with two cores.)
+        stop: Asked between blocks; once it says true no other is begun, and cases left
+            have the code `NOT_RUN`. (A KeyboardInterrupt loses what was solved; a
+            signal handler that `stop` reads does not.) In all processes alike.
 
     Returns:
         Sweep, whole in every process.
@@ -143,7 +147,7 @@ def sweep(
         ValueError: For unknown names, designs that do not fit the cases, outputs that
             would not fit memory, and as `solve_load`.
 
-    Fails: as `solve_load`, in `Sweep.result`, case by case.
+    Fails: as `solve_load`, in `Sweep.result`, case by case; `NOT_RUN` after `stop`.
     """
     every = cases if isinstance(cases, Cases) else Cases(cases)
     if fixed_ring not in RINGS:
@@ -159,7 +163,7 @@ def sweep(
     options = Options(free, fixed_ring, points, tolerance, keep)
     places = np.array(jax.devices() if devices is None else list(devices))
     program = Program(element, options, size, places)
-    found = program.run(every, max_steps, neighbours, progress)
+    found = program.run(every, max_steps, neighbours, progress, stop)
     if neighbours:
         codes = found["result"]
         lost = np.flatnonzero((codes == Result.STEP_LIMIT) | (codes == Result.SADDLE))

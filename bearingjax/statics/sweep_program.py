@@ -1,6 +1,7 @@
 """Blocks of cases over devices: the compiled program of a sweep."""
 
 import math
+import time
 from typing import Any
 
 import equinox as eqx
@@ -12,6 +13,7 @@ from jax.experimental import multihost_utils
 from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 
+from ..numerics.result import Result
 from .cases import solve_case
 
 BLOCK = 64
@@ -19,6 +21,9 @@ BLOCK = 64
 
 LARGEST = 4 * 2**30
 """Bytes that the outputs of a sweep may take."""
+
+_PAUSE = 0.005
+"""Seconds between two looks at a block under way."""
 
 ALWAYS = ("result", "unrestrained")
 """Outputs that every sweep has."""
@@ -73,17 +78,20 @@ class Program:
         self.element, self.options, self.chunk = element, options, chunk
         self.mesh = Mesh(devices, ("case",))
 
-    def run(self, cases, max_steps, neighbours, progress):
-        """All outputs of all cases, NumPy arrays by name."""
+    def run(self, cases, max_steps, neighbours, progress, stop=None):
+        """All outputs of all cases, NumPy arrays by name; after `stop` the rest are
+        `NOT_RUN`."""
         n = cases.count
         lanes = self.mesh.size * min(self.chunk, math.ceil(n / self.mesh.size))
         block = lanes * min(BLOCK, math.ceil(n / lanes))
         shard = NamedSharding(self.mesh, Spec("case"))
         held = jax.tree.map(np.asarray, cases)
         found: dict[str, np.ndarray] = {}
-        pending = None
+        pending, last = None, 0
         with _bar(n if progress else None) as advance:
             for begin in [*range(0, n, block), None]:
+                if pending is not None and stop is not None and stop():
+                    begin = None
                 if begin is not None:
                     end = min(begin + block, n)
                     part = jax.tree.map(lambda a: _padded(a[begin:end], block), held)  # noqa: B023
@@ -107,10 +115,16 @@ class Program:
                 # The next block is on its way while this one is fetched.
                 if pending is not None:
                     values, first, last = pending
+                    if stop is not None:
+                        _wait(values)
                     for name, value in values.items():
                         found[name][first:last] = _whole(value)[: last - first]
                     advance(last - first)
                 pending = submitted
+                if begin is None:
+                    break
+        for name, values in found.items():
+            values[last:] = _not_run(name, values.dtype)
         return found
 
 
@@ -175,6 +189,19 @@ def _whole(array):
     if array.is_fully_addressable:
         return np.asarray(array)
     return np.asarray(multihost_utils.process_allgather(array, tiled=True))
+
+
+def _wait(values):
+    """Until they are there; signals are heard meanwhile, which NumPy would not do."""
+    while not all(value.is_ready() for value in values.values()):
+        time.sleep(_PAUSE)
+
+
+def _not_run(name, dtype):
+    """What an output holds of a case that was not run."""
+    if name == "result":
+        return Result.NOT_RUN
+    return np.nan if dtype.kind == "f" else 0
 
 
 def _room(out, n, block):

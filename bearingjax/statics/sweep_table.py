@@ -2,14 +2,16 @@
 
 import importlib.util
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..design.rib import RIB_NAMES
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..numerics.result import Result
+from .cases import Cases
 from .sweep import Sweep
 
 ENDINGS = (".csv", ".parquet")
@@ -60,7 +62,6 @@ def columns(
     Returns:
         Header -> array (case,), in SI.
     """
-    asked = _asked(sweep)
     found = {
         header: column
         for name, values in sweep.outputs.items()
@@ -70,7 +71,7 @@ def columns(
     labels = np.array([code.label for code in Result])
     return {
         **(beside or {}),
-        **asked,
+        **asked(sweep.cases),
         "result": labels[np.asarray(sweep.result)],
         **found,
     }
@@ -121,9 +122,79 @@ def write(
         pyarrow.parquet.write_table(table, path)
 
 
-def _asked(sweep):
-    cases = sweep.cases
-    out = {}
+def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
+    """Columns of a table that `write` wrote.
+
+    Args:
+        path: Its ending says the format.
+        texts: Headers of columns that are text even if they look like numbers.
+
+    Raises:
+        ValueError: If it is no such table.
+        ImportError: As `check_writable`.
+        OSError: If the file cannot be read.
+    """
+    path = Path(path)
+    check_writable(path)
+    import pyarrow
+    import pyarrow.csv
+    import pyarrow.parquet
+
+    if path.suffix.lower() == ".csv":
+        types = dict.fromkeys(("result", *texts), pyarrow.string())
+        options = pyarrow.csv.ConvertOptions(column_types=types)
+        table = pyarrow.csv.read_csv(path, convert_options=options)
+    else:
+        table = pyarrow.parquet.read_table(path)
+    pairs = zip(table.column_names, table.columns, strict=True)
+    return {name: np.asarray(column.to_numpy()) for name, column in pairs}
+
+
+def restored(
+    table: Mapping[str, np.ndarray], like: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """Outputs of a sweep out of its columns.
+
+    Args:
+        table: From `read`.
+        like: Outputs of a sweep of the same kind, of any number of cases.
+
+    Returns:
+        Outputs by name; `unrestrained`, which no table holds, is -1.
+
+    Raises:
+        ValueError: For a column that is missing, or that holds something else.
+    """
+    count = len(table["result"])
+    codes = {code.label: int(code) for code in Result}
+    found = {}
+    for name, values in like.items():
+        if name == "result":
+            unknown = set(table["result"]) - set(codes)
+            if unknown:
+                raise ValueError(f"has the unknown result {unknown.pop()!r}")
+            plain: Any = [codes[label] for label in table["result"]]
+        elif name == "unrestrained":
+            plain = np.full(count, -1)
+        else:
+            headers = [header for header, _ in _spread(name, values)]
+            for header in headers:
+                if header not in table:
+                    raise ValueError(f"has no column {header!r}")
+            parts = [np.asarray(table[h], dtype=values.dtype) for h in headers]
+            plain = np.stack(parts, axis=-1) if parts else np.empty(0)
+        shape = (count, *values.shape[1:])
+        found[name] = np.asarray(plain, dtype=values.dtype).reshape(shape)
+    return found
+
+
+def asked(cases: Cases) -> dict[str, np.ndarray]:
+    """Columns of what was asked, in SI, by their header.
+
+    Args:
+        cases: Of the sweep.
+    """
+    out: dict[str, np.ndarray] = {}
     for k, (name, unit) in enumerate(zip(LOADS, _LOAD_UNITS, strict=True)):
         if np.any(np.nan_to_num(np.asarray(cases.load)[:, k]) != 0):
             out[f"{name} [{unit}]"] = np.asarray(cases.load)[:, k]

@@ -69,7 +69,7 @@ def test_a_case_lost_from_its_neighbour_is_solved_again(monkeypatch):
     runs = []
     honest = sweep_program.Program.run
 
-    def lossy(self, cases, max_steps, neighbours, progress):
+    def lossy(self, cases, max_steps, neighbours, progress, stop=None):
         found = honest(self, cases, max_steps, neighbours, progress)
         runs.append(cases.count)
         if neighbours:

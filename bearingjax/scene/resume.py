@@ -1,0 +1,117 @@
+"""A sweep taken up where it ended: the cases that a table of it lacks."""
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import jax
+import numpy as np
+
+from ..numerics.result import Result
+from ..statics.sweep import CHUNK, Sweep
+from ..statics.sweep_table import asked, read, restored
+from .cases_table import CaseTable
+from .quantity import SceneError
+from .sweep_run import design_columns, run_cases
+
+_CURE = "name the table of this scene, or begin anew without --resume"
+
+_SAME, _NOTHING = 1e-4, 1e-12
+"""Share of the largest number of an output, and size, below which a change is none."""
+
+
+def resume_cases(
+    table: CaseTable,
+    path: str | Path,
+    progress: bool = False,
+    stop: Callable[[], bool] | None = None,
+) -> Sweep:
+    """Solve the cases of a scene that a table of them lacks (`NOT_RUN`).
+
+    Some cases of the table are solved again first: what the table does not show, such
+    as another bearing, shows in them.
+
+    Args:
+        table: From `read_cases`.
+        path: Table of a sweep of this scene that was ended.
+        progress, stop: As in `run_cases`.
+
+    Returns:
+        Sweep of all cases.
+
+    Raises:
+        SceneError: If the table cannot be read or is of other cases, or if its cases
+            now end otherwise.
+    """
+    designs = design_columns(table)
+    try:
+        known = read(path, designs)
+    except (OSError, ValueError) as error:
+        first = str(error).partition("\n")[0]
+        raise SceneError(f"{path}: cannot be read as a table: {first}") from error
+    _check_asked(path, known, {**designs, **asked(table.cases)}, table.cases.count)
+    codes = np.asarray(known["result"])
+    ran = np.flatnonzero(codes != Result.NOT_RUN.label)
+    rest = np.flatnonzero(codes == Result.NOT_RUN.label)
+    solved = np.flatnonzero(codes == Result.CONVERGED.label)
+    if ran.size == 0:
+        return run_cases(table, progress, stop)
+    again = (solved if solved.size else ran)[-CHUNK:]
+    checked = run_cases(_part(table, again))
+    try:
+        outputs = restored(known, checked.outputs)
+    except ValueError as error:
+        raise SceneError(f"{path}: {error}; {_CURE}") from error
+    _check_same(path, checked.outputs, {k: v[again] for k, v in outputs.items()})
+    if rest.size:
+        new = run_cases(_part(table, rest), progress, stop)
+        for name, values in new.outputs.items():
+            outputs[name][rest] = values
+    return Sweep(table.cases, outputs, checked.moving_ring)
+
+
+def _part(table: CaseTable, rows: np.ndarray) -> CaseTable:
+    cases = jax.tree.map(lambda a: np.asarray(a)[rows], table.cases)
+    return dataclasses.replace(table, cases=cases)
+
+
+def _check_asked(path, known, wanted: Mapping[str, np.ndarray], count: int) -> None:
+    """The table holds the cases of the scene."""
+    for header in ("result", *wanted):
+        if header not in known:
+            problem = f"has no column {header!r}, which this scene makes"
+            raise SceneError(f"{path}: {problem}; {_CURE}")
+    rows = len(known["result"])
+    if rows != count:
+        problem = f"has {rows} cases, this scene {count}"
+        raise SceneError(f"{path}: {problem}; {_CURE}")
+    for header, column in wanted.items():
+        column, there = np.asarray(column), known[header]
+        if column.dtype.kind in "fi":
+            there = np.asarray(there, dtype=float)
+            same = np.isclose(there, column, rtol=1e-12, atol=0.0, equal_nan=True)
+        else:
+            same = there == column
+        if not same.all():
+            k = int(np.argmin(same))
+            problem = f"{header} of case {k} is {there[k]}, in this scene {column[k]}"
+            raise SceneError(f"{path}: {problem}; {_CURE}")
+
+
+def _check_same(path, new: Mapping[str, np.ndarray], old: Mapping[str, np.ndarray]):
+    """Most of the cases solved again end as they did."""
+    same = new["result"] == old["result"]
+    for name, values in new.items():
+        if values.dtype.kind != "f" or name == "residual":
+            continue
+        flat = (len(values), -1)
+        a, b = (np.nan_to_num(v).reshape(flat) for v in (values, old[name]))
+        largest = np.abs(a).max(axis=1, initial=0.0)
+        miss = np.abs(a - b).max(axis=1, initial=0.0)
+        same = same & (miss <= _SAME * largest + _NOTHING)
+    if same.mean() < 0.5:
+        problem = (
+            f"{len(same)} of its cases, solved again, end otherwise: of another bearing"
+            " or other numerics"
+        )
+        raise SceneError(f"{path}: {problem}; {_CURE}")

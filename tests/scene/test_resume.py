@@ -1,0 +1,139 @@
+"""A sweep that is interrupted keeps what is solved, and is taken up where it ended."""
+
+import importlib
+import json
+import signal
+
+import numpy as np
+import pyarrow.csv
+import pytest
+from test_cases import HEAD
+
+from bearingjax.scene import resume
+from bearingjax.statics import sweep_program
+
+SWEEP = importlib.import_module("bearingjax.statics.sweep")  # the name is a function
+
+# In the part that is solved first one load is nought throughout.
+LIST = """operating.load.Fy [kN],operating.load.Fx [kN]
+-1,0
+-1.5,0
+-2,0
+-2.5,1
+-3,1
+-4,1
+"""
+
+
+@pytest.fixture
+def struck(monkeypatch):
+    """Blocks of two cases; the signal that is set comes while one is under way."""
+    wanted = []
+    honest = sweep_program._solve_block
+
+    def solve(*given):
+        out = honest(*given)
+        if wanted:
+            signal.raise_signal(wanted.pop())
+        return out
+
+    monkeypatch.setattr(sweep_program, "_solve_block", solve)
+    monkeypatch.setattr(sweep_program, "BLOCK", 1)
+    monkeypatch.setattr(SWEEP, "CHUNK", 2)
+    monkeypatch.setattr(resume, "CHUNK", 2)
+    return wanted
+
+
+@pytest.fixture
+def scene(tmp_path):
+    def write(name="many.toml", head=HEAD, rows=LIST):
+        (tmp_path / "l.csv").write_text(rows)
+        (tmp_path / name).write_text(f'{head}\n[cases]\nfile = "l.csv"\n')
+        return tmp_path / name
+
+    return write
+
+
+def columns(path):
+    return pyarrow.csv.read_csv(path).to_pydict()
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_interrupted_twice_and_taken_up(run, scene, tmp_path, struck, ending):
+    path, table, out = scene(), tmp_path / f"t.{ending}", tmp_path / "t.json"
+    words = ("sweep", str(path), "--table", str(table), "--json", str(out))
+    struck.append(signal.SIGINT)
+    done = run(*words)
+    assert done.status == 130 and "2 converged, 4 not_run" in done.out
+    again = f"bearingjax {' '.join(words)} --resume"
+    want = f"bearingjax: interrupted: 4 of 6 cases not run; go on with: {again}"
+    assert done.err.splitlines()[-1] == want
+    first = json.loads(out.read_text())["columns"]
+    assert first["result"] == ["converged"] * 2 + ["not_run"] * 4
+    assert first["Fx [N]"] == [0.0, 0.0, 0.0, 1e3, 1e3, 1e3]
+    assert first["largest_load [N]"][2:] == [None] * 4
+    struck.append(signal.SIGTERM)
+    done = run(*words, "--resume")
+    assert done.status == 143 and "4 converged, 2 not_run" in done.out
+    assert done.err.splitlines()[-1].endswith(
+        f"2 of 6 cases not run; go on with: {again}"
+    )
+    done = run(*words, "--resume")
+    assert done.status == 0 and "6 converged" in done.out
+    resumed = json.loads(out.read_text())["columns"]
+    assert run("sweep", path, "--json", out).status == 0
+    whole = json.loads(out.read_text())["columns"]
+    assert list(resumed) == list(whole)
+    for header, column in whole.items():
+        if header not in ("result", "residual"):
+            np.testing.assert_allclose(
+                resumed[header], column, rtol=1e-9, atol=1e-15, err_msg=header
+            )
+    assert resumed["largest_load [N]"][:2] == first["largest_load [N]"][:2]
+    # Nothing left: the table as it is.
+    done = run(*words, "--resume")
+    assert done.status == 0 and "6 converged" in done.out
+
+
+def test_only_what_belongs_together(run, scene, tmp_path, struck):
+    path, table = scene(), tmp_path / "t.csv"
+    struck.append(signal.SIGINT)
+    assert run("sweep", path, "--table", table).status == 130
+    before = table.read_bytes()
+    for rows, problem in {
+        LIST.replace("-1.5,0", "-1.6,0"): (
+            "Fy [N] of case 1 is -1500.0, in this scene -1600.0; name the table"
+        ),
+        LIST + "-5,1\n": "has 6 cases, this scene 7",
+        LIST.replace("Fx [kN]", "Fz [kN]"): "has no column 'Fz [N]', which this scene",
+    }.items():
+        done = run("sweep", scene(rows=rows), "--table", table, "--resume")
+        assert done.status == 2 and done.err.count("\n") == 1
+        assert f"t.csv: {problem}" in done.err
+    thick = HEAD.replace('length = "10 mm"', 'length = "11 mm"')
+    done = run("sweep", scene(head=thick), "--table", table, "--resume")
+    assert done.status == 2
+    assert "t.csv: 2 of its cases, solved again, end otherwise" in done.err
+    assert table.read_bytes() == before
+    table.write_bytes(before.replace(b"largest_load", b"load"))
+    done = run("sweep", scene(), "--table", table, "--resume")
+    assert done.status == 2 and "t.csv: has no column 'largest_load [N]'" in done.err
+    table.write_text("no table\n")
+    done = run("sweep", scene(), "--table", table, "--resume")
+    assert done.status == 2 and "has no column 'result'" in done.err
+
+
+def test_resume_needs_a_table(run, scene):
+    done = run("sweep", scene(), "--resume")
+    problem = "--resume takes up a table; name it with --table"
+    assert done == (2, "", f"bearingjax: {problem}\n")
+
+
+def test_without_a_table_it_says_what_would_help(run, scene, struck):
+    struck.append(signal.SIGINT)
+    done = run("sweep", scene())
+    assert done.status == 130
+    assert done.err.splitlines()[-1].endswith(
+        "4 of 6 cases not run; with --table what is solved is kept, and --resume goes"
+        " on from it"
+    )
