@@ -176,18 +176,28 @@ def _configure_jax(options):
 
     jax.config.update("jax_enable_x64", True)
     if options.command == "sweep":
-        cores = (
-            len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count()
-        )
-        wanted = cores if options.devices is None else options.devices
+        count = _devices(options)
         with contextlib.suppress(RuntimeError):  # JAX runs already, in a test
-            jax.config.update("jax_num_cpu_devices", max(1, wanted or 1))
+            jax.config.update("jax_num_cpu_devices", count)
     if getattr(jax.config, "jax_compilation_cache_dir", None) is None:
         base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         cache = Path(base) / "bearingjax" / "jax"
         jax.config.update("jax_compilation_cache_dir", str(cache))
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)
+
+
+def _devices(options) -> int:
+    """Parts of the processor that a sweep uses: as many as asked for, or all cores."""
+    from .scene import SceneError
+
+    linux = sys.platform == "linux"
+    cores = len(os.sched_getaffinity(0)) if linux else os.cpu_count() or 1
+    count = cores if options.devices is None else options.devices
+    if not 1 <= count <= cores:
+        allowed = f"it must be at least 1 and at most {cores}, the cores that there are"
+        raise SceneError(f"--devices is {count}; {allowed}")
+    return count
 
 
 def _solve(options) -> int:
@@ -246,8 +256,7 @@ def _sweep(options) -> int:
         except (ValueError, ImportError) as error:
             raise SceneError(str(error)) from error
     _check_outputs(options)
-    if options.devices is not None and options.devices < 1:
-        raise SceneError(f"--devices is {options.devices}; it must be at least 1")
+    _devices(options)
     if options.resume and options.table is None:
         raise SceneError("--resume takes up a table; name it with --table")
     begin = time.perf_counter()

@@ -30,6 +30,9 @@ Offset = Callable[[Array], Array]
 _OF_ARCS, _OF_ANY = 3, 5
 _SETTLED = 1e-9
 
+MOST_NODES = 500
+"""Most nodes of a panel: NumPy finds them in a second."""
+
 
 class Nodes(NamedTuple):
     """Quadrature nodes of one integral.
@@ -129,6 +132,11 @@ class ContactMapped(AbstractQuadrature):
 
     def __check_init__(self):
         _check_points(self.points)
+        if self.points > MOST_NODES:
+            raise ValueError(
+                f"`points` is {self.points}; it must be at most {MOST_NODES}: the nodes"
+                " are eigenvalues of a full matrix of that size, and 32 err by 1e-8."
+            )
         if not isinstance(self.scan, int) or self.scan < 3:
             raise ValueError(
                 f"`scan` is {self.scan!r}; it must be a whole number of at least 3."

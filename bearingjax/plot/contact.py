@@ -15,7 +15,7 @@ from .contact_lines import (
     load_text,
     scale,
 )
-from .style import axes_or_new, pyplot
+from .style import axes_or_new, head, pyplot
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -62,7 +62,7 @@ def contact_overview(
         transform=axes["text"].transAxes,
         in_layout=False,
     )
-    figure.suptitle(title or "Roller on raceway", fontsize=14, fontweight="bold")
+    head(figure, title or "Roller on raceway")
     return figure
 
 

@@ -9,7 +9,17 @@ import numpy as np
 from ..design import AbstractRollerBearing, rows_of
 from ..statics.measure import label_of
 from ..statics.optimise import Optimised
-from .style import COLOURS, GREY, RACEWAYS, ROLLER, SMALL, degrees, pyplot, row_slices
+from .style import (
+    COLOURS,
+    GREY,
+    RACEWAYS,
+    ROLLER,
+    SMALL,
+    degrees,
+    head,
+    pyplot,
+    row_slices,
+)
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -50,7 +60,7 @@ def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
     for ax in axes.values():
         ax.grid(color="0.9")
         ax.set_axisbelow(True)
-    figure.suptitle(title or "Optimised design", fontsize=14, fontweight="bold")
+    head(figure, title or "Optimised design")
     return figure
 
 

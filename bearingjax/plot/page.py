@@ -16,7 +16,7 @@ from .balls import contact_angles, ellipses
 from .load import load_zone
 from .pressure import pressure_map, pressure_profiles
 from .section import cross_section
-from .style import degrees, force_text, pyplot, row_slices
+from .style import degrees, force_text, head, pyplot, row_slices
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -67,7 +67,7 @@ def overview(
         transform=axes["text"].transAxes,
         in_layout=False,
     )
-    figure.suptitle(title or type(bearing).__name__, fontsize=14, fontweight="bold")
+    head(figure, title or type(bearing).__name__)
     return figure
 
 

@@ -128,3 +128,8 @@ def towards_white(colour, share: float) -> tuple[float, ...]:
     from matplotlib.colors import to_rgb
 
     return tuple(c + share * (1.0 - c) for c in to_rgb(colour))
+
+
+def head(figure, title: str) -> None:
+    """Title of a page, as it stands: a file may have a dollar in its name."""
+    figure.suptitle(title, fontsize=14, fontweight="bold", parse_math=False)

@@ -20,8 +20,8 @@ from ..element import FREEDOMS, LOADS, RINGS, BearingElement
 from ..statics.cases import Cases
 from ..statics.preload import preload
 from ..statics.sweep import stack_designs
-from .quantity import SceneError, to_si
-from .read import Scene, assign, find_scene, parse_scene, scene_of
+from .quantity import KINDS, SceneError, to_si
+from .read import Scene, assign, find_scene, parse_bearing, scene_of
 from .table import Table
 
 OPERATING = {
@@ -41,8 +41,11 @@ OPERATING = {
 DESIGN = ("bearing", "set", "contact")
 """Tables of the scene whose keys make a design."""
 
-LARGEST = 10**8
-"""Most cases of a scene."""
+LARGEST = 10**7
+"""Most cases of a scene: 1 kB of memory each, with the usual outputs."""
+
+MOST_DESIGNS = 10**5
+"""Most designs of a scene: each is read and checked by itself, in some 5 ms."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -89,7 +92,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         SceneError: One line that names file, key, fault and what is allowed.
     """
     path = find_scene(source)
-    data = parse_scene(path, settings)
+    data = parse_bearing(path, settings)
     if "cases" not in data:
         raise SceneError(
             f"{path.name}: `cases` is missing; it must be a table with one of `grid`,"
@@ -151,15 +154,18 @@ def _check_key(table, key, scene):
     )
 
 
-def _flat(data: dict, prefix: str = "") -> dict[str, Any]:
+def _flat(table, where: str, data: dict) -> dict[str, Any]:
     """Nested tables as dotted keys; a range {start, stop, count} is a value."""
     out: dict[str, Any] = {}
     for key, value in data.items():
-        name = f"{prefix}{key}"
+        inner = {key: value}
         if isinstance(value, dict) and not {"start", "stop", "count"} & set(value):
-            out |= _flat(value, f"{name}.")
-        else:
-            out[name] = value
+            flat = _flat(table, f"{where}.{key}", value)
+            inner = {f"{key}.{name}": one for name, one in flat.items()}
+        for name, one in inner.items():
+            if name in out:  # a.b = 1 beside "a.b" = 2
+                raise table.error(f"{where}.{name}", "stands there twice")
+            out[name] = one
     return out
 
 
@@ -167,7 +173,7 @@ def _grid(table, data) -> list[_Column]:
     if not isinstance(data, dict) or not data:
         raise table.error("grid", f"{data!r} is not a table of keys with their values")
     axes = {}
-    for key, value in _flat(data).items():
+    for key, value in _flat(table, "grid", data).items():
         if isinstance(value, dict):
             value = _range(table, key, value)
         elif not isinstance(value, list) or not value:
@@ -218,9 +224,11 @@ def _split(value) -> Any:
 
 
 def _spectrum(table, data) -> list[_Column]:
-    if not isinstance(data, list) or not all(isinstance(e, dict) for e in data):
-        raise table.error("spectrum", "must be a list of tables, [[cases.spectrum]]")
-    entries = [_flat(entry) for entry in data]
+    tables = isinstance(data, list) and all(isinstance(e, dict) for e in data)
+    if not data or not tables:
+        problem = "must be a list of tables, [[cases.spectrum]], one at least"
+        raise table.error("spectrum", problem)
+    entries = [_flat(table, f"spectrum[{k}]", e) for k, e in enumerate(data)]
     keys = list(dict.fromkeys(itertools.chain(*entries)))
     for k, entry in enumerate(entries):
         for key in keys:
@@ -235,44 +243,91 @@ def _spectrum(table, data) -> list[_Column]:
 
 def _listed(table, folder) -> list[_Column]:
     name = table.raw("file")
-    path = folder / str(name)
+    if not isinstance(name, str):
+        raise table.error("file", f"{name!r} is not the name of a file")
+    rows = _rows(table, name, folder / name)
+    header, *cells = [cells for _, cells in rows]
+    index = np.arange(len(cells))
+    columns: dict[str, _Column] = {}
+    lines = [line for line, _ in rows[1:]]
+    for title, values in zip(header, zip(*cells, strict=True), strict=True):
+        match = re.fullmatch(r"\s*([\w.]+)\s*(?:\[([^\[\]]*)\])?\s*", title)
+        if match is None:
+            problem = f'{name}: {title!r} is no header such as "operating.load.Fy [kN]"'
+            if ";" in title:
+                problem = f"{name}: has semicolons; commas part columns, points digits"
+            raise table.error("file", problem)
+        key, unit = match.groups()
+        if key in columns:
+            raise table.error("file", f"{name}: names a column twice, {key}")
+        found = _cells(table, name, key, unit, values, lines)
+        columns[key] = _Column(key, found, index)
+    return list(columns.values())
+
+
+def _rows(table, name, path) -> list[tuple[int, list[str]]]:
+    """Lines of a list that are not empty, each with its number."""
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = [row for row in csv.reader(file) if row]
-    except (OSError, UnicodeDecodeError) as error:
+            reader = csv.reader(file)
+            rows = [
+                (reader.line_num, row) for row in reader if any(map(str.strip, row))
+            ]
+    except OSError as error:
+        problem = f"{name}: cannot be read: {error.strerror or error}"
+        raise table.error("file", problem) from error
+    except UnicodeDecodeError as error:
+        problem = f"{name}: cannot be read: {error}; save it as UTF-8"
+        raise table.error("file", problem) from error
+    except (ValueError, csv.Error) as error:
         raise table.error("file", f"{name}: cannot be read: {error}") from error
     if len(rows) < 2:
         raise table.error("file", f"{name}: has no cases; a header and rows are wanted")
-    header, *cells = rows
-    if len(set(header)) < len(header):
-        raise table.error("file", f"{name}: names a column twice")
-    for k, row in enumerate(cells):
-        if len(row) != len(header):
-            problem = f"{name}: line {k + 2} has {len(row)} values, not {len(header)}"
+    if len(rows) > LARGEST:
+        raise table.error("file", f"{name}: has {len(rows)} cases; at most {LARGEST}")
+    wanted = len(rows[0][1])
+    for line, row in rows:
+        if len(row) != wanted:
+            problem = f"{name}: line {line} has {len(row)} values, not {wanted}"
             raise table.error("file", problem)
-    index = np.arange(len(cells))
-    columns = []
-    for title, values in zip(header, zip(*cells, strict=True), strict=True):
-        match = re.fullmatch(r"\s*([\w.]+)\s*(?:\[(.*)\])?\s*", title)
-        if match is None:
-            problem = f'{name}: {title!r} is no header such as "operating.load.Fy [kN]"'
-            raise table.error("file", problem)
-        key, unit = match.groups()
-        columns.append(_Column(key, _cells(table, name, key, unit, values), index))
-    return columns
+    return rows
 
 
-def _cells(table, name, key, unit, values):
+def _cells(table, name, key, unit, values, lines):
     """SI numbers of operating data; settings of a design."""
     if key in OPERATING:
+        if unit is None:
+            example = f"{key} [{KINDS[OPERATING[key]][1]}]"
+            problem = f'{name}: {key} has no unit; head the column "{example}"'
+            raise table.error("file", problem)
         try:
-            factor = to_si(f"1 {unit or ''}".strip(), OPERATING[key])
-            return np.array([float(value) for value in values]) * factor
-        except (SceneError, ValueError) as error:
-            raise table.error("file", f"{name}: {key}: {error}") from error
+            factor = to_si(f"1 {unit}", OPERATING[key])
+        except SceneError as error:
+            problem = f"{name}: the unit of {key}: {error}"
+            raise table.error("file", problem) from error
+        return np.array(_numbers_of(table, name, key, values, lines)) * factor
+    empty = [line for line, value in zip(lines, values, strict=True) if not value]
+    if empty:
+        raise table.error("file", f"{name}: line {empty[0]}: {key} is empty")
     if unit is not None:
-        return [f"{value} {unit}" for value in values]
+        return [f"{value.strip()} {unit}" for value in values]
     return [_bare(value) for value in values]
+
+
+def _numbers_of(table, name, key, values, lines) -> list[float]:
+    numbers = []
+    for line, value in zip(lines, values, strict=True):
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            problem = f"{name}: line {line}: {key}: {value!r} is not a finite number"
+            if "," in value:
+                problem += "; write a decimal point"
+            raise table.error("file", problem)
+        numbers.append(number)
+    return numbers
 
 
 def _bare(text):
@@ -299,6 +354,9 @@ def _designs(data, path, columns):
     _, first, design = np.unique(
         np.stack(codes), axis=1, return_index=True, return_inverse=True
     )
+    if len(first) > MOST_DESIGNS:
+        problem = f"make {len(first)} designs; at most {MOST_DESIGNS}"
+        raise SceneError(f"{path.name}: `cases`: {problem}")
     made, elements, odd = [], [], []
     for case in first:
         settings = {c.key: c.values[c.index[case]] for c in varied}

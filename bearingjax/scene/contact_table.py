@@ -82,7 +82,7 @@ def is_bearing(source: str | Path, settings: Iterable[str] = ()) -> bool:
         SceneError: If there is no such scene, or it cannot be read.
     """
     data = parse_scene(find_scene(source), settings)
-    return "bearing" in data and not {"roller", "raceway"} & set(data)
+    return "bearing" in data and {"roller", "raceway"}.isdisjoint(data)
 
 
 def read_contact(source: str | Path, settings: Iterable[str] = ()) -> ContactScene:

@@ -27,7 +27,10 @@ class Interrupt:
     def __enter__(self):
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):
-                self._before[number] = signal.signal(number, self._note)
+                if (
+                    signal.getsignal(number) is not signal.SIG_IGN
+                ):  # a job in the background
+                    self._before[number] = signal.signal(number, self._note)
         return self
 
     def __exit__(self, *_):

@@ -22,7 +22,7 @@ from ..statics.search import METHODS
 from ..statics.variable import Variable, check_variables, design_numbers
 from .cases_table import read_cases
 from .quantity import SceneError
-from .read import Scene, find_scene, parse_scene, scene_of
+from .read import Scene, find_scene, parse_bearing, scene_of
 from .table import Table, not_among
 
 KIND_OF = {
@@ -99,7 +99,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
     """
     settings = tuple(settings)
     path = find_scene(source)
-    data = parse_scene(path, settings)
+    data = parse_bearing(path, settings)
     if "optimise" not in data:
         raise SceneError(
             f"{path.name}: `optimise` is missing; it must be a table that names"

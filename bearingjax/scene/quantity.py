@@ -9,6 +9,22 @@ _UNIT = re.compile(r"(?:1\s*/|[A-Za-zµμ°])[A-Za-zµμ°·²³\d\s*/^().+-]*")
 _TURNS = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade")
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
+_WRITTEN = {
+    "speed": dict.fromkeys(
+        "1/min min^-1 min^(-1) min**-1 min⁻¹ r/min rev/min U/min RPM".split(), "rpm"
+    ),
+    "moment": {
+        "Nm": "N m",
+        "Nmm": "N mm",
+        "mNm": "mN m",
+        "kNm": "kN m",
+        "kNmm": "kN mm",
+        "MNm": "MN m",
+    },
+}
+"""What else is written for a unit, by kind. As a speed 1/min counts revolutions, as
+in the standards of machines; pint's radians would be less by 2 pi."""
+
 KINDS = {
     "length": ("m", "mm"),
     "angle": ("rad", "deg"),
@@ -69,6 +85,9 @@ def to_si(text: object, kind: str) -> float:
     number, name = match.groups()
     if not name:
         raise SceneError(f"{text!r} has no unit; {wanted}")
+    if re.match(r",\d", name):
+        raise SceneError(f"{text!r} has a comma; write a decimal point, 5.2, no comma")
+    name = _WRITTEN.get(kind, {}).get(name.replace(" ", ""), name)
     if not _UNIT.fullmatch(name):
         raise SceneError(f"{text!r} has the unknown unit {name!r}; {wanted}")
     value = float(number) * _factor(text, name, unit, kind, wanted)

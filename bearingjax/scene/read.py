@@ -20,7 +20,7 @@ from ..contact.point_law import (
     PointConstant,
     ZeroAngle,
 )
-from ..design import is_ball
+from ..design import is_ball, n_elements, rows_of
 from ..element import (
     FREEDOMS,
     LOADS,
@@ -40,6 +40,7 @@ from ..element import (
 )
 from ..numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
+from ..statics.sweep import CHUNK
 from .bearing_table import read_bearing
 from .quantity import SceneError
 from .table import Table
@@ -64,6 +65,13 @@ CONTROLS = {
     "friction_limited": FrictionLimited,
     "centrifugal_only": CentrifugalOnly,
 }
+MOST_SLICES = 10_000
+"""Most slices of a roller."""
+
+MOST_POINTS = 10_000
+"""Most positions along a roller: line load and pressure on two raceways, 0.8 MB each
+roller as JSON."""
+
 EQUILIBRIA = {"newton": TrustRegionNewton, "bfgs": BFGS}
 
 
@@ -136,7 +144,7 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
         SceneError: One line that names file, key, fault and what is allowed.
     """
     path = find_scene(source)
-    return scene_of(parse_scene(path, settings), path)
+    return scene_of(parse_bearing(path, settings), path)
 
 
 def scene_of(data: dict[str, Any], path: Path) -> Scene:
@@ -182,8 +190,28 @@ def find_scene(source: str | Path) -> Path:
             f"{source}: neither a .toml file nor a shipped scene ({', '.join(shipped)})"
         )
     if not path.is_file():
-        raise SceneError(f"{source}: no such file")
+        problem = "is a folder; name a file" if path.is_dir() else "no such file"
+        raise SceneError(f"{source}: {problem}")
     return path
+
+
+def is_contact(data: dict[str, Any]) -> bool:
+    """Whether parsed data are of one contact, not of a bearing."""
+    return "bearing" not in data and not {"roller", "raceway"}.isdisjoint(data)
+
+
+def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
+    """As `parse_scene`, of a bearing.
+
+    Raises:
+        SceneError: As `parse_scene`; if it is the scene of one contact.
+    """
+    data = parse_scene(path, settings)
+    if is_contact(data):
+        problem = "is the scene of one contact, a [roller] on a [raceway], not of a"
+        cure = f"`bearingjax contact {path.stem}` solves it"
+        raise SceneError(f"{path.name}: {problem} [bearing]; {cure}")
+    return data
 
 
 def parse_scene(path: Path, settings: Iterable[str]) -> dict[str, Any]:
@@ -204,9 +232,16 @@ def parse_scene(path: Path, settings: Iterable[str]) -> dict[str, Any]:
 
 def _parse(path):
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (ValueError, OSError) as error:
-        # TOML syntax, encoding, and numbers too long to convert are all ValueErrors.
+        # Editors of Windows put a mark before the text.
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        problem = f"cannot be read: {error.strerror or error}"
+        raise SceneError(f"{path.name}: {problem}") from error
+    except UnicodeDecodeError as error:
+        problem = f"cannot be read as TOML: {error}; save it as UTF-8"
+        raise SceneError(f"{path.name}: {problem}") from error
+    except (ValueError, RecursionError) as error:
+        # TOML syntax, and numbers too long to convert, are ValueErrors.
         raise SceneError(f"{path.name}: cannot be read as TOML: {error}") from error
 
 
@@ -258,9 +293,10 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
             choices["kinematics"] = _kinematics(numerics)
     else:
         law = read_line_law(contact)
+        n_rollers = sum(n_elements(row.bearing) for row in rows_of(bearing))
         choices = {"line_law": law, "kinematics": _kinematics(numerics)}
         if not isinstance(law, CoupledSlices):
-            choices["quadrature"] = _quadrature(numerics)
+            choices["quadrature"] = _quadrature(numerics, n_rollers)
     solver = numerics.choice("equilibrium", tuple(EQUILIBRIA), "newton")
     with numerics.building():
         element = BearingElement(bearing, equilibrium=EQUILIBRIA[solver](), **choices)
@@ -298,6 +334,11 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
 
 def _components(operating, key, names, kinds) -> dict[str, float]:
     """Table of six components: the first three of one kind, the others of another."""
+    given = operating.raw(key, {})
+    if not isinstance(given, dict):
+        example = {"load": 'Fy = "-4 kN"', "prescribed": 'uz = "10 um"'}[key]
+        problem = f"{given!r} is not a table; name the components, {{ {example} }}"
+        raise operating.error(key, problem)
     table = operating.table(key)
     values = {}
     for index, name in enumerate(names):
@@ -320,9 +361,16 @@ def read_line_law(contact: Table) -> AbstractLineLaw:
         return LineConstant(constant)
 
 
-def _quadrature(numerics: Table) -> AbstractQuadrature:
+def _quadrature(numerics: Table, n_rollers: int) -> AbstractQuadrature:
     rule = numerics.choice("quadrature", tuple(QUADRATURES), "contact_mapped")
     points = numerics.integer("points", None)
+    if rule == "midpoint" and points is not None and points > MOST_SLICES:
+        size = 8e-9 * CHUNK * 2 * n_rollers * points
+        problem = (
+            f"{points} is too many slices: {size:.3g} GB in each array of a sweep, of"
+            f" {CHUNK} cases at a time; at most {MOST_SLICES}"
+        )
+        raise numerics.error("points", problem)
     with numerics.building():
         return QUADRATURES[rule]() if points is None else QUADRATURES[rule](points)
 
@@ -359,4 +407,15 @@ def _control(operating: Table) -> AbstractRacewayControl:
 
 def _points(output: Table, bearing) -> int:
     """Positions along a roller; balls have none."""
-    return 2 if is_ball(bearing) else output.integer("points", 101, least=2)
+    if is_ball(bearing):
+        return 2
+    points = output.integer("points", 101, least=2)
+    if points > MOST_POINTS:
+        rollers = sum(n_elements(row.bearing) for row in rows_of(bearing))
+        size = 4 * 20e-6 * rollers * points
+        problem = (
+            f"{points} is too many, {size:.3g} MB of JSON for {rollers} rollers; at"
+            f" most {MOST_POINTS}, which is closer than a roller's surface is known"
+        )
+        raise output.error("points", problem)
+    return points

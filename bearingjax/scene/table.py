@@ -78,6 +78,8 @@ class Table:
             return value
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise self.error(key, f"{value!r} is not a bare number (no unit, no text)")
+        if value != value:
+            raise self.error(key, "nan is not a finite number")
         if abs(value) > LARGEST:
             raise self.error(key, f"is out of range; at most {LARGEST:g} in size")
         return float(value)

@@ -1,5 +1,6 @@
 """Wrong scenes: one line that names file, key, fault and remedy; exit status 2."""
 
+import math
 import re
 
 import pytest
@@ -145,7 +146,7 @@ SETTINGS = {
     "decimal comma": (
         "cylindrical_rig",
         "bearing.pitch_diameter=72,5 mm",
-        "`bearing.pitch_diameter`: '72,5 mm' has the unknown unit ',5 mm'",
+        "`bearing.pitch_diameter`: '72,5 mm' has a comma; write a decimal point",
     ),
     "nan": (
         "cylindrical_rig",
@@ -575,7 +576,7 @@ SETTINGS = {
     "tolerance nan": (
         "cylindrical_rig",
         "numerics.tolerance=nan",
-        "`numerics.tolerance`: nan is not allowed; from 1e-14",
+        "`numerics.tolerance`: nan is not a finite number",
     ),
     # Ribs.
     "arrangement and ribs": (
@@ -687,7 +688,38 @@ SETTINGS = {
     "load without component": (
         "cylindrical_rig",
         "operating.load=5 kN",
-        "`operating.load`: '5 kN' is not a table",
+        "`operating.load`: '5 kN' is not a table; name the components,"
+        ' { Fy = "-4 kN" }',
+    ),
+    "load as a list": (
+        "cylindrical_rig",
+        "operating.load=[0, -4000, 0, 0, 0, 0]",
+        "`operating.load`: [0, -4000, 0, 0, 0, 0] is not a table; name the components,",
+    ),
+    "prescribed as a list": (
+        "cylindrical_rig",
+        "operating.prescribed=['1 um']",
+        "`operating.prescribed`: ['1 um'] is not a table; name the components,"
+        ' { uz = "10 um" }',
+    ),
+    # What would fill the memory.
+    "nodes": (
+        "cylindrical_rig",
+        "numerics={points=100000}",
+        "[numerics]: `points` is 100000; it must be at most 500: the nodes are"
+        " eigenvalues of a full matrix of that size",
+    ),
+    "slices": (
+        "cylindrical_rig",
+        "numerics={quadrature='midpoint', points=100000}",
+        "`numerics.points`: 100000 is too many slices: 1.23 GB in each array of a"
+        " sweep, of 64 cases at a time; at most 10000",
+    ),
+    "positions": (
+        "cylindrical_rig",
+        "output.points=100000",
+        "`output.points`: 100000 is too many, 96 MB of JSON for 12 rollers; at most"
+        " 10000",
     ),
     "bearing as text": (
         "cylindrical_rig",
@@ -799,6 +831,54 @@ def test_missing_file(run, tmp_path):
 
 def test_folder_in_place_of_a_file(run, tmp_path):
     assert one_line(run("solve", tmp_path)).startswith(f"{tmp_path}: neither a .toml")
+    folder = tmp_path / "x.toml"
+    folder.mkdir()
+    assert one_line(run("solve", folder)) == f"{folder}: is a folder; name a file"
+
+
+def test_file_that_may_not_be_read(run, tmp_path, monkeypatch):
+    path = a_file(tmp_path, TAPER)
+
+    def refuse(*_, **__):
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr(type(path), "read_text", refuse)
+    assert one_line(run("solve", path)) == "bad.toml: cannot be read: Permission denied"
+
+
+def test_tables_without_end(run, tmp_path):
+    text = TAPER + "x = " + 2000 * "[" + 2000 * "]"
+    assert one_line(run("solve", a_file(tmp_path, text))).startswith("bad.toml: ")
+
+
+@pytest.mark.parametrize("command", ["solve", "sweep", "optimise"])
+def test_scene_of_a_contact(run, command):
+    message = one_line(run(command, "taper_contact"))
+    assert message == (
+        "taper_contact.toml: is the scene of one contact, a [roller] on a [raceway],"
+        " not of a [bearing]; `bearingjax contact taper_contact` solves it"
+    )
+
+
+def test_mark_before_the_text(tmp_path):
+    """As editors of Windows write it."""
+    path = tmp_path / "marked.toml"
+    path.write_text(TAPER, encoding="utf-8-sig")
+    assert read_scene(path).element.bearing.n_rollers == 17
+
+
+@pytest.mark.parametrize(
+    "unit", ["1/min", "min^-1", "min⁻¹", "r/min", "rev/min", "RPM"]
+)
+def test_revolutions_per_minute(unit):
+    scene = read_scene("cylindrical_rig", [f"operating.inner_speed=1500 {unit}"])
+    assert float(scene.speed.inner) == pytest.approx(50.0 * math.pi, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["2 Nm", "2000 N mm", "2000 Nmm", "0.002 kNm"])
+def test_moments_as_they_are_written(text):
+    scene = read_scene("tapered", [f"operating.load.Mx={text}"])
+    assert scene.load[3] == pytest.approx(2.0, rel=1e-15)
 
 
 def test_name_of_no_scene(run):
@@ -835,8 +915,8 @@ BAD_UNITS = [
     "bearing.pitch_diameter='72.5 #'",
     "bearing.pitch_diameter=72.5 mm^(1/0)",
     """bearing.pitch_diameter="5 '\"""",
-    # pint counts 1/min, Bq and baud as rad/s, 2 pi from what is meant
-    "operating.inner_speed=1500 1/min",
+    # pint counts 1/s, Bq and baud as rad/s, 2 pi from what is meant
+    "operating.inner_speed=25 1/s",
     "operating.inner_speed=25 s^-1",
     "operating.inner_speed=25 Bq",
     "operating.inner_speed=25 baud",

@@ -186,16 +186,63 @@ WRONG = {
     "header only": ('[cases]\nfile = "head.csv"', "has no cases"),
     "short row": ('[cases]\nfile = "short.csv"', "line 3 has 1 values, not 2"),
     "bad header": ('[cases]\nfile = "bad.csv"', "is no header such as"),
-    "bad cell": ('[cases]\nfile = "cell.csv"', "could not convert string"),
-    "unit missing": ('[cases]\nfile = "unit.csv"', "has no unit"),
+    "bad cell": (
+        '[cases]\nfile = "cell.csv"',
+        "cell.csv: line 4: operating.load.Fy: 'much' is not a finite number",
+    ),
+    "comma in a cell": (
+        '[cases]\nfile = "comma.csv"',
+        "line 2: operating.load.Fy: '1,5' is not a finite number; write a decimal po",
+    ),
+    "nan in a cell": ('[cases]\nfile = "nan.csv"', "'nan' is not a finite number"),
+    "empty cell": ('[cases]\nfile = "gap.csv"', "line 3: operating.load.Fx: '' is not"),
+    "empty setting": (
+        '[cases]\nfile = "hole.csv"',
+        "line 2: bearing.roller_length is empty",
+    ),
+    "unit missing": (
+        '[cases]\nfile = "unit.csv"',
+        'operating.load.Fy has no unit; head the column "operating.load.Fy [kN]"',
+    ),
+    "unit of another kind": (
+        '[cases]\nfile = "kind.csv"',
+        "kind.csv: the unit of operating.load.Fy: '1 mm' is not a force;",
+    ),
     "twice": ('[cases]\nfile = "twice.csv"', "names a column twice"),
+    "twice in two units": ('[cases]\nfile = "two.csv"', "twice, operating.load.Fy"),
+    "semicolons": ('[cases]\nfile = "semi.csv"', "has semicolons; commas part columns"),
+    "not text": ('[cases]\nfile = "zero.csv"', "zero.csv: cannot be read"),
+    "folder": (
+        '[cases]\nfile = "."',
+        "`cases.file`: .: cannot be read: Is a directory",
+    ),
+    "no name": ("[cases]\nfile = 3", "`cases.file`: 3 is not the name of a file"),
+    "twice in a grid": (
+        '[cases.grid]\n"operating.load.Fy" = ["1 N"]\noperating.load.Fy = ["2 N"]',
+        "`cases.grid.operating.load.Fy`: stands there twice",
+    ),
+    "empty spectrum": ("[cases]\nspectrum = []", "[[cases.spectrum]], one at least"),
+    "many": (
+        "[cases.grid]\n"
+        'operating.load.Fy = { start = "0 N", stop = "1 N", count = 10000 }\n'
+        'operating.load.Fx = { start = "0 N", stop = "1 N", count = 10000 }',
+        "has 100000000 cases; at most 10000000",
+    ),
     "outputs": ('[cases]\noutputs = "all"\n' + GRID, "is not a list of names"),
 }
 FILES = {
     "head.csv": "operating.load.Fy [N]\n",
     "short.csv": "operating.load.Fy [N],operating.load.Fx [N]\n1,2\n1\n",
     "bad.csv": "load in y!\n1\n",
-    "cell.csv": "operating.load.Fy [N]\nmuch\n",
+    "cell.csv": "operating.load.Fy [N]\n1\n\nmuch\n",
+    "comma.csv": 'operating.load.Fy [N]\n"1,5"\n',
+    "nan.csv": "operating.load.Fy [N]\nnan\n",
+    "gap.csv": "operating.load.Fy [N],operating.load.Fx [N]\n1,2\n1,\n , \n",
+    "hole.csv": "bearing.roller_length [mm],operating.load.Fx [N]\n,2\n",
+    "kind.csv": "operating.load.Fy [mm]\n1\n",
+    "two.csv": "operating.load.Fy [N],operating.load.Fy [kN]\n1,1\n",
+    "semi.csv": "operating.load.Fy [N];operating.load.Fx [N]\n1;2\n",
+    "zero.csv": "operating.load.Fy [N]\n" + 200_000 * "1",
     "unit.csv": "operating.load.Fy\n1\n",
     "twice.csv": "operating.load.Fy [N],operating.load.Fy [N]\n1,1\n",
 }
@@ -228,6 +275,7 @@ def test_cases_against_the_scene(scene, change, message):
     [
         (["--table", "x.xlsx"], "a table ends in .csv or .parquet"),
         (["--devices", "0"], "must be at least 1"),
+        (["--devices", "1000000"], "the cores that there are"),
         (["--table", "nowhere/x.csv"], "its folder does not exist"),
     ],
 )

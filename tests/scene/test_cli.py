@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import runpy
 import struct
 import subprocess
 import sys
@@ -147,12 +148,12 @@ def test_pulled_apart(run, tmp_path):
 
 def test_scene_of_ones_own(run, tmp_path):
     """A file is named as it is given; its name heads the report."""
-    path = tmp_path / "my taper.toml"
+    path = tmp_path / "my $taper_{.toml"
     shipped = bj.scene.shipped_scenes()["tapered"].read_text(encoding="utf-8")
     path.write_text(f"{shipped}\n[output]\npoints = {POINTS}\n", encoding="utf-8")
-    done = run("solve", path)
+    done = run("solve", path, "--plot", tmp_path / "x.png")
     assert done.status == 0
-    assert done.out.startswith("my taper: tapered roller bearing, 17 rollers")
+    assert done.out.startswith("my $taper_{: tapered roller bearing, 17 rollers")
 
 
 @pytest.mark.parametrize("ending", ["pdf", "svg"])
@@ -166,6 +167,14 @@ def test_pictures_of_lines(run, tmp_path, ending):
 def test_version(capsys):
     with pytest.raises(SystemExit) as stop:
         cli.main(["--version"])
+    assert stop.value.code == 0
+    assert capsys.readouterr().out == f"{bj.__version__}\n"
+
+
+def test_as_a_module(capsys, monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["bearingjax", "--version"])
+    with pytest.raises(SystemExit) as stop:
+        runpy.run_module("bearingjax", run_name="__main__")
     assert stop.value.code == 0
     assert capsys.readouterr().out == f"{bj.__version__}\n"
 

@@ -208,12 +208,6 @@ def test_no_roller(tmp_path):
         read_contact("none.toml")
 
 
-def test_solve_does_not_take_a_contact(run):
-    done = run("solve", "taper_contact")
-    assert done.status == 2
-    assert "`bearing`: is missing" in done.err
-
-
 def test_solved(run, tmp_path):
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     done = run(*TAPER, "--json", out, "--plot", picture)
