@@ -59,7 +59,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             `CoupledSlices()` slices press on each other; it takes no `quadrature`.
         kinematics: Small ring rotations, `Linearised()`, or `Finite()`: of balls
             exact, of rollers the paper's formula. Self-aligning bearings: `Finite()`.
-        quadrature: Of roller contacts, `ContactMapped(points)` or `Midpoint(points)`.
+        quadrature: Of roller contacts, `ContactMapped(points)` or `Midpoint(points)`;
+            `None` with balls and `CoupledSlices()`.
         equilibrium: Local solver, `TrustRegionNewton()` or `BFGS()`.
         cage_torque: Differentiate through the azimuth of the rolling elements.
         point_law: Constants of ball contacts: `FreeAngle()`, `ZeroAngle()`,
@@ -117,7 +118,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                     f" {'rollers' if balls else 'balls'}, but the bearing is a"
                     f" {type(bearing).__name__}."
                 )
-        if quadrature and isinstance(line_law, CoupledSlices):
+        coupled = isinstance(line_law, CoupledSlices)
+        if quadrature and coupled:
             raise ValueError(
                 "BearingElement: `quadrature` is for independent slices, but `line_law`"
                 " is CoupledSlices(), which has slices of its own."
@@ -137,7 +139,9 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 " tilted seat; with Finite() kinematics that is not modelled."
             )
         self.kinematics = kinematics or (Finite() if aligning else Linearised())
-        self.quadrature = None if balls else quadrature or ContactMapped()
+        # What has no use for it keeps none: an element can be made from its fields.
+        independent = not balls and not coupled
+        self.quadrature = (quadrature or ContactMapped()) if independent else None
         self.equilibrium = equilibrium or TrustRegionNewton()
         self.cage_torque = cage_torque
         self.point_law = (point_law or FreeAngle()) if balls else None
@@ -300,13 +304,15 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             assert self.point_law is not None and self.raceway_control is not None
             law, control = self.point_law, self.raceway_control
             return ball_model(part, law, self.kinematics, speed, control, deviation)
-        assert self.line_law is not None and self.quadrature is not None
-        constants = contact_constants(bearing, self.line_law, self.quadrature)
+        assert self.line_law is not None
+        # Coupled slices ask for a rule as all laws do, and do without.
+        quadrature = self.quadrature or ContactMapped()
+        constants = contact_constants(bearing, self.line_law, quadrature)
         body_force = None if speed is None else inertia_force(constants, speed)
         return RollerModel(
             constants,
             self.kinematics.prepare(constants),
             self.kinematics,
-            self.quadrature,
+            quadrature,
             body_force,
         )
