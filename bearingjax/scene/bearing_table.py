@@ -50,6 +50,53 @@ BALLS = {
 }
 SETS = ("back_to_back", "face_to_face", "tandem", "rows")
 
+KIND_OF = {
+    **dict.fromkeys(
+        (
+            "pitch_diameter roller_diameter roller_length ball_diameter crown_radius"
+            " radial_internal_clearance straight_length dub_off_length dub_off_radius"
+            " half_width end_drop end_radius contact_height axial_gap row_offset"
+            " outer_shoulder inner_shoulder"
+        ).split(),
+        "length",
+    ),
+    **dict.fromkeys(
+        (
+            "first_azimuth roller_axis_angle roller_half_angle contact_angle shim_angle"
+        ).split(),
+        "angle",
+    ),
+    **dict.fromkeys(("contact_modulus", "elastic_modulus"), "pressure"),
+    **dict.fromkeys(
+        (
+            "coefficient load_factor crowned_fraction outer_osculation inner_osculation"
+            " poisson_ratio"
+        ).split(),
+        "number",
+    ),
+    "design_load": "force",
+    "density": "density",
+}
+"""Kind of quantity of a number on the drawing, by its key: for all that reads one."""
+
+
+def drawn(table: Table, name: str, *default: Any, key: str | None = None) -> Any:
+    """Number on the drawing, in SI.
+
+    Args:
+        table: Where it stands.
+        name: What it is, a key of `KIND_OF`.
+        default: If absent; without a default it is required.
+        key: Key in the table; default: the name.
+
+    Raises:
+        SceneError: If it is no such quantity.
+    """
+    key, kind = key or name, KIND_OF[name]
+    if kind == "number":
+        return table.number(key, *default)
+    return table.quantity(key, kind, *default)
+
 
 def read_bearing(top: Table) -> tuple[Bearing | BearingSet, float | None]:
     """The bearing of a scene, or the set of such bearings, and its preload.
@@ -131,26 +178,26 @@ def _spring(table: Table) -> PreloadSpring | None:
 def _balls(table: Table, kind: str) -> Bearing:
     values: dict[str, Any] = {"n_balls": table.integer("n_balls")}
     for key in ("pitch_diameter", "ball_diameter"):
-        values[key] = table.quantity(key, "length")
+        values[key] = drawn(table, key)
     for ring in RINGS[1:] if kind == "self_aligning_ball" else RINGS:
-        values[f"{ring}_osculation"] = table.number(f"{ring}_osculation")
+        values[f"{ring}_osculation"] = drawn(table, f"{ring}_osculation")
         key = f"{ring}_shoulder"
-        values[key] = table.quantity(key, "length", None)
-    values["first_azimuth"] = table.quantity("first_azimuth", "angle", 0.0)
+        values[key] = drawn(table, key, None)
+    values["first_azimuth"] = drawn(table, "first_azimuth", 0.0)
     if "ball_deviation" in table:
         values["ball_deviation"] = table.quantities("ball_deviation", "length")
     play, angle = "radial_internal_clearance", "contact_angle"
     if kind == "deep_groove_ball":
-        values[play] = table.quantity(play, "length", None)
-        values[angle] = table.quantity(angle, "angle", None)
+        values[play] = drawn(table, play, None)
+        values[angle] = drawn(table, angle, None)
     if kind == "angular_contact_ball":
-        values[angle] = table.quantity(angle, "angle")
+        values[angle] = drawn(table, angle)
     if kind == "four_point_ball":
-        values[play] = table.quantity(play, "length", 0.0)
-        values["shim_angle"] = table.quantity("shim_angle", "angle")
+        values[play] = drawn(table, play, 0.0)
+        values["shim_angle"] = drawn(table, "shim_angle")
     if kind == "self_aligning_ball":
-        values["row_offset"] = table.quantity("row_offset", "length")
-        values[play] = table.quantity(play, "length", 0.0)
+        values["row_offset"] = drawn(table, "row_offset")
+        values[play] = drawn(table, play, 0.0)
     values["material"] = read_material(table, "material") or Material()
     values["ring_material"] = read_material(table, "ring_material")
     with table.building():
@@ -160,13 +207,13 @@ def _balls(table: Table, kind: str) -> Bearing:
 def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
     values: dict[str, Any] = {"n_rollers": table.integer("n_rollers")}
     for key in ("pitch_diameter", "roller_diameter", "roller_length"):
-        values[key] = table.quantity(key, "length")
+        values[key] = drawn(table, key)
     play = "radial_internal_clearance"
-    values[play] = table.quantity(play, "length", 0.0)
-    values["first_azimuth"] = table.quantity("first_azimuth", "angle", 0.0)
+    values[play] = drawn(table, play, 0.0)
+    values["first_azimuth"] = drawn(table, "first_azimuth", 0.0)
     if kind == "tapered_roller":
-        values["roller_axis_angle"] = table.quantity("roller_axis_angle", "angle")
-        values["roller_half_angle"] = table.quantity("roller_half_angle", "angle")
+        values["roller_axis_angle"] = drawn(table, "roller_axis_angle")
+        values["roller_half_angle"] = drawn(table, "roller_half_angle")
     values["roller_profile"] = read_profile(table.table("roller_profile"))
     raceways = table.table("raceway_profile")
     for ring in RINGS:
@@ -187,9 +234,9 @@ def read_material(table: Table, key: str) -> Material | None:
         return MATERIALS[given]()
     steel = Material()
     values = (
-        given.quantity("elastic_modulus", "pressure", steel.elastic_modulus),
-        given.number("poisson_ratio", steel.poisson_ratio),
-        given.quantity("density", "density", steel.density),
+        drawn(given, "elastic_modulus", steel.elastic_modulus),
+        drawn(given, "poisson_ratio", steel.poisson_ratio),
+        drawn(given, "density", steel.density),
     )
     with given.building():
         return Material(*values)
@@ -224,9 +271,9 @@ def _rib(table: Table) -> Rib:
         problem = "flat ends have no point contact; give the radius of the end sphere"
         raise table.error("end_radius", problem)
     values = (
-        table.quantity("end_radius", "length"),
-        table.quantity("contact_height", "length"),
-        table.quantity("axial_gap", "length", 0.0),
+        drawn(table, "end_radius"),
+        drawn(table, "contact_height"),
+        drawn(table, "axial_gap", 0.0),
     )
     with table.building():
         return Rib(*values)
@@ -240,30 +287,30 @@ def read_profile(table: Table) -> AbstractProfile:
 
 
 def _design_load(table: Table) -> dict[str, float]:
-    values = {"design_load": table.quantity("design_load", "force")}
-    modulus = table.quantity("contact_modulus", "pressure", None)
+    values = {"design_load": drawn(table, "design_load")}
+    modulus = drawn(table, "contact_modulus", None)
     return values if modulus is None else {**values, "contact_modulus": modulus}
 
 
 _PROFILE_READERS = {
     "straight": lambda t: Straight(),
-    "circular_crown": lambda t: CircularCrown(t.quantity("crown_radius", "length")),
+    "circular_crown": lambda t: CircularCrown(drawn(t, "crown_radius")),
     "crowned_ends": lambda t: CrownedEnds(
-        t.quantity("straight_length", "length"),
-        t.quantity("crown_radius", "length"),
-        t.quantity("dub_off_length", "length", None),
-        t.quantity("dub_off_radius", "length", None),
+        drawn(t, "straight_length"),
+        drawn(t, "crown_radius"),
+        drawn(t, "dub_off_length", None),
+        drawn(t, "dub_off_radius", None),
     ),
-    "logarithmic": lambda t: Logarithmic(t.number("coefficient", 0.00035)),
+    "logarithmic": lambda t: Logarithmic(drawn(t, "coefficient", 0.00035)),
     "lundberg": lambda t: Lundberg(**_design_load(t)),
     "johns_gohar": lambda t: JohnsGohar(
-        **_design_load(t), half_width=t.quantity("half_width", "length")
+        **_design_load(t), half_width=drawn(t, "half_width")
     ),
     "fujiwara_kawase": lambda t: FujiwaraKawase(
         **_design_load(t),
-        load_factor=t.number("load_factor"),
-        crowned_fraction=t.number("crowned_fraction"),
-        end_drop=t.quantity("end_drop", "length"),
+        load_factor=drawn(t, "load_factor"),
+        crowned_fraction=drawn(t, "crowned_fraction"),
+        end_drop=drawn(t, "end_drop"),
     ),
     "tabulated": lambda t: Tabulated(
         t.quantities("positions", "length"), t.quantities("drops", "length")

@@ -7,7 +7,8 @@ import numpy as np
 from ..statics.design_problem import Outcome
 from ..statics.measure import AbstractMeasure, EdgeLoad, label_of
 from ..statics.optimise import Optimised
-from .optimise_table import KIND_OF, Optimisation
+from .bearing_table import KIND_OF
+from .optimise_table import Optimisation
 
 _RULE = "-" * 78
 _OF_KIND = {

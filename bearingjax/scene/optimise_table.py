@@ -20,39 +20,11 @@ from ..statics.measure import (
 )
 from ..statics.search import METHODS
 from ..statics.variable import Variable, check_variables, design_numbers
+from .bearing_table import drawn
 from .cases_table import read_cases
 from .quantity import SceneError
 from .read import Scene, find_scene, parse_bearing, scene_of
 from .table import Table, not_among
-
-KIND_OF = {
-    **dict.fromkeys(
-        (
-            "pitch_diameter roller_diameter roller_length ball_diameter crown_radius"
-            " radial_internal_clearance straight_length dub_off_length dub_off_radius"
-            " half_width end_drop end_radius contact_height axial_gap row_offset"
-        ).split(),
-        "length",
-    ),
-    **dict.fromkeys(
-        (
-            "first_azimuth roller_axis_angle roller_half_angle contact_angle shim_angle"
-            " outer_shoulder inner_shoulder"
-        ).split(),
-        "angle",
-    ),
-    **dict.fromkeys(("contact_modulus", "elastic_modulus"), "pressure"),
-    **dict.fromkeys(
-        (
-            "coefficient load_factor crowned_fraction outer_osculation inner_osculation"
-            " poisson_ratio"
-        ).split(),
-        "number",
-    ),
-    "design_load": "force",
-    "density": "density",
-}
-"""Kind of quantity of a number on the drawing, by its key."""
 
 OBJECTIVES = (
     "peak_pressure",
@@ -190,11 +162,10 @@ def _variables(table: Table, element) -> tuple[Variable, ...]:
     for key in table.keys():
         if key not in numbers:
             raise table.error(key, _no_number(key, table, numbers))
-        kind = KIND_OF[key.rpartition(".")[2]]
-        part = table.table(key)
+        part, name = table.table(key), key.rpartition(".")[2]
         low, high, start = (
-            _value(part, name, kind, *default)
-            for name, default in (("from", ()), ("to", ()), ("start", (None,)))
+            drawn(part, name, *default, key=word)
+            for word, default in (("from", ()), ("to", ()), ("start", (None,)))
         )
         with part.building():
             variables.append(Variable(numbers[key], low, high, start, key))
@@ -208,12 +179,6 @@ def _no_number(key, table, numbers):
         example = next(iter(numbers))
         return f'write the dotted key in quotes, such as "{example}" = {{from, to}}'
     return not_among(key, tuple(numbers))
-
-
-def _value(table: Table, key: str, kind: str, *default):
-    if kind == "number":
-        return table.number(key, *default)
-    return table.quantity(key, kind, *default)
 
 
 def _constraint(table: Table, exponent, balls) -> Constraint:

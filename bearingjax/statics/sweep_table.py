@@ -35,7 +35,7 @@ _UNITS = {
     "contact_angle": "rad",
     "semi_axes": "m",
     "approach": "m",
-    "shoulder_margin": "rad",
+    "shoulder_margin": "m",
     "centrifugal_force": "N",
     "gyroscopic_moment": "N m",
     "spring_travel": "m",

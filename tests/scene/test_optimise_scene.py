@@ -14,7 +14,8 @@ from bearingjax.scene import (
     read_optimisation,
     shipped_scenes,
 )
-from bearingjax.scene.optimise_table import KIND_OF, scene_numbers
+from bearingjax.scene.bearing_table import KIND_OF
+from bearingjax.scene.optimise_table import scene_numbers
 
 BEARING = """
 [bearing]
