@@ -45,10 +45,8 @@ def optimisation_report(task: Optimisation, found: Optimised) -> str:
     parts = [head, _variables(found), _measures(found), _pressures(found)]
     warned = [f"warning: rejected: {why}" for why in dict.fromkeys(found.rejected)]
     warned += [f"warning: {text}" for text in task.scene.warnings]
-    flat = found.history.gradient[-1]
-    ending = f"converged: {found.message}"
-    if np.isfinite(flat):
-        ending += f"; gradient left {flat:.1e}"
+    left = f"gradient left {found.optimality:.1e}, tolerance {task.tolerance:.1e}"
+    ending = f"converged: {found.message}; {left}"
     return f"\n{_RULE}\n".join([*parts, "\n".join([ending, *warned])])
 
 
@@ -60,8 +58,9 @@ def optimisation_as_dict(task: Optimisation, found: Optimised) -> dict[str, Any]
         found: What came of it.
 
     Returns:
-        result, message, history, evaluations, gradients, rejected, warnings, version;
-        if it converged also variables, objective, constraints and peak_pressure.
+        result, message, optimality, history, evaluations, gradients, rejected,
+        warnings, version; if it converged also variables, objective, constraints and
+        peak_pressure.
     """
     from .. import __version__
 
@@ -74,6 +73,7 @@ def optimisation_as_dict(task: Optimisation, found: Optimised) -> dict[str, Any]
         **(_numbers(found) if found.converged else {}),
         "result": found.result,
         "message": found.message,
+        "optimality": found.optimality if np.isfinite(found.optimality) else None,
         "history": history,
         "evaluations": found.n_evaluations,
         "gradients": found.n_gradients,

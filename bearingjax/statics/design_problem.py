@@ -1,4 +1,4 @@
-"""A design with free numbers: evaluated over its cases, and what was tried."""
+"""A design with free numbers, evaluated over its cases."""
 
 import warnings
 from collections.abc import Callable
@@ -12,9 +12,9 @@ import numpy as np
 from ..element.bearing_element import BearingElement
 from ..numerics.result import Result, SolveError
 from .cases import Cases, solve_case
-from .measure import exact_of
-from .search import Trial
+from .measure import exact_of, least_size_of
 from .solution import Solution, message
+from .trials import Trial
 from .variable import with_values
 
 CHUNK = 64
@@ -64,7 +64,7 @@ class Bound(NamedTuple):
 
 
 class Problem:
-    """A design with free numbers, and a record of what was tried.
+    """A design with free numbers, in the unit box of their bounds.
 
     Args:
         element, cases, variables, objective, constraints: As of `optimise`, checked.
@@ -83,11 +83,6 @@ class Problem:
         self.width = self.upper - self.lower
         self.bounds = tuple(_bounds(constraints))
         self.size = 1.0
-        self.steps: list[Trial] = []
-        self.evaluations: list[int] = []
-        self.n_evaluations = self.n_gradients = 0
-        self.rejected: list[str] = []
-        self._last: tuple[bytes, bool, Trial] | None = None
 
     def scaled(self, values) -> np.ndarray:
         """Values of the variables in the unit box."""
@@ -98,40 +93,19 @@ class Problem:
         inside = np.clip(self.lower + self.width * unit, self.lower, self.upper)
         return np.where(unit >= 1.0, self.upper, inside)
 
-    def begin(self, unit: np.ndarray, slopes: bool) -> None:
+    def begin(self, unit: np.ndarray, slopes: bool) -> Trial:
         """Evaluate the start, and take the size of its objective as the scale.
 
         Raises:
             SolveError: If it does not solve.
         """
-        trial = self._evaluate(unit, slopes)
+        trial = self.evaluate(unit, slopes)
         if trial.fault:
             raise SolveError(f"optimise: the starting design fails: {trial.fault}")
-        self.size = abs(trial.objective) or 1.0
+        size = max(abs(trial.objective), least_size_of(self.measures[0]))
+        self.size = size or 1.0
         slope = None if trial.slope is None else trial.slope / self.size
-        trial = trial._replace(objective=trial.objective / self.size, slope=slope)
-        self._last = (unit.tobytes(), slopes, trial)
-        self.accept(unit)
-
-    def attempt(self, unit: np.ndarray, slopes: bool) -> Trial:
-        """The trial of a design, evaluated once though a search asks repeatedly."""
-        key = unit.tobytes()
-        if self._last is None or self._last[:2] != (key, slopes):
-            trial = self._evaluate(np.array(unit), slopes)
-            if trial.fault:
-                self.rejected.append(trial.fault)
-                trial = self._cone(trial, slopes)
-            self._last = (key, slopes, trial)
-        return self._last[2]
-
-    def accept(self, unit: np.ndarray) -> None:
-        """Note that the search has moved here, unless it stands still."""
-        slopes = self._last is not None and self._last[1]
-        trial = self.attempt(unit, slopes)
-        moved = not self.steps or np.any(unit != self.steps[-1].unit)
-        if moved and not trial.fault:
-            self.steps.append(trial)
-            self.evaluations.append(self.n_evaluations)
+        return trial._replace(objective=trial.objective / self.size, slope=slope)
 
     def outcome(self, trial: Trial) -> tuple[BearingElement[Any], Outcome]:
         """The design of a trial, and how it fares, by the program already compiled."""
@@ -164,7 +138,13 @@ class Problem:
             slopes,
         )
 
-    def _evaluate(self, unit, slopes) -> Trial:
+    def evaluate(self, unit: np.ndarray, slopes: bool) -> Trial:
+        """The trial of a design.
+
+        Args:
+            unit: Variables in the unit box (variable,).
+            slopes: Whether gradients are wanted.
+        """
         nothing = np.zeros(0)
         failed = Trial(unit, np.nan, None, nothing, None)
         try:
@@ -172,9 +152,7 @@ class Problem:
                 warnings.simplefilter("ignore")
                 with_values(self.element, self.paths, self.values(unit))
         except ValueError as error:
-            return failed._replace(fault=f"not a design: {error}")
-        self.n_evaluations += 1
-        self.n_gradients += slopes
+            return failed._replace(fault=f"not a design: {error}", solved=False)
         found = self.run(unit, slopes)
         fault = _fault(found)
         if fault:
@@ -189,19 +167,6 @@ class Problem:
             margin_slopes = np.array(rows).reshape(len(rows), unit.size)
         objective = float(values[0]) / self.size
         return Trial(unit, objective, slope, np.array(margins), margin_slopes)
-
-    def _cone(self, failed: Trial, slopes: bool) -> Trial:
-        """Numbers for a rejected design: those of the last step, rising from there."""
-        last = self.steps[-1]
-        away = failed.unit - last.unit
-        distance = float(np.linalg.norm(away)) or 1.0
-        steep = 1.0 if last.slope is None else max(1.0, np.abs(last.slope).max())
-        return last._replace(
-            unit=failed.unit,
-            objective=last.objective + steep * distance,
-            slope=steep * away / distance if slopes else None,
-            fault=failed.fault,
-        )
 
 
 class Run(NamedTuple):

@@ -15,8 +15,12 @@ from ..element.bearing_element import BearingElement
 from .cases import Cases
 from .design_problem import Build, Measure, Options, Outcome, Problem
 from .measure import Constraint
-from .search import METHODS, search, stationarity, takes_gradients
+from .search import METHODS, Ending, search, takes_gradients
+from .trials import Trial, Trials, optimality
 from .variable import Variable, check_variables
+
+NEAR = 0.05
+"""Share of the range of a variable within which a rejected design is called near."""
 
 
 class History(NamedTuple):
@@ -26,9 +30,8 @@ class History(NamedTuple):
         values: Of the variables (step, variable) [SI].
         objective: The smooth objective (step,).
         violation: Miss of the worst constraint over the size of its bound (step,).
-        gradient: Largest part of the gradient that neither bound nor constraint holds
-            back (step,), of the objective over its size at the start by variables over
-            their range [1]; NaN with a method without gradients.
+        gradient: As `Optimised.optimality` (step,) [1]; NaN with a method without
+            gradients.
         evaluations: Designs evaluated so far (step,).
     """
 
@@ -56,7 +59,12 @@ class Optimised:
         n_evaluations: Designs that were evaluated, every case of each solved once.
         n_gradients: Those of which the gradient was asked for.
         rejected: Why designs were rejected, in order; empty if none was.
-        result: "converged", "step_limit", "stalled" (the method could not go on), or
+        optimality: Largest part of the gradient of the best design that neither a
+            bound nor an active constraint holds back: of the objective over its size
+            at the start, by variables over their range [1]. Zero at a minimum. NaN
+            where it was not asked for: without gradients, at the step limit.
+        result: "converged" (`optimality` is within the tolerance and the constraints
+            are kept), "step_limit", "stalled" (the method could not go on), or
             "infeasible" (no design was found that keeps the constraints).
         message: The same in words.
     """
@@ -73,6 +81,7 @@ class Optimised:
     n_evaluations: int
     n_gradients: int
     rejected: tuple[str, ...]
+    optimality: float
     result: str
     message: str
 
@@ -103,7 +112,13 @@ def optimise(
 
     A design with a case that does not solve, with a number that is not finite, or
     that the drawing does not allow is rejected: the search is told of a slope that
-    rises away from its last step, and turns back. `rejected` lists the reasons.
+    rises away from its last step, and turns back. `rejected` lists the reasons. A
+    search with gradients that gives up at rejected designs is begun anew from a better
+    design beside them; if there is none, it has stalled, and the message names one.
+
+    No search is called converged by its own word: the first-order conditions of Karush,
+    Kuhn and Tucker are checked at the best design, with exact gradients. They hold at a
+    saddle too, and at a minimum that is not the lowest: begin from several starts.
 
     Args:
         element: The design to start from.
@@ -117,9 +132,14 @@ def optimise(
             "nelder-mead", which asks for no gradients and is there to compare, or a
             function like it (see `statics.search`). Only "slsqp" keeps constraints.
         max_steps: Step limit of the search.
-        tolerance: Gradient at which the search ends, of the objective over its size
-            at the start, by variables over their range; constraints are kept to this
-            share of their bound. Of "nelder-mead": size of the simplex, likewise.
+        tolerance: `optimality` at which the search ends; constraints are kept to this
+            share of their bound, and within it count as active. 1e-5 moves the
+            objective by 1e-5 of its size at the most, over the whole range of a
+            variable; it stands well above the round-off of gradients (1e-9), though
+            p-norms near a minimax bend the more, the larger their exponent. In
+            float32: 1e-3. Of "nelder-mead": size of the simplex; it sees the objective
+            alone, which is flat to the square of the gradient, so that it counts as
+            converged with an `optimality` of up to the root of this.
         points: Positions along the rollers at which pressures are sampled.
         free, fixed_ring: As of `solve_load`.
         solve_tolerance: `tolerance` of `solve_load`.
@@ -151,57 +171,45 @@ def optimise(
         build,
     )
     problem = Problem(element, cases, variables, objective, constraints, options)
-    unit = problem.scaled(start)
     slopes = takes_gradients(method)
-    problem.begin(unit, slopes)
+    first = problem.begin(problem.scaled(start), slopes)
+    trials = Trials(problem.evaluate, first)
 
     from tqdm import tqdm
 
     bar = tqdm(total=max_steps, disable=not progress, desc="optimise", unit="step")
     with bar:
 
-        def step(x):
-            problem.accept(x)
-            bar.set_postfix_str(f"{problem.steps[-1].objective:.6g} of the start")
+        def told():
+            bar.set_postfix_str(f"{trials.steps[-1].objective:.6g} of the start")
             bar.update()
 
-        ending = search(
-            method,
-            lambda x: problem.attempt(x, slopes),
-            unit,
-            len(problem.bounds),
-            max_steps,
-            tolerance,
-            step,
-        )
-    return _conclude(problem, ending, slopes, max_steps, tolerance)
+        n_bounds = len(problem.bounds)
+        ending = search(method, trials, n_bounds, max_steps, tolerance, told)
+    return _conclude(problem, trials, ending, slopes, max_steps, tolerance)
 
 
-def _conclude(problem, ending, slopes, max_steps, tolerance) -> Optimised:
-    trial = problem.attempt(ending.unit, slopes)
-    if trial.fault:
-        trial = problem.steps[-1]
-    flat = stationarity(trial) <= tolerance
-    if trial.violation > tolerance:
-        result = "infeasible"
-        text = f"constraints are missed by {trial.violation:.1e} of their bounds"
-    elif trial.fault == "" and (ending.settled or flat):
-        result, text = "converged", ending.text
-    elif len(problem.steps) > max_steps:
-        result = "step_limit"
-        text = f"step limit reached after {max_steps} steps: raise `max_steps`"
-    else:
-        result, text = "stalled", f"the search could not go on: {ending.text}"
-    steps = problem.steps
+def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimised:
+    best = trials.attempt(ending.unit, slopes or ending.settled)
+    left = optimality(best, tolerance)
+    limited = ending.limited or len(trials.steps) > max_steps
+    # A failed gradient at the end leaves the design as it was.
+    if best.fault:
+        best, left = trials.steps[-1], np.nan
+    result, text = _verdict(trials, ending, best, left, slopes, limited, tolerance)
+    if result != "converged":
+        text += _near_by(problem, trials, best)
+    text += _idle(problem, trials)
+    steps = trials.steps
     history = History(
         values=np.stack([problem.values(s.unit) for s in steps]),
         objective=problem.size * np.array([s.objective for s in steps]),
         violation=np.array([s.violation for s in steps]),
-        gradient=np.array([stationarity(s) for s in steps]),
-        evaluations=np.array(problem.evaluations),
+        gradient=np.array([optimality(s, tolerance) for s in steps]),
+        evaluations=np.array(trials.evaluations),
     )
     initial, before = problem.outcome(steps[0])
-    element, after = problem.outcome(trial)
+    element, after = problem.outcome(best)
     return Optimised(
         element,
         initial,
@@ -212,12 +220,69 @@ def _conclude(problem, ending, slopes, max_steps, tolerance) -> Optimised:
         before,
         after,
         history,
-        problem.n_evaluations,
-        problem.n_gradients,
-        tuple(problem.rejected),
+        trials.n_evaluations,
+        trials.n_gradients,
+        tuple(trial.fault for trial in trials.rejected),
+        left,
         result,
         text,
     )
+
+
+def _verdict(
+    trials: Trials,
+    ending: Ending,
+    best: Trial,
+    left: float,
+    slopes: bool,
+    limited: bool,
+    tolerance: float,
+) -> tuple[str, str]:
+    """Result of a search, and the same in words."""
+    allowed = tolerance if slopes else tolerance**0.5
+    stood = np.array_equal(best.unit, trials.steps[0].unit)
+    if best.violation > tolerance:
+        text = f"constraints are missed by {best.violation:.1e} of their bounds"
+        return "infeasible", text
+    if stood and best.slope is not None and best.objective and not best.slope.any():
+        return "stalled", "nothing changed: no variable moves the objective"
+    if left <= allowed:
+        return "converged", ending.text + "; nothing changed" * stood
+    if limited:
+        n = len(trials.steps) - 1
+        return "step_limit", f"step limit reached after {n} steps: raise `max_steps`"
+    text = f"the search could not go on: {ending.text}; gradient left {left:.1e}, above"
+    return "stalled", f"{text} {allowed:.1e}"
+
+
+def _near_by(problem: Problem, trials: Trials, best: Trial) -> str:
+    """The rejected design nearest to the best one, in words; empty if none is near."""
+    if not trials.rejected:
+        return ""
+    away = [np.abs(trial.unit - best.unit).max() for trial in trials.rejected]
+    if min(away) > NEAR:
+        return ""
+    trial = trials.rejected[int(np.argmin(away))]
+    values = problem.values(trial.unit)
+    names = [variable.name for variable in problem.variables]
+    pairs = zip(names, values, strict=True)
+    where = ", ".join(f"{name} = {value:.6g}" for name, value in pairs)
+    return f"; rejected near by, at {where}: {trial.fault}"
+
+
+def _idle(problem: Problem, trials: Trials) -> str:
+    """Variables that nothing depended on at any step, in words; empty if none."""
+    slopes = [
+        np.vstack([step.slope, step.margin_slopes])
+        for step in trials.steps
+        if step.slope is not None and step.margin_slopes is not None
+    ]
+    if len(slopes) < 2:
+        return ""
+    moving = np.any(np.vstack(slopes) != 0, axis=0)
+    pairs = zip(problem.variables, moving, strict=True)
+    idle = [variable.name for variable, moves in pairs if not moves]
+    return f"; without influence: {', '.join(idle)}" if idle else ""
 
 
 def _check_method(method, constraints):

@@ -7,11 +7,29 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from .trials import Trial, Trials, optimality, remainder
+
 METHODS = ("l-bfgs-b", "slsqp", "adam", "nelder-mead")
 """Searches by name; any Optax gradient transformation is another."""
 
 FIRST_STEP = 0.1
 """Size of the first simplex, and about that of Adam's first steps, of the box."""
+
+_LENGTHS = (0.1, 0.03, 0.01, 0.003)
+"""Steps that are tried away from rejected designs, of the box."""
+
+_TURNS = tuple(np.deg2rad([45.0, 75.0, 87.0]))
+"""Angles by which they are turned off the steepest descent, to pass along the edge."""
+
+_RUNS = 10
+"""How often a search is begun at the most."""
+
+_PATIENCE = 20
+"""Rejected designs after which it is begun anew."""
+
+_ROUND_OFF = 1e-13
+"""Change of the objective, of its size at the start, that SciPy's searches end at:
+where only round-off is left. It is the gradient that says whether they have arrived."""
 
 
 def takes_gradients(method: Any) -> bool:
@@ -23,32 +41,6 @@ def takes_gradients(method: Any) -> bool:
     return not (method == "nelder-mead" or callable(method))
 
 
-class Trial(NamedTuple):
-    """One design that was tried, in scaled numbers.
-
-    Attributes:
-        unit: Variables, 0 at the lower and 1 at the upper bound (variable,).
-        objective: Objective over its size at the start.
-        slope: Its gradient (variable,), or `None`: not asked for.
-        margins: What is left to each bound of the constraints over the size of that
-            bound, ≥ 0 where it is kept (bound,).
-        margin_slopes: Their gradients (bound, variable), or `None`.
-        fault: Why the design was rejected; empty if it was not.
-    """
-
-    unit: np.ndarray
-    objective: float
-    slope: np.ndarray | None
-    margins: np.ndarray
-    margin_slopes: np.ndarray | None
-    fault: str = ""
-
-    @property
-    def violation(self) -> float:
-        """By how much the worst constraint is missed; 0 if all are kept."""
-        return float(max(0.0, -self.margins.min(initial=0.0)))
-
-
 class Ending(NamedTuple):
     """How a search ended.
 
@@ -56,11 +48,21 @@ class Ending(NamedTuple):
         unit: Where (variable,).
         settled: Whether the method says that it has converged.
         text: What the method says.
+        limited: Whether it ran out of steps.
     """
 
     unit: np.ndarray
     settled: bool
     text: str
+    limited: bool = False
+
+
+class _Flat(Exception):
+    """The last step fulfils the first-order conditions."""
+
+
+class _Stuck(Exception):
+    """Rejected designs bar the way of a method."""
 
 
 Try = Callable[[np.ndarray], Trial]
@@ -69,78 +71,154 @@ Step = Callable[[np.ndarray], None]
 
 def search(
     method: Any,
-    attempt: Try,
-    start: np.ndarray,
+    trials: Trials,
     n_bounds: int,
     max_steps: int,
     tolerance: float,
-    step: Step,
+    told: Callable[[], None] = lambda: None,
 ) -> Ending:
     """Look for the least objective with all margins at least 0.
+
+    A method with gradients ends where the first-order conditions hold. Where it gives
+    up before, at rejected designs as a rule, it is begun anew from a better design
+    near the best one, if there is any.
 
     Args:
         method: One of `METHODS`, an Optax gradient transformation, or a search of
             one's own: attempt, start, max_steps, tolerance, step -> `Ending`.
-        attempt: From a point in the box to its trial; a rejected one has the numbers
-            of a cone that rises away from the last step, so that searches turn back.
-        start: First point (variable,).
+        trials: Evaluates and records; its first step is the start.
         n_bounds: Number of margins.
         max_steps: Step limit.
         tolerance: See `optimise`.
-        step: Told every point that the search moves to.
+        told: Called after every step.
     """
+    slopes, run = takes_gradients(method), _method(method, n_bounds, max_steps)
+
+    def attempt(unit):
+        trial = trials.attempt(unit, slopes)
+        if slopes and len(trials.rejected) > patience:
+            raise _Stuck
+        return trial
+
+    def step(unit):
+        trial = attempt(unit)
+        trials.accept(trial)
+        told()
+        if slopes and not trial.fault and arrived(trial, tolerance):
+            raise _Flat
+
+    best, patience, begun = trials.steps[0], np.inf, 0
+    if slopes and arrived(best, tolerance):
+        return Ending(best.unit, True, "the start fulfils the first-order conditions")
+    try:
+        while True:
+            begun += 1
+            left = max(1, max_steps + 1 - len(trials.steps))
+            patience = len(trials.rejected) + _PATIENCE
+            try:
+                ending = run(attempt, best.unit, left, tolerance, step)
+            except _Stuck:
+                ending = Ending(best.unit, False, "rejected designs bar the way")
+            patience = np.inf
+            last = attempt(ending.unit)
+            ends = trials.steps if last.fault else [*trials.steps, last]
+            best = min(ends, key=lambda trial: _merit(trial, tolerance))
+            ending = ending._replace(unit=best.unit)
+            if not slopes or ending.limited or len(trials.steps) > max_steps:
+                return ending
+            better = _onward(attempt, best, bool(trials.rejected), tolerance)
+            if better is None or begun == _RUNS:
+                return ending._replace(settled=False)
+            best = better
+            step(best.unit)
+    except _Flat:
+        unit = trials.steps[-1].unit
+        return Ending(unit, True, "the first-order conditions hold")
+
+
+def arrived(trial: Trial, tolerance: float) -> bool:
+    """Whether the first-order conditions of a minimum hold.
+
+    Args:
+        trial: With gradients.
+        tolerance: Of the gradient left, and of the bounds.
+    """
+    flat = optimality(trial, tolerance) <= tolerance
+    return flat and trial.violation <= tolerance
+
+
+def _merit(trial, tolerance):
+    """What is to be least: first the violation, if there is any."""
+    missed = trial.violation if trial.violation > tolerance else 0.0
+    return missed, trial.objective
+
+
+def _onward(attempt, here, rejected, tolerance) -> Trial | None:
+    """A design near by that is better by a good part of what its slope promises.
+
+    Straight down, and, if designs were rejected, turned off to all sides: what bars
+    the way may be passed along its edge.
+    """
+    from scipy.linalg import null_space
+
+    if here.violation > tolerance:
+        way = here.margin_slopes[np.argmin(here.margins)]
+    else:
+        way = -remainder(here, tolerance)
+    slope = float(np.linalg.norm(way))
+    if slope == 0.0:
+        return None
+    down = way / slope
+    ways = [(1.0, down)]
+    if rejected:
+        aside = null_space(down[None]).T
+        ways += [
+            (np.cos(turn), np.cos(turn) * down + sign * np.sin(turn) * side)
+            for turn in _TURNS
+            for side in aside
+            for sign in (1.0, -1.0)
+        ]
+    for length in _LENGTHS:
+        for share, along in ways:
+            unit = np.clip(here.unit + length * along, 0.0, 1.0)
+            promised = length * share * slope
+            new = attempt(unit)
+            if new.fault or np.array_equal(unit, here.unit):
+                continue
+            if here.violation > tolerance:
+                gain = here.violation - new.violation
+            elif new.violation > tolerance:
+                continue
+            else:
+                gain = here.objective - new.objective
+            if gain > 0.1 * promised:
+                return new
+    return None
+
+
+def _method(method, n_bounds, max_steps) -> Callable[..., Ending]:
+    """The search as a function of attempt, start, max_steps, tolerance, step."""
     if method in ("l-bfgs-b", "slsqp"):
-        return _quasi_newton(
-            method, attempt, start, n_bounds, max_steps, tolerance, step
-        )
+        return lambda *given: _quasi_newton(method, n_bounds, *given)
     if method == "nelder-mead":
-        method = _simplex
+        return _simplex
     if not takes_gradients(method):
-        return method(attempt, start, max_steps, tolerance, step)
+        return method
     if method == "adam":
         import optax
 
         rate = optax.cosine_decay_schedule(0.5 * FIRST_STEP, max_steps)
         method = optax.adam(rate)
-    return _descent(method, attempt, start, max_steps, tolerance, step)
+    return lambda *given: _descent(method, *given)
 
 
-def stationarity(trial: Trial, near: float = 1e-6) -> float:
-    """Largest part of the gradient that no bound and no active constraint holds back.
-
-    Zero at a minimum (Karush, Kuhn and Tucker). Without active constraints it is the
-    projected gradient.
-
-    Args:
-        trial: With gradients.
-        near: How near a bound counts as on it.
-    """
-    from scipy.optimize import nnls
-
-    if trial.slope is None or trial.margin_slopes is None:
-        return np.nan
-    axes = np.eye(trial.unit.size)
-    holds = [
-        *axes[trial.unit <= near],
-        *-axes[trial.unit >= 1.0 - near],
-        *trial.margin_slopes[trial.margins <= near],
-    ]
-    if not holds:
-        return float(np.abs(trial.slope).max())
-    matrix = np.stack(holds, axis=1)
-    weights, _ = nnls(matrix, trial.slope)
-    return float(np.abs(trial.slope - matrix @ weights).max())
-
-
-def _quasi_newton(method, attempt, start, n_bounds, max_steps, tolerance, step):
+def _quasi_newton(method, n_bounds, attempt, start, max_steps, tolerance, step):
     from scipy.optimize import minimize
 
-    # Near a minimum the objective is off by the square of the gradient.
+    # The gradient ends the search, in `step`.
+    options: dict[str, Any] = {"ftol": _ROUND_OFF, "maxiter": max_steps}
     if method == "l-bfgs-b":
-        options: dict[str, Any] = {"gtol": tolerance, "ftol": tolerance**2}
-        options["maxfun"] = 20 * max_steps
-    else:
-        options = {"ftol": tolerance**2}
+        options |= {"gtol": 0.0, "maxfun": 20 * max_steps}
     kept = {
         "type": "ineq",
         "fun": lambda x: attempt(x).margins,
@@ -151,6 +229,8 @@ def _quasi_newton(method, attempt, start, n_bounds, max_steps, tolerance, step):
         # SLSQP asks for gradients where it has arrived; its callback tells of every
         # full step, taken or not.
         if method == "slsqp":
+            if attempt(x).fault:
+                raise _Stuck
             step(x)
         return attempt(x).slope
 
@@ -161,10 +241,15 @@ def _quasi_newton(method, attempt, start, n_bounds, max_steps, tolerance, step):
         method=method,
         bounds=[(0.0, 1.0)] * start.size,
         constraints=[kept] if n_bounds else (),
-        options={**options, "maxiter": max_steps},
+        options=options,
         callback=step if method == "l-bfgs-b" else None,
     )
-    return Ending(np.clip(found.x, 0.0, 1.0), bool(found.success), str(found.message))
+    return Ending(
+        np.clip(found.x, 0.0, 1.0),
+        bool(found.success),
+        str(found.message),
+        found.status == (1 if method == "l-bfgs-b" else 9),
+    )
 
 
 def _simplex(attempt, start, max_steps, tolerance, step):
@@ -187,7 +272,8 @@ def _simplex(attempt, start, max_steps, tolerance, step):
         options=options,
         callback=step,
     )
-    return Ending(found.x, bool(found.success), str(found.message))
+    settled = bool(found.success)
+    return Ending(found.x, settled, str(found.message), not settled)
 
 
 def _descent(transformation, attempt, start, max_steps, tolerance, step):
@@ -201,13 +287,9 @@ def _descent(transformation, attempt, start, max_steps, tolerance, step):
     # Optax counts on JAX's standard promotion of dtypes.
     with jax.numpy_dtype_promotion("standard"):
         state = transformation.init(point)
-    here = best = attempt(start)
+    here = attempt(start)
     share = 1.0
     for _ in range(max_steps):
-        assert here.slope is not None
-        if stationarity(here) <= tolerance:
-            text = f"gradient below {tolerance:g}"
-            return Ending(here.unit, True, text)
         slope = jnp.asarray(here.slope)
         with jax.numpy_dtype_promotion("standard"):
             updates, state = transformation.update(slope, state, point)
@@ -218,5 +300,5 @@ def _descent(transformation, attempt, start, max_steps, tolerance, step):
             continue
         point, here = target, new
         step(here.unit)
-        best = min(best, here, key=lambda trial: trial.objective)
-    return Ending(best.unit, False, f"gradient above {tolerance:g}")
+    text = f"step limit reached after {max_steps} steps"
+    return Ending(here.unit, False, text, True)

@@ -77,6 +77,8 @@ def test_command_finds_the_clearance_of_a_stiffness(run, scene, tmp_path):
     assert np.isclose(play["lower"], 0.0) and np.isclose(play["upper"], 40e-6)
     assert numbers["objective"]["measure"] == "miss of stiffness uy"
     assert numbers["objective"]["after"]["smooth"] < 1e-9
+    assert 0 <= numbers["optimality"] <= 1e-5
+    assert "; gradient left " in done.out
     assert numbers["history"]["values"][0] == [play["before"]]
     assert numbers["evaluations"] == numbers["gradients"] > 2
     # The report says the same, in its units.
