@@ -64,6 +64,37 @@ def number(owner, name: str, value, unit: str) -> None:
         check(owner, name, value, unit, np.isfinite(value), "a finite number")
 
 
+def real_numbers(owner: str, name: str, value, wanted: str) -> None:
+    """Real numbers: an array, or lists of them.
+
+    Args:
+        owner: Function that was called.
+        name: Parameter.
+        value: What it was given.
+        wanted: Ending of the sentence "it must be ...".
+
+    Raises:
+        TypeError: For text, dicts, `None` or complex numbers, there or in a list.
+    """
+    rest = [value]
+    while rest:
+        one = rest.pop()
+        if isinstance(one, list | tuple):
+            rest.extend(one)
+            continue
+        dtype = getattr(one, "dtype", None)
+        real = isinstance(one, int | float) if dtype is None else dtype.kind not in _ODD
+        if not real:
+            shown = repr(one)
+            shown = shown if len(shown) < 60 else f"{shown[:57]}..."
+            where = "is" if one is value else "holds"
+            raise TypeError(f"{owner}: `{name}` {where} {shown}; it must be {wanted}.")
+
+
+_ODD = "OUSc"
+"""Kinds of NumPy's dtypes that are no real numbers: objects, texts, complex ones."""
+
+
 def positive(owner, name: str, value, unit: str) -> None:
     """A finite number above zero [`unit`]."""
     number(owner, name, value, unit)

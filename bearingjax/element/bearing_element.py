@@ -34,6 +34,29 @@ from .model import AbstractModel
 from .roller import RollerModel
 from .row import Row, RowModel
 
+
+def check_element(owner: str, element: object) -> None:
+    """Raise unless it is a BearingElement.
+
+    Args:
+        owner: Function that was called.
+        element: What it was given.
+
+    Raises:
+        TypeError: For anything else, such as a bearing without its contact laws.
+    """
+    if isinstance(element, BearingElement):
+        return
+    cure = "a BearingElement"
+    if isinstance(element, Bearing | BearingSet):
+        cure = "BearingElement(bearing), which holds the contact laws"
+    elif isinstance(getattr(element, "element", None), BearingElement):
+        cure = "its `element`"
+    raise TypeError(
+        f"{owner}: `element` is a {type(element).__name__}; it must be {cure}."
+    )
+
+
 AnyBearing = TypeVar("AnyBearing", bound=Bearing | BearingSet)
 
 

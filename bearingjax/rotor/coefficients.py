@@ -7,8 +7,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design.checks import check, is_traced
-from ..element.bearing_element import BearingElement
+from ..design.checks import check, is_traced, real_numbers
+from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import LOADS, RINGS
 from ..element.inertia import Speed
 from ..numerics.result import Result, raise_unless_converged
@@ -103,6 +103,9 @@ def _checked(element, speeds, load, tilts, fixed_ring):
                 f"{name}: `{what}` is {value!r}; it must be"
                 f" {' or '.join(map(repr, allowed))}."
             )
+    check_element(name, element)
+    for what, value in (("speeds", speeds), ("load", load)):
+        real_numbers(name, what, value, "numbers (units belong in scene files)")
     speeds, load = as_real(speeds), as_real(load)
     if speeds.ndim != 1 or speeds.shape[0] == 0:
         raise ValueError(

@@ -6,7 +6,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from ..element.bearing_element import BearingElement
+from ..element.bearing_element import BearingElement, check_element
 from ..element.function import check_damping
 from ..numerics.types import as_real
 from .coefficients import stiffness_table
@@ -60,6 +60,7 @@ def to_ross(
     Source: frame and orders of ROSS 2.3, `ShaftElement.K`, `DiskElement.G`,
         `Rotor._unbalance_force` and `gravitational_force`; a test holds them.
     """
+    check_element("to_ross", element)
     try:
         ross = importlib.import_module("ross")
     except ImportError as error:

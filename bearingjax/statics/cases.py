@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..design.checks import is_traced
+from ..design.checks import is_traced, real_numbers
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
@@ -58,9 +58,16 @@ class Cases(eqx.Module):
         """What has no case axis holds for all cases.
 
         Raises:
+            TypeError: For text in place of numbers, or designs that are not whole.
             ValueError: For shapes that do not fit, unknown freedoms, hours below
-                zero or without a sum above zero, or if nothing has a case axis.
+                zero or without a sum above zero, no cases, or if nothing has a case
+                axis.
         """
+        if not isinstance(prescribed, Mapping | None):
+            raise TypeError(
+                f"Cases: `prescribed` is {prescribed!r}; it must be a dict of freedoms"
+                " with their values in m or rad, such as {'uz': [1e-5, 2e-5]}."
+            )
         prescribed = {} if prescribed is None else dict(prescribed)
         unknown = [name for name in prescribed if name not in FREEDOMS]
         if unknown:
@@ -94,6 +101,8 @@ class Cases(eqx.Module):
             sizes = ", ".join(f"{name} {size}" for name, size in lead.items())
             raise ValueError(f"Cases: not one number of cases: {sizes}.")
         count = next(iter(lead.values()))
+        if count == 0:
+            raise ValueError("Cases: there are none; one at least.")
         arrays.setdefault("load", np.zeros(6))
 
         def full(name) -> Any:
@@ -122,7 +131,15 @@ class Cases(eqx.Module):
 
 def _array(name, value, tail):
     if not isinstance(value, jax.Array):
-        value = np.asarray(value, dtype=int if name == "design" else float)
+        real_numbers("Cases", name, value, "numbers (units belong in scenes)")
+        try:
+            value = np.asarray(value)
+        except ValueError as error:
+            raise ValueError(f"Cases: `{name}` has rows of unlike length.") from error
+        if name != "design":
+            value = value.astype(float)
+    if name == "design" and np.size(value) and value.dtype.kind not in "iu":
+        raise TypeError(f"Cases: `design` is {value!r}; it must be whole numbers.")
     shape = np.shape(value)
     if shape not in (tail, shape[:1] + tail):
         wanted = "(6,) or (case, 6)" if tail else "() or (case,)"

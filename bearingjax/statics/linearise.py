@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..element.bearing_element import BearingElement
+from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS, RINGS
 from ..element.inertia import Speed
 from ..numerics.types import Ring, RingStiffness
@@ -115,10 +115,11 @@ def linearise(
         OperatingPoint, differentiable with respect to design, load and speeds.
 
     Raises:
-        ValueError, SolveError: As `solve_load`.
+        TypeError, ValueError, SolveError: As `solve_load`.
 
     Fails: as `solve_load`; with `throw=False` read `solution.result`.
     """
+    check_element("linearise", element)
     return OperatingPoint(
         solve_load(
             element,

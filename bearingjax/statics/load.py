@@ -22,8 +22,8 @@ from ..design import (
     pitch_radius,
     rows_of,
 )
-from ..design.checks import is_traced
-from ..element.bearing_element import BearingElement
+from ..design.checks import is_traced, real_numbers
+from ..element.bearing_element import BearingElement, check_element
 from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..element.inertia import Speed
@@ -106,6 +106,7 @@ def solve_load(
         speeds (implicit function theorem).
 
     Raises:
+        TypeError: For a bearing in place of an element, or text in place of numbers.
         ValueError: For unknown names, contradictory choices or non-finite input.
         SolveError: If the solve did not converge and `throw` is set.
 
@@ -117,13 +118,16 @@ def solve_load(
             f"solve_load: `fixed_ring` is {fixed_ring!r}; it must be 'outer' or"
             " 'inner'."
         )
+    check_element("solve_load", element)
     dtype = pitch_radius(element.bearing).dtype
     load = _six("load", load, dtype)
     fixed = _six("fixed_displacement", fixed_displacement, dtype)
-    prescribed = {} if prescribed is None else dict(prescribed)
+    prescribed = _named(prescribed)
     _check_names("prescribed", prescribed)
     given = _six("prescribed", [prescribed.get(f, 0.0) for f in FREEDOMS], dtype)
     default_free = free is None
+    if isinstance(free, str):
+        raise TypeError(f"solve_load: `free` is {free!r}; it must be a list of names.")
     if free is None:
         free = [f for f in restrained_freedoms(element.bearing) if f not in prescribed]
     _check_names("free", free)
@@ -325,10 +329,27 @@ def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Array:
     return jnp.where(size[2] > 0.1 * jnp.max(size), 2, jnp.argmax(size))
 
 
+def _named(prescribed) -> dict:
+    if prescribed is None:
+        return {}
+    if not isinstance(prescribed, Mapping):
+        raise TypeError(
+            f"solve_load: `prescribed` is {prescribed!r}; it must be a dict of freedoms"
+            " with their values in m or rad, such as {'uz': 1e-5}."
+        )
+    return dict(prescribed)
+
+
 def _six(name, value, dtype):
-    array = as_array(np.zeros(6) if value is None else value, dtype)
+    value = np.zeros(6) if value is None else value
+    order, unit = (LOADS, "N, N m") if name == "load" else (FREEDOMS, "m, rad")
+    wanted = f"six numbers, {' '.join(order)} in {unit} (units belong in scene files)"
+    real_numbers("solve_load", name, value, wanted)
+    try:
+        array = as_array(value, dtype)
+    except ValueError as error:  # lists of unlike length
+        raise ValueError(f"solve_load: `{name}` must be {wanted}.") from error
     if array.shape != (6,):
-        order = LOADS if name == "load" else FREEDOMS
         raise ValueError(
             f"solve_load: `{name}` has shape {array.shape}; it must be (6,):"
             f" {' '.join(order)}."

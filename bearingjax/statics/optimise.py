@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..element.bearing_element import BearingElement
+from ..element.bearing_element import BearingElement, check_element
 from .cases import Cases
 from .design_problem import Build, Measure, Options, Outcome, Problem
 from .measure import Constraint
@@ -154,11 +154,7 @@ def optimise(
         TypeError, ValueError: For wrong variables, measures, methods or numbers.
         SolveError: If the starting design does not solve.
     """
-    if not isinstance(element, BearingElement):
-        raise TypeError(
-            f"optimise: `element` is a {type(element).__name__}; it must be a"
-            " BearingElement."
-        )
+    check_element("optimise", element)
     variables, constraints = tuple(variables), tuple(constraints)
     method = _check_method(method, constraints)
     _check_call(cases, objective, constraints, max_steps, tolerance)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..design import Bearing, BearingSet, SetRow, is_self_aligning
 from ..design.checks import concrete, is_traced
-from ..element.bearing_element import BearingElement
+from ..element.bearing_element import BearingElement, check_element
 from ..numerics.types import Scalar
 from .load import restrained_freedoms, solve_load
 
@@ -37,11 +37,7 @@ def preload(
         ValueError: As `check_preload`.
         SolveError: If a solve fails and `throw` is set.
     """
-    if not isinstance(element, BearingElement):
-        raise TypeError(
-            f"preload: `element` is a {type(element).__name__}; it must be a"
-            " BearingElement (the contact laws count)."
-        )
+    check_element("preload", element)
     bearing = element.bearing
     check_preload(bearing, force)
     offsets = {}

@@ -17,7 +17,7 @@ from ..contact.line_contact import AbstractLineContact
 from ..contact.slices import Compared, Slices
 from ..design import AbstractRollerBearing
 from ..design.profile import AbstractProfile, Tabulated
-from ..element.bearing_element import BearingElement
+from ..element.bearing_element import BearingElement, check_element
 from ..element.constants import relative_radii
 from ..element.frame import RINGS
 from ..element.inertia import Speed
@@ -88,6 +88,7 @@ def refine(
 
     Fails: as `solve_pressure`.
     """
+    check_element("refine", element)
     if not isinstance(solution, RollerSolution):
         raise TypeError("refine: the bearing has balls; it takes one with rollers.")
     if raceway not in RINGS:

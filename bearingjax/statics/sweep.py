@@ -15,8 +15,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from ..design import rows_of
-from ..element.bearing_element import BearingElement
+from ..design import Bearing, BearingSet, rows_of
+from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
 from ..numerics.result import Result
 from .cases import Cases
@@ -81,8 +81,13 @@ def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any
         elements: Of the same classes, counts and parts.
 
     Raises:
+        TypeError: If one is no BearingElement.
         ValueError: If there are none, or their structures differ.
     """
+    if isinstance(elements, BearingElement | Bearing | BearingSet):
+        raise TypeError("stack_designs: `elements` is one; it must be a list of them.")
+    for element in elements:
+        check_element("stack_designs", element)
     if not elements:
         raise ValueError("stack_designs: `elements` is empty; one design at least.")
     structures = [jax.tree.structure(element) for element in elements]
@@ -149,6 +154,7 @@ def sweep(
 
     Fails: as `solve_load`, in `Sweep.result`, case by case; `NOT_RUN` after `stop`.
     """
+    check_element("sweep", element)
     every = cases if isinstance(cases, Cases) else Cases(cases)
     if fixed_ring not in RINGS:
         raise ValueError(
