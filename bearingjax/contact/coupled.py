@@ -50,7 +50,8 @@ class CoupledSlices(AbstractLineLaw):
     Fails: Loads that are not found in 60 steps are NaN, and the element says
         `NON_FINITE`; seven steps are the most seen.
     Valid: Slices longer than the contact is wide; at sharp ends the line load grows
-        with the number of slices, as on a half-space.
+        with the number of slices, as on a half-space. A profile counts by its mean
+        over a slice: waves of a measured one that are shorter are evened out.
     """
 
     slices: int = eqx.field(static=True, default=24)

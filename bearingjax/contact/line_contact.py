@@ -11,6 +11,7 @@ the derivative rule leads from one order to the next.
 """
 
 import abc
+import dataclasses
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -21,8 +22,10 @@ from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
 from ..design.profile import AbstractProfile
+from ..numerics.implicit import stop
+from ..numerics.pieces import Pieces, of_intervals
 from ..numerics.power import positive_power
-from ..numerics.quadrature import AbstractQuadrature
+from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
 from .line import EXPONENT
 
@@ -31,6 +34,9 @@ from .line import EXPONENT
 # Source: Sorokin, Zhang, Ivannikov (2018), eq. (1), (2), (4).
 _N, _D = EXPONENT
 _FACTORS = (_D / (_N + _D), 1.0, _N / _D)
+
+_NEAR = tuple(1.0 - 10.0**-k for k in (1, 2, 3, 4, 6, 9))
+"""Positions ξ that cut a logarithm beside a measured profile."""
 
 
 class Response(NamedTuple):
@@ -136,11 +142,40 @@ class LineContact(AbstractLineContact):
         return self.length * self.line_load(approach)
 
     def table(self, quadrature):
-        return quadrature.table(self.drop, self.kinks(), self.length.dtype)
+        ends = self._intervals()
+        if ends is None or not isinstance(quadrature, ContactMapped):
+            return quadrature.table(self.drop, self.kinks(), self.length.dtype)
+        # Each interval with the part of the profiles that it sees.
+        middle = 0.25 * self.length * (ends[:-1] + ends[1:])[:, None]
+        local = dataclasses.replace(
+            self,
+            roller_profile=self.roller_profile.around(middle),
+            raceway_profile=self.raceway_profile.around(middle),
+        )
+        rule = of_intervals(quadrature, ends.shape[0] - 1)
+        return local, rule.table(partial(_offset, local), ends, ends.dtype), rule
 
     def integrals(self, table, quadrature, a, b):
-        nodes = quadrature.nodes(_offset, self, table, a, b, self.arcs)
+        line = self
+        if isinstance(table[-1], Pieces):
+            line, table, quadrature = table
+        nodes = quadrature.nodes(_offset, line, table, a, b, self.arcs)
         return _integrals(self, nodes, quadrature)
+
+    def _intervals(self):
+        """Ends of the intervals in which measured profiles are smooth, else `None`."""
+        profiles = self.roller_profile, self.raceway_profile
+        knots = [k for k in (p.knots() for p in profiles) if k is not None]
+        if not knots:
+            return None
+        # A logarithm bends ever faster towards the ends.
+        fine = () if all(p.arcs or p.knots() is not None for p in profiles) else _NEAR
+        ends = jnp.asarray([-1.0, *(-x for x in fine), *fine, 1.0], self.length.dtype)
+        parts = [ends, *(2.0 * k / self.length for k in knots)]
+        kinks = self.kinks()
+        if kinks:
+            parts.append(jnp.stack(kinks))
+        return stop(jnp.sort(jnp.clip(jnp.concatenate(parts), -1.0, 1.0)))
 
     def along(self, table, xi, a, b):
         return self.line_load(a + b * xi - self.drop(xi))

@@ -79,6 +79,8 @@ class AbstractQuadrature(eqx.Module):
 class Midpoint(AbstractQuadrature):
     """Equal slices, the integrand taken at the middle of each.
 
+    What of a measured profile stands out between two middles is missed.
+
     Attributes:
         points: Number of slices.
 
@@ -114,8 +116,9 @@ class ContactMapped(AbstractQuadrature):
     two ends refined by safeguarded steps of third order) and mapped with a
     polynomial substitution of power 3 at both ends, which resolves the powers 1/9
     and 10/9 at a zone edge. Where h is convex, the loaded part of a panel is one
-    interval and the rule is spectrally accurate; for other shapes (measured
-    profiles) gaps inside the interval are masked, at reduced accuracy.
+    interval and the rule is spectrally accurate; gaps inside the interval, of other
+    formulas, are masked, at reduced accuracy. Measured profiles have several loaded
+    parts: they are integrated from point to point (`pieces`), to 1e-6 as well.
 
     Zone edges move with their arguments under differentiation (implicit function
     theorem), interval ends and kinks as well.
@@ -219,9 +222,30 @@ def _loaded_interval(steps, offset, start, end, at, fixed, slope, a, b):
         _scan_point(jnp.clip(i, 0.0, count - 1.0), start[None, :], end[None, :], count)
         for i in (inside, outside)
     )
+    side = jnp.asarray([[1.0], [-1.0]], dtype=a.dtype)
+    x = refined_edges(steps, offset, a, b, inside, outside, side, some[None, :])
+    inner = jnp.stack([f[:, 0] <= 0, f[:, -1] <= 0])
+    left = jnp.where(inner[0], x[0], start)
+    right = jnp.where(inner[1], x[1], end)
+    return left, jnp.maximum(left, right), inner
+
+
+def refined_edges(steps, offset, a, b, inside, outside, side, some):
+    """Zeros of a + b ξ - h, one between each two points of unlike sign.
+
+    Args:
+        steps: How many times an edge is refined.
+        offset: h, elementwise.
+        a, b: Scalars.
+        inside, outside: Points where it is positive, and where it is not.
+        side: 1 where it rises, -1 where it falls; goes with the shape of `inside`.
+        some: Whether it really is positive at `inside`; likewise.
+
+    Returns:
+        The zeros, shape of `inside`.
+    """
     # Which root of the local parabola: the left edge on rising ground, the right one
     # on falling.
-    side = jnp.asarray([[1.0], [-1.0]], dtype=a.dtype)
     one = jnp.ones_like(outside)
 
     def slope_of(x):
@@ -246,16 +270,13 @@ def _loaded_interval(steps, offset, start, end, at, fixed, slope, a, b):
         between = (new - inside) * (new - outside) <= 0
         between = between | (jnp.abs(new - x) <= _SETTLED)
         # Past a point that is known to be positive: go on from there.
-        past = some[None, :] & ((new - inside) * (inside - outside) > 0)
+        past = some & ((new - inside) * (inside - outside) > 0)
         safe = jnp.where(past, inside, 0.5 * (inside + outside))
         new = jnp.where(between, new, safe)
         return new, inside, outside
 
     x, *_ = lax.fori_loop(0, steps, refine, (outside, inside, outside))
-    inner = jnp.stack([f[:, 0] <= 0, f[:, -1] <= 0])
-    left = jnp.where(inner[0], x[0], start)
-    right = jnp.where(inner[1], x[1], end)
-    return left, jnp.maximum(left, right), inner
+    return x
 
 
 def _check_points(points):

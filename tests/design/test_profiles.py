@@ -218,19 +218,34 @@ def test_crown_without_cancellation():
 
 
 def test_table_is_smooth_and_meets_its_points():
-    """Through every point, and twice differentiable from one parabola to the next."""
+    """Through every point, and with one slope from one cubic to the next."""
     rng = np.random.default_rng(0)
     s = np.sort(rng.uniform(-0.9, 0.9, 9)) * L / 2
     s = np.concatenate([[-L / 2], s, [L / 2]])
     d = 1e-6 * rng.uniform(0.0, 5.0, s.size)
     profile = Tabulated(s, d)
-    got, *_ = everywhere(profile, s)
+    got, slope, _ = everywhere(profile, s)
     np.testing.assert_allclose(got, d, rtol=1e-9, atol=1e-18)
+    # That of the parabola through three points.
+    i = 4
+    want = np.polyder(np.polyfit(s[i - 1 : i + 2] - s[i], d[i - 1 : i + 2], 2))[-1]
+    np.testing.assert_allclose(slope[i], want, rtol=1e-9)
     gap = np.min(np.diff(s)) * 1e-7
     left, right = (everywhere(profile, s[1:-1] + side * gap) for side in (-1, 1))
-    for a, b in zip(left, right, strict=True):
-        # The blend's third derivative is finite: the jump is as small as the gap.
+    for a, b in zip(left[:2], right[:2], strict=True):
+        # The second derivative is finite: the jump is as small as the gap.
         assert np.max(np.abs(a - b)) < 1e-4 * np.max(np.abs(a))
+
+
+def test_table_beside_its_interval_is_the_same():
+    """`around` one position per interval, many at once; and past the ends."""
+    points = np.array([-0.6, -0.2, 0.1, 0.55]) * L
+    profile = Tabulated(points, 1e-6 * np.array([3.0, 0.0, 1.0, 2.0]))
+    t = jnp.linspace(0.0, 1.0, 5)[None]
+    s = points[:-1, None] + np.diff(points)[:, None] * t
+    got = profile.around(jnp.mean(s, axis=1, keepdims=True)).drop(s, LENGTH, DIAMETER)
+    want = profile.drop(s, LENGTH, DIAMETER)
+    np.testing.assert_allclose(got, want, rtol=1e-9, atol=1e-18)
 
 
 def test_table_is_linear_in_its_drops():
