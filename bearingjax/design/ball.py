@@ -17,7 +17,16 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_count, as_real
-from .checks import check, concrete, count, in_range, is_traced, number, positive
+from .checks import (
+    check,
+    concrete,
+    count,
+    in_range,
+    is_real,
+    is_traced,
+    number,
+    positive,
+)
 from .material import Material
 
 
@@ -221,7 +230,11 @@ class AbstractBallBearing(eqx.Module):
         if value is None or is_traced(value):
             return
         owner = type(self).__name__
-        if isinstance(value, str | bytes | bool) or np.shape(value) != (self.n_balls,):
+        if not is_real(value):
+            raise TypeError(
+                f"{owner}: `ball_deviation` is {value!r}; it must be numbers in m."
+            )
+        if np.shape(value) != (self.n_balls,):
             raise ValueError(
                 f"{owner}: `ball_deviation` has shape {np.shape(value)}; it must be"
                 f" ({self.n_balls},), the diameter of each ball less `ball_diameter`"

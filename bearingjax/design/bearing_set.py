@@ -1,6 +1,6 @@
 """Sets of bearings: rows side by side on one shaft, in one housing."""
 
-import math
+from collections.abc import Iterable
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -10,6 +10,7 @@ from .ball import AbstractBallBearing
 from .ball_types import SelfAligningBallRow
 from .bearing import AbstractRollerBearing
 from .checks import concrete, non_negative, number, positive
+from .checks import count as whole
 
 Bearing = AbstractRollerBearing | AbstractBallBearing
 
@@ -89,6 +90,10 @@ class SetRow(eqx.Module):
             )
 
 
+def _as_tuple(rows):
+    return tuple(rows) if isinstance(rows, Iterable) else rows
+
+
 class BearingSet(eqx.Module):
     """Rows that share the node of the inner and the node of the outer ring.
 
@@ -102,7 +107,7 @@ class BearingSet(eqx.Module):
         ValueError: For an empty set or one of balls and rollers.
     """
 
-    rows: tuple[SetRow, ...] = eqx.field(converter=tuple)
+    rows: tuple[SetRow, ...] = eqx.field(converter=_as_tuple)
 
     @classmethod
     def back_to_back(
@@ -158,7 +163,8 @@ class BearingSet(eqx.Module):
         Raises:
             ValueError: If `spacing` is not positive.
         """
-        _check_spacing(spacing)
+        spacing = _checked_spacing(spacing)
+        whole(cls, "count", count)
         places = [spacing * (k - 0.5 * (count - 1)) for k in range(count)]
         return cls(tuple(SetRow(bearing, place) for place in places))
 
@@ -183,16 +189,22 @@ class BearingSet(eqx.Module):
 
     @classmethod
     def _pair(cls, bearing, spacing, preload_offset, spring, mirrored):
-        _check_spacing(spacing)
+        spacing, offset = _checked_spacing(spacing), as_real(preload_offset)
+        number(cls, "preload_offset", offset, "m")
         rows = []
         for side, turned in zip((-0.5, 0.5), mirrored, strict=True):
             # A row is pressed by its inner ring moving along +z; mirrored, along -z.
-            offset = -0.5 * preload_offset if turned else 0.5 * preload_offset
+            inner = -0.5 * offset if turned else 0.5 * offset
             pressed = spring if side > 0 else None
-            rows.append(SetRow(bearing, side * spacing, turned, offset, pressed))
+            rows.append(SetRow(bearing, side * spacing, turned, inner, pressed))
         return cls(tuple(rows))
 
     def __check_init__(self):
+        if not isinstance(self.rows, tuple):
+            raise TypeError(
+                f"BearingSet: `rows` is a {type(self.rows).__name__}; it must be a list"
+                " or tuple of SetRows."
+            )
         if not self.rows:
             raise ValueError("BearingSet: `rows` is empty; it must hold a SetRow.")
         for row in self.rows:
@@ -255,9 +267,7 @@ def n_elements(bearing: Bearing) -> int:
     return bearing.n_rollers
 
 
-def _check_spacing(spacing):
-    numbers = concrete(spacing)
-    if numbers is not None and not (math.isfinite(numbers[0]) and numbers[0] > 0):
-        raise ValueError(
-            f"BearingSet: `spacing` is {numbers[0]:g} m; it must be above 0 m."
-        )
+def _checked_spacing(spacing) -> Scalar:
+    spacing = as_real(spacing)
+    positive(BearingSet, "spacing", spacing, "m")
+    return spacing

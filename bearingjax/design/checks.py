@@ -16,7 +16,7 @@ def is_traced(value) -> bool:
 
 def concrete(*values) -> list[float] | None:
     """Numbers as Python floats, or `None` if one is traced (or no number at all)."""
-    if any(is_traced(v) or isinstance(v, str | bytes | bool | None) for v in values):
+    if any(is_traced(v) or not is_real(v) for v in values):
         return None
     return [float(v) for v in values]
 
@@ -25,7 +25,7 @@ def check(owner, name: str, value, unit: str, ok, allowed: str) -> None:
     """Raise unless `ok`.
 
     Args:
-        owner: Instance (or name) of what is being checked.
+        owner: Instance, class or name of what is being checked.
         name: Parameter.
         value: Its value, as shown in the message [`unit`].
         unit: Unit; empty for a pure number.
@@ -38,19 +38,29 @@ def check(owner, name: str, value, unit: str, ok, allowed: str) -> None:
     if is_traced(ok) or is_traced(value) or bool(np.all(ok)):
         return
     shown = f"{_show(value)} {unit}".strip()
-    title = owner if isinstance(owner, str) else type(owner).__name__
-    raise ValueError(f"{title}: `{name}` is {shown}; it must be {allowed}.")
+    raise ValueError(f"{_title(owner)}: `{name}` is {shown}; it must be {allowed}.")
+
+
+def is_real(value) -> bool:
+    """Whether a value is a real number or an array of them; traced ones pass."""
+    if is_traced(value):
+        return True
+    try:
+        # "V" are the floating types that NumPy does not know, such as bfloat16.
+        return np.asarray(value).dtype.kind in "iufV"
+    except (TypeError, ValueError):
+        return False
 
 
 def number(owner, name: str, value, unit: str) -> None:
     """A single finite number [`unit`].
 
     Raises:
-        TypeError: If it is text, a bool or nothing at all.
+        TypeError: If it is text, a bool, another object or nothing at all.
         ValueError: If it is an array, NaN or infinite.
     """
-    title = type(owner).__name__
-    if value is None or isinstance(value, str | bytes | bool):
+    title = _title(owner)
+    if not is_real(value):
         raise TypeError(
             f"{title}: `{name}` is {value!r}; it must be a number"
             f"{f' in {unit}' if unit else ''} (units belong in scene files)."
@@ -140,10 +150,17 @@ def count(owner, name: str, value) -> None:
     """
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
         raise TypeError(
-            f"{type(owner).__name__}: `{name}` is {value!r}; it must be a whole number"
+            f"{_title(owner)}: `{name}` is {value!r}; it must be a whole number"
             " of at least 1."
         )
     check(owner, name, value, "", value >= 1, "a whole number of at least 1")
+
+
+def _title(owner) -> str:
+    """What a message calls the owner: a name, a class or an instance of it."""
+    if isinstance(owner, str):
+        return owner
+    return (owner if isinstance(owner, type) else type(owner)).__name__
 
 
 def _with_unit(words: str, unit: str) -> str:

@@ -119,13 +119,29 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """Defaults as above; what the rolling elements have no use for is an error.
 
         Raises:
-            TypeError: If `bearing` is no bearing.
+            TypeError: If `bearing` is no bearing, or a choice is of another kind, such
+                as a text or the class itself.
             ValueError: For a choice that the rolling elements have no use for.
         """
         if not isinstance(bearing, Bearing | BearingSet):
             raise TypeError(
                 f"BearingElement: `bearing` is a {type(bearing).__name__}; it must be"
                 " a roller bearing, a ball bearing or a BearingSet."
+            )
+        _check_kinds(
+            {
+                "line_law": line_law,
+                "kinematics": kinematics,
+                "quadrature": quadrature,
+                "equilibrium": equilibrium,
+                "point_law": point_law,
+                "raceway_control": raceway_control,
+            }
+        )
+        if not isinstance(cage_torque, bool):
+            raise TypeError(
+                f"BearingElement: `cage_torque` is {cage_torque!r}; it must be True or"
+                " False."
             )
         balls = is_ball(bearing)
         wrong = {
@@ -147,6 +163,10 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 "BearingElement: `quadrature` is for independent slices, but `line_law`"
                 " is CoupledSlices(), which has slices of its own."
             )
+        # A jnp.float32 among float64 would stop the solvers, which keep one dtype.
+        bearing, line_law, point_law, raceway_control = _in_one_dtype(
+            (bearing, line_law, point_law, raceway_control)
+        )
         self.bearing = bearing
         self.line_law = None if balls else line_law or Palmgren()
         aligning = has_sphere(bearing)
@@ -339,3 +359,51 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             quadrature,
             body_force,
         )
+
+
+_KINDS = {
+    "line_law": (
+        AbstractLineLaw,
+        "Palmgren(), ISO16281(), LineConstant(...) or CoupledSlices()",
+    ),
+    "kinematics": (AbstractKinematics, "Linearised() or Finite()"),
+    "quadrature": (AbstractQuadrature, "ContactMapped() or Midpoint()"),
+    "equilibrium": (AbstractMinimiser, "TrustRegionNewton() or BFGS()"),
+    "point_law": (
+        AbstractPointLaw,
+        "FreeAngle(), ZeroAngle(), OperatingAngle() or PointConstant(...)",
+    ),
+    "raceway_control": (
+        AbstractRacewayControl,
+        "OuterControl(), InnerControl(), EqualShare(), LoadShare(), FrictionLimited()"
+        " or CentrifugalOnly()",
+    ),
+}
+"""Of each choice of a `BearingElement`: its class, and what a message says of it."""
+
+
+def _in_one_dtype(tree):
+    """All real numbers in JAX's floating type: float64, or float32 if that is off."""
+    dtype = jax.dtypes.canonicalize_dtype(float)
+
+    def cast(leaf):
+        other = eqx.is_inexact_array(leaf) and leaf.dtype != dtype
+        return leaf.astype(dtype) if other else leaf
+
+    return jax.tree.map(cast, tree)
+
+
+def _check_kinds(choices: dict) -> None:
+    """Raise unless each choice is `None` or of its class.
+
+    A text or the class itself (`Finite` for `Finite()`) would be taken for another
+    choice, and nothing would say so.
+    """
+    for name, value in choices.items():
+        kind, allowed = _KINDS[name]
+        if value is not None and not isinstance(value, kind):
+            of_itself = isinstance(value, type)
+            shown = f"the class {value.__name__}" if of_itself else repr(value)
+            raise TypeError(
+                f"BearingElement: `{name}` is {shown}; it must be {allowed}."
+            )

@@ -25,14 +25,20 @@ def as_real(value) -> Any:
 
     Returns:
         float64 array when JAX has 64 bit enabled, float32 otherwise; arrays that
-        are floating already keep their dtype. Text, bools and `None` come back
-        unchanged: the check of the field then names them.
+        are floating already keep their dtype. What is no real number (text, bools,
+        `None`, complex numbers, other objects) comes back unchanged: the check of
+        the field then names it.
     """
     if isinstance(value, jax.Array) and jnp.issubdtype(value.dtype, jnp.floating):
         return value
-    if value is None or isinstance(value, str | bytes | bool):
+    if value is None or isinstance(value, str | bytes | bool | complex):
         return value
-    return as_array(value, jax.dtypes.canonicalize_dtype(float))
+    if getattr(getattr(value, "dtype", None), "kind", "f") in "bc":
+        return value
+    try:
+        return as_array(value, jax.dtypes.canonicalize_dtype(float))
+    except (TypeError, ValueError):
+        return value
 
 
 def as_array(value, dtype) -> Array:

@@ -139,6 +139,46 @@ def test_wrong_calls_say_what_is_allowed(make, message):
         make()
 
 
+BAD_CHOICES = {
+    "text": ({"kinematics": "finite"}, r"`kinematics` is 'finite'.* or Finite\(\)"),
+    "class": ({"kinematics": bj.Finite}, r"`kinematics` is the class Finite; "),
+    "law of rollers": ({"point_law": bj.Palmgren()}, "`point_law` is Palmgren"),
+    "control": ({"raceway_control": bj.InnerControl}, "`raceway_control` is the class"),
+    "solver": ({"equilibrium": "bfgs"}, r"`equilibrium` is 'bfgs'.* or BFGS\(\)"),
+    "yes": ({"cage_torque": "no"}, "`cage_torque` is 'no'; .*True or False"),
+}
+
+
+@pytest.mark.parametrize("choice, message", BAD_CHOICES.values(), ids=BAD_CHOICES)
+def test_a_choice_of_another_kind_is_no_other_choice(untyped, choice, message):
+    """Finite, or its name, for Finite() was taken for linearised kinematics."""
+    with pytest.raises(TypeError, match="^BearingElement: " + message):
+        bj.BearingElement(deep(), **choice)
+
+
+BAD_SETS = {
+    "spacing": (lambda s: s.back_to_back(angular(), "20 mm"), "`spacing` is '20 mm'"),
+    "offset": (lambda s: s.face_to_face(angular(), 0.02, "1"), "`preload_offset` is"),
+    "count": (lambda s: s.tandem(angular(), 0.02, 2.0), "`count` is 2.0"),
+    "one row": (lambda s: s(bj.SetRow(angular())), "`rows` is a SetRow"),
+}
+
+
+@pytest.mark.parametrize("make, message", BAD_SETS.values(), ids=BAD_SETS)
+def test_sets_of_wrong_types(untyped, make, message):
+    with pytest.raises(TypeError, match="^BearingSet: " + message):
+        make(bj.BearingSet)
+
+
+@pytest.mark.parametrize("dtype", [jnp.float32, jnp.float16])
+def test_numbers_of_less_precision_are_made_float64(dtype):
+    """Among float64 they stopped the load solve with an error of its loop."""
+    with jax.numpy_dtype_promotion("standard"):
+        bearing = deep(first_azimuth=jnp.asarray(0.3, dtype))
+        leaves = jax.tree.leaves(bj.BearingElement(bearing))
+    assert {leaf.dtype for leaf in leaves} == {jnp.dtype("float64")}
+
+
 def test_sets():
     pair = bj.BearingSet.back_to_back(angular(), 0.02, 8e-6)
     assert [r.mirrored for r in pair.rows] == [False, True]

@@ -6,7 +6,6 @@ from math import atan, pi, sin
 
 import jax
 import jax.numpy as jnp
-import jaxtyping
 import numpy as np
 import pytest
 from tolerances import ROUNDING
@@ -110,17 +109,11 @@ def test_bad_numbers(make, message):
         make()
 
 
-@pytest.fixture
-def untyped():
-    """As users run the package: without the type checks of the tests' conftest."""
-    before = jaxtyping.config.jaxtyping_disable
-    jaxtyping.config.update("jaxtyping_disable", True)
-    yield
-    jaxtyping.config.update("jaxtyping_disable", before)
-
-
 BAD_TYPES = {
     "text": (lambda: cylindrical(pitch="72.5 mm"), r"`pitch_diameter` is '72.5 mm'.*number in m \(units belong in scene files\)"),
+    "complex": (lambda: cylindrical(pitch=0.07 + 0j), r"`pitch_diameter` is \(0.07\+0j\).*number in m"),
+    "NumPy's bool": (lambda: cylindrical(pitch=np.True_), r"`pitch_diameter` is np.True_.*number in m"),
+    "a list of texts": (lambda: cylindrical(pitch=["a"]), r"`pitch_diameter` is \['a'\].*number in m"),
     "None": (lambda: cylindrical(length=None), r"`roller_length` is None.*number in m"),
     "text coefficient": (lambda: Logarithmic("3.5e-4"), r"`coefficient` is '3.5e-4'.*number"),
     "text angle": (lambda: tapered("15 deg"), r"`roller_axis_angle` is '15 deg'.*rad"),
