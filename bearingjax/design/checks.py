@@ -46,8 +46,7 @@ def is_real(value) -> bool:
     if is_traced(value):
         return True
     try:
-        # "V" are the floating types that NumPy does not know, such as bfloat16.
-        return np.asarray(value).dtype.kind in "iufV"
+        return np.asarray(value).dtype.kind not in _ODD + "b"
     except (TypeError, ValueError):
         return False
 

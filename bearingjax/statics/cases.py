@@ -136,9 +136,10 @@ def _array(name, value, tail):
             value = np.asarray(value)
         except ValueError as error:
             raise ValueError(f"Cases: `{name}` has rows of unlike length.") from error
-        if name != "design":
-            value = value.astype(float)
-    if name == "design" and np.size(value) and value.dtype.kind not in "iu":
+    if name != "design":
+        # JAX's too: a case may start from the solution of the one before it.
+        value = value.astype(float)
+    elif np.size(value) and value.dtype.kind not in "iu":
         raise TypeError(f"Cases: `design` is {value!r}; it must be whole numbers.")
     shape = np.shape(value)
     if shape not in (tail, shape[:1] + tail):

@@ -228,6 +228,13 @@ def test_bad_cases():
             bj.Cases(**{"load": LOADS, **wrong})
 
 
+def test_cases_have_the_dtype_of_their_solutions():
+    """Integers and float32 of JAX kept theirs, and `neighbours` ended in the loop."""
+    for dtype in (jnp.int32, jnp.float32):
+        cases = bj.Cases(jnp.asarray(LOADS, dtype), inner_speed=jnp.arange(3))
+        assert cases.load.dtype == cases.inner_speed.dtype == jnp.float64
+
+
 def test_bad_designs(swept):
     stacked = bj.stack_designs([ELEMENT, ELEMENT])
     with pytest.raises(ValueError, match="2 designs for 3 cases"):
