@@ -1,6 +1,5 @@
 """The command line: `bearingjax solve SCENE.toml`, `sweep`, `optimise`, `contact`."""
 
-import argparse
 import contextlib
 import gc
 import io
@@ -9,10 +8,13 @@ import shlex
 import signal
 import sys
 import time
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+
+from .arguments import parser
 
 SOLVED, BAD_INPUT, NOT_SOLVED, INTERRUPTED = 0, 2, 3, 130
 """Exit status."""
@@ -28,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit status: 0 solved, 2 bad input (or an output that cannot be written), 3 not
         solved, 130 interrupted.
     """
-    options = _parser().parse_args(arguments)
+    options = parser().parse_args(arguments)
     options.given = list(sys.argv[1:] if arguments is None else arguments)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # which may not know "µ"
@@ -41,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     gc.disable()
     try:
         _configure_jax(options)
-        return options.run(options)
+        return _COMMANDS[options.command](options)
     except SceneError as error:
         print(f"bearingjax: {error}", file=sys.stderr)
         return BAD_INPUT
@@ -53,9 +55,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _forget_output()
         return SOLVED
     except OSError as error:
-        # Files are dealt with where they are read and written: this is the report.
-        print(f"bearingjax: {error}", file=sys.stderr)
-        _forget_output()
+        place = error.filename or "standard output"
+        print(f"bearingjax: {place}: {error.strerror or error}", file=sys.stderr)
+        if error.filename is None:
+            _forget_output()
         return BAD_INPUT
     finally:
         if collecting:
@@ -65,106 +68,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _forget_output() -> None:
     """What standard output still holds goes nowhere."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _parser():
-    from importlib.metadata import version
-
-    parser = argparse.ArgumentParser(
-        prog="bearingjax", description="Rolling-bearing mechanics."
-    )
-    parser.add_argument("--version", action="version", version=version("bearingjax"))
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    solve = commands.add_parser(
-        "solve",
-        help="where the rings go under load",
-        description="Solve the bearing of a scene file and print a report.",
-        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
-    )
-    solve.set_defaults(run=_solve)
-    _add_common(solve)
-    solve.add_argument(
-        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
-    )
-    sweep = commands.add_parser(
-        "sweep",
-        help="many cases: loads, displacements, speeds, designs",
-        description="Solve the [cases] of a scene file.",
-        epilog="Exit status: 0 all solved, 2 bad input, 3 some not solved (the table"
-        " holds a result for each case), 130 interrupted (what is solved is kept).",
-    )
-    sweep.set_defaults(run=_sweep)
-    _add_common(sweep)
-    sweep.add_argument(
-        "--table",
-        metavar="OUT",
-        type=Path,
-        help="write a row per case (.csv, .parquet)",
-    )
-    sweep.add_argument(
-        "--resume",
-        action="store_true",
-        help="solve only the cases that the table lacks, after an interruption",
-    )
-    sweep.add_argument("--quiet", action="store_true", help="no progress bar")
-    sweep.add_argument(
-        "--devices",
-        metavar="N",
-        type=int,
-        default=None,
-        help="parts of the processor to spread the cases over; default: all its cores",
-    )
-    optimise = commands.add_parser(
-        "optimise",
-        help="the free numbers of a design that make a measure least",
-        description="Optimise the bearing of a scene file, as its [optimise] says, over"
-        " its [cases].",
-        epilog="Exit status: 0 optimised, 2 bad input, 3 not solved or not converged.",
-    )
-    optimise.set_defaults(run=_optimise)
-    _add_common(optimise)
-    optimise.add_argument(
-        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
-    )
-    optimise.add_argument("--progress", action="store_true", help="show progress")
-    contact = commands.add_parser(
-        "contact",
-        help="one roller on one raceway, its ends included",
-        description="Solve the contact of one roller and one raceway, both elastic"
-        " half-spaces, cell by cell; beside it what independent slices give.",
-        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
-    )
-    contact.set_defaults(run=_contact)
-    _add_common(contact)
-    contact.add_argument(
-        "--roller",
-        type=int,
-        help="of a bearing's scene; default: the one with the largest load",
-    )
-    contact.add_argument(
-        "--raceway", choices=("inner", "outer"), help="likewise; default: inner"
-    )
-    contact.add_argument(
-        "--free-ends",
-        action="store_true",
-        help="likewise: the roller's end faces bear no stress",
-    )
-    contact.add_argument(
-        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
-    )
-    return parser
-
-
-def _add_common(command):
-    command.add_argument("scene", metavar="SCENE", help=".toml file or a shipped scene")
-    command.add_argument("--json", metavar="OUT", type=Path, help="write numbers in SI")
-    command.add_argument(
-        "--set",
-        metavar="KEY=VALUE",
-        action="append",
-        default=[],
-        help='change the scene, such as "operating.load.Fz=-6 kN"; may be repeated',
-    )
 
 
 def _configure_jax(options):
@@ -182,7 +85,13 @@ def _configure_jax(options):
     if getattr(jax.config, "jax_compilation_cache_dir", None) is None:
         base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         cache = Path(base) / "bearingjax" / "jax"
-        jax.config.update("jax_compilation_cache_dir", str(cache))
+        # JAX would warn of every program that it cannot keep, among our own warnings.
+        with contextlib.suppress(OSError):
+            cache.mkdir(parents=True, exist_ok=True)
+            if os.access(cache, os.W_OK | os.X_OK):
+                jax.config.update("jax_compilation_cache_dir", str(cache))
+    message = ".*persistent compilation cache.*"  # such as of a full disk
+    warnings.filterwarnings("ignore", message)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)
 
@@ -447,3 +356,11 @@ def _check_plot(path: Path) -> None:
     matplotlib.use("Agg")
     if path.suffix.lower() not in (".png", ".pdf", ".svg"):
         raise SceneError(f"{path}: a picture ends in .png, .pdf or .svg")
+
+
+_COMMANDS = {
+    "solve": _solve,
+    "sweep": _sweep,
+    "optimise": _optimise,
+    "contact": _contact,
+}

@@ -254,9 +254,11 @@ def _set(data: dict, setting: str, file: str) -> None:
             ' "operating.load.Fy=-4 kN"'
         )
     try:
-        value = tomllib.loads(f"value = {text}")["value"]
+        parsed = tomllib.loads(f"value = {text}")
     except ValueError:
-        value = text.strip()
+        parsed = {}
+    # Lines that follow would be lost: it is text then.
+    value = parsed["value"] if len(parsed) == 1 else text.strip()
     assign(data, ".".join(parts), value, file)
 
 

@@ -896,6 +896,12 @@ def test_what_is_not_a_setting(run, setting):
     assert message.startswith(start)
 
 
+def test_lines_of_a_setting_are_not_lost():
+    """The second line went unread."""
+    with pytest.raises(SceneError, match=r"points`: '7\\nmore = 8' is not a whole"):
+        read_scene("cylindrical_rig", ["output.points=7\nmore = 8"])
+
+
 def test_reader_raises_what_the_command_line_prints():
     with pytest.raises(SceneError, match=r"^tapered\.toml: `bearing\.n_rollers`: 0 is"):
         read_scene("tapered", ["bearing.n_rollers=0"])

@@ -146,6 +146,14 @@ def test_pulled_apart(run, tmp_path):
     assert not picture.exists()
 
 
+def test_a_roller_of_a_bearing_without_a_solution(run, tmp_path):
+    out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    picture.write_text("of an earlier run", encoding="utf-8")
+    done = run("contact", *PULLED[1:], "--json", out, "--plot", picture)
+    assert done.status == 3 and done.out == "" and not picture.exists()
+    assert set(read(out)) == WORDS and read(out)["result"] == "no_load_path"
+
+
 def test_scene_of_ones_own(run, tmp_path):
     """A file is named as it is given; its name heads the report."""
     path = tmp_path / "my $taper_{.toml"
@@ -156,11 +164,11 @@ def test_scene_of_ones_own(run, tmp_path):
     assert done.out.startswith("my $taper_{: tapered roller bearing, 17 rollers")
 
 
-@pytest.mark.parametrize("ending", ["pdf", "svg"])
+@pytest.mark.parametrize("ending", ["PDF", "svg"])
 def test_pictures_of_lines(run, tmp_path, ending):
     path = tmp_path / f"out.{ending}"
     assert run(*TAPER, "--plot", path).status == 0
-    head = {"pdf": b"%PDF", "svg": b"<?xml"}[ending]
+    head = {"PDF": b"%PDF", "svg": b"<?xml"}[ending]
     assert path.read_bytes().startswith(head)
 
 
@@ -234,7 +242,7 @@ def test_reader_that_left(monkeypatch):
 
 
 @pytest.mark.parametrize("what", ["the report", "the numbers"])
-def test_full_disk(run, monkeypatch, what):
+def test_full_disk(run, monkeypatch, capsys, what):
     """A full disk behind standard output, and behind a file."""
     if not os.path.exists("/dev/full"):
         pytest.skip("no device that is always full")
@@ -248,6 +256,8 @@ def test_full_disk(run, monkeypatch, what):
         with monkeypatch.context() as patch:
             patch.setattr(sys, "stdout", out)
             assert cli.main(TAPER) == 2
+    problem = "standard output: No space left on device"
+    assert capsys.readouterr().err == f"bearingjax: {problem}\n"
 
 
 @pytest.mark.usefixtures("no_solve")

@@ -1,0 +1,101 @@
+"""What may be written on the command line."""
+
+import argparse
+from pathlib import Path
+
+
+def parser() -> argparse.ArgumentParser:
+    """Of the command line, without what its commands do."""
+    from importlib.metadata import version
+
+    top = argparse.ArgumentParser(
+        prog="bearingjax", description="Rolling-bearing mechanics."
+    )
+    top.add_argument("--version", action="version", version=version("bearingjax"))
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    solve = commands.add_parser(
+        "solve",
+        help="where the rings go under load",
+        description="Solve the bearing of a scene file and print a report.",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
+    )
+    _add_common(solve)
+    solve.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
+    sweep = commands.add_parser(
+        "sweep",
+        help="many cases: loads, displacements, speeds, designs",
+        description="Solve the [cases] of a scene file.",
+        epilog="Exit status: 0 all solved, 2 bad input, 3 some not solved (the table"
+        " holds a result for each case), 130 interrupted (what is solved is kept).",
+    )
+    _add_common(sweep)
+    sweep.add_argument(
+        "--table",
+        metavar="OUT",
+        type=Path,
+        help="write a row per case (.csv, .parquet)",
+    )
+    sweep.add_argument(
+        "--resume",
+        action="store_true",
+        help="solve only the cases that the table lacks, after an interruption",
+    )
+    sweep.add_argument("--quiet", action="store_true", help="no progress bar")
+    sweep.add_argument(
+        "--devices",
+        metavar="N",
+        type=int,
+        default=None,
+        help="parts of the processor to spread the cases over; default: all its cores",
+    )
+    optimise = commands.add_parser(
+        "optimise",
+        help="the free numbers of a design that make a measure least",
+        description="Optimise the bearing of a scene file, as its [optimise] says, over"
+        " its [cases].",
+        epilog="Exit status: 0 optimised, 2 bad input, 3 not solved or not converged.",
+    )
+    _add_common(optimise)
+    optimise.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
+    optimise.add_argument("--progress", action="store_true", help="show progress")
+    contact = commands.add_parser(
+        "contact",
+        help="one roller on one raceway, its ends included",
+        description="Solve the contact of one roller and one raceway, both elastic"
+        " half-spaces, cell by cell; beside it what independent slices give.",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
+    )
+    _add_common(contact)
+    contact.add_argument(
+        "--roller",
+        type=int,
+        help="of a bearing's scene; default: the one with the largest load",
+    )
+    contact.add_argument(
+        "--raceway", choices=("inner", "outer"), help="likewise; default: inner"
+    )
+    contact.add_argument(
+        "--free-ends",
+        action="store_true",
+        help="likewise: the roller's end faces bear no stress",
+    )
+    contact.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
+    return top
+
+
+def _add_common(command):
+    command.add_argument("scene", metavar="SCENE", help=".toml file or a shipped scene")
+    command.add_argument("--json", metavar="OUT", type=Path, help="write numbers in SI")
+    command.add_argument(
+        "--set",
+        metavar="KEY=VALUE",
+        action="append",
+        default=[],
+        help='change the scene, such as "operating.load.Fz=-6 kN"; may be repeated',
+    )
