@@ -60,8 +60,24 @@ class Options(eqx.Module):
                 return jnp.where(solved, value, jnp.nan)
             return value
 
-        kept = jax.tree.map(told, self.keep(solution))
+        kept = {name: told(v) for name, v in _arrays(self.keep(solution)).items()}
         return {**kept, **{name: getattr(solution, name) for name in ALWAYS}}
+
+
+def _arrays(kept) -> dict[str, jax.Array]:
+    """What a function for `outputs` returned, if it is a dict of arrays."""
+    if not isinstance(kept, dict):
+        raise TypeError(
+            f"sweep: `outputs` returns a {type(kept).__name__}; it must return a dict"
+            " of arrays by name."
+        )
+    for name, value in kept.items():
+        if not eqx.is_array_like(value):
+            raise TypeError(
+                f"sweep: `outputs` returns a {type(value).__name__} as {name!r}; it"
+                " must be an array or a number."
+            )
+    return {name: jnp.asarray(value) for name, value in kept.items()}
 
 
 class Program:

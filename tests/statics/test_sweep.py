@@ -5,6 +5,7 @@ import subprocess
 import sys
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import jax
 import jax.numpy as jnp
@@ -233,6 +234,21 @@ def test_cases_have_the_dtype_of_their_solutions():
     for dtype in (jnp.int32, jnp.float32):
         cases = bj.Cases(jnp.asarray(LOADS, dtype), inner_speed=jnp.arange(3))
         assert cases.load.dtype == cases.inner_speed.dtype == jnp.float64
+
+
+def test_outputs_of_a_function_are_a_dict_of_arrays():
+    """Others ended in an AttributeError of the program; a number passes."""
+    solution = SimpleNamespace(converged=jnp.asarray(False), result=1, unrestrained=-1)
+
+    def outputs(kept):
+        options = sweep_program.Options(None, "outer", 5, None, lambda _: kept)
+        return options.outputs(solution)
+
+    with pytest.raises(TypeError, match="`outputs` returns a list; .* dict of arrays"):
+        outputs([1.0])
+    with pytest.raises(TypeError, match="returns a dict as 'a'; .* array or a number"):
+        outputs({"a": {"b": 1.0}})
+    assert np.isnan(outputs({"a": 1.0})["a"])
 
 
 def test_bad_designs(swept):
