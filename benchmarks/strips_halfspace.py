@@ -225,7 +225,8 @@ def widths(n, along, asked):
             half = HERTZ * width
             if fixed == "size":
                 half = HALF_WIDTH * cells / n
-            found = taper().solve(LOAD, grid=even_grid(LENGTH, half, cells, along))
+            grid = even_grid(LENGTH, half, cells, along)
+            found = taper().solve(LOAD, grid=grid, throw=False)
             rows.append(
                 {
                     "width": half / HERTZ,

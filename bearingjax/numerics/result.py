@@ -18,6 +18,8 @@ class Result(enum.IntEnum):
     NON_FINITE = 4
     NOT_RUN = 5
     """A case of a sweep that was ended before its turn; no solver returns it."""
+    GRID_MISFIT = 6
+    """Cells that do not hold or do not tell a half-space contact."""
 
     @property
     def label(self) -> str:

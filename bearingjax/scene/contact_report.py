@@ -16,6 +16,9 @@ _RULE = "-" * 78
 WIDE = 0.2
 """Half width of a contact over the radius of the roller from which it is said."""
 
+FEW = 5
+"""Cells across a contact, or along it, below which it is said."""
+
 PLACES = (1 / 30, 1 / 15, 1 / 4, 1 / 2, 3 / 4, 14 / 15, 29 / 30)
 """Where the report gives the pressure: from the small end, over the length."""
 
@@ -25,7 +28,8 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
 
     Args:
         scene: What was asked.
-        cases: What came of it; those that are not solved are passed over.
+        cases: What came of it; those that are not solved are passed over, but for a
+            grid too narrow.
     """
     found = list(scene.warnings)
     solved = [case for case in cases if case.solution.converged]
@@ -33,7 +37,10 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
         if not case.touches:
             approach = 1e6 * float(case.solution.approach)
             found.append(f"approach {approach:.4g} um: the bodies do not touch")
-    narrow = [case for case in solved if case.solution.truncated]
+    held = (int(Result.CONVERGED), int(Result.GRID_MISFIT))
+    narrow = [
+        c for c in cases if c.solution.truncated and int(c.solution.result) in held
+    ]
     if narrow:
         cure = "it is as wide as the roller or its raceway"
         if scene.half_width is not None:
@@ -41,6 +48,12 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
         found.append(
             f"{_named(narrow)}: the contact reaches the sides of the grid; what it"
             f" carries beyond them is missing; {cure}"
+        )
+    coarse = [case for case in solved if case.touches and _is_coarse(case.solution)]
+    if coarse:
+        found.append(
+            f"{_named(coarse)}: the contact is less than {FEW} cells wide or long; its"
+            " pressures may be off by some hundredths: take more cells"
         )
     radius = 0.5 * float(scene.contact.small_diameter)
     wide = [case for case in solved if case.half_width.max() > WIDE * radius]
@@ -59,6 +72,11 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
             " compare at fixed distances from the end"
         )
     return found
+
+
+def _is_coarse(solution):
+    across, along = (int(count) for count in solution.cells)
+    return across < FEW or along < min(FEW, solution.grid.shape[1])
 
 
 def _named(cases):

@@ -66,7 +66,7 @@ def test_the_load_is_that_of_the_half_space(name, tilt, at):
         raceway_material=STEEL,
     )
     for load in (1000.0, 5000.0):
-        grid = roller.grid(1.8 * roller.line_half_width(load))
+        grid = roller.grid(2.5 * roller.line_half_width(load))
         solved = roller.solve(load, tilt=tilt, grid=grid)
         got, along = at(coupled(profile), solved.approach, 0.5 * LENGTH * tilt)
         assert float(got.load[0]) == pytest.approx(load, rel=0.01)

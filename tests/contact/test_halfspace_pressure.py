@@ -16,6 +16,7 @@ from tolerances import DIFFERENCE, ROUNDING, SOLVER
 import bearingjax as bj
 from bearingjax.contact.halfspace import (
     ConjugateGradients,
+    Grid,
     RollerContact,
     even_grid,
     influence,
@@ -321,8 +322,64 @@ def test_what_cannot_be_carried_and_what_is_nothing(taper):
     short = ConjugateGradients(max_steps=3)
     with pytest.raises(SolveError, match="did not converge in 3 steps"):
         taper.solve(100.0, grid=grid, solver=short)
-    narrow = taper.solve(3000.0, grid=taper.grid(0.3 * HALF_WIDTH, 9, 12))
-    assert narrow.truncated
+
+
+def test_a_grid_that_does_not_hold_the_contact(taper):
+    """Too narrow, the pressure piles up at its sides; too wide, it has no shape."""
+
+    def peak(width, load):
+        grid = taper.grid(width, 9, 12)
+        solution = taper.solve(load, grid=grid, throw=False)
+        return solution.peak_pressure, (solution.result, solution.truncated)
+
+    solve = jax.jit(jax.vmap(jax.value_and_grad(peak, has_aux=True)))
+    factors = jnp.array([0.3, 1.0, 8.0, 0.3])
+    (_, (codes, truncated)), slopes = solve(
+        HALF_WIDTH * factors, jnp.array([3000.0, 3000.0, 3000.0, 100.0])
+    )
+    labels = [bj.Result(int(code)).label for code in codes]
+    assert labels == ["grid_misfit", "converged", "grid_misfit", "converged"]
+    assert np.array_equal(np.isfinite(slopes), [False, True, False, True])
+    # Wide enough, but for the bulge of a sharp end.
+    assert np.array_equal(truncated, [True, True, False, False])
+    with pytest.raises(SolveError, match="reaches the sides of the grid"):
+        taper.solve(3000.0, grid=taper.grid(0.3 * HALF_WIDTH, 9, 12))
+    with pytest.raises(SolveError, match="is 1 by 12 cells, too few"):
+        taper.solve(3000.0, grid=taper.grid(8 * HALF_WIDTH, 9, 12))
+
+
+def test_a_contact_short_beside_the_roller():
+    """Of a strong crown: cells long in the middle halve its pressure, and say so."""
+    crown = RollerContact(
+        0.015, 0.010, 0.010, roller_profile=bj.CircularCrown(0.02), **PAIR
+    )
+    with pytest.raises(SolveError, match="by 2 cells, too few"):
+        crown.solve(100.0)
+    width = crown.grid_half_width({"load": 100.0})
+    solution = crown.solve(100.0, grid=crown.grid(width, 35, 401, 1.0))
+    hertz = bj.contact.ellipse(
+        jnp.asarray(1 / 0.005), jnp.asarray(1 / 0.02), crown.modulus
+    )
+    peak = float(hertz.peak_pressure(jnp.asarray(100.0)))
+    assert float(solution.peak_pressure) == pytest.approx(peak, rel=2e-3)
+
+
+def test_a_grid_of_another_roller(taper):
+    """Refused; traced, no pressure comes of it."""
+    other = RollerContact(0.010, 0.010, 0.012, **PAIR).grid(HALF_WIDTH, 9, 12)
+    with pytest.raises(ValueError, match=r"`grid` is 0\.01 m; it must be as long as"):
+        taper.solve(3000.0, grid=other)
+    with pytest.raises(ValueError, match="0.015 m, and centred"):
+        taper.gap(Grid(HALF_WIDTH, other.edges + 0.0025, 9, True, False))
+    own = taper.grid(HALF_WIDTH, 9, 12)
+
+    @jax.jit
+    def solve(length):
+        cells = Grid(HALF_WIDTH, own.edges * length, 9, True, False)
+        return taper.solve(3000.0, grid=cells, throw=False)
+
+    assert solve(1.0).converged
+    assert solve(0.9).result == bj.Result.NON_FINITE
 
 
 def test_one_bad_case_stays_alone(taper):
@@ -332,7 +389,7 @@ def test_one_bad_case_stays_alone(taper):
     def approach(load):
         return solve_pressure(matrix, gap, load=load, throw=False).approach
 
-    loads = jnp.array([100.0, jnp.nan, -5.0, 1000.0])
+    loads = jnp.array([500.0, jnp.nan, -5.0, 1000.0])
     values, slopes = jax.jit(jax.vmap(jax.value_and_grad(approach)))(loads)
     good = np.array([True, False, False, True])
     assert np.array_equal(np.isfinite(slopes), good)

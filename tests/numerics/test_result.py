@@ -16,6 +16,8 @@ def test_codes_are_ordered_by_gravity():
         "saddle",
         "no_load_path",
         "non_finite",
+        "not_run",
+        "grid_misfit",
     ]
     codes = jnp.stack([code(r) for r in (Result.SADDLE, Result.CONVERGED)])
     assert worst(codes) == Result.SADDLE

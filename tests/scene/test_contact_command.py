@@ -230,6 +230,7 @@ def test_solved(run, tmp_path):
     [
         (["numerics.max_steps=1"], "step_limit"),
         (["operating={load='3 kN', moment='30 N m'}"], "no_load_path"),
+        (["numerics.half_width=0.03 mm"], "grid_misfit"),
     ],
 )
 def test_not_solved(run, tmp_path, settings, label):

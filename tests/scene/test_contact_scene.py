@@ -274,11 +274,20 @@ def test_whole_field(cylinder):
 
 def test_grid_too_narrow_is_said(cylinder):
     scene, cases, numbers = solve(cylinder, "numerics.half_width=0.03 mm")
-    assert numbers["truncated"] is True
+    assert numbers["result"] == "grid_misfit" and "peak_pressure" not in numbers
+    assert "reaches the sides" in numbers["message"]
     (warning,) = contact_warnings(scene, cases)
     assert "2000 N: the contact reaches the sides of the grid" in warning
     assert "larger `numerics.half_width`" in warning
     assert numbers["warnings"] == [warning]
+
+
+def test_few_cells_are_said(cylinder):
+    """Three across: an answer, but a rough one."""
+    scene, cases, numbers = solve(cylinder, "numerics.half_width=0.5 mm")
+    assert numbers["result"] == "converged"
+    (warning,) = contact_warnings(scene, cases)
+    assert warning.startswith("2000 N: the contact is less than 5 cells wide or long")
 
 
 def test_contact_too_wide_for_half_spaces_is_said(cylinder):

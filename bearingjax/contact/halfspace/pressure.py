@@ -17,7 +17,7 @@ from ...numerics import lanes
 from ...numerics.implicit import attach_by, stop
 from ...numerics.linear import solve_symmetric
 from ...numerics.result import Result, raise_unless_converged
-from ...numerics.types import Flag, Scalar, as_real
+from ...numerics.types import Count, Flag, Scalar, as_real
 from .gradients import (
     AbstractPressureSolver,
     ConjugateGradients,
@@ -33,6 +33,15 @@ _ENOUGH = 1e-12
 
 _STEPS = 200
 """Limit of steps for a derivative; a score of them is usual."""
+
+LEAST_CELLS = 3
+"""A contact is at least so many cells wide, and long: of fewer the peak is off by more
+than a tenth, up to a half."""
+
+
+AT_SIDES = 1e-3
+"""Share of the load that the cells at the sides of a grid may carry: a contact may just
+reach them, where it bulges at a sharp end. Of 35 cells the peak is then off by less."""
 
 
 class ContactSolution(eqx.Module):
@@ -118,11 +127,16 @@ class ContactSolution(eqx.Module):
 
     @property
     def truncated(self) -> Flag:
-        """Whether the contact reaches the sides of the grid: it should be wider."""
-        sides = self.touching[-1:]
-        if not self.grid.symmetric:
-            sides = jnp.concatenate([sides, self.touching[:1]])
-        return jnp.any(sides)
+        """Whether the contact reaches the sides of the grid: it should be wider.
+
+        Where it carries more than a thousandth of the load there, it is not solved.
+        """
+        return _truncated(self.grid, self.touching)
+
+    @property
+    def cells(self) -> tuple[Count, Count]:
+        """Most cells in contact, side by side across the roller, and along it."""
+        return _cells(self.grid, self.touching)
 
 
 def solve_pressure(
@@ -158,8 +172,12 @@ def solve_pressure(
         SolveError: If `throw` and it did not converge.
 
     Fails: `STEP_LIMIT`, `NO_LOAD_PATH` (a negative load; a moment that no pressure on
-        the grid balances), `NON_FINITE`.
-    Valid: Contact small beside the bodies, no friction. float32: of a roller on 35 by
+        the grid balances), `NON_FINITE`, `GRID_MISFIT` (a contact with more than a
+        thousandth of its load at the sides of the grid, or with fewer than three cells
+        across it or along).
+    Valid: Contact small beside the bodies, no friction; both bodies go on beyond the
+        grid's sides (at the sides of a punch leave cells with a wide gap), and one of
+        them ends at its ends. float32: of a roller on 35 by
         64 graded cells pressures are good to 3e-4 of the peak, the peak to 3e-5 and
         the approach to 3e-6; fine even grids to 1e-4 in the approach.
     """
@@ -195,8 +213,12 @@ def solve_pressure(
 def _solved(problem, solver):
     dtype = problem.gap.dtype
     pressed = lanes.run(_loop, solver, stop(problem))
+    result = pressed.result
+    solved = result == int(Result.CONVERGED)
+    misfit = solved & ~_fits(problem.grid, pressed)
+    result = jnp.where(misfit, int(Result.GRID_MISFIT), result).astype(result.dtype)
     # What failed has no derivative: NaN.
-    good = pressed.result == int(Result.CONVERGED)
+    good = solved & ~misfit
     inside = jnp.where(good, pressed.touching.astype(dtype), jnp.nan)
     pressure, rigid = attach_by(
         _balance, (pressed.pressure, pressed.rigid), (problem, inside), _correction
@@ -210,8 +232,32 @@ def _solved(problem, solver):
         pressed.touching,
         pressed.residual,
         pressed.steps,
-        pressed.result,
+        result,
     )
+
+
+def _truncated(grid, touching):
+    sides = touching[-1:]
+    if not grid.symmetric:
+        sides = jnp.concatenate([sides, touching[:1]])
+    return jnp.any(sides)
+
+
+def _cells(grid, touching):
+    count = touching.astype(jnp.int32)
+    times = grid.times.astype(jnp.int32)[:, None]
+    return jnp.max(jnp.sum(times * count, axis=0)), jnp.max(jnp.sum(count, axis=1))
+
+
+def _fits(grid, pressed):
+    """Whether the grid holds the contact, and its cells are small enough to tell it."""
+    across, along = _cells(grid, pressed.touching)
+    told = across >= LEAST_CELLS
+    told = told & (along >= min(LEAST_CELLS, grid.shape[1]))
+    loads = jnp.sum(grid.area * pressed.pressure, axis=1)
+    sides = loads[-1] if grid.symmetric else loads[0] + loads[-1]
+    held = sides <= AT_SIDES * jnp.sum(loads)
+    return (told & held) | ~jnp.any(pressed.touching)
 
 
 def message(solution: ContactSolution) -> str:
@@ -225,11 +271,31 @@ def message(solution: ContactSolution) -> str:
             " centre of pressure beyond the ends of the contact."
         )
     if result is Result.NON_FINITE:
-        return "The contact is not finite: look for NaN or infinity in gap and load."
+        return (
+            "The contact is not finite: look for NaN or infinity in gap and load, or a"
+            " grid that is wider than the roller, or not of its length."
+        )
+    if result is Result.GRID_MISFIT:
+        return _misfit(solution)
     return (
         f"The contact did not converge in {int(solution.steps)} steps (residual"
         f" {float(solution.residual):.1e}): allow more `max_steps`, or a larger"
         " `tolerance`."
+    )
+
+
+def _misfit(solution):
+    across, along = (int(count) for count in solution.cells)
+    if min(across, along) < min(LEAST_CELLS, solution.grid.shape[1]):
+        return (
+            f"The contact is {across} by {along} cells, too few to tell its pressure:"
+            f" at least {LEAST_CELLS} across it and along. Take a narrower grid, or"
+            " more cells; if it is short beside the roller, even ones (`grading` 1)."
+        )
+    return (
+        "The contact reaches the sides of the grid, and what it carries beyond them is"
+        " missing: take a wider grid; where that is wider than roller or raceway, the"
+        " bodies are no half-spaces."
     )
 
 

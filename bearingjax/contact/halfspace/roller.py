@@ -16,10 +16,13 @@ from .ends import FreeEnds
 from .gradients import AbstractPressureSolver, ConjugateGradients
 from .grid import Grid, even_grid, graded_grid
 from .influence import AbstractInfluence, influence
-from .pressure import ContactSolution, solve_pressure
+from .pressure import LEAST_CELLS, ContactSolution, solve_pressure
 
 MARGIN = 1.6
 """Half width of the grid over that of the contact: sharp ends bulge."""
+
+_MOST = 512
+"""Cells along the roller where its width is looked for."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
@@ -172,8 +175,15 @@ class RollerContact(eqx.Module):
 
         Args:
             grid: The cells, as long as the roller.
+
+        Returns:
+            Gap; NaN if a traced grid is not as long as the roller.
+
+        Raises:
+            ValueError: If `grid` is not as long as the roller.
         """
         x, y = grid.x, grid.y
+        fits = self._fits(grid)
         drop = self.drop(y)
         if not grid.even:
             nodes = jnp.asarray(_NODES, y.dtype)[:, None]
@@ -181,7 +191,23 @@ class RollerContact(eqx.Module):
             drop = weights @ self.drop(y[None] + nodes * grid.half_y[None])
         roller = _section(x, 1.0 / self.roller_radius(y), self.angle)
         raceway = _section(x, self._raceway_curvature(y), self.raceway_half_angle)
-        return roller + raceway + drop[None]
+        gap = roller + raceway + drop[None]
+        return jnp.where(fits, gap, jnp.nan) if is_traced(fits) else gap
+
+    def _fits(self, grid):
+        """Whether cells reach from end to end of the roller."""
+        edges, length = grid.edges, self.roller_length
+        traced = is_traced(edges) or is_traced(length)
+        xp = jnp if traced else np
+        edges = xp.asarray(edges)
+        ends = xp.stack([-edges[0], edges[-1]])
+        half = 0.5 * xp.asarray(length, ends.dtype)
+        fits = xp.all(xp.abs(ends - half) <= 1e-5 * half)
+        if not traced:
+            allowed = f"as long as the roller, {2.0 * half:.6g} m, and centred"
+            length = edges[-1] - edges[0]
+            check("RollerContact.gap", "grid", length, "m", fits, allowed)
+        return fits
 
     def grid(
         self,
@@ -232,8 +258,8 @@ class RollerContact(eqx.Module):
             ContactSolution.
 
         Raises:
-            ValueError: As `solve_pressure`; if `grid` is wider than the roller; if
-                `grid` is `None` under a JAX transformation.
+            ValueError: As `solve_pressure`; if `grid` is wider than the roller, or not
+                as long; if `grid` is `None` under a JAX transformation.
             SolveError: If `throw` and it did not converge.
 
         Fails: as `solve_pressure`.
@@ -276,9 +302,10 @@ class RollerContact(eqx.Module):
         radius = float(self.relative_radius(jnp.zeros_like(self.roller_length)))
         width = 1e-2 * radius
         most = 0.98 * float(_reach(self, jnp.zeros_like(self.roller_length)))
+        cells: tuple[int, float] = (32, 2.0)
         for _ in range(24):
             width = min(width, most)
-            coarse = self.grid(width, 16, 32)
+            coarse = self.grid(width, 16, *cells)
             found = solve_pressure(
                 self.influence(coarse),
                 self.gap(coarse),
@@ -288,7 +315,10 @@ class RollerContact(eqx.Module):
             )
             touched = jnp.any(found.touching, axis=1)
             inside = float(jnp.max(jnp.where(touched, coarse.x, 0.0) + coarse.half_x))
-            if bool(found.truncated) and width < most:
+            if 0 < int(found.cells[1]) < LEAST_CELLS and cells[0] < _MOST:
+                # Too short a contact for cells that are long in the middle.
+                cells = (4 * cells[0], 1.0)
+            elif bool(found.truncated) and width < most:
                 width *= 4.0
             elif inside < 0.25 * width and found.touching.any():
                 width = max(MARGIN * inside, 0.1 * width)
