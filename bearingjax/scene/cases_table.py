@@ -5,7 +5,6 @@ A grid, a list (CSV) or a load spectrum. What varies is named as in the scene fi
 """
 
 import copy
-import csv
 import dataclasses
 import itertools
 import math
@@ -20,7 +19,8 @@ from ..element import FREEDOMS, LOADS, RINGS, BearingElement
 from ..statics.cases import Cases
 from ..statics.preload import preload
 from ..statics.sweep import stack_designs
-from .quantity import KINDS, SceneError, to_si
+from .cases_list import LARGEST, read_list
+from .quantity import SceneError, to_si
 from .read import Scene, assign, find_scene, parse_bearing, scene_of
 from .table import Table
 
@@ -40,9 +40,6 @@ OPERATING = {
 
 DESIGN = ("bearing", "set", "contact")
 """Tables of the scene whose keys make a design."""
-
-LARGEST = 10**7
-"""Most cases of a scene: 1 kB of memory each, with the usual outputs."""
 
 MOST_DESIGNS = 10**5
 """Most designs of a scene: each is read and checked by itself, in some 5 ms."""
@@ -106,7 +103,8 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     if kind[0] == "grid":
         columns = _grid(table, table.raw("grid"))
     elif kind[0] == "file":
-        columns = _listed(table, path.parent)
+        lists = read_list(table, path.parent, OPERATING).items()
+        columns = [_Column(key, v, np.arange(len(v))) for key, v in lists]
     else:
         columns = _spectrum(table, table.raw("spectrum"))
     neighbours = table.flag("neighbours", kind[0] == "grid")
@@ -239,104 +237,6 @@ def _spectrum(table, data) -> list[_Column]:
         raise table.error("spectrum[0].hours", "is missing; a spectrum has hours")
     index = np.arange(len(entries))
     return [_Column(key, [entry[key] for entry in entries], index) for key in keys]
-
-
-def _listed(table, folder) -> list[_Column]:
-    name = table.raw("file")
-    if not isinstance(name, str):
-        raise table.error("file", f"{name!r} is not the name of a file")
-    rows = _rows(table, name, folder / name)
-    header, *cells = [cells for _, cells in rows]
-    index = np.arange(len(cells))
-    columns: dict[str, _Column] = {}
-    lines = [line for line, _ in rows[1:]]
-    for title, values in zip(header, zip(*cells, strict=True), strict=True):
-        match = re.fullmatch(r"\s*([\w.]+)\s*(?:\[([^\[\]]*)\])?\s*", title)
-        if match is None:
-            problem = f'{name}: {title!r} is no header such as "operating.load.Fy [kN]"'
-            if ";" in title:
-                problem = f"{name}: has semicolons; commas part columns, points digits"
-            raise table.error("file", problem)
-        key, unit = match.groups()
-        if key in columns:
-            raise table.error("file", f"{name}: names a column twice, {key}")
-        found = _cells(table, name, key, unit, values, lines)
-        columns[key] = _Column(key, found, index)
-    return list(columns.values())
-
-
-def _rows(table, name, path) -> list[tuple[int, list[str]]]:
-    """Lines of a list that are not empty, each with its number."""
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file)
-            rows = [
-                (reader.line_num, row) for row in reader if any(map(str.strip, row))
-            ]
-    except OSError as error:
-        problem = f"{name}: cannot be read: {error.strerror or error}"
-        raise table.error("file", problem) from error
-    except UnicodeDecodeError as error:
-        problem = f"{name}: cannot be read: {error}; save it as UTF-8"
-        raise table.error("file", problem) from error
-    except (ValueError, csv.Error) as error:
-        raise table.error("file", f"{name}: cannot be read: {error}") from error
-    if len(rows) < 2:
-        raise table.error("file", f"{name}: has no cases; a header and rows are wanted")
-    if len(rows) > LARGEST:
-        raise table.error("file", f"{name}: has {len(rows)} cases; at most {LARGEST}")
-    wanted = len(rows[0][1])
-    for line, row in rows:
-        if len(row) != wanted:
-            problem = f"{name}: line {line} has {len(row)} values, not {wanted}"
-            raise table.error("file", problem)
-    return rows
-
-
-def _cells(table, name, key, unit, values, lines):
-    """SI numbers of operating data; settings of a design."""
-    if key in OPERATING:
-        if unit is None:
-            example = f"{key} [{KINDS[OPERATING[key]][1]}]"
-            problem = f'{name}: {key} has no unit; head the column "{example}"'
-            raise table.error("file", problem)
-        try:
-            factor = to_si(f"1 {unit}", OPERATING[key])
-        except SceneError as error:
-            problem = f"{name}: the unit of {key}: {error}"
-            raise table.error("file", problem) from error
-        return np.array(_numbers_of(table, name, key, values, lines)) * factor
-    empty = [line for line, value in zip(lines, values, strict=True) if not value]
-    if empty:
-        raise table.error("file", f"{name}: line {empty[0]}: {key} is empty")
-    if unit is not None:
-        return [f"{value.strip()} {unit}" for value in values]
-    return [_bare(value) for value in values]
-
-
-def _numbers_of(table, name, key, values, lines) -> list[float]:
-    numbers = []
-    for line, value in zip(lines, values, strict=True):
-        try:
-            number = float(value)
-        except ValueError:
-            number = math.nan
-        if not math.isfinite(number):
-            problem = f"{name}: line {line}: {key}: {value!r} is not a finite number"
-            if "," in value:
-                problem += "; write a decimal point"
-            raise table.error("file", problem)
-        numbers.append(number)
-    return numbers
-
-
-def _bare(text):
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            pass
-    return text
 
 
 def _designs(data, path, columns):

@@ -49,7 +49,7 @@ def resume_cases(
     except (OSError, ValueError) as error:
         first = str(error).partition("\n")[0]
         raise SceneError(f"{path}: cannot be read as a table: {first}") from error
-    _check_asked(path, known, {**designs, **asked(table.cases)}, table.cases.count)
+    check_asked(path, known, {**designs, **asked(table.cases)}, table.cases.count)
     codes = np.asarray(known["result"])
     ran = np.flatnonzero(codes != Result.NOT_RUN.label)
     rest = np.flatnonzero(codes == Result.NOT_RUN.label)
@@ -75,8 +75,23 @@ def _part(table: CaseTable, rows: np.ndarray) -> CaseTable:
     return dataclasses.replace(table, cases=cases)
 
 
-def _check_asked(path, known, wanted: Mapping[str, np.ndarray], count: int) -> None:
-    """The table holds the cases of the scene."""
+def check_asked(
+    path: str | Path,
+    known: Mapping[str, np.ndarray],
+    wanted: Mapping[str, np.ndarray],
+    count: int,
+) -> None:
+    """Raise unless a table holds the cases of a scene.
+
+    Args:
+        path: Of the table, for the message.
+        known: Its columns.
+        wanted: Columns of what the scene asks.
+        count: Number of its cases.
+
+    Raises:
+        SceneError: If a column is missing, or a case is another one.
+    """
     for header in ("result", *wanted):
         if header not in known:
             problem = f"has no column {header!r}, which this scene makes"

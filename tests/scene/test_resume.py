@@ -9,8 +9,9 @@ import pyarrow.csv
 import pytest
 from test_cases import HEAD
 
-from bearingjax.scene import resume
-from bearingjax.statics import sweep_program
+from bearingjax.scene import design_columns, read_cases, resume
+from bearingjax.statics import Sweep, sweep_program
+from bearingjax.statics.sweep_table import asked, read, restored, write
 
 SWEEP = importlib.import_module("bearingjax.statics.sweep")  # the name is a function
 
@@ -121,6 +122,29 @@ def test_only_what_belongs_together(run, scene, tmp_path, struck):
     table.write_text("no table\n")
     done = run("sweep", scene(), "--table", table, "--resume")
     assert done.status == 2 and "has no column 'result'" in done.err
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_numbers_of_designs_come_back_as_they_were_written(tmp_path, ending):
+    """A clearance with its unit, bare numbers of other spellings, a load of nought."""
+    grid = """
+[cases.grid]
+bearing.radial_internal_clearance = ["0 um", "1e-3 mm"]
+bearing.material.poisson_ratio = [0.3, 31e-2]
+operating.load.Fy = ["-0.1 kN", "-1 kN"]
+"""
+    path, place = tmp_path / "many.toml", tmp_path / f"t.{ending}"
+    path.write_text(HEAD + grid)
+    table = read_cases(path)
+    load = np.where(np.arange(8) < 7, np.arange(8.0), np.nan)
+    outputs = {"result": np.repeat([0, 5], [7, 1]), "largest_load": load}
+    designs = design_columns(table)
+    write(Sweep(table.cases, outputs, "inner"), place, designs)
+    known = read(place, designs)
+    resume.check_asked(place, known, {**designs, **asked(table.cases)}, 8)
+    again = restored(known, outputs)
+    for name, values in outputs.items():
+        np.testing.assert_array_equal(again[name], values)
 
 
 def test_resume_needs_a_table(run, scene):

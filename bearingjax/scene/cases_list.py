@@ -1,0 +1,133 @@
+"""A list of cases: a CSV file with keys and units in its header."""
+
+import csv
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .quantity import KINDS, SceneError, to_si
+from .table import Table
+
+LARGEST = 10**7
+"""Most cases of a scene: 1 kB of memory each, with the usual outputs."""
+
+
+def read_list(table: Table, folder: Path, kinds: Mapping[str, str]) -> dict[str, Any]:
+    """Values of a list of cases, a column each.
+
+    Args:
+        table: `[cases]` with the name of the file.
+        folder: Of the scene.
+        kinds: Of keys whose columns are SI numbers; others are settings as a scene
+            writes them.
+
+    Returns:
+        Values by key, in order.
+
+    Raises:
+        SceneError: One line that names file, line, column and fault.
+    """
+    name = table.raw("file")
+    if not isinstance(name, str):
+        raise table.error("file", f"{name!r} is not the name of a file")
+    rows = _rows(table, name, folder / name)
+    (_, header), *cells = rows
+    lines = [line for line, _ in cells]
+    columns = zip(*(row for _, row in cells), strict=True)
+    found: dict[str, Any] = {}
+    for title, values in zip(header, columns, strict=True):
+        key, unit = _head(table, name, title)
+        if key in found:
+            raise table.error("file", f"{name}: names a column twice, {key}")
+        kind = kinds.get(key)
+        found[key] = _cells(table, name, key, kind, unit, values, lines)
+    return found
+
+
+def _head(table, name, title) -> tuple[str, str | None]:
+    """Key and unit of a column."""
+    match = re.fullmatch(r"\s*([\w.]+)\s*(?:\[([^\[\]]*)\])?\s*", title)
+    if match is not None:
+        return match[1], match[2]
+    problem = f'{name}: {title!r} is no header such as "operating.load.Fy [kN]"'
+    if ";" in title:
+        problem = f"{name}: has semicolons; commas part columns, points digits"
+    raise table.error("file", problem)
+
+
+def _rows(table, name, path) -> list[tuple[int, list[str]]]:
+    """Lines of a list that are not empty, each with its number."""
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            reader = csv.reader(file)
+            rows = [
+                (reader.line_num, row) for row in reader if any(map(str.strip, row))
+            ]
+    except OSError as error:
+        problem = f"{name}: cannot be read: {error.strerror or error}"
+        raise table.error("file", problem) from error
+    except UnicodeDecodeError as error:
+        problem = f"{name}: cannot be read: {error}; save it as UTF-8"
+        raise table.error("file", problem) from error
+    except (ValueError, csv.Error) as error:
+        raise table.error("file", f"{name}: cannot be read: {error}") from error
+    if len(rows) < 2:
+        raise table.error("file", f"{name}: has no cases; a header and rows are wanted")
+    if len(rows) > LARGEST:
+        raise table.error("file", f"{name}: has {len(rows)} cases; at most {LARGEST}")
+    wanted = len(rows[0][1])
+    for line, row in rows:
+        if len(row) != wanted:
+            problem = f"{name}: line {line} has {len(row)} values, not {wanted}"
+            raise table.error("file", problem)
+    return rows
+
+
+def _cells(table, name, key, kind, unit, values, lines):
+    """SI numbers of a kind; settings of a design."""
+    if kind is not None:
+        if unit is None:
+            example = f"{key} [{KINDS[kind][1]}]"
+            problem = f'{name}: {key} has no unit; head the column "{example}"'
+            raise table.error("file", problem)
+        try:
+            factor = to_si(f"1 {unit}", kind)
+        except SceneError as error:
+            problem = f"{name}: the unit of {key}: {error}"
+            raise table.error("file", problem) from error
+        return np.array(_numbers(table, name, key, values, lines)) * factor
+    empty = [line for line, value in zip(lines, values, strict=True) if not value]
+    if empty:
+        raise table.error("file", f"{name}: line {empty[0]}: {key} is empty")
+    if unit is not None:
+        return [f"{value.strip()} {unit}" for value in values]
+    return [_bare(value) for value in values]
+
+
+def _numbers(table, name, key, values, lines) -> list[float]:
+    numbers = []
+    for line, value in zip(lines, values, strict=True):
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            problem = f"{name}: line {line}: {key}: {value!r} is not a finite number"
+            if "," in value:
+                problem += "; write a decimal point"
+            raise table.error("file", problem)
+        numbers.append(number)
+    return numbers
+
+
+def _bare(text):
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
