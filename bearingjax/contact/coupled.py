@@ -35,7 +35,8 @@ _SMOOTHING = 0.035
 steel. Beyond, a slice's own compliance no longer falls."""
 
 _STEPS = 60
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+_SAMPLES, _OF_A_TABLE = 4, 64
+"""Points of a slice at which a profile is averaged."""
 
 
 class CoupledSlices(AbstractLineLaw):
@@ -108,9 +109,10 @@ class CoupledContact(AbstractLineContact):
 
     def table(self, quadrature):
         n, dtype = self.radius.shape[0], self.line.length.dtype
-        nodes = jnp.asarray(_NODES / n, dtype)[:, None]
-        weights = jnp.asarray(0.5 * _WEIGHTS, dtype)
-        drop = weights @ self.drop(_middles(n, dtype)[None] + nodes)
+        count = _OF_A_TABLE if self.line.measured else _SAMPLES
+        nodes, weights = np.polynomial.legendre.leggauss(count)
+        at = _middles(n, dtype)[None] + jnp.asarray(nodes / n, dtype)[:, None]
+        drop = jnp.asarray(0.5 * weights, dtype) @ self.drop(at)
         smoothing = _SMOOTHING * self.radius[n // 2]
         return _Table(
             drop,

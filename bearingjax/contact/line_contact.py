@@ -130,6 +130,12 @@ class LineContact(AbstractLineContact):
         return self.roller_profile.arcs and self.raceway_profile.arcs
 
     @property
+    def measured(self) -> bool:
+        """Whether a profile is a table. Static."""
+        profiles = self.roller_profile, self.raceway_profile
+        return any(profile.knots() is not None for profile in profiles)
+
+    @property
     def proud(self) -> bool:
         """Whether the drop may be negative somewhere. Static."""
         return self.roller_profile.proud or self.raceway_profile.proud
@@ -142,9 +148,9 @@ class LineContact(AbstractLineContact):
         return self.length * self.line_load(approach)
 
     def table(self, quadrature):
-        ends = self._intervals()
-        if ends is None or not isinstance(quadrature, ContactMapped):
+        if not (self.measured and isinstance(quadrature, ContactMapped)):
             return quadrature.table(self.drop, self.kinks(), self.length.dtype)
+        ends = self._intervals()
         # Each interval with the part of the profiles that it sees.
         middle = 0.25 * self.length * (ends[:-1] + ends[1:])[:, None]
         local = dataclasses.replace(
@@ -163,11 +169,9 @@ class LineContact(AbstractLineContact):
         return _integrals(self, nodes, quadrature)
 
     def _intervals(self):
-        """Ends of the intervals in which measured profiles are smooth, else `None`."""
+        """Ends ξ of the intervals in which measured profiles are smooth."""
         profiles = self.roller_profile, self.raceway_profile
         knots = [k for k in (p.knots() for p in profiles) if k is not None]
-        if not knots:
-            return None
         # A logarithm bends ever faster towards the ends.
         fine = () if all(p.arcs or p.knots() is not None for p in profiles) else _NEAR
         ends = jnp.asarray([-1.0, *(-x for x in fine), *fine, 1.0], self.length.dtype)

@@ -228,6 +228,19 @@ def test_the_bearing_has_it():
     )
 
 
+def test_a_measured_profile_counts_by_its_mean_over_a_slice():
+    """Ridges from one point of a table to the next, of which a slice has some four."""
+    s = np.linspace(-0.5, 0.5, 49) * LENGTH
+    ridges = 4e-6 * (np.arange(49) % 4 > 0)
+    profile = bj.Tabulated(s, ridges)
+    made = coupled(profile, 12).table(RULE)
+    fine = (2.0 * np.arange(12 * 2000) + 1.0) / (12 * 2000) - 1.0
+    drop = profile.drop(jnp.asarray(0.5 * LENGTH * fine), LENGTH, DIAMETER)
+    want = np.mean(np.asarray(drop).reshape(12, 2000), axis=1)
+    # 64 nodes to a slice, of a drop whose bend jumps from point to point.
+    np.testing.assert_allclose(made.drop, want, rtol=1e-3)
+
+
 def test_what_does_not_fit_is_refused():
     with pytest.raises(ValueError, match="`slices` is 3; it must be a whole number"):
         bj.CoupledSlices(3)
