@@ -177,10 +177,10 @@ def _sweep(options) -> int:
             solved = resume_cases(table, done, shown, interrupt)
         else:
             solved = run_cases(table, shown, interrupt)
-    _write(
-        (options.table, lambda path: write(solved, path, design_columns(table))),
-        (options.json, lambda path: write_sweep_json(path, table, solved)),
-    )
+        _write(
+            (options.table, lambda path: write(solved, path, design_columns(table))),
+            (options.json, lambda path: write_sweep_json(path, table, solved)),
+        )
     print(sweep_report(table, solved, time.perf_counter() - begin), flush=True)
     left = int((np.asarray(solved.result) == Result.NOT_RUN).sum())
     if left or interrupt.number is not None:

@@ -34,6 +34,9 @@ _SMOOTHING = 0.035
 """c over the relative radius ρ: Hertz's half width is 2c at p = 0.035 E*, 4 GPa of
 steel. Beyond, a slice's own compliance no longer falls."""
 
+MOST_SLICES = 1000
+"""Most slices: 8 MB of matrix for each contact."""
+
 _STEPS = 60
 _SAMPLES, _OF_A_TABLE = 4, 64
 """Points of a slice at which a profile is averaged."""
@@ -62,6 +65,12 @@ class CoupledSlices(AbstractLineLaw):
             raise ValueError(
                 f"CoupledSlices: `slices` is {self.slices!r}; it must be a whole number"
                 " of at least 4."
+            )
+        if self.slices > MOST_SLICES:
+            raise ValueError(
+                f"CoupledSlices: `slices` is {self.slices}; it must be at most"
+                f" {MOST_SLICES}: each contact has a full matrix of them, and a slice"
+                " is to be longer than the contact is wide."
             )
 
     def constant(self, roller, ring, length):

@@ -5,6 +5,9 @@ design was checked when it was made, and a bad traced number ends in a result co
 They compute with NumPy: an eager JAX operation would be compiled for nothing.
 """
 
+from collections.abc import Sequence
+from numbers import Real
+
 import numpy as np
 from jax.core import Tracer
 
@@ -88,11 +91,13 @@ def real_numbers(owner: str, name: str, value, wanted: str) -> None:
     rest = [value]
     while rest:
         one = rest.pop()
-        if isinstance(one, list | tuple):
+        if isinstance(one, Sequence) and not isinstance(one, str | bytes):
             rest.extend(one)
             continue
         dtype = getattr(one, "dtype", None)
-        real = isinstance(one, int | float) if dtype is None else dtype.kind not in _ODD
+        if dtype is None and hasattr(one, "__array__"):  # a table of another package
+            dtype = np.asarray(one).dtype
+        real = isinstance(one, Real) if dtype is None else dtype.kind not in _ODD
         if not real:
             shown = repr(one)
             shown = shown if len(shown) < 60 else f"{shown[:57]}..."

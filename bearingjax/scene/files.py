@@ -39,6 +39,8 @@ def check_outputs(
     for option, path in outputs.items():
         if path is None or _is_stream(path):
             continue
+        if str(path) == "-":
+            raise SceneError(f"{option} -: name a file; /dev/stdout is the screen")
         target = _target(path)
         if not target.parent.is_dir():
             raise SceneError(f"{path}: its folder does not exist")

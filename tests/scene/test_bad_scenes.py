@@ -715,6 +715,11 @@ SETTINGS = {
         "`numerics.points`: 100000 is too many slices: 1.23 GB in each array of a"
         " sweep, of 64 cases at a time; at most 10000",
     ),
+    "coupled slices": (
+        "cylindrical_rig",
+        "contact={line_law='coupled_slices', slices=100000}",
+        "[contact]: CoupledSlices: `slices` is 100000; it must be at most 1000: each",
+    ),
     "positions": (
         "cylindrical_rig",
         "output.points=100000",

@@ -7,7 +7,7 @@ import pyarrow.csv
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import SceneError, read_cases, read_scene
+from bearingjax.scene import SceneError, cases_table, read_cases, read_scene
 
 HEAD = """
 [bearing]
@@ -255,6 +255,12 @@ def test_wrong_cases(scene, what):
         read_cases(scene(text, files=FILES))
     assert message in str(caught.value) and str(caught.value).startswith("many.toml: ")
     assert "\n" not in str(caught.value)
+
+
+def test_too_many_designs(scene, monkeypatch):
+    monkeypatch.setattr(cases_table, "MOST_DESIGNS", 1)
+    with pytest.raises(SceneError, match="`cases`: make 2 designs; at most 1"):
+        read_cases(scene(GRID))
 
 
 @pytest.mark.parametrize(

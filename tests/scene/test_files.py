@@ -154,6 +154,12 @@ def test_numbers_that_are_not_finite_are_null(tmp_path):
     assert numbers == {"a": [1.0, None], "b": {"c": None, "d": "x"}}
 
 
+def test_a_dash_is_no_file(run, own, tmp_path):
+    done = run("solve", "self.toml", "--json", "-")
+    problem = "--json -: name a file; /dev/stdout is the screen"
+    assert done == (2, "", f"bearingjax: {problem}\n")
+
+
 @pytest.mark.parametrize("command", ["solve", "sweep", "optimise", "contact"])
 def test_interrupted(run, own, monkeypatch, command):
     def stop(*_, **__):

@@ -10,7 +10,7 @@ import pytest
 from test_cases import HEAD
 
 from bearingjax.scene import design_columns, read_cases, resume
-from bearingjax.statics import Sweep, sweep_program
+from bearingjax.statics import Sweep, sweep_program, sweep_table
 from bearingjax.statics.sweep_table import asked, read, restored, write
 
 SWEEP = importlib.import_module("bearingjax.statics.sweep")  # the name is a function
@@ -145,6 +145,21 @@ operating.load.Fy = ["-0.1 kN", "-1 kN"]
     again = restored(known, outputs)
     for name, values in outputs.items():
         np.testing.assert_array_equal(again[name], values)
+
+
+def test_interrupted_while_the_table_is_written(
+    run, scene, tmp_path, struck, monkeypatch
+):
+    def late(*given):
+        signal.raise_signal(signal.SIGINT)
+        return write(*given)
+
+    monkeypatch.setattr(sweep_table, "write", late)
+    table = tmp_path / "t.csv"
+    done = run("sweep", scene(), "--table", table)
+    assert done.status == 130
+    assert done.err.splitlines()[-1].endswith("interrupted: 0 of 6 cases not run")
+    assert columns(table)["result"] == ["converged"] * 6
 
 
 def test_resume_needs_a_table(run, scene):

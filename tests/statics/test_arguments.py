@@ -115,10 +115,19 @@ def test_numbers_of_every_kind_pass():
     """NumPy's and JAX's, traced and in lists, integers and floats."""
     for load in (
         [0, -1, np.float32(2.0), jnp.asarray(3.0), np.int64(4), 5.0],
+        range(6),
         np.arange(6),
         jnp.arange(6.0),
     ):
         assert bj.Cases([load]).load.shape == (1, 6)
+
+    class Column:
+        """A column of another package."""
+
+        def __array__(self, dtype=None, copy=None):
+            return np.arange(3.0)
+
+    assert bj.Cases(load, inner_speed=Column()).count == 3
 
     def force(size):
         solved = bj.solve_load(ELEMENT, [0.0, size, 0, 0, 0, 0], throw=False)
