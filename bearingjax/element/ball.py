@@ -46,9 +46,8 @@ class AbstractBallModel(AbstractModel):
         spring: Guide spring constant [N/m].
         turning: Speeds, or `None`.
         follows_angle: Whether the constants follow the operating angle.
-        washers: Whether the raceways are those of a thrust bearing.
 
-    Static: follows_angle, washers.
+    Static: follows_angle.
     """
 
     grooves: GrooveGeometry
@@ -58,7 +57,6 @@ class AbstractBallModel(AbstractModel):
     spring: Scalar
     turning: Turning | None
     follows_angle: bool = eqx.field(static=True)
-    washers: bool = eqx.field(static=True)
 
     n_unknowns: ClassVar[int] = 2
 
@@ -116,10 +114,9 @@ class AbstractBallModel(AbstractModel):
         return at_angle(self.constant, jnp.arctan2(z, r))
 
     def pressed(self, approach):
-        start = self.grooves.start
-        normal = start / jnp.sqrt(jnp.sum(start**2, axis=1))[:, None]
         one = jnp.ones_like(self.grooves.reach)
-        constant = self.constants(Contacts(one, one, one, normal, one))
+        free = self.grooves.free
+        constant = self.constants(Contacts(one, one, one, free, jnp.ones_like(free)))
         return jnp.max(constant) * positive_power(approach, _N, _D)
 
     def first(self, rings):
@@ -170,15 +167,15 @@ class AbstractBallModel(AbstractModel):
 
     @property
     def may_leave(self):
-        return self.washers or super().may_leave
+        return self.grooves.washers or super().may_leave
 
     def thrown_off(self, rings, x):
         away = super().thrown_off(rings, x)
-        if not self.washers:
+        if not self.grooves.washers:
             return away
         # A washer's groove does not reach up to its centre.
         c = self.contacts(rings, x)
-        return away | jnp.any((c.approach > 0.0) & (c.mask == 0.0))
+        return away | jnp.any((c.approach > 0.0) & (c.mask[:, 0] == 0.0))
 
     def _contact_terms(self, contacts):
         """Load (contact,), their energy, forces (contact, 2), stiffness (…, 2, 2)."""
@@ -190,9 +187,9 @@ class AbstractBallModel(AbstractModel):
         # Of a contact: its stiffness along the normal, load over length across.
         z, r = contacts.normal[:, 0], contacts.normal[:, 1]
         turn = load * contacts.inverse
-        kzz = (rate - turn) * z * z + turn * contacts.mask
+        kzz = (rate - turn) * z * z + turn * contacts.mask[:, 0]
         kzr = (rate - turn) * z * r
-        krr = (rate - turn) * r * r + turn
+        krr = (rate - turn) * r * r + turn * contacts.mask[:, 1]
         blocks = jnp.stack(
             [jnp.stack([kzz, kzr], axis=1), jnp.stack([kzr, krr], axis=1)], axis=1
         )
@@ -210,7 +207,7 @@ class AbstractBallModel(AbstractModel):
         power = positive_power(contacts.approach, _N, _D)
         load = self.constants(contacts) * power
         directions = self.grooves.directions(contacts, load, self.diameter)
-        return carried(self.turning, *directions)
+        return carried(self.turning, *directions, self.grooves.free_direction)
 
     def inertia(self, rings, x):
         t = self.turning

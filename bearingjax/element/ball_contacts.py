@@ -16,22 +16,28 @@ class Contacts(NamedTuple):
 
     Attributes:
         approach: l - L [m].
-        length: l, distance of ball centre and groove centre, above zero [m].
-        inverse: 1/l [1/m].
+        length: l, distance of ball centre and groove centre [m].
+        inverse: 1/l, finite [1/m].
         normal: Unit vector (z, r) from groove centre to ball centre (contact, 2), in
-            the section of the ring.
-        mask: 0 where the axial part counts for nothing (cylinder), else 1.
+            the section of the ring; at the groove centre that of the unloaded ball.
+        mask: 0 where the part along z, or along r, of that vector counts for nothing,
+            because the groove has ended there, else 1 (contact, 2).
     """
 
     approach: Float[Array, " contact"]
     length: Float[Array, " contact"]
     inverse: Float[Array, " contact"]
     normal: Float[Array, "contact 2"]
-    mask: Float[Array, " contact"]
+    mask: Float[Array, "contact 2"]
 
 
 class GrooveGeometry(eqx.Module):
     """Where the grooves lie around a ball, unloaded.
+
+    A groove is an arc of at most a half circle. Beyond it the raceway goes straight on:
+    at the shoulders radially (a wall across the axis), and with an `open_side`, or as
+    a washer, as a cylinder. So a ball that has passed the groove centre meets nothing
+    there, the energy stays convex, and forces do not jump.
 
     Attributes:
         start: Vector (z, r) from each groove centre to the ball centre, unloaded
@@ -39,14 +45,17 @@ class GrooveGeometry(eqx.Module):
         reach: L = groove radius - ball radius (contact,) [m].
         on_outer: Which contacts belong to the outer ring.
         open_side: Which raceways are cylinders beyond the groove bottom.
+        washers: Whether the raceways are those of a thrust bearing, whose grooves open
+            along the axis.
 
-    Static: on_outer, open_side.
+    Static: on_outer, open_side, washers.
     """
 
     start: Float[Array, "contact 2"]
     reach: Float[Array, " contact"]
     on_outer: tuple[bool, ...] = eqx.field(static=True)
     open_side: tuple[bool, ...] = eqx.field(static=True)
+    washers: bool = eqx.field(static=True)
 
     @property
     def outwards(self) -> list[float]:
@@ -66,23 +75,40 @@ class GrooveGeometry(eqx.Module):
             moved: Motion (z, r) of the ball centre against each groove centre [m].
         """
         vector = self.start + moved
-        along = jnp.asarray(self.outwards, moved.dtype) * vector[:, 0]
-        beyond = jnp.asarray(self.open_side) & (along < 0)
+        ends = jnp.asarray([[side, not self.washers] for side in self.open_side])
+        behind = jnp.asarray(self.outwards, moved.dtype)[:, None] * vector < 0
+        beyond = ends & behind
         mask = jnp.where(beyond, 0.0, 1.0)
         # From groove centre to ball centre; what does not count is left out.
-        z, r = mask * vector[:, 0], vector[:, 1]
-        square = z * z + r * r
-        tiny = jnp.finfo(moved.dtype).tiny
-        length = jnp.sqrt(jnp.maximum(square, tiny))
+        kept = mask * vector
+        square = jnp.sum(kept**2, axis=1)
+        # At the groove centre there is no direction; the contact is open there.
+        centred = square <= (1e-9 * self.reach) ** 2
+        root = jnp.sqrt(jnp.where(centred, 1.0, square))
+        length = jnp.where(centred, 0.0, root)
         # (l² - L²)/(l + L) without the cancellation, where the start is known.
         start2 = jnp.sum(self.start**2, axis=1) - self.reach**2
         change = jnp.sum(moved * (2.0 * self.start + moved), axis=1)
-        difference = jnp.where(beyond, square - self.reach**2, start2 + change)
+        known = ~jnp.any(beyond, axis=1)
+        difference = jnp.where(known, start2 + change, square - self.reach**2)
         approach = difference / (length + self.reach)
         # Divisions and roots part a compiled loop in two: as few as can be.
-        inverse = 1.0 / length
-        normal = jnp.stack([z * inverse, r * inverse], axis=1)
+        inverse = 1.0 / root
+        normal = jnp.where(centred[:, None], self.free, kept * inverse[:, None])
         return Contacts(approach, length, inverse, normal, mask)
+
+    @property
+    def free(self) -> Float[Array, "contact 2"]:
+        """Normals of the unloaded ball (z, r), from groove centre to ball centre."""
+        square = jnp.sum(self.start**2, axis=1, keepdims=True)
+        return self.start / jnp.sqrt(square)
+
+    @property
+    def free_direction(self) -> Float[Array, "2"]:
+        """Unit vector (sin α, cos α) of the unloaded ball at the outer raceway."""
+        outer = [k for k, on_outer in enumerate(self.on_outer) if on_outer]
+        mean = add(self.free[jnp.asarray(outer)])
+        return mean / jnp.sqrt(dot(mean, mean))
 
     def directions(
         self, contacts: Contacts, load: Float[Array, " contact"], diameter: Scalar
@@ -132,7 +158,7 @@ def bent(c: Contacts, load: Float[Array, " contact"], step: Unknowns) -> Unknown
         load: Their loads [N].
         step: Step of the ball centre (z, r) [m].
     """
-    chosen = (load == jnp.max(load)) & (load > 0.0) & (c.mask > 0.0)
+    chosen = (load == jnp.max(load)) & (load > 0.0) & jnp.all(c.mask > 0.0, axis=1)
     weight = jnp.where(chosen, 1.0, 0.0)
     weight = weight / jnp.maximum(add(weight), 1.0)
     normal = add(weight[:, None] * c.normal)

@@ -10,16 +10,21 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..design.ball import AbstractBallBearing
+from ..numerics.linear import dot
 from ..numerics.types import Scalar
 from .ball_speed import (
     MOST_FRICTION,
+    NO_LOAD,
     AbstractRacewayControl,
     BallKinematics,
     ball_kinematics,
     ball_mass,
 )
-from .frame import roll_ratio
+from .frame import orbit, roll_ratio
 from .inertia import Speed
+
+_LEAST = 0.1
+"""Of the centrifugal force: a contact that carries less drives the ball in part."""
 
 
 class Turning(NamedTuple):
@@ -82,30 +87,65 @@ def turning(
     """
     mass, moment = ball_mass(diameter, bearing.material.density)
     ratio = roll_ratio(diameter, bearing.pitch_diameter, bearing.free_cosine)
-    orbit = 0.5 * ((1.0 - ratio) * speed.inner + (1.0 + ratio) * speed.outer)
     radius = 0.5 * bearing.pitch_diameter
-    centrifugal = radius * mass * orbit**2
+    centrifugal = radius * mass * orbit(ratio, speed.outer, speed.inner) ** 2
     gamma = diameter / bearing.pitch_diameter
     return Turning(speed, control, gamma, centrifugal, mass, moment, radius, diameter)
 
 
-def carried(t: Turning, normals: Float[Array, "2 2"], loads: Float[Array, "2"]):
+def driving_normals(
+    t: Turning,
+    normals: Float[Array, "2 2"],
+    loads: Float[Array, "2"],
+    free: Float[Array, "2"],
+) -> Float[Array, "2 2"]:
+    """Normals of the contacts that decide how a ball rolls.
+
+    A raceway that a ball has left does not drive it, and the line of centres there may
+    point anywhere. Such a ball goes round with the others, as if the lost contact lay
+    opposite the one that it has: with γ = D/d_m at (1 ∓ γ cos α_o)/2 of the ring
+    speeds. In between, up to a tenth of the centrifugal force as contact load, the
+    directions are mixed, so that forces do not jump.
+
+    Args:
+        t: Inertia of the ball.
+        normals: Unit vectors (sin α, cos α) at outer and inner raceway (2, 2).
+        loads: Contact loads there (2,) [N].
+        free: That of the unloaded ball at the outer raceway, for one in flight (2,).
+    """
+    part = jnp.clip(loads / (_LEAST * t.centrifugal + NO_LOAD), 0.0, 1.0)
+    grip = part * part * (3.0 - 2.0 * part)
+    outer = _mixed(grip[0], normals[0], free)
+    return jnp.stack([outer, _mixed(grip[1], normals[1], outer)])
+
+
+def _mixed(share, first, second):
+    mean = share * first + (1.0 - share) * second
+    return mean / jnp.sqrt(dot(mean, mean) + NO_LOAD)
+
+
+def carried(
+    t: Turning,
+    normals: Float[Array, "2 2"],
+    loads: Float[Array, "2"],
+    free: Float[Array, "2"],
+):
     """How a ball is carried round at given contact angles.
 
     Args:
         t: Its inertia.
-        normals: Unit vectors (sin α, cos α) at outer and inner raceway (2, 2).
-        loads: Contact loads there (2,) [N].
+        normals, loads, free: As of `driving_normals`.
 
     Returns:
         Carried.
     """
     # In balance the outer raceway carries the centrifugal force at least; on the
     # way there shares must not jump where a ball in flight first touches.
-    least = jnp.maximum(loads[0], 0.1 * t.centrifugal)
+    least = jnp.maximum(loads[0], _LEAST * t.centrifugal)
     shared = jnp.stack([least, loads[1]])
     share = t.control.rolling_share(shared)
-    kinematics = ball_kinematics(normals[0], normals[1], share, t.ratio, t.speed)
+    outer, inner = driving_normals(t, normals, loads, free)
+    kinematics = ball_kinematics(outer, inner, share, t.ratio, t.speed)
     demand = 2.0 / t.diameter * gyroscopic_moment(t.moment, kinematics)
     # Whatever the control says, no contact holds more than friction lets it.
     most = MOST_FRICTION * loads

@@ -51,6 +51,7 @@ def ball_model(
             reach=jnp.stack([g.radius - 0.5 * diameter for g in grooves]),
             on_outer=tuple(g.on_outer for g in grooves),
             open_side=tuple(g.open_side for g in grooves),
+            washers=isinstance(bearing, ThrustBallBearing),
         ),
         constant=law.constants(balls, grooves, bearing.free_cosine),
         pitch_radius=0.5 * bearing.pitch_diameter,
@@ -58,7 +59,6 @@ def ball_model(
         spring=_guide(balls, diameter),
         turning=inertia,
         follows_angle=law.follows_angle,
-        washers=isinstance(bearing, ThrustBallBearing),
     )
     if isinstance(kinematics, Finite):
         sign = -1.0 if part.mirrored else 1.0

@@ -228,3 +228,71 @@ def test_small_robustness_run():
     """Seeded, small version of benchmarks/robust_balls.py."""
     for row in robust_balls.run(2, seed=1, only=["four-point, clearance 20 um"]):
         assert row["failed"] == 0 and row["silently_wrong"] == 0, row
+
+
+def test_lifted_balls_orbit_with_the_others():
+    """Lifted beyond the inner groove centre, where the line of centres turns round."""
+    bearing = bj.DeepGrooveBallBearing(
+        7,
+        0.0435,
+        0.0115,
+        outer_osculation=0.53,
+        inner_osculation=0.507,
+        radial_internal_clearance=40e-6,
+    )
+    s = bj.solve_load(bj.BearingElement(bearing), [0, -6e3, 0, 0, 0, 0], speed=SPEED)
+    lifted = np.asarray(s.lifted)
+    assert lifted.sum() == 4
+    # One is beyond the centre, 80.5 um from the raceway: there is no more to be apart.
+    gap = np.asarray(s.approach)[lifted, 1].min()
+    assert gap == pytest.approx(-0.007 * 0.0115, rel=SOLVER)
+    # At contact angle zero, as the balls that are loaded.
+    orbit = 0.5 * (1 - 0.0115 / 0.0435) * 2000.0
+    assert np.allclose(s.kinematics.orbit, orbit, rtol=1e-12)
+    mass = 7850 * np.pi * 0.0115**3 / 6
+    expected = 0.5 * 0.0435 * mass * orbit**2
+    assert np.allclose(np.asarray(s.roller_load)[lifted, 0], expected, rtol=1e-9)
+
+
+def test_a_groove_has_no_far_side():
+    """Balls lifted by more than the inner groove is deep touch nothing there."""
+    bearing = bj.DeepGrooveBallBearing(
+        7,
+        0.03904,
+        0.007938,
+        outer_osculation=0.53,
+        inner_osculation=0.515,
+        first_azimuth=-np.pi / 2,
+        radial_internal_clearance=0.3e-3,
+    )
+    element = bj.BearingElement(bearing)
+    s = bj.solve_load(element, [0, -3e3, 0, 0, 0, 0], speed=SPEED)
+    gap = 7.938e-3 * 0.015  # from the inner groove centre to the raceway
+    assert np.asarray(s.approach)[:, 1].min() == pytest.approx(-gap, rel=1e-9)
+    outer, inner = np.asarray(s.contact_load).T
+    opened = np.sin(np.asarray(s.azimuth)) > 0
+    assert opened.sum() == 4 and inner[opened].max() == 0.0
+    assert outer[opened].min() > 0.999 * float(s.centrifugal_force[3])
+    assert np.abs(np.asarray(s.contact_angle)).max() <= np.pi / 2
+
+
+def test_beyond_the_end_of_a_groove_the_raceway_goes_straight_on(deep):
+    """Where the part of the motion along the radius stops to count: no jump."""
+    grooves = deep.model().rows[0].element.grooves
+    reach = float(grooves.reach[1])
+    def at(z, r):
+        """The ball at (z, r) from the inner groove centre, seen from inside."""
+        way = np.zeros((2, 2))
+        way[1] = np.array([z, -r]) - np.asarray(grooves.start)[1]
+        contacts = grooves.touch(jnp.asarray(way))
+        return float(contacts.approach[1]), np.asarray(contacts.normal)[1]
+
+    for z in (1.2 * reach, -1.2 * reach, 0.5 * reach):
+        near, far = at(z, 1e-12 * reach), at(z, -1e-12 * reach)
+        assert near[0] == pytest.approx(far[0], rel=ROUNDING)
+        assert np.allclose(near[1], far[1], atol=1e-11)
+        wall, normal = at(z, -2.0 * reach)
+        assert wall == pytest.approx(abs(z) - reach, rel=SOLVER)
+        assert np.allclose(normal, [np.sign(z), 0.0])
+    lost, normal = at(0.0, -5.0 * reach)
+    assert lost == -reach and np.isfinite(normal).all()
