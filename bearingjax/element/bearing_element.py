@@ -85,7 +85,9 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         quadrature: Of roller contacts, `ContactMapped(points)` or `Midpoint(points)`;
             `None` with balls and `CoupledSlices()`.
         equilibrium: Local solver, `TrustRegionNewton()` or `BFGS()`.
-        cage_torque: Differentiate through the azimuth of the rolling elements.
+        cage_torque: Whether gz feels that it moves the rolling elements: `force` then
+            has moments about z, the virtual work of the contact forces, `stiffness`
+            their derivatives.
         point_law: Constants of ball contacts: `FreeAngle()`, `ZeroAngle()`,
             `OperatingAngle()` or `PointConstant(outer, inner)`.
         raceway_control: Of turning balls: `OuterControl()`, `InnerControl()`,

@@ -55,7 +55,7 @@ class BearingModel(eqx.Module):
     Attributes:
         rows: Its rows.
         equilibrium: Local solver.
-        cage_torque: Differentiate through the azimuth of the rolling elements.
+        cage_torque: Whether gz feels that it moves the rolling elements.
 
     Traced: all real numbers. Static: the classes, and `cage_torque`.
     """
@@ -70,12 +70,19 @@ class BearingModel(eqx.Module):
         return all(row.element.has_potential for row in self.rows)
 
     @eqx.filter_jit
-    def solve(self, q: Ring, near: tuple[Near, ...] | None = None) -> tuple[Row, ...]:
+    def solve(
+        self,
+        q: Ring,
+        near: tuple[Near, ...] | None = None,
+        turns: bool = False,
+    ) -> tuple[Row, ...]:
         """Solve every rolling element at given ring freedoms.
 
         Args:
             q: Ring freedoms [m, rad].
             near: `Evaluated.near` at ring freedoms near by: fewer steps.
+            turns: Whether derivatives see that gz moves the rolling elements; with
+                `cage_torque` they always do. Static.
 
         Raises:
             ValueError: If `q` is not of shape (12,).
@@ -88,7 +95,7 @@ class BearingModel(eqx.Module):
             )
         known = [None] * len(self.rows) if near is None else near
         return tuple(
-            row.solve(q, self.equilibrium, self.cage_torque, one)
+            row.solve(q, self.equilibrium, turns or self.cage_torque, one)
             for row, one in zip(self.rows, known, strict=True)
         )
 
@@ -98,29 +105,40 @@ class BearingModel(eqx.Module):
         return _total(row.energy() for row in self.solve(q))
 
     @eqx.filter_jit
-    def force(self, q: Ring) -> Ring:
-        """External load that holds the rings where they are [N, N m]."""
+    def force(self, q: Ring, turns: bool = False) -> Ring:
+        """External load that holds the rings where they are [N, N m].
+
+        Args:
+            q: Ring freedoms [m, rad].
+            turns: As of `solve`.
+        """
+        return self._force(self.solve(q, turns=turns), q)
+
+    def _force(self, rows: tuple[Row, ...], q: Ring) -> Ring:
+        forces = [row.sum_forces(row.forces()) for row in rows]
         if self.cage_torque:
-            return jax.grad(self.energy)(q)
-        return _total(row.sum_forces(row.forces()) for row in self.solve(q))
+            forces += [
+                row.cage_torque(force, q)
+                for row, force in zip(rows, forces, strict=True)
+            ]
+        return _total(forces)
 
     @eqx.filter_jit
     def force_or_nan(self, q: Ring) -> Ring:
-        """As `force`, but NaN if a rolling element did not converge [N, N m]."""
-        rows = self.solve(q)
-        if self.cage_torque:
-            force = self.force(q)
-        else:
-            force = _total(row.sum_forces(row.forces()) for row in rows)
+        """As `force`, but NaN if a rolling element did not converge [N, N m].
+
+        Its derivatives see that gz moves the rolling elements.
+        """
+        rows = self.solve(q, turns=True)
         converged = _settled(rows)[1] == Result.CONVERGED
         # A product: the derivative of a failed case is then NaN too.
-        return force * jnp.where(converged, 1.0, jnp.nan)
+        return self._force(rows, q) * jnp.where(converged, 1.0, jnp.nan)
 
     @eqx.filter_jit
     def stiffness(self, q: Ring) -> RingStiffness:
         """Tangent stiffness d(force)/dq [N/m, N, N m]."""
         if self.cage_torque:
-            return jax.hessian(self.energy)(q)
+            return jax.jacfwd(self.force)(q)
         return _total(row.stiffness() for row in self.solve(q))
 
     @eqx.filter_jit
@@ -132,24 +150,21 @@ class BearingModel(eqx.Module):
             rows: The elements solved at `q`, if they are at hand.
         """
         rows = self.solve(q) if rows is None else rows
-        shares = [row.forces() for row in rows]
         if self.cage_torque:
-            force, stiffness = self.force(q), self.stiffness(q)
+            stiffness = self.stiffness(q)
         else:
-            pairs = zip(rows, shares, strict=True)
-            force = _total(row.sum_forces(share) for row, share in pairs)
             stiffness = _total(row.stiffness() for row in rows)
         states, result = _settled(rows)
         return Evaluated(
             energy=_total(row.energy() for row in rows),
-            force=force,
+            force=self._force(rows, q),
             stiffness=stiffness,
             result=result,
             steps=jnp.max(jnp.concatenate([s.steps for s in states])),
             residual=jnp.max(jnp.concatenate([s.residual for s in states])),
             magnitude=_total(
-                jnp.sum(jnp.abs(share[:, : row.model.element.n_forces]))
-                for row, share in zip(rows, shares, strict=True)
+                jnp.sum(jnp.abs(row.forces()[:, : row.model.element.n_forces]))
+                for row in rows
             ),
             near=tuple(row.near() for row in rows),
         )

@@ -116,6 +116,19 @@ def roll_ratio(diameter: Scalar, pitch_diameter: Scalar, cosine: Scalar) -> Scal
     return diameter * cosine / pitch_diameter
 
 
+def orbit(ratio: Scalar, outer: Scalar | float, inner: Scalar | float) -> Scalar:
+    """Turn, or speed, of the set of rolling elements from those of the rings.
+
+    Args:
+        ratio: G of `roll_ratio` [1].
+        outer: Turn [rad] or speed [rad/s] of the outer ring.
+        inner: Of the inner ring, likewise.
+
+    Source: rolling without slip, ½[(1 - G) inner + (1 + G) outer].
+    """
+    return 0.5 * ((1.0 - ratio) * inner + (1.0 + ratio) * outer)
+
+
 def roller_azimuth(
     first_azimuth: Scalar, n_rollers: int, ratio: Scalar, q: Ring
 ) -> Float[Array, " roller"]:
@@ -130,8 +143,8 @@ def roller_azimuth(
     Returns:
         Azimuths [rad].
 
-    Source: rolling without slip, φ = φ0 + ½[(1 - G) g_zi + (1 + G) g_ze].
+    Source: rolling without slip, φ = φ0 + `orbit`.
     """
-    turn = 0.5 * ((1.0 - ratio) * q[11] + (1.0 + ratio) * q[5])
+    turn = orbit(ratio, q[5], q[11])
     pitch = 2.0 * jnp.pi / n_rollers
     return first_azimuth + turn + pitch * jnp.arange(n_rollers, dtype=q.dtype)

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 from ..design.checks import number
 from ..numerics.types import Scalar, as_real
 from .constants import ContactConstants
-from .frame import roll_ratio
+from .frame import orbit, roll_ratio
 
 
 class Speed(eqx.Module):
@@ -43,10 +43,9 @@ def roller_speeds(constants: ContactConstants, speed: Speed) -> tuple[Scalar, Sc
     """
     c = constants
     ratio = roll_ratio(c.diameter, 2.0 * c.pitch_radius, jnp.cos(c.axis_angle))
-    orbit = 0.5 * ((1.0 - ratio) * speed.inner + (1.0 + ratio) * speed.outer)
     difference = speed.inner - speed.outer
     spin = -c.pitch_radius / c.diameter * (1.0 - ratio**2) * difference
-    return orbit, spin
+    return orbit(ratio, speed.outer, speed.inner), spin
 
 
 def mass_and_inertia(constants: ContactConstants) -> tuple[Scalar, Scalar, Scalar]:
@@ -89,9 +88,9 @@ def inertia_force(constants: ContactConstants, speed: Speed) -> Float[Array, "3"
         F = -dH/dt; the mass centre is taken at the roller centre.
     """
     c = constants
-    orbit, spin = roller_speeds(c, speed)
+    around, spin = roller_speeds(c, speed)
     mass, axial, cross = mass_and_inertia(c)
     sin, cos = jnp.sin(c.axis_angle), jnp.cos(c.axis_angle)
-    force = mass * c.pitch_radius * orbit**2
-    moment = orbit * sin * (axial * spin + (axial - cross) * orbit * cos)
+    force = mass * c.pitch_radius * around**2
+    moment = around * sin * (axial * spin + (axial - cross) * around * cos)
     return jnp.stack([-sin * force, cos * force, moment])

@@ -23,7 +23,7 @@ from .equilibrium import (
     solve_element,
     solved_derivatives,
 )
-from .frame import placement, roll_ratio, roller_azimuth, section_matrix
+from .frame import orbit, placement, roll_ratio, roller_azimuth, section_matrix
 from .model import Derivatives
 
 
@@ -243,6 +243,27 @@ class Row(eqx.Module):
         pairs = shares.reshape(shares.shape[0], 2, -1)
         return jnp.einsum("lai,lka->ki", self.section, pairs).reshape(-1)
 
+    def cage_torque(self, force: Ring, q: Ring) -> Ring:
+        """What turns the set of rolling elements, as moments on both gz [N m].
+
+        The virtual work of the forces on the rings when the azimuth moves with gz.
+        Turning the set within the rings is turning the rings back around it, so it is
+        the work of `force` on that turn of q.
+
+        Args:
+            force: From `sum_forces` [N, N m].
+            q: Ring freedoms at the node [m, rad].
+
+        Returns:
+            (12,), zero but for both gz.
+        """
+        turned = jnp.zeros_like(q)
+        for x in (0, 3, 6, 9):
+            turned = turned.at[x].set(-q[x + 1]).at[x + 1].set(q[x])
+        work, ratio = -jnp.sum(force * turned), orbit_ratio(self.part.bearing)
+        torque = jnp.zeros_like(q).at[5].set(work * orbit(ratio, 1.0, 0.0))
+        return torque.at[11].set(work * orbit(ratio, 0.0, 1.0))
+
     def blocks(self) -> Float[Array, "element r r"]:
         """Condensed stiffness of each element, in its axes [N/m, N, N m]."""
         return self.model.each(condensed_stiffness, self.solved.hessian)
@@ -291,12 +312,17 @@ def azimuths(bearing: Bearing, q: Ring) -> Float[Array, " element"]:
         bearing: A single row.
         q: Ring freedoms [m, rad]; only both gz count.
     """
+    ratio = orbit_ratio(bearing)
+    return roller_azimuth(bearing.first_azimuth, n_elements(bearing), ratio, q)
+
+
+def orbit_ratio(bearing: Bearing) -> Scalar:
+    """G = D cos α/d_m of a row, with which its rolling elements orbit [1]."""
     if isinstance(bearing, AbstractRollerBearing):
         diameter, cosine = bearing.roller_diameter, jnp.cos(bearing.axis_angle)
     else:
         diameter, cosine = bearing.ball_diameter, bearing.free_cosine
-    ratio = roll_ratio(diameter, bearing.pitch_diameter, cosine)
-    return roller_azimuth(bearing.first_azimuth, n_elements(bearing), ratio, q)
+    return roll_ratio(diameter, bearing.pitch_diameter, cosine)
 
 
 def motions(row: Row) -> Float[Array, "element 3"]:

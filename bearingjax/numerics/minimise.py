@@ -229,6 +229,7 @@ class TrustRegionNewton(AbstractMinimiser):
             return (norm(now.gradient) > goal * now.scale + now.noise) & ~state.stalled
 
         limit_of_steps = self.max_steps if max_steps is None else max_steps
+        limit_of_steps = jnp.asarray(limit_of_steps, dtype=start.dtype)
         remembers = bool(jax.tree.leaves(memory))
 
         def unfinished(carry):

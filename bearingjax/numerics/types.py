@@ -25,12 +25,13 @@ def as_real(value) -> Any:
 
     Returns:
         float64 array when JAX has 64 bit enabled, float32 otherwise; arrays that
-        are floating already keep their dtype. What is no real number (text, bools,
-        `None`, complex numbers, other objects) comes back unchanged: the check of
-        the field then names it.
+        are floating already keep their dtype, never a weak one. What is no real
+        number (text, bools, `None`, complex numbers, other objects) comes back
+        unchanged: the check of the field then names it.
     """
     if isinstance(value, jax.Array) and jnp.issubdtype(value.dtype, jnp.floating):
-        return value
+        # jnp.array(0.43) is of weak type, for which `jit` would compile anew.
+        return jnp.asarray(value, dtype=value.dtype) if value.weak_type else value
     if value is None or isinstance(value, str | bytes | bool | complex):
         return value
     if getattr(getattr(value, "dtype", None), "kind", "f") in "bc":

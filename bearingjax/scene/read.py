@@ -313,10 +313,14 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         problem = f"{', '.join(both)} is both free and prescribed; choose one"
         raise operating.error("free", problem)
     load = _components(operating, "load", LOADS, ("force", "moment"))
-    for freedom in prescribed:
-        component = LOADS[FREEDOMS.index(freedom)]
-        if load.get(component):
-            problem = f"{component} acts on {freedom}, which is prescribed; choose one"
+    for freedom, component in zip(FREEDOMS, LOADS, strict=True):
+        left_out = free is not None and freedom not in (*free, "gz")
+        if load.get(component) and (left_out or freedom in prescribed):
+            why = "prescribed" if freedom in prescribed else "not among `free`"
+            problem = (
+                f"{component} acts on {freedom}, which is {why}: its support would take"
+                " that load; choose one"
+            )
             raise operating.error("load", problem)
     rpm = {r: operating.quantity(f"{r}_speed", "speed", 0.0) for r in RINGS}
     return Scene(

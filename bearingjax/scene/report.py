@@ -122,6 +122,7 @@ def _motion(scene, solution):
         lines.append(
             f"  {FREEDOMS[i]} {motion[i]:12.5g} {units[i]:<5}"
             f"   {LOADS[i]} {loads[i]:12.5g} {load_units[i]}"
+            + ("   reaction of its support" if FREEDOMS[i] in solution.held else "")
         )
     return "\n".join(lines)
 

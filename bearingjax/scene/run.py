@@ -8,6 +8,7 @@ from ..statics.optimise import Optimised, optimise
 from ..statics.preload import preload
 from ..statics.solution import Solution
 from .optimise_table import Optimisation
+from .quantity import SceneError
 from .read import Scene
 
 
@@ -54,11 +55,20 @@ def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
 
     Raises:
         SolveError: If the design of the scene does not solve.
+        SceneError: For choices that contradict each other.
     """
     scene = task.scene
     build = None
     if scene.preload_force is not None:
         build = functools.partial(preload, force=scene.preload_force, throw=False)
+    try:
+        return _optimised(task, build, progress)
+    except ValueError as error:
+        raise SceneError(f"{scene.name}: {error}") from error
+
+
+def _optimised(task, build, progress) -> Optimised:
+    scene = task.scene
     return optimise(
         scene.element,
         task.cases,

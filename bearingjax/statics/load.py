@@ -5,7 +5,7 @@ kinematics this is convex, so the trust-region Newton method on the exact V, Vâ€
 converges from anywhere, or runs away where nothing holds the load, and says so.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -81,21 +81,21 @@ def solve_load(
     Args:
         element: The bearing.
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring at the origin [N, N m];
-            `None` is no load. A load on a freedom that neither is free nor
-            prescribed goes into the support.
+            `None` is no load. A load on a freedom that is held, prescribed or left out
+            of `free`, is an error: the support would take it, unseen by the bearing.
         prescribed: Displacements given instead of loads, by freedom name [m, rad];
-            their loads are results, and a `load` on them an error; gz turns the set
-            of rollers.
+            their loads are results; gz turns the set of rollers.
         free: Freedoms of the moving ring that may move. Default: all that the
             bearing can restrain and that are not prescribed; a load on any other is
-            then "no load path". The others stay at zero.
+            then "no load path". The others are held at zero; what holds them there
+            is a result.
         fixed_ring: "outer" or "inner".
         fixed_displacement: Displacement of the fixed ring (6,) [m, rad]; default 0.
         speed: Ring speeds; `None`: no inertia.
         points: Positions along the rollers at which loads are reported.
         tolerance: Relative residual at which the solve ends; default 1e-11 in
-            float64, 1e-4 in float32. Static.
-        max_steps: Step limit of the load solve. Static, unless an array.
+            float64, 1e-4 in float32.
+        max_steps: Step limit of the load solve.
         start: Displacement of the moving ring (6,) from which the solve starts, such
             as that under a load near by; NaN or `None`: from first contact [m, rad].
         throw: Raise if the solve fails, outside or under `jit`; otherwise read
@@ -110,8 +110,8 @@ def solve_load(
         ValueError: For unknown names, contradictory choices or non-finite input.
         SolveError: If the solve did not converge and `throw` is set.
 
-    Fails: `STEP_LIMIT`, `NO_LOAD_PATH` (freedom in `solution.unrestrained`),
-        `NON_FINITE`, `SADDLE` (finite kinematics).
+    Fails: `STEP_LIMIT`, `NO_LOAD_PATH` (freedom in `solution.unrestrained`; so too a
+        traced load on a held freedom), `NON_FINITE`, `SADDLE` (finite kinematics).
     """
     if fixed_ring not in RINGS:
         raise ValueError(
@@ -136,29 +136,24 @@ def solve_load(
         raise ValueError(
             f"solve_load: {', '.join(both)} is both free and prescribed; choose one."
         )
-    if not is_traced(load):
-        for name in prescribed:
-            index = FREEDOMS.index(name)
-            if load[index] != 0:
-                raise ValueError(
-                    f"solve_load: `load` has {LOADS[index]}, but {name} is prescribed;"
-                    " its load is a result. Choose one."
-                )
     if "gz" in free:
         raise ValueError(
             "solve_load: `free` contains gz, which no rolling bearing restrains; it"
             " is operating data (prescribe it to turn the set of rollers)."
         )
+    check_held("solve_load", load, prescribed, None if default_free else free)
     for k, row in enumerate(rows_of(element.bearing)):
         if row.spring is not None and "uz" not in restrained_freedoms(row.bearing):
             raise ValueError(
                 f"solve_load: row {k} has a spring, but holds no axial load."
             )
     is_free = tuple(name in free for name in FREEDOMS)
-    # With the default choice a load that nothing can carry is an error of the scene.
-    held = tuple(name in prescribed or not default_free for name in FREEDOMS)
+    left_out = () if default_free else set(FREEDOMS[:5]) - set(free)
+    held = tuple(name in prescribed or name in left_out for name in FREEDOMS)
     if tolerance is None:
         tolerance = DEFAULT_TOLERANCE[str(dtype)]
+    # As arrays, so that another value does not compile anew.
+    tolerance, max_steps = as_array(tolerance, dtype), as_array(max_steps, jnp.int32)
     solution = _solve(
         element,
         element.model(speed),
@@ -261,7 +256,9 @@ def _solve(
         # A held freedom follows what is prescribed for it, not `y`: between it and the
         # free ones the Jacobian would not be symmetric.
         held = (1.0 - free) * (given / scale)
-        force = model.force(ring_freedoms(free * y + held, scale, fixed))[moving]
+        q = ring_freedoms(free * y + held, scale, fixed)
+        # gz may be prescribed: the answer follows it through the azimuths.
+        force = model.force(q, turns=True)[moving]
         return free * scale * (force - load) + (1.0 - free) * y - held
 
     y = attach(residual, minimum.x, args, symmetric)
@@ -275,9 +272,8 @@ def _solve(
     stats = Stats(final, minimum.steps, evaluated.residual, evaluated.steps)
 
     result = jnp.maximum(minimum.result, evaluated.result)
-    # A load on a freedom that the type of bearing cannot restrain.
-    adrift = np.array([not (f or h) for f, h in zip(is_free, held, strict=True)])
-    loaded = jnp.asarray(adrift) & ~(load == 0)
+    # A load on a freedom that is held, or that this type of bearing cannot restrain.
+    loaded = jnp.asarray(~np.array(is_free)) & ~(load == 0)
     result = jnp.where(
         jnp.any(loaded) & (result != Result.NON_FINITE),
         int(Result.NO_LOAD_PATH),
@@ -296,12 +292,50 @@ def _solve(
     return kind(
         **fields,
         free=tuple(f for f, yes in zip(FREEDOMS, is_free, strict=True) if yes),
+        held=tuple(f for f, yes in zip(FREEDOMS, held, strict=True) if yes),
         moving_ring=RINGS[1 - RINGS.index(fixed_ring)],
         pitch_radius=radius,
         result=result,
         unrestrained=unrestrained.astype(jnp.int32),
         stats=stats,
     )
+
+
+def check_held(
+    owner: str,
+    load: Float[Array | np.ndarray, "*case 6"],
+    prescribed: Iterable[str],
+    free: Sequence[str] | None,
+) -> None:
+    """Raise if known loads act on freedoms that are held.
+
+    Args:
+        owner: Who was given them.
+        load: Loads of one or of many cases [N, N m]; traced ones are not judged here.
+        prescribed: Freedoms with given displacements.
+        free: Freedoms that were chosen to be free, or `None`: the default.
+
+    Raises:
+        ValueError: Naming the load, the freedom, and who holds it.
+    """
+    if is_traced(load):
+        return
+    loads = np.nan_to_num(np.asarray(load).reshape(-1, 6))
+    # A moment about the axis is never held: its case has no load path.
+    left_out = () if free is None else set(FREEDOMS[:5]) - set(free) - set(prescribed)
+    for names, why in ((prescribed, "prescribed"), (left_out, "not among `free`")):
+        for index in sorted(FREEDOMS.index(name) for name in names):
+            cases = np.flatnonzero(loads[:, index])
+            if cases.size == 0:
+                continue
+            which = "" if np.ndim(load) == 1 else f" in case {cases[0]}"
+            unit = "N" if index < 3 else "N m"
+            raise ValueError(
+                f"{owner}: `load` has {LOADS[index]} ="
+                f" {loads[cases[0], index]:.6g} {unit}{which}, but {FREEDOMS[index]} is"
+                f" {why}: its support would take that load, and what it passes to the"
+                " bearing is a result. Choose one."
+            )
 
 
 def _play(model: BearingModel) -> Scalar:

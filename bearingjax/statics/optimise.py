@@ -14,6 +14,7 @@ import numpy as np
 from ..element.bearing_element import BearingElement, check_element
 from .cases import Cases
 from .design_problem import Build, Measure, Options, Outcome, Problem
+from .load import check_held
 from .measure import Constraint
 from .search import METHODS, Ending, search, takes_gradients
 from .trials import Trial, Trials, optimality
@@ -158,6 +159,7 @@ def optimise(
     variables, constraints = tuple(variables), tuple(constraints)
     method = _check_method(method, constraints)
     _check_call(cases, objective, constraints, max_steps, tolerance)
+    check_held("optimise", cases.load, cases.prescribed, free)
     start = check_variables(element, variables)
     options = Options(
         None if free is None else tuple(free),

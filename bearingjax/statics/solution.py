@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float, Int
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel, Evaluated
 from ..element.equilibrium import Near
-from ..element.frame import FREEDOMS, RINGS
+from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..element.row import Row, motions
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
@@ -62,9 +62,11 @@ class Solution(eqx.Module):
         row_sizes: Number of rolling elements of each row.
         pitch_radius: Of the bearing, the largest of a set [m].
         free: Freedoms of the moving ring that were free.
+        held: Those that a support held, at a prescribed place or at zero: their part
+            of `force` is what it passes to the ring.
         moving_ring: "outer" or "inner".
 
-    Static: row_sizes, free, moving_ring.
+    Static: row_sizes, free, held, moving_ring.
     """
 
     displacement: Ring
@@ -81,6 +83,7 @@ class Solution(eqx.Module):
     pitch_radius: Scalar
     row_sizes: tuple[int, ...] = eqx.field(static=True)
     free: tuple[str, ...] = eqx.field(static=True)
+    held: tuple[str, ...] = eqx.field(static=True)
     moving_ring: str = eqx.field(static=True)
 
     if TYPE_CHECKING:
@@ -122,6 +125,13 @@ def message(solution: Solution, moving_ring: str) -> str:
                 " load, or lower the speed."
             )
         freedom = FREEDOMS[int(solution.unrestrained)]
+        if freedom in solution.held:
+            load = LOADS[FREEDOMS.index(freedom)]
+            return (
+                f"The load has {load}, but {freedom} of the {moving_ring} ring is held"
+                " (prescribed, or left out of the free ones): its support would take"
+                f" that load. Leave out {load}, or free {freedom}."
+            )
         return (
             f"No load path in {freedom} of the {moving_ring} ring: the bearing does"
             " not hold the load in this direction. Add load or preload that closes"
@@ -212,7 +222,7 @@ def describe(
         points: Positions along a roller.
         near: `Evaluated.near` at q or near by.
     """
-    rows = model.solve(q, near)
+    rows = model.solve(q, near, turns=True)
     evaluated = model.evaluate(q, rows)
     if element.point_law is not None:
         special = ball_results(rows, element.point_law)

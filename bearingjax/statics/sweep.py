@@ -20,6 +20,7 @@ from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
 from ..numerics.result import Result
 from .cases import Cases
+from .load import check_held
 from .solution import Solution
 from .sweep_program import Options, Program
 
@@ -149,8 +150,8 @@ def sweep(
         Sweep, whole in every process.
 
     Raises:
-        ValueError: For unknown names, designs that do not fit the cases, outputs that
-            would not fit memory, and as `solve_load`.
+        ValueError: For unknown names, loads on held freedoms, designs that do not fit
+            the cases, outputs that would not fit memory, and as `solve_load`.
 
     Fails: as `solve_load`, in `Sweep.result`, case by case; `NOT_RUN` after `stop`.
     """
@@ -164,9 +165,12 @@ def sweep(
     size = CHUNK if chunk is None else chunk
     if not isinstance(size, int) or size < 1:
         raise ValueError(f"sweep: `chunk` is {chunk!r}; a whole number of at least 1.")
+    check_held("sweep", every.load, every.prescribed, free)
     keep = outputs if callable(outputs) else Keep(_checked(outputs))
     free = None if free is None else tuple(free)
-    options = Options(free, fixed_ring, points, tolerance, keep)
+    # An array, so that another value does not compile anew.
+    ends = None if tolerance is None else jnp.asarray(tolerance, dtype=float)
+    options = Options(free, fixed_ring, points, ends, keep)
     places = np.array(jax.devices() if devices is None else list(devices))
     program = Program(element, options, size, places)
     found = program.run(every, max_steps, neighbours, progress, stop)

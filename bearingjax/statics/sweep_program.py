@@ -14,6 +14,7 @@ from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 
 from ..numerics.result import Result
+from ..numerics.types import Scalar
 from .cases import solve_case
 
 BLOCK = 64
@@ -30,12 +31,12 @@ ALWAYS = ("result", "unrestrained")
 
 
 class Options(eqx.Module):
-    """What is the same for all cases. Static."""
+    """What is the same for all cases. Static, but for the tolerance."""
 
     free: tuple[str, ...] | None = eqx.field(static=True)
     fixed_ring: str = eqx.field(static=True)
     points: int = eqx.field(static=True)
-    tolerance: float | None = eqx.field(static=True)
+    tolerance: Scalar | None
     keep: Any = eqx.field(static=True)
 
     def solve(self, element, case, max_steps, start=None):
@@ -147,10 +148,11 @@ class Program:
 @eqx.filter_jit
 def _solve_block(element, cases, max_steps, options, lanes, neighbours, mesh):
     """A block of cases, each device its share in chunks of `lanes`."""
-    arrays, static = eqx.partition((element, max_steps), eqx.is_array)
+    shared = (element, max_steps, options)
+    arrays, static = eqx.partition(shared, eqx.is_array)
 
     def share(arrays, cases):
-        element, max_steps = eqx.combine(arrays, static)
+        element, max_steps, options = eqx.combine(arrays, static)
 
         def one(case, start=None):
             return options.solve(element, case, max_steps, start)

@@ -193,3 +193,16 @@ def test_everything_real_is_traced():
     leaves = jax.tree.leaves(four_point(outer_shoulder=2e-3))
     assert all(isinstance(leaf, jax.Array) for leaf in leaves)
     assert all(leaf.dtype == jnp.float64 for leaf in leaves)
+
+
+def test_a_number_of_weak_type_does_not_compile_anew():
+    """jnp.array(0.43) is one; under `jit` it would be another program."""
+    bearing = bj.AngularContactBallBearing(
+        7,
+        0.05,
+        0.009,
+        contact_angle=jnp.array(0.43),
+        outer_osculation=0.52,
+        inner_osculation=0.52,
+    )
+    assert not bearing.contact_angle.weak_type

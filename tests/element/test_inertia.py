@@ -4,7 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from registry import bearings, taper
+from registry import balls, bearings, taper
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
@@ -146,3 +146,33 @@ def test_cage_torque_is_the_derivative_through_the_azimuth():
     assert np.allclose(through.force(q)[:5], plain.force(q)[:5], rtol=1e-10, atol=1e-9)
     k = np.asarray(through.stiffness(q))
     assert abs(k[11, 11]) > 0.0 and np.allclose(k, k.T, rtol=1e-9, atol=1e-3)
+
+
+def test_cage_torque_of_forces_without_potential_is_their_virtual_work():
+    """Gyroscopic moments act: the energy does not know all forces."""
+    q = 1e-6 * jnp.asarray([3, -2, 5, 90, -60, 0, 8, -35, 25, -120, 200, 1e5])
+    speed = bj.Speed(inner=2000.0)
+    pair = bj.BearingSet.back_to_back(balls(5), 0.02, 10e-6)
+    kinds = [bj.BearingElement(pair, cage_torque=turns) for turns in (False, True)]
+    evaluated = [element.evaluate(q, speed) for element in kinds]
+    plain, through = (np.asarray(e.force) for e in evaluated)
+    keep = [0, 1, 2, 3, 4, 6, 7, 8, 9, 10]
+    assert np.array_equal(plain[keep], through[keep])
+    blocks = [np.asarray(e.stiffness)[np.ix_(keep, keep)] for e in evaluated]
+    # The Jacobian, and the condensed stiffness, of forces up to 1e8 N/m.
+    assert np.allclose(*blocks, rtol=SOLVER, atol=1e-3)
+    # What the rings' forces do while the balls move on, each row seen by itself.
+    torque, step = np.zeros(2), 1e-6
+    for row in kinds[0].rows(q, speed):
+        ends = [_rings_seen(row, q, sign * step) for sign in (1, -1)]
+        work = jnp.sum(row.forces() * (ends[0] - ends[1])) / (2 * step)
+        ratio = 0.0095 * np.cos(np.deg2rad(25)) / 0.052
+        torque = torque + 0.5 * float(work) * np.array([1 + ratio, 1 - ratio])
+    assert abs(torque[1]) > 1e-3
+    assert np.allclose(through[[5, 11]], torque, rtol=DIFFERENCE)
+
+
+def _rings_seen(row, q, turn):
+    """Ring motions in the balls' axes, the balls turned on."""
+    section = row.model.each(lambda m, phi: m.section(phi), row.azimuth + turn)
+    return row.model.seen(section, row.local)

@@ -244,6 +244,67 @@ def test_design_gradient_past_a_freedom_that_is_held():
     assert abs(slope(at)[1] - difference) < DIFFERENCE * abs(difference)
 
 
+def test_gradient_with_respect_to_a_prescribed_turn(crowned):
+    """gz moves the rollers: the answer follows, though force and stiffness hold it."""
+
+    @jax.jit
+    @jax.value_and_grad
+    def sag(turn):
+        s = bj.solve_load(crowned, RADIAL, prescribed={"gz": turn}, free=FREE)
+        return 1e6 * (s.displacement[7] + 2.0 * s.displacement[6])
+
+    at, h = 0.1, 1e-5
+    difference = (sag(at + h)[0] - sag(at - h)[0]) / (2 * h)
+    assert abs(difference) > 0.1
+    assert abs(sag(at)[1] - difference) < DIFFERENCE * abs(difference)
+
+
+@pytest.mark.parametrize(
+    "held, why",
+    [
+        (dict(prescribed={"gx": 1e-4}), "prescribed"),
+        (dict(free=["ux", "uy", "gy"]), "not among `free`"),
+    ],
+)
+def test_a_load_on_a_held_freedom_is_not_dropped(crowned, held, why):
+    load = [0.0, -4000.0, 0.0, 20.0, 0.0, 0.0]
+    with pytest.raises(ValueError, match=f"has Mx = 20 N m, but gx is {why}"):
+        bj.solve_load(crowned, load, **held)
+    with pytest.raises(ValueError, match=f"Mx = 20 N m in case 1, but gx is {why}"):
+        cases = bj.Cases(
+            [RADIAL[:3] + [0.0] * 3, load], prescribed=held.get("prescribed")
+        )
+        bj.sweep(crowned, cases, free=held.get("free"))
+    s = jax.jit(lambda f: bj.solve_load(crowned, f, throw=False, **held))(
+        jnp.asarray(load)
+    )
+    assert int(s.result) == bj.Result.NO_LOAD_PATH
+    assert "load has Mx, but gx of the inner ring is held" in bj.statics.message(
+        s, "inner"
+    )
+    assert s.held == (("gx",) if "prescribed" in held else ("uz", "gx"))
+
+
+def test_tolerance_and_step_limit_do_not_compile_anew(crowned, monkeypatch):
+    traces = []
+    describe = bj.statics.load.describe
+    monkeypatch.setattr(
+        bj.statics.load,
+        "describe",
+        lambda *args: traces.append(1) or describe(*args),
+    )
+    for tolerance, steps in ((1e-7, 50), (1e-8, 60)):
+        bj.solve_load(
+            crowned,
+            RADIAL,
+            free=FREE,
+            points=11,
+            tolerance=tolerance,
+            max_steps=steps,
+        )
+    assert len(traces) == 1
+
+
 def test_gradient_with_respect_to_load_is_the_compliance(tapered):
     load = jnp.asarray([1000.0, 300.0, 5000.0, 2.0, -1.0, 0.0])
     of = jax.jit(lambda f: bj.solve_load(tapered, f).displacement[6:11])
