@@ -50,12 +50,14 @@ from .design import ThrustBallBearing as ThrustBallBearing
 from .element import FREEDOMS as FREEDOMS
 from .element import BearingElement as BearingElement
 from .element import CentrifugalOnly as CentrifugalOnly
+from .element import ConstantAngle as ConstantAngle
 from .element import EqualShare as EqualShare
 from .element import Finite as Finite
 from .element import FrictionLimited as FrictionLimited
 from .element import InnerControl as InnerControl
 from .element import Linearised as Linearised
 from .element import LoadShare as LoadShare
+from .element import OperatingCentrifugal as OperatingCentrifugal
 from .element import OuterControl as OuterControl
 from .element import Speed as Speed
 from .numerics import BFGS as BFGS

@@ -7,6 +7,7 @@ from .ball_speed import EqualShare as EqualShare
 from .ball_speed import FrictionLimited as FrictionLimited
 from .ball_speed import InnerControl as InnerControl
 from .ball_speed import LoadShare as LoadShare
+from .ball_speed import OperatingCentrifugal as OperatingCentrifugal
 from .ball_speed import OuterControl as OuterControl
 from .ball_speed import ball_kinematics as ball_kinematics
 from .ball_speed import ball_mass as ball_mass
@@ -26,6 +27,7 @@ from .inertia import inertia_force as inertia_force
 from .inertia import mass_and_inertia as mass_and_inertia
 from .inertia import roller_speeds as roller_speeds
 from .kinematics import AbstractKinematics as AbstractKinematics
+from .kinematics import ConstantAngle as ConstantAngle
 from .kinematics import Finite as Finite
 from .kinematics import Linearised as Linearised
 from .row import Row as Row

@@ -17,7 +17,7 @@ class Contacts(NamedTuple):
     Attributes:
         approach: l - L [m].
         length: l, distance of ball centre and groove centre [m].
-        inverse: 1/l, finite [1/m].
+        inverse: 1/l, finite, with which the normal turns; 0 if it does not [1/m].
         normal: Unit vector (z, r) from groove centre to ball centre (contact, 2), in
             the section of the ring; at the groove centre that of the unloaded ball.
         mask: 0 where the part along z, or along r, of that vector counts for nothing,
@@ -47,8 +47,10 @@ class GrooveGeometry(eqx.Module):
         open_side: Which raceways are cylinders beyond the groove bottom.
         washers: Whether the raceways are those of a thrust bearing, whose grooves open
             along the axis.
+        straight: Whether the normals stay as they are unloaded, so that each raceway
+            is a plane.
 
-    Static: on_outer, open_side, washers.
+    Static: on_outer, open_side, washers, straight.
     """
 
     start: Float[Array, "contact 2"]
@@ -56,6 +58,7 @@ class GrooveGeometry(eqx.Module):
     on_outer: tuple[bool, ...] = eqx.field(static=True)
     open_side: tuple[bool, ...] = eqx.field(static=True)
     washers: bool = eqx.field(static=True)
+    straight: bool = eqx.field(static=True)
 
     @property
     def outwards(self) -> list[float]:
@@ -74,6 +77,8 @@ class GrooveGeometry(eqx.Module):
         Args:
             moved: Motion (z, r) of the ball centre against each groove centre [m].
         """
+        if self.straight:
+            return self._planes(moved)
         vector = self.start + moved
         ends = jnp.asarray([[side, not self.washers] for side in self.open_side])
         behind = jnp.asarray(self.outwards, moved.dtype)[:, None] * vector < 0
@@ -96,6 +101,13 @@ class GrooveGeometry(eqx.Module):
         inverse = 1.0 / root
         normal = jnp.where(centred[:, None], self.free, kept * inverse[:, None])
         return Contacts(approach, length, inverse, normal, mask)
+
+    def _planes(self, moved):
+        normal = self.free
+        unloaded = jnp.sqrt(jnp.sum(self.start**2, axis=1))
+        length = unloaded + jnp.sum(normal * moved, axis=1)
+        flat = jnp.zeros_like(length)
+        return Contacts(length - self.reach, length, flat, normal, jnp.ones_like(moved))
 
     @property
     def free(self) -> Float[Array, "contact 2"]:

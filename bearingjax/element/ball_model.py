@@ -16,7 +16,7 @@ from .ball_linearised import LinearisedBall
 from .ball_speed import AbstractRacewayControl
 from .constants import GUIDE
 from .inertia import Speed
-from .kinematics import AbstractKinematics, Finite
+from .kinematics import AbstractKinematics, ConstantAngle, Finite
 
 
 def ball_model(
@@ -52,6 +52,7 @@ def ball_model(
             on_outer=tuple(g.on_outer for g in grooves),
             open_side=tuple(g.open_side for g in grooves),
             washers=isinstance(bearing, ThrustBallBearing),
+            straight=isinstance(kinematics, ConstantAngle),
         ),
         constant=law.constants(balls, grooves, bearing.free_cosine),
         pitch_radius=0.5 * bearing.pitch_diameter,

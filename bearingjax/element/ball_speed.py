@@ -46,6 +46,11 @@ class AbstractRacewayControl(eqx.Module):
         """Whether orbit and gyroscopic moment follow the operating angles. Static."""
         return True
 
+    @property
+    def has_moment(self) -> bool:
+        """Whether the gyroscopic moment acts on the ball. Static."""
+        return True
+
     @abc.abstractmethod
     def rolling_share(self, load: Float[Array, "2"]) -> Scalar:
         """Share of the outer raceway in the direction of the spin axis.
@@ -135,6 +140,24 @@ class FrictionLimited(AbstractRacewayControl):
         return jnp.clip(needed, -self.friction, self.friction) * load
 
 
+class OperatingCentrifugal(AbstractRacewayControl):
+    """The centrifugal force of the orbit at the operating contact angles, no more.
+
+    Gyroscopic moments are left out; the spin axis is that of outer control. For codes
+    that do so, such as the program of Harris and Mindel, Wear 23 (1973).
+    """
+
+    @property
+    def has_moment(self):
+        return False
+
+    def rolling_share(self, load):
+        return jnp.ones_like(load[0])
+
+    def traction(self, load, demand):
+        return jnp.zeros_like(load)
+
+
 class CentrifugalOnly(AbstractRacewayControl):
     """Only the centrifugal force, of the orbit at the free contact angle.
 
@@ -144,6 +167,10 @@ class CentrifugalOnly(AbstractRacewayControl):
 
     @property
     def has_reaction(self):
+        return False
+
+    @property
+    def has_moment(self):
         return False
 
     def rolling_share(self, load):

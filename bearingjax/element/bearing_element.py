@@ -29,7 +29,7 @@ from .bearing_model import BearingModel, Evaluated
 from .constants import contact_constants
 from .function import FunctionParameters, RingFunction, as_function
 from .inertia import Speed, inertia_force
-from .kinematics import AbstractKinematics, Finite, Linearised
+from .kinematics import AbstractKinematics, ConstantAngle, Finite, Linearised
 from .model import AbstractModel
 from .roller import RollerModel
 from .row import Row, RowModel
@@ -80,8 +80,10 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         bearing: The design, or a `BearingSet`.
         line_law: Law of the raceway contacts of rollers; `Palmgren()`. With
             `CoupledSlices()` slices press on each other; it takes no `quadrature`.
-        kinematics: Small ring rotations, `Linearised()`, or `Finite()`: of balls
-            exact, of rollers the paper's formula. Self-aligning bearings: `Finite()`.
+        kinematics: Small ring rotations, `Linearised()`; `ConstantAngle()`: likewise,
+            the contact angles of balls held; or `Finite()`: rings of ball bearings
+            turn by any angle, of rollers the paper's formula. Self-aligning bearings:
+            `Finite()`.
         quadrature: Of roller contacts, `ContactMapped(points)` or `Midpoint(points)`;
             `None` with balls and `CoupledSlices()`.
         equilibrium: Local solver, `TrustRegionNewton()` or `BFGS()`.
@@ -91,8 +93,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         point_law: Constants of ball contacts: `FreeAngle()`, `ZeroAngle()`,
             `OperatingAngle()` or `PointConstant(outer, inner)`.
         raceway_control: Of turning balls: `OuterControl()`, `InnerControl()`,
-            `EqualShare()`, `LoadShare()`, `FrictionLimited(friction)`, or
-            `CentrifugalOnly()`.
+            `EqualShare()`, `LoadShare()`, `FrictionLimited(friction)`,
+            `OperatingCentrifugal()` or `CentrifugalOnly()`.
 
     Traced: all real numbers. Static: the classes, and `cage_torque`.
     """
@@ -177,6 +179,12 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 "BearingElement: `kinematics` is Linearised(), with which a"
                 " self-aligning bearing would resist its tilt; use Finite()."
             )
+        constant = balls and isinstance(kinematics, ConstantAngle)
+        if constant and not all(row.bearing.is_one_sided for row in rows_of(bearing)):
+            raise ValueError(
+                "BearingElement: `kinematics` is ConstantAngle(), which is for balls of"
+                " one contact angle: of angular contact and thrust bearings."
+            )
         sprung = any(row.spring is not None for row in rows_of(bearing))
         if balls and sprung and (aligning or isinstance(kinematics, Finite)):
             raise ValueError(
@@ -210,11 +218,19 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
         Raises:
             TypeError: If `speed` is not a `Speed`.
+            ValueError: If `speed` is given to balls of constant contact angle.
         """
         if speed is not None and not isinstance(speed, Speed):
             raise TypeError(
                 f"BearingElement: `speed` is a {type(speed).__name__}; it must be a"
                 " Speed(inner, outer) in rad/s, or None."
+            )
+        constant = isinstance(self.kinematics, ConstantAngle)
+        if speed is not None and constant and is_ball(self.bearing):
+            raise ValueError(
+                "BearingElement: `kinematics` is ConstantAngle(), with which nothing"
+                " holds a turning ball along its raceways; leave out `speed`, or use"
+                " Linearised()."
             )
         if any(is_traced(leaf) for leaf in jax.tree.leaves((self, speed))):
             return self._model(speed)

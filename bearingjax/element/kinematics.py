@@ -108,6 +108,17 @@ class Linearised(AbstractKinematics):
         return None
 
 
+class ConstantAngle(Linearised):
+    """Contacts of balls keep their free contact angle. For balls at rest.
+
+    For comparison with catalogues and with reduced models, which take a contact angle
+    that no load changes; errs where loads are high or angles small. For angular
+    contact and thrust bearings. Contacts of rollers keep their normals anyhow: for them
+    it is `Linearised`. A turning ball finds no balance, because nothing holds it along
+    its raceways: no `speed`.
+    """
+
+
 class Finite(AbstractKinematics):
     """Finite rotations in the section, normals undeformed: formula (3) of the paper.
 

@@ -29,12 +29,14 @@ from ..element import (
     AbstractRacewayControl,
     BearingElement,
     CentrifugalOnly,
+    ConstantAngle,
     EqualShare,
     Finite,
     FrictionLimited,
     InnerControl,
     Linearised,
     LoadShare,
+    OperatingCentrifugal,
     OuterControl,
     Speed,
 )
@@ -51,7 +53,11 @@ LINE_LAWS = {
     "coupled_slices": CoupledSlices,
 }
 QUADRATURES = {"contact_mapped": ContactMapped, "midpoint": Midpoint}
-KINEMATICS = {"linearised": Linearised, "finite": Finite}
+KINEMATICS = {
+    "linearised": Linearised,
+    "constant_angle": ConstantAngle,
+    "finite": Finite,
+}
 POINT_LAWS = {
     "free_angle": FreeAngle,
     "zero_angle": ZeroAngle,
@@ -64,6 +70,7 @@ CONTROLS = {
     "load_share": LoadShare,
     "friction_limited": FrictionLimited,
     "centrifugal_only": CentrifugalOnly,
+    "operating_centrifugal": OperatingCentrifugal,
 }
 MOST_SLICES = 10_000
 """Most slices of a roller."""

@@ -124,7 +124,7 @@ def _row_results(row: Row, law: AbstractPointLaw) -> dict:
         turning = model.turning
         moment = gyroscopic_moment(turning.moment, kinematics)
         force = row.each(lambda m, r, x: m.inertia(r, x)[1])
-        if not turning.control.has_reaction:
+        if not turning.control.has_moment:
             moment = jnp.zeros_like(moment)
     return {
         "roller_load": sides,

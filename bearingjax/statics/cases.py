@@ -13,6 +13,7 @@ from ..design.checks import is_traced, real_numbers
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
+from ..numerics.types import Scalar
 from .load import solve_load
 from .solution import Solution
 
@@ -165,7 +166,7 @@ def solve_case(
     free: Sequence[str] | None = None,
     fixed_ring: str = "outer",
     points: int = 101,
-    tolerance: float | None = None,
+    tolerance: float | Scalar | None = None,
     max_steps: int | Int[Array, ""] = 200,
     start: Float[Array, "6"] | None = None,
 ) -> Solution:

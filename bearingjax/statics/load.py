@@ -71,7 +71,7 @@ def solve_load(
     fixed_displacement: Vector | None = None,
     speed: Speed | None = None,
     points: int = 101,
-    tolerance: float | None = None,
+    tolerance: float | Scalar | None = None,
     max_steps: int | Int[Array, ""] = 200,
     start: Vector | None = None,
     throw: bool = True,
@@ -153,7 +153,7 @@ def solve_load(
     if tolerance is None:
         tolerance = DEFAULT_TOLERANCE[str(dtype)]
     # As arrays, so that another value does not compile anew.
-    tolerance, max_steps = as_array(tolerance, dtype), as_array(max_steps, jnp.int32)
+    ends, max_steps = as_array(tolerance, dtype), as_array(max_steps, jnp.int32)
     solution = _solve(
         element,
         element.model(speed),
@@ -164,7 +164,7 @@ def solve_load(
         held,
         fixed_ring,
         points,
-        tolerance,
+        ends,
         max_steps,
         None if start is None else _six("start", start, dtype),
     )

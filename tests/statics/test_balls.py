@@ -280,6 +280,7 @@ def test_beyond_the_end_of_a_groove_the_raceway_goes_straight_on(deep):
     """Where the part of the motion along the radius stops to count: no jump."""
     grooves = deep.model().rows[0].element.grooves
     reach = float(grooves.reach[1])
+
     def at(z, r):
         """The ball at (z, r) from the inner groove centre, seen from inside."""
         way = np.zeros((2, 2))

@@ -8,9 +8,11 @@
 * High-speed angular contact bearings of Jones's theory (HS-1 to HS-3), with the
   gyroscopic moment at the outer raceway, without it and with its sign reversed, so
   that a failure names its cause.
-* SKF program output in Harris and Mindel (1973): the two contacts. Of its equilibrium
-  the free contact angle is not printed and the printed speed contradicts the
-  centrifugal force, so it cannot be solved again.
+* SKF program output in Harris and Mindel (1973): the two contacts, and the
+  equilibrium. Its free contact angle is not printed, and the printed speed contradicts
+  the centrifugal force: the speed is chosen so that this force is the printed one, the
+  free angle so that the inner contact angle is. Both loads and the outer angle are then
+  met, without a gyroscopic moment in the balance of the ball.
 * Sjovall's integrals and Stribeck's number.
 
 The cases with a tilt have their origin in the plane of the inner groove centres, ours
@@ -301,6 +303,72 @@ def test_harris_mindel_contacts():
             pressure * psi, rel=1e-4
         )
         assert float(contact.approach(q)) == pytest.approx(approach * inch, rel=1e-4)
+
+
+def test_harris_mindel_equilibrium():
+    inch, pound = 0.0254, 4.4482216152605
+    bearing = bj.AngularContactBallBearing(
+        21,
+        6.2008 * inch,
+        0.8125 * inch,
+        outer_osculation=0.52,
+        inner_osculation=0.52,
+        contact_angle=18.647 * DEGREE,
+        material=Material(2.9e7 * pound / inch**2, 0.25),
+    )
+    element = bj.BearingElement(
+        bearing,
+        point_law=bj.OperatingAngle(),
+        raceway_control=bj.OperatingCentrifugal(),
+    )
+    solve = jax.jit(
+        lambda speed: bj.solve_load(
+            element,
+            [0, 0, 3000.0 * pound, 0, 0, 0],
+            free=["uz"],
+            speed=bj.Speed(speed),
+        )
+    )
+    # The orbit is proportional to the speed, all but for the contact angles.
+    speed = 1500.0
+    for _ in range(8):
+        s = solve(speed)
+        speed = speed * np.sqrt(303.45 * pound / float(s.centrifugal_force[0]))
+    assert float(s.centrifugal_force[0]) == pytest.approx(303.45 * pound, rel=1e-5)
+    angles = np.asarray(s.contact_angle)[0] / DEGREE
+    assert np.allclose(angles, [14.475, 29.762], atol=5e-3)  # digits printed: 5e-4
+    # Printed loads balance the thrust to 1e-4 and the radius to 6e-4.
+    assert np.allclose(s.roller_load[0] / pound, [571.07, 287.76], rtol=1e-3)
+    assert np.all(np.asarray(s.gyroscopic_moment) == 0.0)
+
+
+def test_constant_contact_angle_in_closed_form():
+    """F = Z K (u sin α)^1.5 sin α, whatever the load; radially the cosine."""
+    bearing = bj.AngularContactBallBearing(
+        7,
+        0.0435,
+        0.0115,
+        outer_osculation=0.53,
+        inner_osculation=0.52,
+        contact_angle=40 * DEGREE,
+    )
+    element = bj.BearingElement(bearing, kinematics=bj.ConstantAngle())
+    outer, inner = map(float, element.model().rows[0].element.constant)
+    series = (outer ** (-2 / 3) + inner ** (-2 / 3)) ** (-3 / 2)
+    sine = np.sin(40 * DEGREE)
+    solve = jax.jit(lambda f: bj.solve_load(element, f * jnp.eye(6)[2]))
+    for force in (10.0, 1e4):
+        s = solve(force)
+        load = force / (7 * sine)
+        assert np.allclose(s.contact_angle, 40 * DEGREE, rtol=1e-12)
+        assert np.allclose(s.roller_load, load, rtol=1e-9)
+        moved = (load / series) ** (2 / 3) / sine
+        assert float(s.displacement[8]) == pytest.approx(moved, rel=1e-9)
+        assert float(s.stiffness[8, 8]) == pytest.approx(1.5 * force / moved, rel=1e-8)
+    with pytest.raises(ValueError, match="ConstantAngle.*leave out `speed`"):
+        element.force(jnp.zeros(12), bj.Speed(100.0))
+    with pytest.raises(ValueError, match="ConstantAngle.*one contact angle"):
+        bj.BearingElement(masta(0.0), kinematics=bj.ConstantAngle())
 
 
 # eps, J_r, J_a of point contact, exact integrals.
