@@ -179,8 +179,13 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 "BearingElement: `kinematics` is Linearised(), with which a"
                 " self-aligning bearing would resist its tilt; use Finite()."
             )
-        constant = balls and isinstance(kinematics, ConstantAngle)
-        if constant and not all(row.bearing.is_one_sided for row in rows_of(bearing)):
+        constant = isinstance(kinematics, ConstantAngle)
+        two_sided = any(
+            isinstance(row.bearing, AbstractBallBearing)
+            and not row.bearing.is_one_sided
+            for row in rows_of(bearing)
+        )
+        if constant and two_sided:
             raise ValueError(
                 "BearingElement: `kinematics` is ConstantAngle(), which is for balls of"
                 " one contact angle: of angular contact and thrust bearings."
