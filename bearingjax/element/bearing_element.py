@@ -223,7 +223,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
         Raises:
             TypeError: If `speed` is not a `Speed`.
-            ValueError: If `speed` is given to balls of constant contact angle.
+            ValueError: If `speed` is given to balls of constant contact angle, or it
+                holds many designs (`stack_designs`).
         """
         if speed is not None and not isinstance(speed, Speed):
             raise TypeError(
@@ -236,6 +237,12 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 "BearingElement: `kinematics` is ConstantAngle(), with which nothing"
                 " holds a turning ball along its raceways; leave out `speed`, or use"
                 " Linearised()."
+            )
+        designs = jnp.shape(rows_of(self.bearing)[0].bearing.pitch_diameter)
+        if designs:
+            raise ValueError(
+                f"BearingElement: it holds designs, {designs[0]} of them, and is asked"
+                " as one bearing; take `sweep`, or map over it with `jax.vmap`."
             )
         if any(is_traced(leaf) for leaf in jax.tree.leaves((self, speed))):
             return self._model(speed)

@@ -253,6 +253,8 @@ def test_outputs_of_a_function_are_a_dict_of_arrays():
 
 def test_bad_designs(swept):
     stacked = bj.stack_designs([ELEMENT, ELEMENT])
+    with pytest.raises(ValueError, match="it holds designs, 2 of them"):
+        bj.solve_load(stacked, LOADS[0])
     with pytest.raises(ValueError, match="2 designs for 3 cases"):
         bj.sweep(stacked, LOADS)
     with pytest.raises(ValueError, match="from 0 to 2; there are designs 0 to 1"):
