@@ -26,6 +26,7 @@ from ..numerics.types import Ring, RingStiffness, Scalar
 from .ball_model import ball_model
 from .ball_speed import AbstractRacewayControl, OuterControl
 from .bearing_model import BearingModel, Evaluated
+from .choices import check_kinds, in_one_dtype
 from .constants import contact_constants
 from .function import FunctionParameters, RingFunction, as_function
 from .inertia import Speed, inertia_force
@@ -132,7 +133,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 f"BearingElement: `bearing` is a {type(bearing).__name__}; it must be"
                 " a roller bearing, a ball bearing or a BearingSet."
             )
-        _check_kinds(
+        check_kinds(
             {
                 "line_law": line_law,
                 "kinematics": kinematics,
@@ -168,7 +169,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 " is CoupledSlices(), which has slices of its own."
             )
         # A jnp.float32 among float64 would stop the solvers, which keep one dtype.
-        bearing, line_law, point_law, raceway_control = _in_one_dtype(
+        bearing, line_law, point_law, raceway_control = in_one_dtype(
             (bearing, line_law, point_law, raceway_control)
         )
         self.bearing = bearing
@@ -389,51 +390,3 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             quadrature,
             body_force,
         )
-
-
-_KINDS = {
-    "line_law": (
-        AbstractLineLaw,
-        "Palmgren(), ISO16281(), LineConstant(...) or CoupledSlices()",
-    ),
-    "kinematics": (AbstractKinematics, "Linearised() or Finite()"),
-    "quadrature": (AbstractQuadrature, "ContactMapped() or Midpoint()"),
-    "equilibrium": (AbstractMinimiser, "TrustRegionNewton() or BFGS()"),
-    "point_law": (
-        AbstractPointLaw,
-        "FreeAngle(), ZeroAngle(), OperatingAngle() or PointConstant(...)",
-    ),
-    "raceway_control": (
-        AbstractRacewayControl,
-        "OuterControl(), InnerControl(), EqualShare(), LoadShare(), FrictionLimited()"
-        " or CentrifugalOnly()",
-    ),
-}
-"""Of each choice of a `BearingElement`: its class, and what a message says of it."""
-
-
-def _in_one_dtype(tree):
-    """All real numbers in JAX's floating type: float64, or float32 if that is off."""
-    dtype = jax.dtypes.canonicalize_dtype(float)
-
-    def cast(leaf):
-        other = eqx.is_inexact_array(leaf) and leaf.dtype != dtype
-        return leaf.astype(dtype) if other else leaf
-
-    return jax.tree.map(cast, tree)
-
-
-def _check_kinds(choices: dict) -> None:
-    """Raise unless each choice is `None` or of its class.
-
-    A text or the class itself (`Finite` for `Finite()`) would be taken for another
-    choice, and nothing would say so.
-    """
-    for name, value in choices.items():
-        kind, allowed = _KINDS[name]
-        if value is not None and not isinstance(value, kind):
-            of_itself = isinstance(value, type)
-            shown = f"the class {value.__name__}" if of_itself else repr(value)
-            raise TypeError(
-                f"BearingElement: `{name}` is {shown}; it must be {allowed}."
-            )
