@@ -105,7 +105,7 @@ def _cells(table, name, key, kind, unit, values, lines):
         raise table.error("file", f"{name}: line {empty[0]}: {key} is empty")
     if unit is not None:
         return [f"{value.strip()} {unit}" for value in values]
-    return [_bare(value) for value in values]
+    return [_bare(value.strip()) for value in values]
 
 
 def _numbers(table, name, key, values, lines) -> list[float]:

@@ -21,8 +21,16 @@ def run_scene(scene: Scene) -> Solution:
     Returns:
         Solution with its result code; nothing is raised for a failed solve.
 
+    Raises:
+        TypeError: If `scene` is none, such as the name of one.
+
     Fails: as `solve_load`.
     """
+    if not isinstance(scene, Scene):
+        raise TypeError(
+            f"run_scene: `scene` is a {type(scene).__name__}; it must be a Scene, as of"
+            " read_scene."
+        )
     return solve_load(
         scene_element(scene),
         scene.load,

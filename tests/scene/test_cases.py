@@ -43,7 +43,9 @@ operating.inner_speed = "60 rpm"
 """
 LIST = """operating.load.Fy [kN],operating.load.Mx [N m],hours [h],bearing.n_rollers
 -1,0.5,10,6
--2,0,20,6
+
+-2,0,20, 6
+, , ,
 """
 
 

@@ -46,6 +46,8 @@ def test_nor_is_a_scene_or_a_name():
         plain("solve_load")(bj.read_scene("tapered"), LOAD)
     with pytest.raises(TypeError, match=r"is a str; it must be a BearingElement\.$"):
         plain("solve_load")("tapered", LOAD)
+    with pytest.raises(TypeError, match="^run_scene: `scene` is a str; .* read_scene"):
+        plain("run_scene")("tapered")
     with pytest.raises(TypeError, match="stack_designs: `element` is a Cylind"):
         plain("stack_designs")([BEARING, BEARING])
     with pytest.raises(TypeError, match="stack_designs: `elements` is one"):
