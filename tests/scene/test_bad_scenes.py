@@ -438,7 +438,7 @@ SETTINGS = {
     "load on what is prescribed": (
         "self_aligning",
         "operating.load.Mx=5 N m",
-        "`operating.load`: Mx acts on gx, which is prescribed; choose one",
+        "`operating.load`: Mx acts on gx, which is prescribed: its support",
     ),
     "spring without its force": (
         "ball_pair",
