@@ -533,7 +533,7 @@ SETTINGS = {
         "cylindrical_rig",
         "numerics.kinematics=linear",
         "`numerics.kinematics`: 'linear' is not known (did you mean `linearised`?);"
-        " it must be one of linearised, finite",
+        " it must be one of linearised, constant_angle, finite",
     ),
     "unknown equilibrium": (
         "cylindrical_rig",
