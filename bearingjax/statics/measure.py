@@ -215,6 +215,11 @@ class Displacement(AbstractMeasure):
         _check_exponent(self)
 
     def _sizes(self, solution):
+        if self.freedom not in solution.free:
+            raise ValueError(
+                f"Displacement: `freedom` is {self.freedom!r}, which is not free: no"
+                f" design moves it. Free are {', '.join(solution.free) or 'none'}."
+            )
         moved = solution.displacement[:, 6:] - solution.displacement[:, :6]
         return jnp.abs(moved[:, FREEDOMS.index(self.freedom)])
 

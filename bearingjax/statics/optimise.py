@@ -189,12 +189,10 @@ def optimise(
 
 def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimised:
     best = trials.attempt(ending.unit, slopes or ending.settled)
-    left = optimality(best, tolerance)
-    limited = ending.limited or len(trials.steps) > max_steps
-    # A failed gradient at the end leaves the design as it was.
     if best.fault:
-        best, left = trials.steps[-1], np.nan
-    result, text = _verdict(trials, ending, best, left, slopes, limited, tolerance)
+        # A failed gradient at the end leaves the design as it was.
+        best = trials.steps[-1]
+    result, text = verdict(trials, ending, best, slopes, max_steps, tolerance)
     if result != "converged":
         text += _near_by(problem, trials, best)
     text += _idle(problem, trials)
@@ -221,22 +219,30 @@ def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimise
         trials.n_evaluations,
         trials.n_gradients,
         tuple(trial.fault for trial in trials.rejected),
-        left,
+        optimality(best, tolerance),
         result,
         text,
     )
 
 
-def _verdict(
+def verdict(
     trials: Trials,
     ending: Ending,
     best: Trial,
-    left: float,
     slopes: bool,
-    limited: bool,
+    max_steps: int,
     tolerance: float,
 ) -> tuple[str, str]:
-    """Result of a search, and the same in words."""
+    """Result of a search, and the same in words.
+
+    Args:
+        trials: What was tried.
+        ending: What the search says.
+        best: The best design, with gradients if the search calls it so.
+        slopes: Whether the search asks for gradients.
+        max_steps, tolerance: As of `optimise`.
+    """
+    left, n = optimality(best, tolerance), len(trials.steps) - 1
     allowed = tolerance if slopes else tolerance**0.5
     stood = np.array_equal(best.unit, trials.steps[0].unit)
     if best.violation > tolerance:
@@ -246,11 +252,12 @@ def _verdict(
         return "stalled", "nothing changed: no variable moves the objective"
     if left <= allowed:
         return "converged", ending.text + "; nothing changed" * stood
-    if limited:
-        n = len(trials.steps) - 1
+    if ending.limited or n >= max_steps:
         return "step_limit", f"step limit reached after {n} steps: raise `max_steps`"
-    text = f"the search could not go on: {ending.text}; gradient left {left:.1e}, above"
-    return "stalled", f"{text} {allowed:.1e}"
+    text = f"the search could not go on: {ending.text}"
+    if np.isfinite(left):
+        text += f"; gradient left {left:.1e}, above {allowed:.1e}"
+    return "stalled", text
 
 
 def _near_by(problem: Problem, trials: Trials, best: Trial) -> str:

@@ -107,6 +107,16 @@ def test_start_without_a_solution(run, scene, tmp_path):
     assert "starting design fails: case 0: no_load_path: No load path in uz" in done.err
 
 
+def test_measure_that_does_not_fit_is_an_error_of_the_scene(run, scene, monkeypatch):
+    def refuse(*_, **__):
+        raise ValueError("Displacement: `freedom` is 'ux', which is not free")
+
+    monkeypatch.setattr("bearingjax.scene.run.optimise", refuse)
+    done = run("optimise", scene(GOOD))
+    assert done.status == 2 and done.out == ""
+    assert "free: Displacement: `freedom` is 'ux'" in done.err
+
+
 def test_shipped_scene_says_what_it_wants():
     task = read_optimisation("fujiwara_kawase")
     assert [v.name.rpartition(".")[2] for v in task.variables] == [
