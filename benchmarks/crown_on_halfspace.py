@@ -189,7 +189,7 @@ class Free(AbstractProfile):
         begins = jnp.asarray(BEGINS)
         begins = begins.reshape((-1,) + (1,) * position.ndim)
         drop = jnp.zeros_like(position)
-        for heights, sign in zip(self.heights, (-1.0, 1.0), strict=True):
+        for heights, sign in zip(self.heights, (1.0, -1.0), strict=True):
             out = jnp.maximum(2.0 * sign * position / length, 0.0)[None]
             share = jnp.maximum((out - begins) / (1.0 - begins), 0.0) ** 2
             drop = drop + jnp.tensordot(heights, share, 1)
@@ -228,7 +228,7 @@ def contact(profile, raceway):
     given = {}
     if raceway == "cone":
         # Same apex: both radii of curvature grow from it in proportion.
-        growth = contact(profile, "plane").roller_radius(jnp.array([0.0, 1.0]))
+        growth = contact(profile, "plane").roller_radius(jnp.array([0.0, -1.0]))
         angle = jnp.arctan(RADIUS * (growth[1] / growth[0] - 1.0))
         given = {"raceway_radius": RADIUS, "raceway_half_angle": angle}
     return RollerContact(

@@ -113,9 +113,9 @@ def values(grid, found):
     approach, pressure, steps, converged = found
     if not converged:
         raise RuntimeError(f"not converged in {int(steps)} steps")
-    y = np.asarray(grid.y - grid.edges[0])
+    y = np.asarray(grid.edges[-1] - grid.y)[::-1]
     # Without its infinite ends, it is smooth.
-    smooth = CubicSpline(y, _root(y) * np.asarray(pressure))
+    smooth = CubicSpline(y, _root(y) * np.asarray(pressure)[::-1])
     places = np.array(PLACES)
     return np.array([float(approach), *(smooth(places) / _root(places))])
 

@@ -117,8 +117,8 @@ def solve(roller, loads, along, grading):
 
 def at(solution, *places):
     """Pressure at x = 0 [MPa] at distances from the small end [mm]."""
-    y = 1e3 * np.asarray(solution.grid.y - solution.grid.edges[0])
-    return np.interp(places, y, 1e-6 * np.asarray(solution.centre_pressure))
+    y = 1e3 * np.asarray(solution.grid.edges[-1] - solution.grid.y)
+    return np.interp(places, y[::-1], 1e-6 * np.asarray(solution.centre_pressure)[::-1])
 
 
 def figures_of(solution):
@@ -161,8 +161,8 @@ def run(loads):
             NEAR[0] / NEAR[1],
             1e-3,
         ),
-        ("AF004-7 load of the small end cell, N/mm", line[0], 294.9, 2e-4),
-        ("AF004-7 load of the large end cell, N/mm", line[-1], 305.1, 2e-4),
+        ("AF004-7 load of the small end cell, N/mm", line[-1], 294.9, 2e-4),
+        ("AF004-7 load of the large end cell, N/mm", line[0], 305.1, 2e-4),
         ("AF004-8 least of 2 to 13 mm, MPa", between.min(), BETWEEN[0], 1e-3),
         ("AF004-8 largest of 2 to 13 mm, MPa", between.max(), BETWEEN[1], 1e-3),
         ("0.5 mm from the small end, MPa", near[0], NEAR[0], 1e-3),

@@ -233,7 +233,7 @@ def widths(n, along, asked):
                     "fixed": fixed,
                     "cells": cells,
                     "along": along,
-                    "large_end": float(found.centre_pressure[-1]),
+                    "large_end": float(found.centre_pressure[0]),
                     "approach": float(found.approach),
                     "truncated": bool(found.truncated),
                 }

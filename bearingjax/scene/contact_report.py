@@ -252,7 +252,7 @@ def _places(scene, cases):
         f"{'load, N':>8}" + "".join(f"{1e3 * v:9.4g}" for v in places),
     ]
     for case in cases:
-        pressure = 1e-6 * _at(case.solution, places - 0.5 * length)
+        pressure = 1e-6 * _at(case.solution, 0.5 * length - places)
         lines.append(
             f"{float(case.solution.load):8.5g}" + "".join(f"{p:9.1f}" for p in pressure)
         )

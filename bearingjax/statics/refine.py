@@ -16,7 +16,6 @@ from ..contact.line import peak_pressure
 from ..contact.line_contact import AbstractLineContact
 from ..contact.slices import Compared, Slices
 from ..design import AbstractRollerBearing
-from ..design.profile import AbstractProfile, Tabulated
 from ..element.bearing_element import BearingElement, check_element
 from ..element.constants import relative_radii
 from ..element.frame import RINGS
@@ -31,8 +30,8 @@ from .solution import RollerSolution, Solution
 class Refined(Compared):
     """A roller's contact on the half-space, beside the slices of the bearing.
 
-    y runs along the generatrix from the middle of the roller to its large end: it is
-    minus the `position` of a `RollerSolution`.
+    y runs along the generatrix as the `position` of a `RollerSolution` does, also in
+    the mirrored rows of a set: from the large end of a taper to its small end.
 
     Attributes:
         contact: Roller and raceway.
@@ -114,8 +113,7 @@ def refine(
     row, place = _row_of(element, solution, roller, speed)
     a, b = approaches(row)[place, 2 * ring : 2 * ring + 2]
     contact = roller_contact(row, ring, free_ends)
-    # Tilt of the element closes towards ξ = 1, which is y = -L/2.
-    tilt = -2.0 * b / contact.roller_length
+    tilt = 2.0 * b / contact.roller_length
     solved = contact.solve(
         loads[roller], tilt=tilt, grid=grid, solver=solver, throw=throw
     )
@@ -151,19 +149,12 @@ def roller_contact(
             half_angle=half,
             raceway_radius=1.0 / (1.0 / relative - 1.0 / roller_radius),
             raceway_half_angle=bearing.axis_angle + sign * half,
-            roller_profile=_turned(bearing.roller_profile),
-            raceway_profile=_turned(profiles[ring]),
+            roller_profile=bearing.roller_profile,
+            raceway_profile=profiles[ring],
             material=bearing.material,
             raceway_material=bearing.rings,
             free_ends=free_ends,
         )
-
-
-def _turned(profile: AbstractProfile) -> AbstractProfile:
-    """A profile counted from the other end; all but tables are symmetric."""
-    if isinstance(profile, Tabulated):
-        return Tabulated(-profile.positions[::-1], profile.drops[::-1])
-    return profile
 
 
 def _constants(row):
@@ -183,9 +174,8 @@ def _slices(row, ring, a, b, y) -> Slices:
     """What the bearing's own slices give at y."""
     constants = _constants(row)
     line: AbstractLineContact = constants.lines[ring]
-    xi = -y / constants.half_length
-    # Ascending positions for the interpolation between slices.
-    load: Scalar = line.along(constants.tables[ring], xi[::-1], a, b)[::-1]
-    radius = relative_radii(constants, -y)[ring]
+    xi = y / constants.half_length
+    load: Scalar = line.along(constants.tables[ring], xi, a, b)
+    radius = relative_radii(constants, y)[ring]
     pressure = peak_pressure(load, radius, constants.modulus)
     return Slices(as_real(a), load, pressure)

@@ -1,8 +1,8 @@
 """A roller of a solved bearing on the half-space, against the bearing's own slices.
 
 What must agree: load and tilt as they were given, curvature and drop along the roller
-with the element's, the large end at y > 0. Coupled slices, which know their neighbours,
-must agree in moment, approach and pressure as well.
+with the element's, the large end at y < 0 as in `position`. Coupled slices, which know
+their neighbours, must agree in moment, approach and pressure as well.
 """
 
 import jax.numpy as jnp
@@ -46,9 +46,9 @@ def test_coupled_slices_agree(tapered, raceway):
     ratio = np.asarray(solved.centre_pressure / got.slices.pressure)[middle]
     assert np.abs(ratio - 1).max() < 0.01
     assert got.edge_factor == pytest.approx(1.0, abs=0.03)
-    # The bearing's own results, at positions that run the other way.
+    # The bearing's own results.
     line_load = np.asarray(solution.line_load)[got.roller, ring]
-    wanted = np.interp(-y, solution.position, line_load)
+    wanted = np.interp(y, solution.position, line_load)
     assert np.allclose(got.slices.line_load[middle], wanted[middle], rtol=1e-3)
 
 
@@ -58,22 +58,44 @@ def test_the_contact_has_the_bearings_geometry(tapered):
     y = jnp.linspace(-5e-3, 5e-3, 5)
     for ring, raceway in enumerate(("outer", "inner")):
         contact = bj.refine(element, solution, raceway=raceway).contact
-        wanted = relative_radii(constants, -y)[ring]
+        wanted = relative_radii(constants, y)[ring]
         assert np.allclose(contact.relative_radius(y), wanted, rtol=ROUNDING)
-        xi = -y / constants.half_length
+        xi = y / constants.half_length
         assert np.allclose(contact.drop(y), constants.lines[ring].drop(xi), rtol=1e-9)
         assert float(contact.modulus) == pytest.approx(float(constants.modulus))
         assert np.sign(contact.raceway_radius) == (-1, 1)[ring]
 
 
-def test_a_one_sided_profile_is_turned():
-    """Dropped at s < 0, which is the large end of the roller, y > 0."""
+def test_positions_are_those_of_the_bearing():
+    """Tilted tapers, position by position: the same end bears, in `solve` and here."""
+    pair = bj.BearingSet.face_to_face(taper(5), 0.03, 30e-6)
+    element = bj.BearingElement(pair, bj.CoupledSlices())
+    solution = bj.solve_load(element, [3000.0, 0, 500.0, 0, 6.0, 0])
+    loads = np.asarray(solution.roller_load[:, 1])
+    # One of each row, the second of which is mirrored.
+    for roller in (int(loads[:5].argmax()), 5 + int(loads[5:].argmax())):
+        got = bj.refine(element, solution, roller)
+        line, s = np.asarray(solution.line_load)[roller, 1], solution.position
+        s = np.asarray(s if s.ndim == 1 else s[roller])
+        given = np.interp(got.solution.grid.y, s, line)
+        found = np.asarray(got.solution.line_load)
+        # Where the zone is full: slices are long beside its edges.
+        full = given > 0.5 * given.max()
+        assert np.allclose(found[full], given[full], rtol=0.05)
+        # It would be noticed: the other way round they differ.
+        assert not np.allclose(found[::-1][full], given[full], rtol=0.2)
+        high, low = got.contact.roller_radius(jnp.asarray([-5e-3, 5e-3]))
+        assert high > low
+
+
+def test_a_one_sided_profile():
+    """Dropped at s < 0, which is the large end of the roller, on one axis."""
     s = np.linspace(-6e-3, 6e-3, 13)
     drop = np.where(s < 0, 0.4 * s**2, 0.0)
     element = bj.BearingElement(taper(9, roller_profile=bj.Tabulated(s, drop)))
     solution = bj.solve_load(element, [0, 0, 6000.0, 0, 0, 0])
     got = bj.refine(element, solution, 0)
-    high, low = got.contact.drop(jnp.asarray([5.5e-3, -5.5e-3]))
+    high, low = got.contact.drop(jnp.asarray([-5.5e-3, 5.5e-3]))
     assert float(high) == pytest.approx(0.4 * 5.5e-3**2, rel=1e-2)
     assert float(low) == 0.0
 

@@ -30,19 +30,19 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 class RollerContact(eqx.Module):
     """A roller on a raceway, pressed together along a common generatrix.
 
-    y runs along the generatrix from the middle of the roller to its large end, x across
-    it.
+    y runs along the generatrix from the middle of the roller, x across it. The small
+    end of a taper is at y > 0, as in the `position` of a solved bearing.
 
     Attributes:
         roller_length: Effective length L [m].
-        small_diameter, large_diameter: Of the roller at y = -L/2 and L/2 [m].
+        small_diameter, large_diameter: Of the roller at y = L/2 and -L/2 [m].
         half_angle: Half cone angle of the roller [rad]; `None`: from the diameters,
             arctan of their difference over 2L.
         raceway_radius: Radius of curvature of the raceway normal to the generatrix, at
             y = 0: positive for a convex one (inner ring), negative for a hollow one
             (outer ring), infinite for a plane [m].
-        raceway_half_angle: Half cone angle of the raceway, which widens towards y > 0
-            [rad].
+        raceway_half_angle: Half cone angle of the raceway, which widens towards the
+            roller's large end, y < 0 [rad].
         roller_profile, raceway_profile: Profiles.
         material, raceway_material: Materials.
         free_ends: `FreeEnds()`: the roller's end faces are free; `None`: it is taken as
@@ -150,7 +150,7 @@ class RollerContact(eqx.Module):
     def roller_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
         """Radius of curvature of the roller normal to the generatrix at y [m]."""
         slope = (self.large_diameter - self.small_diameter) / self.roller_length
-        return 0.5 * (self.diameter + slope * y) / jnp.cos(self.angle)
+        return 0.5 * (self.diameter - slope * y) / jnp.cos(self.angle)
 
     def relative_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
         """Radius of relative curvature 1/(1/roller + 1/raceway) at y [m]."""
@@ -158,7 +158,7 @@ class RollerContact(eqx.Module):
 
     def _raceway_curvature(self, y):
         """One over the radius, so that a plane is a number like any other."""
-        wider = y * jnp.tan(self.raceway_half_angle)
+        wider = -y * jnp.tan(self.raceway_half_angle)
         return 1.0 / (self.raceway_radius + jnp.sign(self.raceway_radius) * wider)
 
     def drop(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
@@ -250,7 +250,7 @@ class RollerContact(eqx.Module):
 
         Args:
             load, approach, moment, tilt, solver, throw: As of `solve_pressure`; the
-                tilt closes the gap at the large end.
+                tilt closes the gap at y > 0, a taper's small end.
             grid: The cells; `None`: `self.grid` of a width found by coarse solves,
                 which takes concrete numbers.
 
