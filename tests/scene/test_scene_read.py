@@ -234,7 +234,7 @@ line_law = "iso16281"
 [operating]
 fixed_ring = "inner"
 prescribed = { gz = "0.5 deg", gx = "-2 mrad", uy = "7 um" }
-free = ["uz", "ux"]
+free = ["uz", "ux", "gy"]
 inner_speed = "180 deg/s"
 outer_speed = "-60 rpm"
 
@@ -305,7 +305,7 @@ def test_operation_and_numerics(everything):
     assert everything.load == near((2000.0, 0.0, -3000.0, 0.0, 5e-3, 0.0))
     prescribed = {"uy": 7e-6, "gx": -2e-3, "gz": 0.5 * DEG}
     assert everything.prescribed == near(prescribed)
-    assert everything.free == ("uz", "ux")
+    assert everything.free == ("uz", "ux", "gy")
     assert (everything.fixed_ring, everything.moving_ring) == ("inner", "outer")
     assert everything.tolerance == 1e-8
     assert everything.points == 33
@@ -348,7 +348,7 @@ def test_settings_are_toml_or_bare_text():
         'operating.load.Mx = "3 N m"',
         "operating.load.Fy=-7 kN",
         "operating.prescribed={uz='2 um'}",
-        'operating.free=["ux", "uy"]',
+        'operating.free=["ux", "uy", "gx"]',
         "numerics.points=40",
         "numerics.tolerance=1e-6",
         "bearing.first_azimuth=0 deg",
@@ -357,7 +357,7 @@ def test_settings_are_toml_or_bare_text():
     # The last word counts, the other components stay.
     assert scene.load == near((0.0, -7000.0, 0.0, 3.0, 0.0, 0.0))
     assert scene.prescribed == near({"uz": 2e-6})
-    assert scene.free == ("ux", "uy")
+    assert scene.free == ("ux", "uy", "gx")
     assert scene.element.quadrature == bj.Midpoint(40)
     assert scene.tolerance == 1e-6
     assert float(scene.element.bearing.first_azimuth) == 0.0
