@@ -4,12 +4,11 @@ from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 
 from ..design import Bearing, BearingSet, SetRow, is_self_aligning
-from ..design.checks import concrete, is_traced
+from ..design.checks import positive
 from ..element.bearing_element import BearingElement, check_element
-from ..numerics.types import Scalar
+from ..numerics.types import Scalar, as_real
 from .load import restrained_freedoms, solve_load
 
 
@@ -71,6 +70,7 @@ def check_preload(bearing: Bearing | BearingSet, force: Scalar | float) -> None:
         force: Axial preload [N].
 
     Raises:
+        TypeError: If the force is no number.
         ValueError: If it is no set, has no rows that face each other, a row that holds
             no axial load, one solid ring or a spring, or if the force is not positive.
     """
@@ -87,6 +87,4 @@ def check_preload(bearing: Bearing | BearingSet, force: Scalar | float) -> None:
         problem = "a row holds no axial load"
     if problem:
         raise ValueError(f"preload: not by force: {problem}.")
-    numbers = concrete(force)
-    if not is_traced(force) and not (numbers and 0 < numbers[0] < np.inf):
-        raise ValueError(f"preload: `force` is {force} N; it must be above 0 N.")
+    positive("preload", "force", as_real(force), "N")

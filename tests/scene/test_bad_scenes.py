@@ -428,7 +428,7 @@ SETTINGS = {
     "preload that pulls": (
         "ball_pair",
         "set={arrangement='face_to_face', spacing='9 mm', preload_force='-3 N'}",
-        "[set]: preload: `force` is -3.0 N; it must be above 0 N.",
+        "[set]: preload: `force` is -3 N; it must be above 0 N.",
     ),
     "preload of a tandem": (
         "ball_pair",

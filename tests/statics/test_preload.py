@@ -197,3 +197,11 @@ def test_bad_input(pair):
         bj.PreloadSpring(5.0, -1.0)
     with pytest.raises(TypeError, match="spring"):
         bj.SetRow(balls(), spring=300.0)
+
+
+def test_the_force_is_one_number(untyped, pair):
+    """A list ended in an error of float()."""
+    with pytest.raises(ValueError, match=r"preload: `force` has shape \(1,\)"):
+        bj.preload(pair, [400.0])
+    with pytest.raises(TypeError, match="preload: `force` is '400 N'"):
+        bj.preload(pair, "400 N")
