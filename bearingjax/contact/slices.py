@@ -6,6 +6,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from ..numerics.implicit import attach_roots, stop
 from ..numerics.quadrature import ContactMapped
 from ..numerics.types import Scalar, as_real
 from .halfspace.pressure import ContactSolution
@@ -76,24 +77,31 @@ def slices(
     first = jnp.min(line.drop(xi) - tilt * position)
     even = (load / (line.constant * length)) ** (EXPONENT[1] / EXPONENT[0])
 
+    def missing(approach, args):
+        line, made, load, end = args
+        found = response(line, made, rule, approach, end)
+        return load - found.load[0], found.stiffness[0]
+
+    args = line, made, load, end
+    frozen, even, far = stop((args, even, even + jnp.abs(end)))
+
     def step(state):
         approach, _, steps = state
-        found = response(line, made, rule, approach, end)
-        slope = jnp.where(found.stiffness[0] > 0, found.stiffness[0], 1.0)
-        change = (load - found.load[0]) / slope
+        rest, slope = missing(approach, frozen)
+        change = rest / jnp.where(slope > 0, slope, 1.0)
         return approach + change, change, steps + 1
 
     def unfinished(state):
         _, change, steps = state
-        return (jnp.abs(change) > _ENOUGH * (even + jnp.abs(end))) & (steps < _STEPS)
+        return (jnp.abs(change) > _ENOUGH * far) & (steps < _STEPS)
 
-    begin = step((first + even, even, 0))
+    begin = step((stop(first) + even, even, 0))
     approach, change, _ = lax.while_loop(unfinished, step, begin)
     # Round-off may keep the last digits moving; where more than half of them do, it is
     # no answer.
     half = jnp.finfo(change.dtype).eps ** 0.5
-    settled = jnp.abs(change) <= half * (even + jnp.abs(end))
-    approach = jnp.where(settled, approach, jnp.nan)
+    approach = jnp.where(jnp.abs(change) <= half * far, approach, jnp.nan)
+    approach = attach_roots(lambda x, args: missing(x, args)[0], approach, args)
     line_load = line.along(made, xi, approach, end)
     radius = contact.relative_radius(position)
     pressure = peak_pressure(line_load, radius, contact.modulus)

@@ -7,6 +7,7 @@ in NumPy, and one load alone with the same load among others.
 
 import json
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -212,6 +213,25 @@ def test_slices_of_a_tilted_crown(tilt):
     approach = np.maximum(float(found.approach) + tilt * y - drop, 0.0)
     assert np.allclose(line, constant * approach ** (10 / 9), rtol=1e-8, atol=1.0)
     assert (line == 0).any() == (tilt == -5e-3)
+
+
+def test_slices_are_differentiable_both_ways():
+    """Drops all deeper by δ: the approach is larger by δ."""
+    s = np.linspace(-0.0075, 0.0075, 21)
+    y = jnp.asarray(s)
+
+    def approach(drops):
+        profile = bj.Tabulated(s, drops)
+        contact = RollerContact(0.015, 0.010, 0.010, roller_profile=profile)
+        return slices(contact, 2000.0, 1e-4, y).approach
+
+    drops = jnp.asarray(0.1 * s**2)
+    value, slopes = jax.jit(jax.value_and_grad(approach))(drops)
+    # Load and stiffness are integrals of their own.
+    assert float(jnp.sum(slopes)) == pytest.approx(1.0, rel=QUADRATURE_FORCE)
+    _, along = jax.jvp(approach, (drops,), (drops,))
+    assert float(along) == pytest.approx(float(slopes @ drops), rel=SOLVER)
+    assert float(value) > 0.0
 
 
 def test_slices_by_another_law(cylinder):
