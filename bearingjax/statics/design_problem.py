@@ -157,11 +157,12 @@ class Problem:
         fault = _fault(found)
         if fault:
             return failed._replace(fault=fault)
-        values = np.asarray(found.measures)
+        # Searches are done in float64, also where the bearing is solved in float32.
+        values = np.asarray(found.measures, dtype=float)
         margins = [b.sign * (values[b.measure] - b.limit) / b.size for b in self.bounds]
         slope = margin_slopes = None
         if slopes:
-            jacobian = np.asarray(found.jacobian)
+            jacobian = np.asarray(found.jacobian, dtype=float)
             slope = jacobian[0] / self.size
             rows = [b.sign * jacobian[b.measure] / b.size for b in self.bounds]
             margin_slopes = np.array(rows).reshape(len(rows), unit.size)

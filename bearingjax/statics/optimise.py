@@ -245,16 +245,17 @@ def verdict(
     left, n = optimality(best, tolerance), len(trials.steps) - 1
     allowed = tolerance if slopes else tolerance**0.5
     stood = np.array_equal(best.unit, trials.steps[0].unit)
+    said = ending.text.strip(" .:")
     if best.violation > tolerance:
         text = f"constraints are missed by {best.violation:.1e} of their bounds"
         return "infeasible", text
     if stood and best.slope is not None and best.objective and not best.slope.any():
         return "stalled", "nothing changed: no variable moves the objective"
     if left <= allowed:
-        return "converged", ending.text + "; nothing changed" * stood
+        return "converged", said + "; nothing changed" * stood
     if ending.limited or n >= max_steps:
         return "step_limit", f"step limit reached after {n} steps: raise `max_steps`"
-    text = f"the search could not go on: {ending.text}"
+    text = f"the search could not go on: {said}"
     if np.isfinite(left):
         text += f"; gradient left {left:.1e}, above {allowed:.1e}"
     return "stalled", text

@@ -1,6 +1,7 @@
 """Design optimisation: gradients, bounds, constraints, known optima, failures."""
 
 import re
+from types import SimpleNamespace
 
 import equinox as eqx
 import jax
@@ -12,7 +13,7 @@ from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
 from bearingjax.statics import design_numbers
-from bearingjax.statics.design_problem import Options, Problem
+from bearingjax.statics.design_problem import Options, Problem, Run
 from bearingjax.statics.measure import smooth_maximum, smooth_minimum
 from bearingjax.statics.optimise import verdict
 from bearingjax.statics.search import Ending
@@ -350,6 +351,22 @@ def test_balls_and_numbers_in_several_places(one_case):
     # What no design moves is no measure of it.
     with pytest.raises(ValueError, match="is 'uz', which is not free: .*are uy"):
         bj.Displacement("uz")(element, one_case, found.after.solution)
+
+
+def test_searches_are_done_in_float64_whatever_the_bearing_is_solved_in(
+    straight, one_case, monkeypatch
+):
+    """SLSQP takes nothing else."""
+    kept = (bj.Constraint(bj.Stiffness("uy"), lower=1e8),)
+    options = Options(None, "outer", 2, None, None)
+    sag = bj.Displacement("uy")
+    problem = Problem(straight, one_case, [play()], sag, kept, options)
+    two, one = np.ones(2, np.float32), np.ones((2, 1), np.float32)
+    solved = SimpleNamespace(result=np.zeros(1, int))
+    monkeypatch.setattr(problem, "run", lambda *_: Run(two, two, solved, one))
+    trial = problem.evaluate(np.array([0.5]), True)
+    numbers = (trial.slope, trial.margins, trial.margin_slopes)
+    assert {np.asarray(x).dtype for x in numbers} == {np.dtype("float64")}
 
 
 def test_optimality_knows_bounds_and_active_constraints():
