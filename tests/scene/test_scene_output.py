@@ -204,7 +204,8 @@ def rows(text):
 
 def motion(text):
     """Displacements and loads of the report by name."""
-    pattern = r"^  ([ug][xyz]) +(\S+) (µm|mrad) +([FM][xyz]) +(\S+) (kN|N m)$"
+    held = "(?: +reaction of its support)?"
+    pattern = rf"^  ([ug][xyz]) +(\S+) (µm|mrad) +([FM][xyz]) +(\S+) (kN|N m){held}$"
     found = re.findall(pattern, text, re.MULTILINE)
     scale = {"µm": 1e-6, "mrad": 1e-3, "kN": 1e3, "N m": 1.0}
     shift = {f: float(v) * scale[unit] for f, v, unit, *_ in found}
