@@ -148,9 +148,9 @@ class LineContact(AbstractLineContact):
         return self.length * self.line_load(approach)
 
     def table(self, quadrature):
-        if not (self.measured and isinstance(quadrature, ContactMapped)):
-            return quadrature.table(self.drop, self.kinks(), self.length.dtype)
         ends = self._intervals()
+        if ends is None or not isinstance(quadrature, ContactMapped):
+            return quadrature.table(self.drop, self.kinks(), self.length.dtype)
         # Each interval with the part of the profiles that it sees.
         middle = 0.25 * self.length * (ends[:-1] + ends[1:])[:, None]
         local = dataclasses.replace(
@@ -169,7 +169,9 @@ class LineContact(AbstractLineContact):
         return _integrals(self, nodes, quadrature)
 
     def _intervals(self):
-        """Ends ξ of the intervals in which measured profiles are smooth."""
+        """Ends ξ of the intervals in which measured profiles are smooth, or `None`."""
+        if not self.measured:
+            return None
         profiles = self.roller_profile, self.raceway_profile
         knots = [k for k in (p.knots() for p in profiles) if k is not None]
         # A logarithm bends ever faster towards the ends.
