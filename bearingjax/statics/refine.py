@@ -23,8 +23,12 @@ from ..element.inertia import Speed
 from ..element.roller import RollerModel
 from ..element.row import Row
 from ..numerics.types import Scalar, as_real
-from .rollers import approaches
+from .rollers import approaches, contact_loads
 from .solution import RollerSolution, Solution
+
+_SAME = 1e-4
+"""Share of a load by which it may come out otherwise than in the solution: rollers are
+solved again, in single precision too."""
 
 
 class Refined(Compared):
@@ -81,8 +85,9 @@ def refine(
 
     Raises:
         TypeError: For balls.
-        ValueError: For an unknown roller or raceway, a solution that did not converge,
-            or a roller that is not loaded there.
+        ValueError: For an unknown roller or raceway, a solution that did not converge
+            or is not that of the element at that speed, or a roller that is not loaded
+            there.
         SolveError: If `throw` and it did not converge.
 
     Fails: as `solve_pressure`.
@@ -111,6 +116,13 @@ def refine(
             f"refine: roller {roller} bears no load on the {raceway} raceway."
         )
     row, place = _row_of(element, solution, roller, speed)
+    again = float(contact_loads(row)[0][place, ring])
+    if not abs(again - float(loads[roller])) <= _SAME * float(loads[roller]):
+        raise ValueError(
+            f"refine: roller {roller} bears {float(loads[roller]):.5g} N in `solution`,"
+            f" and {again:.5g} N in `element` where its rings are there: give the"
+            " element that was solved, and the `speed` of its rings."
+        )
     a, b = approaches(row)[place, 2 * ring : 2 * ring + 2]
     contact = roller_contact(row, ring, free_ends)
     tilt = 2.0 * b / contact.roller_length

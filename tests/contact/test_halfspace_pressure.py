@@ -430,3 +430,8 @@ def test_wrong_rollers(change, text):
         roller.solve(1.0, grid=roller.grid(0.006))
     with pytest.raises(ValueError, match="give a `grid` under jit"):
         jax.jit(lambda load: RollerContact(**good).solve(load).load)(1.0)
+    with pytest.raises(ValueError, match="give a `grid` under jit"):
+        wide = good | {"small_diameter": 0.009}
+        jax.grad(
+            lambda d: RollerContact(**wide | {"large_diameter": d}).solve(1.0).approach
+        )(0.010)

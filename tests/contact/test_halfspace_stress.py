@@ -168,3 +168,19 @@ def test_derivatives_and_bad_input(line):
     assert float(jax.grad(von_mises)(jnp.asarray(0.0))) == 0.0
     with pytest.raises(ValueError, match="`z` is -1e-05"):
         stress_below(line, 0.0, 0.0, -1e-5)
+    with pytest.raises(
+        ValueError, match="`poisson` is 3; it must be above -1, at most"
+    ):
+        stress_below(line, 0.0, 0.0, 1e-5, poisson=3.0)
+
+
+def test_a_solution_in_single_precision(line):
+    """Beside float64: places are numbers of Python, and the stress is float32."""
+    half = jax.tree.map(
+        lambda x: x.astype(jnp.float32) if jnp.issubdtype(x.dtype, jnp.floating) else x,
+        line,
+    )
+    found = stress_below(half, 0, 0.0, 6e-5).von_mises
+    assert found.dtype == jnp.float32
+    wanted = stress_below(line, 0, 0.0, 6e-5).von_mises
+    assert float(found) == pytest.approx(float(wanted), rel=1e-4)

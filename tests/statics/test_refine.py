@@ -137,6 +137,9 @@ def test_bad_input(tapered):
     loose = bj.solve_load(other, [1000.0, 0, 0, 0, 0, 0], free=FREE)
     with pytest.raises(ValueError, match="roller 4 bears no load on the outer raceway"):
         bj.refine(other, loose, 4, "outer")
+    fast = bj.solve_load(other, [1000.0, 0, 0, 0, 0, 0], free=FREE, speed=bj.Speed(2e3))
+    with pytest.raises(ValueError, match="and the `speed` of its rings"):
+        bj.refine(other, fast, raceway="outer")
     angular = bj.BearingElement(balls())
     solved = bj.solve_load(angular, [0, 0, 1000.0, 0, 0, 0])
     with pytest.raises(TypeError, match="the bearing has balls"):

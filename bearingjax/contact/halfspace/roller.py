@@ -4,6 +4,7 @@ import warnings
 from typing import Any
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -293,8 +294,7 @@ class RollerContact(eqx.Module):
         Raises:
             ValueError: If a number is traced.
         """
-        numbers = [v for v in given.values() if v is not None]
-        if any(is_traced(v) for v in (*numbers, self.roller_length)):
+        if any(is_traced(leaf) for leaf in jax.tree.leaves((self, given))):
             raise ValueError(
                 "RollerContact.solve: give a `grid` under jit, grad and vmap, for"
                 " example `contact.grid(1.6 * half_width)`."

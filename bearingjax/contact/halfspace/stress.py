@@ -91,15 +91,30 @@ def stress_below(
         Stress, of the broadcast shape; differentiable with respect to the pressure.
 
     Raises:
-        ValueError: If a depth is negative.
+        ValueError: If a depth is negative, or Poisson's ratio out of range.
 
     Valid: The body a half-space; not nearer to a corner of a cell than a tenth of the
         cell, where the steps of the pressure show.
     """
     check("stress_below", "z", z, "m", jnp.all(as_real(z) >= 0), "zero or more")
-    places = jnp.broadcast_arrays(as_real(x), as_real(y), as_real(z))
+    ratio = as_real(poisson)
+    check(
+        "stress_below",
+        "poisson",
+        ratio,
+        "",
+        (ratio > -1.0) & (ratio <= 0.5),
+        "above -1, at most 0.5",
+    )
+    # In the precision of the solution.
+    dtype = solution.pressure.dtype
+    places = jnp.broadcast_arrays(*(as_real(v).astype(dtype) for v in (x, y, z)))
     return _stress(
-        solution.grid, solution.pressure, places, as_real(poisson), places[0].shape
+        solution.grid,
+        solution.pressure,
+        places,
+        ratio.astype(dtype),
+        places[0].shape,
     )
 
 
