@@ -329,7 +329,7 @@ class Tabulated(AbstractProfile):
     neighbours, so that a parabolic crown is met exactly. From a step the cubics swing
     out on both sides, by 0.074 of its height at even distances. With `ContactMapped`
     every high spot bears, to 1e-6 of the load, at a time that grows with the points: of
-    fifty, twice that of five; of five hundred, twenty times. Thin what is smooth.
+    fifty, four times that of five; of five hundred, forty. Thin what is smooth.
 
     Attributes:
         positions: s, ascending, from one roller end to the other or beyond (n,) [m].
