@@ -205,8 +205,13 @@ class BallKinematics(NamedTuple):
 
     @property
     def spin_to_roll(self) -> Float[Array, "... 2"]:
-        """Size of spin over rolling at outer and inner raceway [1]."""
-        return jnp.abs(self.spin / self.roll)
+        """Size of spin over rolling at outer and inner raceway [1]; 0 where the ball
+        does not roll, because the rings turn alike."""
+        size = jnp.abs(self.orbit) + jnp.abs(self.rotation)
+        rolls = jnp.abs(self.roll) > 64 * jnp.finfo(size.dtype).eps * size[..., None]
+        return jnp.where(
+            rolls, jnp.abs(self.spin / jnp.where(rolls, self.roll, 1.0)), 0.0
+        )
 
 
 def ball_kinematics(

@@ -102,6 +102,18 @@ def test_fact_1_orbit_in_pure_rolling():
     assert float(k.orbit) == pytest.approx(82.0994, rel=1e-6)
 
 
+def test_rings_that_turn_alike_roll_nothing():
+    """Then spin over rolling was 0/0, or round-off over round-off."""
+    outer, inner = (jnp.asarray([np.sin(a), np.cos(a)]) for a in (0.38, 0.47))
+    one, ratio = jnp.asarray(1.0), jnp.asarray(0.238339)
+    for speed in (bj.Speed(300.0, 300.0), bj.Speed(0.0, 0.0)):
+        k = ball_kinematics(outer, inner, one, ratio, speed)
+        assert np.array_equal(k.spin_to_roll, [0.0, 0.0])
+    slow = ball_kinematics(outer, inner, one, ratio, bj.Speed(300.0 + 1e-6, 300.0))
+    fast = ball_kinematics(outer, inner, one, ratio, bj.Speed(1.0, 0.0))
+    assert np.allclose(slow.spin_to_roll, fast.spin_to_roll, rtol=1e-3)
+
+
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
 def test_fact_9_no_slip_at_either_centre(share):
     """Slip (16), (19) of the specification, for any direction of the spin axis."""
