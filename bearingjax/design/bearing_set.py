@@ -11,6 +11,7 @@ from .ball_types import SelfAligningBallRow
 from .bearing import AbstractRollerBearing
 from .checks import concrete, non_negative, number, positive
 from .checks import count as whole
+from .overlap import overlap
 
 Bearing = AbstractRollerBearing | AbstractBallBearing
 
@@ -228,6 +229,15 @@ class BearingSet(eqx.Module):
                 "BearingSet: `rows` mix balls and rollers; a set must be all of balls"
                 " or all of rollers (give two elements instead)."
             )
+        for k, row in enumerate(self.rows):
+            for other in range(k):
+                if overlap(row, self.rows[other]):
+                    raise ValueError(
+                        f"BearingSet: `position` of row {k} is"
+                        f" {float(row.position):.6g} m and of row {other}"
+                        f" {float(self.rows[other].position):.6g} m; they must be"
+                        " farther apart: their rolling elements overlap."
+                    )
 
 
 def rows_of(bearing: Bearing | BearingSet) -> tuple[SetRow, ...]:

@@ -43,8 +43,15 @@ def preload(
     for side in (False, True):
         sign = -1.0 if side else 1.0
         mine = [row for row in bearing.rows if row.mirrored is side]
-        # In the rows' own axes, all at one place: coaxial rings do not feel it.
-        rows = [SetRow(r.bearing, inner_offset=sign * r.inner_offset) for r in mine]
+        # In the rows' own axes, side by side: coaxial rings do not feel where.
+        rows = [
+            SetRow(
+                r.bearing,
+                k * r.bearing.pitch_diameter,
+                inner_offset=sign * r.inner_offset,
+            )
+            for k, r in enumerate(mine)
+        ]
         group = BearingSet(tuple(rows))
         alone = eqx.tree_at(lambda e: e.bearing, element, group)
         load = jnp.zeros(6, bearing.rows[0].position.dtype).at[2].set(force)

@@ -126,6 +126,10 @@ def test_four_point_geometry():
             ),
             "mix balls and rollers",
         ),
+        (
+            lambda: bj.BearingSet.tandem(angular(), 0.005),
+            "`position` of row 1 is 0.0025 m and of row 0 -0.0025 m; .* overlap",
+        ),
         (lambda: bj.FrictionLimited(-0.1), "`friction` is -0.1"),
         (lambda: bj.PointConstant(0.0, 1.0), "`outer` is 0"),
         (
@@ -206,3 +210,34 @@ def test_a_number_of_weak_type_does_not_compile_anew():
         inner_osculation=0.52,
     )
     assert not bearing.contact_angle.weak_type
+
+
+def test_rows_overlap_where_their_sections_do():
+    """Balls as circles, rollers as the corners of their section, tapers slanted."""
+    ball = float(angular().ball_diameter)
+    for spacing, fits in ((0.999 * ball, False), (1.001 * ball, True)):
+        assert (
+            _makes(lambda s=spacing: bj.BearingSet.back_to_back(angular(), s)) is fits
+        )
+    roller = bj.CylindricalRollerBearing(9, 0.1, 0.01, 0.02)
+    inside = bj.CylindricalRollerBearing(9, 0.07, 0.01, 0.02)
+    for rows, fits in (
+        ((bj.SetRow(roller), bj.SetRow(roller, 0.0199)), False),
+        ((bj.SetRow(roller), bj.SetRow(roller, 0.0201)), True),
+        ((bj.SetRow(roller), bj.SetRow(inside)), True),
+    ):
+        assert _makes(lambda rows=rows: bj.BearingSet(rows)) is fits
+    # Slender cones in tandem pass where their axial lengths do not.
+    steep = bj.TaperedRollerBearing(9, 0.2, 0.01, 0.03, roller_axis_angle=1.2)
+    length = 0.03 * np.cos(1.2) + 0.01 * np.sin(1.2)
+    for spacing, fits in ((0.55 * length, True), (0.5 * length, False)):
+        assert _makes(lambda s=spacing: bj.BearingSet.tandem(steep, s)) is fits
+
+
+def _makes(make):
+    try:
+        make()
+    except ValueError as error:
+        assert "overlap" in str(error)
+        return False
+    return True

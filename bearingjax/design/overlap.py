@@ -1,0 +1,81 @@
+"""Whether the rolling elements of two rows take up the same place."""
+
+import math
+from typing import Any
+
+from .ball import AbstractBallBearing
+from .checks import concrete
+
+
+def overlap(one: Any, other: Any) -> bool:
+    """Whether the sections of two rows overlap, as they orbit; traced ones do not.
+
+    Args:
+        one, other: Rows of a set, both of balls or both of rollers.
+    """
+    if isinstance(one.bearing, AbstractBallBearing):
+        mine, others = _ball(one), _ball(other)
+        if mine is None or others is None:
+            return False
+        apart = math.hypot(mine[0] - others[0], mine[1] - others[1])
+        return apart < (mine[2] + others[2]) * (1.0 - 1e-9)
+    mine, others = _corners(one), _corners(other)
+    if mine is None or others is None:
+        return False
+    return not (_parted(mine, others) or _parted(others, mine))
+
+
+def _ball(row):
+    """z and r of the middle of a ball, and its radius [m]."""
+    bearing = row.bearing
+    numbers = concrete(
+        row.position, bearing.axial_place, bearing.pitch_diameter, bearing.ball_diameter
+    )
+    if numbers is None:
+        return None
+    position, place, pitch, ball = numbers
+    return position + (-place if row.mirrored else place), 0.5 * pitch, 0.5 * ball
+
+
+def _corners(row):
+    """(z, r) of the corners of a roller, round its section [m]."""
+    bearing = row.bearing
+    side = -1.0 if row.mirrored else 1.0
+    numbers = concrete(
+        row.position,
+        bearing.pitch_diameter,
+        bearing.roller_diameter,
+        bearing.roller_length,
+        bearing.axis_angle,
+        bearing.half_angle,
+    )
+    if numbers is None:
+        return None
+    position, pitch, diameter, length, axis, half = numbers
+    sine, cosine = math.sin(axis), math.cos(axis)
+    corners = []
+    for end, way in ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)):
+        along = 0.5 * end * length * math.cos(half)
+        across = way * (0.5 * diameter - 0.5 * end * length * math.sin(half))
+        # Roller axes t, m in (z, r): the large end lies at -z, outwards.
+        z = along * cosine + across * sine
+        corners.append(
+            (position + side * z, 0.5 * pitch - along * sine + across * cosine)
+        )
+    return corners
+
+
+def _parted(mine, others):
+    """Whether a side of one convex polygon parts it from another."""
+    for k in range(len(mine)):
+        (z, r), (z2, r2) = mine[k - 1], mine[k]
+        normal = r2 - r, z - z2
+
+        def reach(points, normal=normal):
+            return [normal[0] * p[0] + normal[1] * p[1] for p in points]
+
+        own, far = reach(mine), reach(others)
+        size = 1e-9 * max(abs(x) for x in own + far)
+        if min(far) >= max(own) - size or max(far) <= min(own) + size:
+            return True
+    return False
