@@ -95,5 +95,6 @@ from .statics import restrained_freedoms as restrained_freedoms
 from .statics import solve_load as solve_load
 from .statics import stack_designs as stack_designs
 from .statics import sweep as sweep
+from .statics import warnings as warnings
 
 __version__ = _version("bearingjax")

@@ -168,7 +168,7 @@ def answer(element, q):
     """Force and stiffness, and the largest contact pressure [Pa]."""
     model = element.model()
     rows = model.solve(q)
-    pressure = jnp.max(roller_results(rows, POINTS)["contact_pressure"])
+    pressure = jnp.max(roller_results(rows, POINTS)["roller_pressure"])
     return model.evaluate(q, rows), pressure
 
 

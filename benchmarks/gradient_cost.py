@@ -56,7 +56,7 @@ LOAD = (0.0, -4000.0, 0.0, 10.0, 0.0, 0.0)
 GOALS = {"ratio": 1.3, "displacement": 1e-8, "peak pressure": 1e-8, "stiffness": 1e-6}
 QUANTITIES = {
     "displacement": lambda s: s.displacement[7],
-    "peak pressure": lambda s: jnp.max(s.contact_pressure),
+    "peak pressure": lambda s: jnp.max(s.roller_pressure),
     "stiffness": lambda s: s.stiffness[7, 7],
 }
 STEPS = tuple(10.0**-k for k in np.arange(1.5, 8.1, 0.5))

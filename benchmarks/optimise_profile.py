@@ -181,7 +181,7 @@ def run(method, element, cases, start, size_of, points):
         "result": found.result,
         "values": [float(v) for v in found.values],
         "peak": peak,
-        "true_peak": float(jnp.max(solution.contact_pressure)),
+        "true_peak": float(jnp.max(solution.roller_pressure)),
         "edge": edge,
         "evaluations": found.n_evaluations,
         "gradients": found.n_gradients,

@@ -145,9 +145,16 @@ class CoupledContact(AbstractLineContact):
             scale * jnp.stack([aa, ab, bb]),
         )
 
-    def along(self, table, xi, a, b):
-        loads = jnp.pi * self.modulus * _solved(table, a, b)
-        return jnp.interp(xi, _middles(loads.shape[0], a.dtype), loads)
+    def carried(self, table, a, b):
+        return jnp.pi * self.modulus * _solved(table, a, b)
+
+    def at(self, carried, xi):
+        return jnp.interp(xi, _middles(carried.shape[0], xi.dtype), carried)
+
+    def summits(self, carried, scan, weight):
+        # Between the middles of slices loads are interpolated.
+        middles = _middles(carried.shape[0], scan.dtype)
+        return jnp.concatenate([scan[:1], scan[-1:], middles])
 
 
 def _middles(n, dtype):

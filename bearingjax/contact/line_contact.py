@@ -80,10 +80,31 @@ class AbstractLineContact(eqx.Module):
         """Energy, load and stiffness; `response` adds the derivative rule."""
 
     @abc.abstractmethod
+    def carried(self, table: Any, a: Scalar, b: Scalar) -> Any:
+        """What `at` needs to know of a solved contact."""
+
+    @abc.abstractmethod
+    def at(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
+        """Load per length at ξ [N/m], of what `carried` returns."""
+
+    @abc.abstractmethod
+    def summits(
+        self, carried: Any, scan: Float[Array, " scan"], weight: Float[Array, " scan"]
+    ) -> Float[Array, " place"]:
+        """Positions ξ among which the largest pressure stands, both ends first.
+
+        Args:
+            carried: As of `at`.
+            scan: Ascending positions from -1 to 1, evenly spaced.
+            weight: Relative radius ρ^(-9/10) there: times the approach, this is
+                largest where the pressure is.
+        """
+
     def along(
         self, table: Any, xi: Float[Array, " point"], a: Scalar, b: Scalar
     ) -> Float[Array, " point"]:
         """Load per length at ξ [N/m]."""
+        return self.at(self.carried(table, a, b), xi)
 
 
 class LineContact(AbstractLineContact):
@@ -183,8 +204,46 @@ class LineContact(AbstractLineContact):
             parts.append(jnp.stack(kinks))
         return stop(jnp.sort(jnp.clip(jnp.concatenate(parts), -1.0, 1.0)))
 
-    def along(self, table, xi, a, b):
+    def carried(self, table, a, b):
+        return a, b
+
+    def at(self, carried, xi):
+        a, b = carried
         return self.line_load(a + b * xi - self.drop(xi))
+
+    def summits(self, carried, scan, weight):
+        a, b = carried
+        height = weight * (a + b * scan - self.drop(scan))
+        near = jnp.clip(jnp.argmax(height), 1, scan.shape[0] - 2)
+        step = scan[1] - scan[0]
+        top = scan[near] + step * _vertex(*(height[near + k] for k in (-1, 0, 1)))
+        # Once more, closer.
+        slope = 0.5 * (weight[near + 1] - weight[near - 1]) / step
+        step = 0.25 * step
+        middle = jnp.clip(top, step - 1.0, 1.0 - step)
+        around = middle + step * jnp.arange(-1.0, 2.0, dtype=step.dtype)
+        height = a + b * around - self.drop(around)
+        height = height * (weight[near] + slope * (around - scan[near]))
+        best = middle + step * _vertex(height[0], height[1], height[2])
+        places = jnp.stack([scan[0], scan[-1], scan[near], top, best, *self.kinks()])
+        knots = self._intervals()
+        if knots is None:
+            return places
+        # Of a measured profile the highest point, and what swings out beside it.
+        highest = jnp.argmax(a + b * knots - self.drop(knots))
+        last = knots.shape[0] - 1
+        left = knots[jnp.maximum(highest - 1, 0)]
+        right = knots[jnp.minimum(highest + 1, last)]
+        beside = left + (right - left) * jnp.linspace(0.0, 1.0, 17, dtype=left.dtype)
+        return jnp.concatenate([places, knots[highest][None], beside])
+
+
+def _vertex(left, top, right):
+    """Where the parabola through three points is highest, in steps from the middle."""
+    bend = 2.0 * top - left - right
+    curved = (bend > 0) & jnp.isfinite(bend)
+    shift = 0.5 * (right - left) / jnp.where(curved, bend, 1.0)
+    return jnp.where(curved, jnp.clip(shift, -1.0, 1.0), 0.0)
 
 
 def _offset(line, xi):

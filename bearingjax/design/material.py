@@ -1,5 +1,7 @@
 """Materials of rollers and rings."""
 
+from typing import Any
+
 import equinox as eqx
 
 from ..numerics.types import Scalar, as_real
@@ -57,8 +59,10 @@ MATERIALS = {
 """Makers of the named materials."""
 
 
-def contact_modulus(a: Material, b: Material) -> Scalar:
+def contact_modulus(a: Material, b: Material) -> Any:
     """Contact modulus E* = 1/((1-ν1²)/E1 + (1-ν2²)/E2) of two bodies [Pa].
+
+    A number of JAX, or of NumPy for materials of NumPy numbers.
 
     Source: Johnson, Contact Mechanics (1985), eq. (4.20).
     """

@@ -184,8 +184,8 @@ def _rib_geometry(bearing, name):
 
 
 def relative_radii(
-    constants: ContactConstants, position: Float[Array, " point"]
-) -> Float[Array, "2 point"]:
+    constants: ContactConstants, position: Float[Array, "..."]
+) -> Float[Array, "2 ..."]:
     """Radius of relative curvature along both raceway contacts.
 
     Args:

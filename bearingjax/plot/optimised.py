@@ -70,9 +70,9 @@ def worst(solution: Any) -> tuple[int, int, int]:
     Args:
         solution: With a leading case axis.
     """
-    pressure = np.asarray(solution.contact_pressure)
+    pressure = np.asarray(solution.roller_pressure)
     place = np.unravel_index(np.argmax(pressure), pressure.shape)
-    case, roller, raceway = (int(k) for k in place[:3])
+    case, roller, raceway = (int(k) for k in place)
     return case, roller, raceway
 
 
@@ -111,7 +111,8 @@ def _pressures(found, case, ax):
     for side, outcome in (("before", found.before), ("after", found.after)):
         one = _one(outcome.solution, case)
         pressure = np.asarray(one.contact_pressure)
-        roller, raceway, _ = np.unravel_index(np.argmax(pressure), pressure.shape)
+        peaks = np.asarray(one.roller_pressure)
+        roller, raceway = np.unravel_index(np.argmax(peaks), peaks.shape)
         position = np.asarray(one.position)
         position = position if position.ndim == 1 else position[roller]
         colour, style = _SIDES[side]
@@ -135,8 +136,8 @@ def _pressures(found, case, ax):
 def _cases(found, ax):
     """Peak pressure [MPa] of every case."""
     for shift, side in ((-0.2, "before"), (0.2, "after")):
-        pressure = np.asarray(getattr(found, side).solution.contact_pressure)
-        peaks = 1e-6 * pressure.reshape(len(pressure), -1).max(axis=1)
+        pressure = np.asarray(getattr(found, side).solution.roller_pressure)
+        peaks = 1e-6 * pressure.max(axis=(1, 2))
         colour, _ = _SIDES[side]
         bars = ax.bar(
             np.arange(len(peaks)) + shift, peaks, 0.38, color=colour, label=side

@@ -6,12 +6,8 @@ import numpy as np
 
 from ..design import AbstractBallBearing, Bearing, BearingSet, rows_of
 from ..numerics.result import Result
-from ..statics.solution import (
-    BallSolution,
-    RollerSolution,
-    Solution,
-    warnings,
-)
+from ..statics.solution import BallSolution, RollerSolution, Solution
+from ..statics.warning import warnings
 from .balls import contact_angles, ellipses
 from .load import load_zone
 from .pressure import pressure_map, pressure_profiles
@@ -73,12 +69,8 @@ def overview(
 
 def _busier_raceway(solution):
     """The raceway with the higher pressure; the inner one if they are equal."""
-    pressure = np.asarray(solution.contact_pressure)
-    if isinstance(solution, BallSolution):
-        outer, inner = np.split(pressure, 2, axis=1)
-    else:
-        outer, inner = pressure[:, 0], pressure[:, 1]
-    return "outer" if outer.max() > inner.max() else "inner"
+    outer, inner = np.asarray(solution.roller_pressure).max(axis=0)
+    return "outer" if outer > inner else "inner"
 
 
 def _busiest_row(solution):
@@ -93,7 +85,7 @@ def _results(solution):
     q = np.asarray(solution.displacement)
     shift, tilt = np.split(q[6:] - q[:6], 2)
     load = np.asarray(solution.roller_load)
-    pressure = np.asarray(solution.contact_pressure)
+    pressure = np.asarray(solution.roller_pressure)
     roller, ring = np.unravel_index(np.argmax(load), load.shape)
     azimuth = degrees(solution.azimuth)[roller]
     result = Result(int(solution.result)).label.replace("_", " ")

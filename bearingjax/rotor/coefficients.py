@@ -1,20 +1,24 @@
 """Stiffness over rotor speed, as programs of linear rotordynamics read it."""
 
+import warnings
 from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import check, is_traced, real_numbers
 from ..element.bearing_element import BearingElement, check_element
-from ..element.frame import LOADS, RINGS
+from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..element.inertia import Speed
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import as_real
 from ..statics.linearise import OperatingPoint, linearise
+from ..statics.load import restrained_freedoms
 from ..statics.solution import message
+from ..statics.warning_sizes import SOFTEST_SHIFT, stiffness_scale
 
 TILTS = ("held", "free")
 
@@ -51,6 +55,9 @@ def stiffness_table(
         ValueError: For wrong shapes, names or non-finite numbers, or moments about
             tilts that are held.
         SolveError: If a solve fails; the message names the first such speed.
+
+    Warns:
+        UserWarning: If nothing holds a direction at some speed, as without load.
     """
     speeds, load = _checked(element, speeds, load, tilts, fixed_ring)
     stiffness, result = _sweep(element, speeds, load, tilts, fixed_ring)
@@ -65,7 +72,28 @@ def stiffness_table(
             f" {message(point.solution, point.solution.moving_ring)}"
         )
 
-    return raise_unless_converged(stiffness, result, first_failure)
+    stiffness = raise_unless_converged(stiffness, result, first_failure)
+    if not (is_traced(stiffness) or is_traced(speeds)):
+        _warn_of_slack(element, speeds, stiffness)
+    return stiffness
+
+
+def _warn_of_slack(element, speeds, stiffness):
+    """Say where nothing holds the ring: about 0 N/m is no stiffness to go on with."""
+    nothing = SOFTEST_SHIFT * float(stiffness_scale(element.bearing))
+    own = np.diagonal(np.asarray(stiffness), axis1=1, axis2=2)
+    held = [name in restrained_freedoms(element.bearing) for name in FREEDOMS[:3]]
+    slack = (own <= nothing) & np.array(held)
+    if not slack.any():
+        return
+    index = int(slack.any(axis=1).argmax())
+    names = [FREEDOMS[k] for k in np.flatnonzero(slack[index])]
+    warnings.warn(
+        f"stiffness_table: no stiffness in {', '.join(names)} at"
+        f" {float(speeds[index]):g} rad/s: nothing holds the ring there; give the load"
+        " that it runs with",
+        stacklevel=3,
+    )
 
 
 @eqx.filter_jit

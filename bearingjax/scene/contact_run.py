@@ -12,6 +12,7 @@ from ..contact.slices import Compared, slices
 from ..element import RINGS
 from ..statics.refine import refine
 from ..statics.solution import Solution
+from ..statics.warning import warnings
 from .contact_table import ContactScene
 from .quantity import SceneError
 from .read import Scene
@@ -95,7 +96,7 @@ def run_refined(
         tolerance=None,
         max_steps=ConjugateGradients().max_steps,
         field=False,
-        warnings=scene.warnings,
+        warnings=(*scene.warnings, *warnings(solution)),
     )
     return contact, [found]
 

@@ -44,7 +44,9 @@ def optimisation_report(task: Optimisation, found: Optimised) -> str:
     )
     parts = [head, _variables(found), _measures(found), _pressures(found)]
     warned = [f"warning: rejected: {why}" for why in dict.fromkeys(found.rejected)]
-    warned += [f"warning: {text}" for text in task.scene.warnings]
+    told = (*task.scene.warnings, *found.after.warnings)
+    warned += [f"warning: {text}" for text in told]
+    warned += [f"warning: before: {text}" for text in found.before.warnings]
     left = f"gradient left {found.optimality:.1e}, tolerance {task.tolerance:.1e}"
     ending = f"converged: {found.message}; {left}"
     return f"\n{_RULE}\n".join([*parts, "\n".join([ending, *warned])])
@@ -59,8 +61,8 @@ def optimisation_as_dict(task: Optimisation, found: Optimised) -> dict[str, Any]
 
     Returns:
         result, message, optimality, history, evaluations, gradients, rejected,
-        warnings, version; if it converged also variables, objective, constraints and
-        peak_pressure.
+        warnings (of the best design), warnings_before (of the start), version; if it
+        converged also variables, objective, constraints and peak_pressure.
     """
     from .. import __version__
 
@@ -78,7 +80,8 @@ def optimisation_as_dict(task: Optimisation, found: Optimised) -> dict[str, Any]
         "evaluations": found.n_evaluations,
         "gradients": found.n_gradients,
         "rejected": list(found.rejected),
-        "warnings": list(task.scene.warnings),
+        "warnings": [*task.scene.warnings, *found.after.warnings],
+        "warnings_before": found.before.warnings,
         "version": __version__,
     }
 
@@ -215,8 +218,7 @@ def _unit(measure):
 
 
 def _peaks(outcome):
-    pressure = np.asarray(outcome.solution.contact_pressure)
-    return pressure.reshape(len(pressure), -1).max(axis=1)
+    return np.asarray(outcome.solution.roller_pressure).max(axis=(1, 2))
 
 
 def _pressures(found):

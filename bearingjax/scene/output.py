@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from ..numerics.result import Result
-from ..statics.solution import BallSolution, Solution, message, warnings
+from ..statics.solution import BallSolution, Solution, message
+from ..statics.warning import warnings
 from .files import write_numbers
 from .read import Scene
 

@@ -4,7 +4,8 @@ import numpy as np
 
 from ..design import BearingSet, TaperedRollerBearing, is_ball, rows_of
 from ..element.frame import FREEDOMS, LOADS, RINGS
-from ..statics.solution import BallSolution, Solution, warnings
+from ..statics.solution import BallSolution, Solution
+from ..statics.warning import warnings
 from .read import Scene
 
 _RULE = "-" * 78
@@ -73,9 +74,17 @@ def _ball_row(bearing, head):
         f"{head}: {words} ball bearing, {bearing.n_balls} balls of {diameter:.4g} mm on"
         f" a pitch circle of {pitch:.4g} mm",
         f"osculation: outer {_osculation(bearing.outer_osculation)}, inner"
-        f" {float(bearing.inner_osculation):.4g}; free contact angle {angle:.4g} deg;"
-        f" radial internal clearance {1e6 * float(bearing.clearance):.4g} µm",
+        f" {float(bearing.inner_osculation):.4g}; free contact angle {angle:.4g} deg"
+        + _clearance(bearing),
     ]
+
+
+def _clearance(bearing):
+    """The clearance of a ball bearing, where it is a number of the design."""
+    clearance = getattr(bearing, "radial_internal_clearance", None)
+    if clearance is None:
+        return ""
+    return f"; radial internal clearance {1e6 * float(clearance):.4g} µm"
 
 
 def _osculation(value):
@@ -152,7 +161,7 @@ def _rollers(solution):
     load = np.asarray(solution.roller_load)
     rib = np.asarray(solution.rib_load)
     touching = 1e-9 * max(load.max(), rib.max())
-    pressure = 1e-6 * np.asarray(solution.contact_pressure).max(axis=2)
+    pressure = 1e-6 * np.asarray(solution.roller_pressure)
     edge = np.any(np.asarray(solution.edge_loaded), axis=(1, 2))
     ribs = rib.any()
     head = (

@@ -92,7 +92,8 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
         factor, shown = _SHOWN.get(unit.rstrip("]"), (1.0, unit.rstrip("]")))
         ends = "".join(f"{factor * x:>14.5g}" for x in (values.min(), values.max()))
         lines.append(f"{name:<38}{ends}  {shown}".rstrip())
-    lines += [f"warning: {text}" for text in table.warnings]
+    told = (*table.warnings, *solved.warnings)
+    lines += [f"warning: {text}" for text in told]
     return "\n".join(lines)
 
 
@@ -122,7 +123,7 @@ def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
             for name, column in columns(solved, design_columns(table)).items()
         },
         "counts": solved.counts(),
-        "warnings": list(table.warnings),
+        "warnings": [*table.warnings, *solved.warnings],
         "version": __version__,
     }
 

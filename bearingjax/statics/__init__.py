@@ -25,9 +25,9 @@ from .solution import RollerSolution as RollerSolution
 from .solution import Solution as Solution
 from .solution import Stats as Stats
 from .solution import message as message
-from .solution import warnings as warnings
 from .sweep import Sweep as Sweep
 from .sweep import stack_designs as stack_designs
 from .sweep import sweep as sweep
 from .variable import Variable as Variable
 from .variable import design_numbers as design_numbers
+from .warning import warnings as warnings

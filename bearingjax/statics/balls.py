@@ -2,7 +2,6 @@
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
@@ -63,7 +62,7 @@ class BallResults(eqx.Module):
 
 
 def ball_results(rows: tuple[Row, ...], law: AbstractPointLaw) -> dict:
-    """Fields of `BallResults`, and `roller_load`, of solved rows.
+    """Fields of `BallResults`, `roller_load` and `roller_pressure`, of solved rows.
 
     Args:
         rows: Solved balls of all rows.
@@ -80,7 +79,7 @@ def ball_results(rows: tuple[Row, ...], law: AbstractPointLaw) -> dict:
             out[name] = BallKinematics(
                 *(jnp.concatenate(v) for v in zip(*values, strict=True))
             )
-        elif name == "roller_load":
+        elif name in ("roller_load", "roller_pressure"):
             out[name] = jnp.concatenate(values)
         else:
             out[name] = jnp.concatenate([_spread(v, contacts) for v in values])
@@ -118,6 +117,7 @@ def _row_results(row: Row, law: AbstractPointLaw) -> dict:
     square = jnp.sum(pair**2, axis=-1)
     loaded = square > 0
     sides = jnp.where(loaded, jnp.sqrt(jnp.where(loaded, square, 1.0)), 0.0)
+    pressure = ellipses.peak_pressure(load.T).T
     kinematics = moment = force = None
     if model.turning is not None:
         kinematics = row.each(lambda m, r, x: m.kinematics(m.contacts(r, x)))
@@ -130,7 +130,8 @@ def _row_results(row: Row, law: AbstractPointLaw) -> dict:
         "roller_load": sides,
         "contact_load": load,
         "contact_angle": jnp.arctan2(vectors[..., 0], vectors[..., 1]),
-        "contact_pressure": ellipses.peak_pressure(load.T).T,
+        "contact_pressure": pressure,
+        "roller_pressure": jnp.max(pressure.reshape(-1, 2, half), axis=2),
         "semi_axes": axes,
         "approach": contacts.approach,
         "shoulder_margin": _margins(bearing, vectors, axes, load),
@@ -158,39 +159,3 @@ def _margins(bearing, vectors, axes, load):
         height = groove.radius * (groove.deepest - jnp.cos(end))
         margins.append(jnp.where(load[:, k] > 0, shoulder - height, jnp.inf))
     return jnp.stack(margins, axis=1)
-
-
-def ball_warnings(solution) -> list[str]:
-    """Physics warnings of a concrete, single solution, one sentence each.
-
-    Args:
-        solution: A `BallSolution`.
-    """
-    out = []
-    margin = np.asarray(solution.shoulder_margin)
-    load = np.asarray(solution.contact_load)
-    half = margin.shape[1] // 2
-    for name, side in (("outer", slice(0, half)), ("inner", slice(half, None))):
-        cut = margin[:, side] < 0
-        balls = [int(i) for i in np.flatnonzero(cut.any(axis=1))]
-        if balls:
-            worst = load[:, side][cut].max()
-            most = -1e6 * margin[:, side].min()
-            out.append(
-                f"truncated contact ellipse: it reaches over the {name} shoulder by up"
-                f" to {most:.3g} um, at a contact load of up to {worst:.5g} N (balls"
-                f" {_listed(balls)}); pressure and stiffness there are not Hertz's"
-            )
-    if not solution.n_contacts.any():
-        return out
-    lifted = [int(i) for i in np.flatnonzero(np.asarray(solution.lifted))]
-    if lifted and solution.kinematics is not None:
-        out.append(
-            f"lifted off the inner raceway by centrifugal force: balls"
-            f" {_listed(lifted)}"
-        )
-    return out
-
-
-def _listed(numbers):
-    return ", ".join(map(str, numbers))

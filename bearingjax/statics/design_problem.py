@@ -16,6 +16,7 @@ from .measure import exact_of, least_size_of
 from .solution import Solution, message
 from .trials import Trial
 from .variable import with_values
+from .warning import warnings as warnings_of
 
 CHUNK = 64
 """Most cases that are solved side by side."""
@@ -42,6 +43,11 @@ class Outcome(NamedTuple):
     constraints: np.ndarray
     exact_constraints: np.ndarray
     solution: Any
+
+    @property
+    def warnings(self) -> list[str]:
+        """A sentence for each kind of warning: in how many cases, and the worst."""
+        return warnings_of(self.solution)
 
 
 class Options(NamedTuple):

@@ -1,18 +1,22 @@
 """The bearing at an operating point, for linear rotordynamics."""
 
+import warnings
 from collections.abc import Mapping, Sequence
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..design.checks import is_traced
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS, RINGS
 from ..element.inertia import Speed
 from ..numerics.types import Ring, RingStiffness
 from .load import Vector, solve_load
 from .solution import Solution
+from .warning import loose
 
 _SLACK = 1e-9
 """Share of the largest stiffness below which nothing holds a direction [1]."""
@@ -117,18 +121,24 @@ def linearise(
     Raises:
         TypeError, ValueError, SolveError: As `solve_load`.
 
+    Warns:
+        UserWarning: If nothing holds a free direction there, as without load.
+
     Fails: as `solve_load`; with `throw=False` read `solution.result`.
     """
     check_element("linearise", element)
-    return OperatingPoint(
-        solve_load(
-            element,
-            load,
-            prescribed=prescribed,
-            free=free,
-            fixed_ring=fixed_ring,
-            speed=speed,
-            points=2,
-            throw=throw,
-        )
+    solution = solve_load(
+        element,
+        load,
+        prescribed=prescribed,
+        free=free,
+        fixed_ring=fixed_ring,
+        speed=speed,
+        points=2,
+        throw=throw,
     )
+    if not any(is_traced(leaf) for leaf in jax.tree.leaves(solution)):
+        slack = loose(solution)
+        if slack:
+            warnings.warn(f"linearise: {slack}", stacklevel=2)
+    return OperatingPoint(solution)

@@ -32,6 +32,7 @@ from ..numerics.minimise import Evaluation, Pull, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_array
 from .solution import BallSolution, RollerSolution, Solution, Stats, describe, message
+from .warning_sizes import stiffness_scale
 
 Vector = Float[Array | np.ndarray, "6"] | Sequence[float | int]
 """Six numbers."""
@@ -97,7 +98,8 @@ def solve_load(
             float64, 1e-4 in float32.
         max_steps: Step limit of the load solve.
         start: Displacement of the moving ring (6,) from which the solve starts, such
-            as that under a load near by; NaN or `None`: from first contact [m, rad].
+            as that under a load near by; NaN, farther than the pitch radius, or
+            `None`: from first contact [m, rad].
         throw: Raise if the solve fails, outside or under `jit`; otherwise read
             `solution.result`.
 
@@ -157,6 +159,7 @@ def solve_load(
     solution = _solve(
         element,
         element.model(speed),
+        speed,
         load,
         given,
         fixed,
@@ -180,6 +183,7 @@ def solve_load(
 def _solve(
     element,
     model,
+    speed,
     load,
     given,
     fixed,
@@ -234,9 +238,9 @@ def _solve(
     pressing = _load_for(frozen[0], play)
     factor = jnp.where(size > 0, jnp.maximum(1.0, pressing / size), 1.0)
     if start is not None:
-        known = jnp.all(jnp.isfinite(start))
-        near = free * jnp.where(known, start, 0.0) / scale
-        begin = begin + near
+        near = free * jnp.where(jnp.isfinite(start), start, 0.0) / scale
+        known = jnp.all(jnp.isfinite(start)) & (near @ near < radius * radius)
+        begin = begin + jnp.where(known, near, 0.0)
         factor = jnp.where(known, 1.0, factor)
     solver = TrustRegionNewton(symmetric=symmetric, softest=0.03)
     minimum = solver.search(
@@ -245,7 +249,7 @@ def _solve(
         1e-7 * stop(radius) + play,
         tolerance,
         direction,
-        8.0 * stop(radius),
+        8.0 * stop(radius) + jnp.abs(stop(begin[5])),
         pull=Pull(pull, factor),
         memory=frozen[0].nothing_near(),
         max_steps=max_steps,
@@ -279,6 +283,13 @@ def _solve(
         int(Result.NO_LOAD_PATH),
         result,
     )
+    # What presses contacts by the size of the bearing: numbers of another scale.
+    most = stop(stiffness_scale(element.bearing) * radius)
+    absurd = (size > most) | (_inertia(frozen[0]) > most)
+    absurd = absurd | (begin[:5] @ begin[:5] >= (8.0 * radius) ** 2)
+    result = jnp.where(
+        absurd & (result != Result.CONVERGED), int(Result.NON_FINITE), result
+    )
     runaway = _runaway(minimum.x, free)
     unrestrained = jnp.where(jnp.any(loaded), jnp.argmax(loaded), runaway)
     inputs = jnp.concatenate([load, given, fixed])
@@ -291,6 +302,8 @@ def _solve(
     kind = BallSolution if is_ball(element.bearing) else RollerSolution
     return kind(
         **fields,
+        element=element,
+        speed=speed,
         free=tuple(f for f, yes in zip(FREEDOMS, is_free, strict=True) if yes),
         held=tuple(f for f, yes in zip(FREEDOMS, held, strict=True) if yes),
         moving_ring=RINGS[1 - RINGS.index(fixed_ring)],
@@ -355,6 +368,13 @@ def _load_for(model: BearingModel, approach: Scalar) -> Scalar:
     """Load of one raceway contact pressed by `approach` [N]."""
     loads = [row.each(lambda one: one.pressed(approach)) for row in model.rows]
     return jnp.max(jnp.stack([jnp.max(load) for load in loads]))
+
+
+def _inertia(model: BearingModel) -> Scalar | float:
+    """Largest inertia force of a rolling element [N]."""
+    sizes = [row.each(lambda one: one.inertia_size()) for row in model.rows]
+    found = [jnp.max(size) for size in sizes if size is not None]
+    return jnp.max(jnp.stack(found)) if found else 0.0
 
 
 def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Array:

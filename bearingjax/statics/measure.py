@@ -15,7 +15,6 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import check, number
@@ -104,8 +103,9 @@ class AbstractMeasure(eqx.Module):
 class PeakPressure(AbstractMeasure):
     """Largest contact pressure of all cases, elements, raceways and positions [Pa].
 
-    Along a roller it is sampled at the `points` positions of the solution. Hours do
-    not count.
+    The smooth maximum is over the peaks of all rollers and the `points` positions of
+    the solution: with few of those it has kinks where the peak leaps. Hours do not
+    count.
 
     Attributes:
         exponent: Of the smooth maximum; the larger, the closer and the stiffer.
@@ -119,10 +119,10 @@ class PeakPressure(AbstractMeasure):
         _check_exponent(self)
 
     def __call__(self, element, cases, solution):
-        return smooth_maximum(solution.contact_pressure, self.exponent)
+        return smooth_maximum(_pressures(solution), self.exponent)
 
     def exact(self, element, cases, solution):
-        return jnp.max(solution.contact_pressure)
+        return jnp.max(solution.roller_pressure)
 
     @property
     def label(self):
@@ -150,13 +150,12 @@ class MeanPressure(AbstractMeasure):
         _check_exponent(self)
 
     def __call__(self, element, cases, solution):
-        pressure = solution.contact_pressure
+        pressure = _pressures(solution)
         peaks = jax.vmap(lambda p: smooth_maximum(p, self.exponent))(pressure)
         return jnp.sum(hour_weights(cases) * peaks)
 
     def exact(self, element, cases, solution):
-        pressure = solution.contact_pressure
-        peaks = jnp.max(pressure.reshape(pressure.shape[0], -1), axis=1)
+        peaks = jnp.max(solution.roller_pressure, axis=(1, 2))
         return jnp.sum(hour_weights(cases) * peaks)
 
     @property
@@ -399,12 +398,22 @@ def hour_weights(cases: Cases) -> Float[Array, " case"]:
     return hours / jnp.sum(hours)
 
 
+def _pressures(solution):
+    """Pressures of all contacts, of rollers also along them (case, sample)."""
+    count = solution.contact_pressure.shape[0]
+    samples = solution.contact_pressure.reshape(count, -1)
+    if not isinstance(solution, RollerSolution):
+        return samples
+    peaks = solution.roller_pressure.reshape(count, -1)
+    return jnp.concatenate([samples, peaks], axis=1)
+
+
 def _ends(solution):
     if not isinstance(solution, RollerSolution):
         raise ValueError(
             "EdgeLoad: balls have no ends; the bearing must be of rollers."
         )
-    return solution.line_load[..., np.array([0, -1])]
+    return solution.edge_load
 
 
 def _stiffness(solution, row, column):

@@ -141,7 +141,8 @@ def optimise(
             float32: 1e-3. Of "nelder-mead": size of the simplex; it sees the objective
             alone, which is flat to the square of the gradient, so that it counts as
             converged with an `optimality` of up to the root of this.
-        points: Positions along the rollers at which pressures are sampled.
+        points: Positions along the rollers that smooth maxima of the pressure sample
+            beside the peaks, which do not depend on them.
         free, fixed_ring: As of `solve_load`.
         solve_tolerance: `tolerance` of `solve_load`.
         build: What is done to a changed design before it is solved, for example

@@ -4,18 +4,19 @@ from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel, Evaluated
 from ..element.equilibrium import Near
-from ..element.frame import FREEDOMS, LOADS, RINGS
+from ..element.frame import FREEDOMS, LOADS
+from ..element.inertia import Speed
 from ..element.row import Row, motions
+from ..numerics.minimise import TrustRegionNewton
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
-from .balls import BallResults, ball_results, ball_warnings
-from .rollers import RollerResults, roller_results, roller_warnings
+from .balls import BallResults, ball_results
+from .rollers import RollerResults, roller_results
 
 
 class Stats(eqx.Module):
@@ -48,6 +49,8 @@ class Solution(eqx.Module):
         stiffness: Tangent stiffness (12, 12) [N/m, N, N m]; not quite symmetric if
             gyroscopic moments act or contact constants follow the operating angle.
         roller_load: Load of each roller or ball on each raceway (element, 2) [N].
+        roller_pressure: Largest Hertz pressure of each roller or ball on each raceway
+            (element, 2) [Pa], found apart from the positions along the rollers.
         roller_motion: (u, v, θ) of each roller or ball in its section, at the node on
             the axis (element, 3) [m, m, rad].
         azimuth: Azimuth of each roller or ball [rad].
@@ -61,6 +64,8 @@ class Solution(eqx.Module):
         spring_force: Force of each row's spring (row,) [N], or `None`.
         row_sizes: Number of rolling elements of each row.
         pitch_radius: Of the bearing, the largest of a set [m].
+        element: What was solved.
+        speed: Ring speeds, or `None`.
         free: Freedoms of the moving ring that were free.
         held: Those that a support held, at a prescribed place or at zero: their part
             of `force` is what it passes to the ring.
@@ -73,6 +78,7 @@ class Solution(eqx.Module):
     force: Ring
     stiffness: RingStiffness
     roller_load: Float[Array, "element 2"]
+    roller_pressure: Float[Array, "element 2"]
     roller_motion: Float[Array, "element 3"]
     azimuth: Float[Array, " element"]
     result: Int[Array, ""]
@@ -81,6 +87,8 @@ class Solution(eqx.Module):
     spring_travel: Float[Array, " row"] | None
     spring_force: Float[Array, " row"] | None
     pitch_radius: Scalar
+    element: BearingElement
+    speed: Speed | None
     row_sizes: tuple[int, ...] = eqx.field(static=True)
     free: tuple[str, ...] = eqx.field(static=True)
     held: tuple[str, ...] = eqx.field(static=True)
@@ -139,8 +147,9 @@ def message(solution: Solution, moving_ring: str) -> str:
         )
     if result is Result.NON_FINITE:
         return (
-            "Non-finite numbers in the solve: check loads, prescribed displacements"
-            " and dimensions for NaN, infinity or sizes far outside the bearing."
+            "Numbers that are not finite or far outside the bearing: check loads,"
+            " speeds, prescribed displacements and dimensions for NaN, infinity and"
+            " units."
         )
     if result is Result.SADDLE:
         return (
@@ -148,62 +157,14 @@ def message(solution: Solution, moving_ring: str) -> str:
             " kinematics): use linearised kinematics, or more load or length of"
             " contact."
         )
+    cure = "raise the step limit, or check clearance, preload and dimensions"
+    if not isinstance(solution.element.equilibrium, TrustRegionNewton):
+        cure += ", or use TrustRegionNewton() for the rolling elements"
     return (
         f"Step limit reached after {int(stats.iterations)} steps, relative residual"
-        f" {float(stats.residual):.1e}, rollers {float(stats.roller_residual):.1e}:"
-        " raise the step limit, or use the trust-region Newton method for the"
-        " rollers."
+        f" {float(stats.residual):.1e}, rolling elements"
+        f" {float(stats.roller_residual):.1e}: {cure}."
     )
-
-
-def warnings(solution: Solution) -> list[str]:
-    """Physics warnings of a concrete, single solution, one sentence each."""
-    if isinstance(solution, BallSolution):
-        special = ball_warnings(solution)
-    else:
-        assert isinstance(solution, RollerSolution)
-        special = roller_warnings(solution)
-    return [*_slack(solution), *_idle_rows(solution), *special]
-
-
-def _idle_rows(solution: Solution) -> list[str]:
-    """Rows of a loaded set that pass nothing, and springs that are slack."""
-    load = np.asarray(solution.roller_load).min(axis=1)
-    ends = np.cumsum(solution.row_sizes)
-    tops = [part.max() for part in np.split(load, ends[:-1])]
-    out = []
-    for k, top in enumerate(tops):
-        if max(tops) > 0 and top <= 1e-9 * max(tops):
-            out.append(f"row {k} is unloaded: the other rows or their springs hold all")
-    travel, force = solution.spring_travel, solution.spring_force
-    if travel is not None and force is not None:
-        slack = (np.asarray(force) == 0) & (np.asarray(travel) != 0)
-        out += [f"the spring of row {k} is slack" for k in np.flatnonzero(slack)]
-    return out
-
-
-def _slack(solution: Solution) -> list[str]:
-    """A free freedom that nothing holds where it is, though no load pushes it."""
-    first = 6 * RINGS.index(solution.moving_ring)
-    index = [FREEDOMS.index(name) for name in solution.free]
-    if not index:
-        return []
-    radius = float(solution.pitch_radius)
-    scale = np.repeat([1.0, 1.0 / radius if radius > 0 else 1.0], 3)
-    k = np.asarray(solution.stiffness)[first : first + 6, first : first + 6]
-    k = 0.5 * scale * (k + k.T) * scale[:, None]
-    if not np.isfinite(k).all():
-        return []
-    values, vectors = np.linalg.eigh(k[np.ix_(index, index)])
-    loose = np.flatnonzero(np.abs(values) <= 1e-9 * np.abs(k).max())
-    names = {solution.free[int(np.abs(vectors[:, i]).argmax())] for i in loose}
-    if not names:
-        return []
-    listed = ", ".join(name for name in FREEDOMS if name in names)
-    return [
-        f"no stiffness in {listed} of the {solution.moving_ring} ring: nothing holds it"
-        " there, and its place is arbitrary"
-    ]
 
 
 def describe(

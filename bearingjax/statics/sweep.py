@@ -22,13 +22,14 @@ from ..numerics.result import Result
 from .cases import Cases
 from .load import check_held
 from .solution import Solution
-from .sweep_program import Options, Program
+from .sweep_program import WARNED, Options, Program
+from .warning import counted, given
 
 CHUNK = 64
 """Cases of a batch: what fits the cache (benchmarks/batch_throughput.py)."""
 
 SUMMARIES: dict[str, Callable[[Solution], Array]] = {
-    "peak_pressure": lambda s: jnp.max(s.contact_pressure),
+    "peak_pressure": lambda s: jnp.max(s.roller_pressure),
     "largest_load": lambda s: jnp.max(s.roller_load),
     "n_loaded": lambda s: jnp.sum(s.load_zone),
     "iterations": lambda s: s.stats.iterations,
@@ -47,7 +48,8 @@ class Sweep(eqx.Module):
 
     Attributes:
         cases: What was asked.
-        outputs: By name, leading axis case.
+        outputs: By name, leading axis case; among them `warning_KIND`, the size of
+            every kind of warning that can arise (`statics.warning_kinds.KINDS`).
         moving_ring: "outer" or "inner".
     """
 
@@ -73,6 +75,24 @@ class Sweep(eqx.Module):
         codes, counts = np.unique(self.outputs["result"], return_counts=True)
         pairs = zip(codes, counts, strict=True)
         return {Result(int(code)).label: int(count) for code, count in pairs}
+
+    @property
+    def warned(self) -> dict[str, np.ndarray]:
+        """Size of every kind of warning, by its name (case,)."""
+        return {
+            name.removeprefix(WARNED): values
+            for name, values in self.outputs.items()
+            if name.startswith(WARNED)
+        }
+
+    @property
+    def warnings(self) -> list[str]:
+        """A sentence for each kind of warning: in how many cases, and the worst."""
+        return counted(self.warned)
+
+    def warning_counts(self) -> dict[str, int]:
+        """In how many cases each kind of warning is given; kinds of none left out."""
+        return {name: int(cases.sum()) for name, cases in given(self.warned).items()}
 
 
 def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any]:
@@ -119,6 +139,7 @@ def sweep(
     tolerance: float | None = None,
     max_steps: int = 200,
     neighbours: bool = False,
+    warn: bool = True,
     chunk: int | None = None,
     progress: bool = False,
     devices: Sequence[Any] | None = None,
@@ -137,6 +158,7 @@ def sweep(
         neighbours: Cases that follow each other are alike, as on a fine grid: each
             then starts from the solution before it. A case that ends at the step limit
             so is solved again from the beginning.
+        warn: Look for warnings (`bj.warnings`) in every case.
         chunk: Cases solved as one batch; default `CHUNK`.
         progress: Show a bar.
         devices: Over which the cases are spread; default all of `jax.devices()`, of
@@ -170,7 +192,7 @@ def sweep(
     free = None if free is None else tuple(free)
     # An array, so that another value does not compile anew.
     ends = None if tolerance is None else jnp.asarray(tolerance, dtype=float)
-    options = Options(free, fixed_ring, points, ends, keep)
+    options = Options(free, fixed_ring, points, ends, keep, warn)
     places = np.array(jax.devices() if devices is None else list(devices))
     program = Program(element, options, size, places)
     found = program.run(every, max_steps, neighbours, progress, stop)

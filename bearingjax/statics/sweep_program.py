@@ -16,6 +16,7 @@ from jax.sharding import PartitionSpec as Spec
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from .cases import solve_case
+from .warning import sizes
 
 BLOCK = 64
 """Chunks of a device between two visits of the host."""
@@ -29,6 +30,9 @@ _PAUSE = 0.005
 ALWAYS = ("result", "unrestrained")
 """Outputs that every sweep has."""
 
+WARNED = "warning_"
+"""Before the names of the outputs that are sizes of warnings."""
+
 
 class Options(eqx.Module):
     """What is the same for all cases. Static, but for the tolerance."""
@@ -38,6 +42,7 @@ class Options(eqx.Module):
     points: int = eqx.field(static=True)
     tolerance: Scalar | None
     keep: Any = eqx.field(static=True)
+    warn: bool = eqx.field(static=True)
 
     def solve(self, element, case, max_steps, start=None):
         if case.design is not None:
@@ -62,7 +67,11 @@ class Options(eqx.Module):
             return value
 
         kept = {name: told(v) for name, v in _arrays(self.keep(solution)).items()}
-        return {**kept, **{name: getattr(solution, name) for name in ALWAYS}}
+        always = {name: getattr(solution, name) for name in ALWAYS}
+        if not self.warn:
+            return {**kept, **always}
+        warned = {WARNED + name: size for name, size in sizes(solution).items()}
+        return {**kept, **always, **warned}
 
 
 def _arrays(kept) -> dict[str, jax.Array]:

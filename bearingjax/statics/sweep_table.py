@@ -13,8 +13,13 @@ from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..numerics.result import Result
 from .cases import Cases
 from .sweep import Sweep
+from .sweep_program import WARNED
+from .warning import given
 
 ENDINGS = (".csv", ".parquet")
+
+WARNINGS = "warnings"
+"""Header of the column of warnings."""
 
 _LENGTHS, _LOAD_UNITS = ("m", "m", "m", "rad", "rad", "rad"), ("N",) * 3 + ("N m",) * 3
 _RING = [f"{ring}_{f}" for ring in RINGS for f in FREEDOMS]
@@ -25,6 +30,9 @@ _UNITS = {
     "largest_load": "N",
     "pitch_radius": "m",
     "roller_load": "N",
+    "roller_pressure": "Pa",
+    "edge_load": "N/m",
+    "edge_pressure": "Pa",
     "rib_load": "N",
     "contact_load": "N",
     "azimuth": "rad",
@@ -43,6 +51,7 @@ _UNITS = {
 }
 _LAST_AXIS = {
     "roller_load": RINGS,
+    "roller_pressure": RINGS,
     "rib_load": RIB_NAMES,
 }
 
@@ -53,7 +62,8 @@ def columns(
     """Columns by their header, "name [unit]": what was asked, then what came out.
 
     Arrays are spread over columns, `displacement_inner_uy [m]`. The result is the
-    code's label; where it is not "converged", numbers are NaN.
+    code's label; where it is not "converged", numbers are NaN. `warnings` holds the
+    kinds of warning that are given for a case, each with its size.
 
     Args:
         sweep: From `sweep`.
@@ -65,7 +75,7 @@ def columns(
     found = {
         header: column
         for name, values in sweep.outputs.items()
-        if name not in ("result", "unrestrained")
+        if name not in ("result", "unrestrained") and not name.startswith(WARNED)
         for header, column in _spread(name, values)
     }
     labels = np.array([code.label for code in Result])
@@ -73,8 +83,19 @@ def columns(
         **(beside or {}),
         **asked(sweep.cases),
         "result": labels[np.asarray(sweep.result)],
+        **({WARNINGS: _warned(sweep)} if sweep.warned else {}),
         **found,
     }
+
+
+def _warned(sweep):
+    """Warnings of each case, "kind=size" joined by "; ", sizes in SI."""
+    texts = np.full(sweep.cases.count, "", dtype=object)
+    for name, cases in given(sweep.warned).items():
+        new = [f"{name}={size:.6g}" for size in sweep.warned[name][cases]]
+        old = texts[cases]
+        texts[cases] = [f"{a}; {b}" if a else b for a, b in zip(old, new, strict=True)]
+    return texts.astype(str)
 
 
 def check_writable(path: Path) -> None:
@@ -141,7 +162,7 @@ def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
     import pyarrow.parquet
 
     if path.suffix.lower() == ".csv":
-        types = dict.fromkeys(("result", *texts), pyarrow.string())
+        types = dict.fromkeys(("result", WARNINGS, *texts), pyarrow.string())
         options = pyarrow.csv.ConvertOptions(column_types=types)
         table = pyarrow.csv.read_csv(path, convert_options=options)
     else:
@@ -160,7 +181,8 @@ def restored(
         like: Outputs of a sweep of the same kind, of any number of cases.
 
     Returns:
-        Outputs by name; `unrestrained`, which no table holds, is -1.
+        Outputs by name; `unrestrained`, which no table holds, is -1, and a warning
+        that was not given is of size -inf.
 
     Raises:
         ValueError: For a column that is missing, or that holds something else.
@@ -176,6 +198,8 @@ def restored(
             plain: Any = [codes[label] for label in table["result"]]
         elif name == "unrestrained":
             plain = np.full(count, -1)
+        elif name.startswith(WARNED):
+            plain = _sizes(table, name.removeprefix(WARNED), count)
         else:
             headers = [header for header, _ in _spread(name, values)]
             for header in headers:
@@ -185,6 +209,17 @@ def restored(
             plain = np.stack(parts, axis=-1) if parts else np.empty(0)
         shape = (count, *values.shape[1:])
         found[name] = np.asarray(plain, dtype=values.dtype).reshape(shape)
+    return found
+
+
+def _sizes(table, kind, count):
+    """Sizes of one kind of warning out of the column of warnings; -inf: not given."""
+    found = np.full(count, -np.inf)
+    for k, text in enumerate(table.get(WARNINGS, [])):
+        for part in str(text or "").split("; "):
+            name, _, size = part.partition("=")
+            if name == kind:
+                found[k] = float(size)
     return found
 
 

@@ -54,6 +54,11 @@ def test_symmetry_and_turned_loads():
     assert abs(along_y[:, 0, 0] / along_y[:, 1, 1] - 1).min() > 0.01
 
 
+def test_no_load_no_stiffness_is_said():
+    with pytest.warns(UserWarning, match="no stiffness in .* at 500 rad/s"):
+        bj.stiffness_table(ELEMENT, SPEEDS, LOAD * np.array([1.0, 0, 1.0])[:, None])
+
+
 def test_moments_on_held_tilts_are_refused():
     with pytest.raises(ValueError, match="tilts='free'"):
         bj.stiffness_table(ELEMENT, SPEEDS, LOAD + np.eye(6)[3])

@@ -125,7 +125,7 @@ def test_command_writes_a_row_per_case(run, scene, tmp_path):
     for header, want in [
         ("displacement_inner_uy [m]", one.displacement[7]),
         ("largest_load [N]", one.roller_load.max()),
-        ("peak_pressure [Pa]", one.contact_pressure.max()),
+        ("peak_pressure [Pa]", one.roller_pressure.max()),
     ]:
         assert table[header][10] == pytest.approx(float(want), rel=1e-8)
     numbers = json.loads(out.read_text())

@@ -159,11 +159,10 @@ def test_only_the_rib_that_is_there_is_loaded(rig, taper):
 
 
 def test_edge_load_is_a_warning(rig):
-    warnings = rig.numbers["warnings"]
-    assert len(warnings) == 2
-    for name, text in zip(("outer", "inner"), warnings, strict=True):
-        assert text.startswith("edge-loaded roller:")
-        assert f"{name} raceway (rollers 0, 1, 2, 10, 11)" in text
+    (text,) = rig.numbers["warnings"]
+    assert text.startswith("edge-loaded roller:")
+    for name in ("outer", "inner"):
+        assert f"{name} raceway: rollers 0, 1, 2, 10, 11" in text
     assert rig["line_load"][0, :, 0].min() > 0.0
 
 
@@ -240,7 +239,8 @@ def test_report_tells_the_stiffness(solved):
 
 def test_report_has_a_row_for_each_loaded_roller(solved):
     table = rows(report(solved.scene, solved.solution))
-    loads, pressure = solved["roller_load"], solved["contact_pressure"].max(axis=2)
+    loads = solved["roller_load"]
+    pressure = np.asarray(solved.solution.roller_pressure)
     loaded = np.flatnonzero(loads.max(axis=1) > 1e-9 * loads.max())
     assert [int(numbers[0]) for numbers, _ in table] == list(loaded)
     degrees = np.rad2deg(solved["azimuth"][loaded]) % 360.0
@@ -259,7 +259,7 @@ def test_report_of_the_rig(rig):
     )
     assert all(behind == "  edge-loaded" for _, behind in rows(text))
     assert "\n 7 of 12 rollers are out of contact\n" in text
-    assert len(re.findall(r"(?m)^warning: edge-loaded roller", text)) == 2
+    assert len(re.findall(r"(?m)^warning: edge-loaded roller", text)) == 1
     assert "converged in " in text and "contact angle" not in text
 
 

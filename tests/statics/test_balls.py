@@ -125,7 +125,8 @@ def test_truncated_ellipse_is_warned_of(angular):
     heavy = bj.solve_load(bj.BearingElement(shallow), [0, 0, 9000.0, 0, 0, 0])
     assert not warnings(light)
     (line,) = warnings(heavy)
-    assert line.startswith("truncated contact ellipse: it reaches over the inner")
+    assert line.startswith("truncated contact ellipse: it reaches over the shoulder")
+    assert "inner raceway: balls 0, 1" in line and "outer" not in line
     load = float(heavy.contact_load[0, 1])
     assert f"contact load of up to {load:.5g} N" in line
     # Height of the end of the ellipse on its arc.

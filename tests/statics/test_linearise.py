@@ -50,13 +50,19 @@ def test_what_is_free_is_condensed_and_what_is_held_stays(point):
     np.testing.assert_array_equal(four, held.ring_stiffness[:4, :4])
 
 
+def test_no_load_no_stiffness_is_said():
+    with pytest.warns(UserWarning, match="linearise: no stiffness in .*gx"):
+        bj.linearise(ELEMENT, speed=SPEED)
+
+
 def test_a_direction_that_nothing_holds_drops_out():
     rollers = bj.CylindricalRollerBearing(
         7, 0.065, 0.010, 0.010, radial_internal_clearance=-4e-6
     )
     element = bj.BearingElement(rollers, quadrature=bj.Midpoint(8))
     free = ("ux", "uy", "uz", "gx", "gy")  # nothing holds uz
-    point = bj.linearise(element, [0, -2000.0, 0, 0, 0, 0], free=free)
+    with pytest.warns(UserWarning, match="linearise: no stiffness in uz"):
+        point = bj.linearise(element, [0, -2000.0, 0, 0, 0, 0], free=free)
     k = np.asarray(point.ring_stiffness)
     tilts = np.ix_([3, 4], [3, 4])
     expected = k[:2, :2] - k[:2, 3:5] @ np.linalg.inv(k[tilts]) @ k[3:5, :2]

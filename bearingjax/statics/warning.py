@@ -1,0 +1,99 @@
+"""What is doubtful in a solution: one list wherever solutions are told of."""
+
+from typing import Any
+
+import jax
+import numpy as np
+
+from ..design.checks import is_traced
+from .solution import Solution
+from .warning_kinds import KINDS
+from .warning_sizes import namespace
+
+
+def warnings(solution: Solution) -> list[str]:
+    """What is doubtful in a solution, a sentence each; empty if nothing is.
+
+    The command line prints the same list; of many cases see `Sweep.warnings`.
+
+    Args:
+        solution: Concrete; with a leading case axis, as `optimise` has it, each
+            sentence says in how many cases. One that did not converge has none: its
+            numbers are no answer.
+
+    Raises:
+        TypeError: For a solution under `jit`, `vmap` or `grad`.
+    """
+    if any(is_traced(leaf) for leaf in jax.tree.leaves(solution)):
+        raise TypeError(
+            "warnings: the solution is traced; ask outside of jit, vmap and grad."
+        )
+    held = jax.tree.map(np.asarray, solution)
+    if held.result.ndim:
+        ones = [
+            jax.tree.map(lambda leaf, k=k: leaf[k], held)
+            for k in range(len(held.result))
+        ]
+        found = [sizes(one) for one in ones]
+        warned = {name: np.array([f[name] for f in found]) for name in found[0]}
+        return counted(warned)
+    out = []
+    for name, size in sizes(held).items():
+        kind = KINDS[name]
+        if size > kind.limit:
+            with np.errstate(all="ignore"):
+                out.append(kind.words(float(size), kind.where(held)))
+    return out
+
+
+def loose(solution: Solution) -> str:
+    """The warning that nothing holds a free direction, or "".
+
+    Args:
+        solution: Concrete, of one case.
+    """
+    told = [text for text in warnings(solution) if text.startswith("no stiffness")]
+    return told[0] if told else ""
+
+
+def sizes(solution: Solution) -> dict[str, Any]:
+    """Size of every kind of warning that can arise; NaN of a failed solve.
+
+    Args:
+        solution: Of one case, traced or not.
+    """
+    xp = namespace(solution)
+    solved = solution.result == 0
+    with np.errstate(all="ignore"):
+        return {
+            name: xp.where(solved, kind.size(solution), xp.nan)
+            for name, kind in KINDS.items()
+            if kind.applies(solution.element, solution.speed)
+        }
+
+
+def given(warned: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """In which cases each kind is given, by name (case,); kinds of none left out.
+
+    Args:
+        warned: Name -> `sizes` (case,).
+    """
+    over = {name: warned[name] > KINDS[name].limit for name in KINDS if name in warned}
+    return {name: cases for name, cases in over.items() if cases.any()}
+
+
+def counted(warned: dict[str, np.ndarray]) -> list[str]:
+    """The sentences of many cases: each kind once, with its worst case.
+
+    Args:
+        warned: Name -> `sizes` (case,).
+    """
+    out = []
+    for name, cases in given(warned).items():
+        worst = int(np.nanargmax(warned[name]))
+        said = KINDS[name].words(float(warned[name][worst]), "")
+        out.append(
+            f"{name}: {said}, in {int(cases.sum())} of {len(cases)} cases, worst case"
+            f" {worst}"
+        )
+    return out

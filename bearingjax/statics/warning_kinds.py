@@ -1,0 +1,229 @@
+"""Every kind of warning: a number of the solution, the largest allowed, and words."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..design import AbstractBallBearing, AbstractRollerBearing, is_ball, rows_of
+from ..element.bearing_element import BearingElement
+from ..element.inertia import Speed
+from ..element.kinematics import Linearised
+from . import warning_sizes as of
+from .rollers import EDGE_PRESSURE
+from .solution import Solution
+
+
+class Kind(NamedTuple):
+    """A kind of warning.
+
+    Attributes:
+        applies: (element, speed) -> whether it can arise at all. Static.
+        size: Of a solution, a scalar.
+        limit: Largest size that gives no warning, in the unit of `size`.
+        words: (size, where) -> the sentence; where is "" of many cases.
+        where: Of a concrete solution: what it concerns.
+    """
+
+    applies: Callable[[BearingElement, Speed | None], bool]
+    size: Callable[[Solution], Any]
+    limit: float
+    words: Callable[[float, str], str]
+    where: Callable[[Solution], str] = lambda solution: ""
+
+
+def _always(element, speed):
+    return True
+
+
+def _of_balls(element, speed):
+    return is_ball(element.bearing)
+
+
+def _of_rollers(element, speed):
+    return not is_ball(element.bearing)
+
+
+def _has_ribs(element, speed):
+    bearings = [row.bearing for row in rows_of(element.bearing)]
+    rollers = [b for b in bearings if isinstance(b, AbstractRollerBearing)]
+    return any(bearing.ribs.present for bearing in rollers)
+
+
+def _has_shoulder(element, speed):
+    bearings = [row.bearing for row in rows_of(element.bearing)]
+    balls = [b for b in bearings if isinstance(b, AbstractBallBearing)]
+    shoulders = [s for b in balls for s in (b.outer_shoulder, b.inner_shoulder)]
+    return any(shoulder is not None for shoulder in shoulders)
+
+
+def _in_brackets(where):
+    return f" ({where})" if where else ""
+
+
+def _odd_words(size, where):
+    what = where or f"{size:.0f} numbers of the design"
+    return f"far outside the sizes of rolling bearings: {what}; are these SI units?"
+
+
+def _loose_words(size, where):
+    what = where or f"{size:.0f} free directions"
+    return f"no stiffness in {what}: nothing holds it there, and its place is arbitrary"
+
+
+def _idle_words(size, where):
+    what = where or f"{size:.0f} of the rows"
+    return f"{what} is unloaded: the other rows or their springs hold all"
+
+
+def _spring_words(size, where):
+    return f"the spring of {where or f'{size:.0f} of the rows'} is slack"
+
+
+def _pressure_words(size, where):
+    return (
+        f"contact pressure of {1e-6 * size:.5g} MPa: beyond"
+        f" {1e-6 * of.LARGEST_PRESSURE:.0f} MPa steel is no longer elastic"
+        f"{_in_brackets(where)}"
+    )
+
+
+def _static_words(size, where):
+    return (
+        f"contact pressure {size:.4g} times that of the static load rating of ISO 76"
+        f"{_in_brackets(where)}"
+    )
+
+
+def _width_words(size, where):
+    return (
+        f"half width of a contact {size:.2g} of its radius: Hertz's theory is for small"
+        f" strains, up to about {of.LARGEST_WIDTH:g}"
+    )
+
+
+def _ellipse_words(size, where):
+    return (
+        f"semi-axis of a contact ellipse {size:.2g} of the ball's radius: beyond"
+        f" {of.LARGEST_ELLIPSE:g} Hertz's parabolas are a tenth off ball and groove"
+    )
+
+
+def _tilt_words(size, where):
+    what = where or "the approach of the contacts, or of free motion"
+    return (
+        "tilt beyond small rotations: linearised kinematics leave out"
+        f" {100.0 * size:.2g} % of {what}; use Finite() kinematics"
+    )
+
+
+def _speed_words(size, where):
+    return (
+        f"n·dm of {size:.3g} mm/min: beyond {of.LARGEST_SPEED:.0e} mm/min grease and"
+        " oil baths do not do; take oil jet or oil-air, and a cage made for it"
+    )
+
+
+def _rib_words(size, where):
+    return (
+        f"ribs press on the roller ends: {1e6 * size:.4g} µm of interference, unloaded"
+        " and centred"
+    )
+
+
+def _truncated_words(size, where):
+    return (
+        "truncated contact ellipse: it reaches over the shoulder by up to"
+        f" {1e6 * size:.4g} µm; pressure and stiffness there are not Hertz's"
+        f"{_in_brackets(where)}"
+    )
+
+
+def _lifted_words(size, where):
+    return (
+        f"lifted off the inner raceway by centrifugal force: {where or f'{size:.0f}'}"
+        f"{'' if where else ' balls'}"
+    )
+
+
+def _edge_words(size, where):
+    return (
+        f"edge-loaded roller: {1e-6 * size:.4g} MPa at the roller end, where the"
+        f" line-contact laws know no pressure peak{_in_brackets(where)}"
+    )
+
+
+KINDS: dict[str, Kind] = {
+    "implausible_number": Kind(_always, of.oddities, 0.0, _odd_words, of.odd_names),
+    "no_stiffness": Kind(_always, of.loose, 0.0, _loose_words, of.loose_names),
+    "unloaded_row": Kind(
+        lambda element, _: len(rows_of(element.bearing)) > 1,
+        of.idle_rows,
+        0.0,
+        _idle_words,
+        of.idle_numbers,
+    ),
+    "slack_spring": Kind(
+        lambda element, _: any(r.spring is not None for r in rows_of(element.bearing)),
+        of.slack_springs,
+        0.0,
+        _spring_words,
+        of.slack_numbers,
+    ),
+    "contact_pressure": Kind(
+        _always,
+        lambda solution: solution.roller_pressure.max(),
+        of.LARGEST_PRESSURE,
+        _pressure_words,
+        lambda s: of.of_raceways(s, s.roller_pressure > of.LARGEST_PRESSURE),
+    ),
+    "static_limit": Kind(
+        _always,
+        lambda s: s.roller_pressure.max() / of.static_limit(s.element.bearing),
+        1.0,
+        _static_words,
+        lambda s: f"{1e-6 * of.static_limit(s.element.bearing):.0f} MPa",
+    ),
+    "contact_width": Kind(_of_rollers, of.widths, of.LARGEST_WIDTH, _width_words),
+    "contact_ellipse": Kind(_of_balls, of.ellipses, of.LARGEST_ELLIPSE, _ellipse_words),
+    "tilt": Kind(
+        lambda element, _: isinstance(element.kinematics, Linearised),
+        of.tilt_error,
+        of.LARGEST_TILT_ERROR,
+        _tilt_words,
+        lambda s: (
+            "the motion"
+            if {"gx", "gy"} <= set(s.free)
+            else "the approach of the contacts, and loads err by about as much"
+        ),
+    ),
+    "speed": Kind(
+        lambda _, speed: speed is not None,
+        of.speed_factor,
+        of.LARGEST_SPEED,
+        _speed_words,
+    ),
+    "rib_interference": Kind(_has_ribs, of.interference, 0.0, _rib_words),
+    "truncated_ellipse": Kind(
+        _has_shoulder,
+        lambda solution: -solution.shoulder_margin.min(),
+        0.0,
+        _truncated_words,
+        of.truncated_balls,
+    ),
+    "lifted_ball": Kind(
+        lambda element, speed: is_ball(element.bearing) and speed is not None,
+        of.lifted_count,
+        0.0,
+        _lifted_words,
+        lambda s: f"balls {of.listed(np.flatnonzero(of.lifted(s)))}",
+    ),
+    "edge_loaded": Kind(
+        _of_rollers,
+        lambda solution: solution.edge_pressure.max(),
+        EDGE_PRESSURE,
+        _edge_words,
+        lambda s: of.of_raceways(s, of.ends_over(s)),
+    ),
+}
+"""Every kind of warning, by name, in the order in which they are told."""

@@ -1,0 +1,327 @@
+"""Numbers of a solution that may be too large, and what they concern.
+
+Sizes are written in what NumPy and JAX share: a sweep finds them within its compiled
+program, `warnings` of a solution without compiling anything.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+
+from ..design import (
+    AbstractBallBearing,
+    Bearing,
+    BearingSet,
+    SelfAligningBallRow,
+    is_ball,
+    rows_of,
+)
+from ..design.material import contact_modulus
+from ..element.frame import FREEDOMS, RINGS
+from .rollers import EDGE_PRESSURE
+from .solution import Solution
+
+LARGEST_PRESSURE = 4e9
+"""Contact pressure beyond which nothing is elastic any more [Pa]."""
+
+SOFTEST = 1e-7
+"""Stiffness over E* D that holds nothing [1]: a tenth of the softest tilt of a bearing
+under a tenth of a newton."""
+
+SOFTEST_SHIFT = 3e-5
+"""Likewise of x, y and z alone: less than a millionth of a newton presses so little,
+such as the solver leaves where there is no load."""
+
+_ROUND_OFF = 1e-9
+"""Likewise, over the largest stiffness [1]."""
+
+LARGEST_TILT_ERROR = 0.03
+"""What small rotations leave out, over the largest approach [1]."""
+
+LARGEST_SPEED = 1e6
+"""n·dm, speed times pitch diameter [mm/min].
+
+Source: where tables of greases for rolling bearings end; of oil baths too.
+"""
+
+LARGEST_WIDTH, LARGEST_ELLIPSE = 0.1, 0.4
+"""Half width over the relative radius of rollers; semi-axis over the ball radius [1].
+
+Source: Johnson, Contact Mechanics (1985), section 4.1: strains are of the order of
+    half width over radius. At 0.4 of a ball's radius the fourth order of the circles of
+    ball and groove, (x²/4)(1/R² + 1/(R r) + 1/r²) of the second, is a tenth.
+"""
+
+_PLAUSIBLE = {
+    "pitch_diameter": (1e-3, 15.0, "m"),
+    "ball_diameter": (1e-4, 0.5, "m"),
+    "roller_diameter": (1e-4, 0.5, "m"),
+    "roller_length": (1e-4, 1.0, "m"),
+    "elastic_modulus": (1e9, 1.2e12, "Pa"),
+    "density": (500.0, 25e3, "kg/m³"),
+}
+"""From miniature to slewing bearings, from polymers to hard metal."""
+
+
+def stiffness_scale(bearing: Bearing | BearingSet) -> Any:
+    """E* times the diameter of the rolling elements, the least of all rows [N/m]."""
+    scales = [
+        _modulus(row.bearing) * _diameter(row.bearing) for row in rows_of(bearing)
+    ]
+    least = scales[0]
+    for scale in scales[1:]:
+        plain = isinstance(scale, np.ndarray | np.generic)
+        least = (np if plain else jnp).minimum(least, scale)
+    return least
+
+
+def namespace(solution: Solution) -> Any:
+    """NumPy for a solution of NumPy arrays, otherwise JAX's."""
+    return np if isinstance(solution.result, np.ndarray | np.generic) else jnp
+
+
+def _modulus(bearing):
+    return contact_modulus(bearing.material, bearing.rings)
+
+
+def _diameter(bearing):
+    balls = isinstance(bearing, AbstractBallBearing)
+    return bearing.ball_diameter if balls else bearing.roller_diameter
+
+
+def _by_row(solution: Solution, values: Any) -> Iterator[tuple[Any, Any]]:
+    """(bearing, values of its rolling elements) of every row."""
+    ends = np.cumsum(solution.row_sizes)
+    for row, count, end in zip(
+        rows_of(solution.element.bearing), solution.row_sizes, ends, strict=True
+    ):
+        yield row.bearing, values[int(end) - count : int(end)]
+
+
+def _largest(solution, numbers):
+    xp = namespace(solution)
+    return xp.max(xp.stack([xp.asarray(number) for number in numbers]))
+
+
+def _one(solution, flags):
+    """1 where flags are set, 0 elsewhere."""
+    return namespace(solution).where(flags, 1.0, 0.0)
+
+
+def listed(numbers: Any) -> str:
+    """Whole numbers in words."""
+    return ", ".join(str(int(number)) for number in numbers)
+
+
+def of_raceways(solution: Solution, flags: Any) -> str:
+    """Raceways and rolling elements where `flags` (element, 2) are set, in words."""
+    noun = "balls" if is_ball(solution.element.bearing) else "rollers"
+    return "; ".join(
+        f"{ring} raceway: {noun} {listed(np.flatnonzero(mine))}"
+        for ring, mine in zip(RINGS, np.asarray(flags).T, strict=True)
+        if mine.any()
+    )
+
+
+def _free_stiffness(solution):
+    """Stiffness of the free freedoms, all in N/m, and what holds nothing [N/m]."""
+    xp = namespace(solution)
+    first = 6 * RINGS.index(solution.moving_ring)
+    radius = xp.where(solution.pitch_radius > 0, solution.pitch_radius, 1.0)
+    # Rotations times the pitch radius.
+    turns = xp.asarray([0.0, 0.0, 0.0, 1.0, 1.0, 1.0], dtype=radius.dtype)
+    scale = (1.0 - turns) + turns / radius
+    k = solution.stiffness[first : first + 6, first : first + 6]
+    k = 0.5 * scale[None, :] * (k + k.T) * scale[:, None]
+    index = np.array([FREEDOMS.index(name) for name in solution.free], dtype=int)
+    scale = stiffness_scale(solution.element.bearing)
+    nothing = xp.maximum(_ROUND_OFF * abs(k).max(), SOFTEST * scale)
+    return k[np.ix_(index, index)], nothing
+
+
+def loose(solution: Solution) -> Any:
+    """Number of directions in which nothing holds the ring where it is.
+
+    Source: Sylvester's law of inertia: as many pivots are negative as eigenvalues.
+    """
+    xp = namespace(solution)
+    k, nothing = _free_stiffness(solution)
+    n = len(solution.free)
+    k = k - nothing * xp.eye(n, dtype=k.dtype)
+    count = xp.zeros((), k.dtype)
+    for i in range(n):
+        pivot = k[i, i]
+        count = count + _one(solution, pivot <= 0)
+        k = k - k[:, i, None] * k[None, i] / xp.where(pivot == 0, 1.0, pivot)
+    return count
+
+
+def loose_names(solution: Solution) -> str:
+    """What `loose` counts, by the freedom that moves most in it."""
+    k, nothing = _free_stiffness(solution)
+    values, vectors = np.linalg.eigh(k)
+    names = {
+        solution.free[int(np.abs(vectors[:, i]).argmax())]
+        for i in np.flatnonzero(values <= nothing)
+    }
+    listed = ", ".join(name for name in FREEDOMS if name in names)
+    return f"{listed} of the {solution.moving_ring} ring"
+
+
+def idle_rows(solution: Solution) -> Any:
+    """Number of rows that pass nothing while others do."""
+    load = solution.roller_load.min(axis=1)
+    tops = [part.max() for _, part in _by_row(solution, load)]
+    most = _largest(solution, tops)
+    return sum(_one(solution, (top <= 1e-9 * most) & (most > 0)) for top in tops)
+
+
+def idle_numbers(solution: Solution) -> str:
+    """What `idle_rows` counts."""
+    load = solution.roller_load.min(axis=1)
+    tops = [part.max() for _, part in _by_row(solution, load)]
+    idle = [k for k, top in enumerate(tops) if top <= 1e-9 * max(tops)]
+    return f"row {listed(idle)}"
+
+
+def slack_springs(solution: Solution) -> Any:
+    """Number of springs that have lost their force."""
+    slack = (solution.spring_force == 0) & (solution.spring_travel != 0)
+    return _one(solution, slack).sum()
+
+
+def slack_numbers(solution: Solution) -> str:
+    """What `slack_springs` counts."""
+    slack = (solution.spring_force == 0) & (solution.spring_travel != 0)
+    return f"row {listed(np.flatnonzero(slack))}"
+
+
+def static_limit(bearing: Bearing | BearingSet) -> float:
+    """Contact pressure of the basic static load rating [Pa].
+
+    Source: ISO 76:2006, 3.2 and 3.3.
+    """
+    if not is_ball(bearing):
+        return 4000e6
+    aligning = [isinstance(r.bearing, SelfAligningBallRow) for r in rows_of(bearing)]
+    return 4600e6 if all(aligning) else 4200e6
+
+
+def widths(solution: Solution) -> Any:
+    """Largest half width over the relative radius ρ, 2 p/E*, of rollers [1]."""
+    parts = [
+        2.0 * pressure.max() / _modulus(bearing)
+        for bearing, pressure in _by_row(solution, solution.roller_pressure)
+    ]
+    return _largest(solution, parts)
+
+
+def ellipses(solution: Solution) -> Any:
+    """Largest semi-axis over the radius of the ball [1]."""
+    parts = [
+        2.0 * axes.max() / bearing.ball_diameter
+        for bearing, axes in _by_row(solution, solution.semi_axes)
+    ]
+    return _largest(solution, parts)
+
+
+def tilt_error(solution: Solution) -> Any:
+    """What small rotations leave out, R γ²/2, over what it is an error of [1].
+
+    With tilts given, of the approach of the contacts, so that loads err by about as
+    much. Free tilts balance the load whatever they are: of the motion R γ.
+    """
+    xp = namespace(solution)
+    q, radius = solution.displacement, solution.pitch_radius
+    square = (q[9] - q[3]) ** 2 + (q[10] - q[4]) ** 2
+    if is_ball(solution.element.bearing):
+        approach = solution.approach.max()
+    else:
+        # About that of Palmgren's law: 2.5 b²/ρ of a half width b = 2 p ρ/E*.
+        approach = _largest(
+            solution,
+            [
+                5.0 * _diameter(bearing) * (pressure.max() / _modulus(bearing)) ** 2
+                for bearing, pressure in _by_row(solution, solution.roller_pressure)
+            ],
+        )
+    pressed = approach > 0
+    size = approach
+    if {"gx", "gy"} <= set(solution.free):
+        size = xp.maximum(approach, radius * square**0.5)
+    share = 0.5 * radius * square / xp.where(pressed, size, 1.0)
+    return xp.where(pressed, share, 0.0)
+
+
+def speed_factor(solution: Solution) -> Any:
+    """n·dm, of one ring against the other [mm/min]."""
+    assert solution.speed is not None
+    turns = abs(solution.speed.inner - solution.speed.outer) * (30.0 / math.pi)
+    return turns * (2e3 * solution.pitch_radius)
+
+
+def _implausible(bearing):
+    """(name, value, unit, odd) of every number with a usual range."""
+    materials = [bearing.material]
+    if bearing.ring_material is not None:
+        materials.append(bearing.ring_material)
+    for owner in (bearing, *materials):
+        for name, (low, high, unit) in _PLAUSIBLE.items():
+            value = getattr(owner, name, None)
+            if value is not None:
+                yield name, value, unit, (value < low) | (value > high)
+
+
+def oddities(solution: Solution) -> Any:
+    """How many numbers of the design are far outside those of bearings."""
+    rows = rows_of(solution.element.bearing)
+    odd = [odd for row in rows for *_, odd in _implausible(row.bearing)]
+    return sum(_one(solution, flag) for flag in odd)
+
+
+def odd_names(solution: Solution) -> str:
+    """What `oddities` counts."""
+    rows = rows_of(solution.element.bearing)
+    found = [part for row in rows for part in _implausible(row.bearing)]
+    return ", ".join(
+        dict.fromkeys(f"{n} {float(v):.4g} {unit}" for n, v, unit, odd in found if odd)
+    )
+
+
+def _rib_gaps(bearing):
+    return [getattr(bearing.ribs, name).axial_gap for name in bearing.ribs.present]
+
+
+def interference(solution: Solution) -> Any:
+    """Largest interference of a rib and the roller ends, unloaded [m]."""
+    rows = rows_of(solution.element.bearing)
+    return _largest(solution, [-gap for row in rows for gap in _rib_gaps(row.bearing)])
+
+
+def truncated_balls(solution: Solution) -> str:
+    """Raceways and balls whose ellipse reaches over a shoulder, and their load."""
+    most = np.asarray(solution.contact_load)[solution.shoulder_margin < 0].max()
+    margin = solution.shoulder_margin
+    sides = margin.reshape(margin.shape[0], 2, -1).min(axis=2)
+    where = of_raceways(solution, sides < 0)
+    return f"contact load of up to {most:.5g} N; {where}"
+
+
+def lifted(solution: Solution) -> Any:
+    """Which balls run on the outer raceway alone (ball,)."""
+    load = solution.contact_load
+    carrying = (load > 1e-9 * load.max()).reshape(load.shape[0], 2, -1).any(axis=2)
+    return carrying[:, 0] & ~carrying[:, 1]
+
+
+def lifted_count(solution: Solution) -> Any:
+    """How many balls run on the outer raceway alone."""
+    return _one(solution, lifted(solution)).sum()
+
+
+def ends_over(solution: Solution) -> Any:
+    """Which rollers are edge-loaded on each raceway (roller, 2)."""
+    return (solution.edge_pressure > EDGE_PRESSURE).any(axis=2)

@@ -1,0 +1,246 @@
+"""What is doubtful: one list in Python, in sweeps and in optimisations."""
+
+import dataclasses
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from registry import balls, bearings
+from tolerances import ROUNDING
+
+import bearingjax as bj
+from bearingjax.statics import sweep_table
+from bearingjax.statics.rollers import distribution
+from bearingjax.statics.warning import sizes
+from bearingjax.statics.warning_kinds import KINDS
+
+STILL = bj.Speed(inner=0.0)
+
+
+@pytest.fixture(scope="module")
+def deep():
+    bearing = balls(7, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6)
+    return bj.BearingElement(bearing)
+
+
+@pytest.fixture(scope="module")
+def rollers():
+    return bj.BearingElement(bearings()["cylindrical NUP, logarithmic"])
+
+
+def changed(element, **numbers):
+    """The element with other numbers of its design, by attribute."""
+    for name, value in numbers.items():
+        *path, last = name.split("__")
+
+        def get(e, path=path, last=last):
+            owner = e.bearing
+            for part in path:
+                owner = getattr(owner, part)
+            return getattr(owner, last)
+
+        element = eqx.tree_at(get, element, jnp.asarray(value))
+    return element
+
+
+def solved(element, load, speed=STILL, **choices):
+    return bj.solve_load(element, load, speed=speed, **choices)
+
+
+def test_nothing_is_doubtful_about_a_usual_load(deep):
+    assert bj.warnings(solved(deep, [0, -2000.0, 300, 0, 0, 0])) == []
+
+
+def test_pressure_beyond_the_static_limit(deep):
+    s = solved(deep, [0, -40e3, 300, 0, 0, 0])
+    pressure = float(s.roller_pressure.max())
+    assert pressure > 4.2e9
+    elastic, static = (t for t in bj.warnings(s) if t.startswith("contact pressure"))
+    assert elastic.startswith(f"contact pressure of {1e-6 * pressure:.5g} MPa")
+    assert "inner raceway: balls " in elastic
+    assert f"{pressure / 4.2e9:.4g} times that of the static load rating" in static
+    assert static.endswith("ISO 76 (4200 MPa)")
+
+
+@pytest.mark.parametrize("speed", [0.0, 300.0, 2000.0])
+def test_no_stiffness_whatever_the_speed(deep, speed):
+    """Against its own largest stiffness, that of nothing, nothing is soft."""
+    s = solved(deep, np.zeros(6), bj.Speed(inner=speed))
+    (text,) = (t for t in bj.warnings(s) if t.startswith("no stiffness"))
+    assert "ux, uy" in text and "of the inner ring" in text
+
+
+def test_a_tenth_of_a_newton_holds(deep):
+    assert bj.warnings(solved(deep, [0, -0.1, 0.1, 0, 0, 0])) == []
+
+
+@pytest.mark.parametrize(
+    "numbers, named",
+    [
+        ({"material__elastic_modulus": 206e6}, "elastic_modulus 2.06e+08 Pa"),
+        (
+            {"pitch_diameter": 52.0, "ball_diameter": 9.5},
+            "pitch_diameter 52 m, ball_diameter 9.5 m",
+        ),
+    ],
+)
+def test_numbers_in_other_units(deep, numbers, named):
+    s = solved(changed(deep, **numbers), [0, -2000.0, 300, 0, 0, 0], throw=False)
+    assert s.converged
+    (text,) = (t for t in bj.warnings(s) if t.startswith("far outside"))
+    assert named in text
+
+
+def test_tilts_beyond_small_rotations(deep):
+    """Said is about the error that finite rotations show."""
+    q = jnp.zeros(12).at[9].set(5e-3)
+    finite = bj.BearingElement(deep.bearing, kinematics=bj.Finite())
+    ours, true = (np.asarray(e.force(q))[9] for e in (deep, finite))
+    s = solved(deep, [0, -2000.0, 300, 0, 0, 0])
+    rows = deep.rows(q)
+    approach = rows[0].each(lambda m, r, x: m.contacts(r, x)).approach
+    s = eqx.tree_at(lambda s: (s.displacement, s.approach), s, (q, approach))
+    assert bj.warnings(s) == []  # tilts that are free follow the load
+    s = dataclasses.replace(s, free=("ux", "uy", "uz"))
+    (text,) = bj.warnings(s)
+    assert text.startswith("tilt beyond small rotations")
+    said = float(sizes(s)["tilt"])
+    assert 0.5 < (ours / true - 1.0) / said < 2.0
+    assert f"{100 * said:.2g} % of the approach" in text
+    loose = eqx.tree_at(lambda s: s.element, s, finite)
+    assert bj.warnings(loose) == []
+
+
+def test_speeds_that_no_grease_stands(deep):
+    fast = bj.Speed(inner=2500.0)  # 24 000 rpm of 52 mm
+    (text,) = (
+        t
+        for t in bj.warnings(solved(deep, [0, -2000.0, 900, 0, 0, 0], fast))
+        if t.startswith("n·dm")
+    )
+    assert text.startswith(f"n·dm of {52 * 2500 * 30 / np.pi:.3g} mm/min")
+
+
+def test_ribs_that_press(rollers):
+    ribs = {f"ribs__{name}__axial_gap": -5e-6 for name in rollers.bearing.ribs.present}
+    load = [0, -4000.0, 300, 0, 0, 0]
+    assert bj.warnings(bj.solve_load(rollers, load)) == []
+    (text,) = bj.warnings(bj.solve_load(changed(rollers, **ribs), load))
+    assert text.startswith("ribs press on the roller ends: 5 µm of interference")
+
+
+def test_ends_count_only_where_they_bear(rollers):
+    s = bj.solve_load(rollers, [0, -4000.0, 300, 0, 0, 0])
+    at_ends = jnp.zeros_like(s.edge_pressure).at[2, 1, 0].set(1.0)
+    light, heavy = (
+        eqx.tree_at(lambda s: s.edge_pressure, s, size * at_ends) for size in (8e6, 8e8)
+    )
+    assert not light.edge_loaded.any() and bj.warnings(light) == []
+    (text,) = bj.warnings(heavy)
+    assert text.startswith("edge-loaded roller: 800 MPa")
+    assert "(inner raceway: rollers 2)" in text
+
+
+def test_a_solution_that_is_none_has_no_warnings(rollers):
+    s = bj.solve_load(rollers, [0, np.nan, 0, 0, 0, 0], throw=False)
+    assert bj.warnings(s) == []
+
+
+def test_traced_solutions_are_refused(rollers):
+    s = bj.solve_load(rollers, [0, -4000.0, 0, 0, 0, 0])
+    with pytest.raises(TypeError, match="traced"):
+        jax.jit(lambda x: jnp.asarray(len(bj.warnings(x))))(s)
+
+
+LOADS = np.array(
+    [
+        [0, -2000.0, 300, 0, 0, 0],
+        [0, -40e3, 300, 0, 0, 0],
+        [0, np.nan, 0, 0, 0, 0],
+        [0, 0, 0, 0, 0, 0],
+        [0, -60e3, 300, 0, 0, 0],
+    ]
+)
+
+
+def test_a_sweep_finds_what_single_solves_find(deep):
+    cases = bj.Cases(LOADS, inner_speed=0.0)
+    swept = bj.sweep(deep, cases, outputs=["largest_load"])
+    for k, load in enumerate(LOADS):
+        single = sizes(solved(deep, load, throw=False))
+        assert set(single) == set(swept.warned)
+        for name, size in single.items():
+            assert swept.warned[name][k] == pytest.approx(
+                float(size), rel=1e-6, nan_ok=True
+            )
+    counts = swept.warning_counts()
+    assert counts["contact_pressure"] == 2 and counts["no_stiffness"] == 1
+    texts = swept.warnings
+    assert [text.partition(": ")[0] for text in texts] == list(counts)
+    (text,) = (t for t in texts if t.startswith("contact_pressure: "))
+    assert text.endswith(", in 2 of 5 cases, worst case 4")
+    assert f"{1e-6 * swept.warning_contact_pressure[4]:.5g} MPa" in text
+    column = sweep_table.columns(swept)["warnings"]
+    assert column[0] == column[2] == ""
+    assert column[3].startswith("no_stiffness=")
+    said = f"contact_pressure={swept.warning_contact_pressure[1]:.6g}"
+    assert said in column[1].split("; ")
+    # Solutions with a case axis, as an optimisation has them, say the same.
+    both = jax.tree.map(
+        lambda *leaves: jnp.stack(leaves),
+        *(solved(deep, load, throw=False) for load in LOADS),
+    )
+    assert [t.partition(":")[0] for t in bj.warnings(both)] == list(counts)
+    assert set(swept.warned) <= set(KINDS)
+
+
+def test_what_is_far_outside_the_bearing_is_called_so(deep):
+    """Not "no load path": nothing is to be turned round."""
+    load = [0, -2000.0, 300, 0, 0, 0]
+    for given, speed in ((1e9, STILL), (1.0, bj.Speed(inner=1e11))):
+        s = solved(deep, given * np.array(load), speed, throw=False)
+        assert bj.Result(int(s.result)) is bj.Result.NON_FINITE
+        text = bj.statics.message(s, "inner")
+        assert "far outside the bearing" in text and "turn the load" not in text
+    # Where nothing holds the load that is still the word.
+    off = bj.solve_load(deep, [0, 0, 0, 0, 0, 5.0], speed=STILL, throw=False)
+    assert bj.Result(int(off.result)) is bj.Result.NO_LOAD_PATH
+
+
+def test_a_start_far_away_is_no_start(deep):
+    load = [0, -2000.0, 300, 0, 0, 0]
+    near = solved(deep, load)
+    far = solved(deep, load, start=[1.0, 0, 0, 0, 0, 0])
+    assert far.converged
+    assert np.allclose(far.displacement, near.displacement, rtol=1e-9, atol=1e-15)
+
+
+def test_the_step_limit_names_no_method_that_is_taken(rollers):
+    wide = changed(rollers, radial_internal_clearance=-1e-3)
+    s = bj.solve_load(wide, [0, -4000.0, 0, 0, 0, 0], throw=False)
+    if not s.converged:
+        assert "TrustRegionNewton" not in bj.statics.message(s, "inner")
+    limit = eqx.tree_at(lambda s: s.result, s, jnp.asarray(1, jnp.int32))
+    assert "TrustRegionNewton" not in bj.statics.message(limit, "inner")
+    other = eqx.tree_at(lambda s: s.element.equilibrium, limit, bj.BFGS())
+    assert "TrustRegionNewton()" in bj.statics.message(other, "inner")
+
+
+@pytest.mark.parametrize("name", ["cylindrical, crowned ends", "taper, large rib"])
+def test_peaks_do_not_depend_on_the_positions(name):
+    """Rollers that tilt: the peak stands off the middle, at a kink or beyond one."""
+    element = bj.BearingElement(bearings()[name])
+    q = jnp.zeros(12).at[7].set(-25e-6).at[8].set(20e-6).at[9].set(6e-4)
+    (row,) = element.rows(q)
+    along = eqx.filter_jit(distribution)
+    peaks = [np.asarray(along(row, n).roller_pressure) for n in (1, 2, 3, 101)]
+    for peak in peaks[1:]:
+        assert np.allclose(peak, peaks[0], rtol=ROUNDING, atol=0.0)
+    fine = np.asarray(along(row, 20001).contact_pressure).max(axis=2)
+    assert fine.max() > 1e9
+    assert np.allclose(peaks[0], fine, rtol=1e-4, atol=1.0)  # as `rollers._SCAN` says
+    # Both ends, also of a single position.
+    ends = np.asarray(along(row, 3).line_load)[..., [0, 2]]
+    assert np.allclose(along(row, 1).edge_load, ends, rtol=ROUNDING, atol=0.0)
