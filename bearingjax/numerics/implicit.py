@@ -98,6 +98,27 @@ def attach_by(residual, solution, args, correction):
     return attached(stop(solution), traced)
 
 
+def unless_failed(value, solved):
+    """`value`, with derivatives that are NaN if it was not solved for.
+
+    A failed solve ends anywhere, and a derivative there is no answer.
+
+    Args:
+        value: Floating array.
+        solved: Whether it was solved for, a scalar flag.
+    """
+
+    @jax.custom_jvp
+    def known(value, factor):
+        return value
+
+    @known.defjvp
+    def _rule(primals, tangents):
+        return known(*primals), tangents[0] * primals[1]
+
+    return known(value, jnp.where(solved, 1.0, jnp.nan).astype(value.dtype))
+
+
 def recall(function, values, args):
     """function(*args) where its values are known already.
 

@@ -16,8 +16,8 @@ from ..element.inertia import Speed
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import as_real
 from ..statics.linearise import OperatingPoint, linearise
-from ..statics.load import restrained_freedoms
 from ..statics.solution import message
+from ..statics.support import restrained_freedoms
 from ..statics.warning_sizes import SOFTEST_SHIFT, stiffness_scale
 
 TILTS = ("held", "free")

@@ -5,7 +5,6 @@ from .cases import solve_case as solve_case
 from .design_problem import Outcome as Outcome
 from .linearise import OperatingPoint as OperatingPoint
 from .linearise import linearise as linearise
-from .load import restrained_freedoms as restrained_freedoms
 from .load import solve_load as solve_load
 from .measure import Constraint as Constraint
 from .measure import Displacement as Displacement
@@ -25,6 +24,7 @@ from .solution import RollerSolution as RollerSolution
 from .solution import Solution as Solution
 from .solution import Stats as Stats
 from .solution import message as message
+from .support import restrained_freedoms as restrained_freedoms
 from .sweep import Sweep as Sweep
 from .sweep import stack_designs as stack_designs
 from .sweep import sweep as sweep

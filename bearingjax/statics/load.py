@@ -5,7 +5,7 @@ kinematics this is convex, so the trust-region Newton method on the exact V, Vâ€
 converges from anywhere, or runs away where nothing holds the load, and says so.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -14,52 +14,27 @@ from jaxtyping import Array, Float, Int
 
 from ..design import (
     AbstractBallBearing,
-    Bearing,
-    BearingSet,
-    TaperedRollerBearing,
     is_ball,
-    is_self_aligning,
     pitch_radius,
     rows_of,
 )
-from ..design.checks import is_traced, real_numbers
+from ..design.checks import in_range, real_numbers
 from ..element.bearing_element import BearingElement, check_element
 from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..element.inertia import Speed
-from ..numerics.implicit import attach, stop
+from ..numerics.implicit import attach, stop, unless_failed
 from ..numerics.minimise import Evaluation, Pull, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_array
 from .solution import BallSolution, RollerSolution, Solution, Stats, describe, message
+from .support import check_held, restrained_freedoms
 from .warning_sizes import stiffness_scale
 
 Vector = Float[Array | np.ndarray, "6"] | Sequence[float | int]
 """Six numbers."""
 
 DEFAULT_TOLERANCE = {"float64": 1e-11, "float32": 1e-4}
-
-
-def restrained_freedoms(bearing: Bearing | BearingSet) -> tuple[str, ...]:
-    """Freedoms that the bearing can hold at all, against a load of the right sense.
-
-    Never gz; not gx and gy of a self-aligning bearing; uz for balls and tapers, and
-    where a pair of ribs passes axial load from ring to ring.
-
-    Args:
-        bearing: The design.
-    """
-    axial = is_ball(bearing) or any(_ribs_hold(row.bearing) for row in rows_of(bearing))
-    tilts = () if is_self_aligning(bearing) else ("gx", "gy")
-    return ("ux", "uy", *(("uz",) if axial else ()), *tilts)
-
-
-def _ribs_hold(bearing):
-    ribs = bearing.ribs.present
-    return isinstance(bearing, TaperedRollerBearing) or any(
-        set(pair) <= set(ribs)
-        for pair in (("outer_minus", "inner_plus"), ("outer_plus", "inner_minus"))
-    )
 
 
 def solve_load(
@@ -154,6 +129,7 @@ def solve_load(
     held = tuple(name in prescribed or name in left_out for name in FREEDOMS)
     if tolerance is None:
         tolerance = DEFAULT_TOLERANCE[str(dtype)]
+    in_range("solve_load", "tolerance", tolerance, "", 0.0, 1.0)
     # As arrays, so that another value does not compile anew.
     ends, max_steps = as_array(tolerance, dtype), as_array(max_steps, jnp.int32)
     solution = _solve(
@@ -266,6 +242,7 @@ def _solve(
         return free * scale * (force - load) + (1.0 - free) * y - held
 
     y = attach(residual, minimum.x, args, symmetric)
+    y = unless_failed(y, minimum.result == Result.CONVERGED)
     q = ring_freedoms(y, scale, fixed)
     fields, evaluated = describe(element, model, q, points, minimum.memory)
 
@@ -312,43 +289,6 @@ def _solve(
         unrestrained=unrestrained.astype(jnp.int32),
         stats=stats,
     )
-
-
-def check_held(
-    owner: str,
-    load: Float[Array | np.ndarray, "*case 6"],
-    prescribed: Iterable[str],
-    free: Sequence[str] | None,
-) -> None:
-    """Raise if known loads act on freedoms that are held.
-
-    Args:
-        owner: Who was given them.
-        load: Loads of one or of many cases [N, N m]; traced ones are not judged here.
-        prescribed: Freedoms with given displacements.
-        free: Freedoms that were chosen to be free, or `None`: the default.
-
-    Raises:
-        ValueError: Naming the load, the freedom, and who holds it.
-    """
-    if is_traced(load):
-        return
-    loads = np.nan_to_num(np.asarray(load).reshape(-1, 6))
-    # A moment about the axis is never held: its case has no load path.
-    left_out = () if free is None else set(FREEDOMS[:5]) - set(free) - set(prescribed)
-    for names, why in ((prescribed, "prescribed"), (left_out, "not among `free`")):
-        for index in sorted(FREEDOMS.index(name) for name in names):
-            cases = np.flatnonzero(loads[:, index])
-            if cases.size == 0:
-                continue
-            which = "" if np.ndim(load) == 1 else f" in case {cases[0]}"
-            unit = "N" if index < 3 else "N m"
-            raise ValueError(
-                f"{owner}: `load` has {LOADS[index]} ="
-                f" {loads[cases[0], index]:.6g} {unit}{which}, but {FREEDOMS[index]} is"
-                f" {why}: its support would take that load, and what it passes to the"
-                " bearing is a result. Choose one."
-            )
 
 
 def _play(model: BearingModel) -> Scalar:

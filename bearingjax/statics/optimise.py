@@ -14,9 +14,9 @@ import numpy as np
 from ..element.bearing_element import BearingElement, check_element
 from .cases import Cases
 from .design_problem import Build, Measure, Options, Outcome, Problem
-from .load import check_held
 from .measure import Constraint
 from .search import METHODS, Ending, search, takes_gradients
+from .support import check_held
 from .trials import Trial, Trials, optimality
 from .variable import Variable, check_variables
 

@@ -9,7 +9,8 @@ from ..design import Bearing, BearingSet, SetRow, is_self_aligning
 from ..design.checks import positive
 from ..element.bearing_element import BearingElement, check_element
 from ..numerics.types import Scalar, as_real
-from .load import restrained_freedoms, solve_load
+from .load import solve_load
+from .support import restrained_freedoms
 
 
 def preload(

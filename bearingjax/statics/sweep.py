@@ -20,8 +20,8 @@ from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
 from ..numerics.result import Result
 from .cases import Cases
-from .load import check_held
 from .solution import Solution
+from .support import check_held
 from .sweep_program import WARNED, Options, Program
 from .warning import counted, given
 

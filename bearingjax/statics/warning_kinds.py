@@ -109,6 +109,13 @@ def _ellipse_words(size, where):
     )
 
 
+def _groove_words(size, where):
+    return (
+        f"contact angle {np.rad2deg(size):.3g} deg from the middle of the raceway: no"
+        " groove goes so far; the ball would ride on the edge of its shoulder"
+    )
+
+
 def _tilt_words(size, where):
     what = where or "the approach of the contacts, or of free motion"
     return (
@@ -186,6 +193,7 @@ KINDS: dict[str, Kind] = {
     ),
     "contact_width": Kind(_of_rollers, of.widths, of.LARGEST_WIDTH, _width_words),
     "contact_ellipse": Kind(_of_balls, of.ellipses, of.LARGEST_ELLIPSE, _ellipse_words),
+    "contact_angle": Kind(_of_balls, of.groove_angles, of.LARGEST_ANGLE, _groove_words),
     "tilt": Kind(
         lambda element, _: isinstance(element.kinematics, Linearised),
         of.tilt_error,

@@ -55,6 +55,10 @@ Source: Johnson, Contact Mechanics (1985), section 4.1: strains are of the order
     ball and groove, (x²/4)(1/R² + 1/(R r) + 1/r²) of the second, is a tenth.
 """
 
+LARGEST_ANGLE = math.radians(75.0)
+"""Angle of a contact from the middle of its raceway [rad]: there a shoulder would stand
+0.39 ball diameters high, twice the usual and more than any."""
+
 _PLAUSIBLE = {
     "pitch_diameter": (1e-3, 15.0, "m"),
     "ball_diameter": (1e-4, 0.5, "m"),
@@ -226,6 +230,18 @@ def ellipses(solution: Solution) -> Any:
         for bearing, axes in _by_row(solution, solution.semi_axes)
     ]
     return _largest(solution, parts)
+
+
+def groove_angles(solution: Solution) -> Any:
+    """Largest angle of a loaded contact from the middle of its raceway [rad]."""
+    loads = _by_row(solution, solution.contact_load)
+    angles = _by_row(solution, solution.contact_angle)
+    least = 1e-9 * solution.contact_load.max()
+    parts = [
+        _one(solution, load > least) * abs(angle - bearing.groove_axis)
+        for (bearing, load), (_, angle) in zip(loads, angles, strict=True)
+    ]
+    return _largest(solution, [part.max() for part in parts])
 
 
 def tilt_error(solution: Solution) -> Any:

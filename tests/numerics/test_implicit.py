@@ -12,7 +12,7 @@ import pytest
 from tolerances import ROUNDING
 
 from bearingjax.numerics import attach, attach_roots
-from bearingjax.numerics.implicit import stop
+from bearingjax.numerics.implicit import stop, unless_failed
 
 STIFFNESS = jnp.asarray([[2.0, 0.5, -0.3], [0.5, 1.5, 0.2], [-0.3, 0.2, 1.0]])
 
@@ -169,3 +169,14 @@ def test_stop():
         return x * stop({"x": x, "n": 3})["x"]
 
     assert jax.grad(through)(jnp.asarray(2.0)) == 2.0
+
+
+def test_what_failed_has_no_derivative():
+    def doubled(x, solved):
+        return jnp.sum(2.0 * unless_failed(x, solved))
+
+    slope = jax.jit(jax.value_and_grad(doubled))
+    x = jnp.asarray([1.0, -2.0])
+    assert np.array_equal(slope(x, jnp.asarray(True))[1], [2.0, 2.0])
+    value, lost = slope(x, jnp.asarray(False))
+    assert float(value) == -2.0 and np.isnan(lost).all()

@@ -147,6 +147,17 @@ def test_step_limit_says_so(tapered):
         bj.solve_load(tapered, [0, 0, 6000.0, 0, 0, 0], max_steps=2)
 
 
+def test_a_failed_solve_has_no_derivative(tapered):
+    """Of any size it would pass for one."""
+
+    def moved(load):
+        s = bj.solve_load(tapered, load, throw=False, max_steps=2)
+        return s.displacement[8]
+
+    slope = jax.jit(jax.grad(moved))(jnp.asarray([0, 0, 6000.0, 0, 0, 0]))
+    assert np.isnan(slope).all()
+
+
 def test_non_finite_input(crowned):
     load = [0.0, np.nan, 0.0, 0.0, 0.0, 0.0]
     assert int(bj.solve_load(crowned, load, throw=False).result) == bj.Result.NON_FINITE
@@ -181,6 +192,7 @@ def test_bad_case_stays_alone_in_a_batch(tapered):
         (dict(load=RADIAL, free=["vx"]), "`free` names 'vx'; freedoms are ux"),
         (dict(load=RADIAL, prescribed={"rz": 0.0}), "`prescribed` names 'rz'"),
         (dict(load=RADIAL, free=["ux"], prescribed={"ux": 0.0}), "both free and presc"),
+        (dict(load=RADIAL, tolerance=2.0), "`tolerance` is 2;"),
         (dict(load=RADIAL, free=["gz"]), "gz, which no rolling bearing restrains"),
         (dict(load=RADIAL, fixed_displacement=[0.0]), "`fixed_displacement` has shape"),
     ],

@@ -93,6 +93,17 @@ def test_numbers_in_other_units(deep, numbers, named):
     assert named in text
 
 
+def test_contact_where_no_groove_is(deep):
+    """A moment that leans the ring on balls out of the load zone: they climb far."""
+    loose = changed(deep, radial_internal_clearance=150e-6)
+    s = solved(loose, [200.0, -2000.0, 0, 6.0, 0, 0], bj.Speed(inner=2000.0))
+    loaded = np.asarray(s.contact_load) > 0
+    angle = np.rad2deg(np.abs(np.asarray(s.contact_angle))[loaded].max())
+    told = [t for t in bj.warnings(s) if t.startswith("contact angle")]
+    assert (angle > 75.0) == bool(told)
+    assert told and f"contact angle {angle:.3g} deg from" in told[0]
+
+
 def test_tilts_beyond_small_rotations(deep):
     """Said is about the error that finite rotations show."""
     q = jnp.zeros(12).at[9].set(5e-3)

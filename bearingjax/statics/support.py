@@ -1,0 +1,76 @@
+"""What the bearing can hold, and what its surroundings hold instead."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design import (
+    Bearing,
+    BearingSet,
+    TaperedRollerBearing,
+    is_ball,
+    is_self_aligning,
+    rows_of,
+)
+from ..design.checks import is_traced
+from ..element.frame import FREEDOMS, LOADS
+
+
+def restrained_freedoms(bearing: Bearing | BearingSet) -> tuple[str, ...]:
+    """Freedoms that the bearing can hold at all, against a load of the right sense.
+
+    Never gz; not gx and gy of a self-aligning bearing; uz for balls and tapers, and
+    where a pair of ribs passes axial load from ring to ring.
+
+    Args:
+        bearing: The design.
+    """
+    axial = is_ball(bearing) or any(_ribs_hold(row.bearing) for row in rows_of(bearing))
+    tilts = () if is_self_aligning(bearing) else ("gx", "gy")
+    return ("ux", "uy", *(("uz",) if axial else ()), *tilts)
+
+
+def _ribs_hold(bearing):
+    ribs = bearing.ribs.present
+    return isinstance(bearing, TaperedRollerBearing) or any(
+        set(pair) <= set(ribs)
+        for pair in (("outer_minus", "inner_plus"), ("outer_plus", "inner_minus"))
+    )
+
+
+def check_held(
+    owner: str,
+    load: Float[Array | np.ndarray, "*case 6"],
+    prescribed: Iterable[str],
+    free: Sequence[str] | None,
+) -> None:
+    """Raise if known loads act on freedoms that are held.
+
+    Args:
+        owner: Who was given them.
+        load: Loads of one or of many cases [N, N m]; traced ones are not judged here.
+        prescribed: Freedoms with given displacements.
+        free: Freedoms that were chosen to be free, or `None`: the default.
+
+    Raises:
+        ValueError: Naming the load, the freedom, and who holds it.
+    """
+    if is_traced(load):
+        return
+    loads = np.nan_to_num(np.asarray(load).reshape(-1, 6))
+    # A moment about the axis is never held: its case has no load path.
+    left_out = () if free is None else set(FREEDOMS[:5]) - set(free) - set(prescribed)
+    for names, why in ((prescribed, "prescribed"), (left_out, "not among `free`")):
+        for index in sorted(FREEDOMS.index(name) for name in names):
+            cases = np.flatnonzero(loads[:, index])
+            if cases.size == 0:
+                continue
+            which = "" if np.ndim(load) == 1 else f" in case {cases[0]}"
+            unit = "N" if index < 3 else "N m"
+            raise ValueError(
+                f"{owner}: `load` has {LOADS[index]} ="
+                f" {loads[cases[0], index]:.6g} {unit}{which}, but {FREEDOMS[index]} is"
+                f" {why}: its support would take that load, and what it passes to the"
+                " bearing is a result. Choose one."
+            )
