@@ -120,14 +120,15 @@ def _tilt_words(size, where):
     what = where or "the approach of the contacts, or of free motion"
     return (
         "tilt beyond small rotations: linearised kinematics leave out"
-        f" {100.0 * size:.2g} % of {what}; use Finite() kinematics"
+        f" {100.0 * size:.2g} % of {what} (Finite() kinematics do not)"
     )
 
 
 def _speed_words(size, where):
     return (
-        f"n·dm of {size:.3g} mm/min: beyond {of.LARGEST_SPEED:.0e} mm/min grease and"
-        " oil baths do not do; take oil jet or oil-air, and a cage made for it"
+        f"n·dm of {size:.3g} mm/min: most greases and oil baths end at"
+        f" {of.LARGEST_SPEED:.0e} mm/min; it takes oil jet or oil-air, and a cage made"
+        " for it"
     )
 
 
