@@ -20,12 +20,13 @@ class BallResults(eqx.Module):
         contact_load: Load of each contact (ball, contact) [N].
         contact_angle: Angle of the line of centres, open contacts too, positive where
             the row carries an inner-ring load along +z (before it is mirrored)
-            (ball, contact) [rad].
+            (ball, contact) [rad]. Never beyond π/2; of a ball at the groove centre, the
+            free contact angle.
         contact_pressure: Hertz peak pressure (ball, contact) [Pa].
         semi_axes: Of the contact ellipse, in rolling direction and across
             (ball, contact, 2) [m].
-        approach: Approach of ball and raceway, negative where apart
-            (ball, contact) [m].
+        approach: Approach of ball and raceway, negative where apart (ball, contact)
+            [m]. A ball past the groove centre is as far from the raceway as it can be.
         shoulder_margin: Height of the shoulder above the end of the contact ellipse
             (ball, contact) [m]; negative: the ellipse is truncated. Infinite where no
             shoulder is given or no load carried.
