@@ -111,7 +111,8 @@ def linearise(
     """The bearing about its equilibrium under a load.
 
     The static linearisation of `element.as_function`: stiffness is its Jacobian
-    there, with the rolling elements where gz has them (zero: `first_azimuth`).
+    there, gz held, with the rolling elements where gz has them (zero:
+    `first_azimuth`).
 
     Args:
         element, load, prescribed, free, fixed_ring, speed, throw: As `solve_load`.

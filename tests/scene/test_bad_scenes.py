@@ -427,12 +427,12 @@ SETTINGS = {
     ),
     "preload that pulls": (
         "ball_pair",
-        "set={arrangement='face_to_face', spacing='9 mm', preload_force='-3 N'}",
+        "set={arrangement='face_to_face', spacing='19 mm', preload_force='-3 N'}",
         "[set]: preload: `force` is -3 N; it must be above 0 N.",
     ),
     "preload of a tandem": (
         "ball_pair",
-        "set={arrangement='tandem', spacing='9 mm', spring_force='3 N'}",
+        "set={arrangement='tandem', spacing='19 mm', spring_force='3 N'}",
         "`set.spring_force`: is for rows that face each other; those of a tandem do",
     ),
     "load on what is prescribed": (
