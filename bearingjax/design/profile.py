@@ -196,7 +196,7 @@ class CrownedEnds(AbstractProfile):
 class Logarithmic(AbstractProfile):
     """Logarithmic profile of ISO/TS 16281, 0.00035 D ln(1/(1 - (2s/L)²)).
 
-    Infinite at the very end; here limited to 350 times coefficient times D,
+    Infinite at the very end; here limited to 354 times coefficient times D,
     which no load reaches.
 
     Attributes:
@@ -442,14 +442,17 @@ def _log_one_over(x, part):
     """ln(1/(1 - part x²)), limited where the argument vanishes."""
     root = jnp.sqrt(part)
     rest = (1.0 - root * x) * (1.0 + root * x)
-    # At the very end, whatever rounding made of its position. float32 has no number
-    # so small that loads would not reach the drop that it leaves.
-    at_end = rest <= 8.0 * jnp.finfo(rest.dtype).eps
-    return jnp.where(at_end, _MOST, -jnp.log(jnp.where(at_end, 1.0, rest)))
+    if rest.dtype == jnp.float64:
+        return -jnp.log(_floored(rest))
+    # float32 has no number so small that loads would not reach the drop that it leaves,
+    # and a rounding of the position beside the end is no better.
+    least = 8.0 * jnp.finfo(rest.dtype).eps
+    return jnp.where(rest > least, -jnp.log(jnp.maximum(rest, least)), _MOST)
 
 
-_MOST = 350.0
-"""Logarithm at the very end of a profile that is infinite there [1]."""
+_MOST = 354.198209
+"""Logarithm at the very end of a profile that is infinite there [1]: that of float64,
+half of ln(1/2.2e-308)."""
 
 
 def _floored(rest):

@@ -27,7 +27,7 @@ from ..contact.point_law import at_angle
 from ..numerics.linear import dot
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar
-from .ball_contacts import Contacts, GrooveGeometry, along_normals, bent
+from .ball_contacts import Contacts, GrooveGeometry, along_normals, angles, bent
 from .ball_inertia import Carried, Turning, carried
 from .ball_speed import BallKinematics
 from .model import AbstractModel, Rings, Unknowns
@@ -110,8 +110,7 @@ class AbstractBallModel(AbstractModel):
         if not self.follows_angle:
             return self.constant
         outwards = jnp.asarray(self.grooves.outwards, contacts.length.dtype)
-        z, r = outwards * contacts.normal[:, 0], outwards * contacts.normal[:, 1]
-        return at_angle(self.constant, jnp.arctan2(z, r))
+        return at_angle(self.constant, angles(outwards[:, None] * contacts.normal))
 
     def pressed(self, approach):
         one = jnp.ones_like(self.grooves.reach)
@@ -207,7 +206,7 @@ class AbstractBallModel(AbstractModel):
         power = positive_power(contacts.approach, _N, _D)
         load = self.constants(contacts) * power
         directions = self.grooves.directions(contacts, load, self.diameter)
-        return carried(self.turning, *directions, self.grooves.free_direction)
+        return carried(self.turning, *directions)
 
     def inertia(self, rings, x):
         t = self.turning

@@ -19,7 +19,7 @@ class Contacts(NamedTuple):
         length: l, distance of ball centre and groove centre [m].
         inverse: 1/l, finite, with which the normal turns; 0 if it does not [1/m].
         normal: Unit vector (z, r) from groove centre to ball centre (contact, 2), in
-            the section of the ring; at the groove centre that of the unloaded ball.
+            the section of the ring; at the groove centre, where there is none, zero.
         mask: 0 where the part along z, or along r, of that vector counts for nothing,
             because the groove has ended there, else 1 (contact, 2).
     """
@@ -42,6 +42,7 @@ class GrooveGeometry(eqx.Module):
     Attributes:
         start: Vector (z, r) from each groove centre to the ball centre, unloaded
             (contact, 2) [m].
+        free: Unit vectors along them: the normals of the unloaded ball (contact, 2).
         reach: L = groove radius - ball radius (contact,) [m].
         on_outer: Which contacts belong to the outer ring.
         open_side: Which raceways are cylinders beyond the groove bottom.
@@ -54,6 +55,7 @@ class GrooveGeometry(eqx.Module):
     """
 
     start: Float[Array, "contact 2"]
+    free: Float[Array, "contact 2"]
     reach: Float[Array, " contact"]
     on_outer: tuple[bool, ...] = eqx.field(static=True)
     open_side: tuple[bool, ...] = eqx.field(static=True)
@@ -88,9 +90,8 @@ class GrooveGeometry(eqx.Module):
         kept = mask * vector
         square = jnp.sum(kept**2, axis=1)
         # At the groove centre there is no direction; the contact is open there.
-        centred = square <= (1e-9 * self.reach) ** 2
-        root = jnp.sqrt(jnp.where(centred, 1.0, square))
-        length = jnp.where(centred, 0.0, root)
+        least = (1e-9 * self.reach) ** 2
+        length = jnp.sqrt(jnp.maximum(square, least))
         # (l² - L²)/(l + L) without the cancellation, where the start is known.
         start2 = jnp.sum(self.start**2, axis=1) - self.reach**2
         change = jnp.sum(moved * (2.0 * self.start + moved), axis=1)
@@ -98,9 +99,8 @@ class GrooveGeometry(eqx.Module):
         difference = jnp.where(known, start2 + change, square - self.reach**2)
         approach = difference / (length + self.reach)
         # Divisions and roots part a compiled loop in two: as few as can be.
-        inverse = 1.0 / root
-        normal = jnp.where(centred[:, None], self.free, kept * inverse[:, None])
-        return Contacts(approach, length, inverse, normal, mask)
+        inverse = 1.0 / length
+        return Contacts(approach, length, inverse, kept * inverse[:, None], mask)
 
     def _planes(self, moved):
         normal = self.free
@@ -108,19 +108,6 @@ class GrooveGeometry(eqx.Module):
         length = unloaded + jnp.sum(normal * moved, axis=1)
         flat = jnp.zeros_like(length)
         return Contacts(length - self.reach, length, flat, normal, jnp.ones_like(moved))
-
-    @property
-    def free(self) -> Float[Array, "contact 2"]:
-        """Normals of the unloaded ball (z, r), from groove centre to ball centre."""
-        square = jnp.sum(self.start**2, axis=1, keepdims=True)
-        return self.start / jnp.sqrt(square)
-
-    @property
-    def free_direction(self) -> Float[Array, "2"]:
-        """Unit vector (sin α, cos α) of the unloaded ball at the outer raceway."""
-        outer = [k for k, on_outer in enumerate(self.on_outer) if on_outer]
-        mean = add(self.free[jnp.asarray(outer)])
-        return mean / jnp.sqrt(dot(mean, mean))
 
     def directions(
         self, contacts: Contacts, load: Float[Array, " contact"], diameter: Scalar
@@ -155,6 +142,12 @@ class GrooveGeometry(eqx.Module):
             normals.append(mean / jnp.sqrt(dot(mean, mean)))
             loads.append(load[first] + load[second])
         return jnp.stack(normals), jnp.stack(loads)
+
+
+def angles(vectors: Float[Array, "*n 2"]) -> Float[Array, "*n"]:
+    """Angles of contact normals (sin α, cos α) [rad]; zero at the groove centre."""
+    z, r = vectors[..., 0], vectors[..., 1]
+    return jnp.arctan2(z, jnp.where((z == 0.0) & (r == 0.0), 1.0, r))
 
 
 def along_normals(c: Contacts, step: Unknowns) -> Float[Array, " contact"]:

@@ -10,7 +10,6 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..design.ball import AbstractBallBearing
-from ..numerics.linear import dot
 from ..numerics.types import Scalar
 from .ball_speed import (
     MOST_FRICTION,
@@ -24,7 +23,7 @@ from .frame import orbit, roll_ratio
 from .inertia import Speed
 
 _LEAST = 0.1
-"""Of the centrifugal force: a contact that carries less drives the ball in part."""
+"""Of the centrifugal force: an inner contact that carries less drives in part."""
 
 
 class Turning(NamedTuple):
@@ -93,48 +92,32 @@ def turning(
     return Turning(speed, control, gamma, centrifugal, mass, moment, radius, diameter)
 
 
-def driving_normals(
-    t: Turning,
-    normals: Float[Array, "2 2"],
-    loads: Float[Array, "2"],
-    free: Float[Array, "2"],
-) -> Float[Array, "2 2"]:
-    """Normals of the contacts that decide how a ball rolls.
+def inner_direction(
+    t: Turning, normals: Float[Array, "2 2"], loads: Float[Array, "2"]
+) -> Float[Array, "2"]:
+    """Direction of the inner contact that decides how a ball rolls (2,).
 
     A raceway that a ball has left does not drive it, and the line of centres there may
-    point anywhere. Such a ball goes round with the others, as if the lost contact lay
-    opposite the one that it has: with γ = D/d_m at (1 ∓ γ cos α_o)/2 of the ring
-    speeds. In between, up to a tenth of the centrifugal force as contact load, the
-    directions are mixed, so that forces do not jump.
+    point anywhere. Such a ball goes round with the others, as if the inner contact lay
+    opposite the outer one: with γ = D/d_m at (1 ∓ γ cos α_o)/2 of the ring speeds. In
+    between, up to a tenth of the centrifugal force as contact load, the directions are
+    mixed, so that forces do not jump. In balance the outer contact is never left.
 
     Args:
         t: Inertia of the ball.
         normals: Unit vectors (sin α, cos α) at outer and inner raceway (2, 2).
         loads: Contact loads there (2,) [N].
-        free: That of the unloaded ball at the outer raceway, for one in flight (2,).
     """
-    part = jnp.clip(loads / (_LEAST * t.centrifugal + NO_LOAD), 0.0, 1.0)
+    part = jnp.minimum(loads[1] / (_LEAST * t.centrifugal + NO_LOAD), 1.0)
     grip = part * part * (3.0 - 2.0 * part)
-    outer = _mixed(grip[0], normals[0], free)
-    return jnp.stack([outer, _mixed(grip[1], normals[1], outer)])
+    return grip * normals[1] + (1.0 - grip) * normals[0]
 
 
-def _mixed(share, first, second):
-    mean = share * first + (1.0 - share) * second
-    return mean / jnp.sqrt(dot(mean, mean) + NO_LOAD)
-
-
-def carried(
-    t: Turning,
-    normals: Float[Array, "2 2"],
-    loads: Float[Array, "2"],
-    free: Float[Array, "2"],
-):
+def carried(t: Turning, normals: Float[Array, "2 2"], loads: Float[Array, "2"]):
     """How a ball is carried round at given contact angles.
 
     Args:
-        t: Its inertia.
-        normals, loads, free: As of `driving_normals`.
+        t, normals, loads: As of `inner_direction`.
 
     Returns:
         Carried.
@@ -144,8 +127,8 @@ def carried(
     least = jnp.maximum(loads[0], _LEAST * t.centrifugal)
     shared = jnp.stack([least, loads[1]])
     share = t.control.rolling_share(shared)
-    outer, inner = driving_normals(t, normals, loads, free)
-    kinematics = ball_kinematics(outer, inner, share, t.ratio, t.speed)
+    inner = inner_direction(t, normals, loads)
+    kinematics = ball_kinematics(normals[0], inner, share, t.ratio, t.speed)
     demand = 2.0 / t.diameter * gyroscopic_moment(t.moment, kinematics)
     # Whatever the control says, no contact holds more than friction lets it.
     most = MOST_FRICTION * loads

@@ -48,6 +48,7 @@ def ball_model(
     common: dict[str, Any] = dict(
         grooves=GrooveGeometry(
             start=-centres,
+            free=-centres / jnp.sqrt(jnp.sum(centres**2, axis=1, keepdims=True)),
             reach=jnp.stack([g.radius - 0.5 * diameter for g in grooves]),
             on_outer=tuple(g.on_outer for g in grooves),
             open_side=tuple(g.open_side for g in grooves),

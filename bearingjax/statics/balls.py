@@ -7,6 +7,7 @@ from jaxtyping import Array, Float, Int
 from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
 from ..design import AbstractBallBearing
 from ..element.ball import AbstractBallModel
+from ..element.ball_contacts import angles
 from ..element.ball_inertia import gyroscopic_moment
 from ..element.ball_speed import BallKinematics
 from ..element.row import Row
@@ -20,8 +21,7 @@ class BallResults(eqx.Module):
         contact_load: Load of each contact (ball, contact) [N].
         contact_angle: Angle of the line of centres, open contacts too, positive where
             the row carries an inner-ring load along +z (before it is mirrored)
-            (ball, contact) [rad]. Never beyond π/2; of a ball at the groove centre, the
-            free contact angle.
+            (ball, contact) [rad]. Never beyond π/2; of a ball at the groove centre, 0.
         contact_pressure: Hertz peak pressure (ball, contact) [Pa].
         semi_axes: Of the contact ellipse, in rolling direction and across
             (ball, contact, 2) [m].
@@ -130,7 +130,7 @@ def _row_results(row: Row, law: AbstractPointLaw) -> dict:
     return {
         "roller_load": sides,
         "contact_load": load,
-        "contact_angle": jnp.arctan2(vectors[..., 0], vectors[..., 1]),
+        "contact_angle": angles(vectors),
         "contact_pressure": pressure,
         "roller_pressure": jnp.max(pressure.reshape(-1, 2, half), axis=2),
         "semi_axes": axes,
@@ -155,7 +155,7 @@ def _margins(bearing, vectors, axes, load):
         if shoulder is None:
             margins.append(jnp.full(load.shape[:1], jnp.inf))
             continue
-        angle = jnp.arctan2(vectors[:, k, 0], vectors[:, k, 1]) - bearing.groove_axis
+        angle = angles(vectors[:, k]) - bearing.groove_axis
         end = jnp.abs(angle) + axes[:, k, 1] / groove.radius
         height = groove.radius * (groove.deepest - jnp.cos(end))
         margins.append(jnp.where(load[:, k] > 0, shoulder - height, jnp.inf))
