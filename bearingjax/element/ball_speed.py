@@ -140,12 +140,8 @@ class FrictionLimited(AbstractRacewayControl):
         return jnp.clip(needed, -self.friction, self.friction) * load
 
 
-class OperatingCentrifugal(AbstractRacewayControl):
-    """The centrifugal force of the orbit at the operating contact angles, no more.
-
-    Gyroscopic moments are left out; the spin axis is that of outer control. For codes
-    that do so, such as the program of Harris and Mindel, Wear 23 (1973).
-    """
+class AbstractWithoutMoment(AbstractRacewayControl):
+    """No gyroscopic moment; the spin axis is that of outer control."""
 
     @property
     def has_moment(self):
@@ -158,7 +154,15 @@ class OperatingCentrifugal(AbstractRacewayControl):
         return jnp.zeros_like(load)
 
 
-class CentrifugalOnly(AbstractRacewayControl):
+class OperatingCentrifugal(AbstractWithoutMoment):
+    """The centrifugal force of the orbit at the operating contact angles, no more.
+
+    Gyroscopic moments are left out; the spin axis is that of outer control. For codes
+    that do so, such as the program of Harris and Mindel, Wear 23 (1973).
+    """
+
+
+class CentrifugalOnly(AbstractWithoutMoment):
     """Only the centrifugal force, of the orbit at the free contact angle.
 
     The one choice whose forces have a potential; gyroscopic moments are left out.
@@ -168,16 +172,6 @@ class CentrifugalOnly(AbstractRacewayControl):
     @property
     def has_reaction(self):
         return False
-
-    @property
-    def has_moment(self):
-        return False
-
-    def rolling_share(self, load):
-        return jnp.ones_like(load[0])
-
-    def traction(self, load, demand):
-        return jnp.zeros_like(load)
 
 
 class BallKinematics(NamedTuple):
