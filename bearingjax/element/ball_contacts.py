@@ -117,6 +117,13 @@ class GrooveGeometry(eqx.Module):
         On two arcs it rolls on the one that it presses more deeply; while both are
         pressed within a thousandth of its diameter of each other, in between.
 
+        An inner raceway that it has left does not drive it, and the line of centres
+        there may point anywhere: the ball then goes round with the others, as if that
+        contact lay opposite the outer one, with γ = D/d_m at (1 ∓ γ cos α_o)/2 of the
+        ring speeds. Directions are mixed over a gap of half the groove's L, so that
+        forces neither jump nor let a ball both touch and hang free. In balance the
+        outer raceway is never left.
+
         Args:
             contacts: From `touch`.
             load: Load of each contact [N].
@@ -127,12 +134,13 @@ class GrooveGeometry(eqx.Module):
             of two arcs their sum.
         """
         vectors = jnp.asarray(self.outwards, load.dtype)[:, None] * contacts.normal
-        normals, loads = [], []
+        normals, loads, depths = [], [], []
         for ring in (True, False):
             mine = [k for k, on_outer in enumerate(self.on_outer) if on_outer is ring]
             if len(mine) == 1:
                 normals.append(vectors[mine[0]])
                 loads.append(load[mine[0]])
+                depths.append(contacts.approach[mine[0]])
                 continue
             first, second = mine
             deeper = contacts.approach[first] - contacts.approach[second]
@@ -141,7 +149,12 @@ class GrooveGeometry(eqx.Module):
             mean = share * vectors[first] + (1.0 - share) * vectors[second]
             normals.append(mean / jnp.sqrt(dot(mean, mean)))
             loads.append(load[first] + load[second])
-        return jnp.stack(normals), jnp.stack(loads)
+            depths.append(contacts.approach[second] + share * deeper)
+        outer, inner = normals
+        near = jnp.clip(1.0 + 2.0 * depths[1] / self.reach[-1], 0.0, 1.0)
+        grip = near * near * (3.0 - 2.0 * near)
+        inner = grip * inner + (1.0 - grip) * outer
+        return jnp.stack([outer, inner]), jnp.stack(loads)
 
 
 def angles(vectors: Float[Array, "*n 2"]) -> Float[Array, "*n"]:

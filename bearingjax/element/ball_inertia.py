@@ -13,7 +13,6 @@ from ..design.ball import AbstractBallBearing
 from ..numerics.types import Scalar
 from .ball_speed import (
     MOST_FRICTION,
-    NO_LOAD,
     AbstractRacewayControl,
     BallKinematics,
     ball_kinematics,
@@ -21,9 +20,6 @@ from .ball_speed import (
 )
 from .frame import orbit, roll_ratio
 from .inertia import Speed
-
-_LEAST = 0.1
-"""Of the centrifugal force: an inner contact that carries less drives in part."""
 
 
 class Turning(NamedTuple):
@@ -92,43 +88,23 @@ def turning(
     return Turning(speed, control, gamma, centrifugal, mass, moment, radius, diameter)
 
 
-def inner_direction(
-    t: Turning, normals: Float[Array, "2 2"], loads: Float[Array, "2"]
-) -> Float[Array, "2"]:
-    """Direction of the inner contact that decides how a ball rolls (2,).
-
-    A raceway that a ball has left does not drive it, and the line of centres there may
-    point anywhere. Such a ball goes round with the others, as if the inner contact lay
-    opposite the outer one: with γ = D/d_m at (1 ∓ γ cos α_o)/2 of the ring speeds. In
-    between, up to a tenth of the centrifugal force as contact load, the directions are
-    mixed, so that forces do not jump. In balance the outer contact is never left.
-
-    Args:
-        t: Inertia of the ball.
-        normals: Unit vectors (sin α, cos α) at outer and inner raceway (2, 2).
-        loads: Contact loads there (2,) [N].
-    """
-    part = jnp.minimum(loads[1] / (_LEAST * t.centrifugal + NO_LOAD), 1.0)
-    grip = part * part * (3.0 - 2.0 * part)
-    return grip * normals[1] + (1.0 - grip) * normals[0]
-
-
 def carried(t: Turning, normals: Float[Array, "2 2"], loads: Float[Array, "2"]):
     """How a ball is carried round at given contact angles.
 
     Args:
-        t, normals, loads: As of `inner_direction`.
+        t: Its inertia.
+        normals: Unit vectors (sin α, cos α) at outer and inner raceway (2, 2).
+        loads: Contact loads there (2,) [N].
 
     Returns:
         Carried.
     """
     # In balance the outer raceway carries the centrifugal force at least; on the
     # way there shares must not jump where a ball in flight first touches.
-    least = jnp.maximum(loads[0], _LEAST * t.centrifugal)
+    least = jnp.maximum(loads[0], 0.1 * t.centrifugal)
     shared = jnp.stack([least, loads[1]])
     share = t.control.rolling_share(shared)
-    inner = inner_direction(t, normals, loads)
-    kinematics = ball_kinematics(normals[0], inner, share, t.ratio, t.speed)
+    kinematics = ball_kinematics(normals[0], normals[1], share, t.ratio, t.speed)
     demand = 2.0 / t.diameter * gyroscopic_moment(t.moment, kinematics)
     # Whatever the control says, no contact holds more than friction lets it.
     most = MOST_FRICTION * loads

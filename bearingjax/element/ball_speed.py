@@ -23,8 +23,8 @@ from .inertia import Speed
 MOST_FRICTION = 0.3
 """Coefficient of friction that no raceway contact exceeds, whatever the control [1]."""
 
-NO_LOAD = 1e-15
-"""A load far below any that matters, for shares of no load at all [N]."""
+# A load [N] far below any that matters, for shares of no load at all.
+_NO_LOAD = 1e-15
 # Keep the kinematics finite for geometries in which no ball rolls.
 _COSINE, _SQUARE = 0.1, 1e-30
 
@@ -135,7 +135,7 @@ class FrictionLimited(AbstractRacewayControl):
         return _outer_share(load)
 
     def traction(self, load, demand):
-        total = load[0] + load[1] + NO_LOAD
+        total = load[0] + load[1] + _NO_LOAD
         needed = demand / total
         return jnp.clip(needed, -self.friction, self.friction) * load
 
@@ -260,4 +260,4 @@ def ball_mass(diameter: Scalar, density: Scalar) -> tuple[Scalar, Scalar]:
 
 
 def _outer_share(load):
-    return (load[0] + NO_LOAD) / (load[0] + load[1] + 2.0 * NO_LOAD)
+    return (load[0] + _NO_LOAD) / (load[0] + load[1] + 2.0 * _NO_LOAD)
