@@ -298,3 +298,19 @@ def test_beyond_the_end_of_a_groove_the_raceway_goes_straight_on(deep):
         assert np.allclose(normal, [np.sign(z), 0.0])
     lost, normal = at(0.0, -5.0 * reach)
     assert lost == pytest.approx(-reach, rel=SOLVER) and not normal.any()
+
+
+def test_a_lifting_ball_has_one_state_only():
+    """Solved anew at the same ring motion it is found again, touching or hanging free,
+    at large contact angles too."""
+    name = "angular contact, 40 deg, friction"
+    element, one_sided = robust_balls.designs()[name]
+    rng = np.random.default_rng(1)
+    loads = robust_balls.random_loads(rng, one_sided, 0, 50)
+    speeds = jnp.asarray(rng.uniform(0, 1, 50) ** 2 * 6283.0)
+    code, _, residual, _, lifted, _ = map(
+        np.asarray, robust_balls.solve(element, jnp.asarray(loads), speeds)
+    )
+    assert lifted.sum() > 20
+    assert np.all(code == bj.Result.CONVERGED)
+    assert residual.max() < 1e-8
