@@ -330,6 +330,10 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
             )
             raise operating.error("load", problem)
     rpm = {r: operating.quantity(f"{r}_speed", "speed", 0.0) for r in RINGS}
+    held = is_ball(bearing) and isinstance(element.kinematics, ConstantAngle)
+    if held and any(rpm.values()):
+        problem = "constant_angle is for balls at rest; leave out the speeds"
+        raise numerics.error("kinematics", problem)
     return Scene(
         name=name,
         element=element,

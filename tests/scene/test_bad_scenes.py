@@ -435,6 +435,11 @@ SETTINGS = {
         "set={arrangement='tandem', spacing='19 mm', spring_force='3 N'}",
         "`set.spring_force`: is for rows that face each other; those of a tandem do",
     ),
+    "turning balls of constant angle": (
+        "angular_contact",
+        "numerics.kinematics=constant_angle",
+        "`numerics.kinematics`: constant_angle is for balls at rest; leave out the",
+    ),
     "load on what is prescribed": (
         "self_aligning",
         "operating.load.Mx=5 N m",
