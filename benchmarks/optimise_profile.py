@@ -52,8 +52,8 @@ import numpy as np  # noqa: E402
 from quadrature import processor  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.statics.design_problem import Options, Problem  # noqa: E402
-from bearingjax.statics.search import Ending  # noqa: E402
+from bearingjax.optimise.design_problem import Options, Problem  # noqa: E402
+from bearingjax.optimise.search import Ending  # noqa: E402
 
 REFERENCE = (1.0, 0.6, 8e-6)
 LOWER, UPPER = (0.5, 0.2, 2e-6), (8.0, 1.0, 60e-6)

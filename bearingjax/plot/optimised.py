@@ -7,8 +7,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design import AbstractRollerBearing, rows_of
-from ..statics.measure import label_of
-from ..statics.optimise import Optimised
+from ..optimise.measure import label_of
+from ..optimise.optimise import Optimised
 from .style import (
     COLOURS,
     GREY,

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from ..statics.design_problem import Outcome
-from ..statics.measure import AbstractMeasure, EdgeLoad, label_of
-from ..statics.optimise import Optimised
+from ..optimise.design_problem import Outcome
+from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
+from ..optimise.optimise import Optimised
 from .bearing_table import KIND_OF
 from .optimise_table import Optimisation
 

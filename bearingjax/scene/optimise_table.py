@@ -7,8 +7,7 @@ from typing import Any
 
 from ..design import BearingSet, is_ball, rows_of
 from ..element import FREEDOMS, BearingElement
-from ..statics.cases import Cases
-from ..statics.measure import (
+from ..optimise.measure import (
     EXPONENT,
     Constraint,
     Displacement,
@@ -18,8 +17,9 @@ from ..statics.measure import (
     Stiffness,
     StiffnessTarget,
 )
-from ..statics.search import METHODS
-from ..statics.variable import Variable, check_variables, design_numbers
+from ..optimise.search import METHODS
+from ..optimise.variable import Variable, check_variables, design_numbers
+from ..statics.cases import Cases
 from .bearing_table import drawn
 from .cases_table import read_cases
 from .quantity import SceneError

@@ -3,8 +3,8 @@
 import functools
 
 from ..element import BearingElement
+from ..optimise.optimise import Optimised, optimise
 from ..statics.load import solve_load
-from ..statics.optimise import Optimised, optimise
 from ..statics.preload import preload
 from ..statics.solution import Solution
 from .optimise_table import Optimisation

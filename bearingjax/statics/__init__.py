@@ -2,20 +2,9 @@
 
 from .cases import Cases as Cases
 from .cases import solve_case as solve_case
-from .design_problem import Outcome as Outcome
 from .linearise import OperatingPoint as OperatingPoint
 from .linearise import linearise as linearise
 from .load import solve_load as solve_load
-from .measure import Constraint as Constraint
-from .measure import Displacement as Displacement
-from .measure import EdgeLoad as EdgeLoad
-from .measure import MeanPressure as MeanPressure
-from .measure import PeakPressure as PeakPressure
-from .measure import Stiffness as Stiffness
-from .measure import StiffnessTarget as StiffnessTarget
-from .optimise import History as History
-from .optimise import Optimised as Optimised
-from .optimise import optimise as optimise
 from .preload import preload as preload
 from .refine import Refined as Refined
 from .refine import refine as refine
@@ -28,6 +17,4 @@ from .support import restrained_freedoms as restrained_freedoms
 from .sweep import Sweep as Sweep
 from .sweep import stack_designs as stack_designs
 from .sweep import sweep as sweep
-from .variable import Variable as Variable
-from .variable import design_numbers as design_numbers
 from .warning import warnings as warnings

@@ -9,6 +9,8 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import SceneError, read_scene
+from bearingjax.optimise import design_numbers
+from bearingjax.optimise.variable import changed
 from bearingjax.scene import (
     optimisation_report,
     read_optimisation,
@@ -59,9 +61,7 @@ def scene(tmp_path):
 def test_command_finds_the_clearance_of_a_stiffness(run, scene, tmp_path):
     element = read_scene(scene(GOOD)).element
     wanted = bj.solve_load(
-        bj.statics.variable.changed(
-            element, {"bearing.radial_internal_clearance": 15e-6}
-        ),
+        changed(element, {"bearing.radial_internal_clearance": 15e-6}),
         [0, -3e3, 0, 0, 0, 0],
         free=["uy"],
     ).stiffness[7, 7]
@@ -139,7 +139,7 @@ def test_shipped_scene_says_what_it_wants():
 def test_every_number_of_every_scene_may_be_free(name):
     """Each has a kind of quantity, and its paths lead to it."""
     element = read_scene(name).element
-    there = bj.statics.design_numbers(element)
+    there = design_numbers(element)
     numbers = scene_numbers(element)
     assert len(numbers) >= 6
     for key, paths in numbers.items():

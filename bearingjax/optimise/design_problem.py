@@ -11,12 +11,12 @@ import numpy as np
 
 from ..element.bearing_element import BearingElement
 from ..numerics.result import Result, SolveError
-from .cases import Cases, solve_case
+from ..statics.cases import Cases, solve_case
+from ..statics.solution import Solution, message
+from ..statics.warning import warnings as warnings_of
 from .measure import exact_of, least_size_of
-from .solution import Solution, message
 from .trials import Trial
 from .variable import with_values
-from .warning import warnings as warnings_of
 
 CHUNK = 64
 """Most cases that are solved side by side."""

@@ -7,8 +7,8 @@ import pytest
 import registry
 
 import bearingjax as bj
-from bearingjax.statics import design_numbers
-from bearingjax.statics.variable import changed
+from bearingjax.optimise import design_numbers
+from bearingjax.optimise.variable import changed
 
 
 def special():

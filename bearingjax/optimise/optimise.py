@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..element.bearing_element import BearingElement, check_element
-from .cases import Cases
+from ..statics.cases import Cases
+from ..statics.support import check_held
 from .design_problem import Build, Measure, Options, Outcome, Problem
 from .measure import Constraint
 from .search import METHODS, Ending, search, takes_gradients
-from .support import check_held
 from .trials import Trial, Trials, optimality
 from .variable import Variable, check_variables
 
@@ -131,7 +131,8 @@ def optimise(
         method: "l-bfgs-b" (the default without constraints), "slsqp" (with them),
             "adam" or any Optax gradient transformation, projected onto the bounds;
             "nelder-mead", which asks for no gradients and is there to compare, or a
-            function like it (see `statics.search`). Only "slsqp" keeps constraints.
+            function like it (see `search` in `bearingjax/optimise/search.py`). Only
+            "slsqp" keeps constraints.
         max_steps: Step limit of the search.
         tolerance: `optimality` at which the search ends; constraints are kept to this
             share of their bound, and within it count as active. 1e-5 moves the

@@ -4,8 +4,8 @@ import numpy as np
 import optax
 import pytest
 
-from bearingjax.statics.search import Ending, arrived, search
-from bearingjax.statics.trials import Trial, Trials, optimality
+from bearingjax.optimise.search import Ending, arrived, search
+from bearingjax.optimise.trials import Trial, Trials, optimality
 
 TOLERANCE = 1e-5
 METHODS = {name: name for name in ("l-bfgs-b", "slsqp", "adam", "nelder-mead")}

@@ -12,13 +12,13 @@ import pytest
 from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
-from bearingjax.statics import design_numbers
-from bearingjax.statics.design_problem import Options, Problem, Run
-from bearingjax.statics.measure import smooth_maximum, smooth_minimum
-from bearingjax.statics.optimise import verdict
-from bearingjax.statics.search import Ending
-from bearingjax.statics.trials import Trial, Trials, optimality
-from bearingjax.statics.variable import changed
+from bearingjax.optimise import design_numbers
+from bearingjax.optimise.design_problem import Options, Problem, Run
+from bearingjax.optimise.measure import smooth_maximum, smooth_minimum
+from bearingjax.optimise.optimise import verdict
+from bearingjax.optimise.search import Ending
+from bearingjax.optimise.trials import Trial, Trials, optimality
+from bearingjax.optimise.variable import changed
 
 PROFILE = "bearing.roller_profile."
 PLAY = "bearing.radial_internal_clearance"

@@ -21,8 +21,8 @@ from ..design.checks import check, number
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.types import Scalar, as_real
-from .cases import Cases
-from .solution import RollerSolution, Solution
+from ..statics.cases import Cases
+from ..statics.solution import RollerSolution, Solution
 
 EXPONENT = 64.0
 """Of smooth maxima: with the 100 samples that stand near a peak, 7 % above it."""

@@ -1,0 +1,19 @@
+"""Design optimisation: variables, measures, constraints and the searches.
+
+The function `optimise` has the name of the folder: `bearingjax.optimise` is the
+function, and what else stands here is imported by `from bearingjax.optimise import`.
+"""
+
+from .design_problem import Outcome as Outcome
+from .measure import Constraint as Constraint
+from .measure import Displacement as Displacement
+from .measure import EdgeLoad as EdgeLoad
+from .measure import MeanPressure as MeanPressure
+from .measure import PeakPressure as PeakPressure
+from .measure import Stiffness as Stiffness
+from .measure import StiffnessTarget as StiffnessTarget
+from .optimise import History as History
+from .optimise import Optimised as Optimised
+from .optimise import optimise as optimise
+from .variable import Variable as Variable
+from .variable import design_numbers as design_numbers
