@@ -17,14 +17,6 @@ from .line import peak_pressure as peak_pressure
 from .line import relative_radius as relative_radius
 from .line_contact import LineContact as LineContact
 from .line_contact import response as response
-from .line_formulas import LINE_FORMULAS as LINE_FORMULAS
-from .line_formulas import LineBodies as LineBodies
-from .line_formulas import dinnik as dinnik
-from .line_formulas import kowalsky as kowalsky
-from .line_formulas import kunert_steel as kunert_steel
-from .line_formulas import lundberg as lundberg
-from .line_formulas import palmgren_steel as palmgren_steel
-from .line_formulas import tripp as tripp
 from .point_law import AbstractPointLaw as AbstractPointLaw
 from .point_law import FreeAngle as FreeAngle
 from .point_law import OperatingAngle as OperatingAngle

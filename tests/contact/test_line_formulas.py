@@ -1,24 +1,23 @@
-"""Approach formulas against the printed table, stress integrals and half-spaces.
+"""Published approach formulas against printed values, and the package against them.
 
 Sources: Teutsch & Sauer (2004), table 1, worked out for a roller of 20 x 30 mm on a
 pitch circle of 60 mm, rings 6 mm thick, 203.1 GPa, 0.3 (case LC-1, 1e-4); stresses
 under a line contact (Johnson, 4.46), integrated; the half-space solver (LC-2c, LC-3).
 """
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from line_formulas import LINE_FORMULAS, LineBodies, lundberg, tripp
 from scipy.integrate import quad
-from tolerances import DIFFERENCE, ROUNDING
+from tolerances import ROUNDING
 
 import bearingjax as bj
-from bearingjax.contact import LINE_FORMULAS, LineBodies, lundberg, tripp
 from bearingjax.contact.halfspace import RollerContact
 
 MATERIAL = bj.Material(elastic_modulus=203.1e9)
 PAIR = {"roller": MATERIAL, "ring": MATERIAL}
-LOADS = jnp.array([3e3, 15e3, 60e3])
+LOADS = np.array([3e3, 15e3, 60e3])
 INNER = LineBodies(0.030, 0.010, 0.020, **PAIR)
 OUTER = LineBodies(0.030, 0.010, -0.040, ring_thickness=0.006, **PAIR)
 # In um, inner then outer raceway.
@@ -55,17 +54,10 @@ def test_how_far_they_are_apart():
     )
 
 
-def test_dimensional_formulas_are_for_steel():
-    """Palmgren's agrees with its general form at 206 GPa, whatever the bodies."""
-    load = jnp.asarray(1000.0)
-    steel, soft = bj.Material(), bj.Material(elastic_modulus=70e9)
-    for name in ("palmgren_steel", "kunert_steel"):
-        one, other = (
-            LINE_FORMULAS[name](load, LineBodies(0.010, 0.005, 0.02, ring=m))
-            for m in (steel, soft)
-        )
-        assert one == other
-    found = LINE_FORMULAS["palmgren_steel"](load, LineBodies(0.010, 0.005, 0.02))
+def test_palmgren_of_steel_is_the_line_law_of_the_package():
+    """To 0.2 %: the form for any material, at 206 GPa."""
+    found = LINE_FORMULAS["palmgren_steel"](1000.0, LineBodies(0.010, 0.005, 0.02))
+    steel = bj.Material()
     constant = bj.contact.Palmgren().constant(steel, steel, jnp.asarray(0.010))
     general = (1e5 / float(constant)) ** 0.9
     assert float(found) == pytest.approx(general, rel=2e-3)
@@ -74,7 +66,7 @@ def test_dimensional_formulas_are_for_steel():
 def test_ring_against_the_strain_below_the_contact():
     """Tripp's term of a ring: strain from the surface to its thickness, on the axis."""
     steel, soft = bj.Material(), bj.Material(elastic_modulus=3e9, poisson_ratio=0.4)
-    thickness, load = 0.006, jnp.asarray(3.0)
+    thickness, load = 0.006, 3.0
 
     def ring(material):
         return LineBodies(
@@ -104,7 +96,7 @@ def test_ring_against_the_strain_below_the_contact():
 def test_exchange_of_two_cylinders():
     """Which of two cylinders is called the roller does not matter."""
     a, b = bj.Material(), bj.Material.silicon_nitride()
-    load = jnp.asarray(5e3)
+    load = 5e3
     for name in ("lundberg", "dinnik", "kowalsky", "tripp"):
         one = LINE_FORMULAS[name](load, LineBodies(0.01, 0.004, 0.03, roller=a, ring=b))
         two = LINE_FORMULAS[name](load, LineBodies(0.01, 0.03, 0.004, roller=b, ring=a))
@@ -119,7 +111,7 @@ def test_lundberg_against_half_spaces():
         0.010, 0.010, 0.010, roller_profile=bj.Lundberg(5000.0), **pair
     )
     plane = LineBodies(0.010, 0.005, np.inf, roller=material, ring=material)
-    formula = float(lundberg(jnp.asarray(5000.0), plane))
+    formula = float(lundberg(5000.0, plane))
     solved = float(roller.solve(5000.0).approach)
     assert formula == pytest.approx(14.852e-6, rel=1e-4)
     assert solved / formula == pytest.approx(14.903 / 14.852, rel=2e-3)
@@ -127,69 +119,6 @@ def test_lundberg_against_half_spaces():
     pair = {"material": material, "raceway_material": material}
     square = RollerContact(0.010, 0.010, 0.010, **pair).solve(2000.0)
     plane = LineBodies(0.010, 0.005, np.inf, roller=material, ring=material)
-    formula = float(lundberg(jnp.asarray(2000.0), plane))
+    formula = float(lundberg(2000.0, plane))
     assert formula == pytest.approx(6.3996e-6, rel=1e-4)
     assert float(square.approach) / formula == pytest.approx(5.977 / 6.3996, rel=2e-3)
-
-
-@pytest.mark.parametrize("name", LINE_FORMULAS)
-def test_derivatives_and_batches(name):
-    """By load, sizes and material of the ring; zero where nothing is carried."""
-
-    def approach(v):
-        ring = bj.Material(203.1e9 * v[5], 0.3 * v[6])
-        bodies = LineBodies(
-            0.030 * v[1],
-            0.010 * v[2],
-            -0.040 * v[3],
-            ring_thickness=0.006 * v[4],
-            ring=ring,
-        )
-        return 1e5 * LINE_FORMULAS[name](15e3 * v[0], bodies)
-
-    point = jnp.ones((7,))
-    reverse = jax.jit(jax.grad(approach))(point)
-    forward = jax.jit(jax.jacfwd(approach))(point)
-    np.testing.assert_allclose(forward, reverse, rtol=ROUNDING, atol=1e-14)
-    step = 1e-5
-    for i, e in enumerate(np.eye(7)):
-        ends = (approach(point + step * e), approach(point - step * e))
-        slope = float(ends[0] - ends[1]) / (2.0 * step)
-        assert float(reverse[i]) == pytest.approx(slope, abs=DIFFERENCE)
-    loads = jnp.array([-1.0, 0.0, 3e3, jnp.nan])
-    value, slope = jax.jit(
-        jax.vmap(
-            jax.value_and_grad(lambda q: LINE_FORMULAS[name](q, INNER)),
-        )
-    )(loads)
-    assert not value[:2].any() and not slope[:2].any()
-    assert float(value[2]) == pytest.approx(1e-6 * TABLE[name][0][0], rel=1e-4)
-    assert np.isfinite(slope[2]) and np.isnan(value[3])
-
-
-def test_a_ring_needs_its_thickness():
-    load, outer = jnp.asarray(1e3), LineBodies(0.03, 0.01, -0.04)
-    for name in ("dinnik", "kowalsky", "tripp"):
-        with pytest.raises(ValueError, match="where `ring_thickness` is not given"):
-            LINE_FORMULAS[name](load, outer)
-        # Traced, it cannot be refused: it is no number.
-        found = jax.jit(
-            lambda r, n=name: LINE_FORMULAS[n](load, LineBodies(0.03, 0.01, r))
-        )(jnp.asarray(-0.04))
-        assert np.isnan(found)
-    assert np.isfinite(lundberg(load, outer))
-
-
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [
-        ({"length": 0.0}, "length"),
-        ({"roller_radius": -0.01}, "roller_radius"),
-        ({"raceway_radius": -0.005}, "larger than the roller's"),
-        ({"ring_thickness": 0.0}, "ring_thickness"),
-    ],
-)
-def test_wrong_bodies(change, text):
-    good = {"length": 0.03, "roller_radius": 0.01, "raceway_radius": 0.02}
-    with pytest.raises(ValueError, match=text):
-        LineBodies(**(good | change))
