@@ -1,13 +1,20 @@
-"""Units that scenes, tables and reports name are those of the docstrings."""
+"""Units of fields, which checks, scenes, tables and reports read, are those of the
+docstrings."""
 
 import dataclasses
+import importlib
 import itertools
+import pkgutil
 import re
 
+import equinox as eqx
+import numpy as np
 import pytest
 
 import bearingjax as bj
 from bearingjax import design
+from bearingjax.numerics.types import as_real
+from bearingjax.numerics.units import unit, unit_of
 from bearingjax.scene.bearing_table import KIND_OF
 from bearingjax.scene.quantity import KINDS
 from bearingjax.statics.solution import BallSolution, RollerSolution
@@ -27,6 +34,54 @@ MEASURES = [
     *(bj.Displacement(freedom) for freedom in ("ux", "gy")),
     *(bj.Stiffness(freedom) for freedom in ("uz", "gx")),
 ]
+
+
+OUTSIDE = "bearingjax.plot", "bearingjax.__main__"
+
+
+def with_units():
+    """Classes of the package whose own fields are real numbers, or have a unit."""
+    for module in pkgutil.walk_packages(bj.__path__, "bearingjax."):
+        if not module.name.startswith(OUTSIDE):
+            for kind in vars(importlib.import_module(module.name)).values():
+                own = isinstance(kind, type) and kind.__module__ == module.name
+                if own and any(numbers(kind)):
+                    yield kind
+
+
+def numbers(kind):
+    """Names of the fields of a class that are, or become, real numbers."""
+    if dataclasses.is_dataclass(kind):
+        for field in dataclasses.fields(kind):
+            converter = field.metadata.get("converter")
+            if converter is as_real or "unit" in field.metadata:
+                yield field.name
+
+
+@pytest.mark.parametrize("kind", list(with_units()), ids=lambda kind: kind.__name__)
+def test_units_of_fields_are_those_of_the_docstring(kind):
+    fields = {field.name: field for field in dataclasses.fields(kind)}
+    for name in numbers(kind):
+        assert set(np.ravel(fields[name].metadata["unit"])) == stated(kind, name), name
+
+
+def test_an_entry_has_the_unit_of_its_axis():
+    class Example(eqx.Module):
+        motion: tuple = eqx.field(metadata=unit(("m", "m", "rad")))
+        ratio: float = eqx.field(metadata=unit("1"))
+        number: int
+
+    assert [unit_of(Example, "motion", (7, k)) for k in range(4)] == [
+        "m",
+        "m",
+        "rad",
+        "m",
+    ]
+    assert unit_of(Example, "ratio") == unit_of(Example, "number") == ""
+    part = design.Rib(1.0, 0.1, 0.0)
+    assert unit_of(design.Ribs(part), "outer_minus.axial_gap") == "m"
+    with pytest.raises(KeyError, match="none"):
+        unit_of(Example, "none")
 
 
 def stated(kind, name):

@@ -11,6 +11,7 @@ from jaxtyping import Array, Float
 from ..design.checks import positive
 from ..design.material import Material, contact_modulus
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 
 EXPONENT = (10, 9)
 """Line load ∝ approach^(10/9), as a fraction."""
@@ -86,10 +87,10 @@ class LineConstant(AbstractLineLaw):
     Traced: all fields.
     """
 
-    value: Scalar = eqx.field(converter=as_real)
+    value: Scalar = eqx.field(converter=as_real, metadata=unit("N/m^(19/9)"))
 
     def __check_init__(self):
-        positive(self, "value", self.value, "N/m^(19/9)")
+        positive(self, "value")
 
     def constant(self, roller, ring, length):
         return self.value

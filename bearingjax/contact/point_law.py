@@ -17,6 +17,7 @@ from ..design.ball import AbstractBallBearing, Groove
 from ..design.checks import positive
 from ..design.material import contact_modulus
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .hertz import Ellipse, ellipse
 
 # Degree of the interpolation of ln c over cos α: 1e-13 for balls up to 0.4 of the
@@ -160,12 +161,12 @@ class PointConstant(AbstractPointLaw):
     Traced: all fields.
     """
 
-    outer: Scalar = eqx.field(converter=as_real)
-    inner: Scalar = eqx.field(converter=as_real)
+    outer: Scalar = eqx.field(converter=as_real, metadata=unit("N/m^(3/2)"))
+    inner: Scalar = eqx.field(converter=as_real, metadata=unit("N/m^(3/2)"))
 
     def __check_init__(self):
         for name in ("outer", "inner"):
-            positive(self, name, getattr(self, name), "N/m^(3/2)")
+            positive(self, name)
 
     def constants(self, balls, grooves, free_cosine):
         return jnp.stack([self.outer if g.on_outer else self.inner for g in grooves])

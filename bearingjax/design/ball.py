@@ -17,6 +17,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_count, as_real
+from ..numerics.units import unit
 from .checks import (
     check,
     concrete,
@@ -73,21 +74,25 @@ class AbstractBallBearing(eqx.Module):
     """
 
     n_balls: int = eqx.field(static=True, converter=as_count)
-    pitch_diameter: Scalar = eqx.field(converter=as_real)
-    ball_diameter: Scalar = eqx.field(converter=as_real)
+    pitch_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    ball_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
     outer_osculation: Scalar | None = eqx.field(
-        converter=as_real, default=None, kw_only=True
+        converter=as_real, metadata=unit("1"), default=None, kw_only=True
     )
-    inner_osculation: Scalar = eqx.field(converter=as_real, kw_only=True)
-    first_azimuth: Scalar = eqx.field(converter=as_real, default=0.0, kw_only=True)
+    inner_osculation: Scalar = eqx.field(
+        converter=as_real, metadata=unit("1"), kw_only=True
+    )
+    first_azimuth: Scalar = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=0.0, kw_only=True
+    )
     ball_deviation: Float[Array, " ball"] | None = eqx.field(
-        converter=as_real, default=None, kw_only=True
+        converter=as_real, metadata=unit("m"), default=None, kw_only=True
     )
     outer_shoulder: Scalar | None = eqx.field(
-        converter=as_real, default=None, kw_only=True
+        converter=as_real, metadata=unit("m"), default=None, kw_only=True
     )
     inner_shoulder: Scalar | None = eqx.field(
-        converter=as_real, default=None, kw_only=True
+        converter=as_real, metadata=unit("m"), default=None, kw_only=True
     )
     material: Material = eqx.field(default_factory=Material, kw_only=True)
     ring_material: Material | None = eqx.field(default=None, kw_only=True)
@@ -162,8 +167,8 @@ class AbstractBallBearing(eqx.Module):
     def __check_init__(self):
         count(self, "n_balls", self.n_balls)
         for name in ("pitch_diameter", "ball_diameter"):
-            positive(self, name, getattr(self, name), "m")
-        number(self, "first_azimuth", self.first_azimuth, "rad")
+            positive(self, name)
+        number(self, "first_azimuth")
         for ring in ("outer", "inner"):
             self._check_groove(ring)
         self._check_materials()
@@ -178,18 +183,18 @@ class AbstractBallBearing(eqx.Module):
                 f"{type(self).__name__}: `{name}` is missing; give the groove radius"
                 " over the ball diameter, such as 0.52."
             )
-        number(self, name, value, "")
+        number(self, name)
         numbers = concrete(value)
         if numbers is not None:
             allowed = (
                 "above 0.5 and below 1: groove radius over ball diameter, such as 0.52"
             )
-            check(self, name, value, "", 0.5 < numbers[0] < 1.0, allowed)
+            check(self, name, 0.5 < numbers[0] < 1.0, allowed)
         name = f"{ring}_shoulder"
         value = getattr(self, name)
         if value is None:
             return
-        in_range(self, name, value, "m", 0.0, self.ball_diameter)
+        in_range(self, name, 0.0, self.ball_diameter)
 
     def _check_materials(self):
         owner = type(self).__name__
@@ -216,14 +221,14 @@ class AbstractBallBearing(eqx.Module):
             f" {pitch:.6g} m"
         )
         fits = pitch > ball * math.cos(angle)
-        check(self, "ball_diameter", ball, "m", fits, allowed)
+        check(self, "ball_diameter", fits, allowed)
         most = int(math.pi / math.asin(min(1.0, ball / pitch)))
         allowed = (
             "low enough that balls do not overlap around the pitch circle (at most"
             f" {most} of this size)"
         )
         apart = self.n_balls == 1 or ball < pitch * math.sin(math.pi / self.n_balls)
-        check(self, "n_balls", self.n_balls, "balls", apart, allowed)
+        check(self, "n_balls", apart, allowed, self.n_balls, "balls")
 
     def _check_deviation(self):
         value = self.ball_deviation
@@ -252,4 +257,4 @@ class AbstractBallBearing(eqx.Module):
         )
         value = np.asarray(value)
         ok = np.isfinite(value) & (value < most) & (value > -ball)
-        check(self, "ball_deviation", value, "m", ok, allowed)
+        check(self, "ball_deviation", ok, allowed)

@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .ball import AbstractBallBearing, Groove
 from .checks import check, concrete, in_range, number, positive
 
@@ -24,10 +25,10 @@ class DeepGrooveBallBearing(AbstractBallBearing):
     """
 
     radial_internal_clearance: Scalar | None = eqx.field(
-        converter=as_real, default=None, kw_only=True
+        converter=as_real, metadata=unit("m"), default=None, kw_only=True
     )
     contact_angle: Scalar | None = eqx.field(
-        converter=as_real, default=None, kw_only=True
+        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
     )
 
     @property
@@ -68,18 +69,10 @@ class DeepGrooveBallBearing(AbstractBallBearing):
                 " `contact_angle` are both given; one follows from the other."
             )
         if angle is not None:
-            in_range(
-                self,
-                "contact_angle",
-                angle,
-                "rad",
-                0.0,
-                0.5 * np.pi,
-                include_low=True,
-            )
+            in_range(self, "contact_angle", 0.0, 0.5 * np.pi, include_low=True)
         if clearance is None:
             return
-        number(self, "radial_internal_clearance", clearance, "m")
+        number(self, "radial_internal_clearance")
         numbers = concrete(clearance, self.centre_distance)
         if numbers is not None:
             most = 2.0 * numbers[1]
@@ -88,7 +81,7 @@ class DeepGrooveBallBearing(AbstractBallBearing):
                 " meant?)"
             )
             fits = abs(numbers[0]) < most
-            check(self, "radial_internal_clearance", clearance, "m", fits, allowed)
+            check(self, "radial_internal_clearance", fits, allowed)
 
 
 class AngularContactBallBearing(AbstractBallBearing):
@@ -104,7 +97,9 @@ class AngularContactBallBearing(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
-    contact_angle: Scalar = eqx.field(converter=as_real, kw_only=True)
+    contact_angle: Scalar = eqx.field(
+        converter=as_real, metadata=unit("rad"), kw_only=True
+    )
 
     @property
     def free_contact_angle(self):
@@ -127,7 +122,7 @@ class AngularContactBallBearing(AbstractBallBearing):
         return _pair(self, self.free_contact_angle, open_side=True)
 
     def __check_init__(self):
-        in_range(self, "contact_angle", self.contact_angle, "rad", 0.0, 0.5 * np.pi)
+        in_range(self, "contact_angle", 0.0, 0.5 * np.pi)
 
 
 class ThrustBallBearing(AbstractBallBearing):
@@ -183,9 +178,11 @@ class FourPointBallBearing(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
-    shim_angle: Scalar = eqx.field(converter=as_real, kw_only=True)
+    shim_angle: Scalar = eqx.field(
+        converter=as_real, metadata=unit("rad"), kw_only=True
+    )
     radial_internal_clearance: Scalar = eqx.field(
-        converter=as_real, default=0.0, kw_only=True
+        converter=as_real, metadata=unit("m"), default=0.0, kw_only=True
     )
 
     @property
@@ -221,9 +218,9 @@ class FourPointBallBearing(AbstractBallBearing):
         return tuple(out)
 
     def __check_init__(self):
-        in_range(self, "shim_angle", self.shim_angle, "rad", 0.0, 0.5 * np.pi)
+        in_range(self, "shim_angle", 0.0, 0.5 * np.pi)
         clearance = self.radial_internal_clearance
-        number(self, "radial_internal_clearance", clearance, "m")
+        number(self, "radial_internal_clearance")
         numbers = concrete(clearance, self.centre_distance, self.shim_angle)
         if numbers is not None:
             most = 2.0 * numbers[1] * math.cos(numbers[2])
@@ -232,7 +229,7 @@ class FourPointBallBearing(AbstractBallBearing):
                 " meant?)"
             )
             fits = abs(numbers[0]) < most
-            check(self, "radial_internal_clearance", clearance, "m", fits, allowed)
+            check(self, "radial_internal_clearance", fits, allowed)
 
 
 class SelfAligningBallRow(AbstractBallBearing):
@@ -251,9 +248,9 @@ class SelfAligningBallRow(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
-    row_offset: Scalar = eqx.field(converter=as_real, kw_only=True)
+    row_offset: Scalar = eqx.field(converter=as_real, metadata=unit("m"), kw_only=True)
     radial_internal_clearance: Scalar = eqx.field(
-        converter=as_real, default=0.0, kw_only=True
+        converter=as_real, metadata=unit("m"), default=0.0, kw_only=True
     )
 
     @property
@@ -302,9 +299,9 @@ class SelfAligningBallRow(AbstractBallBearing):
         )
 
     def __check_init__(self):
-        positive(self, "row_offset", self.row_offset, "m")
+        positive(self, "row_offset")
         clearance = self.radial_internal_clearance
-        number(self, "radial_internal_clearance", clearance, "m")
+        number(self, "radial_internal_clearance")
         numbers = concrete(clearance, self.centre_distances[1], self.free_cosine)
         if numbers is not None:
             most = 4.0 * numbers[1] / numbers[2]
@@ -313,7 +310,7 @@ class SelfAligningBallRow(AbstractBallBearing):
                 " ball (metres meant?)"
             )
             fits = abs(numbers[0]) < most
-            check(self, "radial_internal_clearance", clearance, "m", fits, allowed)
+            check(self, "radial_internal_clearance", fits, allowed)
 
     def _check_groove(self, ring):
         if ring == "inner":

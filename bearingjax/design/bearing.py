@@ -8,6 +8,7 @@ import jax
 import jax.numpy as jnp
 
 from ..numerics.types import Scalar, as_count, as_real
+from ..numerics.units import unit
 from .checks import check, concrete, count, in_range, number, positive
 from .material import Material
 from .profile import AbstractProfile, Straight
@@ -35,13 +36,15 @@ class AbstractRollerBearing(eqx.Module):
     """
 
     n_rollers: int = eqx.field(static=True, converter=as_count)
-    pitch_diameter: Scalar = eqx.field(converter=as_real)
-    roller_diameter: Scalar = eqx.field(converter=as_real)
-    roller_length: Scalar = eqx.field(converter=as_real)
+    pitch_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    roller_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    roller_length: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
     radial_internal_clearance: Scalar = eqx.field(
-        converter=as_real, default=0.0, kw_only=True
+        converter=as_real, metadata=unit("m"), default=0.0, kw_only=True
     )
-    first_azimuth: Scalar = eqx.field(converter=as_real, default=0.0, kw_only=True)
+    first_azimuth: Scalar = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=0.0, kw_only=True
+    )
     roller_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
     outer_raceway_profile: AbstractProfile = eqx.field(
         default_factory=Straight, kw_only=True
@@ -78,9 +81,9 @@ class AbstractRollerBearing(eqx.Module):
     def __check_init__(self):
         count(self, "n_rollers", self.n_rollers)
         for name in ("pitch_diameter", "roller_diameter", "roller_length"):
-            positive(self, name, getattr(self, name), "m")
-        number(self, "radial_internal_clearance", self.radial_internal_clearance, "m")
-        number(self, "first_azimuth", self.first_azimuth, "rad")
+            positive(self, name)
+        number(self, "radial_internal_clearance")
+        number(self, "first_azimuth")
         self._check_parts()
         self._check_row()
 
@@ -126,10 +129,10 @@ class AbstractRollerBearing(eqx.Module):
         disc = 0.5 * (diameter - side * length * math.sin(half))
         allowed = f"below the diameter of the roller end, {2 * disc:.6g} m"
         key = f"ribs.{name}.contact_height"
-        check(self, key, height, "m", height < 2 * disc, allowed)
+        check(self, key, height < 2 * disc, allowed, height, "m")
         allowed = f"above the radius of the roller end, {disc:.6g} m"
         check(
-            self, f"ribs.{name}.end_radius", end_radius, "m", end_radius > disc, allowed
+            self, f"ribs.{name}.end_radius", end_radius > disc, allowed, end_radius, "m"
         )
 
     def _check_row(self):
@@ -154,7 +157,7 @@ class AbstractRollerBearing(eqx.Module):
                 f" {pitch:.6g} m"
             )
             fits = radius > 0 and circle > radius * math.cos(axis)
-            check(self, "roller_diameter", diameter, "m", fits, allowed)
+            check(self, "roller_diameter", fits, allowed)
             most = int(math.pi / math.asin(min(1.0, radius / circle)))
             allowed = (
                 "low enough that rollers do not overlap around the pitch circle (at"
@@ -163,10 +166,10 @@ class AbstractRollerBearing(eqx.Module):
             apart = self.n_rollers == 1 or radius < circle * math.sin(
                 math.pi / self.n_rollers
             )
-            check(self, "n_rollers", self.n_rollers, "rollers", apart, allowed)
+            check(self, "n_rollers", apart, allowed, self.n_rollers, "rollers")
         allowed = "smaller in size than the roller diameter (metres meant?)"
         small = abs(clearance) < diameter
-        check(self, "radial_internal_clearance", clearance, "m", small, allowed)
+        check(self, "radial_internal_clearance", small, allowed)
 
 
 class CylindricalRollerBearing(AbstractRollerBearing):
@@ -193,7 +196,7 @@ class NeedleRollerBearing(AbstractRollerBearing):
         if numbers is not None:
             length, least = numbers[0], 2.5 * numbers[1]
             allowed = f"at least 2.5 roller diameters, {least:.6g} m, for a needle"
-            check(self, "roller_length", length, "m", length >= least, allowed)
+            check(self, "roller_length", length >= least, allowed)
 
 
 class TaperedRollerBearing(AbstractRollerBearing):
@@ -211,9 +214,11 @@ class TaperedRollerBearing(AbstractRollerBearing):
     """
 
     roller_axis_angle: Scalar = eqx.field(
-        converter=as_real, kw_only=True, default=jnp.nan
+        converter=as_real, metadata=unit("rad"), kw_only=True, default=jnp.nan
     )
-    roller_half_angle: Scalar = eqx.field(converter=as_real, kw_only=True, default=0.0)
+    roller_half_angle: Scalar = eqx.field(
+        converter=as_real, metadata=unit("rad"), kw_only=True, default=0.0
+    )
 
     @property
     def axis_angle(self) -> Scalar:
@@ -224,18 +229,9 @@ class TaperedRollerBearing(AbstractRollerBearing):
         return self.roller_half_angle
 
     def __check_init__(self):
-        in_range(
-            self, "roller_axis_angle", self.roller_axis_angle, "rad", 0.0, 0.5 * jnp.pi
-        )
-        in_range(
-            self,
-            "roller_half_angle",
-            self.roller_half_angle,
-            "rad",
-            0.0,
-            self.roller_axis_angle,
-            include_low=True,
-        )
+        in_range(self, "roller_axis_angle", 0.0, 0.5 * jnp.pi)
+        most = self.roller_axis_angle
+        in_range(self, "roller_half_angle", 0.0, most, include_low=True)
         self._warn_of_apexes()
 
     def apexes(self) -> tuple[Scalar, Scalar, Scalar]:

@@ -6,6 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .ball import AbstractBallBearing
 from .ball_types import SelfAligningBallRow
 from .bearing import AbstractRollerBearing
@@ -31,12 +32,12 @@ class PreloadSpring(eqx.Module):
     Traced: all fields.
     """
 
-    force: Scalar = eqx.field(converter=as_real)
-    stiffness: Scalar = eqx.field(converter=as_real, default=0.0)
+    force: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
+    stiffness: Scalar = eqx.field(converter=as_real, metadata=unit("N/m"), default=0.0)
 
     def __check_init__(self):
-        positive(self, "force", self.force, "N")
-        non_negative(self, "stiffness", self.stiffness, "N/m")
+        positive(self, "force")
+        non_negative(self, "stiffness")
 
     def push(self, travel: Scalar) -> tuple[Scalar, Scalar, Scalar]:
         """Energy [J], force [N] and its loss per travel [N/m] at a travel [m].
@@ -69,9 +70,9 @@ class SetRow(eqx.Module):
     """
 
     bearing: Bearing
-    position: Scalar = eqx.field(converter=as_real, default=0.0)
+    position: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
     mirrored: bool = eqx.field(static=True, default=False)
-    inner_offset: Scalar = eqx.field(converter=as_real, default=0.0)
+    inner_offset: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
     spring: PreloadSpring | None = None
 
     def __check_init__(self):
@@ -82,8 +83,8 @@ class SetRow(eqx.Module):
             )
         if not isinstance(self.mirrored, bool):
             raise TypeError(f"SetRow: `mirrored` is {self.mirrored!r}; True or False.")
-        number(self, "position", self.position, "m")
-        number(self, "inner_offset", self.inner_offset, "m")
+        number(self, "position")
+        number(self, "inner_offset")
         if not isinstance(self.spring, PreloadSpring | None):
             raise TypeError(
                 f"SetRow: `spring` is a {type(self.spring).__name__}; it must be a"

@@ -3,13 +3,19 @@
 Checks act on concrete numbers and let traced ones through: under `jit` or `grad` a
 design was checked when it was made, and a bad traced number ends in a result code.
 They compute with NumPy: an eager JAX operation would be compiled for nothing.
+
+What is checked is a field of the owner, whose value and unit are looked up there, or
+anything else, with value and unit `given` after all other arguments.
 """
 
 from collections.abc import Sequence
 from numbers import Real
+from typing import Any
 
 import numpy as np
 from jax.core import Tracer
+
+from ..numerics.units import unit_of
 
 
 def is_traced(value) -> bool:
@@ -24,23 +30,23 @@ def concrete(*values) -> list[float] | None:
     return [float(v) for v in values]
 
 
-def check(owner, name: str, value, unit: str, ok, allowed: str) -> None:
+def check(owner, name: str, ok, allowed: str, *given: Any) -> None:
     """Raise unless `ok`.
 
     Args:
         owner: Instance, class or name of what is being checked.
         name: Parameter.
-        value: Its value, as shown in the message [`unit`].
-        unit: Unit; empty for a pure number.
-        ok: Whether the value is allowed; skipped if traced.
+        ok: Whether its value is allowed; skipped if traced.
         allowed: What is allowed, ending the sentence "it must be ...".
+        given: Value and unit, empty for a pure number, of what is no field of `owner`.
 
     Raises:
         ValueError: If `ok` is false.
     """
+    value, unit = given or _field(owner, name)
     if is_traced(ok) or is_traced(value) or bool(np.all(ok)):
         return
-    shown = f"{_show(value)} {unit}".strip()
+    shown = _with_unit(_show(value), unit)
     raise ValueError(f"{_title(owner)}: `{name}` is {shown}; it must be {allowed}.")
 
 
@@ -54,14 +60,17 @@ def is_real(value) -> bool:
         return False
 
 
-def number(owner, name: str, value, unit: str) -> None:
-    """A single finite number [`unit`].
+def number(owner, name: str, *given: Any) -> None:
+    """A single finite number.
+
+    Args:
+        owner, name, given: As in `check`.
 
     Raises:
         TypeError: If it is text, a bool, another object or nothing at all.
         ValueError: If it is an array, NaN or infinite.
     """
-    title = _title(owner)
+    title, (value, unit) = _title(owner), given or _field(owner, name)
     if not is_real(value):
         raise TypeError(
             f"{title}: `{name}` is {value!r}; it must be a number"
@@ -73,7 +82,7 @@ def number(owner, name: str, value, unit: str) -> None:
             f"{f' in {unit}' if unit else ''}."
         )
     if not is_traced(value):
-        check(owner, name, value, unit, np.isfinite(value), "a finite number")
+        check(owner, name, np.isfinite(value), "a finite number", value, unit)
 
 
 def real_numbers(owner: str, name: str, value, wanted: str) -> None:
@@ -109,40 +118,40 @@ _ODD = "OUSc"
 """Kinds of NumPy's dtypes that are no real numbers: objects, texts, complex ones."""
 
 
-def positive(owner, name: str, value, unit: str) -> None:
-    """A finite number above zero [`unit`]."""
-    number(owner, name, value, unit)
-    if not is_traced(value):
-        above = float(value) > 0
-        check(owner, name, value, unit, above, _with_unit("above 0", unit))
+def positive(owner, name: str, *given: Any) -> None:
+    """A finite number above zero; arguments as in `check`."""
+    _bounded(owner, name, 0.0, np.inf, False, given)
 
 
-def non_negative(owner, name: str, value, unit: str) -> None:
-    """A finite number of at least zero [`unit`]."""
-    number(owner, name, value, unit)
-    if not is_traced(value):
-        enough = float(value) >= 0
-        check(owner, name, value, unit, enough, _with_unit("at least 0", unit))
+def non_negative(owner, name: str, *given: Any) -> None:
+    """A finite number of at least zero; arguments as in `check`."""
+    _bounded(owner, name, 0.0, np.inf, True, given)
 
 
 def in_range(
-    owner, name: str, value, unit: str, low, high, include_low: bool = False
+    owner, name: str, low, high, *given: Any, include_low: bool = False
 ) -> None:
-    """A finite number between `low` and `high` [`unit`].
+    """A finite number between `low` and `high`.
 
     Args:
-        owner, name, value, unit: As in `check`.
+        owner, name, given: As in `check`.
         low, high: Bounds; `high` is excluded, `low` unless `include_low`.
         include_low: Whether `low` itself is allowed.
     """
+    _bounded(owner, name, low, high, include_low, given)
+
+
+def _bounded(owner, name, low, high, include_low, given):
+    value, unit = given or _field(owner, name)
     number(owner, name, value, unit)
     numbers = concrete(value, low, high)
     if numbers is None:
         return
     v, least, most = numbers
     inside = (v >= least if include_low else v > least) and v < most
-    words = f"{'at least' if include_low else 'above'} {least:.6g} and below {most:.6g}"
-    check(owner, name, value, unit, inside, _with_unit(words, unit))
+    least = f"{'at least' if include_low else 'above'} {least:.6g}"
+    words = least if most == np.inf else f"{least} and below {most:.6g}"
+    check(owner, name, inside, _with_unit(words, unit), value, unit)
 
 
 def count(owner, name: str, value) -> None:
@@ -157,7 +166,12 @@ def count(owner, name: str, value) -> None:
             f"{_title(owner)}: `{name}` is {value!r}; it must be a whole number"
             " of at least 1."
         )
-    check(owner, name, value, "", value >= 1, "a whole number of at least 1")
+    check(owner, name, value >= 1, "a whole number of at least 1", value, "")
+
+
+def _field(owner, name):
+    """Value and unit of a field."""
+    return getattr(owner, name), unit_of(owner, name)
 
 
 def _title(owner) -> str:

@@ -5,6 +5,7 @@ from typing import Any
 import equinox as eqx
 
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .checks import in_range, positive
 
 
@@ -19,14 +20,20 @@ class Material(eqx.Module):
     Traced: all fields.
     """
 
-    elastic_modulus: Scalar = eqx.field(converter=as_real, default=206e9)
-    poisson_ratio: Scalar = eqx.field(converter=as_real, default=0.3)
-    density: Scalar = eqx.field(converter=as_real, default=7850.0)
+    elastic_modulus: Scalar = eqx.field(
+        converter=as_real, metadata=unit("Pa"), default=206e9
+    )
+    poisson_ratio: Scalar = eqx.field(
+        converter=as_real, metadata=unit("1"), default=0.3
+    )
+    density: Scalar = eqx.field(
+        converter=as_real, metadata=unit("kg/m³"), default=7850.0
+    )
 
     def __check_init__(self):
-        positive(self, "elastic_modulus", self.elastic_modulus, "Pa")
-        in_range(self, "poisson_ratio", self.poisson_ratio, "", -1.0, 0.5)
-        positive(self, "density", self.density, "kg/m^3")
+        positive(self, "elastic_modulus")
+        in_range(self, "poisson_ratio", -1.0, 0.5)
+        positive(self, "density")
 
     @classmethod
     def steel(cls) -> "Material":

@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .checks import check, in_range, is_traced, positive
 
 STEEL_MODULUS = 206e9 / (2.0 * (1.0 - 0.3**2))
@@ -71,11 +72,11 @@ class AbstractProfile(eqx.Module):
         check(
             self,
             "crown_drop",
-            drops.max(),
-            "m",
             fits,
             "at least 0 and below half the roller diameter,"
             f" {0.5 * float(diameter):.6g} m",
+            drops.max(),
+            "m",
         )
 
     def _check_against(self, length: float, diameter: float) -> None:
@@ -108,16 +109,16 @@ class CircularCrown(AbstractProfile):
 
     arcs: ClassVar[bool] = True
 
-    crown_radius: Scalar = eqx.field(converter=as_real)
+    crown_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
 
     def __check_init__(self):
-        positive(self, "crown_radius", self.crown_radius, "m")
+        positive(self, "crown_radius")
 
     def drop(self, position, length, diameter):
         return _arc(position, self.crown_radius)
 
     def _check_against(self, length, diameter):
-        _check_radius(self, "crown_radius", self.crown_radius, 0.5 * length)
+        _check_radius(self, "crown_radius", 0.5 * length)
 
 
 class CrownedEnds(AbstractProfile):
@@ -138,26 +139,26 @@ class CrownedEnds(AbstractProfile):
 
     arcs: ClassVar[bool] = True
 
-    straight_length: Scalar = eqx.field(converter=as_real)
-    crown_radius: Scalar = eqx.field(converter=as_real)
+    straight_length: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    crown_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
     dub_off_length: Scalar | None = eqx.field(
-        converter=lambda x: None if x is None else as_real(x), default=None
+        converter=as_real, metadata=unit("m"), default=None
     )
     dub_off_radius: Scalar | None = eqx.field(
-        converter=lambda x: None if x is None else as_real(x), default=None
+        converter=as_real, metadata=unit("m"), default=None
     )
 
     def __check_init__(self):
-        positive(self, "straight_length", self.straight_length, "m")
-        positive(self, "crown_radius", self.crown_radius, "m")
+        positive(self, "straight_length")
+        positive(self, "crown_radius")
         if (self.dub_off_length is None) != (self.dub_off_radius is None):
             raise ValueError(
                 "CrownedEnds: `dub_off_length` and `dub_off_radius` go together; one of"
                 " them is missing."
             )
         if self.dub_off_length is not None:
-            positive(self, "dub_off_length", self.dub_off_length, "m")
-            positive(self, "dub_off_radius", self.dub_off_radius, "m")
+            positive(self, "dub_off_length")
+            positive(self, "dub_off_radius")
 
     def drop(self, position, length, diameter):
         out = jnp.maximum(jnp.abs(position) - 0.5 * self.straight_length, 0.0)
@@ -179,18 +180,18 @@ class CrownedEnds(AbstractProfile):
         return (-outer, -inner, inner, outer)
 
     def _check_against(self, length, diameter):
-        in_range(self, "straight_length", self.straight_length, "m", 0.0, length)
+        in_range(self, "straight_length", 0.0, length)
         straight, crown = float(self.straight_length), float(self.crown_radius)
         reach = 0.5 * (length - straight)
-        _check_radius(self, "crown_radius", self.crown_radius, reach)
+        _check_radius(self, "crown_radius", reach)
         if self.dub_off_length is None or self.dub_off_radius is None:
             return
-        in_range(self, "dub_off_length", self.dub_off_length, "m", 0.0, reach)
+        in_range(self, "dub_off_length", 0.0, reach)
         ending, radius = float(self.dub_off_length), float(self.dub_off_radius)
         offset = radius * (reach - ending) / crown
-        _check_radius(self, "dub_off_radius", self.dub_off_radius, offset + ending)
+        _check_radius(self, "dub_off_radius", offset + ending)
         allowed = f"at most the crown radius, {crown:.6g} m"
-        check(self, "dub_off_radius", radius, "m", radius <= crown, allowed)
+        check(self, "dub_off_radius", radius <= crown, allowed)
 
 
 class Logarithmic(AbstractProfile):
@@ -206,10 +207,12 @@ class Logarithmic(AbstractProfile):
     Source: ISO/TS 16281:2008, reference geometry of rollers.
     """
 
-    coefficient: Scalar = eqx.field(converter=as_real, default=0.00035)
+    coefficient: Scalar = eqx.field(
+        converter=as_real, metadata=unit("1"), default=0.00035
+    )
 
     def __check_init__(self):
-        positive(self, "coefficient", self.coefficient, "")
+        positive(self, "coefficient")
 
     def drop(self, position, length, diameter):
         return self.coefficient * diameter * _log_one_over(2.0 * position / length, 1.0)
@@ -229,12 +232,14 @@ class Lundberg(AbstractProfile):
     Source: Lundberg (1939); in the form of Fujiwara and Kawase (2007).
     """
 
-    design_load: Scalar = eqx.field(converter=as_real)
-    contact_modulus: Scalar = eqx.field(converter=as_real, default=STEEL_MODULUS)
+    design_load: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
+    contact_modulus: Scalar = eqx.field(
+        converter=as_real, metadata=unit("Pa"), default=STEEL_MODULUS
+    )
 
     def __check_init__(self):
-        positive(self, "design_load", self.design_load, "N")
-        positive(self, "contact_modulus", self.contact_modulus, "Pa")
+        positive(self, "design_load")
+        positive(self, "contact_modulus")
 
     def drop(self, position, length, diameter):
         unit = self.design_load / (jnp.pi * length * self.contact_modulus)
@@ -256,14 +261,16 @@ class JohnsGohar(AbstractProfile):
     Source: Johns and Gohar (1981); in the form of Fujiwara and Kawase (2007).
     """
 
-    design_load: Scalar = eqx.field(converter=as_real)
-    half_width: Scalar = eqx.field(converter=as_real)
-    contact_modulus: Scalar = eqx.field(converter=as_real, default=STEEL_MODULUS)
+    design_load: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
+    half_width: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    contact_modulus: Scalar = eqx.field(
+        converter=as_real, metadata=unit("Pa"), default=STEEL_MODULUS
+    )
 
     def __check_init__(self):
-        positive(self, "design_load", self.design_load, "N")
-        positive(self, "half_width", self.half_width, "m")
-        positive(self, "contact_modulus", self.contact_modulus, "Pa")
+        positive(self, "design_load")
+        positive(self, "half_width")
+        positive(self, "contact_modulus")
 
     def drop(self, position, length, diameter):
         unit = self.design_load / (jnp.pi * length * self.contact_modulus)
@@ -271,7 +278,7 @@ class JohnsGohar(AbstractProfile):
         return unit * _log_one_over(2.0 * position / length, part)
 
     def _check_against(self, length, diameter):
-        in_range(self, "half_width", self.half_width, "m", 0.0, 0.5 * length)
+        in_range(self, "half_width", 0.0, 0.5 * length)
 
 
 class FujiwaraKawase(AbstractProfile):
@@ -292,21 +299,23 @@ class FujiwaraKawase(AbstractProfile):
     Source: Fujiwara and Kawase, NTN Technical Review 75 (2007), their E' = 2 E*.
     """
 
-    design_load: Scalar = eqx.field(converter=as_real)
-    load_factor: Scalar = eqx.field(converter=as_real)
-    crowned_fraction: Scalar = eqx.field(converter=as_real)
-    end_drop: Scalar = eqx.field(converter=as_real)
-    contact_modulus: Scalar = eqx.field(converter=as_real, default=STEEL_MODULUS)
+    design_load: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
+    load_factor: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    crowned_fraction: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    end_drop: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    contact_modulus: Scalar = eqx.field(
+        converter=as_real, metadata=unit("Pa"), default=STEEL_MODULUS
+    )
 
     def __check_init__(self):
-        positive(self, "design_load", self.design_load, "N")
-        positive(self, "load_factor", self.load_factor, "")
-        positive(self, "crowned_fraction", self.crowned_fraction, "")
+        positive(self, "design_load")
+        positive(self, "load_factor")
+        positive(self, "crowned_fraction")
         if not is_traced(self.crowned_fraction):
             fraction, allowed = float(self.crowned_fraction), "above 0 and at most 1"
-            check(self, "crowned_fraction", fraction, "", fraction <= 1.0, allowed)
-        positive(self, "end_drop", self.end_drop, "m")
-        positive(self, "contact_modulus", self.contact_modulus, "Pa")
+            check(self, "crowned_fraction", fraction <= 1.0, allowed)
+        positive(self, "end_drop")
+        positive(self, "contact_modulus")
 
     def drop(self, position, length, diameter):
         load = self.load_factor * self.design_load
@@ -339,8 +348,8 @@ class Tabulated(AbstractProfile):
     Source: Overhauser (1968), for points at any distance.
     """
 
-    positions: Float[Array, " table"] = eqx.field(converter=as_real)
-    drops: Float[Array, " table"] = eqx.field(converter=as_real)
+    positions: Float[Array, " table"] = eqx.field(converter=as_real, metadata=unit("m"))
+    drops: Float[Array, " table"] = eqx.field(converter=as_real, metadata=unit("m"))
 
     proud: ClassVar[bool] = True
     """Between its points a cubic may swing out."""
@@ -357,9 +366,9 @@ class Tabulated(AbstractProfile):
             return
         positions, drops = np.asarray(self.positions), np.asarray(self.drops)
         for name, values in (("positions", positions), ("drops", drops)):
-            check(self, name, values, "m", np.isfinite(values), "finite numbers")
-        check(self, "positions", positions, "m", np.diff(positions) > 0, "ascending")
-        check(self, "drops", drops, "m", drops >= 0, "at least 0 m")
+            check(self, name, np.isfinite(values), "finite numbers")
+        check(self, "positions", np.diff(positions) > 0, "ascending")
+        check(self, "drops", drops >= 0, "at least 0 m")
 
     def drop(self, position, length, diameter):
         return self.around(position).drop(position, length, diameter)
@@ -389,7 +398,7 @@ class Tabulated(AbstractProfile):
         positions, end = np.asarray(self.positions), 0.5 * length
         covers = min(-positions[0], positions[-1]) >= end * (1.0 - 1e-9)
         allowed = f"a table that covers the roller, from {-end:.6g} to {end:.6g} m"
-        check(self, "positions", positions, "m", covers, allowed)
+        check(self, "positions", covers, allowed)
 
 
 class _Cubic(AbstractProfile):
@@ -461,6 +470,6 @@ def _floored(rest):
     return jnp.maximum(rest, jnp.sqrt(jnp.finfo(rest.dtype).tiny))
 
 
-def _check_radius(owner, name, radius, reach):
+def _check_radius(owner, name, reach):
     allowed = f"above {reach:.6g} m, so that the arc spans its part of the roller"
-    check(owner, name, radius, "m", float(radius) > reach, allowed)
+    check(owner, name, float(getattr(owner, name)) > reach, allowed)

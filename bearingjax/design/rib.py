@@ -3,6 +3,7 @@
 import equinox as eqx
 
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .checks import non_negative, number, positive
 
 RIB_NAMES = ("outer_minus", "outer_plus", "inner_minus", "inner_plus")
@@ -34,14 +35,14 @@ class Rib(eqx.Module):
     Traced: all fields.
     """
 
-    end_radius: Scalar = eqx.field(converter=as_real)
-    contact_height: Scalar = eqx.field(converter=as_real)
-    axial_gap: Scalar = eqx.field(converter=as_real, default=0.0)
+    end_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    contact_height: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    axial_gap: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
 
     def __check_init__(self):
-        positive(self, "end_radius", self.end_radius, "m")
-        non_negative(self, "contact_height", self.contact_height, "m")
-        number(self, "axial_gap", self.axial_gap, "m")
+        positive(self, "end_radius")
+        non_negative(self, "contact_height")
+        number(self, "axial_gap")
 
 
 class Ribs(eqx.Module):

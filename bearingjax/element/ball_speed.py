@@ -18,6 +18,7 @@ from jaxtyping import Array, Float
 
 from ..design.checks import positive
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .inertia import Speed
 
 MOST_FRICTION = 0.3
@@ -126,10 +127,10 @@ class FrictionLimited(AbstractRacewayControl):
     Traced: all fields.
     """
 
-    friction: Scalar = eqx.field(converter=as_real, default=0.05)
+    friction: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.05)
 
     def __check_init__(self):
-        positive(self, "friction", self.friction, "")
+        positive(self, "friction")
 
     def rolling_share(self, load):
         return _outer_share(load)

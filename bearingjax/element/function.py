@@ -146,7 +146,7 @@ def check_damping(owner: str, damping: Any, shapes: tuple[tuple[int, ...], ...])
         raise ValueError(f"{owner}: `damping` has shape {shape}; it must be {allowed}.")
     diagonal = jnp.diagonal(damping, axis1=-2, axis2=-1) if shape else damping
     good = jnp.all(jnp.isfinite(damping)) & jnp.all(diagonal >= 0)
-    check(owner, "damping", damping, "N s/m", good, "finite, its diagonal at least 0")
+    check(owner, "damping", good, "finite, its diagonal at least 0", damping, "N s/m")
 
 
 def _turned(element: Any, speed: Speed, time: Any) -> Any:

@@ -6,6 +6,7 @@ from jaxtyping import Array, Float
 
 from ..design.checks import number
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .constants import ContactConstants
 from .frame import orbit, roll_ratio
 
@@ -20,12 +21,12 @@ class Speed(eqx.Module):
     Traced: all fields.
     """
 
-    inner: Scalar = eqx.field(converter=as_real, default=0.0)
-    outer: Scalar = eqx.field(converter=as_real, default=0.0)
+    inner: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"), default=0.0)
+    outer: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"), default=0.0)
 
     def __check_init__(self):
-        number(self, "inner", self.inner, "rad/s")
-        number(self, "outer", self.outer, "rad/s")
+        number(self, "inner")
+        number(self, "outer")
 
 
 def roller_speeds(constants: ContactConstants, speed: Speed) -> tuple[Scalar, Scalar]:

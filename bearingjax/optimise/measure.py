@@ -291,7 +291,7 @@ class StiffnessTarget(AbstractMeasure):
 
     def __check_init__(self):
         number(self, "target", self.target, "N/m")
-        check(self, "target", self.target, "N/m", self.target != 0, "other than 0 N/m")
+        check(self, "target", self.target != 0, "other than 0 N/m", self.target, "N/m")
         for freedom in (self.freedom, self.other or self.freedom):
             _check_freedom(self, freedom)
 
@@ -349,7 +349,7 @@ class Constraint(eqx.Module):
                 number(self, name, bound, "")
         if self.lower is not None and self.upper is not None:
             above = self.upper > self.lower
-            check(self, "upper", self.upper, "", above, "above `lower`")
+            check(self, "upper", above, "above `lower`", self.upper, "")
 
     @property
     def label(self) -> str:
@@ -431,6 +431,6 @@ def _check_freedom(owner, freedom):
 
 
 def _check_exponent(owner):
-    number(owner, "exponent", owner.exponent, "")
+    number(owner, "exponent")
     above = 1.0 < owner.exponent <= 1e4
-    check(owner, "exponent", owner.exponent, "", above, "above 1 and at most 10000")
+    check(owner, "exponent", above, "above 1 and at most 10000")

@@ -145,9 +145,9 @@ def _checked(element, speeds, load, tilts, fixed_ring):
             f" {(*speeds.shape, 6)}: {' '.join(LOADS)}, in N and N m."
         )
     if not is_traced(speeds):
-        check(name, "speeds", speeds, "rad/s", jnp.isfinite(speeds), "finite")
+        check(name, "speeds", jnp.isfinite(speeds), "finite", speeds, "rad/s")
     if not is_traced(load):
-        check(name, "load", load, "N, N m", jnp.isfinite(load), "finite")
+        check(name, "load", jnp.isfinite(load), "finite", load, "N, N m")
         moments = load[..., 3:5]
         if tilts == "held" and bool(jnp.any(moments != 0)):
             raise ValueError(

@@ -33,7 +33,7 @@ KINDS = {
     "speed": ("rad/s", "rpm"),
     "duration": ("hour", "h"),
     "pressure": ("Pa", "GPa"),
-    "density": ("kg/m^3", "kg/m^3"),
+    "density": ("kg/m³", "kg/m^3"),
     "stiffness": ("N/m", "N/mm"),
     "tilting stiffness": ("N m/rad", "kN m/rad"),
     "line load": ("N/m", "N/mm"),

@@ -129,7 +129,7 @@ def solve_load(
     held = tuple(name in prescribed or name in left_out for name in FREEDOMS)
     if tolerance is None:
         tolerance = DEFAULT_TOLERANCE[str(dtype)]
-    in_range("solve_load", "tolerance", tolerance, "", 0.0, 1.0)
+    in_range("solve_load", "tolerance", 0.0, 1.0, tolerance, "")
     # As arrays, so that another value does not compile anew.
     ends, max_steps = as_array(tolerance, dtype), as_array(max_steps, jnp.int32)
     solution = _solve(

@@ -53,8 +53,8 @@ def test_derivative_of_the_contact_modulus():
         ({"poisson_ratio": 0.5}, r"`poisson_ratio` is 0.5; .*above -1 and below 0.5"),
         ({"poisson_ratio": 0.6}, r"`poisson_ratio` is 0.6; .*below 0.5"),
         ({"poisson_ratio": -1.0}, r"`poisson_ratio` is -1; .*above -1"),
-        ({"density": -7850.0}, r"`density` is -7850 kg/m\^3.*above 0 kg/m\^3"),
-        ({"density": np.inf}, r"`density` is inf kg/m\^3.*finite"),
+        ({"density": -7850.0}, r"`density` is -7850 kg/m³.*above 0 kg/m³"),
+        ({"density": np.inf}, r"`density` is inf kg/m³.*finite"),
     ],
 )
 def test_bad_materials(change, message):

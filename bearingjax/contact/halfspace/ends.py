@@ -9,6 +9,7 @@ import numpy as np
 from ...design.checks import positive
 from ...design.material import Material, contact_modulus
 from ...numerics.types import Scalar, as_real
+from ...numerics.units import unit
 
 WEDGE = 0.5 * np.pi * (1.0 / (0.5 * np.pi + 1.0) + 1.0 / (0.5 * np.pi - 1.0)) - 1.0
 """Factor far along the edge: a line load on a wedge of 90 degrees beside one on a
@@ -64,11 +65,13 @@ class FreeEnds(eqx.Module):
     Valid: One end at a time: the other far away; end faces square to the generatrix.
     """
 
-    factor: Scalar | None = eqx.field(converter=as_real, default=None)
+    factor: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("1"), default=None
+    )
 
     def __check_init__(self):
         if self.factor is not None:
-            positive(self, "factor", self.factor, "")
+            positive(self, "factor")
 
     def mirrored(self, roller: Material, raceway: Material) -> "Mirrored":
         """Weight of the mirrored pressure in the displacement of both bodies together.

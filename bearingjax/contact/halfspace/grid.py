@@ -6,6 +6,7 @@ from jaxtyping import Array, Float
 
 from ...design.checks import check, positive
 from ...numerics.types import Scalar, as_real
+from ...numerics.units import unit
 
 
 class Grid(eqx.Module):
@@ -24,17 +25,17 @@ class Grid(eqx.Module):
     Static: n_across, symmetric, even.
     """
 
-    half_width: Scalar = eqx.field(converter=as_real)
-    edges: Float[Array, " edge"] = eqx.field(converter=as_real)
+    half_width: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    edges: Float[Array, " edge"] = eqx.field(converter=as_real, metadata=unit("m"))
     n_across: int = eqx.field(static=True)
     symmetric: bool = eqx.field(static=True)
     even: bool = eqx.field(static=True)
 
     def __check_init__(self):
-        positive(self, "half_width", self.half_width, "m")
-        check(self, "n_across", self.n_across, "", self.n_across >= 3, "at least 3")
+        positive(self, "half_width")
+        check(self, "n_across", self.n_across >= 3, "at least 3")
         rising = jnp.all(jnp.diff(self.edges) > 0)
-        check(self, "edges", self.edges, "m", rising, "ascending")
+        check(self, "edges", rising, "ascending")
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -122,12 +123,12 @@ def graded_grid(
             than even ones; the length of the end cells is about
             length·n_along^(-grading).
     """
-    check("graded_grid", "grading", grading, "", grading >= 1, "at least 1")
+    check("graded_grid", "grading", grading >= 1, "at least 1", grading, "")
     return _grid(length, half_width, n_across, n_along, grading, symmetric)
 
 
 def _grid(length, half_width, n_across, n_along, grading, symmetric):
-    check("grid", "n_along", n_along, "", n_along >= 3, "at least 3")
+    check("grid", "n_along", n_along >= 3, "at least 3", n_along, "")
     length = as_real(length)
     t = jnp.linspace(0.0, 1.0, n_along + 1, dtype=length.dtype)
     # From the nearer end, so that cells at both ends are equally long.

@@ -192,7 +192,7 @@ def solve_pressure(
             f" {influence.grid.shape} cells."
         )
     if load is not None:
-        check(name, "load", load, "N", load >= 0, "zero or more")
+        check(name, "load", load >= 0, "zero or more", load, "N")
     dtype = gap.dtype
 
     def real(value):

@@ -13,6 +13,7 @@ from ...design.checks import check, concrete, in_range, is_traced, positive
 from ...design.material import Material, contact_modulus
 from ...design.profile import AbstractProfile, Straight
 from ...numerics.types import Scalar, as_real
+from ...numerics.units import unit
 from .ends import FreeEnds
 from .gradients import AbstractPressureSolver, ConjugateGradients
 from .grid import Grid, even_grid, graded_grid
@@ -36,7 +37,8 @@ class RollerContact(eqx.Module):
 
     Attributes:
         roller_length: Effective length L [m].
-        small_diameter, large_diameter: Of the roller at y = L/2 and -L/2 [m].
+        small_diameter: Of the roller at y = L/2 [m].
+        large_diameter: Of the roller at y = -L/2 [m].
         half_angle: Half cone angle of the roller [rad]; `None`: from the diameters,
             arctan of their difference over 2L.
         raceway_radius: Radius of curvature of the raceway normal to the generatrix, at
@@ -54,12 +56,18 @@ class RollerContact(eqx.Module):
         (13), with the exact ellipse in place of (12).
     """
 
-    roller_length: Scalar = eqx.field(converter=as_real)
-    small_diameter: Scalar = eqx.field(converter=as_real)
-    large_diameter: Scalar = eqx.field(converter=as_real)
-    half_angle: Scalar | None = eqx.field(converter=as_real, default=None, kw_only=True)
-    raceway_radius: Scalar = eqx.field(converter=as_real, default=np.inf, kw_only=True)
-    raceway_half_angle: Scalar = eqx.field(converter=as_real, default=0.0, kw_only=True)
+    roller_length: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    small_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    large_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    half_angle: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
+    )
+    raceway_radius: Scalar = eqx.field(
+        converter=as_real, metadata=unit("m"), default=np.inf, kw_only=True
+    )
+    raceway_half_angle: Scalar = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=0.0, kw_only=True
+    )
     roller_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
     raceway_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
     material: Material = eqx.field(default_factory=Material, kw_only=True)
@@ -67,21 +75,19 @@ class RollerContact(eqx.Module):
     free_ends: FreeEnds | None = eqx.field(default=None, kw_only=True)
 
     def __check_init__(self):
-        positive(self, "roller_length", self.roller_length, "m")
-        positive(self, "small_diameter", self.small_diameter, "m")
-        positive(self, "large_diameter", self.large_diameter, "m")
+        positive(self, "roller_length")
+        positive(self, "small_diameter")
+        positive(self, "large_diameter")
         radius = self.raceway_radius
         check(
             self,
             "raceway_radius",
-            radius,
-            "m",
             radius != 0,
             "positive (convex), negative (hollow) or infinite (plane)",
         )
         for name in ("half_angle", "raceway_half_angle"):
             if getattr(self, name) is not None:
-                in_range(self, name, getattr(self, name), "rad", -0.7, 0.7)
+                in_range(self, name, -0.7, 0.7)
         numbers = concrete(
             self.roller_length, self.small_diameter, self.large_diameter, self.angle
         )
@@ -96,8 +102,6 @@ class RollerContact(eqx.Module):
         check(
             self,
             "large_diameter",
-            large,
-            "m",
             large >= small,
             f"at least `small_diameter`, {small:g} m",
         )
@@ -105,8 +109,6 @@ class RollerContact(eqx.Module):
             check(
                 self,
                 "raceway_radius",
-                radius[0],
-                "m",
                 -radius[0] > 0.5 * large / np.cos(angle),
                 "larger in size than the roller's own radius, if it is hollow",
             )
@@ -207,7 +209,7 @@ class RollerContact(eqx.Module):
         if not traced:
             allowed = f"as long as the roller, {2.0 * half:.6g} m, and centred"
             length = edges[-1] - edges[0]
-            check("RollerContact.gap", "grid", length, "m", fits, allowed)
+            check("RollerContact.gap", "grid", fits, allowed, length, "m")
         return fits
 
     def grid(
@@ -273,10 +275,8 @@ class RollerContact(eqx.Module):
         }
         if grid is None:
             grid = self.grid(self.grid_half_width(given))
-        widest = _widest(self, grid)
-        check(
-            self, "half_width", grid.half_width, "m", widest, "less than the roller's"
-        )
+        fits, width = _widest(self, grid), grid.half_width
+        check(self, "half_width", fits, "less than the roller's", width, "m")
         return solve_pressure(
             self.influence(grid),
             self.gap(grid),

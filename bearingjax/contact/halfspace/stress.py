@@ -96,15 +96,15 @@ def stress_below(
     Valid: The body a half-space; not nearer to a corner of a cell than a tenth of the
         cell, where the steps of the pressure show.
     """
-    check("stress_below", "z", z, "m", jnp.all(as_real(z) >= 0), "zero or more")
+    check("stress_below", "z", jnp.all(as_real(z) >= 0), "zero or more", z, "m")
     ratio = as_real(poisson)
     check(
         "stress_below",
         "poisson",
-        ratio,
-        "",
         (ratio > -1.0) & (ratio <= 0.5),
         "above -1, at most 0.5",
+        ratio,
+        "",
     )
     # In the precision of the solution.
     dtype = solution.pressure.dtype

@@ -1,0 +1,45 @@
+"""Units of fields: written once, beside the field, for all who check or show it."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+Units = str | tuple[Any, ...]
+"""A unit, or those of the entries along the last axes of an array, nested."""
+
+
+def unit(name: Units) -> dict[str, Any]:
+    """Metadata of a field of real numbers, `eqx.field(metadata=unit("m"))`.
+
+    Args:
+        name: SI unit; "1" for a pure number. Of an array with entries of several
+            units those of the entries along its last axes: ("m", "m", "rad"). They
+            begin anew where the axis is longer.
+    """
+    return {"unit": name}
+
+
+def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
+    """Unit of a field, as it is shown beside a number.
+
+    Args:
+        owner: Class of the field, or an instance.
+        path: Name of the field; dotted, "rows.0.position", of a part of an instance.
+        index: Which entry of an array.
+
+    Returns:
+        SI unit; empty for a pure number, a count, or what is no number.
+
+    Raises:
+        KeyError, AttributeError: If there is no such field.
+    """
+    *parts, name = path.split(".")
+    for part in parts:
+        owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
+    fields = {field.name: field for field in dataclasses.fields(owner)}
+    units = np.asarray(fields[name].metadata.get("unit", "1"))
+    last = index[len(index) - units.ndim :]
+    sizes = zip(last, units.shape, strict=True)
+    found = str(units[tuple(i % size for i, size in sizes)])
+    return "" if found == "1" else found
