@@ -80,6 +80,7 @@ def test_an_entry_has_the_unit_of_its_axis():
     assert unit_of(Example, "ratio") == unit_of(Example, "number") == ""
     part = design.Rib(1.0, 0.1, 0.0)
     assert unit_of(design.Ribs(part), "outer_minus.axial_gap") == "m"
+    assert unit_of(Example, "motion") == ""
     with pytest.raises(KeyError, match="none"):
         unit_of(Example, "none")
 
@@ -128,3 +129,12 @@ def test_measures_have_the_unit_of_their_docstring(measure):
     first = type(measure).__doc__.partition(".\n")[0]
     units = re.findall(r"\[([^]]*)\]", first)[0].split(", ")
     assert measure.unit in units
+
+
+def test_a_column_of_another_shape_than_the_field_has_no_unit_of_one_entry():
+    assert _label("displacement", (1,), (12,)) == ("displacement_outer_uy", "m")
+    assert _label("displacement", (1,), (2,)) == ("displacement_1", "")
+    assert _label("stiffness", (), ()) == ("stiffness", "")
+    assert _label("roller_load", (3,), (7,)) == ("roller_load_3", "N")
+    assert _label("largest_load", (), ()) == ("largest_load", "N")
+    assert _label("power", (), ()) == ("power", "")

@@ -15,6 +15,14 @@ FREEDOMS = ("ux", "uy", "uz", "gx", "gy", "gz")
 LOADS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 RINGS = ("outer", "inner")
 
+MOTION_UNITS = ("m", "m", "m", "rad", "rad", "rad")
+LOAD_UNITS = ("N", "N", "N", "N m", "N m", "N m")
+STIFFNESS_UNITS = (
+    *3 * (("N/m", "N/m", "N/m", "N", "N", "N"),),
+    *3 * (("N", "N", "N", "N m", "N m", "N m"),),
+)
+"""Units of freedoms, of loads, and of loads per freedom; those of `rad` are 1."""
+
 
 def section_matrix(azimuth: Scalar) -> Float[Array, "3 6"]:
     """Section freedoms (u, v, θ) from the six freedoms of a ring.

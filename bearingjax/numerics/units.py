@@ -29,7 +29,8 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
         index: Which entry of an array.
 
     Returns:
-        SI unit; empty for a pure number, a count, or what is no number.
+        SI unit; empty for a pure number, a count, what is no number, and for an array
+        of several units without the index of one entry.
 
     Raises:
         KeyError, AttributeError: If there is no such field.
@@ -39,7 +40,8 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
         owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
     fields = {field.name: field for field in dataclasses.fields(owner)}
     units = np.asarray(fields[name].metadata.get("unit", "1"))
-    last = index[len(index) - units.ndim :]
-    sizes = zip(last, units.shape, strict=True)
-    found = str(units[tuple(i % size for i, size in sizes)])
+    if len(index) < units.ndim:
+        return ""
+    last = zip(index[len(index) - units.ndim :], units.shape, strict=True)
+    found = str(units[tuple(k % size for k, size in last)])
     return "" if found == "1" else found

@@ -19,8 +19,9 @@ from jaxtyping import Array, Float
 
 from ..design.checks import check, number
 from ..element.bearing_element import BearingElement
-from ..element.frame import FREEDOMS, RINGS
+from ..element.frame import FREEDOMS, RINGS, STIFFNESS_UNITS
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit, unit_of
 from ..statics.cases import Cases
 from ..statics.solution import RollerSolution, Solution
 
@@ -130,7 +131,7 @@ class PeakPressure(AbstractMeasure):
 
     @property
     def unit(self):
-        return "Pa"
+        return unit_of(Solution, "roller_pressure")
 
 
 class MeanPressure(AbstractMeasure):
@@ -164,7 +165,7 @@ class MeanPressure(AbstractMeasure):
 
     @property
     def unit(self):
-        return "Pa"
+        return unit_of(Solution, "roller_pressure")
 
 
 class EdgeLoad(AbstractMeasure):
@@ -193,7 +194,7 @@ class EdgeLoad(AbstractMeasure):
 
     @property
     def unit(self):
-        return "N/m"
+        return unit_of(RollerSolution, "edge_load")
 
 
 class Displacement(AbstractMeasure):
@@ -234,7 +235,7 @@ class Displacement(AbstractMeasure):
 
     @property
     def unit(self):
-        return "m" if self.freedom[0] == "u" else "rad"
+        return unit_of(Solution, "displacement", (FREEDOMS.index(self.freedom),))
 
 
 class Stiffness(AbstractMeasure):
@@ -269,7 +270,7 @@ class Stiffness(AbstractMeasure):
 
     @property
     def unit(self):
-        return "N/m" if self.freedom[0] == "u" else "N m"
+        return unit_of(Solution, "stiffness", 2 * (FREEDOMS.index(self.freedom),))
 
 
 class StiffnessTarget(AbstractMeasure):
@@ -285,15 +286,17 @@ class StiffnessTarget(AbstractMeasure):
     Traced: target. Static: the freedoms.
     """
 
-    target: Scalar = eqx.field(converter=as_real)
+    target: Scalar = eqx.field(converter=as_real, metadata=unit(STIFFNESS_UNITS))
     freedom: str = eqx.field(static=True)
     other: str | None = eqx.field(static=True, default=None)
 
     def __check_init__(self):
-        number(self, "target", self.target, "N/m")
-        check(self, "target", self.target != 0, "other than 0 N/m", self.target, "N/m")
-        for freedom in (self.freedom, self.other or self.freedom):
+        pair = self.freedom, self.other or self.freedom
+        for freedom in pair:
             _check_freedom(self, freedom)
+        given = self.target, unit_of(self, "target", tuple(map(FREEDOMS.index, pair)))
+        number(self, "target", *given)
+        check(self, "target", self.target != 0, f"other than 0 {given[1]}", *given)
 
     def __call__(self, element, cases, solution):
         value = _stiffness(solution, self.freedom, self.other or self.freedom)

@@ -11,6 +11,7 @@ from ..element.ball_contacts import angles
 from ..element.ball_inertia import gyroscopic_moment
 from ..element.ball_speed import BallKinematics
 from ..element.row import Row
+from ..numerics.units import unit
 
 
 class BallResults(eqx.Module):
@@ -35,15 +36,15 @@ class BallResults(eqx.Module):
         centrifugal_force: Of each ball (ball,) [N], or `None`.
     """
 
-    contact_load: Float[Array, "ball contact"]
-    contact_angle: Float[Array, "ball contact"]
-    contact_pressure: Float[Array, "ball contact"]
-    semi_axes: Float[Array, "ball contact 2"]
-    approach: Float[Array, "ball contact"]
-    shoulder_margin: Float[Array, "ball contact"]
+    contact_load: Float[Array, "ball contact"] = eqx.field(metadata=unit("N"))
+    contact_angle: Float[Array, "ball contact"] = eqx.field(metadata=unit("rad"))
+    contact_pressure: Float[Array, "ball contact"] = eqx.field(metadata=unit("Pa"))
+    semi_axes: Float[Array, "ball contact 2"] = eqx.field(metadata=unit("m"))
+    approach: Float[Array, "ball contact"] = eqx.field(metadata=unit("m"))
+    shoulder_margin: Float[Array, "ball contact"] = eqx.field(metadata=unit("m"))
     kinematics: BallKinematics | None
-    gyroscopic_moment: Float[Array, " ball"] | None
-    centrifugal_force: Float[Array, " ball"] | None
+    gyroscopic_moment: Float[Array, " ball"] | None = eqx.field(metadata=unit("N m"))
+    centrifugal_force: Float[Array, " ball"] | None = eqx.field(metadata=unit("N"))
 
     @property
     def n_contacts(self) -> Int[Array, " ball"]:

@@ -11,9 +11,10 @@ from jaxtyping import Array, Float, Int
 
 from ..design.checks import is_traced, real_numbers
 from ..element.bearing_element import BearingElement
-from ..element.frame import FREEDOMS
+from ..element.frame import FREEDOMS, LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 from .load import solve_load
 from .solution import Solution
 
@@ -37,12 +38,20 @@ class Cases(eqx.Module):
     Traced: all fields.
     """
 
-    load: Float[Array | np.ndarray, "case 6"]
-    prescribed: dict[str, Float[Array | np.ndarray, " case"]]
-    fixed_displacement: Float[Array | np.ndarray, "case 6"] | None
-    inner_speed: Float[Array | np.ndarray, " case"] | None
-    outer_speed: Float[Array | np.ndarray, " case"] | None
-    hours: Float[Array | np.ndarray, " case"] | None
+    load: Float[Array | np.ndarray, "case 6"] = eqx.field(metadata=unit(LOAD_UNITS))
+    prescribed: dict[str, Float[Array | np.ndarray, " case"]] = eqx.field(
+        metadata=unit(MOTION_UNITS)
+    )
+    fixed_displacement: Float[Array | np.ndarray, "case 6"] | None = eqx.field(
+        metadata=unit(MOTION_UNITS)
+    )
+    inner_speed: Float[Array | np.ndarray, " case"] | None = eqx.field(
+        metadata=unit("rad/s")
+    )
+    outer_speed: Float[Array | np.ndarray, " case"] | None = eqx.field(
+        metadata=unit("rad/s")
+    )
+    hours: Float[Array | np.ndarray, " case"] | None = eqx.field(metadata=unit("h"))
     design: Int[Array | np.ndarray, " case"] | None
 
     def __init__(

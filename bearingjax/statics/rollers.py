@@ -12,6 +12,7 @@ from ..design.rib import RIB_NAMES
 from ..element.constants import relative_radii
 from ..element.roller import RollerModel
 from ..element.row import Row
+from ..numerics.units import unit
 
 EDGE_PRESSURE = 300e6
 """Pressure at a roller end beyond which the end counts as loaded [Pa].
@@ -42,13 +43,13 @@ class RollerResults(eqx.Module):
         edge_pressure: Hertz pressure there, which knows no peak (roller, 2, end) [Pa].
     """
 
-    rib_load: Float[Array, "roller 4"]
-    position: Float[Array, "*roller point"]
-    line_load: Float[Array, "roller 2 point"]
-    contact_pressure: Float[Array, "roller 2 point"]
-    contact_half_width: Float[Array, "roller 2 point"]
-    edge_load: Float[Array, "roller 2 2"]
-    edge_pressure: Float[Array, "roller 2 2"]
+    rib_load: Float[Array, "roller 4"] = eqx.field(metadata=unit("N"))
+    position: Float[Array, "*roller point"] = eqx.field(metadata=unit("m"))
+    line_load: Float[Array, "roller 2 point"] = eqx.field(metadata=unit("N/m"))
+    contact_pressure: Float[Array, "roller 2 point"] = eqx.field(metadata=unit("Pa"))
+    contact_half_width: Float[Array, "roller 2 point"] = eqx.field(metadata=unit("m"))
+    edge_load: Float[Array, "roller 2 2"] = eqx.field(metadata=unit("N/m"))
+    edge_pressure: Float[Array, "roller 2 2"] = eqx.field(metadata=unit("Pa"))
 
     @property
     def edge_loaded(self) -> Bool[Array, "roller 2 2"]:

@@ -9,12 +9,19 @@ from jaxtyping import Array, Bool, Float, Int
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel, Evaluated
 from ..element.equilibrium import Near
-from ..element.frame import FREEDOMS, LOADS
+from ..element.frame import (
+    FREEDOMS,
+    LOAD_UNITS,
+    LOADS,
+    MOTION_UNITS,
+    STIFFNESS_UNITS,
+)
 from ..element.inertia import Speed
 from ..element.row import Row, motions
 from ..numerics.minimise import TrustRegionNewton
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
+from ..numerics.units import unit
 from .balls import BallResults, ball_results
 from .rollers import RollerResults, roller_results
 
@@ -30,9 +37,9 @@ class Stats(eqx.Module):
         roller_iterations: Most steps of a roller in the last evaluation.
     """
 
-    residual: Scalar
+    residual: Scalar = eqx.field(metadata=unit("1"))
     iterations: Int[Array, ""]
-    roller_residual: Scalar
+    roller_residual: Scalar = eqx.field(metadata=unit("1"))
     roller_iterations: Int[Array, ""]
 
 
@@ -74,19 +81,21 @@ class Solution(eqx.Module):
     Static: row_sizes, free, held, moving_ring.
     """
 
-    displacement: Ring
-    force: Ring
-    stiffness: RingStiffness
-    roller_load: Float[Array, "element 2"]
-    roller_pressure: Float[Array, "element 2"]
-    roller_motion: Float[Array, "element 3"]
-    azimuth: Float[Array, " element"]
+    displacement: Ring = eqx.field(metadata=unit(MOTION_UNITS))
+    force: Ring = eqx.field(metadata=unit(LOAD_UNITS))
+    stiffness: RingStiffness = eqx.field(metadata=unit(STIFFNESS_UNITS))
+    roller_load: Float[Array, "element 2"] = eqx.field(metadata=unit("N"))
+    roller_pressure: Float[Array, "element 2"] = eqx.field(metadata=unit("Pa"))
+    roller_motion: Float[Array, "element 3"] = eqx.field(
+        metadata=unit(("m", "m", "rad"))
+    )
+    azimuth: Float[Array, " element"] = eqx.field(metadata=unit("rad"))
     result: Int[Array, ""]
     unrestrained: Int[Array, ""]
     stats: Stats
-    spring_travel: Float[Array, " row"] | None
-    spring_force: Float[Array, " row"] | None
-    pitch_radius: Scalar
+    spring_travel: Float[Array, " row"] | None = eqx.field(metadata=unit("m"))
+    spring_force: Float[Array, " row"] | None = eqx.field(metadata=unit("N"))
+    pitch_radius: Scalar = eqx.field(metadata=unit("m"))
     element: BearingElement
     speed: Speed | None
     row_sizes: tuple[int, ...] = eqx.field(static=True)

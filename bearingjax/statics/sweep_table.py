@@ -11,7 +11,9 @@ import numpy as np
 from ..design.rib import RIB_NAMES
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..numerics.result import Result
+from ..numerics.units import unit_of
 from .cases import Cases
+from .solution import BallSolution, RollerSolution
 from .sweep import Sweep
 from .sweep_program import WARNED
 from .warning import given
@@ -21,39 +23,19 @@ ENDINGS = (".csv", ".parquet")
 WARNINGS = "warnings"
 """Header of the column of warnings."""
 
-_LENGTHS, _LOAD_UNITS = ("m", "m", "m", "rad", "rad", "rad"), ("N",) * 3 + ("N m",) * 3
 _RING = [f"{ring}_{f}" for ring in RINGS for f in FREEDOMS]
-_RING_LOADS = [f"{ring}_{c}" for ring in RINGS for c in LOADS]
-# Units of the scalars and of what has axes that nothing names.
-_UNITS = {
-    "peak_pressure": "Pa",
-    "largest_load": "N",
-    "pitch_radius": "m",
-    "roller_load": "N",
-    "roller_pressure": "Pa",
-    "edge_load": "N/m",
-    "edge_pressure": "Pa",
-    "rib_load": "N",
-    "contact_load": "N",
-    "azimuth": "rad",
-    "position": "m",
-    "line_load": "N/m",
-    "contact_pressure": "Pa",
-    "contact_half_width": "m",
-    "contact_angle": "rad",
-    "semi_axes": "m",
-    "approach": "m",
-    "shoulder_margin": "m",
-    "centrifugal_force": "N",
-    "gyroscopic_moment": "N m",
-    "spring_travel": "m",
-    "spring_force": "N",
+_LAST_AXES = {
+    "displacement": (_RING,),
+    "force": ([f"{ring}_{c}" for ring in RINGS for c in LOADS],),
+    "stiffness": (_RING, _RING),
+    "roller_motion": (("u", "v", "theta"),),
+    "roller_load": (RINGS,),
+    "roller_pressure": (RINGS,),
+    "rib_load": (RIB_NAMES,),
 }
-_LAST_AXIS = {
-    "roller_load": RINGS,
-    "roller_pressure": RINGS,
-    "rib_load": RIB_NAMES,
-}
+"""Names along the last axes of an output; other axes are counted."""
+
+_LARGEST_OF = {"peak_pressure": "roller_pressure", "largest_load": "roller_load"}
 
 
 def columns(
@@ -230,19 +212,21 @@ def asked(cases: Cases) -> dict[str, np.ndarray]:
         cases: Of the sweep.
     """
     out: dict[str, np.ndarray] = {}
-    for k, (name, unit) in enumerate(zip(LOADS, _LOAD_UNITS, strict=True)):
+    for k, name in enumerate(LOADS):
         if np.any(np.nan_to_num(np.asarray(cases.load)[:, k]) != 0):
-            out[f"{name} [{unit}]"] = np.asarray(cases.load)[:, k]
+            head = _header(name, unit_of(cases, "load", (k,)))
+            out[head] = np.asarray(cases.load)[:, k]
     for name, values in cases.prescribed.items():
-        unit = _LENGTHS[FREEDOMS.index(name)]
-        out[f"prescribed_{name} [{unit}]"] = np.asarray(values)
+        unit = unit_of(cases, "prescribed", (FREEDOMS.index(name),))
+        out[_header(f"prescribed_{name}", unit)] = np.asarray(values)
     if cases.fixed_displacement is not None:
-        for k, (name, unit) in enumerate(zip(FREEDOMS, _LENGTHS, strict=True)):
-            out[f"fixed_{name} [{unit}]"] = np.asarray(cases.fixed_displacement)[:, k]
-    units = {"inner_speed": "rad/s", "outer_speed": "rad/s", "hours": "h"}
-    for name, unit in units.items():
+        for k, name in enumerate(FREEDOMS):
+            head = _header(f"fixed_{name}", unit_of(cases, "fixed_displacement", (k,)))
+            out[head] = np.asarray(cases.fixed_displacement)[:, k]
+    for name in ("inner_speed", "outer_speed", "hours"):
         if getattr(cases, name) is not None:
-            out[f"{name} [{unit}]"] = np.asarray(getattr(cases, name))
+            head = _header(name, unit_of(cases, name))
+            out[head] = np.asarray(getattr(cases, name))
     if cases.design is not None:
         out["design"] = np.asarray(cases.design)
     return out
@@ -252,25 +236,25 @@ def _spread(name, values):
     """(header, column) of an output with any number of axes."""
     values = np.asarray(values)
     for index in itertools.product(*(range(n) for n in values.shape[1:])):
-        label, unit = _label(name, index, values.shape[1:])
-        yield f"{label} [{unit}]" if unit else label, values[(slice(None), *index)]
+        label = _header(*_label(name, index, values.shape[1:]))
+        yield label, values[(slice(None), *index)]
+
+
+def _header(name, unit):
+    return f"{name} [{unit}]" if unit else name
 
 
 def _label(name, index, shape):
-    if name == "displacement" and shape == (12,):
-        return f"{name}_{_RING[index[0]]}", _LENGTHS[index[0] % 6]
-    if name == "force" and shape == (12,):
-        return f"{name}_{_RING_LOADS[index[0]]}", _LOAD_UNITS[index[0] % 6]
-    if name == "stiffness" and shape == (12, 12):
-        row, column = index
-        per = ("N/m", "N") if row % 6 < 3 else ("N", "N m")
-        return f"{name}_{_RING[row]}_{_RING[column]}", per[column % 6 >= 3]
-    if name == "roller_motion" and index:
-        return f"{name}_{index[0]}_{'u v theta'.split()[index[1]]}", (
-            "m" if index[1] < 2 else "rad"
-        )
-    words = [str(k) for k in index]
-    last = _LAST_AXIS.get(name)
-    if last is not None and shape[-1:] == (len(last),):
-        words[-1] = last[index[-1]]
-    return "_".join([name, *words]), _UNITS.get(name, "")
+    """Name and unit of one entry of an output."""
+    axes = _LAST_AXES.get(name, ())
+    first = len(shape) - len(axes)
+    field, entry = _LARGEST_OF.get(name, name), index
+    if shape[max(first, 0) :] != tuple(map(len, axes)):
+        # A user's own array under the name of a field: what its axes are is not known.
+        axes, first, entry = (), len(shape), ()
+    last = [axis[k] for axis, k in zip(axes, index[first:], strict=True)]
+    label = "_".join([name, *map(str, index[:first]), *last])
+    for kind in (RollerSolution, BallSolution):
+        if field in kind.__dataclass_fields__:
+            return label, unit_of(kind, field, entry)
+    return label, ""
