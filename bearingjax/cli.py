@@ -82,18 +82,44 @@ def _configure_jax(options):
         count = _devices(options)
         with contextlib.suppress(RuntimeError):  # JAX runs already, in a test
             jax.config.update("jax_num_cpu_devices", count)
+    # Where in the sources an operation was written is of no use to a user.
+    jax.config.update("jax_include_full_tracebacks_in_locations", False)
     if getattr(jax.config, "jax_compilation_cache_dir", None) is None:
-        base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-        cache = Path(base) / "bearingjax" / "jax"
+        cache = _cache() / "jax"
         # JAX would warn of every program that it cannot keep, among our own warnings.
         with contextlib.suppress(OSError):
-            cache.mkdir(parents=True, exist_ok=True)
-            if os.access(cache, os.W_OK | os.X_OK):
+            cache.mkdir(mode=0o700, parents=True, exist_ok=True)
+            if os.access(cache, os.W_OK | os.X_OK) and not _is_shared(cache):
                 jax.config.update("jax_compilation_cache_dir", str(cache))
     message = ".*persistent compilation cache.*"  # such as of a full disk
     warnings.filterwarnings("ignore", message)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)
+
+
+def _cache() -> Path:
+    """Where this user's files of the package are kept."""
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "bearingjax"
+
+
+def _is_shared(folder: Path) -> bool:
+    """Whether others can write what would be run from there; says so."""
+    from .scene.programs import is_private
+
+    shared = hasattr(os, "geteuid") and not is_private(folder.lstat())
+    if shared:
+        problem = "is not yours alone to write, so no compiled programs are kept there"
+        print(f"bearingjax: {folder}: {problem}", file=sys.stderr)
+    return shared
+
+
+def _programs() -> Path | None:
+    """Where the programs of `solve` are kept; `None` if JAX is to keep none."""
+    import jax
+
+    kept = jax.config.values["jax_enable_compilation_cache"]
+    return _cache() / "programs" if kept else None
 
 
 def _devices(options) -> int:
@@ -115,7 +141,7 @@ def _solve(options) -> int:
 
     _check_outputs(options)
     scene = read_scene(options.scene, options.set)
-    solution = run_scene(scene)
+    solution = run_scene(scene, _programs())
 
     def draw(path):
         from .plot import overview
@@ -268,7 +294,7 @@ def _contact(options) -> int:
     _check_outputs(options)
     if is_bearing(options.scene, options.set):
         bearing = read_scene(options.scene, options.set)
-        solution = run_scene(bearing)
+        solution = run_scene(bearing, _programs())
         if not solution.converged:
             _write(
                 (options.json, lambda path: write_json(path, bearing, solution)),

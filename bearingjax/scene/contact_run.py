@@ -16,7 +16,6 @@ from ..statics.warning import warnings
 from .contact_table import ContactScene
 from .quantity import SceneError
 from .read import Scene
-from .run import scene_element
 
 
 def run_contact(scene: ContactScene) -> list[Compared]:
@@ -68,7 +67,7 @@ def run_refined(
     """
     try:
         found = refine(
-            scene_element(scene),
+            solution.element,
             solution,
             roller,
             "inner" if raceway is None else raceway,

@@ -1,22 +1,28 @@
 """Running what a scene asks for."""
 
 import functools
+from pathlib import Path
 
 from ..element import BearingElement
+from ..numerics.types import as_array
 from ..optimise.optimise import Optimised, optimise
 from ..statics.load import solve_load
 from ..statics.preload import preload
 from ..statics.solution import Solution
 from .optimise_table import Optimisation
+from .programs import call_once
 from .quantity import SceneError
 from .read import Scene
 
 
-def run_scene(scene: Scene) -> Solution:
+def run_scene(scene: Scene, programs: Path | None = None) -> Solution:
     """Solve the bearing of a scene.
 
     Args:
         scene: From `read_scene`.
+        programs: Folder in which compiled programs are kept from one run to the next,
+            as the command line has one; `None`: compiled as `solve_load` is. For one
+            solve of a scene: compiled for the shortest wait, not for the fastest solve.
 
     Returns:
         Solution with its result code; nothing is raised for a failed solve.
@@ -31,24 +37,50 @@ def run_scene(scene: Scene) -> Solution:
             f"run_scene: `scene` is a {type(scene).__name__}; it must be a Scene, as of"
             " read_scene."
         )
+    return _called(
+        programs,
+        _solved,
+        _element(scene, programs),
+        as_array(scene.load, float),
+        {name: as_array(value, float) for name, value in scene.prescribed.items()},
+        scene.free,
+        scene.fixed_ring,
+        scene.speed,
+        scene.points,
+        None if scene.tolerance is None else as_array(scene.tolerance, float),
+    )
+
+
+def _element(scene, programs) -> BearingElement:
+    """The bearing of a scene, with its preload set."""
+    if scene.preload_force is None:
+        return scene.element
+    force = as_array(scene.preload_force, float)
+    return _called(programs, _preloaded, scene.element, force)
+
+
+def _called(programs, function, *arguments):
+    if programs is None:
+        return function(*arguments)
+    return call_once(function, *arguments, folder=programs)
+
+
+def _solved(element, load, prescribed, free, fixed_ring, speed, points, tolerance):
     return solve_load(
-        scene_element(scene),
-        scene.load,
-        prescribed=scene.prescribed,
-        free=scene.free,
-        fixed_ring=scene.fixed_ring,
-        speed=scene.speed,
-        points=scene.points,
-        tolerance=scene.tolerance,
+        element,
+        load,
+        prescribed=prescribed,
+        free=free,
+        fixed_ring=fixed_ring,
+        speed=speed,
+        points=points,
+        tolerance=tolerance,
         throw=False,
     )
 
 
-def scene_element(scene: Scene) -> BearingElement:
-    """The bearing of a scene, with its preload set."""
-    if scene.preload_force is None:
-        return scene.element
-    return preload(scene.element, scene.preload_force, throw=False)
+def _preloaded(element, force):
+    return preload(element, force, throw=False)
 
 
 def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:

@@ -17,8 +17,9 @@ class Run(NamedTuple):
 
 @pytest.fixture
 def run(monkeypatch, capsys):
-    """Call `bearingjax` with arguments."""
+    """Call `bearingjax` with arguments; programs are those of this process."""
     monkeypatch.setattr(cli, "_configure_jax", lambda options: None)
+    monkeypatch.setattr(cli, "_programs", lambda: None)
 
     def call(*arguments):
         status = cli.main([str(a) for a in arguments])

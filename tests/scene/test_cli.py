@@ -44,7 +44,7 @@ WORDS = {"result", "message", "residual", "iterations", "warnings", "version"}
 def no_solve(monkeypatch):
     """Whatever is refused is refused before anything is solved."""
 
-    def refuse(scene):
+    def refuse(scene, programs=None):
         raise AssertionError("solved a scene")
 
     monkeypatch.setattr(bj.scene, "run_scene", refuse)
@@ -226,6 +226,7 @@ def test_folder_to_write_to(run, tmp_path, option):
 def test_reader_that_left(monkeypatch):
     """As in `bearingjax solve tapered | true`."""
     monkeypatch.setattr(cli, "_configure_jax", lambda options: None)
+    monkeypatch.setattr(cli, "_programs", lambda: None)
     back, front = os.pipe()
     os.close(back)
     out = os.fdopen(front, "w")
@@ -251,6 +252,7 @@ def test_full_disk(run, monkeypatch, capsys, what):
         assert done == (2, "", f"bearingjax: {problem}\n")
         return
     monkeypatch.setattr(cli, "_configure_jax", lambda options: None)
+    monkeypatch.setattr(cli, "_programs", lambda: None)
     with open("/dev/full", "w", encoding="utf-8") as out:
         with monkeypatch.context() as patch:
             patch.setattr(sys, "stdout", out)
@@ -285,20 +287,28 @@ def test_bad_scene_writes_nothing(run, tmp_path):
 
 
 def test_as_a_program_of_its_own(tmp_path):
-    """Float64, the cache of compiled programs, nothing on standard error."""
+    """Float64, nothing on standard error, and the program kept for another load."""
     program = "import sys; from bearingjax.cli import main; sys.exit(main())"
     hidden = ("JAX_", "XLA_", "PYTHONWARNINGS")
     clean = {k: v for k, v in os.environ.items() if not k.startswith(hidden)}
     out = tmp_path / "out.json"
-    done = subprocess.run(
-        [sys.executable, "-c", program, "solve", "cylindrical_rig", "--json", out],
-        env={**clean, "XDG_CACHE_HOME": str(tmp_path / "cache")},
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("cylindrical_rig: cylindrical roller bearing")
-    assert read(out)["residual"] < SOLVER
-    cache = tmp_path / "cache" / "bearingjax" / "jax"
-    assert any(cache.iterdir())
+
+    def solve(*settings):
+        done = subprocess.run(
+            [sys.executable, "-c", program, "solve", *settings, "--json", out],
+            env={**clean, "XDG_CACHE_HOME": str(tmp_path / "cache")},
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        assert (done.returncode, done.stderr) == (0, "")
+        assert done.stdout.startswith("cylindrical_rig: cylindrical roller bearing")
+        assert read(out)["residual"] < SOLVER
+        return done.stdout, list((tmp_path / "cache/bearingjax/programs").iterdir())
+
+    scene = ("cylindrical_rig", "--set", "output.points=3")
+    first, kept = solve(*scene)
+    assert len(kept) == 1
+    other, still = solve(*scene, "--set", "operating.load.Fy=-9 kN")
+    assert still == kept
+    assert "-10.6 kN" in first and "-9 kN" in other and "-10.6 kN" not in other

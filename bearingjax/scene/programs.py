@@ -1,0 +1,279 @@
+"""Compiled programs, kept from one run of the command line to the next.
+
+A command that solves one scene spends its time on tracing and compiling, not on
+solving. So its program is compiled with options that save more of the compiler's time
+than they cost in the solve, and the executable itself is kept in a file. A later run
+on inputs of the same structure loads it and neither traces, lowers nor compiles.
+
+A kept executable is unpickled, and may then do what it likes. So it is read only from
+a folder and a file that belong to the user and that nobody else can write.
+"""
+
+import contextlib
+import functools
+import hashlib
+import os
+import pickle
+import platform
+import stat
+import sys
+from collections.abc import Callable, Iterator
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+
+from .structure import UnknownStructure, structure
+
+OPTIONS = {
+    "xla_backend_optimization_level": 0,
+    "xla_cpu_use_fusion_emitters": False,
+}
+"""XLA's options for a program that runs once."""
+
+LARGEST = 256 * 1024 * 1024
+"""Size of all that a folder keeps; what was not used for longest goes first [byte]."""
+
+_MARK = b"bearingjax program\n"
+
+
+class _Place(NamedTuple):
+    """Stands for an array among what a program returns."""
+
+    index: int
+
+
+class _Program(NamedTuple):
+    """What is kept of a program, for `pickle`.
+
+    Attributes:
+        executable: From `jax.experimental.serialize_executable`.
+        inputs: Number of its arguments, all arrays.
+        outputs: What the function returns, with a `_Place` for every array.
+        count: Number of arrays that it returns.
+    """
+
+    executable: bytes
+    inputs: int
+    outputs: Any
+    count: int
+
+
+def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
+    """Call a function, compiled for one call, or as an earlier run kept it.
+
+    Args:
+        function: Of this package, found by its name; depends on its arguments alone.
+        arguments: Nested modules, tuples, dicts; their JAX arrays are traced.
+        folder: Where programs are kept; made if there is none. If others can write
+            there, nothing is read or kept.
+
+    Returns:
+        What the function returns.
+    """
+    if jax.default_backend() != "cpu":
+        return eqx.filter_jit(function)(*arguments)
+    leaves, tree = jax.tree.flatten(arguments)
+    traced = [eqx.is_array(leaf) for leaf in leaves]
+    arrays = [leaf for leaf, yes in zip(leaves, traced, strict=True) if yes]
+    with _opened(folder) as place:
+        name = None if place is None else _name(function, arguments)
+        kept = _loaded(place, name)
+        if kept is not None:
+            return kept(arrays)
+
+        outputs: list[Any] = []
+
+        def flat(*arrays):
+            ahead = iter(arrays)
+            mixed = [
+                next(ahead) if yes else leaf
+                for leaf, yes in zip(leaves, traced, strict=True)
+            ]
+            returned = function(*jax.tree.unflatten(tree, mixed))
+            found, shape = jax.tree.flatten(returned)
+            values = [leaf for leaf in found if eqx.is_array(leaf)]
+            count = iter(range(len(values)))
+            marked = [
+                _Place(next(count)) if eqx.is_array(leaf) else leaf for leaf in found
+            ]
+            outputs.append(jax.tree.unflatten(shape, marked))
+            return values
+
+        lowered = jax.jit(flat).lower(*arrays)
+        compiled = _compiled(lowered, keep=name is not None)
+        if name is not None:
+            _keep(place, name, compiled, len(arrays), outputs[0])
+        return _filled(outputs[0], compiled(*arrays))
+
+
+def _filled(outputs: Any, values: list) -> Any:
+    def is_place(leaf):
+        return isinstance(leaf, _Place)
+
+    return jax.tree.map(
+        lambda leaf: values[leaf.index] if is_place(leaf) else leaf,
+        outputs,
+        is_leaf=is_place,
+    )
+
+
+def _compiled(lowered, keep: bool):
+    """Compile, once in this process; not also for JAX's own cache if kept here."""
+    least = "jax_persistent_cache_min_compile_time_secs"
+    before = jax.config.values[least]
+    if keep:
+        jax.config.update(least, float("inf"))
+    try:
+        return lowered.compile(compiler_options=OPTIONS)
+    except jax.errors.JaxRuntimeError:
+        # Another version of XLA, which does not know an option.
+        return lowered.compile()
+    finally:
+        jax.config.update(least, before)
+
+
+def _name(function: Callable, arguments: tuple) -> str | None:
+    """Name of the file of a program, or `None` if nothing names it for certain."""
+    try:
+        words = [structure((function, arguments)), *_surroundings()]
+    except UnknownStructure:
+        return None
+    return hashlib.sha256("\n".join(words).encode()).hexdigest()
+
+
+def _surroundings() -> Iterator[str]:
+    """All else that the program follows from: sources, versions, settings, machine."""
+    yield _sources()
+    yield sys.version
+    for package in ("jax", "jaxlib", "equinox", "numpy"):
+        yield version(package)
+    places = ("jax_compilation_cache_dir", "jax_logging_level")
+    yield repr(sorted((k, v) for k, v in jax.config.values.items() if k not in places))
+    yield os.environ.get("XLA_FLAGS", "")
+    yield repr(sorted(OPTIONS.items()))
+    yield repr([device.device_kind for device in jax.devices()])
+    yield _processor()
+
+
+@functools.cache
+def _sources() -> str:
+    """Digest of the sources of this package."""
+    top = Path(__file__).parents[1]
+    digest = hashlib.sha256()
+    for path in sorted(top.rglob("*.py")):
+        text = path.read_bytes()
+        digest.update(f"{path.relative_to(top)} {len(text)}\n".encode() + text)
+    return digest.hexdigest()
+
+
+def _processor() -> str:
+    """What the processor can do, or which machine it is."""
+    names = ("vendor_id", "cpu family", "model", "stepping", "flags", "Features")
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as lines:
+            first = [line for line in iter(lines.readline, "\n") if line]
+    except OSError:
+        return repr(platform.uname())
+    told = [line for line in first if line.split("\t")[0].split(":")[0] in names]
+    return platform.machine() + "".join(told)
+
+
+@contextlib.contextmanager
+def _opened(folder: Path) -> Iterator[int | None]:
+    """A folder that the user alone can write, as a file descriptor; else `None`."""
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with contextlib.suppress(FileExistsError):
+            folder.mkdir(mode=0o700)
+        place = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    except (OSError, AttributeError):  # such flags there are not on every system
+        yield None
+        return
+    try:
+        yield place if is_private(os.fstat(place)) else None
+    finally:
+        os.close(place)
+
+
+def is_private(status: os.stat_result) -> bool:
+    """Whether it is a file or folder of the user that nobody else can write.
+
+    Args:
+        status: Of the file or folder; of a link, which is none, from `os.lstat`.
+    """
+    shared = stat.S_IWGRP | stat.S_IWOTH
+    kind = stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)
+    return kind and status.st_uid == os.geteuid() and not status.st_mode & shared
+
+
+def _loaded(place: int | None, name: str | None):
+    """The kept program as a function of a list of arrays, or `None`."""
+    if place is None or name is None:
+        return None
+    try:
+        content = _read(place, name)
+        if content is None:
+            return None
+        from jax.experimental.serialize_executable import deserialize_and_load
+
+        program: _Program = pickle.loads(content)
+        inputs = jax.tree.structure((tuple(range(program.inputs)), {}))
+        outputs = jax.tree.structure([0] * program.count)
+        device = jax.devices()[0]
+        run = deserialize_and_load(
+            program.executable, inputs, outputs, execution_devices=[device]
+        )
+    except Exception:  # of whatever a strange file leads to
+        return None
+    return lambda arrays: _filled(program.outputs, run(*arrays))
+
+
+def _read(place: int, name: str) -> bytes | None:
+    """Content of a kept file, if it is whole and the user's own."""
+    file = os.open(name, os.O_RDONLY | os.O_NOFOLLOW, dir_fd=place)
+    with open(file, "rb") as stream:
+        status = os.fstat(file)
+        if not is_private(status):
+            return None
+        whole = stream.read()
+        os.utime(file)  # used just now
+    size = len(_MARK) + hashlib.sha256().digest_size
+    head, content = whole[:size], whole[size:]
+    return content if head == _MARK + hashlib.sha256(content).digest() else None
+
+
+def _keep(place, name, compiled, inputs, outputs) -> None:
+    """Keep a program; without a word if it cannot be, as on a full disk."""
+    from jax.experimental.serialize_executable import serialize
+
+    beside = f"{name}.{os.getpid()}"
+    try:
+        executable, _, tree = serialize(compiled)
+        content = pickle.dumps(_Program(executable, inputs, outputs, tree.num_leaves))
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+        file = os.open(beside, flags, 0o600, dir_fd=place)
+        with open(file, "wb") as stream:
+            stream.write(_MARK + hashlib.sha256(content).digest() + content)
+        os.replace(beside, name, src_dir_fd=place, dst_dir_fd=place)
+        _drop_oldest(place)
+    except Exception:
+        with contextlib.suppress(OSError):
+            os.unlink(beside, dir_fd=place)
+
+
+def _drop_oldest(place: int) -> None:
+    """Remove what was not used for longest, until the rest is small enough."""
+    found = []
+    for name in os.listdir(place):
+        with contextlib.suppress(OSError):  # another run may drop it at the same time
+            status = os.stat(name, dir_fd=place, follow_symlinks=False)
+            found.append((status.st_mtime, status.st_size, name))
+    total = 0
+    for _, size, name in sorted(found, reverse=True):
+        total += size
+        if total > LARGEST:
+            with contextlib.suppress(OSError):
+                os.unlink(name, dir_fd=place)

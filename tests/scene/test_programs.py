@@ -1,0 +1,263 @@
+"""Programs that the command line keeps: told apart, read from safe places only."""
+
+import os
+from pathlib import Path
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import bearingjax as bj
+from bearingjax.scene import programs, run
+from bearingjax.scene.structure import UnknownStructure, structure
+
+# Every choice of a scene that is not a number, beside the choice that it replaces.
+OF_ROLLERS = (
+    "",
+    "contact.line_law=iso16281",
+    "contact.line_law=coupled_slices",
+    "contact.line_constant=7.8e9 N/m^(19/9)",
+    "numerics.quadrature=midpoint",
+    "numerics.points=20",
+    "numerics.kinematics=finite",
+    "numerics.equilibrium=bfgs",
+    "numerics.tolerance=1e-9",
+    "bearing.n_rollers=18",
+    "bearing.ribs={}",
+    "operating.fixed_ring=inner",
+    "operating.inner_speed=0 rpm",
+    "operating.free=['ux','uz']",
+    "operating.prescribed={uy='1 um'}",
+    "operating.prescribed={gy='1 mrad'}",
+    "output.points=5",
+)
+OF_BALLS = (
+    "",
+    "contact.point_law=zero_angle",
+    "contact.point_law=operating_angle",
+    "numerics.kinematics=finite",
+    "operating.raceway_control=inner",
+    "operating.raceway_control=load_share",
+    "bearing.n_balls=9",
+    "bearing.outer_shoulder=2 mm",
+    "set.arrangement=face_to_face",
+    "set={arrangement='back_to_back',spacing='17 mm',preload_force='99 N'}",
+    "set={arrangement='back_to_back',spacing='17 mm',spring_force='9 N',"
+    "spring_stiffness='9 N/mm'}",
+)
+
+
+@pytest.fixture
+def name_of(monkeypatch):
+    """Name under which the program of a scene would be kept."""
+
+    class Named(Exception):
+        pass
+
+    def name(function, *arguments, folder):
+        raise Named(programs._name(function, arguments))
+
+    monkeypatch.setattr(run, "call_once", name)
+
+    def call(scene, *settings):
+        with pytest.raises(Named) as found:
+            bj.run_scene(bj.read_scene(scene, settings), Path())
+        return found.value.args[0]
+
+    return call
+
+
+@pytest.mark.parametrize(
+    "scene, choices", [("tapered", OF_ROLLERS), ("ball_pair", OF_BALLS)]
+)
+def test_every_choice_has_a_program_of_its_own(name_of, scene, choices):
+    names = [name_of(scene, *([choice] if choice else [])) for choice in choices]
+    assert None not in names
+    assert len(set(names)) == len(names)
+
+
+def test_numbers_share_a_program(name_of):
+    changed = ("operating.load.Fx=-2 kN", "bearing.roller_length=12 mm")
+    assert name_of("tapered") == name_of("tapered", *changed)
+    assert name_of("ball_pair") == name_of("ball_pair", "set.preload_offset=9 um")
+
+
+def test_every_shipped_scene_is_kept(name_of):
+    bearings = set(bj.scene.shipped_scenes()) - {"taper_contact"}
+    names = {scene: name_of(scene) for scene in bearings}
+    assert all(names.values())
+    assert len(set(names.values())) > len(names) / 2
+
+
+@pytest.mark.parametrize("what", ["sources", "setting", "flags", "processor"])
+def test_surroundings_are_part_of_the_name(name_of, monkeypatch, what):
+    before = name_of("tapered")
+    if what == "sources":
+        monkeypatch.setattr(programs, "_sources", lambda: "changed")
+    elif what == "flags":
+        monkeypatch.setenv("XLA_FLAGS", "--xla_cpu_enable_fast_math=true")
+    elif what == "processor":
+        monkeypatch.setattr(programs, "_processor", lambda: "another")
+    else:
+        given = dict(jax.config.values) | {"jax_debug_nans": True}
+        monkeypatch.setattr(type(jax.config), "values", given)
+    assert name_of("tapered") != before
+
+
+class Foreign(eqx.Module):
+    """A class from outside the package."""
+
+    factor: float = 2.0
+
+
+def test_what_is_not_known_for_certain_has_no_structure():
+    closure = bj.numerics.Result.label.fget  # named, but not found by its name
+    for value in (Foreign(), lambda x: x, closure, {1, 2}, object(), np.array([None])):
+        with pytest.raises(UnknownStructure):
+            structure((1.0, [value]))
+    with pytest.raises(UnknownStructure):
+        structure({1: "a"})
+
+
+def test_arrays_that_are_not_traced_count_by_value():
+    """Were one static field to hold an array, its values are in the program."""
+    texts = {structure(np.array(values)) for values in ([1.0, 2.0], [1.0, 3.0])}
+    assert len(texts) == 2
+    traced = {structure(jnp.array(values)) for values in ([1.0, 2.0], [1.0, 3.0])}
+    assert len(traced) == 1
+    assert structure(jnp.zeros(2)) != structure(jnp.zeros(2, int))
+    weak = jnp.array(1.0)
+    assert weak.weak_type and structure(weak) != structure(weak.astype(float))
+    assert len({structure((one,)) for one in (1, 1.0, True, "1", None)}) == 5
+    assert structure(0.1) != structure(np.nextafter(0.1, 1.0).item())
+
+
+@pytest.fixture
+def kept(monkeypatch, tmp_path):
+    """A function that notes when it is traced, and its programs' folder."""
+    traced = []
+
+    def doubled(tree, word):
+        traced.append(word)
+        return {"sum": 2.0 * tree["a"] + tree["b"][0], "word": word, "none": None}
+
+    doubled.__module__, doubled.__qualname__ = programs.__name__, "doubled"
+    monkeypatch.setattr(programs, "doubled", doubled, raising=False)
+    folder = tmp_path / "cache" / "programs"
+
+    def call(a=1.0, word="x"):
+        tree = {"a": jnp.array([a, 2.0]), "b": (jnp.array(0.5),)}
+        count = len(traced)
+        out = programs.call_once(doubled, tree, word, folder=folder)
+        assert np.array_equal(out["sum"], [2.0 * a + 0.5, 4.5])
+        assert (out["word"], out["none"]) == (word, None)
+        return len(traced) > count
+
+    call.folder = folder
+    return call
+
+
+def test_a_kept_program_is_not_traced_again(kept):
+    assert kept()
+    assert not kept() and not kept(a=-7.0)
+    assert kept(word="y")
+    assert not kept(word="y") and not kept()
+    assert kept.folder.stat().st_mode & 0o777 == 0o700
+    files = list(kept.folder.iterdir())
+    assert [file.stat().st_mode & 0o777 for file in files] == [0o600] * 2
+
+
+def spoil(path, how):
+    if how == "empty":
+        path.write_bytes(b"")
+    elif how == "cut short":
+        path.write_bytes(path.read_bytes()[:-100])
+    elif how == "one bit":
+        content = bytearray(path.read_bytes())
+        content[-200] ^= 1
+        path.write_bytes(bytes(content))
+    elif how == "no program":
+        path.write_bytes(b"something else")
+    elif how == "writable by the group":
+        path.chmod(0o620)
+    elif how == "writable by all":
+        path.chmod(0o602)
+    elif how == "a link":
+        path.rename(path.with_name("moved"))
+        path.symlink_to("moved")
+    elif how == "a folder":
+        path.unlink()
+        path.mkdir()
+
+
+HOWS = (
+    "empty",
+    "cut short",
+    "one bit",
+    "no program",
+    "writable by the group",
+    "writable by all",
+    "a link",
+    "a folder",
+)
+
+
+@pytest.mark.parametrize("how", HOWS)
+def test_a_file_that_cannot_be_trusted_is_compiled_anew(kept, how, capsys):
+    kept()
+    (path,) = kept.folder.iterdir()
+    spoil(path, how)
+    assert kept()
+    assert how == "a folder" or not kept()  # replaced by a sound one
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("how", ["group", "all", "link", "owner", "full", "no folder"])
+def test_a_folder_that_cannot_be_trusted_keeps_nothing(kept, monkeypatch, how, capsys):
+    kept()
+    folder = kept.folder
+    before = sorted(folder.iterdir())
+    if how in ("group", "all"):
+        folder.chmod(0o770 if how == "group" else 0o707)
+    elif how == "link":
+        folder.rename(folder.with_name("moved"))
+        folder.symlink_to("moved")
+    elif how == "owner":
+        me = os.geteuid()
+        monkeypatch.setattr(os, "geteuid", lambda: me + 1)
+    elif how == "full":
+
+        def refuse(*_, **__):
+            raise OSError(28, "No space left on device")
+
+        monkeypatch.setattr(os, "replace", refuse)
+    else:
+        for path in before:
+            path.unlink()
+        folder.rmdir()
+        folder.write_bytes(b"")
+    assert kept(word="y") and kept(word="y")
+    if how != "no folder":
+        assert sorted(folder.iterdir()) == before
+    assert capsys.readouterr() == ("", "")
+
+
+def test_what_was_not_used_for_longest_goes(kept, monkeypatch):
+    kept(word="old")
+    (old,) = kept.folder.iterdir()
+    os.utime(old, (1, 1))
+    kept(word="used")
+    (used,) = set(kept.folder.iterdir()) - {old}
+    os.utime(used, (2, 2))
+    monkeypatch.setattr(programs, "LARGEST", int(2.5 * old.stat().st_size))
+    kept(word="old")  # from its file, which is thereby the youngest
+    kept(word="new")
+    names = set(kept.folder.iterdir())
+    assert old in names and used not in names and len(names) == 2
+
+
+def test_an_option_that_xla_does_not_know(kept, monkeypatch):
+    monkeypatch.setattr(programs, "OPTIONS", {"xla_no_such_option": True})
+    assert kept() and not kept()
