@@ -15,18 +15,10 @@ import bearingjax as bj
 from bearingjax import design
 from bearingjax.numerics.types import as_real
 from bearingjax.numerics.units import unit, unit_of
-from bearingjax.scene.bearing_table import KIND_OF
-from bearingjax.scene.quantity import KINDS
+from bearingjax.scene.quantity import KINDS, kind_of
 from bearingjax.statics.solution import BallSolution, RollerSolution
 from bearingjax.statics.sweep_table import _label
 
-# Of the set, not of the drawing of a row: no key of [bearing].
-OF_A_SET = (bj.SetRow, bj.BearingSet, bj.PreloadSpring)
-DRAWN = [
-    kind
-    for kind in vars(design).values()
-    if dataclasses.is_dataclass(kind) and kind not in OF_A_SET
-]
 MEASURES = [
     bj.PeakPressure(),
     bj.MeanPressure(),
@@ -104,13 +96,11 @@ def floats(kind):
             yield field.name, found[1].split()
 
 
-@pytest.mark.parametrize("kind", DRAWN, ids=lambda kind: kind.__name__)
-def test_numbers_of_the_drawing_are_read_in_the_unit_of_the_docstring(kind):
-    for name, axes in floats(kind):
-        if not axes:
-            of_kind = KIND_OF[name]
-            unit = "1" if of_kind == "number" else KINDS[of_kind][0]
-            assert stated(kind, name) == {unit.replace("^3", "³")}, name
+@pytest.mark.parametrize("kind", [k for k in vars(design).values() if any(numbers(k))])
+def test_a_scene_can_hold_every_number_of_the_drawing(kind):
+    for name in numbers(kind):
+        unit = unit_of(kind, name)
+        assert not unit or KINDS[kind_of(unit)][0] == unit, name
 
 
 @pytest.mark.parametrize("kind", [RollerSolution, BallSolution])

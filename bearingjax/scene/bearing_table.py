@@ -1,7 +1,5 @@
 """The [bearing] and [set] tables of a scene: what stands on the drawing."""
 
-from typing import Any
-
 from ..design import (
     ARRANGEMENTS,
     MATERIALS,
@@ -50,52 +48,16 @@ BALLS = {
 }
 SETS = ("back_to_back", "face_to_face", "tandem", "rows")
 
-KIND_OF = {
-    **dict.fromkeys(
-        (
-            "pitch_diameter roller_diameter roller_length ball_diameter crown_radius"
-            " radial_internal_clearance straight_length dub_off_length dub_off_radius"
-            " half_width end_drop end_radius contact_height axial_gap row_offset"
-            " outer_shoulder inner_shoulder"
-        ).split(),
-        "length",
-    ),
-    **dict.fromkeys(
-        (
-            "first_azimuth roller_axis_angle roller_half_angle contact_angle shim_angle"
-        ).split(),
-        "angle",
-    ),
-    **dict.fromkeys(("contact_modulus", "elastic_modulus"), "pressure"),
-    **dict.fromkeys(
-        (
-            "coefficient load_factor crowned_fraction outer_osculation inner_osculation"
-            " poisson_ratio"
-        ).split(),
-        "number",
-    ),
-    "design_load": "force",
-    "density": "density",
+PROFILES = {
+    "straight": Straight,
+    "circular_crown": CircularCrown,
+    "crowned_ends": CrownedEnds,
+    "logarithmic": Logarithmic,
+    "lundberg": Lundberg,
+    "johns_gohar": JohnsGohar,
+    "fujiwara_kawase": FujiwaraKawase,
+    "tabulated": Tabulated,
 }
-"""Kind of quantity of a number on the drawing, by its key: for all that reads one."""
-
-
-def drawn(table: Table, name: str, *default: Any, key: str | None = None) -> Any:
-    """Number on the drawing, in SI.
-
-    Args:
-        table: Where it stands.
-        name: What it is, a key of `KIND_OF`.
-        default: If absent; without a default it is required.
-        key: Key in the table; default: the name.
-
-    Raises:
-        SceneError: If it is no such quantity.
-    """
-    key, kind = key or name, KIND_OF[name]
-    if kind == "number":
-        return table.number(key, *default)
-    return table.quantity(key, kind, *default)
 
 
 def read_bearing(top: Table) -> tuple[Bearing | BearingSet, float | None]:
@@ -112,9 +74,6 @@ def read_bearing(top: Table) -> tuple[Bearing | BearingSet, float | None]:
     """
     table = top.table("bearing", required=True)
     kind = table.choice("type", (*ROLLERS, *BALLS))
-    if kind == "self_aligning_ball" and "outer_osculation" in table:
-        problem = "the outer raceway is a sphere about the middle of the bearing"
-        raise table.error("outer_osculation", problem)
     bearing = _balls(table, kind) if kind in BALLS else _rollers(table, kind)
     if isinstance(bearing, SelfAligningBallRow):
         if "set" in top:
@@ -138,14 +97,10 @@ def _set(table: Table, bearing: Bearing) -> tuple[BearingSet, float | None]:
     if arrangement == "rows":
         rows = []
         for row in table.tables("rows"):
-            values = (
-                row.quantity("position", "length"),
-                row.flag("mirrored", False),
-                row.quantity("inner_offset", "length", 0.0),
-                _spring(row),
-            )
+            places = row.fields(SetRow, "position")
+            mirrored, spring = row.flag("mirrored", False), _spring(row)
             with row.building():
-                rows.append(SetRow(bearing, *values))
+                rows.append(SetRow(bearing, mirrored=mirrored, spring=spring, **places))
         with table.building():
             pack = BearingSet(tuple(rows))
     else:
@@ -176,53 +131,37 @@ def _spring(table: Table) -> PreloadSpring | None:
 
 
 def _balls(table: Table, kind: str) -> Bearing:
-    values: dict[str, Any] = {"n_balls": table.integer("n_balls")}
-    for key in ("pitch_diameter", "ball_diameter"):
-        values[key] = drawn(table, key)
-    for ring in RINGS[1:] if kind == "self_aligning_ball" else RINGS:
-        values[f"{ring}_osculation"] = drawn(table, f"{ring}_osculation")
-        key = f"{ring}_shoulder"
-        values[key] = drawn(table, key, None)
-    values["first_azimuth"] = drawn(table, "first_azimuth", 0.0)
-    if "ball_deviation" in table:
-        values["ball_deviation"] = table.quantities("ball_deviation", "length")
-    play, angle = "radial_internal_clearance", "contact_angle"
-    if kind == "deep_groove_ball":
-        values[play] = drawn(table, play, None)
-        values[angle] = drawn(table, angle, None)
-    if kind == "angular_contact_ball":
-        values[angle] = drawn(table, angle)
-    if kind == "four_point_ball":
-        values[play] = drawn(table, play, 0.0)
-        values["shim_angle"] = drawn(table, "shim_angle")
-    if kind == "self_aligning_ball":
-        values["row_offset"] = drawn(table, "row_offset")
-        values[play] = drawn(table, play, 0.0)
-    values["material"] = read_material(table, "material") or Material()
-    values["ring_material"] = read_material(table, "ring_material")
+    required = () if kind == "self_aligning_ball" else ("outer_osculation",)
+    values = {
+        "n_balls": table.integer("n_balls"),
+        **table.fields(BALLS[kind], *required),
+        **_materials(table),
+    }
     with table.building():
         return BALLS[kind](**values)
 
 
 def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
-    values: dict[str, Any] = {"n_rollers": table.integer("n_rollers")}
-    for key in ("pitch_diameter", "roller_diameter", "roller_length"):
-        values[key] = drawn(table, key)
-    play = "radial_internal_clearance"
-    values[play] = drawn(table, play, 0.0)
-    values["first_azimuth"] = drawn(table, "first_azimuth", 0.0)
-    if kind == "tapered_roller":
-        values["roller_axis_angle"] = drawn(table, "roller_axis_angle")
-        values["roller_half_angle"] = drawn(table, "roller_half_angle")
-    values["roller_profile"] = read_profile(table.table("roller_profile"))
+    required = ("roller_axis_angle", "roller_half_angle")
+    values = {
+        "n_rollers": table.integer("n_rollers"),
+        **table.fields(ROLLERS[kind], *required),
+        "roller_profile": read_profile(table.table("roller_profile")),
+    }
     raceways = table.table("raceway_profile")
     for ring in RINGS:
         values[f"{ring}_raceway_profile"] = read_profile(raceways.table(ring))
     values["ribs"] = _ribs(table, kind)
-    values["material"] = read_material(table, "material") or Material()
-    values["ring_material"] = read_material(table, "ring_material")
+    values |= _materials(table)
     with table.building():
         return ROLLERS[kind](**values)
+
+
+def _materials(table: Table) -> dict[str, Material | None]:
+    return {
+        "material": read_material(table, "material") or Material(),
+        "ring_material": read_material(table, "ring_material"),
+    }
 
 
 def read_material(table: Table, key: str) -> Material | None:
@@ -232,14 +171,9 @@ def read_material(table: Table, key: str) -> Material | None:
         return None
     if isinstance(given, str):
         return MATERIALS[given]()
-    steel = Material()
-    values = (
-        drawn(given, "elastic_modulus", steel.elastic_modulus),
-        drawn(given, "poisson_ratio", steel.poisson_ratio),
-        drawn(given, "density", steel.density),
-    )
+    values = given.fields(Material)
     with given.building():
-        return Material(*values)
+        return Material(**values)
 
 
 def _ribs(table: Table, kind: str) -> Ribs:
@@ -270,49 +204,14 @@ def _rib(table: Table) -> Rib:
     if "end_radius" in table and table.word("end_radius") == "flat":
         problem = "flat ends have no point contact; give the radius of the end sphere"
         raise table.error("end_radius", problem)
-    values = (
-        drawn(table, "end_radius"),
-        drawn(table, "contact_height"),
-        drawn(table, "axial_gap", 0.0),
-    )
+    values = table.fields(Rib)
     with table.building():
-        return Rib(*values)
+        return Rib(**values)
 
 
 def read_profile(table: Table) -> AbstractProfile:
     """Profile of a roller or a raceway; straight if the table is empty."""
-    kind = table.choice("type", tuple(_PROFILE_READERS), "straight")
+    kind = PROFILES[table.choice("type", tuple(PROFILES), "straight")]
+    values = table.fields(kind)
     with table.building():
-        return _PROFILE_READERS[kind](table)
-
-
-def _design_load(table: Table) -> dict[str, float]:
-    values = {"design_load": drawn(table, "design_load")}
-    modulus = drawn(table, "contact_modulus", None)
-    return values if modulus is None else {**values, "contact_modulus": modulus}
-
-
-_PROFILE_READERS = {
-    "straight": lambda t: Straight(),
-    "circular_crown": lambda t: CircularCrown(drawn(t, "crown_radius")),
-    "crowned_ends": lambda t: CrownedEnds(
-        drawn(t, "straight_length"),
-        drawn(t, "crown_radius"),
-        drawn(t, "dub_off_length", None),
-        drawn(t, "dub_off_radius", None),
-    ),
-    "logarithmic": lambda t: Logarithmic(drawn(t, "coefficient", 0.00035)),
-    "lundberg": lambda t: Lundberg(**_design_load(t)),
-    "johns_gohar": lambda t: JohnsGohar(
-        **_design_load(t), half_width=drawn(t, "half_width")
-    ),
-    "fujiwara_kawase": lambda t: FujiwaraKawase(
-        **_design_load(t),
-        load_factor=drawn(t, "load_factor"),
-        crowned_fraction=drawn(t, "crowned_fraction"),
-        end_drop=drawn(t, "end_drop"),
-    ),
-    "tabulated": lambda t: Tabulated(
-        t.quantities("positions", "length"), t.quantities("drops", "length")
-    ),
-}
+        return kind(**values)

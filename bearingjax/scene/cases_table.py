@@ -15,26 +15,28 @@ from typing import Any
 
 import numpy as np
 
-from ..element import FREEDOMS, LOADS, RINGS, BearingElement
+from ..element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
+from ..element.frame import LOAD_UNITS, MOTION_UNITS
+from ..numerics.units import unit_of
 from ..statics.cases import Cases
 from ..statics.preload import preload
 from ..statics.sweep import stack_designs
 from .cases_list import LARGEST, read_list
-from .quantity import SceneError, to_si
+from .quantity import SceneError, kind_of, to_si
 from .read import Scene, assign, find_scene, parse_bearing, scene_of
 from .table import Table
 
 OPERATING = {
     **{
-        f"operating.load.{name}": "force" if name.startswith("F") else "moment"
-        for name in LOADS
+        f"operating.load.{name}": kind_of(unit)
+        for name, unit in zip(LOADS, LOAD_UNITS, strict=True)
     },
     **{
-        f"operating.prescribed.{name}": "length" if name.startswith("u") else "angle"
-        for name in FREEDOMS
+        f"operating.prescribed.{name}": kind_of(unit)
+        for name, unit in zip(FREEDOMS, MOTION_UNITS, strict=True)
     },
-    **{f"operating.{ring}_speed": "speed" for ring in RINGS},
-    "hours": "duration",
+    **{f"operating.{ring}_speed": kind_of(unit_of(Speed, ring)) for ring in RINGS},
+    "hours": kind_of(unit_of(Cases, "hours")),
 }
 """What may vary from case to case without changing the design, and its kind."""
 

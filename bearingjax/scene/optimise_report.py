@@ -4,28 +4,15 @@ from typing import Any
 
 import numpy as np
 
+from ..numerics.units import unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
-from .bearing_table import KIND_OF
 from .optimise_table import Optimisation
+from .quantity import display_unit
 
 _RULE = "-" * 78
-_OF_KIND = {
-    "angle": (1e3, "mrad"),
-    "force": (1e-3, "kN"),
-    "pressure": (1e-9, "GPa"),
-    "density": (1.0, "kg/m³"),
-    "number": (1.0, ""),
-}
-_OF_UNIT = {
-    "Pa": (1e-6, "MPa"),
-    "N/m": (1e-6, "kN/mm"),
-    "N m": (1e-3, "N m/mrad"),
-    "m": (1e6, "µm"),
-    "rad": (1e3, "mrad"),
-    "": (1.0, ""),
-}
+_STIFFNESSES = {"N/m": (1e-6, "kN/mm"), "N m": (1e-3, "N m/mrad")}
 
 
 def optimisation_report(task: Optimisation, found: Optimised) -> str:
@@ -163,7 +150,7 @@ def _variables(found):
         names, found.variables, found.before.values, found.after.values, strict=True
     )
     for name, v, first, last in rows:
-        scale, unit = display_unit(v.name, v.upper)
+        scale, unit = display_unit(unit_of(found.element, v.path[0]), v.upper)
         low, high = scale * v.lower, scale * v.upper
         bound = {v.lower: ", at the lower", v.upper: ", at the upper"}.get(last, "")
         lines.append(
@@ -172,19 +159,6 @@ def _variables(found):
             + bound
         )
     return "\n".join(lines)
-
-
-def display_unit(name: str, largest: float) -> tuple[float, str]:
-    """Factor from SI, and the unit in which a number of the design is shown.
-
-    Args:
-        name: Its key in a scene.
-        largest: Upper bound [SI].
-    """
-    kind = KIND_OF[name.rpartition(".")[2]]
-    if kind == "length":
-        return (1e6, "µm") if largest < 1e-3 else (1e3, "mm")
-    return _OF_KIND[kind]
 
 
 def _measures(found):
@@ -214,7 +188,8 @@ def _kept(found, k, scale):
 def _unit(measure):
     if isinstance(measure, EdgeLoad):
         return 1e-3, "N/mm"
-    return _OF_UNIT[measure.unit] if isinstance(measure, AbstractMeasure) else (1.0, "")
+    unit = measure.unit if isinstance(measure, AbstractMeasure) else ""
+    return _STIFFNESSES.get(unit) or display_unit(unit)
 
 
 def _peaks(outcome):

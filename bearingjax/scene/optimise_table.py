@@ -7,6 +7,7 @@ from typing import Any
 
 from ..design import BearingSet, is_ball, rows_of
 from ..element import FREEDOMS, BearingElement
+from ..numerics.units import unit_of
 from ..optimise.measure import (
     EXPONENT,
     Constraint,
@@ -20,9 +21,8 @@ from ..optimise.measure import (
 from ..optimise.search import METHODS
 from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
-from .bearing_table import drawn
 from .cases_table import read_cases
-from .quantity import SceneError
+from .quantity import SceneError, kind_of
 from .read import Scene, find_scene, parse_bearing, scene_of
 from .table import Table, not_among
 
@@ -162,11 +162,9 @@ def _variables(table: Table, element) -> tuple[Variable, ...]:
     for key in table.keys():
         if key not in numbers:
             raise table.error(key, _no_number(key, table, numbers))
-        part, name = table.table(key), key.rpartition(".")[2]
-        low, high, start = (
-            drawn(part, name, *default, key=word)
-            for word, default in (("from", ()), ("to", ()), ("start", (None,)))
-        )
+        part, unit = table.table(key), unit_of(element, numbers[key][0])
+        low, high = (part.real(word, unit) for word in ("from", "to"))
+        start = part.real("start", unit, None)
         with part.building():
             variables.append(Variable(numbers[key], low, high, start, key))
     with table.building():
@@ -184,15 +182,9 @@ def _no_number(key, table, numbers):
 def _constraint(table: Table, exponent, balls) -> Constraint:
     kind = table.choice("measure", OBJECTIVES)
     measure = _measure(table, "measure", kind, exponent, balls)
-    unit = {
-        "Pa": "pressure",
-        "N/m": "line load" if kind == "edge_load" else "stiffness",
-        "N m": "tilting stiffness",
-        "m": "length",
-        "rad": "angle",
-    }[measure.unit]
-    least = table.quantity("at_least", unit, None)
-    most = table.quantity("at_most", unit, None)
+    least, most = (
+        table.quantity(key, _kind_of(measure), None) for key in ("at_least", "at_most")
+    )
     if least is None and most is None:
         raise table.error("measure", "give `at_least`, `at_most` or both")
     with table.building():
@@ -213,7 +205,13 @@ def _measure(table: Table, key, kind, exponent, balls, target=False) -> Any:
         return Displacement(freedom, exponent)
     if not target:
         return Stiffness(freedom, exponent)
-    unit = "stiffness" if freedom[0] == "u" else "tilting stiffness"
-    wanted = table.quantity("target", unit)
+    wanted = table.quantity("target", _kind_of(Stiffness(freedom)))
     with table.building():
         return StiffnessTarget(wanted, freedom)
+
+
+def _kind_of(measure) -> str:
+    if isinstance(measure, EdgeLoad):
+        return "line load"
+    tilting = isinstance(measure, Stiffness) and measure.unit == "N m"
+    return "tilting stiffness" if tilting else kind_of(measure.unit)

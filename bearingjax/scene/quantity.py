@@ -31,7 +31,7 @@ KINDS = {
     "force": ("N", "kN"),
     "moment": ("N m", "N m"),
     "speed": ("rad/s", "rpm"),
-    "duration": ("hour", "h"),
+    "duration": ("h", "h"),
     "pressure": ("Pa", "GPa"),
     "density": ("kg/m³", "kg/m^3"),
     "stiffness": ("N/m", "N/mm"),
@@ -40,7 +40,44 @@ KINDS = {
     "line constant": ("N/m^(19/9)", "N/m^(19/9)"),
     "point constant": ("N/m^(3/2)", "N/m^(3/2)"),
 }
-"""Kind of quantity to its SI unit and a unit that a message may suggest."""
+"""Kind of quantity to its unit and a unit that a message may suggest. Of kinds with
+one and the same unit, the first is meant where a unit is all that is known."""
+
+
+def kind_of(unit: str) -> str:
+    """Kind of quantity that has a unit.
+
+    Args:
+        unit: Unit of a field, as of `unit_of`.
+
+    Raises:
+        KeyError: If there is no such kind.
+    """
+    kinds = {known: kind for kind, (known, _) in reversed(KINDS.items())}
+    return kinds[unit]
+
+
+_SHOWN = {
+    "m": (1e6, "µm"),
+    "rad": (1e3, "mrad"),
+    "Pa": (1e-6, "MPa"),
+    "N": (1e-3, "kN"),
+}
+
+
+def display_unit(unit: str, largest: float = 0.0) -> tuple[float, str]:
+    """Factor from SI, and the unit in which numbers are shown to people.
+
+    Args:
+        unit: SI unit; empty for a pure number.
+        largest: The largest number that is shown so [SI]: lengths from 1 mm are shown
+            in mm, moduli in GPa.
+    """
+    if unit == "m" and largest >= 1e-3:
+        return 1e3, "mm"
+    if unit == "Pa" and largest >= 1e10:
+        return 1e-9, "GPa"
+    return _SHOWN.get(unit, (1.0, unit))
 
 
 class SceneError(ValueError):

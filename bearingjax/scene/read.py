@@ -40,8 +40,10 @@ from ..element import (
     OuterControl,
     Speed,
 )
+from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
+from ..numerics.units import unit_of
 from ..statics.sweep import CHUNK
 from .bearing_table import read_bearing
 from .quantity import SceneError
@@ -314,12 +316,12 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         problem = f"{tolerance:g} is not allowed; from 1e-14 to below 0.01"
         raise numerics.error("tolerance", problem)
     free = operating.words("free", FREEDOMS[:5])
-    prescribed = _components(operating, "prescribed", FREEDOMS, ("length", "angle"))
+    prescribed = _components(operating, "prescribed", FREEDOMS, MOTION_UNITS)
     both = sorted(set(free or ()) & set(prescribed))
     if both:
         problem = f"{', '.join(both)} is both free and prescribed; choose one"
         raise operating.error("free", problem)
-    load = _components(operating, "load", LOADS, ("force", "moment"))
+    load = _components(operating, "load", LOADS, LOAD_UNITS)
     for freedom, component in zip(FREEDOMS, LOADS, strict=True):
         left_out = free is not None and freedom not in (*free, "gz")
         if load.get(component) and (left_out or freedom in prescribed):
@@ -329,9 +331,9 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
                 " that load; choose one"
             )
             raise operating.error("load", problem)
-    rpm = {r: operating.quantity(f"{r}_speed", "speed", 0.0) for r in RINGS}
+    speeds = {r: operating.real(f"{r}_speed", unit_of(Speed, r), 0.0) for r in RINGS}
     held = is_ball(bearing) and isinstance(element.kinematics, ConstantAngle)
-    if held and any(rpm.values()):
+    if held and any(speeds.values()):
         problem = "constant_angle is for balls at rest; leave out the speeds"
         raise numerics.error("kinematics", problem)
     return Scene(
@@ -342,15 +344,15 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         prescribed=prescribed,
         free=free,
         fixed_ring=operating.choice("fixed_ring", RINGS, "outer"),
-        speed=Speed(rpm["inner"], rpm["outer"]) if any(rpm.values()) else None,
+        speed=Speed(**speeds) if any(speeds.values()) else None,
         tolerance=tolerance,
         points=_points(top.table("output"), bearing),
         warnings=odd,
     )
 
 
-def _components(operating, key, names, kinds) -> dict[str, float]:
-    """Table of six components: the first three of one kind, the others of another."""
+def _components(operating, key, names, units) -> dict[str, float]:
+    """Table of six components, each with its unit."""
     given = operating.raw(key, {})
     if not isinstance(given, dict):
         example = {"load": 'Fy = "-4 kN"', "prescribed": 'uz = "10 um"'}[key]
@@ -358,8 +360,8 @@ def _components(operating, key, names, kinds) -> dict[str, float]:
         raise operating.error(key, problem)
     table = operating.table(key)
     values = {}
-    for index, name in enumerate(names):
-        value = table.quantity(name, kinds[index // 3], None)
+    for name, unit in zip(names, units, strict=True):
+        value = table.real(name, unit, None)
         if value is not None:
             values[name] = value
     return values
@@ -371,7 +373,7 @@ def read_line_law(contact: Table) -> AbstractLineLaw:
     if law == "coupled_slices":
         with contact.building():
             return CoupledSlices(contact.integer("slices", CoupledSlices().slices))
-    constant = contact.quantity("line_constant", "line constant", None)
+    constant = contact.real("line_constant", unit_of(LineConstant, "value"), None)
     if constant is None:
         return LINE_LAWS[law]()
     with contact.building():
@@ -398,9 +400,10 @@ def _kinematics(numerics: Table) -> AbstractKinematics:
 
 def _point_law(contact: Table) -> AbstractPointLaw:
     law = contact.choice("point_law", tuple(POINT_LAWS), "free_angle")
-    kind = "point constant"
-    outer = contact.quantity("outer_constant", kind, None)
-    inner = contact.quantity("inner_constant", kind, None)
+    outer, inner = (
+        contact.real(f"{ring}_constant", unit_of(PointConstant, ring), None)
+        for ring in RINGS
+    )
     if outer is None and inner is None:
         return POINT_LAWS[law]()
     for name, value in (("outer_constant", outer), ("inner_constant", inner)):
@@ -419,7 +422,8 @@ def _control(operating: Table) -> AbstractRacewayControl:
             raise operating.error(friction, problem)
         return CONTROLS[name]()
     with operating.building():
-        return FrictionLimited(operating.number(friction))
+        unit = unit_of(FrictionLimited, "friction")
+        return FrictionLimited(operating.real(friction, unit))
 
 
 def _points(output: Table, bearing) -> int:

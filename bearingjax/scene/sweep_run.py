@@ -10,7 +10,7 @@ from ..statics.sweep import Sweep, sweep
 from ..statics.sweep_table import columns
 from .cases_table import CaseTable
 from .files import write_numbers
-from .quantity import SceneError
+from .quantity import SceneError, display_unit
 
 OUTPUTS = (
     "displacement",
@@ -21,13 +21,6 @@ OUTPUTS = (
     "residual",
 )
 """What is kept of each case if the scene does not say."""
-
-_SHOWN = {
-    "m": (1e6, "µm"),
-    "rad": (1e3, "mrad"),
-    "Pa": (1e-6, "MPa"),
-    "N": (1e-3, "kN"),
-}
 
 
 def run_cases(
@@ -89,7 +82,7 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
         if values.size == 0 or not values.any():
             continue
         name, _, unit = header.partition(" [")
-        factor, shown = _SHOWN.get(unit.rstrip("]"), (1.0, unit.rstrip("]")))
+        factor, shown = display_unit(unit.rstrip("]"))
         ends = "".join(f"{factor * x:>14.5g}" for x in (values.min(), values.max()))
         lines.append(f"{name:<38}{ends}  {shown}".rstrip())
     told = (*table.warnings, *solved.warnings)

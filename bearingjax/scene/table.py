@@ -1,12 +1,14 @@
 """Strict reading of nested tables: every key is asked for, or it is an error."""
 
 import contextlib
+import dataclasses
 import difflib
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, get_args
 
-from .quantity import SceneError, to_si
+from ..numerics.units import unit_of
+from .quantity import SceneError, kind_of, to_si
 
 _MISSING: Any = object()
 _BARE = re.compile(r"[A-Za-z0-9_.\[\]-]+")
@@ -83,6 +85,40 @@ class Table:
         if abs(value) > LARGEST:
             raise self.error(key, f"is out of range; at most {LARGEST:g} in size")
         return float(value)
+
+    def real(self, key: str, unit: str, default: Any = _MISSING) -> Any:
+        """Number in SI: bare, or with a unit.
+
+        Args:
+            key: Key in this table.
+            unit: SI unit, empty for a bare number.
+            default: If absent; without a default the key is required.
+        """
+        if not unit:
+            return self.number(key, default)
+        return self.quantity(key, kind_of(unit), default)
+
+    def fields(self, kind: type, *required: str) -> dict[str, Any]:
+        """Numbers of a class that stand here under their own names, in SI.
+
+        Args:
+            kind: Class whose fields have units.
+            required: Fields that must be given although the class has a default.
+        """
+        found = {}
+        for field in dataclasses.fields(kind):
+            if "unit" not in field.metadata:
+                continue
+            name, unit = field.name, unit_of(kind, field.name)
+            must = field.default is dataclasses.MISSING or name in required
+            if must or name in self:
+                several = _is_array(field.type)
+                found[name] = (
+                    self.quantities(name, kind_of(unit))
+                    if several
+                    else self.real(name, unit)
+                )
+        return found
 
     def integer(self, key: str, default: Any = _MISSING, least: int = 1) -> Any:
         """Whole number of at least `least`."""
@@ -210,6 +246,12 @@ class Table:
     def _full(self, key):
         shown = key if _BARE.fullmatch(key) else repr(key)
         return f"{self._path}.{shown}" if self._path else shown
+
+
+def _is_array(annotation):
+    """Whether a field holds an array, or `None`."""
+    kinds = get_args(annotation) or (annotation,)
+    return any(getattr(kind, "dim_str", "") for kind in kinds)
 
 
 def not_among(value: object, choices: Sequence[str]) -> str:

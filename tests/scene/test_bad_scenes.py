@@ -463,7 +463,8 @@ SETTINGS = {
     "outer osculation of a sphere": (
         "self_aligning",
         "bearing.outer_osculation=0.52",
-        "`bearing.outer_osculation`: the outer raceway is a sphere about the middle",
+        "[bearing]: SelfAligningBallRow: `outer_osculation` is given, but the outer"
+        " raceway is a sphere about the middle",
     ),
     "linearised self-aligning bearing": (
         "self_aligning",

@@ -9,6 +9,7 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import SceneError, read_scene
+from bearingjax.numerics.units import unit_of
 from bearingjax.optimise import design_numbers
 from bearingjax.optimise.variable import changed
 from bearingjax.scene import (
@@ -16,8 +17,8 @@ from bearingjax.scene import (
     read_optimisation,
     shipped_scenes,
 )
-from bearingjax.scene.bearing_table import KIND_OF
 from bearingjax.scene.optimise_table import scene_numbers
+from bearingjax.scene.quantity import kind_of
 
 BEARING = """
 [bearing]
@@ -143,8 +144,8 @@ def test_every_number_of_every_scene_may_be_free(name):
     numbers = scene_numbers(element)
     assert len(numbers) >= 6
     for key, paths in numbers.items():
-        assert key.rpartition(".")[2] in KIND_OF, key
         assert set(paths) <= set(there), key
+        assert not (unit := unit_of(element, paths[0])) or kind_of(unit), key
 
 
 def test_all_ribs_and_all_rows_share_a_number():
@@ -318,3 +319,16 @@ def test_scene_without_the_table(run):
 def test_picture_only_where_it_can_be_written(run, tmp_path):
     done = run("optimise", "fujiwara_kawase", "--plot", tmp_path / "no" / "x.png")
     assert done.status == 2 and "its folder does not exist" in done.err
+
+
+def test_a_free_number_is_read_in_the_unit_of_its_field():
+    ask = "optimise.objective=peak_pressure", "optimise.exponent=32"
+    shoulder = "bearing.outer_shoulder"
+    table = '{"%s" = {from = "1 mm", to = "%s"}, "bearing.outer_osculation"'
+    table = f"optimise.variables={table} = {{from = 0.51, to = 0.53}}}}"
+    task = read_optimisation("deep_groove", [*ask, table % (shoulder, "5 mm")])
+    first, second = task.variables
+    assert (first.lower, first.upper) == (1e-3, 5e-3)
+    assert (second.lower, second.upper) == (0.51, 0.53)
+    with pytest.raises(SceneError, match=f"{shoulder}.*is not a length"):
+        read_optimisation("deep_groove", [*ask, table % (shoulder, "5 deg")])
