@@ -23,6 +23,7 @@ from .checks import (
     concrete,
     count,
     in_range,
+    instance,
     is_real,
     is_traced,
     number,
@@ -171,7 +172,8 @@ class AbstractBallBearing(eqx.Module):
         number(self, "first_azimuth")
         for ring in ("outer", "inner"):
             self._check_groove(ring)
-        self._check_materials()
+        instance(self, "material", Material)
+        instance(self, "ring_material", Material, None)
         self._check_row()
         self._check_deviation()
 
@@ -195,19 +197,6 @@ class AbstractBallBearing(eqx.Module):
         if value is None:
             return
         in_range(self, name, 0.0, self.ball_diameter)
-
-    def _check_materials(self):
-        owner = type(self).__name__
-        if not isinstance(self.material, Material):
-            raise TypeError(
-                f"{owner}: `material` is a {type(self.material).__name__}; it must be"
-                " a Material."
-            )
-        if not isinstance(self.ring_material, Material | None):
-            raise TypeError(
-                f"{owner}: `ring_material` is a {type(self.ring_material).__name__};"
-                " it must be a Material or None."
-            )
 
     def _check_row(self):
         numbers = concrete(

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
-from .checks import check, concrete, count, in_range, number, positive
+from .checks import check, concrete, count, in_range, instance, number, positive
 from .material import Material
 from .profile import AbstractProfile, Straight
 from .rib import Ribs
@@ -88,27 +88,17 @@ class AbstractRollerBearing(eqx.Module):
         self._check_row()
 
     def _check_parts(self):
-        kinds = {
-            "roller_profile": AbstractProfile,
-            "outer_raceway_profile": AbstractProfile,
-            "inner_raceway_profile": AbstractProfile,
-            "ribs": Ribs,
-            "material": Material,
-        }
-        owner = type(self).__name__
-        for name, kind in kinds.items():
-            value = getattr(self, name)
-            if not isinstance(value, kind):
-                raise TypeError(
-                    f"{owner}: `{name}` is a {type(value).__name__}; it must be a"
-                    f" {kind.__name__.removeprefix('Abstract')}."
-                )
-        if not isinstance(self.ring_material, Material | None):
-            raise TypeError(
-                f"{owner}: `ring_material` is a {type(self.ring_material).__name__};"
-                " it must be a Material or None."
-            )
-        for name in list(kinds)[:3]:
+        profiles = (
+            "roller_profile",
+            "outer_raceway_profile",
+            "inner_raceway_profile",
+        )
+        for name in profiles:
+            instance(self, name, AbstractProfile)
+        instance(self, "ribs", Ribs)
+        instance(self, "material", Material)
+        instance(self, "ring_material", Material, None)
+        for name in profiles:
             getattr(self, name).check(self.roller_length, self.roller_diameter)
         for name in self.ribs.present:
             self._check_rib(name)

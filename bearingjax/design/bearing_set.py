@@ -10,7 +10,7 @@ from ..numerics.units import unit
 from .ball import AbstractBallBearing
 from .ball_types import SelfAligningBallRow
 from .bearing import AbstractRollerBearing
-from .checks import concrete, non_negative, number, positive
+from .checks import concrete, instance, non_negative, number, positive
 from .checks import count as whole
 from .overlap import overlap
 
@@ -85,11 +85,7 @@ class SetRow(eqx.Module):
             raise TypeError(f"SetRow: `mirrored` is {self.mirrored!r}; True or False.")
         number(self, "position")
         number(self, "inner_offset")
-        if not isinstance(self.spring, PreloadSpring | None):
-            raise TypeError(
-                f"SetRow: `spring` is a {type(self.spring).__name__}; it must be a"
-                " PreloadSpring or None."
-            )
+        instance(self, "spring", PreloadSpring, None)
 
 
 def _as_tuple(rows):

@@ -169,6 +169,22 @@ def count(owner, name: str, value) -> None:
     check(owner, name, value >= 1, "a whole number of at least 1", value, "")
 
 
+def instance(owner, name: str, *kinds: type | None) -> None:
+    """A field that holds an object of one of several classes, or `None`.
+
+    Raises:
+        TypeError: If it holds something else.
+    """
+    value = getattr(owner, name)
+    if not any(value is None if k is None else isinstance(value, k) for k in kinds):
+        names = ["None" if k is None else k.__name__ for k in kinds]
+        allowed = " or ".join(n.removeprefix("Abstract") for n in names)
+        raise TypeError(
+            f"{_title(owner)}: `{name}` is a {type(value).__name__}; it must be a"
+            f" {allowed}."
+        )
+
+
 def _field(owner, name):
     """Value and unit of a field."""
     return getattr(owner, name), unit_of(owner, name)

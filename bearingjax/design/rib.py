@@ -4,7 +4,7 @@ import equinox as eqx
 
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .checks import non_negative, number, positive
+from .checks import instance, non_negative, number, positive
 
 RIB_NAMES = ("outer_minus", "outer_plus", "inner_minus", "inner_plus")
 """Order of the ribs wherever they are an axis: ring, then side (-z, +z)."""
@@ -93,9 +93,4 @@ class Ribs(eqx.Module):
 
     def __check_init__(self):
         for name in RIB_NAMES:
-            rib = getattr(self, name)
-            if rib is not None and not isinstance(rib, Rib):
-                raise TypeError(
-                    f"Ribs: `{name}` is a {type(rib).__name__}; it must be a Rib or"
-                    " None."
-                )
+            instance(self, name, Rib, None)
