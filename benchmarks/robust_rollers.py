@@ -10,7 +10,6 @@ Run: python benchmarks/robust_rollers.py [--count 1000000] [--solver newton|bfgs
 
 import argparse
 import json
-from functools import partial
 
 import jax
 
@@ -22,9 +21,8 @@ import numpy as np  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 from bearingjax.element.equilibrium import is_loose, solve_element  # noqa: E402
-from bearingjax.numerics.lanes import Loop  # noqa: E402
 from bearingjax.numerics.linear import solve_symmetric  # noqa: E402
-from bearingjax.numerics.minimise import AbstractMinimiser, Minimum  # noqa: E402
+from bearingjax.numerics.minimise import AbstractMinimiser, first_state  # noqa: E402
 
 CHUNK = 5000
 
@@ -32,24 +30,28 @@ CHUNK = 5000
 class PlainNewton(AbstractMinimiser):
     """Newton's method without safeguards, for comparison."""
 
-    def loop(self, function, start, radius, shape=None, memory=()):
-        def step(state):
-            k, x = state
-            e = function(x, True)
-            return k + 1, x - solve_symmetric(e.hessian, e.gradient)
+    tolerance: float | None = None
+    max_steps: int = 60
 
-        begin = (jnp.asarray(0), start)
-        return Loop(begin, lambda s: s[0] < 60, step, partial(self.finish, function))
+    def reachable(self, dtype):
+        return 1e-9
 
-    @staticmethod
-    def finish(function, state):
-        _, x = state
-        e = function(x, True)
-        size = jnp.sqrt(e.gradient @ e.gradient)
-        good = size <= 1e-9 * e.scale + 10 * e.noise
-        code = jnp.where(good, 0, 1).astype(jnp.int32)
-        residual = size / (e.scale + 1e-300)
-        return Minimum(x, residual, size, jnp.asarray(60), code)
+    def init(self, problem):
+        n, dtype = problem.start.shape[0], problem.start.dtype
+        return first_state(problem, jnp.eye(n, dtype=dtype), ())
+
+    def step(self, problem, state):
+        now = state.now
+        x = state.x - solve_symmetric(now.hessian, now.gradient)
+        there = problem.at(x, True, now.memory)
+        return state._replace(x=x, now=there, steps=state.steps + 1)
+
+    def settled(self, problem, state):
+        return jnp.asarray(False)
+
+    def finish(self, problem, state):
+        now = state.now._replace(noise=10 * state.now.noise)
+        return super().finish(problem, state._replace(now=now))
 
 
 SOLVERS = {

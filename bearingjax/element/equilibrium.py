@@ -14,7 +14,12 @@ from jaxtyping import Array, Bool, Float, Int
 from ..numerics import lanes
 from ..numerics.implicit import attach, recall, stop
 from ..numerics.linear import dot, norm, smallest_pivot, solve, trace
-from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
+from ..numerics.minimise import (
+    AbstractMinimiser,
+    Evaluation,
+    Problem,
+    TrustRegionNewton,
+)
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from .model import AbstractModel, Derivatives, Rings, Unknowns
@@ -89,8 +94,8 @@ def solve_element(
                 " operating angle have none. Use TrustRegionNewton()."
             )
         minimiser = dataclasses.replace(minimiser, symmetric=False)
-    frozen = stop((model, rings, magnitude, near))
-    state = lanes.run(_loop, minimiser, *frozen)
+    given = _prepare(*stop((model, rings, magnitude, near)))
+    state = lanes.run(_loop(minimiser), given)
 
     def residual(x, args):
         model, rings = args
@@ -163,7 +168,31 @@ def solved_derivatives(
     return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), d)
 
 
-def _loop(minimiser, model, rings, magnitude, near) -> lanes.Loop:
+class _Given(NamedTuple):
+    """What a solve is given, and what depends on no step of it."""
+
+    model: AbstractModel
+    rings: Rings
+    magnitude: Scalar
+    centre: Unknowns
+    start: Unknowns
+    radius: Scalar
+    is_open: Bool[Array, ""] | None
+
+
+def _prepare(model, rings, magnitude, near) -> _Given:
+    start, centre = model.first(rings), model.amid(rings)
+    if near is not None:
+        start = _followed(model, near, rings, start)
+    is_open = model.is_open(rings)
+    if is_open is not None:
+        start = jnp.where(is_open, centre, start)
+    radius = model.reach(rings) + model.gap + 1e-6 * model.diameter
+    return _Given(model, rings, magnitude, centre, start, radius, is_open)
+
+
+def _problem(given: _Given) -> Problem:
+    model, rings = given.model, given.rings
     eps = jnp.finfo(rings.dtype).eps
 
     def function(x, with_hessian, *_):
@@ -172,50 +201,48 @@ def _loop(minimiser, model, rings, magnitude, near) -> lanes.Loop:
         g, h = d.gradient, d.hessian
         scale = _load(model, d)
         # Round-off of positions, and what is small against the guide's own force.
-        noise = _size(model, x, magnitude) * (eps * trace(h) + 1e-6 * model.guide)
+        size = _size(model, x, given.magnitude)
+        noise = size * (eps * trace(h) + 1e-6 * model.guide)
         # A loose element need not be placed: its solve is over.
-        loose = is_loose(model, x - centre, magnitude, scale, g)
+        loose = is_loose(model, x - given.centre, given.magnitude, scale, g)
         noise = jnp.where(loose, norm(g), noise)
         scale = jnp.where(loose, jnp.inf, scale)
         value = d.energy if model.has_potential else jnp.full_like(d.energy, jnp.nan)
         hessian = h if with_hessian else h[:0]
         return Evaluation(value, g, hessian, scale, noise, responses)
 
-    radius = model.reach(rings) + model.gap + 1e-6 * model.diameter
-    start, centre = model.first(rings), model.amid(rings)
-    if near is not None:
-        start = _followed(model, near, rings, start)
-    open_ = model.is_open(rings)
-    if open_ is not None:
-        start = jnp.where(open_, centre, start)
-
     def shape(x, step, size):
         return model.shape(rings, x, step, size)
 
-    shaping = shape if model.shapes_steps else None
     memory = jax.tree.map(
         lambda a: jnp.zeros(a.shape, a.dtype),
-        jax.eval_shape(model.responses, rings, start),
+        jax.eval_shape(model.responses, rings, given.start),
     )
-    loop = minimiser.loop(function, start, radius, shaping, memory)
+    shaping = shape if model.shapes_steps else None
+    return Problem(function, given.start, given.radius, shaping, memory)
 
-    def unfinished(state):
-        going = loop.unfinished(state)
-        return going if open_ is None else going & ~open_
 
-    def finish(state):
-        minimum = loop.finish(state)
-        if open_ is not None:
+def _loop(minimiser: AbstractMinimiser) -> lanes.Loop:
+    """The search of one element, which an open one need not begin."""
+    loop = minimiser.loop(_problem)
+
+    def terminate(given, state):
+        ended = loop.terminate(given, state)
+        return ended if given.is_open is None else ended | given.is_open
+
+    def finish(given, state):
+        minimum, is_open = loop.finish(given, state), given.is_open
+        if is_open is not None:
             # Its loop has not run.
             minimum = minimum._replace(
-                residual=jnp.where(open_, 0.0, minimum.residual),
-                unbalanced=jnp.where(open_, 0.0, minimum.unbalanced),
-                steps=jnp.where(open_, 0, minimum.steps),
-                result=jnp.where(open_, int(Result.CONVERGED), minimum.result),
+                residual=jnp.where(is_open, 0.0, minimum.residual),
+                unbalanced=jnp.where(is_open, 0.0, minimum.unbalanced),
+                steps=jnp.where(is_open, 0, minimum.steps),
+                result=jnp.where(is_open, int(Result.CONVERGED), minimum.result),
             )
-        return _solved(model, rings, minimum)
+        return _solved(given.model, given.rings, minimum)
 
-    return loop._replace(unfinished=unfinished, finish=finish)
+    return loop._replace(terminate=terminate, finish=finish)
 
 
 def _solved(model, rings, minimum) -> LocalState:

@@ -163,8 +163,8 @@ class RowModel(eqx.Module):
         zero = jnp.zeros((1,), local.dtype)
         radius = 1e-4 * self.part.bearing.pitch_diameter
         solver = TrustRegionNewton()
-        minimum = solver.search(
-            function, zero, stop(radius), 1e-13, jnp.ones_like(zero), None
+        minimum = solver.minimise(
+            function, zero, stop(radius), direction=jnp.ones_like(zero), tolerance=1e-13
         )
         found = attach(lambda y, args: balance(y, args)[1], minimum.x, args, symmetric)
         energy, _, rate = spring.push(found[0])

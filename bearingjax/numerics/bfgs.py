@@ -5,9 +5,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from .lanes import Loop
 from .linear import norm
-from .minimise import AbstractMinimiser, Evaluation, State, finish, pack, unpack
+from .minimise import AbstractMinimiser, State, first_state
 
 
 class BFGS(AbstractMinimiser):
@@ -29,64 +28,50 @@ class BFGS(AbstractMinimiser):
     tolerance: float | None = eqx.field(static=True, default=None)
     max_steps: int = eqx.field(static=True, default=400)
 
-    def loop(self, function, start, radius, shape=None, memory=()):
-        default = 1e-9 if start.dtype == jnp.float64 else 1e-4
-        tolerance = default if self.tolerance is None else self.tolerance
-        eps = jnp.finfo(start.dtype).eps
-        tiny = jnp.finfo(start.dtype).tiny
-        n = start.shape[0]
-        identity = jnp.eye(n, dtype=start.dtype)
-        radius = jnp.asarray(radius, dtype=start.dtype)
+    def reachable(self, dtype):
+        return 1e-9 if dtype == jnp.float64 else 1e-4
 
-        def unfinished(carry):
-            state = unpack(carry[0], n, False)
-            size = norm(state.now.gradient)
-            goal = tolerance * state.now.scale + state.now.noise
-            going = (size > goal) & (state.steps < self.max_steps) & ~state.stalled
-            return going | (state.steps < 0)
+    def init(self, problem):
+        n, dtype = problem.start.shape[0], problem.start.dtype
+        # Kept besides: inverse of the Hessian, and the share of the step to try.
+        own = jnp.eye(n, dtype=dtype), jnp.ones((), dtype)
+        return first_state(problem, jnp.zeros((0,), dtype), own)
 
-        def step(carry):
-            packed, inverse, fraction = carry
-            state = unpack(packed, n, False)
-            first = state.steps < 0
-            now = state.now
-            direction = -inverse @ now.gradient
-            direction = direction * jnp.minimum(
-                1.0, state.radius / jnp.maximum(norm(direction), tiny)
-            )
-            s = jnp.where(first, 0.0, fraction * direction)
-            past = (memory,) if jax.tree.leaves(memory) else ()
-            new = function(state.x + s, False, *past)
-            accept = (new.value - now.value <= 1e-4 * (now.gradient @ s)) | (
-                norm(new.gradient) <= 0.5 * norm(now.gradient)
-            )
-            accept = accept | first
-            updated = inverse_update(inverse, s, new.gradient - now.gradient)
-            # First metric: down the gradient, as long as the radius.
-            steep = identity * radius / jnp.maximum(norm(new.gradient), tiny)
-            updated = jnp.where(first, steep, updated)
-            full = accept & (fraction == 1.0)
-            longer = jnp.maximum(state.radius, 4.0 * norm(s))
-            radius_now = jnp.where(full, longer, state.radius)
-            stalled = ~accept & (norm(s) <= 4 * eps * norm(state.x))
-            rest = (radius_now, state.steps + 1.0, stalled, *state[-2:])
-            new = new._replace(hessian=now.hessian)
-            taken = pack(State(state.x + s, new, *rest))
-            stayed = pack(State(state.x, now, *rest))
-            packed = jnp.where(accept, taken, stayed)
-            inverse = jnp.where(accept, updated, inverse)
-            return packed, inverse, jnp.where(accept, 1.0, 0.3 * fraction)
-
-        zero = jnp.zeros((), start.dtype)
-        nothing = jnp.zeros((0,), start.dtype)
-        begin = Evaluation(zero, 0.0 * start, nothing, zero, zero)
-        packed = pack(State(start, begin, radius, zero - 1.0, zero, zero, zero))
-        carry = (packed, identity, jnp.ones((), start.dtype))
-
-        def end(carry):
-            return finish(unpack(carry[0], n, False), tolerance, None)
-
-        return Loop(carry, unfinished, step, end)
+    def step(self, problem, state):
+        eps, tiny = (getattr(jnp.finfo(state.x.dtype), k) for k in ("eps", "tiny"))
+        inverse, fraction = state.own
+        first = state.steps < 0
+        now = problem.pulled(state.x, state.now)
+        direction = -inverse @ now.gradient
+        direction = direction * jnp.minimum(
+            1.0, state.radius / jnp.maximum(norm(direction), tiny)
+        )
+        s = jnp.where(first, 0.0, fraction * direction)
+        there = problem.at(state.x + s, False, now.memory)
+        # Nothing is asked of a Hessian.
+        there = there._replace(hessian=now.hessian)
+        new = problem.pulled(state.x + s, there)
+        accept = (new.value - now.value <= 1e-4 * (now.gradient @ s)) | (
+            norm(new.gradient) <= 0.5 * norm(now.gradient)
+        )
+        accept = accept | first
+        updated = inverse_update(inverse, s, new.gradient - now.gradient)
+        # First metric: down the gradient, as long as the radius.
+        steep = jnp.eye(s.shape[0], dtype=s.dtype) * problem.radius
+        steep = steep / jnp.maximum(norm(new.gradient), tiny)
+        updated = jnp.where(first, steep, updated)
+        full = accept & (fraction == 1.0)
+        longer = jnp.maximum(state.radius, 4.0 * norm(s))
+        taken = (state.x + s, there, updated), (state.x, state.now, inverse)
+        x, now, inverse = jax.tree.map(lambda a, b: jnp.where(accept, a, b), *taken)
+        return State(
+            x,
+            now,
+            radius=jnp.where(full, longer, state.radius),
+            steps=state.steps + 1,
+            stalled=~accept & (norm(s) <= 4 * eps * norm(state.x)),
+            own=(inverse, jnp.where(accept, 1.0, 0.3 * fraction)),
+        )
 
 
 def inverse_update(

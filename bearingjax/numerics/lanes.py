@@ -2,6 +2,20 @@
 
 Under `vmap` a `while_loop` goes on with every lane until the last is done. Here all
 lanes go on only while most of them need it; the rest is gathered, some at a time.
+
+An example: how often each of many numbers halves until it is below a limit. What does
+not change from step to step is prepared by the caller, once, and is `given`:
+
+    halve = Loop(
+        init=lambda given: (given.number, 0),
+        step=lambda given, state: (0.5 * state[0], state[1] + 1),
+        terminate=lambda given, state: state[0] < given.limit,
+        finish=lambda given, state: state[1],
+    )
+    times = jax.vmap(lambda number: run(halve, Given(number, limit)))(numbers)
+
+`Given` is any pytree. Its leaves that are alike in all lanes, as `limit` here, are kept
+once.
 """
 
 from collections.abc import Callable
@@ -10,8 +24,10 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import lax
 from jax.custom_batching import custom_vmap
+from jaxtyping import Array
 
 PART = 8
 """One lane in so many goes on at a time when no more than half are left."""
@@ -19,61 +35,109 @@ PART = 8
 LEAST = 16
 """Fewest lanes that go on at a time: a pass of fewer costs its overhead."""
 
+SMALL = 64
+"""Most numbers of a leaf that is packed with others."""
+
 
 class Loop(NamedTuple):
-    """An iteration: `while unfinished(state): state = step(state)`.
+    """An iteration: `init`, then `step` until `terminate`, then `finish`.
 
     Attributes:
-        begin: First state, any pytree of arrays.
-        unfinished: state -> whether to go on.
-        step: state -> next state.
-        finish: last state -> what is wanted of it.
+        init: given -> first state, any pytree of arrays, one of them floating.
+        step: (given, state) -> next state.
+        terminate: (given, state) -> whether to stop.
+        finish: (given, last state) -> what is wanted of it.
     """
 
-    begin: Any
-    unfinished: Callable[[Any], Any]
-    step: Callable[[Any], Any]
-    finish: Callable[[Any], Any]
+    init: Callable[[Any], Any]
+    step: Callable[[Any, Any], Any]
+    terminate: Callable[[Any, Any], Any]
+    finish: Callable[[Any, Any], Any]
 
-    def run(self) -> Any:
+    def run(self, given) -> Any:
         """What comes out of the iteration."""
-        return self.finish(lax.while_loop(self.unfinished, self.step, self.begin))
+        begin = self.init(given)
+        pack, unpack = packing(begin)
+        last = lax.while_loop(
+            lambda packed: ~self.terminate(given, unpack(packed)),
+            lambda packed: pack(self.step(given, unpack(packed))),
+            pack(begin),
+        )
+        return self.finish(given, unpack(last))
 
 
-def run(loop_of: Callable[..., Loop], *args) -> Any:
-    """`loop_of(*args).run()`, which under `vmap` lets few lanes wait for others.
+def packing(example) -> tuple[Callable[[Any], list[Array]], Callable[[Any], Any]]:
+    """How to make one array of the small leaves of a state, and the state of it again.
+
+    A pass of a compiled loop then ends in one kernel, not in one per leaf: in batches
+    of small problems a fifth of the time.
 
     Args:
-        loop_of: Function of `args`, and of no other traced number.
-        *args: Pytrees; what is no array is static.
+        example: State with at least one floating leaf. Flags and integers become such
+            numbers: exact, up to 2²⁴ in float32.
+
+    Returns:
+        Functions state -> list of arrays -> state.
+    """
+    leaves, tree = jax.tree.flatten(example)
+    dtype = next(a.dtype for a in leaves if jnp.issubdtype(a.dtype, jnp.floating))
+    known = (dtype, bool, jnp.int32)
+    small = [a.size <= SMALL and a.dtype in known for a in leaves]
+    ends = np.cumsum([a.size * yes for a, yes in zip(leaves, small, strict=True)])
+
+    def pack(state):
+        found = list(zip(jax.tree.leaves(state), small, strict=True))
+        parts = [a.reshape(-1).astype(dtype) for a, yes in found if yes]
+        return [jnp.concatenate(parts), *(a for a, yes in found if not yes)]
+
+    def unpack(packed):
+        first, *others = packed
+        rest = iter(others)
+        found = [
+            first[end - a.size : end].reshape(a.shape).astype(a.dtype)
+            if yes
+            else next(rest)
+            for a, yes, end in zip(leaves, small, ends, strict=True)
+        ]
+        return jax.tree.unflatten(tree, found)
+
+    return pack, unpack
+
+
+def run(loop: Loop, given) -> Any:
+    """`loop.run(given)`, which under `vmap` lets few lanes wait for others.
+
+    Args:
+        loop: Its functions see no traced number but those of `given`.
+        given: Pytree; what is no array is static.
 
     Returns:
         As `Loop.finish`. Derivatives are not for here: see `implicit`.
     """
-    arrays, static = eqx.partition(args, eqx.is_array)
+    arrays, static = eqx.partition(given, eqx.is_array)
     leaves, tree = jax.tree.flatten(arrays)
 
-    def build(leaves):
-        return loop_of(*eqx.combine(jax.tree.unflatten(tree, leaves), static))
+    def whole(leaves):
+        return eqx.combine(jax.tree.unflatten(tree, leaves), static)
 
     @custom_vmap
     def one(leaves):
-        return build(leaves).run()
+        return loop.run(whole(leaves))
 
     @one.def_vmap
     def _rule(size, batched, leaves):
-        out = _many(build, tuple(batched[0]))(leaves)
+        out = _many(loop, whole, tuple(batched[0]))(leaves)
         return out, jax.tree.map(lambda _: True, out)
 
     return one(leaves)
 
 
-def _many(build, flags):
+def _many(loop, whole, flags):
     """The loops of lanes, flagged leaves with a leading axis."""
 
     @custom_vmap
     def many(leaves):
-        return _in_lanes(build, flags, leaves)
+        return _in_lanes(loop, whole, flags, leaves)
 
     @many.def_vmap
     def _rule(size, batched, leaves):
@@ -91,7 +155,7 @@ def _many(build, flags):
             return leaf.reshape(size * count, *leaf.shape[2:])
 
         joint = [joined(*x) for x in zip(leaves, flags, batched[0], strict=True)]
-        out = _many(build, both)(joint)
+        out = _many(loop, whole, both)(joint)
         out = jax.tree.map(lambda a: a.reshape(size, count, *a.shape[1:]), out)
         return out, jax.tree.map(lambda _: True, out)
 
@@ -106,18 +170,28 @@ def _count(flags, leaves, batched):
     raise AssertionError("no leaf has lanes")
 
 
-def _in_lanes(build, flags, leaves):
+def _in_lanes(loop, whole, flags, leaves):
     common = [leaf for leaf, flag in zip(leaves, flags, strict=True) if not flag]
     own = [leaf for leaf, flag in zip(leaves, flags, strict=True) if flag]
 
-    def loop(mine):
+    def given(mine):
         rest, mine = iter(common), iter(mine)
-        return build([next(mine if flag else rest) for flag in flags])
+        return whole([next(mine if flag else rest) for flag in flags])
 
-    begin = jax.vmap(lambda mine: loop(mine).begin)(own)
-    going = jax.vmap(lambda mine, state: loop(mine).unfinished(state))(own, begin)
-    ended = _compacting(loop, own, begin, going)
-    return jax.vmap(lambda mine, state: loop(mine).finish(state))(own, ended)
+    if jax.tree.leaves(own)[0].shape[0] // PART < LEAST:
+        return jax.vmap(lambda mine: loop.run(given(mine)))(own)
+    state = jax.eval_shape(lambda mine: loop.init(given(mine)), [a[0] for a in own])
+    pack, unpack = packing(state)
+    packed = Loop(
+        lambda mine: pack(loop.init(given(mine))),
+        lambda mine, s: pack(loop.step(given(mine), unpack(s))),
+        lambda mine, s: loop.terminate(given(mine), unpack(s)),
+        lambda mine, s: loop.finish(given(mine), unpack(s)),
+    )
+    state = jax.vmap(packed.init)(own)
+    going = ~jax.vmap(packed.terminate)(own, state)
+    ended = _compacting(packed, own, state, going)
+    return jax.vmap(packed.finish)(own, ended)
 
 
 def _compacting(loop, own, state, going):
@@ -128,9 +202,9 @@ def _compacting(loop, own, state, going):
     """
 
     def pass_(mine, state, going):
-        new = loop(mine).step(state)
+        new = loop.step(mine, state)
         new = jax.tree.map(lambda a, b: jnp.where(going, a, b), new, state)
-        return new, going & loop(mine).unfinished(new)
+        return new, going & ~loop.terminate(mine, new)
 
     def passes(own, state, going, fewest):
         """Until no more than `fewest` go on."""
@@ -142,8 +216,6 @@ def _compacting(loop, own, state, going):
 
     count = going.shape[0]
     width = count // PART
-    if width < LEAST:
-        return passes(own, state, going, 0)[0]
 
     def some(carry):
         state, going = carry

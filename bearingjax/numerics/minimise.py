@@ -1,7 +1,10 @@
 """Minimiser of a function of a handful of unknowns, built to run inside `vmap`.
 
-Equilibria are minimisations that must lower an energy, not bare root finds. Each
-minimiser is one `while_loop` with one evaluation per pass and returns a status.
+Equilibria are minimisations that must lower an energy, not bare root finds. A
+minimiser is four pure functions of a `Problem`: `init`, then `step` until `terminate`,
+then `finish`. So the same four run alone (`minimise`), many at a time (`lanes.run`), or
+under a load that comes down to its size (`continuation`). Each step takes one
+evaluation of the function.
 """
 
 import abc
@@ -11,7 +14,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Bool, Float, Int
 
 from .lanes import Loop
 from .linear import dot, norm, quadratic, solve, trace
@@ -40,6 +43,84 @@ class Evaluation(NamedTuple):
     memory: Any = ()
 
 
+Function = Callable[..., Evaluation]
+Shape = Callable[
+    [Float[Array, " n"], Float[Array, " n"], Float[Array, ""]], Float[Array, " n"]
+]
+
+
+class Problem(NamedTuple):
+    """What is to be minimised, from where, and when to stop.
+
+    Attributes:
+        function: (x, with_hessian) -> `Evaluation`; with a `memory`, that of where the
+            step began is its third argument.
+        start: First point (n,).
+        radius: First bound of the step, same unit as x.
+        shape: (x, step, size of the gradient) -> better step, by one who knows where
+            the function bends or stiffens. Newton's method alone uses it.
+        memory: Of the start.
+        direction: Unit vector (n,), or zero. If the function falls along it and too
+            little curvature is felt within `radius` to end the fall, it is first
+            followed in growing steps until the function rises: Newton's method, which
+            alone uses it, then comes from the stiff side, where it is at its best.
+        limit: |x| beyond which the function counts as unbounded below; the search then
+            ends with `NO_LOAD_PATH`.
+        force: A constant force on x (n,) [J/unit of x]: value - force·x is minimised,
+            and the scale is the force, unless it is zero.
+        tolerance: |gradient| / scale at which to stop; may be traced. `None`: the
+            minimiser's own.
+        max_steps: Step limit; may be traced. `None`: the minimiser's own.
+    """
+
+    function: Function
+    start: Float[Array, " n"]
+    radius: Float[Array, ""]
+    shape: Shape | None = None
+    memory: Any = ()
+    direction: Float[Array, " n"] | None = None
+    limit: Float[Array, ""] | None = None
+    force: Float[Array, " n"] | None = None
+    tolerance: Float[Array, ""] | float | None = None
+    max_steps: Int[Array, ""] | int | None = None
+
+    def at(self, x: Array, with_hessian: bool, memory: Any) -> Evaluation:
+        """Evaluate the function, which `force` has no part in."""
+        remembered = (memory,) if jax.tree.leaves(memory) else ()
+        return self.function(x, with_hessian, *remembered)
+
+    def pulled(self, x: Array, now: Evaluation) -> Evaluation:
+        """The evaluation of value - force·x, from that of the function at x."""
+        if self.force is None:
+            return now
+        size = norm(self.force)
+        return now._replace(
+            value=now.value - dot(self.force, x),
+            gradient=now.gradient - self.force,
+            scale=jnp.where(size > 0, size, now.scale),
+        )
+
+
+class State(NamedTuple):
+    """Where a minimiser is.
+
+    Attributes:
+        x: Point (n,).
+        now: The function there, without `Problem.force`.
+        radius: Bound of the next step, same unit as x.
+        steps: Evaluations after the first; -1 before the first [1].
+        stalled: Whether steps are lost in round-off.
+        own: What the method keeps besides, any pytree.
+    """
+
+    x: Float[Array, " n"]
+    now: Evaluation
+    radius: Float[Array, ""]
+    steps: Int[Array, ""]
+    stalled: Bool[Array, ""]
+    own: Any
+
+
 class Minimum(NamedTuple):
     """Where a minimiser stopped.
 
@@ -60,89 +141,128 @@ class Minimum(NamedTuple):
     memory: Any = ()
 
 
-Function = Callable[..., Evaluation]
-Shape = Callable[
-    [Float[Array, " n"], Float[Array, " n"], Float[Array, ""]], Float[Array, " n"]
-]
-
-
 class AbstractMinimiser(eqx.Module):
-    """Minimises a smooth function of a few unknowns, scaled to one unit."""
+    """Minimises a smooth function of a few unknowns, scaled to one unit.
 
-    def minimise(self, *args, **choices) -> Minimum:
-        """Minimise a function: `loop` from begin to end."""
-        return self.loop(*args, **choices).run()
+    A method gives `init`, `step` and its attributes; when it ends is the same for all.
 
-    @abc.abstractmethod
-    def loop(
+    Attributes:
+        tolerance: |gradient| / scale at which it stops; `None`: by precision.
+        max_steps: Step limit.
+
+    Static: all fields.
+    """
+
+    tolerance: eqx.AbstractVar[float | None]
+    max_steps: eqx.AbstractVar[int]
+
+    def minimise(
         self,
         function: Function,
         start: Float[Array, " n"],
         radius: Float[Array, ""],
-        shape: Shape | None = None,
-        memory: Any = (),
-    ) -> Loop:
-        """The iteration that minimises `function`, and ends with a `Minimum`.
+        **choices,
+    ) -> Minimum:
+        """Minimise one function: all of it, from `init` to `finish`.
 
         Args:
-            function: (x, with_hessian) -> `Evaluation`; with a `memory`, that of
-                where the step began is its third argument.
-            start: First point (n,).
-            radius: First bound of the step, same unit as x.
-            shape: (x, step, size of the gradient) -> better step, by one who knows
-                where the function bends or stiffens. Newton's method alone uses it.
-            memory: Of the start. Newton's method alone keeps it.
+            function, start, radius, **choices: As in `Problem`.
 
-        Fails: `STEP_LIMIT`, `NON_FINITE` as result codes.
+        Fails: `STEP_LIMIT`, `NON_FINITE` as result codes; with a `limit`,
+            `NO_LOAD_PATH`.
+        """
+        return self.loop().run(Problem(function, start, radius, **choices))
+
+    def loop(self, problem_of: Callable[[Any], Problem] = lambda given: given) -> Loop:
+        """The iteration, of whatever `problem_of` makes a problem of."""
+        return Loop(
+            lambda given: self.init(problem_of(given)),
+            lambda given, state: self.step(problem_of(given), state),
+            lambda given, state: self.terminate(problem_of(given), state),
+            lambda given, state: self.finish(problem_of(given), state),
+        )
+
+    @abc.abstractmethod
+    def init(self, problem: Problem) -> State:
+        """First state. The function is not evaluated: the first step does only that.
+
+        So a compiled loop holds one copy of the function instead of two.
         """
 
+    @abc.abstractmethod
+    def step(self, problem: Problem, state: State) -> State:
+        """Next state."""
 
-class Pull(NamedTuple):
-    """A constant force on x, approached from a larger one.
+    def terminate(self, problem: Problem, state: State) -> Bool[Array, ""]:
+        """Whether to stop: at the goal, stalled, out of steps or beyond the limit."""
+        ended = self.settled(problem, state) | self.spent(problem, state)
+        return ended & (state.steps >= 0)
 
-    Attributes:
-        force: The function to be minimised is value - force·x (n,) [J/unit of x].
-        factor: How many times the force the search begins with, at least 1. Each time
-            the gradient is down to a hundredth of the force, the factor falls to a
-            tenth.
+    def settled(self, problem: Problem, state: State) -> Bool[Array, ""]:
+        """Whether further steps are of no use."""
+        now = problem.pulled(state.x, state.now)
+        goal = self.goal(problem) * now.scale + now.noise
+        # NaN compares false: the loop ends at once and the code says why.
+        return ~((norm(now.gradient) > goal) & ~state.stalled)
+
+    def spent(self, problem: Problem, state: State) -> Bool[Array, ""]:
+        """Whether further steps are not allowed."""
+        own = problem.max_steps
+        ended = ~(state.steps < (self.max_steps if own is None else own))
+        if problem.limit is not None:
+            ended = ended | ~(norm(state.x) < problem.limit)
+        return ended
+
+    def finish(self, problem: Problem, state: State) -> Minimum:
+        """What came of it, with its result code."""
+        now = problem.pulled(state.x, state.now)
+        size = norm(now.gradient)
+        # A stall at round-off is as good as it gets; anything above is a failure.
+        slack = jnp.where(state.stalled, 1e3, 1.0)
+        done = size <= slack * (self.goal(problem) * now.scale + now.noise)
+        result = jnp.where(done, int(Result.CONVERGED), int(Result.STEP_LIMIT))
+        if problem.limit is not None:
+            away = ~done & (norm(state.x) >= problem.limit)
+            result = jnp.where(away, int(Result.NO_LOAD_PATH), result)
+        finite = jnp.isfinite(size) & jnp.all(jnp.isfinite(state.x))
+        result = jnp.where(finite, result, int(Result.NON_FINITE))
+        floor = jnp.finfo(size.dtype).tiny
+        relative = size / jnp.maximum(now.scale, floor)
+        return Minimum(
+            x=state.x,
+            residual=jnp.where(size <= now.noise, 0.0, relative),
+            unbalanced=size,
+            steps=state.steps,
+            result=result.astype(jnp.int32),
+            memory=now.memory,
+        )
+
+    def goal(self, problem: Problem):
+        """|gradient| / scale at which to stop [1]."""
+        if problem.tolerance is not None:
+            return problem.tolerance
+        if self.tolerance is not None:
+            return self.tolerance
+        return self.reachable(problem.start.dtype)
+
+    @abc.abstractmethod
+    def reachable(self, dtype) -> float:
+        """The tolerance that the method reaches in this precision [1]."""
+
+
+def first_state(problem: Problem, hessian: Array, own: Any) -> State:
+    """State of which nothing is evaluated yet.
+
+    Args:
+        problem: What is to be minimised.
+        hessian: Something of the right shape.
+        own: As in `State`.
     """
-
-    force: Float[Array, " n"]
-    factor: Float[Array, ""]
-
-
-class State(NamedTuple):
-    """Where a minimiser is: point, its evaluation, and what steps are chosen by."""
-
-    x: Array
-    now: Evaluation
-    radius: Array
-    steps: Array
-    stalled: Array
-    reach: Array
-    factor: Array
-
-
-def pack(state: State) -> Array:
-    """All of a state in one array, so that a pass ends in one kernel, not in ten."""
-    now = state.now
-    parts = [state.x, now.gradient, now.hessian.reshape(-1)]
-    scalars = [now.value, now.scale, now.noise, *state[2:]]
-    return jnp.concatenate(
-        [*parts, jnp.stack([v.astype(now.value.dtype) for v in scalars])]
-    )
-
-
-def unpack(packed: Array, n: int, with_hessian: bool = True) -> State:
-    """The state that `pack` made one array of."""
-    x, g, rest = packed[:n], packed[n : 2 * n], packed[2 * n :]
-    h = jnp.zeros((0,), packed.dtype)
-    if with_hessian:
-        h, rest = rest[: n * n].reshape(n, n), rest[n * n :]
-    value, scale, noise, *others = (rest[i] for i in range(8))
-    radius, steps, stalled, reach, factor = others
-    now = Evaluation(value, g, h, scale, noise)
-    return State(x, now, radius, steps, stalled > 0, reach, factor)
+    start = problem.start
+    zero = jnp.zeros((), start.dtype)
+    none = Evaluation(zero, 0.0 * start, hessian, zero, zero, problem.memory)
+    radius = jnp.asarray(problem.radius, start.dtype)
+    return State(start, none, radius, jnp.int32(-1), jnp.asarray(False), own)
 
 
 class TrustRegionNewton(AbstractMinimiser):
@@ -174,155 +294,72 @@ class TrustRegionNewton(AbstractMinimiser):
     symmetric: bool = eqx.field(static=True, default=True)
     softest: float = eqx.field(static=True, default=1.0)
 
-    def loop(self, function, start, radius, shape=None, memory=()):
-        goal = _tolerance(self.tolerance, start.dtype)
-        return self.search_loop(
-            function, start, radius, goal, None, None, shape, memory=memory
-        )
+    def reachable(self, dtype):
+        return 1e-13 if dtype == jnp.float64 else 1e-6
 
-    def search(self, *args, **choices) -> Minimum:
-        """As `minimise`, for functions that may be flat at the start: `search_loop`."""
-        return self.search_loop(*args, **choices).run()
+    def init(self, problem):
+        n, dtype = problem.start.shape[0], problem.start.dtype
+        # What is kept besides is the length of the next step along `direction`.
+        reach = () if problem.direction is None else jnp.zeros((), dtype)
+        return first_state(problem, jnp.eye(n, dtype=dtype), reach)
 
-    def search_loop(
-        self,
-        function: Function,
-        start: Float[Array, " n"],
-        radius: Float[Array, ""],
-        tolerance: Float[Array, ""] | float,
-        direction: Float[Array, " n"] | None,
-        limit: Float[Array, ""] | None,
-        shape: Shape | None = None,
-        pull: Pull | None = None,
-        memory: Any = (),
-        max_steps: Int[Array, ""] | int | None = None,
-    ) -> Loop:
-        """As `loop`, for functions that may be flat at the start.
-
-        Args:
-            function, start, radius, shape, memory: As in `loop`.
-            tolerance: |gradient| / scale at which the search ends; may be traced.
-            direction: Unit vector (n,), or zero. If the function falls along it and
-                too little curvature is felt within `radius` to end the fall, it is
-                first followed in growing steps until the function rises: Newton's
-                method then comes from the stiff side, where it is at its best.
-            limit: |x| beyond which the function counts as unbounded below; the
-                solve then ends with `NO_LOAD_PATH`.
-            pull: A force on x beside `function`, which the scale of the latter then
-                is not: the force is, unless it is zero.
-            max_steps: Instead of the attribute; may be traced.
-
-        Fails: as `loop`, and `NO_LOAD_PATH`.
-        """
-        eps = jnp.finfo(start.dtype).eps
-        tiny = jnp.finfo(start.dtype).tiny
-        n = start.shape[0]
-        identity = jnp.eye(n, dtype=start.dtype)
-        radius = jnp.asarray(radius, dtype=start.dtype)
-
-        def off_goal(state):
-            now, goal = _pulled(state.now, state, pull), tolerance
-            if pull is not None:
-                early = jnp.maximum(tolerance, 1e-2)
-                goal = jnp.where(state.factor > 1.0, early, tolerance)
-            # NaN compares false: the loop ends at once and the code says why.
-            return (norm(now.gradient) > goal * now.scale + now.noise) & ~state.stalled
-
-        limit_of_steps = self.max_steps if max_steps is None else max_steps
-        limit_of_steps = jnp.asarray(limit_of_steps, dtype=start.dtype)
-        remembers = bool(jax.tree.leaves(memory))
-
-        def unfinished(carry):
-            state = unpack(carry[0], n)
-            going = off_goal(state)
-            if pull is not None:
-                going = going | (state.factor > 1.0)
-            going = going & (state.steps < limit_of_steps)
-            if limit is not None:
-                going = going & (norm(state.x) < limit)
-            return going | (state.steps < 0)
-
-        def step(carry):
-            packed, memory = carry
-            # The first pass (steps = -1) only evaluates the start: one copy of
-            # `function` in the compiled loop instead of two.
-            state = unpack(packed, n)
-            first = state.steps < 0
-            if pull is not None:
-                near = (state.factor > 1.0) & ~off_goal(state) & ~first
-                lower = jnp.maximum(0.1 * state.factor, 1.0)
-                state = state._replace(
-                    factor=jnp.where(near, lower, state.factor),
-                    radius=jnp.where(near, radius, state.radius),
-                    stalled=state.stalled & ~near,
-                )
-            now = _pulled(state.now, state, pull)
-            size = norm(now.gradient)
-            shift = size / state.radius + eps * trace(now.hessian) / n
-            shifted = now.hessian + shift * self._metric(now.hessian)
-            p = -solve(shifted, now.gradient, self.symmetric)
-            # An indefinite Hessian (finite kinematics) may still give a long step.
-            p = p * jnp.minimum(1.0, state.radius / jnp.maximum(norm(p), tiny))
-            searching = state.reach > 0
-            if direction is not None:
-                p = jnp.where(searching, state.reach * direction, p)
-            if shape is not None:
-                p = shape(state.x, p, size)
-            p = jnp.where(first, 0.0, p)
-            length = norm(p)
-            past = (memory,) if remembers else ()
-            there = function(state.x + p, True, *past)
-            new = _pulled(there, state._replace(x=state.x + p), pull)
-            slope = dot(now.gradient, p)
-            predicted = slope + 0.5 * quadratic(now.hessian, p)
-            actual = new.value - now.value
-            new_size = norm(new.gradient)
-            # Of a convex function: actual ≤ slope at the far end, where no round-off
-            # of the value can hide it.
-            end = dot(new.gradient, p)
-            change = jnp.where(jnp.isnan(actual), end, jnp.minimum(actual, end))
-            accept = first | searching | (change <= 1e-4 * slope)
-            accept = accept | (new_size <= 0.5 * size)
-            good = (change <= 0.7 * predicted) | (new_size <= 0.25 * size)
-            longer = jnp.maximum(state.radius, 6.0 * length)
-            grown = jnp.where(good, longer, state.radius)
-            # A step too long has met a stiff contact: Newton along the step, from its
-            # far end, says where.
-            stiff = jnp.maximum(quadratic(new.hessian, p), tiny)
-            shorter = jnp.clip(1.0 - dot(new.gradient, p) / stiff, 0.1, 0.9)
-            next_radius = jnp.where(accept, grown, shorter * length)
-            reach = state.reach
-            if direction is not None:
-                fall = -dot(new.gradient, direction)
-                stiff = quadratic(new.hessian, direction)
-                begin = (fall > 0) & (stiff * state.radius < fall)
-                reach = jnp.where(
-                    first,
-                    jnp.where(begin, state.radius, 0.0),
-                    jnp.where(searching & (fall > 0), 4.0 * reach, 0.0),
-                )
-            next_radius = jnp.where(first, state.radius, next_radius)
-            # Steps of round-off that no longer help.
-            settled = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
-            stalled = settled & ~first & ~searching
-            rest = (next_radius, state.steps + 1.0, stalled, reach, state.factor)
-            taken = pack(State(state.x + p, there, *rest))
-            stayed = pack(State(state.x, state.now, *rest))
-            return jnp.where(accept, taken, stayed), jax.tree.map(
-                lambda new, old: jnp.where(accept, new, old), there.memory, memory
+    def step(self, problem, state):
+        eps, tiny = (getattr(jnp.finfo(state.x.dtype), k) for k in ("eps", "tiny"))
+        n, first = state.x.shape[0], state.steps < 0
+        now = problem.pulled(state.x, state.now)
+        size = norm(now.gradient)
+        shift = size / state.radius + eps * trace(now.hessian) / n
+        shifted = now.hessian + shift * self._metric(now.hessian)
+        p = -solve(shifted, now.gradient, self.symmetric)
+        # An indefinite Hessian (finite kinematics) may still give a long step.
+        p = p * jnp.minimum(1.0, state.radius / jnp.maximum(norm(p), tiny))
+        searching, reach = jnp.asarray(False), state.own
+        if problem.direction is not None:
+            searching = reach > 0
+            p = jnp.where(searching, reach * problem.direction, p)
+        if problem.shape is not None:
+            p = problem.shape(state.x, p, size)
+        p = jnp.where(first, 0.0, p)
+        length, x = norm(p), state.x + p
+        there = problem.at(x, True, now.memory)
+        new = problem.pulled(x, there)
+        slope = dot(now.gradient, p)
+        predicted = slope + 0.5 * quadratic(now.hessian, p)
+        actual = new.value - now.value
+        new_size = norm(new.gradient)
+        # Of a convex function: actual ≤ slope at the far end, where no round-off
+        # of the value can hide it.
+        end = dot(new.gradient, p)
+        change = jnp.where(jnp.isnan(actual), end, jnp.minimum(actual, end))
+        accept = first | searching | (change <= 1e-4 * slope)
+        accept = accept | (new_size <= 0.5 * size)
+        good = (change <= 0.7 * predicted) | (new_size <= 0.25 * size)
+        longer = jnp.maximum(state.radius, 6.0 * length)
+        grown = jnp.where(good, longer, state.radius)
+        # A step too long has met a stiff contact: Newton along the step, from its
+        # far end, says where.
+        stiff = jnp.maximum(quadratic(new.hessian, p), tiny)
+        shorter = jnp.clip(1.0 - end / stiff, 0.1, 0.9)
+        radius = jnp.where(accept, grown, shorter * length)
+        if problem.direction is not None:
+            fall = -dot(new.gradient, problem.direction)
+            stiff = quadratic(new.hessian, problem.direction)
+            begin = (fall > 0) & (stiff * state.radius < fall)
+            reach = jnp.where(
+                first,
+                jnp.where(begin, state.radius, 0.0),
+                jnp.where(searching & (fall > 0), 4.0 * reach, 0.0),
             )
-
-        zero = jnp.zeros((), start.dtype)
-        factor = zero + 1.0 if pull is None else pull.factor
-        begin = Evaluation(zero, 0.0 * start, identity, zero, zero)
-        packed = pack(State(start, begin, radius, zero - 1.0, zero, zero, factor))
-
-        def end(carry):
-            state = unpack(carry[0], n)
-            now = _pulled(state.now, state, pull)._replace(memory=carry[1])
-            return finish(state._replace(now=now), tolerance, limit)
-
-        return Loop((packed, memory), unfinished, step, end)
+        # Steps of round-off that no longer help.
+        settled = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
+        taken = (x, there), (state.x, state.now)
+        return State(
+            *jax.tree.map(lambda a, b: jnp.where(accept, a, b), *taken),
+            radius=jnp.where(first, state.radius, radius),
+            steps=state.steps + 1,
+            stalled=settled & ~first & ~searching,
+            own=reach,
+        )
 
     def _metric(self, hessian):
         if self.softest == 1.0:
@@ -332,45 +369,45 @@ class TrustRegionNewton(AbstractMinimiser):
         return jnp.diag(jnp.clip(own / stiffest, self.softest, 1.0))
 
 
-def _pulled(now: Evaluation, state: State, pull: Pull | None) -> Evaluation:
-    """The evaluation of value - factor·force·x from that of value."""
-    if pull is None:
-        return now
-    force = state.factor * pull.force
-    size = norm(force)
-    return now._replace(
-        value=now.value - dot(force, state.x),
-        gradient=now.gradient - force,
-        scale=jnp.where(size > 0, size, now.scale),
-    )
+def continuation(minimiser: AbstractMinimiser, problem: Problem, factor) -> Minimum:
+    """Minimise value - force·x, approached from a larger force.
 
+    As with a barrier method, what matters to the end is found early, and Newton's
+    method stays on its side. Each time the gradient is down to a hundredth of the
+    force, the factor falls to a tenth.
 
-def _tolerance(tolerance, dtype):
-    if tolerance is not None:
-        return tolerance
-    return 1e-13 if dtype == jnp.float64 else 1e-6
+    Args:
+        minimiser: Takes the steps.
+        problem: With a `force`; its step limit counts all steps.
+        factor: How many times the force the search begins with, at least 1.
+    """
+    goal = minimiser.goal(problem)
 
+    def larger(factor):
+        early = jnp.where(factor > 1.0, jnp.maximum(goal, 1e-2), goal)
+        return problem._replace(force=factor * problem.force, tolerance=early)
 
-def finish(state: State, tolerance, limit) -> Minimum:
-    """What came of it: `Minimum` with its result code."""
-    now = state.now
-    size = norm(now.gradient)
-    # A stall at round-off is as good as it gets; anything above is a failure.
-    slack = jnp.where(state.stalled, 1e3, 1.0)
-    done = size <= slack * (tolerance * now.scale + now.noise)
-    result = jnp.where(done, int(Result.CONVERGED), int(Result.STEP_LIMIT))
-    if limit is not None:
-        away = ~done & (norm(state.x) >= limit)
-        result = jnp.where(away, int(Result.NO_LOAD_PATH), result)
-    finite = jnp.isfinite(size) & jnp.all(jnp.isfinite(state.x))
-    result = jnp.where(finite, result, int(Result.NON_FINITE))
-    floor = jnp.finfo(size.dtype).tiny
-    relative = size / jnp.maximum(now.scale, floor)
-    return Minimum(
-        x=state.x,
-        residual=jnp.where(size <= now.noise, 0.0, relative),
-        unbalanced=size,
-        steps=state.steps.astype(jnp.int32),
-        result=result.astype(jnp.int32),
-        memory=now.memory,
-    )
+    def finish(_, carry):
+        state, factor = carry
+        return minimiser.finish(larger(factor)._replace(tolerance=goal), state)
+
+    def step(_, carry):
+        state, factor = carry
+        near = (factor > 1.0) & minimiser.settled(larger(factor), state)
+        near = near & (state.steps >= 0)
+        factor = jnp.where(near, jnp.maximum(0.1 * factor, 1.0), factor)
+        state = state._replace(
+            radius=jnp.where(near, problem.radius, state.radius),
+            stalled=state.stalled & ~near,
+        )
+        return minimiser.step(larger(factor), state), factor
+
+    def terminate(_, carry):
+        state, factor = carry
+        settled = (factor <= 1.0) & minimiser.settled(larger(factor), state)
+        return (settled | minimiser.spent(problem, state)) & (state.steps >= 0)
+
+    def init(_):
+        return minimiser.init(problem), factor
+
+    return Loop(init, step, terminate, finish).run(None)

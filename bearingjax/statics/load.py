@@ -24,7 +24,7 @@ from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..element.inertia import Speed
 from ..numerics.implicit import attach, stop, unless_failed
-from ..numerics.minimise import Evaluation, Pull, TrustRegionNewton
+from ..numerics.minimise import Evaluation, Problem, TrustRegionNewton, continuation
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_array
 from .solution import BallSolution, RollerSolution, Solution, Stats, describe, message
@@ -219,17 +219,18 @@ def _solve(
         begin = begin + jnp.where(known, near, 0.0)
         factor = jnp.where(known, 1.0, factor)
     solver = TrustRegionNewton(symmetric=symmetric, softest=0.03)
-    minimum = solver.search(
+    problem = Problem(
         function,
         stop(begin),
         1e-7 * stop(radius) + play,
-        tolerance,
-        direction,
-        8.0 * stop(radius) + jnp.abs(stop(begin[5])),
-        pull=Pull(pull, factor),
         memory=frozen[0].nothing_near(),
+        direction=direction,
+        limit=8.0 * stop(radius) + jnp.abs(stop(begin[5])),
+        force=pull,
+        tolerance=tolerance,
         max_steps=max_steps,
     )
+    minimum = continuation(solver, problem, factor)
 
     def residual(y, args):
         model, load, given, fixed, scale, free = args

@@ -10,19 +10,17 @@ from bearingjax.numerics import lanes
 ROWS, COLUMNS = 7, 100  # 700 problems: more than there are lanes
 
 
-def loop_of(count, slope):
-    """Twice the sum of slope·k over k < count, in `count` steps."""
-    zero = jnp.zeros(())
-    return lanes.Loop(
-        begin=(zero, jnp.zeros((), int)),
-        unfinished=lambda state: state[1] < count,
-        step=lambda state: (state[0] + slope * state[1].astype(float), state[1] + 1),
-        finish=lambda state: (2.0 * state[0], state[1]),
-    )
+# Twice the sum of slope·k over k < count, in `count` steps.
+SUM = lanes.Loop(
+    init=lambda given: (jnp.zeros(()), jnp.zeros((), int)),
+    step=lambda given, s: (s[0] + given[1] * s[1].astype(float), s[1] + 1),
+    terminate=lambda given, s: s[1] >= given[0],
+    finish=lambda given, s: (2.0 * s[0], s[1]),
+)
 
 
 def one(count, slope):
-    return lanes.run(loop_of, count, slope)
+    return lanes.run(SUM, (count, slope))
 
 
 @pytest.fixture(scope="module")
@@ -63,3 +61,22 @@ def test_few_problems_and_one():
     np.testing.assert_array_equal(steps, [1, 5, 3])
     np.testing.assert_array_equal(total, [0.0, 20.0, 6.0])
     assert float(one(jnp.asarray(4), jnp.asarray(0.5))[0]) == 6.0
+
+
+def test_packing():
+    """Small leaves of any kind become one array, large ones stay as they are."""
+    state = {
+        "flag": jnp.asarray(True),
+        "count": jnp.int32(-1),
+        "matrix": jnp.arange(6.0).reshape(2, 3),
+        "large": jnp.arange(lanes.SMALL + 1.0),
+        "none": jnp.zeros((0,)),
+    }
+    pack, unpack = lanes.packing(jax.eval_shape(lambda: state))
+    packed = pack(state)
+    assert [a.shape for a in packed] == [(8,), (lanes.SMALL + 1,)]
+    back = unpack(packed)
+    assert jax.tree.structure(back) == jax.tree.structure(state)
+    for name, value in state.items():
+        assert back[name].dtype == value.dtype
+        np.testing.assert_array_equal(back[name], value)

@@ -19,6 +19,7 @@ from bearingjax.numerics import (
     TrustRegionNewton,
     inverse_update,
 )
+from bearingjax.numerics.minimise import Problem, continuation
 
 N, COUNT = 3, 40
 NEWTON, QUASI = TrustRegionNewton(), BFGS()
@@ -153,13 +154,13 @@ def fall():
     @partial(jax.jit, static_argnums=2)
     def search(wall, start, guided):
         direction = jnp.eye(N)[0] if guided else None
-        return NEWTON.search(
+        return NEWTON.minimise(
             evaluated(partial(function, wall=wall), 1e-3),
             start,
             jnp.asarray(1e-3),
-            1e-10,
-            direction,
-            jnp.asarray(1e6),
+            direction=direction,
+            limit=jnp.asarray(1e6),
+            tolerance=1e-10,
         )
 
     return search
@@ -181,6 +182,30 @@ def test_no_load_path(fall):
         got = fall(jnp.asarray(0.0), jnp.zeros(N), guided)
         assert got.result == Result.NO_LOAD_PATH
         assert jnp.linalg.norm(got.x) >= 1e6
+
+
+def test_continuation():
+    """To the same minimum as under the force alone, with every step counted."""
+    matrix, weight, rows, middle, start = (x[0] for x in problems("power"))
+    function = evaluated(
+        partial(convex, matrix=matrix, weight=weight, rows=rows, middle=middle)
+    )
+    force = jnp.asarray([1e-3, 2e-3, -1e-3])
+
+    @jax.jit
+    def pulled(factor, max_steps):
+        problem = Problem(
+            function, start, jnp.asarray(0.5), force=force, max_steps=max_steps
+        )
+        return continuation(NEWTON, problem, factor)
+
+    plain, larger = (pulled(jnp.asarray(f), 100) for f in (1.0, 1e4))
+    assert plain.result == larger.result == Result.CONVERGED
+    gradient = convex(larger.x, matrix, weight, rows, middle)[1]
+    np.testing.assert_allclose(gradient, force, rtol=1e-9)
+    np.testing.assert_allclose(larger.x, plain.x, rtol=1e-9)
+    few = pulled(jnp.asarray(1e4), 3)
+    assert few.result == Result.STEP_LIMIT and few.steps == 3
 
 
 def test_single_precision():

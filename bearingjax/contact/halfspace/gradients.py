@@ -50,14 +50,9 @@ class AbstractPressureSolver(eqx.Module):
             no pressure on the grid balances), `NON_FINITE`.
         """
 
-    def loop(self, problem: Problem) -> Loop:
+    def loop(self) -> Loop:
         """All of it as an iteration."""
-        return Loop(
-            self.init(problem),
-            lambda state: ~self.terminate(problem, state),
-            lambda state: self.step(problem, state),
-            lambda state: self.finish(problem, state),
-        )
+        return Loop(self.init, self.step, self.terminate, self.finish)
 
 
 class _State(NamedTuple):

@@ -212,7 +212,7 @@ def solve_pressure(
 @eqx.filter_jit
 def _solved(problem, solver):
     dtype = problem.gap.dtype
-    pressed = lanes.run(_loop, solver, stop(problem))
+    pressed = lanes.run(solver.loop(), stop(problem))
     result = pressed.result
     solved = result == int(Result.CONVERGED)
     misfit = solved & ~_fits(problem.grid, pressed)
@@ -297,10 +297,6 @@ def _misfit(solution):
         " missing: take a wider grid; where that is wider than roller or raceway, the"
         " bodies are no half-spaces."
     )
-
-
-def _loop(solver, problem):
-    return solver.loop(problem)
 
 
 def _balance(unknowns, args):
