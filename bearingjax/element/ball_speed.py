@@ -14,10 +14,11 @@ from typing import NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import positive
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Scalar, as_real, namespace
 from ..numerics.units import unit
 from .inertia import Speed
 
@@ -194,19 +195,18 @@ class BallKinematics(NamedTuple):
     roll: Float[Array, "... 2"]
 
     @property
-    def pitch_angle(self) -> Float[Array, "..."]:
+    def pitch_angle(self) -> Float[Array | np.ndarray | np.floating, "..."]:
         """Pitch angle β of the axis of rotation [rad]."""
-        return jnp.arctan2(self.axis[..., 0], self.axis[..., 1])
+        return namespace(self.axis).arctan2(self.axis[..., 0], self.axis[..., 1])
 
     @property
-    def spin_to_roll(self) -> Float[Array, "... 2"]:
+    def spin_to_roll(self) -> Float[Array | np.ndarray, "... 2"]:
         """Size of spin over rolling at outer and inner raceway [1]; 0 where the ball
         does not roll, because the rings turn alike."""
-        size = jnp.abs(self.orbit) + jnp.abs(self.rotation)
-        rolls = jnp.abs(self.roll) > 64 * jnp.finfo(size.dtype).eps * size[..., None]
-        return jnp.where(
-            rolls, jnp.abs(self.spin / jnp.where(rolls, self.roll, 1.0)), 0.0
-        )
+        xp = namespace(self.orbit)
+        size = abs(self.orbit) + abs(self.rotation)
+        rolls = abs(self.roll) > 64 * xp.finfo(size.dtype).eps * size[..., None]
+        return xp.where(rolls, abs(self.spin / xp.where(rolls, self.roll, 1.0)), 0.0)
 
 
 def ball_kinematics(

@@ -14,6 +14,15 @@ Ring = Float[Array, "12"]
 RingStiffness = Float[Array, "12 12"]
 
 
+def namespace(array) -> Any:
+    """NumPy for its own arrays, for which nothing is then compiled; JAX's for others.
+
+    Args:
+        array: Any array or scalar of one of them.
+    """
+    return np if isinstance(array, np.ndarray | np.generic) else jnp
+
+
 def as_real(value) -> Any:
     """Converter of every real field: a floating array, never a Python float.
 

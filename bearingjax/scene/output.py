@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import jax
 import numpy as np
 
 from ..numerics.result import Result
@@ -66,6 +67,8 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     """
     from .. import __version__
 
+    # As NumPy holds it: JAX would compile every small operation on the way.
+    solution = jax.device_get(solution)
     result = Result(int(solution.result))
     solved = result is Result.CONVERGED
     numbers = _numbers(solution)

@@ -1,5 +1,6 @@
 """A solution as text for people: µm, mrad, kN, N m, MPa."""
 
+import jax
 import numpy as np
 
 from ..design import BearingSet, TaperedRollerBearing, is_ball, rows_of
@@ -18,6 +19,8 @@ def report(scene: Scene, solution: Solution) -> str:
         scene: What was solved.
         solution: Its solution, converged.
     """
+    # As NumPy holds it: JAX would compile every small operation on the way.
+    solution = jax.device_get(solution)
     parts = [
         _bearing(scene, solution),
         _motion(scene, solution),
@@ -29,7 +32,7 @@ def report(scene: Scene, solution: Solution) -> str:
 
 
 def _bearing(scene, solution):
-    bearing = scene.element.bearing
+    bearing = solution.element.bearing
     lines = []
     if isinstance(bearing, BearingSet):
         places = ", ".join(

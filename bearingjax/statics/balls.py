@@ -2,6 +2,7 @@
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
@@ -47,20 +48,20 @@ class BallResults(eqx.Module):
     centrifugal_force: Float[Array, " ball"] | None = eqx.field(metadata=unit("N"))
 
     @property
-    def n_contacts(self) -> Int[Array, " ball"]:
+    def n_contacts(self) -> Int[Array | np.ndarray, " ball"]:
         """How many contacts of each ball carry load, more than round-off."""
-        return jnp.sum(self._carrying, axis=1)
+        return self._carrying.sum(axis=1)
 
     @property
-    def lifted(self) -> Array:
+    def lifted(self) -> Array | np.ndarray:
         """Which balls have left the inner raceway and run on the outer one alone."""
         half = self.contact_load.shape[1] // 2
         outer, inner = self._carrying[:, :half], self._carrying[:, half:]
-        return jnp.any(outer, axis=1) & ~jnp.any(inner, axis=1)
+        return outer.any(axis=1) & ~inner.any(axis=1)
 
     @property
     def _carrying(self):
-        return self.contact_load > 1e-9 * jnp.max(self.contact_load)
+        return self.contact_load > 1e-9 * self.contact_load.max()
 
 
 def ball_results(rows: tuple[Row, ...], law: AbstractPointLaw) -> dict:

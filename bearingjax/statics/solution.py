@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from ..element.bearing_element import BearingElement
@@ -108,13 +109,13 @@ class Solution(eqx.Module):
         def __getattr__(self, name: str) -> Any: ...
 
     @property
-    def load_zone(self) -> Bool[Array, " element"]:
+    def load_zone(self) -> Bool[Array | np.ndarray, " element"]:
         """Which rolling elements carry load between the raceways, above round-off."""
-        least = 1e-9 * jnp.max(self.roller_load)
-        return jnp.all(self.roller_load > least, axis=1)
+        least = 1e-9 * self.roller_load.max()
+        return (self.roller_load > least).all(axis=1)
 
     @property
-    def converged(self) -> Bool[Array, ""]:
+    def converged(self) -> Bool[Array | np.ndarray, ""] | np.bool_:
         """Whether the result code is `CONVERGED`."""
         return self.result == Result.CONVERGED
 

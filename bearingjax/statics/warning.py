@@ -6,9 +6,9 @@ import jax
 import numpy as np
 
 from ..design.checks import is_traced
+from ..numerics.types import namespace
 from .solution import Solution
 from .warning_kinds import KINDS
-from .warning_sizes import namespace
 
 
 def warnings(solution: Solution) -> list[str]:
@@ -62,7 +62,7 @@ def sizes(solution: Solution) -> dict[str, Any]:
     Args:
         solution: Of one case, traced or not.
     """
-    xp = namespace(solution)
+    xp = namespace(solution.result)
     solved = solution.result == 0
     with np.errstate(all="ignore"):
         return {

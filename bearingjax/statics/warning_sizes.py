@@ -8,7 +8,6 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 
 from ..design import (
@@ -21,6 +20,7 @@ from ..design import (
 )
 from ..design.material import contact_modulus
 from ..element.frame import FREEDOMS, RINGS
+from ..numerics.types import namespace
 from .rollers import EDGE_PRESSURE
 from .solution import Solution
 
@@ -77,14 +77,8 @@ def stiffness_scale(bearing: Bearing | BearingSet) -> Any:
     ]
     least = scales[0]
     for scale in scales[1:]:
-        plain = isinstance(scale, np.ndarray | np.generic)
-        least = (np if plain else jnp).minimum(least, scale)
+        least = namespace(scale).minimum(least, scale)
     return least
-
-
-def namespace(solution: Solution) -> Any:
-    """NumPy for a solution of NumPy arrays, otherwise JAX's."""
-    return np if isinstance(solution.result, np.ndarray | np.generic) else jnp
 
 
 def _modulus(bearing):
@@ -106,13 +100,13 @@ def _by_row(solution: Solution, values: Any) -> Iterator[tuple[Any, Any]]:
 
 
 def _largest(solution, numbers):
-    xp = namespace(solution)
+    xp = namespace(solution.result)
     return xp.max(xp.stack([xp.asarray(number) for number in numbers]))
 
 
 def _one(solution, flags):
     """1 where flags are set, 0 elsewhere."""
-    return namespace(solution).where(flags, 1.0, 0.0)
+    return namespace(solution.result).where(flags, 1.0, 0.0)
 
 
 def listed(numbers: Any) -> str:
@@ -132,7 +126,7 @@ def of_raceways(solution: Solution, flags: Any) -> str:
 
 def _free_stiffness(solution):
     """Stiffness of the free freedoms, all in N/m, and what holds nothing [N/m]."""
-    xp = namespace(solution)
+    xp = namespace(solution.result)
     first = 6 * RINGS.index(solution.moving_ring)
     radius = xp.where(solution.pitch_radius > 0, solution.pitch_radius, 1.0)
     # Rotations times the pitch radius.
@@ -151,7 +145,7 @@ def loose(solution: Solution) -> Any:
 
     Source: Sylvester's law of inertia: as many pivots are negative as eigenvalues.
     """
-    xp = namespace(solution)
+    xp = namespace(solution.result)
     k, nothing = _free_stiffness(solution)
     n = len(solution.free)
     k = k - nothing * xp.eye(n, dtype=k.dtype)
@@ -250,7 +244,7 @@ def tilt_error(solution: Solution) -> Any:
     With tilts given, of the approach of the contacts, so that loads err by about as
     much. Free tilts balance the load whatever they are: of the motion R γ.
     """
-    xp = namespace(solution)
+    xp = namespace(solution.result)
     q, radius = solution.displacement, solution.pitch_radius
     square = (q[9] - q[3]) ** 2 + (q[10] - q[4]) ** 2
     if is_ball(solution.element.bearing):

@@ -4,11 +4,14 @@ import dataclasses
 import json
 import re
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
+from bearingjax.element import BallKinematics
 from bearingjax.scene import as_dict, report, write_json
 
 POINTS = 21
@@ -210,6 +213,18 @@ def motion(text):
     shift = {f: float(v) * scale[unit] for f, v, unit, *_ in found}
     load = {f: float(v) * scale[unit] for *_, f, v, unit in found}
     return shift, load
+
+
+def test_telling_compiles_nothing(solved):
+    """Each small JAX operation on the way would be compiled, for 20 ms and more."""
+    turning = BallKinematics(*np.ones((2, 4)), *np.ones((3, 4, 2)))
+    with jax.transfer_guard("disallow"):  # nor can JAX compute with NumPy's numbers
+        with pytest.raises(jax.errors.JaxRuntimeError):
+            jnp.abs(turning.spin)
+        assert report(solved.scene, solved.solution)
+        assert as_dict(solved.scene, solved.solution) == solved.numbers
+        assert np.all(turning.spin_to_roll == 1.0)
+        assert np.allclose(turning.pitch_angle, np.pi / 4, rtol=SOLVER, atol=0.0)
 
 
 def test_report_tells_the_motion_of_the_loaded_ring(solved):
