@@ -1,12 +1,12 @@
 """Quasi-Newton minimiser of the energy paper, to compare with."""
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from .lanes import Either
 from .linear import norm
-from .minimise import AbstractMinimiser, State, first_state
+from .minimise import AbstractMinimiser, first_state
 
 
 class BFGS(AbstractMinimiser):
@@ -62,16 +62,16 @@ class BFGS(AbstractMinimiser):
         updated = jnp.where(first, steep, updated)
         full = accept & (fraction == 1.0)
         longer = jnp.maximum(state.radius, 4.0 * norm(s))
-        taken = (state.x + s, there, updated), (state.x, state.now, inverse)
-        x, now, inverse = jax.tree.map(lambda a, b: jnp.where(accept, a, b), *taken)
-        return State(
-            x,
-            now,
+        stayed = state._replace(
             radius=jnp.where(full, longer, state.radius),
             steps=state.steps + 1,
             stalled=~accept & (norm(s) <= 4 * eps * norm(state.x)),
-            own=(inverse, jnp.where(accept, 1.0, 0.3 * fraction)),
+            own=(inverse, 0.3 * fraction),
         )
+        taken = stayed._replace(
+            x=state.x + s, now=there, own=(updated, jnp.ones_like(fraction))
+        )
+        return Either(accept, taken, stayed)
 
 
 def inverse_update(

@@ -24,10 +24,9 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jax import lax
 from jax.custom_batching import custom_vmap
-from jaxtyping import Array
+from jaxtyping import Array, Bool
 
 PART = 8
 """One lane in so many goes on at a time when no more than half are left."""
@@ -66,6 +65,22 @@ class Loop(NamedTuple):
         return self.finish(given, unpack(last))
 
 
+class Either(NamedTuple):
+    """One of two states: one selection in the compiled loop, not one per leaf.
+
+    A step may return it, or what contains it, in place of the state.
+
+    Attributes:
+        flag: Which of them.
+        yes: If true.
+        no: If false, same structure.
+    """
+
+    flag: Bool[Array, ""]
+    yes: Any
+    no: Any
+
+
 def packing(example) -> tuple[Callable[[Any], list[Array]], Callable[[Any], Any]]:
     """How to make one array of the small leaves of a state, and the state of it again.
 
@@ -82,26 +97,53 @@ def packing(example) -> tuple[Callable[[Any], list[Array]], Callable[[Any], Any]
     leaves, tree = jax.tree.flatten(example)
     dtype = next(a.dtype for a in leaves if jnp.issubdtype(a.dtype, jnp.floating))
     known = (dtype, bool, jnp.int32)
-    small = [a.size <= SMALL and a.dtype in known for a in leaves]
-    ends = np.cumsum([a.size * yes for a, yes in zip(leaves, small, strict=True)])
+    small = [k for k, a in enumerate(leaves) if a.size <= SMALL and a.dtype in known]
+    scalars = [k for k in small if not leaves[k].shape]
+    vectors = [k for k in small if leaves[k].shape]
+    large = [k for k in range(len(leaves)) if k not in small]
 
     def pack(state):
-        found = list(zip(jax.tree.leaves(state), small, strict=True))
-        parts = [a.reshape(-1).astype(dtype) for a, yes in found if yes]
-        return [jnp.concatenate(parts), *(a for a, yes in found if not yes)]
+        choices = jax.tree.leaves(state, is_leaf=_is_either)
+        flags = [one.flag for one in choices if _is_either(one)]
+        if not flags:
+            return joined(state)
+
+        def side(k):
+            either = jax.tree.map(
+                lambda one: one[k] if _is_either(one) else one,
+                state,
+                is_leaf=_is_either,
+            )
+            return joined(either)
+
+        (flag,) = flags
+        yes, no = side(1), side(2)
+        return [jnp.where(flag, a, b) for a, b in zip(yes, no, strict=True)]
+
+    def joined(state):
+        found = jax.tree.leaves(state)
+        parts = [found[k].reshape(-1).astype(dtype) for k in vectors]
+        numbers = [found[k].astype(dtype) for k in scalars]
+        # Stacked first: XLA fuses no more than eight parts.
+        parts = [*parts, *([jnp.stack(numbers)] if numbers else [])]
+        return [jnp.concatenate(parts), *(found[k] for k in large)]
 
     def unpack(packed):
-        first, *others = packed
-        rest = iter(others)
-        found = [
-            first[end - a.size : end].reshape(a.shape).astype(a.dtype)
-            if yes
-            else next(rest)
-            for a, yes, end in zip(leaves, small, ends, strict=True)
-        ]
-        return jax.tree.unflatten(tree, found)
+        first, *rest = packed
+        found = dict(zip(large, rest, strict=True))
+        begin = 0
+        for k in (*vectors, *scalars):
+            a = leaves[k]
+            part = first[begin : begin + a.size]
+            found[k] = part.reshape(a.shape).astype(a.dtype)
+            begin += a.size
+        return jax.tree.unflatten(tree, [found[k] for k in range(len(leaves))])
 
     return pack, unpack
+
+
+def _is_either(node):
+    return isinstance(node, Either)
 
 
 def run(loop: Loop, given) -> Any:

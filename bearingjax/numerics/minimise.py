@@ -16,7 +16,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from .lanes import Loop
+from .lanes import Either, Loop
 from .linear import dot, norm, quadratic, solve, trace
 from .result import Result
 
@@ -190,7 +190,7 @@ class AbstractMinimiser(eqx.Module):
         """
 
     @abc.abstractmethod
-    def step(self, problem: Problem, state: State) -> State:
+    def step(self, problem: Problem, state: State) -> State | Either:
         """Next state."""
 
     def terminate(self, problem: Problem, state: State) -> Bool[Array, ""]:
@@ -352,14 +352,13 @@ class TrustRegionNewton(AbstractMinimiser):
             )
         # Steps of round-off that no longer help.
         settled = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
-        taken = (x, there), (state.x, state.now)
-        return State(
-            *jax.tree.map(lambda a, b: jnp.where(accept, a, b), *taken),
+        stayed = state._replace(
             radius=jnp.where(first, state.radius, radius),
             steps=state.steps + 1,
             stalled=settled & ~first & ~searching,
             own=reach,
         )
+        return Either(accept, stayed._replace(x=x, now=there), stayed)
 
     def _metric(self, hessian):
         if self.softest == 1.0:

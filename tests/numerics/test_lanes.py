@@ -76,6 +76,10 @@ def test_packing():
     packed = pack(state)
     assert [a.shape for a in packed] == [(8,), (lanes.SMALL + 1,)]
     back = unpack(packed)
+    other = jax.tree.map(jnp.zeros_like, state)
+    for flag, want in ((True, state), (False, other)):
+        either = unpack(pack(lanes.Either(jnp.asarray(flag), state, other)))
+        jax.tree.map(np.testing.assert_array_equal, either, want)
     assert jax.tree.structure(back) == jax.tree.structure(state)
     for name, value in state.items():
         assert back[name].dtype == value.dtype
