@@ -3,11 +3,16 @@
 Fresh processes, one at a time: import of the package; a bearing of 14 rollers and its
 element; first force and stiffness (compiled anew, no cache on disk), all by the clock
 of the process itself, counted from the start of the import; and the command line as a
-whole, by the clock outside: once with an empty cache of compiled programs, then twice
-again. Medians of the repeats, and of the processor time (both cores: above the wall
-time where the compiler has both, below it where others use the machine).
+whole, by the clock outside: with an empty cache of compiled programs, then again.
+Medians of the repeats, and of the processor time (both cores: above the wall time where
+the compiler has both, below it where others use the machine). What a process takes that
+imports JAX and adds two arrays tells how quiet the machine is.
+
+Of the program of every scene also the equations that are traced and the instructions
+that XLA makes of them. `--beside TREE` runs another checkout in turn.
 
 Run: python benchmarks/compile_time.py [--json] [--smoke] [--repeats N]
+         [--scenes NAME...] [--beside TREE]
 
 Last run:
 
@@ -44,11 +49,10 @@ from timing import processor
 
 GOALS = {
     "first force and stiffness": 4.0,
-    "solve, first": 10.0,
-    "solve, second": 2.5,
-    "solve, third": 2.5,
+    "solve, first": 8.0,
+    "solve, second": 2.0,
 }
-SCENES = ("cylindrical_rig", "cylindrical_ribs", "tapered")
+ADD = "import jax.numpy as jnp; jnp.ones(3) + jnp.ones(3)"
 LIBRARY = """
 import json, time
 clocks = lambda: (time.perf_counter(), time.process_time())
@@ -78,16 +82,50 @@ print(json.dumps([(b[0] - a[0], b[1] - a[1]) for a, b in zip(marks, marks[1:])])
 """
 STEPS = ("import jax", "import bearingjax", "bearing and element", "evaluate", "again")
 COMMAND = "import sys; from bearingjax.cli import main; sys.exit(main())"
+SIZES = """
+import re, sys
+import equinox as eqx, jax
+jax.config.update("jax_enable_x64", True)
+import bearingjax as bj
+
+def equations(jaxpr):
+    is_inner = lambda value: hasattr(value, "eqns")
+    params = jax.tree.leaves([e.params for e in jaxpr.eqns], is_leaf=is_inner)
+    return len(jaxpr.eqns) + sum(equations(p) for p in params if is_inner(p))
+
+scene = bj.read_scene(sys.argv[1])
+
+def program(element, load):
+    return bj.solve_load(
+        element, load, prescribed=scene.prescribed, free=scene.free,
+        fixed_ring=scene.fixed_ring, speed=scene.speed, points=scene.points,
+        tolerance=scene.tolerance, throw=False,
+    )
+
+given = scene.element, jax.numpy.asarray(scene.load)
+traced, _, _ = eqx.filter_make_jaxpr(program)(*given)
+text = eqx.filter_jit(program).lower(*given).compile().compiled.as_text()
+print(equations(traced.jaxpr), len(re.findall(r"(?m)^ +(?:ROOT )?%\\S+ = ", text)))
+"""
 
 
-def run(arguments, cache):
-    """Output, wall and processor time [s] of a fresh process with its own cache."""
+def run(arguments, cache, tree=None):
+    """Output, wall and processor time [s] of a fresh process with its own cache.
+
+    Args:
+        arguments: Of Python's `-c`.
+        cache: Folder.
+        tree: Another checkout of the package, or `None` for the installed one.
+    """
     dropped = ("JAX_COMPILATION_CACHE_DIR", "JAX_ENABLE_COMPILATION_CACHE")
     environment = {k: v for k, v in os.environ.items() if k not in dropped}
+    if tree is not None:
+        environment["PYTHONPATH"] = tree
     begin, used = time.perf_counter(), children_time()
     done = subprocess.run(
         [sys.executable, "-c", *arguments],
         env=environment | {"XDG_CACHE_HOME": cache},
+        cwd=cache,  # where no other checkout is found before `tree`
         check=True,
         capture_output=True,
         text=True,
@@ -110,49 +148,76 @@ def library():
     return steps | {"first force and stiffness": np.sum(needed, axis=0)}
 
 
-def command_line(scene):
-    """(wall, processor) [s] of a first, second and third solve with one cache."""
+def command_line(scene, tree):
+    """(wall, processor) [s] of a first and a second solve with one cache."""
     with tempfile.TemporaryDirectory() as cache:
-        times = [run([COMMAND, "solve", scene], cache)[1] for _ in range(3)]
-    names = ("solve, first", "solve, second", "solve, third")
-    return dict(zip(names, times, strict=True))
+        times = [run([COMMAND, "solve", scene], cache, tree)[1] for _ in range(2)]
+    return dict(zip(("solve, first", "solve, second"), times, strict=True))
 
 
-def measure(scenes, repeats):
+def sizes(scene, tree):
+    """Equations that are traced of a scene's program, instructions of XLA's."""
+    with tempfile.TemporaryDirectory() as cache:
+        output, _ = run([SIZES, scene], cache, tree)
+    return tuple(map(int, output.split()))
+
+
+def bearings():
+    """Names of the shipped scenes of bearings."""
+    import bearingjax as bj
+
+    scenes = bj.scene.shipped_scenes()
+    return [name for name, path in scenes.items() if "[bearing]" in path.read_text()]
+
+
+def measure(scenes, repeats, trees):
     """A row for every step: median, shortest, longest; median processor time."""
     found = {}
     for _ in range(repeats):
+        with tempfile.TemporaryDirectory() as cache:
+            found.setdefault(("import jax and add", "", None), []).append(
+                run([ADD], cache)[1]
+            )
         for what, seconds in library().items():
-            found.setdefault((what, ""), []).append(seconds)
+            found.setdefault((what, "", None), []).append(seconds)
         for scene in scenes:
-            for what, seconds in command_line(scene).items():
-                found.setdefault((what, scene), []).append(seconds)
+            for tree in trees:
+                for what, seconds in command_line(scene, tree).items():
+                    found.setdefault((what, scene, tree), []).append(seconds)
+    size = {(scene, tree): sizes(scene, tree) for scene in scenes for tree in trees}
     return [
         {
             "what": what,
             "scene": scene,
+            "tree": tree,
             "median_s": float(np.median(times, axis=0)[0]),
             "min_s": float(np.min(times, axis=0)[0]),
             "max_s": float(np.max(times, axis=0)[0]),
             "processor_s": float(np.median(times, axis=0)[1]),
             "goal_s": GOALS.get(what),
+            "equations": size.get((scene, tree), (None, None))[0],
+            "instructions": size.get((scene, tree), (None, None))[1],
         }
-        for (what, scene), times in found.items()
+        for (what, scene, tree), times in found.items()
     ]
 
 
 def show(rows, repeats, load):
     print(
-        f"{'seconds':27}{'scene':17}{'median':>7}{'min':>7}{'max':>7}{'CPU':>7}"
-        f"{'goal':>6}"
+        f"{'seconds':26}{'scene':17}{'median':>7}{'min':>7}{'max':>7}{'CPU':>7}"
+        f"{'goal':>5}{'equations':>10}{'instr.':>8}"
     )
     for r in rows:
-        goal = "" if r["goal_s"] is None else f"{r['goal_s']:6.1f}"
+        goal = "" if r["goal_s"] is None else f"{r['goal_s']:.1f}"
         missed = r["goal_s"] is not None and r["median_s"] > r["goal_s"]
+        size = ""
+        if r["equations"] is not None:
+            size = f"{r['equations']:10d}{r['instructions']:8d}"
         print(
-            f"{r['what']:27}{r['scene']:17}{r['median_s']:7.2f}{r['min_s']:7.2f}"
-            f"{r['max_s']:7.2f}{r['processor_s']:7.2f}{goal}"
+            f"{r['what']:26}{r['scene']:17}{r['median_s']:7.2f}{r['min_s']:7.2f}"
+            f"{r['max_s']:7.2f}{r['processor_s']:7.2f}{goal:>5}{size}"
             + ("  missed" if missed else "")
+            + (f"  {r['tree']}" if r["tree"] else "")
         )
     print(
         f"\n{repeats} repeats; {processor()}, {os.cpu_count()} cores,"
@@ -165,10 +230,13 @@ def main():
     parser.add_argument("--json", action="store_true", help="one line per result")
     parser.add_argument("--smoke", action="store_true", help="the library alone, once")
     parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--scenes", nargs="+", metavar="NAME", default=None)
+    parser.add_argument("--beside", metavar="TREE", help="another checkout")
     args = parser.parse_args()
     repeats = 1 if args.smoke else args.repeats
     load = os.getloadavg()[0]
-    rows = measure(() if args.smoke else SCENES, repeats)
+    trees = [None] if args.beside is None else [os.path.abspath(args.beside), None]
+    rows = measure([] if args.smoke else args.scenes or bearings(), repeats, trees)
     if args.json:
         for r in rows:
             print(json.dumps(r))

@@ -75,38 +75,51 @@ def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
     """
     if jax.default_backend() != "cpu":
         return eqx.filter_jit(function)(*arguments)
-    leaves, tree = jax.tree.flatten(arguments)
-    traced = [eqx.is_array(leaf) for leaf in leaves]
-    arrays = [leaf for leaf, yes in zip(leaves, traced, strict=True) if yes]
+    flat, arrays, outputs = _flattened(function, arguments)
     with _opened(folder) as place:
         name = None if place is None else _name(function, arguments)
         kept = _loaded(place, name)
         if kept is not None:
             return kept(arrays)
-
-        outputs: list[Any] = []
-
-        def flat(*arrays):
-            ahead = iter(arrays)
-            mixed = [
-                next(ahead) if yes else leaf
-                for leaf, yes in zip(leaves, traced, strict=True)
-            ]
-            returned = function(*jax.tree.unflatten(tree, mixed))
-            found, shape = jax.tree.flatten(returned)
-            values = [leaf for leaf in found if eqx.is_array(leaf)]
-            count = iter(range(len(values)))
-            marked = [
-                _Place(next(count)) if eqx.is_array(leaf) else leaf for leaf in found
-            ]
-            outputs.append(jax.tree.unflatten(shape, marked))
-            return values
-
         lowered = jax.jit(flat).lower(*arrays)
         compiled = _compiled(lowered, keep=name is not None)
         if name is not None:
             _keep(place, name, compiled, len(arrays), outputs[0])
         return _filled(outputs[0], compiled(*arrays))
+
+
+def _flattened(
+    function: Callable, arguments: tuple
+) -> tuple[Callable, list[jax.Array], list]:
+    """A function of arrays that returns a list of arrays, as executables are.
+
+    Args:
+        function, arguments: As of `call_once`.
+
+    Returns:
+        The function; its arguments; a list that takes up, when the function is
+        traced, what is returned with a `_Place` for every array.
+    """
+    leaves, tree = jax.tree.flatten(arguments)
+    traced = [eqx.is_array(leaf) for leaf in leaves]
+    arrays = [leaf for leaf, yes in zip(leaves, traced, strict=True) if yes]
+    outputs: list[Any] = []
+
+    def flat(*arrays):
+        ahead = iter(arrays)
+        mixed = [
+            next(ahead) if yes else leaf
+            for leaf, yes in zip(leaves, traced, strict=True)
+        ]
+        returned = function(*jax.tree.unflatten(tree, mixed))
+        found, shape = jax.tree.flatten(returned)
+        values = [leaf for leaf in found if eqx.is_array(leaf)]
+        count = iter(range(len(values)))
+        marked = [_Place(next(count)) if eqx.is_array(leaf) else leaf for leaf in found]
+        outputs.append(jax.tree.unflatten(shape, marked))
+        return values
+
+    return flat, arrays, outputs
 
 
 def _filled(outputs: Any, values: list) -> Any:
