@@ -82,6 +82,8 @@ def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
         if kept is not None:
             return kept(arrays)
         lowered = jax.jit(flat).lower(*arrays)
+        if name is not None and _calls_out(lowered):
+            name = None
         compiled = _compiled(lowered, keep=name is not None)
         if name is not None:
             _keep(place, name, compiled, len(arrays), outputs[0])
@@ -120,6 +122,15 @@ def _flattened(
         return values
 
     return flat, arrays, outputs
+
+
+def _calls_out(lowered) -> bool:
+    """Whether a program calls LAPACK, say, as the law of coupled slices does.
+
+    JAX finds the addresses of such libraries when it lowers a program; one that is
+    loaded without that would jump nowhere.
+    """
+    return "custom_call" in lowered.as_text()
 
 
 def _filled(outputs: Any, values: list) -> Any:
@@ -161,7 +172,7 @@ def _surroundings() -> Iterator[str]:
     """All else that the program follows from: sources, versions, settings, machine."""
     yield _sources()
     yield sys.version
-    for package in ("jax", "jaxlib", "equinox", "numpy"):
+    for package in ("bearingjax", "jax", "jaxlib", "equinox", "numpy"):
         yield version(package)
     places = ("jax_compilation_cache_dir", "jax_logging_level")
     yield repr(sorted((k, v) for k, v in jax.config.values.items() if k not in places))
@@ -268,11 +279,14 @@ def _keep(place, name, compiled, inputs, outputs) -> None:
         content = pickle.dumps(_Program(executable, inputs, outputs, tree.num_leaves))
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
         file = os.open(beside, flags, 0o600, dir_fd=place)
+    except Exception:
+        return
+    try:
         with open(file, "wb") as stream:
             stream.write(_MARK + hashlib.sha256(content).digest() + content)
         os.replace(beside, name, src_dir_fd=place, dst_dir_fd=place)
         _drop_oldest(place)
-    except Exception:
+    except OSError:
         with contextlib.suppress(OSError):
             os.unlink(beside, dir_fd=place)
 

@@ -169,6 +169,21 @@ def test_a_kept_program_is_not_traced_again(kept):
     assert [file.stat().st_mode & 0o777 for file in files] == [0o600] * 2
 
 
+def test_a_program_that_calls_a_library_is_not_kept(kept, monkeypatch):
+    """JAX sets up LAPACK when it lowers a call of it: loaded alone, it would crash."""
+
+    def factor(matrix):
+        return jax.scipy.linalg.cho_factor(matrix, lower=True)[0]
+
+    factor.__module__, factor.__qualname__ = programs.__name__, "factor"
+    monkeypatch.setattr(programs, "factor", factor, raising=False)
+    kept()
+    before = list(kept.folder.iterdir())
+    found = programs.call_once(factor, 4.0 * jnp.eye(2), folder=kept.folder)
+    assert np.array_equal(found, 2.0 * np.eye(2))
+    assert list(kept.folder.iterdir()) == before
+
+
 def spoil(path, how):
     if how == "empty":
         path.write_bytes(b"")
