@@ -4,9 +4,10 @@ import jax
 import numpy as np
 
 from ..design import BearingSet, TaperedRollerBearing, is_ball, rows_of
-from ..element.frame import FREEDOMS, LOADS, RINGS
+from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..statics.solution import BallSolution, Solution
 from ..statics.warning import warnings
+from .quantity import display_unit
 from .read import Scene
 
 _RULE = "-" * 78
@@ -126,14 +127,13 @@ def _motion(scene, solution):
     displacement = np.asarray(solution.displacement)[moving]
     force = np.asarray(solution.force)[moving]
     lines = [f"{scene.moving_ring} ring ({scene.fixed_ring} ring fixed)"]
-    units = ["µm"] * 3 + ["mrad"] * 3
-    load_units = ["kN"] * 3 + ["N m"] * 3
-    scales, load_scales = np.repeat([1e6, 1e3], 3), np.repeat([1e-3, 1.0], 3)
-    motion, loads = scales * _clean(displacement), load_scales * _clean(force)
+    motion, loads = _clean(displacement), _clean(force)
     for i in range(6):
+        scale, unit = display_unit(MOTION_UNITS[i])
+        load_scale, load_unit = display_unit(LOAD_UNITS[i])
         lines.append(
-            f"  {FREEDOMS[i]} {motion[i]:12.5g} {units[i]:<5}"
-            f"   {LOADS[i]} {loads[i]:12.5g} {load_units[i]}"
+            f"  {FREEDOMS[i]} {scale * motion[i]:12.5g} {unit:<5}"
+            f"   {LOADS[i]} {load_scale * loads[i]:12.5g} {load_unit}"
             + ("   reaction of its support" if FREEDOMS[i] in solution.held else "")
         )
     return "\n".join(lines)
