@@ -181,13 +181,13 @@ def beside_ross(rounds, block):
         16, 0.0535, 0.0087, outer_osculation=0.52, inner_osculation=0.52
     )
     el = bj.BearingElement(bearing)
+    call = ross_call(radial, el)
+    if call is None:
+        return None
     solution = bj.solve_load(
         el, [0.0, -radial, 0, 0, 0, 0], free=["ux", "uy"], prescribed={"uz": 0.0}
     )
     ours = float(solution.stiffness[7, 7])
-    call = ross_call(radial, el)
-    if call is None:
-        return None
     model = el.model()
     given = jax.jit(lambda q: single_call.both(model, q))
     load = jax.jit(
@@ -234,12 +234,12 @@ def main():
         if library is None:
             print("ball_speed: no C compiler (cc, gcc, clang).", file=sys.stderr)
             return 0
-        results = {}
+        results, calls, batch = {}, {}, single_call.batch_call(el)
         for name, (load, tilt) in LOADS.items():
             q = bj.solve_load(el, load, prescribed=tilt).displacement
-            calls = calls_of(el, q)
+            calls = calls or calls_of(el, q)
             c = CBall(library, el)
-            results[name] = single_call.study(c, el, q, rounds, block, calls)
+            results[name] = single_call.study(c, el, q, rounds, block, calls, batch)
     formula = beside_ross(rounds, block)
     agrees = single_call.agrees(results)
     if args.json:

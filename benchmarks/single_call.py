@@ -250,12 +250,10 @@ def jax_calls(el, q):
     }
 
 
-def batch_call(el, q):
-    """Force and stiffness of many motions near q in one call, in chunks."""
-    qs = q * jnp.linspace(0.97, 1.03, BATCH)[:, None]
+def batch_call(el):
+    """Function of many motions: their force and stiffness in one call, in chunks."""
     one = functools.partial(both, el)
-    batched = jax.jit(lambda qs: jax.lax.map(one, qs, batch_size=CHUNK))
-    return lambda: batched(qs)
+    return jax.jit(lambda qs: jax.lax.map(one, qs, batch_size=CHUNK))
 
 
 def disagreement(el, reference, result):
@@ -291,7 +289,8 @@ def timers(c, calls, batch, q):
     out = {C_LOOP: own, C_CALL: timed(lambda: single(*arguments), lambda _: None)}
     for name, call in calls.items():
         out[name] = timed(lambda call=call: call(q), jax.block_until_ready)
-    whole = timed(batch, jax.block_until_ready)
+    qs = q * jnp.linspace(0.97, 1.03, BATCH)[:, None]
+    whole = timed(lambda: batch(qs), jax.block_until_ready)
     out[IN_BATCH] = lambda n: whole(max(1, n // BATCH)) / BATCH
     return out
 
@@ -330,11 +329,11 @@ def summary(figures):
     return rows
 
 
-def study(c, el, q, rounds, block, calls):
-    """Agreement and times of one case."""
+def study(c, el, q, rounds, block, calls, batch):
+    """Agreement and times of one case, by JAX the `calls` and the `batch_call`."""
     *reference, steps = c.results(q)
     errors = {name: disagreement(el, reference, f(q)) for name, f in calls.items()}
-    every = timers(c, calls, batch_call(el, q), q)
+    every = timers(c, calls, batch, q)
     rows = summary(measure(every, rounds, block))
     for name, error in errors.items():
         rows[name] |= {f"error_{key}": value for key, value in error.items()}
@@ -430,7 +429,15 @@ def main():
             )
             return 0
         results = {
-            case: study(CLoop(library, el), el, q, rounds, block, jax_calls(el, q))
+            case: study(
+                CLoop(library, el),
+                el,
+                q,
+                rounds,
+                block,
+                jax_calls(el, q),
+                batch_call(el),
+            )
             for case, (el, q) in list(cases().items())[: 1 if args.smoke else None]
         }
         others = None
