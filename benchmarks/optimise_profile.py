@@ -52,8 +52,9 @@ import numpy as np  # noqa: E402
 from quadrature import processor  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.optimise.design_problem import Options, Problem  # noqa: E402
+from bearingjax.optimise.design_problem import Problem  # noqa: E402
 from bearingjax.optimise.search import Ending  # noqa: E402
+from bearingjax.statics import SolveOptions  # noqa: E402
 
 REFERENCE = (1.0, 0.6, 8e-6)
 LOWER, UPPER = (0.5, 0.2, 2e-6), (8.0, 1.0, 60e-6)
@@ -195,7 +196,7 @@ def run(method, element, cases, start, size_of, points):
 
 def measure(starts, points, methods=tuple(STEPS)):
     element, cases = bearing_and_cases()
-    options = Options(None, "outer", points, None, None)
+    options = SolveOptions(points=points)
     problem = Problem(element, cases, variables(REFERENCE), PEAK, (), options)
     reference = problem.run(problem.scaled(REFERENCE), False)
     size = float(reference.measures[0])
@@ -230,7 +231,7 @@ def check_by_grid(rows, points, n):
     """Least smooth peak on a grid around the best design, edge load kept [Pa]."""
     element, cases = bearing_and_cases()
     best = min((r for r in rows if r["kept"]), key=lambda r: r["peak"])
-    options = Options(None, "outer", points, None, None)
+    options = SolveOptions(points=points)
     kept = (bj.Constraint(ENDS, upper=EDGE),)
     problem = Problem(element, cases, variables(REFERENCE), PEAK, kept, options)
     middle = problem.scaled(best["values"])

@@ -1,7 +1,7 @@
 """A design with free numbers, evaluated over its cases."""
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -12,11 +12,12 @@ import numpy as np
 from ..element.bearing_element import BearingElement
 from ..numerics.result import Result, SolveError
 from ..statics.cases import Cases, solve_case
+from ..statics.options import SolveOptions
 from ..statics.solution import Solution, message
 from ..statics.warning import warnings as warnings_of
-from .measure import exact_of, least_size_of
+from .measure import Constraint, exact_of, least_size_of
 from .trials import Trial
-from .variable import with_values
+from .variable import Variable, with_values
 
 CHUNK = 64
 """Most cases that are solved side by side."""
@@ -50,16 +51,6 @@ class Outcome(NamedTuple):
         return warnings_of(self.solution)
 
 
-class Options(NamedTuple):
-    """How cases are solved; as of `optimise`."""
-
-    free: tuple[str, ...] | None
-    fixed_ring: str
-    points: int
-    solve_tolerance: float | None
-    build: Build | None
-
-
 class Bound(NamedTuple):
     """One bound of a constraint: sign * (measure - limit)/size ≥ 0."""
 
@@ -75,14 +66,24 @@ class Problem:
     Args:
         element, cases, variables, objective, constraints: As of `optimise`, checked.
         options: How cases are solved.
+        build: As of `optimise`.
     """
 
-    def __init__(self, element, cases, variables, objective, constraints, options):
+    def __init__(
+        self,
+        element: BearingElement[Any],
+        cases: Cases,
+        variables: Sequence[Variable],
+        objective: Measure,
+        constraints: Sequence[Constraint],
+        options: SolveOptions,
+        build: Build | None = None,
+    ):
         self.element, self.variables = element, variables
         self.constraints = constraints
         self.cases = jax.tree.map(jnp.asarray, cases)
         self.measures = (objective, *(c.measure for c in constraints))
-        self.options = options
+        self.options, self.build = options, build
         self.paths = tuple(variable.path for variable in variables)
         self.lower = np.array([v.lower for v in variables])
         self.upper = np.array([v.upper for v in variables])
@@ -117,8 +118,8 @@ class Problem:
         """The design of a trial, and how it fares, by the program already compiled."""
         values = self.values(trial.unit)
         element = with_values(self.element, self.paths, values)
-        if self.options.build is not None:
-            element = self.options.build(element)
+        if self.build is not None:
+            element = self.build(element)
         found = self.run(trial.unit, trial.slope is not None)
         smooth, exact = np.asarray(found.measures), np.asarray(found.exact)
         return element, Outcome(
@@ -138,6 +139,7 @@ class Problem:
             self.measures,
             self.paths,
             self.options,
+            self.build,
             jnp.asarray(unit),
             jnp.asarray(self.lower),
             jnp.asarray(self.width),
@@ -194,23 +196,16 @@ class Run(NamedTuple):
 
 @eqx.filter_jit
 def _program(
-    element, cases, measures, paths, options, unit, lower, width, slopes
+    element, cases, measures, paths, options, build, unit, lower, width, slopes
 ) -> Run:
 
     def outputs(unit):
         design = with_values(element, paths, lower + width * unit)
-        if options.build is not None:
-            design = options.build(design)
+        if build is not None:
+            design = build(design)
 
         def one(case):
-            return solve_case(
-                design,
-                case,
-                free=options.free,
-                fixed_ring=options.fixed_ring,
-                points=options.points,
-                tolerance=options.solve_tolerance,
-            )
+            return solve_case(design, case, options)
 
         if cases.count <= CHUNK:
             solution = jax.vmap(one)(cases)

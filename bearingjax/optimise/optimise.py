@@ -13,8 +13,9 @@ import numpy as np
 
 from ..element.bearing_element import BearingElement, check_element
 from ..statics.cases import Cases
+from ..statics.options import SolveOptions
 from ..statics.support import check_held
-from .design_problem import Build, Measure, Options, Outcome, Problem
+from .design_problem import Build, Measure, Outcome, Problem
 from .measure import Constraint
 from .search import METHODS, Ending, search, takes_gradients
 from .trials import Trial, Trials, optimality
@@ -161,16 +162,11 @@ def optimise(
     variables, constraints = tuple(variables), tuple(constraints)
     method = _check_method(method, constraints)
     _check_call(cases, objective, constraints, max_steps, tolerance)
-    check_held("optimise", cases.load, cases.prescribed, free)
+    options = SolveOptions(free, fixed_ring, points, solve_tolerance)
+    options.check("optimise", "solve_tolerance")
+    check_held("optimise", cases.load, cases.prescribed, options.free)
     start = check_variables(element, variables)
-    options = Options(
-        None if free is None else tuple(free),
-        fixed_ring,
-        points,
-        solve_tolerance,
-        build,
-    )
-    problem = Problem(element, cases, variables, objective, constraints, options)
+    problem = Problem(element, cases, variables, objective, constraints, options, build)
     slopes = takes_gradients(method)
     first = problem.begin(problem.scaled(start), slopes)
     trials = Trials(problem.evaluate, first)

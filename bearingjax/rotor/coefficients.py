@@ -11,11 +11,12 @@ from jaxtyping import Array, Float
 
 from ..design.checks import check, is_traced, real_numbers
 from ..element.bearing_element import BearingElement, check_element
-from ..element.frame import FREEDOMS, LOADS, RINGS
+from ..element.frame import FREEDOMS, LOADS
 from ..element.inertia import Speed
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import as_real
 from ..statics.linearise import OperatingPoint, linearise
+from ..statics.options import SolveOptions
 from ..statics.solution import message
 from ..statics.support import restrained_freedoms
 from ..statics.warning_sizes import SOFTEST_SHIFT, stiffness_scale
@@ -108,7 +109,7 @@ def _sweep(element, speeds, load, tilts, fixed_ring):
 
 
 def _point(element, speed, load, tilts, fixed_ring) -> OperatingPoint:
-    moving = RINGS[1 - RINGS.index(fixed_ring)]
+    moving = SolveOptions(fixed_ring=fixed_ring).moving_ring
     return linearise(
         element,
         load,
@@ -122,15 +123,11 @@ def _point(element, speed, load, tilts, fixed_ring) -> OperatingPoint:
 def _checked(element, speeds, load, tilts, fixed_ring):
     """Speeds (speed,) and loads (speed, 6), or the error that they deserve."""
     name = "stiffness_table"
-    for what, value, allowed in (
-        ("tilts", tilts, TILTS),
-        ("fixed_ring", fixed_ring, RINGS),
-    ):
-        if value not in allowed:
-            raise ValueError(
-                f"{name}: `{what}` is {value!r}; it must be"
-                f" {' or '.join(map(repr, allowed))}."
-            )
+    SolveOptions(fixed_ring=fixed_ring).check(name)
+    if tilts not in TILTS:
+        raise ValueError(
+            f"{name}: `tilts` is {tilts!r}; it must be {' or '.join(map(repr, TILTS))}."
+        )
     check_element(name, element)
     for what, value in (("speeds", speeds), ("load", load)):
         real_numbers(name, what, value, "numbers (units belong in scene files)")

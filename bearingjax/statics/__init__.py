@@ -5,6 +5,7 @@ from .cases import solve_case as solve_case
 from .linearise import OperatingPoint as OperatingPoint
 from .linearise import linearise as linearise
 from .load import solve_load as solve_load
+from .options import SolveOptions as SolveOptions
 from .preload import preload as preload
 from .refine import Refined as Refined
 from .refine import refine as refine

@@ -1,6 +1,6 @@
 """Many operating cases of one bearing: loads, displacements, speeds, hours."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import equinox as eqx
@@ -13,9 +13,9 @@ from ..design.checks import is_traced, real_numbers
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
-from ..numerics.types import Scalar
 from ..numerics.units import unit
-from .load import solve_load
+from .load import solve
+from .options import SolveOptions
 from .solution import Solution
 
 
@@ -171,12 +171,7 @@ def _check_hours(hours):
 def solve_case(
     element: BearingElement[Any],
     case: Cases,
-    *,
-    free: Sequence[str] | None = None,
-    fixed_ring: str = "outer",
-    points: int = 101,
-    tolerance: float | Scalar | None = None,
-    max_steps: int | Int[Array, ""] = 200,
+    options: SolveOptions | None = None,
     start: Float[Array, "6"] | None = None,
 ) -> Solution:
     """One case of many, to be mapped: `jax.vmap(lambda c: solve_case(element, c))`.
@@ -184,7 +179,8 @@ def solve_case(
     Args:
         element: The bearing of this case.
         case: Cases without their leading axis, as `vmap` hands them out.
-        free, fixed_ring, points, tolerance, max_steps, start: As in `solve_load`.
+        options: Settings; `None`: the defaults of `solve_load`.
+        start: As of `solve_load`.
 
     Returns:
         Solution with its result code; nothing is raised for a failed solve.
@@ -194,17 +190,12 @@ def solve_case(
         still = jnp.zeros((), case.load.dtype)
         speeds = (case.inner_speed, case.outer_speed)
         speed = Speed(*(still if s is None else s for s in speeds))
-    return solve_load(
+    return solve(
         element,
         case.load,
+        SolveOptions() if options is None else options,
         prescribed=case.prescribed,
-        free=free,
-        fixed_ring=fixed_ring,
         fixed_displacement=case.fixed_displacement,
         speed=speed,
-        points=points,
-        tolerance=tolerance,
-        max_steps=max_steps,
         start=start,
-        throw=False,
     )

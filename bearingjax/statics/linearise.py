@@ -1,7 +1,7 @@
 """The bearing at an operating point, for linear rotordynamics."""
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import equinox as eqx
 import jax
@@ -14,7 +14,9 @@ from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS, RINGS
 from ..element.inertia import Speed
 from ..numerics.types import Ring, RingStiffness
-from .load import Vector, solve_load
+from .load import raise_if_failed, solve
+from .load_case import Prescribed, Vector
+from .options import SolveOptions
 from .solution import Solution
 from .warning import loose
 
@@ -102,7 +104,7 @@ def linearise(
     element: BearingElement,
     load: Vector | None = None,
     *,
-    prescribed: Mapping[str, float | int | Array] | None = None,
+    prescribed: Prescribed | None = None,
     free: Sequence[str] | None = None,
     fixed_ring: str = "outer",
     speed: Speed | None = None,
@@ -129,16 +131,10 @@ def linearise(
     Fails: as `solve_load`; with `throw=False` read `solution.result`.
     """
     check_element("linearise", element)
-    solution = solve_load(
-        element,
-        load,
-        prescribed=prescribed,
-        free=free,
-        fixed_ring=fixed_ring,
-        speed=speed,
-        points=2,
-        throw=throw,
-    )
+    options = SolveOptions(free, fixed_ring, points=2)
+    solution = solve(element, load, options, prescribed=prescribed, speed=speed)
+    if throw:
+        solution = raise_if_failed(solution)
     if not any(is_traced(leaf) for leaf in jax.tree.leaves(solution)):
         slack = loose(solution)
         if slack:

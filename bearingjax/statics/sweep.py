@@ -17,12 +17,12 @@ from jaxtyping import Array, Bool, Float
 
 from ..design import Bearing, BearingSet, rows_of
 from ..element.bearing_element import BearingElement, check_element
-from ..element.frame import RINGS
 from ..numerics.result import Result
 from .cases import Cases
+from .options import SolveOptions
 from .solution import Solution
 from .support import check_held
-from .sweep_program import WARNED, Options, Program
+from .sweep_program import WARNED, Program, Task
 from .warning import counted, given
 
 CHUNK = 64
@@ -179,32 +179,26 @@ def sweep(
     """
     check_element("sweep", element)
     every = cases if isinstance(cases, Cases) else Cases(cases)
-    if fixed_ring not in RINGS:
-        raise ValueError(
-            f"sweep: `fixed_ring` is {fixed_ring!r}; it must be 'outer' or 'inner'."
-        )
+    options = SolveOptions(free, fixed_ring, points, tolerance, max_steps)
+    options.check("sweep")
     every = _with_designs(element, every)
     size = CHUNK if chunk is None else chunk
     if not isinstance(size, int) or size < 1:
         raise ValueError(f"sweep: `chunk` is {chunk!r}; a whole number of at least 1.")
-    check_held("sweep", every.load, every.prescribed, free)
+    check_held("sweep", every.load, every.prescribed, options.free)
     keep = outputs if callable(outputs) else Keep(_checked(outputs))
-    free = None if free is None else tuple(free)
-    # An array, so that another value does not compile anew.
-    ends = None if tolerance is None else jnp.asarray(tolerance, dtype=float)
-    options = Options(free, fixed_ring, points, ends, keep, warn)
     places = np.array(jax.devices() if devices is None else list(devices))
-    program = Program(element, options, size, places)
-    found = program.run(every, max_steps, neighbours, progress, stop)
+    program = Program(element, Task(options, keep, warn), size, places)
+    found = program.run(every, neighbours, progress, stop)
     if neighbours:
         codes = found["result"]
         lost = np.flatnonzero((codes == Result.STEP_LIMIT) | (codes == Result.SADDLE))
         if lost.size:
             again = jax.tree.map(lambda a: np.asarray(a)[lost], every)
-            anew = program.run(again, max_steps, False, False)
+            anew = program.run(again, False, False)
             for name, values in found.items():
                 values[lost] = anew[name]
-    return Sweep(every, found, RINGS[1 - RINGS.index(fixed_ring)])
+    return Sweep(every, found, options.moving_ring)
 
 
 class Keep(eqx.Module):

@@ -2,7 +2,7 @@
 
 import math
 import time
-from typing import Any
+from collections.abc import Callable
 
 import equinox as eqx
 import jax
@@ -13,9 +13,11 @@ from jax.experimental import multihost_utils
 from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 
+from ..element.frame import RINGS
 from ..numerics.result import Result
-from ..numerics.types import Scalar
 from .cases import solve_case
+from .options import SolveOptions
+from .solution import Solution
 from .warning import sizes
 
 BLOCK = 64
@@ -34,31 +36,29 @@ WARNED = "warning_"
 """Before the names of the outputs that are sizes of warnings."""
 
 
-class Options(eqx.Module):
-    """What is the same for all cases. Static, but for the tolerance."""
+class Task(eqx.Module):
+    """What is done with every case.
 
-    free: tuple[str, ...] | None = eqx.field(static=True)
-    fixed_ring: str = eqx.field(static=True)
-    points: int = eqx.field(static=True)
-    tolerance: Scalar | None
-    keep: Any = eqx.field(static=True)
+    Attributes:
+        options: How it is solved.
+        keep: Of a Solution, the outputs by name.
+        warn: Whether to look for warnings.
+
+    Traced: the numbers of `options`. Static: all else.
+    """
+
+    options: SolveOptions
+    keep: Callable[[Solution], dict[str, jax.Array]] = eqx.field(static=True)
     warn: bool = eqx.field(static=True)
 
-    def solve(self, element, case, max_steps, start=None):
+    def solve(self, element, case, start=None) -> Solution:
+        """The solution of a case, in the design that it chooses."""
         if case.design is not None:
             element = jax.tree.map(lambda leaf: leaf[case.design], element)
-        return solve_case(
-            element,
-            case,
-            free=self.free,
-            fixed_ring=self.fixed_ring,
-            points=self.points,
-            tolerance=self.tolerance,
-            max_steps=max_steps,
-            start=start,
-        )
+        return solve_case(element, case, self.options, start)
 
-    def outputs(self, solution):
+    def outputs(self, solution) -> dict[str, jax.Array]:
+        """What is kept of a solution; numbers of a failed one are NaN."""
         solved = solution.converged
 
         def told(value):
@@ -95,16 +95,16 @@ class Program:
 
     Args:
         element: The bearing or designs.
-        options: What is the same for all cases.
+        task: What is done with every case.
         chunk: Cases of a batch.
         devices: Where to.
     """
 
-    def __init__(self, element, options, chunk, devices):
-        self.element, self.options, self.chunk = element, options, chunk
+    def __init__(self, element, task, chunk, devices):
+        self.element, self.task, self.chunk = element, task, chunk
         self.mesh = Mesh(devices, ("case",))
 
-    def run(self, cases, max_steps, neighbours, progress, stop=None):
+    def run(self, cases, neighbours, progress, stop=None):
         """All outputs of all cases, NumPy arrays by name; after `stop` the rest are
         `NOT_RUN`."""
         n = cases.count
@@ -125,8 +125,7 @@ class Program:
                     given = (
                         self.element,
                         given,
-                        jnp.asarray(max_steps),
-                        self.options,
+                        self.task,
                         lanes // self.mesh.size,
                         neighbours,
                         self.mesh,
@@ -155,20 +154,19 @@ class Program:
 
 
 @eqx.filter_jit
-def _solve_block(element, cases, max_steps, options, lanes, neighbours, mesh):
+def _solve_block(element, cases, task, lanes, neighbours, mesh):
     """A block of cases, each device its share in chunks of `lanes`."""
-    shared = (element, max_steps, options)
-    arrays, static = eqx.partition(shared, eqx.is_array)
+    arrays, static = eqx.partition((element, task), eqx.is_array)
 
     def share(arrays, cases):
-        element, max_steps, options = eqx.combine(arrays, static)
+        element, task = eqx.combine(arrays, static)
 
         def one(case, start=None):
-            return options.solve(element, case, max_steps, start)
+            return task.solve(element, case, start)
 
         if neighbours:
-            return _in_turn(one, options, cases, lanes)
-        return lax.map(lambda c: options.outputs(one(c)), cases, batch_size=lanes)
+            return _in_turn(one, task, cases, lanes)
+        return lax.map(lambda c: task.outputs(one(c)), cases, batch_size=lanes)
 
     spread = jax.shard_map(
         share,
@@ -180,9 +178,10 @@ def _solve_block(element, cases, max_steps, options, lanes, neighbours, mesh):
     return spread(arrays, cases)
 
 
-def _in_turn(one, options, cases, lanes):
+def _in_turn(one, task, cases, lanes):
     """Each lane takes a run of cases, each case from the solution before it."""
-    moving = slice(6, 12) if options.fixed_ring == "outer" else slice(0, 6)
+    first = 6 * RINGS.index(task.options.moving_ring)
+    moving = slice(first, first + 6)
     # (lane, turn) -> turn first, for the scan.
     runs = jax.tree.map(
         lambda a: jnp.swapaxes(a.reshape(lanes, -1, *a.shape[1:]), 0, 1), cases
@@ -191,7 +190,7 @@ def _in_turn(one, options, cases, lanes):
     def lane(start, case):
         solution = one(case, start)
         there = jnp.where(solution.converged, solution.displacement[moving], jnp.nan)
-        return there, options.outputs(solution)
+        return there, task.outputs(solution)
 
     begin = jnp.full((lanes, 6), jnp.nan, cases.load.dtype)
     _, outputs = lax.scan(jax.vmap(lane), begin, runs)

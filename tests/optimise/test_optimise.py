@@ -13,12 +13,13 @@ from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
 from bearingjax.optimise import design_numbers
-from bearingjax.optimise.design_problem import Options, Problem, Run
+from bearingjax.optimise.design_problem import Problem, Run
 from bearingjax.optimise.measure import smooth_maximum, smooth_minimum
 from bearingjax.optimise.optimise import verdict
 from bearingjax.optimise.search import Ending
 from bearingjax.optimise.trials import Trial, Trials, optimality
 from bearingjax.optimise.variable import changed
+from bearingjax.statics import SolveOptions
 
 PROFILE = "bearing.roller_profile."
 PLAY = "bearing.radial_internal_clearance"
@@ -108,7 +109,7 @@ def test_gradients_of_all_measures_are_those_of_differences(fujiwara, cases):
         lambda element, cases, solution: jnp.sum(solution.roller_load[:, 0, 0]),
     ]
     constraints = tuple(bj.Constraint(m, upper=1.0) for m in measures[1:])
-    options = Options(None, "outer", POINTS, None, None)
+    options = SolveOptions(points=POINTS)
     problem = Problem(fujiwara, cases, variables, measures[0], constraints, options)
     start = problem.scaled([v.start_in(fujiwara) for v in variables])
     found = problem.run(start, True)
@@ -320,7 +321,7 @@ def test_many_cases_are_solved_in_chunks(straight, one_case, wanted):
     load = np.tile(one_case.load, (65, 1))
     many = bj.Cases(load, prescribed={"gx": 0.0, "gy": 0.0})
     target = (bj.StiffnessTarget(wanted, "uy"), ())
-    options = Options(None, "outer", 2, None, None)
+    options = SolveOptions(points=2)
     one, all_ = (
         Problem(straight, c, [play()], *target, options).run(jnp.array([0.1]), False)
         for c in (one_case, many)
@@ -359,7 +360,7 @@ def test_searches_are_done_in_float64_whatever_the_bearing_is_solved_in(
 ):
     """SLSQP takes nothing else."""
     kept = (bj.Constraint(bj.Stiffness("uy"), lower=1e8),)
-    options = Options(None, "outer", 2, None, None)
+    options = SolveOptions(points=2)
     sag = bj.Displacement("uy")
     problem = Problem(straight, one_case, [play()], sag, kept, options)
     two, one = np.ones(2, np.float32), np.ones((2, 1), np.float32)

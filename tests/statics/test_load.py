@@ -12,6 +12,7 @@ from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
 from bearingjax.element import azimuths
+from bearingjax.statics import load_result
 
 RADIAL = [0.0, -4000.0, 0.0, 1.0, 0.0, 0.0]
 FREE = ["ux", "uy", "gx", "gy"]
@@ -299,9 +300,9 @@ def test_a_load_on_a_held_freedom_is_not_dropped(crowned, held, why):
 
 def test_tolerance_and_step_limit_do_not_compile_anew(crowned, monkeypatch):
     traces = []
-    describe = bj.statics.load.describe
+    describe = load_result.describe
     monkeypatch.setattr(
-        bj.statics.load,
+        load_result,
         "describe",
         lambda *args: traces.append(1) or describe(*args),
     )

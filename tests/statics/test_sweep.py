@@ -16,7 +16,7 @@ import pytest
 from sweep_in_process import loads, small_element
 
 import bearingjax as bj
-from bearingjax.statics import sweep_program, sweep_table
+from bearingjax.statics import SolveOptions, sweep_program, sweep_table
 from bearingjax.statics.sweep import n_designs
 
 SCRIPT = Path(__file__).with_name("sweep_in_process.py")
@@ -70,8 +70,8 @@ def test_a_case_lost_from_its_neighbour_is_solved_again(monkeypatch):
     runs = []
     honest = sweep_program.Program.run
 
-    def lossy(self, cases, max_steps, neighbours, progress, stop=None):
-        found = honest(self, cases, max_steps, neighbours, progress)
+    def lossy(self, cases, neighbours, progress, stop=None):
+        found = honest(self, cases, neighbours, progress)
         runs.append(cases.count)
         if neighbours:
             found["result"][3] = bj.Result.STEP_LIMIT
@@ -242,8 +242,8 @@ def test_outputs_of_a_function_are_a_dict_of_arrays():
     solution = SimpleNamespace(converged=jnp.asarray(False), result=1, unrestrained=-1)
 
     def outputs(kept):
-        options = sweep_program.Options(None, "outer", 5, None, lambda _: kept, False)
-        return options.outputs(solution)
+        task = sweep_program.Task(SolveOptions(), lambda _: kept, False)
+        return task.outputs(solution)
 
     with pytest.raises(TypeError, match="`outputs` returns a list; .* dict of arrays"):
         outputs([1.0])

@@ -1,0 +1,137 @@
+"""What a load solve returns: the fields of a `Solution` and its result code."""
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool, Float, Int
+
+from ..design import is_ball
+from ..element.bearing_element import BearingElement
+from ..element.bearing_model import BearingModel
+from ..element.frame import FREEDOMS
+from ..numerics.implicit import stop
+from ..numerics.minimise import Minimum
+from ..numerics.result import Result
+from ..numerics.types import Ring
+from .balance import Balance
+from .load_case import LoadCase
+from .load_search import Beginning, differentiable
+from .options import SolveOptions
+from .solution import BallSolution, RollerSolution, Solution, Stats, describe
+from .warning_sizes import stiffness_scale
+
+
+class Ending(NamedTuple):
+    """How a solve ended.
+
+    Attributes:
+        result: `Result` code.
+        unrestrained: As of `Solution`.
+    """
+
+    result: Int[Array, ""]
+    unrestrained: Int[Array, ""]
+
+
+def solution_of(
+    element: BearingElement,
+    model: BearingModel,
+    balance: Balance,
+    case: LoadCase,
+    options: SolveOptions,
+    begin: Beginning,
+    minimum: Minimum,
+) -> Solution:
+    """The solution where a search ended.
+
+    Args:
+        element: The bearing.
+        model: The bearing at the speeds.
+        balance: The load and what holds the rings.
+        case: What was asked.
+        options: Settings.
+        begin: Where the search began.
+        minimum: Where it ended.
+    """
+    y = differentiable(model, balance, minimum)
+    q = balance.ring_freedoms(y)
+    fields, evaluated = describe(element, model, q, options.points, minimum.memory)
+    left = stop(balance.out_of_balance(fields["force"]))
+    reference = jnp.where(begin.size > 0, begin.size, evaluated.magnitude)
+    tiny = jnp.finfo(left.dtype).tiny
+    residual = jnp.sqrt(left @ left) / jnp.maximum(reference, tiny)
+    # What presses contacts by the size of the bearing: numbers of another scale.
+    most = stop(stiffness_scale(element.bearing) * balance.radius)
+    strong = (begin.size > most) | (begin.inertia > most)
+    far = begin.y[:5] @ begin.y[:5] >= (8.0 * balance.radius) ** 2
+    ending = _ending(
+        balance,
+        minimum,
+        evaluated.result,
+        _loaded_unheld(case),
+        strong | far,
+        fields["force"],
+    )
+    kind = BallSolution if is_ball(element.bearing) else RollerSolution
+    return kind(
+        **fields,
+        element=element,
+        speed=case.speed,
+        free=case.free,
+        held=case.held,
+        moving_ring=options.moving_ring,
+        pitch_radius=balance.radius,
+        result=ending.result,
+        unrestrained=ending.unrestrained,
+        stats=Stats(residual, minimum.steps, evaluated.residual, evaluated.steps),
+    )
+
+
+def _loaded_unheld(case: LoadCase) -> Bool[Array, "6"]:
+    """Loads on freedoms that are held, or that this type of bearing cannot restrain."""
+    locked = np.array([name not in case.free for name in FREEDOMS])
+    return jnp.asarray(locked) & ~(case.load == 0)
+
+
+def _ending(
+    balance: Balance,
+    minimum: Minimum,
+    of_elements: Int[Array, ""],
+    loaded: Bool[Array, "6"],
+    absurd: Bool[Array, ""],
+    force: Ring,
+) -> Ending:
+    """The worst that is to be said of a solve, and which freedom it concerns.
+
+    Args:
+        balance: The load and what holds the rings.
+        minimum: Where the search ended.
+        of_elements: Worst result code of the rolling elements.
+        loaded: Freedoms whose load no contact takes.
+        absurd: Whether numbers are of another scale than the bearing.
+        force: Of the solution [N, N m].
+    """
+    result = jnp.maximum(minimum.result, of_elements)
+    result = jnp.where(
+        jnp.any(loaded) & (result != Result.NON_FINITE),
+        int(Result.NO_LOAD_PATH),
+        result,
+    )
+    result = jnp.where(
+        absurd & (result != Result.CONVERGED), int(Result.NON_FINITE), result
+    )
+    inputs = jnp.concatenate([balance.load, balance.given, balance.fixed])
+    bad = ~jnp.all(jnp.isfinite(inputs)) | ~jnp.all(jnp.isfinite(force))
+    result = jnp.where(bad, int(Result.NON_FINITE), result).astype(jnp.int32)
+    runaway = _runaway(minimum.x, balance.free)
+    freedom = jnp.where(jnp.any(loaded), jnp.argmax(loaded), runaway)
+    of_ring = jnp.any(loaded) | (minimum.result == Result.NO_LOAD_PATH)
+    named = of_ring & (result == Result.NO_LOAD_PATH)
+    return Ending(result, jnp.where(named, freedom, -1).astype(jnp.int32))
+
+
+def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Int[Array, ""]:
+    """Freedom that runs away: the axial one if it takes part, else the largest."""
+    size = jnp.abs(y) * free
+    return jnp.where(size[2] > 0.1 * jnp.max(size), 2, jnp.argmax(size))

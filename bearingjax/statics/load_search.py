@@ -1,0 +1,194 @@
+"""The search for the equilibrium under a load, and what it asks of the bearing model.
+
+Minimises V(q) - load·q over the free freedoms of the moving ring. With linearised
+kinematics this is convex, so the trust-region Newton method on the exact V, V′, V″
+converges from anywhere, or runs away where nothing holds the load, and says so.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..design import AbstractBallBearing
+from ..element.bearing_model import BearingModel
+from ..numerics.implicit import attach, unless_failed
+from ..numerics.minimise import (
+    Evaluation,
+    Minimum,
+    Problem,
+    TrustRegionNewton,
+    continuation,
+)
+from ..numerics.result import Result
+from ..numerics.types import Scalar
+from .balance import Balance
+from .options import SolveOptions
+
+
+class Beginning(NamedTuple):
+    """Where a search begins.
+
+    Attributes:
+        y: First unknowns (6,) [m].
+        step: First bound of the steps [m].
+        limit: Size of the unknowns beyond which nothing holds the load [m].
+        load: What the load does along the free unknowns (6,) [N].
+        size: Its size [N].
+        inertia: Largest inertia force of a rolling element [N].
+        factor: How many times the load the search begins with, at least 1.
+    """
+
+    y: Float[Array, "6"]
+    step: Scalar
+    limit: Scalar
+    load: Float[Array, "6"]
+    size: Scalar
+    inertia: Scalar
+    factor: Scalar
+
+
+def beginning(
+    model: BearingModel,
+    balance: Balance,
+    start: Float[Array, "6"] | None,
+) -> Beginning:
+    """First unknowns and first load of a search, from the sizes of the bearing.
+
+    A load that presses the contacts by far less than the play that it takes up is
+    approached from a larger one, by tens: with it, as with a barrier method, all
+    contacts that matter are found early and Newton's method stays on their side.
+
+    Args:
+        model: The bearing at the speeds.
+        balance: The load and what holds the rings.
+        start: As of `solve_load`.
+    """
+    load, radius = balance.along(balance.load), balance.radius
+    size = jnp.sqrt(load @ load)
+    play = _play(model)
+    pressing = _load_for(model, play)
+    factor = jnp.where(size > 0, jnp.maximum(1.0, pressing / size), 1.0)
+    y = balance.held
+    if start is not None:
+        there = jnp.where(jnp.isfinite(start), start, 0.0)
+        near = balance.free * there / balance.scale
+        known = jnp.all(jnp.isfinite(start)) & (near @ near < radius * radius)
+        y = y + jnp.where(known, near, 0.0)
+        factor = jnp.where(known, 1.0, factor)
+    limit = 8.0 * radius + jnp.abs(y[5])
+    step = 1e-7 * radius + play
+    return Beginning(y, step, limit, load, size, _largest_inertia(model), factor)
+
+
+def search(
+    model: BearingModel,
+    balance: Balance,
+    begin: Beginning,
+    options: SolveOptions,
+) -> Minimum:
+    """Where the energy less the work of the load is least. Without derivatives.
+
+    Args:
+        model: The bearing at the speeds.
+        balance: The load and what holds the rings.
+        begin: Where the search begins.
+        options: Settings, the tolerance among them.
+    """
+    direction = begin.load / jnp.where(begin.size > 0, begin.size, 1.0)
+    solver = TrustRegionNewton(symmetric=model.has_potential, softest=0.03)
+    problem = Problem(
+        _energy(model, balance),
+        begin.y,
+        begin.step,
+        memory=model.nothing_near(),
+        direction=direction,
+        limit=begin.limit,
+        force=begin.load,
+        tolerance=options.tolerance,
+        max_steps=options.max_steps,
+    )
+    return continuation(solver, problem, begin.factor)
+
+
+def _energy(model: BearingModel, balance: Balance) -> Callable[..., Evaluation]:
+    """The energy of the bearing as a function of the unknowns, without the load."""
+    weight, moving = balance.free * balance.scale, balance.moving
+
+    def function(y, _, near):
+        q = balance.ring_freedoms(y)
+        e = model.evaluate(q, model.solve(q, near))
+        h = jnp.outer(weight, weight) * e.stiffness[moving, moving]
+        # Round-off of forces that cancel, and of positions in a stiff bearing.
+        floor = e.magnitude + jnp.trace(h) * jnp.sqrt(y @ y)
+        return Evaluation(
+            value=e.energy if model.has_potential else jnp.full_like(e.energy, jnp.nan),
+            gradient=balance.along(e.force[moving]),
+            hessian=h + jnp.diag(1.0 - balance.free),
+            scale=e.magnitude,
+            noise=jnp.finfo(y.dtype).eps * floor,
+            memory=e.near,
+        )
+
+    return function
+
+
+def differentiable(
+    model: BearingModel, balance: Balance, minimum: Minimum
+) -> Float[Array, "6"]:
+    """The unknowns found, differentiable by the implicit function theorem [m].
+
+    Derivatives of a failed search are NaN.
+
+    Args:
+        model: The bearing at the speeds.
+        balance: The load and what holds the rings.
+        minimum: What the search found.
+    """
+    # All that is traced goes through the arguments: a derivative rule must not close
+    # over it.
+    y = attach(_residual, minimum.x, (model, balance), model.has_potential)
+    return unless_failed(y, minimum.result == Result.CONVERGED)
+
+
+def _residual(y, args):
+    """Zero in balance."""
+    model, balance = args
+    # A held freedom follows what is prescribed for it, not `y`: between it and the
+    # free ones the Jacobian would not be symmetric.
+    held = balance.held
+    q = balance.ring_freedoms(balance.free * y + held)
+    # gz may be prescribed: the answer follows it through the azimuths.
+    force = model.force(q, turns=True)
+    return balance.out_of_balance(force) + (1.0 - balance.free) * y - held
+
+
+def _play(model: BearingModel) -> Scalar:
+    """Largest play between the rings, radial or axial [m]."""
+    rows = [row.part for row in model.rows]
+    plays = [row.bearing.play + jnp.abs(row.inner_offset) for row in rows]
+    # Less than this and a small load would follow the groove in tiny steps.
+    least = [
+        2e-3 * row.bearing.centre_distances[1]
+        for row in rows
+        if isinstance(row.bearing, AbstractBallBearing)
+    ]
+    return jnp.max(jnp.stack([jnp.zeros_like(plays[0]), *plays, *least]))
+
+
+def _load_for(model: BearingModel, approach: Scalar) -> Scalar:
+    """Load of one raceway contact pressed by `approach` [N]."""
+    loads = [row.each(lambda one: one.pressed(approach)) for row in model.rows]
+    return jnp.max(jnp.stack([jnp.max(load) for load in loads]))
+
+
+def _largest_inertia(model: BearingModel) -> Scalar:
+    """Largest inertia force of a rolling element [N]."""
+    sizes = [row.each(lambda one: one.inertia_size()) for row in model.rows]
+    found = [jnp.max(size) for size in sizes if size is not None]
+    return (
+        jnp.max(jnp.stack(found))
+        if found
+        else jnp.zeros_like(model.rows[0].part.position)
+    )
