@@ -58,7 +58,7 @@ def check_element(owner: str, element: object) -> None:
     )
 
 
-AnyBearing = TypeVar("AnyBearing", bound=Bearing | BearingSet)
+AnyBearing = TypeVar("AnyBearing", bound=Bearing | BearingSet, covariant=True)
 
 
 class BearingElement(eqx.Module, Generic[AnyBearing]):

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..statics.solution import Solution
+from ..statics.solution import RollerSolution
 from .style import (
     COLOURS,
     SMALL,
@@ -25,7 +25,7 @@ _MAPS = {"outer": "Blues", "inner": "Oranges"}
 
 
 def pressure_profiles(
-    solution: Solution,
+    solution: RollerSolution,
     ax: "matplotlib.axes.Axes | None" = None,
     count: int = 3,
     raceway: str = "inner",
@@ -37,7 +37,7 @@ def pressure_profiles(
     end pressure peak.
 
     Args:
-        solution: A single solution.
+        solution: A single solution of a roller bearing.
         ax: Axes; a new figure if `None`.
         count: Number of rollers, most loaded first.
         raceway: "inner", "outer" or "both".
@@ -122,7 +122,7 @@ def _position(solution, mine):
 
 
 def pressure_map(
-    solution: Solution,
+    solution: RollerSolution,
     ax: "matplotlib.axes.Axes | None" = None,
     raceway: str = "inner",
     row: int = 0,
@@ -132,7 +132,7 @@ def pressure_map(
     White is no contact, or less than a thousandth of the highest pressure.
 
     Args:
-        solution: A single solution.
+        solution: A single solution of a roller bearing.
         ax: Axes; a new figure if `None`.
         raceway: "inner" or "outer".
         row: Which row of a set.

@@ -5,12 +5,12 @@ the search for the equilibrium, and the solution with its result code.
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypedDict, Unpack, overload
 
 import equinox as eqx
 from jaxtyping import Array, Int
 
-from ..design import pitch_radius
+from ..design import AbstractBallBearing, AbstractRollerBearing, pitch_radius
 from ..element.bearing_element import BearingElement, check_element
 from ..element.bearing_model import BearingModel
 from ..element.inertia import Speed
@@ -22,9 +22,42 @@ from .load_case import LoadCase, Prescribed, Vector, load_case
 from .load_result import solution_of
 from .load_search import beginning, search
 from .options import SolveOptions
-from .solution import Solution, message
+from .solution import BallSolution, RollerSolution, Solution, message
 
 
+class _Choices(TypedDict, total=False):
+    """Keyword arguments of `solve_load`."""
+
+    prescribed: Prescribed | None
+    free: Sequence[str] | None
+    fixed_ring: str
+    fixed_displacement: Vector | None
+    speed: Speed | None
+    points: int
+    tolerance: float | Scalar | None
+    max_steps: int | Int[Array, ""]
+    start: Vector | None
+    throw: bool
+
+
+@overload
+def solve_load(
+    element: BearingElement[AbstractRollerBearing],
+    load: Vector | None = None,
+    **choices: Unpack[_Choices],
+) -> RollerSolution: ...
+@overload
+def solve_load(
+    element: BearingElement[AbstractBallBearing],
+    load: Vector | None = None,
+    **choices: Unpack[_Choices],
+) -> BallSolution: ...
+@overload
+def solve_load(
+    element: BearingElement,
+    load: Vector | None = None,
+    **choices: Unpack[_Choices],
+) -> Solution: ...
 def solve_load(
     element: BearingElement,
     load: Vector | None = None,

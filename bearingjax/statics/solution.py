@@ -1,7 +1,5 @@
 """What a solved bearing is: everything that a designer asks of it."""
 
-from typing import TYPE_CHECKING, Any
-
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
@@ -103,10 +101,6 @@ class Solution(eqx.Module):
     free: tuple[str, ...] = eqx.field(static=True)
     held: tuple[str, ...] = eqx.field(static=True)
     moving_ring: str = eqx.field(static=True)
-
-    if TYPE_CHECKING:
-        # Which results there are depends on the rolling elements.
-        def __getattr__(self, name: str) -> Any: ...
 
     @property
     def load_zone(self) -> Bool[Array | np.ndarray, " element"]:

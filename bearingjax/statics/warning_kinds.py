@@ -215,7 +215,7 @@ KINDS: dict[str, Kind] = {
     "rib_interference": Kind(_has_ribs, of.interference, 0.0, _rib_words),
     "truncated_ellipse": Kind(
         _has_shoulder,
-        lambda solution: -solution.shoulder_margin.min(),
+        of.truncation,
         0.0,
         _truncated_words,
         of.truncated_balls,
@@ -229,7 +229,7 @@ KINDS: dict[str, Kind] = {
     ),
     "edge_loaded": Kind(
         _of_rollers,
-        lambda solution: solution.edge_pressure.max(),
+        of.edge_pressure,
         EDGE_PRESSURE,
         _edge_words,
         lambda s: of.of_raceways(s, of.ends_over(s)),

@@ -22,7 +22,7 @@ from ..design.material import contact_modulus
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.types import namespace
 from .rollers import EDGE_PRESSURE
-from .solution import Solution
+from .solution import BallSolution, RollerSolution, Solution
 
 LARGEST_PRESSURE = 4e9
 """Contact pressure beyond which nothing is elastic any more [Pa]."""
@@ -88,6 +88,18 @@ def _modulus(bearing):
 def _diameter(bearing):
     balls = isinstance(bearing, AbstractBallBearing)
     return bearing.ball_diameter if balls else bearing.roller_diameter
+
+
+def _of_balls(solution: Solution) -> BallSolution:
+    """The solution of a ball bearing: kinds of balls are asked of no other."""
+    assert isinstance(solution, BallSolution)
+    return solution
+
+
+def _of_rollers(solution: Solution) -> RollerSolution:
+    """The solution of a roller bearing: kinds of rollers are asked of no other."""
+    assert isinstance(solution, RollerSolution)
+    return solution
 
 
 def _by_row(solution: Solution, values: Any) -> Iterator[tuple[Any, Any]]:
@@ -221,16 +233,17 @@ def ellipses(solution: Solution) -> Any:
     """Largest semi-axis over the radius of the ball [1]."""
     parts = [
         2.0 * axes.max() / bearing.ball_diameter
-        for bearing, axes in _by_row(solution, solution.semi_axes)
+        for bearing, axes in _by_row(solution, _of_balls(solution).semi_axes)
     ]
     return _largest(solution, parts)
 
 
 def groove_angles(solution: Solution) -> Any:
     """Largest angle of a loaded contact from the middle of its raceway [rad]."""
-    loads = _by_row(solution, solution.contact_load)
-    angles = _by_row(solution, solution.contact_angle)
-    least = 1e-9 * solution.contact_load.max()
+    balls = _of_balls(solution)
+    loads = _by_row(solution, balls.contact_load)
+    angles = _by_row(solution, balls.contact_angle)
+    least = 1e-9 * balls.contact_load.max()
     parts = [
         _one(solution, load > least) * abs(angle - bearing.groove_axis)
         for (bearing, load), (_, angle) in zip(loads, angles, strict=True)
@@ -247,7 +260,7 @@ def tilt_error(solution: Solution) -> Any:
     xp = namespace(solution.result)
     q, radius = solution.displacement, solution.pitch_radius
     square = (q[9] - q[3]) ** 2 + (q[10] - q[4]) ** 2
-    if is_ball(solution.element.bearing):
+    if isinstance(solution, BallSolution):
         approach = solution.approach.max()
     else:
         # About that of Palmgren's law: 2.5 b²/ρ of a half width b = 2 p ρ/E*.
@@ -311,10 +324,16 @@ def interference(solution: Solution) -> Any:
     return _largest(solution, [-gap for row in rows for gap in _rib_gaps(row.bearing)])
 
 
+def truncation(solution: Solution) -> Any:
+    """Largest reach of a contact ellipse over its shoulder, negative: none [m]."""
+    return -_of_balls(solution).shoulder_margin.min()
+
+
 def truncated_balls(solution: Solution) -> str:
     """Raceways and balls whose ellipse reaches over a shoulder, and their load."""
-    most = np.asarray(solution.contact_load)[solution.shoulder_margin < 0].max()
-    margin = solution.shoulder_margin
+    balls = _of_balls(solution)
+    margin = balls.shoulder_margin
+    most = np.asarray(balls.contact_load)[margin < 0].max()
     sides = margin.reshape(margin.shape[0], 2, -1).min(axis=2)
     where = of_raceways(solution, sides < 0)
     return f"contact load of up to {most:.5g} N; {where}"
@@ -322,7 +341,7 @@ def truncated_balls(solution: Solution) -> str:
 
 def lifted(solution: Solution) -> Any:
     """Which balls run on the outer raceway alone (ball,)."""
-    load = solution.contact_load
+    load = _of_balls(solution).contact_load
     carrying = (load > 1e-9 * load.max()).reshape(load.shape[0], 2, -1).any(axis=2)
     return carrying[:, 0] & ~carrying[:, 1]
 
@@ -332,6 +351,11 @@ def lifted_count(solution: Solution) -> Any:
     return _one(solution, lifted(solution)).sum()
 
 
+def edge_pressure(solution: Solution) -> Any:
+    """Largest pressure at a roller end [Pa]."""
+    return _of_rollers(solution).edge_pressure.max()
+
+
 def ends_over(solution: Solution) -> Any:
     """Which rollers are edge-loaded on each raceway (roller, 2)."""
-    return (solution.edge_pressure > EDGE_PRESSURE).any(axis=2)
+    return (_of_rollers(solution).edge_pressure > EDGE_PRESSURE).any(axis=2)

@@ -71,6 +71,7 @@ def test_positions_are_those_of_the_bearing():
     pair = bj.BearingSet.face_to_face(taper(5), 0.03, 30e-6)
     element = bj.BearingElement(pair, bj.CoupledSlices())
     solution = bj.solve_load(element, [3000.0, 0, 500.0, 0, 6.0, 0])
+    assert isinstance(solution, bj.RollerSolution)
     loads = np.asarray(solution.roller_load[:, 1])
     # One of each row, the second of which is mirrored.
     for roller in (int(loads[:5].argmax()), 5 + int(loads[5:].argmax())):
