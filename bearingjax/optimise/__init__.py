@@ -4,8 +4,8 @@ The function `optimise` has the name of the folder: `bearingjax.optimise` is the
 function, and what else stands here is imported by `from bearingjax.optimise import`.
 """
 
+from .constraint import Constraint as Constraint
 from .design_problem import Outcome as Outcome
-from .measure import Constraint as Constraint
 from .measure import Displacement as Displacement
 from .measure import EdgeLoad as EdgeLoad
 from .measure import MeanPressure as MeanPressure

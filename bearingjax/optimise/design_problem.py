@@ -15,7 +15,8 @@ from ..statics.cases import Cases, solve_case
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution, message
 from ..statics.warning import warnings as warnings_of
-from .measure import Constraint, exact_of, least_size_of
+from .constraint import Constraint
+from .measure import exact_of, least_size_of
 from .trials import Trial
 from .variable import Variable, with_values
 

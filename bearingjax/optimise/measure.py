@@ -4,9 +4,7 @@ A measure is any function (element, cases, solution) -> scalar, where the soluti
 a leading case axis; those here are Modules. Life over a load spectrum would be one
 more: the element has the design, the cases their hours and speeds.
 
-Maxima are p-norms of many samples, so that they have a derivative wherever the peak
-stands: never below the true maximum of the samples, and above it by a factor of at
-most (number of samples)^(1/exponent); minima likewise, never above.
+Their maxima and minima are smooth (`smooth.py`).
 """
 
 import abc
@@ -24,40 +22,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit, unit_of
 from ..statics.cases import Cases
 from ..statics.solution import RollerSolution, Solution
-
-EXPONENT = 64.0
-"""Of smooth maxima: with the 100 samples that stand near a peak, 7 % above it."""
-
-
-def smooth_maximum(values: Float[Array, "..."], exponent: float = EXPONENT) -> Scalar:
-    """p-norm of numbers ≥ 0: max ≤ result ≤ count^(1/exponent) max.
-
-    Args:
-        values: Numbers of at least 0 [any unit].
-        exponent: p, above 1. Static.
-
-    Returns:
-        The norm, in the unit of `values`; 0 with derivative 0 if all are 0.
-    """
-    top = jax.lax.stop_gradient(jnp.max(values))
-    none = top <= 0
-    share = values / jnp.where(none, 1.0, top)
-    total = jnp.where(none, 1.0, jnp.sum(share**exponent))
-    return top * total ** (1.0 / exponent)
-
-
-def smooth_minimum(values: Float[Array, "..."], exponent: float = EXPONENT) -> Scalar:
-    """Norm of order -p of numbers > 0: min/count^(1/exponent) ≤ result ≤ min.
-
-    Args:
-        values: Numbers [any unit]; if one is not above 0, the result is the minimum.
-        exponent: p, above 1. Static.
-    """
-    low = jax.lax.stop_gradient(jnp.min(values))
-    none = low <= 0
-    share = low / jnp.where(none, 1.0, values)
-    total = jnp.where(none, 1.0, jnp.sum(share**exponent))
-    return jnp.where(none, jnp.min(values), low * total ** (-1.0 / exponent))
+from .smooth import EXPONENT, smooth_maximum, smooth_minimum
 
 
 class AbstractMeasure(eqx.Module):
@@ -315,49 +280,6 @@ class StiffnessTarget(AbstractMeasure):
     @property
     def unit(self):
         return ""
-
-
-class Constraint(eqx.Module):
-    """Bounds on a measure.
-
-    Attributes:
-        measure: What is bounded: a measure of this module, or any function
-            (element, cases, solution) -> scalar.
-        lower: Least value, or `None` [unit of the measure].
-        upper: Largest value, or `None` [unit of the measure].
-
-    Traced: the bounds. Static: whether there are such.
-    """
-
-    measure: Any
-    lower: Scalar | None = eqx.field(
-        converter=lambda x: None if x is None else as_real(x), default=None
-    )
-    upper: Scalar | None = eqx.field(
-        converter=lambda x: None if x is None else as_real(x), default=None
-    )
-
-    def __check_init__(self):
-        if not callable(self.measure):
-            raise TypeError(
-                f"Constraint: `measure` is a {type(self.measure).__name__}; it must be"
-                " a function (element, cases, solution) -> scalar, such as"
-                " Stiffness('uy')."
-            )
-        bounds = {"lower": self.lower, "upper": self.upper}
-        if all(bound is None for bound in bounds.values()):
-            raise ValueError("Constraint: give `lower`, `upper` or both.")
-        for name, bound in bounds.items():
-            if bound is not None:
-                number(self, name, bound, "")
-        if self.lower is not None and self.upper is not None:
-            above = self.upper > self.lower
-            check(self, "upper", above, "above `lower`", self.upper, "")
-
-    @property
-    def label(self) -> str:
-        """Name in reports."""
-        return label_of(self.measure)
 
 
 def label_of(measure: Any) -> str:

@@ -15,8 +15,8 @@ from ..element.bearing_element import BearingElement, check_element
 from ..statics.cases import Cases
 from ..statics.options import SolveOptions
 from ..statics.support import check_held
+from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem
-from .measure import Constraint
 from .search import METHODS, Ending, search, takes_gradients
 from .trials import Trial, Trials, optimality
 from .variable import Variable, check_variables

@@ -8,9 +8,8 @@ from typing import Any
 from ..design import BearingSet, is_ball, rows_of
 from ..element import FREEDOMS, BearingElement
 from ..numerics.units import unit_of
+from ..optimise.constraint import Constraint
 from ..optimise.measure import (
-    EXPONENT,
-    Constraint,
     Displacement,
     EdgeLoad,
     MeanPressure,
@@ -19,6 +18,7 @@ from ..optimise.measure import (
     StiffnessTarget,
 )
 from ..optimise.search import METHODS
+from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
 from .cases_table import read_cases

@@ -14,9 +14,9 @@ from tolerances import DIFFERENCE, ROUNDING
 import bearingjax as bj
 from bearingjax.optimise import design_numbers
 from bearingjax.optimise.design_problem import Problem, Run
-from bearingjax.optimise.measure import smooth_maximum, smooth_minimum
 from bearingjax.optimise.optimise import verdict
 from bearingjax.optimise.search import Ending
+from bearingjax.optimise.smooth import smooth_maximum, smooth_minimum
 from bearingjax.optimise.trials import Trial, Trials, optimality
 from bearingjax.optimise.variable import changed
 from bearingjax.statics import SolveOptions

@@ -1,0 +1,52 @@
+"""Bounds on what is asked of a design."""
+
+from typing import Any
+
+import equinox as eqx
+
+from ..design.checks import check, number
+from ..numerics.types import Scalar, as_real
+from .measure import label_of
+
+
+class Constraint(eqx.Module):
+    """Bounds on a measure.
+
+    Attributes:
+        measure: What is bounded: a measure such as `Stiffness('uy')`, or any function
+            (element, cases, solution) -> scalar.
+        lower: Least value, or `None` [unit of the measure].
+        upper: Largest value, or `None` [unit of the measure].
+
+    Traced: the bounds. Static: whether there are such.
+    """
+
+    measure: Any
+    lower: Scalar | None = eqx.field(
+        converter=lambda x: None if x is None else as_real(x), default=None
+    )
+    upper: Scalar | None = eqx.field(
+        converter=lambda x: None if x is None else as_real(x), default=None
+    )
+
+    def __check_init__(self):
+        if not callable(self.measure):
+            raise TypeError(
+                f"Constraint: `measure` is a {type(self.measure).__name__}; it must be"
+                " a function (element, cases, solution) -> scalar, such as"
+                " Stiffness('uy')."
+            )
+        bounds = {"lower": self.lower, "upper": self.upper}
+        if all(bound is None for bound in bounds.values()):
+            raise ValueError("Constraint: give `lower`, `upper` or both.")
+        for name, bound in bounds.items():
+            if bound is not None:
+                number(self, name, bound, "")
+        if self.lower is not None and self.upper is not None:
+            above = self.upper > self.lower
+            check(self, "upper", above, "above `lower`", self.upper, "")
+
+    @property
+    def label(self) -> str:
+        """Name in reports."""
+        return label_of(self.measure)

@@ -1,0 +1,46 @@
+"""Smooth maxima and minima of many samples.
+
+They are p-norms, which have a derivative wherever the peak stands: never below the true
+maximum of the samples, and above it by a factor of at most
+(number of samples)^(1/exponent); minima likewise, never above.
+"""
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..numerics.types import Scalar
+
+EXPONENT = 64.0
+"""Of smooth maxima: with the 100 samples that stand near a peak, 7 % above it."""
+
+
+def smooth_maximum(values: Float[Array, "..."], exponent: float = EXPONENT) -> Scalar:
+    """p-norm of numbers ≥ 0: max ≤ result ≤ count^(1/exponent) max.
+
+    Args:
+        values: Numbers of at least 0 [any unit].
+        exponent: p, above 1. Static.
+
+    Returns:
+        The norm, in the unit of `values`; 0 with derivative 0 if all are 0.
+    """
+    top = jax.lax.stop_gradient(jnp.max(values))
+    none = top <= 0
+    share = values / jnp.where(none, 1.0, top)
+    total = jnp.where(none, 1.0, jnp.sum(share**exponent))
+    return top * total ** (1.0 / exponent)
+
+
+def smooth_minimum(values: Float[Array, "..."], exponent: float = EXPONENT) -> Scalar:
+    """Norm of order -p of numbers > 0: min/count^(1/exponent) ≤ result ≤ min.
+
+    Args:
+        values: Numbers [any unit]; if one is not above 0, the result is the minimum.
+        exponent: p, above 1. Static.
+    """
+    low = jax.lax.stop_gradient(jnp.min(values))
+    none = low <= 0
+    share = low / jnp.where(none, 1.0, values)
+    total = jnp.where(none, 1.0, jnp.sum(share**exponent))
+    return jnp.where(none, jnp.min(values), low * total ** (-1.0 / exponent))
