@@ -1,4 +1,4 @@
-"""A design with free numbers, evaluated over its cases."""
+"""A design with free numbers: objective, constraints and gradients over its cases."""
 
 import warnings
 from collections.abc import Callable, Sequence

@@ -74,7 +74,8 @@ class PeakPressure(AbstractMeasure):
     count.
 
     Attributes:
-        exponent: Of the smooth maximum; the larger, the closer and the stiffer.
+        exponent: Of the smooth maximum. With a larger one it is closer to the true
+            maximum, but its derivative changes faster.
 
     Static: exponent.
     """

@@ -28,8 +28,8 @@ _PATIENCE = 20
 """Rejected designs after which it is begun anew."""
 
 _ROUND_OFF = 1e-13
-"""Change of the objective, of its size at the start, that SciPy's searches end at:
-where only round-off is left. It is the gradient that says whether they have arrived."""
+"""Change of the objective, over its size at the start, at which SciPy's searches end:
+it is round-off. Whether they have converged is judged by the gradient (`arrived`)."""
 
 
 def takes_gradients(method: Any) -> bool:
@@ -62,7 +62,7 @@ class _Flat(Exception):
 
 
 class _Stuck(Exception):
-    """Rejected designs bar the way of a method."""
+    """A method has tried too many designs that were rejected."""
 
 
 Try = Callable[[np.ndarray], Trial]

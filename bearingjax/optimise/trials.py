@@ -1,4 +1,4 @@
-"""Designs that were tried: their numbers, what is left to gain, and which failed."""
+"""Designs that a search has tried, and how far each is from a minimum."""
 
 from collections.abc import Callable
 from typing import NamedTuple

@@ -87,6 +87,22 @@ def test_what_is_no_displacement(given, text):
         plain("solve_load")(ELEMENT, **given)
 
 
+@pytest.mark.parametrize(
+    ("name", "given", "text"),
+    [
+        ("solve_load", {"tolerance": 2.0}, "`tolerance` is 2; .* below 1"),
+        ("sweep", {"tolerance": 2.0}, "`tolerance` is 2; .* below 1"),
+        ("sweep", {"free": ["gz"]}, "`free` contains gz"),
+        ("optimise", {"solve_tolerance": 2.0}, "`solve_tolerance` is 2; .* below 1"),
+        ("optimise", {"free": ["uw"]}, "`free` names 'uw'; freedoms are ux, uy"),
+        ("stiffness_table", {"fixed_ring": "left"}, "`fixed_ring` is 'left'"),
+    ],
+)
+def test_settings_of_a_solve_are_refused_by_who_was_called(name, given, text):
+    with pytest.raises(ValueError, match=f"^{name}: {text}"):
+        plain(name)(ELEMENT, *OF_ELEMENTS[name], **given)
+
+
 def test_what_is_no_speed_of_a_table():
     with pytest.raises(TypeError, match="^stiffness_table: `speeds` is '1000 rpm'"):
         plain("stiffness_table")(ELEMENT, "1000 rpm", LOAD)
