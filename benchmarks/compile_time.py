@@ -14,26 +14,20 @@ that XLA makes of them. `--beside TREE` runs another checkout in turn.
 Run: python benchmarks/compile_time.py [--json] [--smoke] [--repeats N]
          [--scenes NAME...] [--beside TREE]
 
-Last run:
+Last run, with eight other jobs on two cores (load average 10), so that only processor
+time tells; in it importing JAX and adding two arrays takes 0.75 s, `--version` 1.3 s:
 
-seconds                    scene             median    min    max    CPU  goal
-import jax                                     0.41   0.39   0.53   0.51
-import bearingjax                              0.28   0.24   0.31   0.28
-bearing and element                            0.10   0.09   0.12   0.10
-evaluate                                       2.46   2.13   2.66   3.68
-again                                          0.00   0.00   0.00   0.00
-first force and stiffness                      3.27   2.85   3.62   4.58   4.0
-solve, first               cylindrical_rig     5.50   4.81   6.58   7.99  10.0
-solve, second              cylindrical_rig     2.04   1.83   2.63   2.14   2.5
-solve, third               cylindrical_rig     2.11   1.88   2.44   2.21   2.5
-solve, first               cylindrical_ribs    6.75   6.29   7.66   9.37  10.0
-solve, second              cylindrical_ribs    2.41   2.35   2.86   2.54   2.5
-solve, third               cylindrical_ribs    2.53   2.34   2.67   2.62   2.5  missed
-solve, first               tapered             7.22   6.65   7.39  10.32  10.0
-solve, second              tapered             2.44   2.31   2.71   2.55   2.5
-solve, third               tapered             2.46   2.44   2.51   2.57   2.5
-
-5 repeats; AMD EPYC, 2 cores, load average before 1.0
+processor seconds          scene             solve, first  solve, second
+                           tapered                    6.4           2.0
+                           cylindrical_ribs           6.2           1.9
+                           cylindrical_rig            5.2           2.0
+                           fujiwara_kawase            6.1           1.9
+                           needle                     6.1           2.0
+                           nj_axial                   6.6           2.1
+                           hybrid_spindle             6.4           2.0
+                           deep_groove                6.1           2.1
+                           angular_contact           10.9           2.4
+                           ball_pair                 16.8           2.8
 """
 
 import argparse
