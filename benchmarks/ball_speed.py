@@ -101,12 +101,12 @@ class CBall:
 
     def __init__(self, library, el):
         row = el.model().rows[0]
-        ball, b = row.element, row.part.bearing
+        ball, b = row.element, el.bearing
         grooves = ball.grooves
         numbers = [
             b.n_balls, b.first_azimuth,
             b.ball_diameter * b.free_cosine / b.pitch_diameter,
-            ball.pitch_radius, ball.diameter, ball.guide, ball.gap,
+            row.pitch_radius, ball.diameter, ball.tether, ball.grooves.gap,
             *np.ravel(grooves.start), *grooves.reach, *ball.constant,
             *ball.lever[1], float(grooves.open_side[0]),
         ]  # fmt: skip

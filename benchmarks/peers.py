@@ -64,7 +64,7 @@ def plain(element, slices):
         azimuth=float(bearing.first_azimuth) + 2 * np.pi * turns,
         half=half,
         gap=float(constants.gap),
-        guide=float(constants.guide),
+        guide=float(constants.tether),
         xi=xi,
         weight=np.full(slices, float(constants.lines[0].constant) * 2 * half / slices),
         drop=np.stack(

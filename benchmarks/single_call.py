@@ -163,7 +163,7 @@ class CLoop:
             "diameter": constants.diameter,
             "crown_radius": b.roller_profile.crown_radius,
             "gap": constants.gap,
-            "guide": constants.guide,
+            "guide": constants.tether,
             "pitch_radius": constants.pitch_radius,
             "ratio": b.roller_diameter / b.pitch_diameter,
             "first_azimuth": b.first_azimuth,

@@ -23,8 +23,8 @@ ROLLERS = 5  # fewer than drawn: one compilation per kind and profile
 @eqx.filter_jit
 def evaluate(element, q):
     model = element.model()
-    rows = model.solve(q)
-    return model.evaluate(q, rows), rows[0].solved
+    solved = model.solve(q)
+    return model.evaluate(q, solved), model.results(q, solved)[0]
 
 
 def case(seed):

@@ -106,8 +106,8 @@ class CoupledContact(AbstractLineContact):
     modulus: Scalar
 
     @property
-    def proud(self):
-        return self.line.proud
+    def protruding(self):
+        return self.line.protruding
 
     def drop(self, xi):
         return self.line.drop(xi)

@@ -16,12 +16,11 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
-from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
 from ..design.profile import AbstractProfile
+from ..numerics.expansion import Expansion, expanded_all
 from ..numerics.implicit import stop
 from ..numerics.pieces import Pieces, of_intervals
 from ..numerics.power import positive_power
@@ -58,7 +57,7 @@ class AbstractLineContact(eqx.Module):
 
     @property
     @abc.abstractmethod
-    def proud(self) -> bool:
+    def protruding(self) -> bool:
         """Whether the drop may be negative somewhere. Static."""
 
     @abc.abstractmethod
@@ -157,9 +156,9 @@ class LineContact(AbstractLineContact):
         return any(profile.knots() is not None for profile in profiles)
 
     @property
-    def proud(self) -> bool:
+    def protruding(self) -> bool:
         """Whether the drop may be negative somewhere. Static."""
-        return self.roller_profile.proud or self.raceway_profile.proud
+        return self.roller_profile.protruding or self.raceway_profile.protruding
 
     def line_load(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
         """Load per length at a given approach [N/m]."""
@@ -303,43 +302,21 @@ def response(
     Returns:
         Energy, load and stiffness.
     """
-    numbers, structure = jax.tree.flatten((line, table))
-    return _response((structure, quadrature), a, b, numbers)
+    found = expanded_all(expansion, jnp.stack([a, b]), (line, table, quadrature))
+    aa, ab, bb = found.hessian[0, 0], found.hessian[0, 1], found.hessian[1, 1]
+    return Response(found.value, found.gradient, jnp.stack([aa, ab, bb]))
 
 
-@partial(jax.jit, static_argnums=0)
-def _plain(static, a, b, numbers) -> Response:
-    structure, quadrature = static
-    line, table = jax.tree.unflatten(structure, numbers)
-    return line.integrals(table, quadrature, a, b)
+def expansion(at: Float[Array, "2"], contact: Any, order: int = 2) -> Expansion:
+    """One raceway contact as a function of (a, b), for `numerics.expansion`.
 
-
-@partial(jax.custom_jvp, nondiff_argnums=(0,))
-def _response(static, a, b, numbers) -> Response:
-    return _plain(static, a, b, numbers)
-
-
-@partial(_response.defjvp, symbolic_zeros=True)
-def _response_rule(static, primals, tangents):
-    a, b, numbers = primals
-    *dab, dnumbers = tangents
-    value = _response(static, a, b, numbers)
-    da, db = (jnp.zeros_like(a) if _is_zero(d) else d for d in dab)
-    energy = value.load[0] * da + value.load[1] * db
-    load = value.stiffness[:2] * da + value.stiffness[1:] * db
-    _, stiffness = jax.jvp(
-        lambda a, b: _plain(static, a, b, numbers).stiffness, (a, b), (da, db)
-    )
-    change = Response(energy, load, stiffness)
-    if not all(_is_zero(d) for d in dnumbers):
-        dnumbers = [
-            jnp.zeros_like(x) if _is_zero(d) else d
-            for d, x in zip(dnumbers, numbers, strict=True)
-        ]
-        _, design = jax.jvp(lambda n: _plain(static, a, b, n), (numbers,), (dnumbers,))
-        change = jax.tree.map(jnp.add, change, design)
-    return value, change
-
-
-def _is_zero(x):
-    return isinstance(x, SymbolicZero)
+    Args:
+        at: (a, b) (2,) [m].
+        contact: The contact, its table and the rule, as of `response`.
+        order: Not used: one pass gives all.
+    """
+    line, table, quadrature = contact
+    r = line.integrals(table, quadrature, at[0], at[1])
+    aa, ab, bb = (r.stiffness[k] for k in range(3))
+    hessian = jnp.stack([jnp.stack([aa, ab]), jnp.stack([ab, bb])])
+    return Expansion(r.energy, r.load, hessian)

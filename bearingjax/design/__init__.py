@@ -21,6 +21,8 @@ from .bearing_set import is_self_aligning as is_self_aligning
 from .bearing_set import n_elements as n_elements
 from .bearing_set import pitch_radius as pitch_radius
 from .bearing_set import rows_of as rows_of
+from .deviation import Deviation as Deviation
+from .deviation import deviation_of as deviation_of
 from .material import MATERIALS as MATERIALS
 from .material import Material as Material
 from .material import contact_modulus as contact_modulus

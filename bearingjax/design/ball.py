@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_count, as_real
@@ -24,11 +23,10 @@ from .checks import (
     count,
     in_range,
     instance,
-    is_real,
-    is_traced,
     number,
     positive,
 )
+from .deviation import check_deviation, check_spacing
 from .material import Material
 
 
@@ -67,6 +65,8 @@ class AbstractBallBearing(eqx.Module):
         first_azimuth: Azimuth of ball 0, from +x towards +y [rad].
         ball_deviation: Diameter of each ball less `ball_diameter` (ball,) [m];
             `None`: all equal.
+        azimuth_deviation: Azimuth of each ball less that of even spacing (ball,)
+            [rad]; `None`: evenly spaced.
         outer_shoulder: Height of the outer shoulders above the groove bottom [m];
             `None`: unknown, no truncation is looked for.
         inner_shoulder: Height of the inner shoulders above the groove bottom [m].
@@ -88,6 +88,9 @@ class AbstractBallBearing(eqx.Module):
     )
     ball_deviation: Float[Array, " ball"] | None = eqx.field(
         converter=as_real, metadata=unit("m"), default=None, kw_only=True
+    )
+    azimuth_deviation: Float[Array, " ball"] | None = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
     )
     outer_shoulder: Scalar | None = eqx.field(
         converter=as_real, metadata=unit("m"), default=None, kw_only=True
@@ -220,30 +223,20 @@ class AbstractBallBearing(eqx.Module):
         check(self, "n_balls", apart, allowed, self.n_balls, "balls")
 
     def _check_deviation(self):
-        value = self.ball_deviation
-        if value is None or is_traced(value):
-            return
-        owner = type(self).__name__
-        if not is_real(value):
-            raise TypeError(
-                f"{owner}: `ball_deviation` is {value!r}; it must be numbers in m."
-            )
-        if np.shape(value) != (self.n_balls,):
-            raise ValueError(
-                f"{owner}: `ball_deviation` has shape {np.shape(value)}; it must be"
-                f" ({self.n_balls},), the diameter of each ball less `ball_diameter`"
-                " in m."
-            )
+        what = "the diameter of each ball less `ball_diameter` in m"
+        value = check_deviation(self, "ball_deviation", self.n_balls, what)
         numbers = concrete(self.ball_diameter, *self.centre_distances)
         if numbers is None:
             return
         ball, *distances = numbers
+        check_spacing(self, self.n_balls, ball)
+        if value is None:
+            return
         # A ball as large as its groove has no point contact.
         most = 2.0 * min(distances)
         allowed = (
-            f"finite, above {-ball:.6g} m and below {most:.6g} m, where a ball would"
+            f"above {-ball:.6g} m and below {most:.6g} m, where a ball would"
             " be as large as its groove"
         )
-        value = np.asarray(value)
-        ok = np.isfinite(value) & (value < most) & (value > -ball)
+        ok = (value < most) & (value > -ball)
         check(self, "ball_deviation", ok, allowed)

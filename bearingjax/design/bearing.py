@@ -6,10 +6,12 @@ import warnings
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 from .checks import check, concrete, count, in_range, instance, number, positive
+from .deviation import check_deviation, check_spacing
 from .material import Material
 from .profile import AbstractProfile, Straight
 from .rib import Ribs
@@ -27,6 +29,10 @@ class AbstractRollerBearing(eqx.Module):
             it stands at each raceway, along the contact normal. Negative is
             preload [m].
         first_azimuth: Azimuth of roller 0, from +x towards +y [rad].
+        roller_deviation: Mean diameter of each roller less `roller_diameter`
+            (roller,) [m]; `None`: all equal.
+        azimuth_deviation: Azimuth of each roller less that of even spacing (roller,)
+            [rad]; `None`: evenly spaced.
         roller_profile: Profile of the rollers.
         outer_raceway_profile: Profile of the outer raceway.
         inner_raceway_profile: Profile of the inner raceway.
@@ -44,6 +50,12 @@ class AbstractRollerBearing(eqx.Module):
     )
     first_azimuth: Scalar = eqx.field(
         converter=as_real, metadata=unit("rad"), default=0.0, kw_only=True
+    )
+    roller_deviation: Float[Array, " roller"] | None = eqx.field(
+        converter=as_real, metadata=unit("m"), default=None, kw_only=True
+    )
+    azimuth_deviation: Float[Array, " roller"] | None = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
     )
     roller_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
     outer_raceway_profile: AbstractProfile = eqx.field(
@@ -86,6 +98,7 @@ class AbstractRollerBearing(eqx.Module):
         number(self, "first_azimuth")
         self._check_parts()
         self._check_row()
+        self._check_deviation()
 
     def _check_parts(self):
         profiles = (
@@ -102,6 +115,18 @@ class AbstractRollerBearing(eqx.Module):
             getattr(self, name).check(self.roller_length, self.roller_diameter)
         for name in self.ribs.present:
             self._check_rib(name)
+
+    def _check_deviation(self):
+        what = "the mean diameter of each roller less `roller_diameter` in m"
+        value = check_deviation(self, "roller_deviation", self.n_rollers, what)
+        numbers = concrete(self.roller_diameter)
+        if numbers is None:
+            return
+        diameter = numbers[0]
+        check_spacing(self, self.n_rollers, diameter)
+        if value is not None:
+            allowed = f"smaller in size than the roller diameter, {diameter:.6g} m"
+            check(self, "roller_deviation", abs(value) < diameter, allowed)
 
     def _check_rib(self, name):
         rib = getattr(self.ribs, name)

@@ -28,7 +28,7 @@ class AbstractProfile(eqx.Module):
     arcs: ClassVar[bool] = False
     """Whether it is made of straight lines and flat arcs, kinks between them."""
 
-    proud: ClassVar[bool] = False
+    protruding: ClassVar[bool] = False
     """Whether the drop may be negative somewhere."""
 
     @abc.abstractmethod
@@ -351,7 +351,7 @@ class Tabulated(AbstractProfile):
     positions: Float[Array, " table"] = eqx.field(converter=as_real, metadata=unit("m"))
     drops: Float[Array, " table"] = eqx.field(converter=as_real, metadata=unit("m"))
 
-    proud: ClassVar[bool] = True
+    protruding: ClassVar[bool] = True
     """Between its points a cubic may swing out."""
 
     def __check_init__(self):
@@ -409,7 +409,7 @@ class _Cubic(AbstractProfile):
         factors: Of the powers 0 to 3 of the distance from there (...) [m^(1-power)].
     """
 
-    proud: ClassVar[bool] = True
+    protruding: ClassVar[bool] = True
 
     start: Float[Array, "..."]
     factors: tuple[Float[Array, "..."], ...]

@@ -31,5 +31,6 @@ from .kinematics import ConstantAngle as ConstantAngle
 from .kinematics import Finite as Finite
 from .kinematics import Linearised as Linearised
 from .row import Row as Row
+from .row import RowResults as RowResults
 from .row import azimuths as azimuths
 from .row import inertia_load as inertia_load

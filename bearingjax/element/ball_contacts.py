@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.linear import dot
 from ..numerics.types import Scalar
-from .model import Unknowns
+from .rolling_element import Unknowns
 
 
 class Contacts(NamedTuple):

@@ -7,33 +7,30 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from ..contact.coupled import CoupledSlices
-from ..contact.line import AbstractLineLaw, Palmgren
-from ..contact.point_law import AbstractPointLaw, FreeAngle
+from ..contact.line import AbstractLineLaw
+from ..contact.point_law import AbstractPointLaw
 from ..design import (
-    AbstractBallBearing,
     Bearing,
     BearingSet,
     SetRow,
-    has_sphere,
-    is_ball,
+    deviation_of,
     rows_of,
 )
 from ..design.checks import is_traced
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
-from ..numerics.quadrature import AbstractQuadrature, ContactMapped
-from ..numerics.types import Ring, RingStiffness, Scalar
-from .ball_model import ball_model
-from .ball_speed import AbstractRacewayControl, OuterControl
-from .bearing_model import BearingModel, Evaluated
-from .choices import check_kinds, in_one_dtype
-from .constants import contact_constants
+from ..numerics.quadrature import AbstractQuadrature
+from ..numerics.types import Ring, Scalar
+from .ball_speed import AbstractRacewayControl
+from .bearing_model import BearingModel, Evaluated, RowGroup
+from .choices import AbstractChoices, check_kinds, choices_for, in_one_dtype
+from .equilibrium import Near
 from .function import FunctionParameters, RingFunction, as_function
-from .inertia import Speed, inertia_force
-from .kinematics import AbstractKinematics, ConstantAngle, Finite, Linearised
-from .model import AbstractModel
-from .roller import RollerModel
-from .row import Row, RowModel
+from .inertia import Speed
+from .kinematics import AbstractKinematics
+from .row import Place, Row, RowResults, azimuths, orbit_ratio
+
+State = tuple[Near, ...]
+"""Rolling elements solved at ring freedoms near by."""
 
 
 def check_element(owner: str, element: object) -> None:
@@ -101,13 +98,9 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
     """
 
     bearing: AnyBearing
-    line_law: AbstractLineLaw | None
-    kinematics: AbstractKinematics
-    quadrature: AbstractQuadrature | None
+    choices: AbstractChoices
     equilibrium: AbstractMinimiser
     cage_torque: bool = eqx.field(static=True)
-    point_law: AbstractPointLaw | None
-    raceway_control: AbstractRacewayControl | None
 
     def __init__(
         self,
@@ -148,63 +141,28 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 f"BearingElement: `cage_torque` is {cage_torque!r}; it must be True or"
                 " False."
             )
-        balls = is_ball(bearing)
-        wrong = {
-            "line_law": balls and line_law,
-            "quadrature": balls and quadrature,
-            "point_law": not balls and point_law,
-            "raceway_control": not balls and raceway_control,
+        given = {
+            "line_law": line_law,
+            "kinematics": kinematics,
+            "quadrature": quadrature,
+            "point_law": point_law,
+            "raceway_control": raceway_control,
         }
-        for name, given in wrong.items():
-            if given:
+        rows = rows_of(bearing)
+        kind = choices_for(rows[0].bearing)
+        for name, value in given.items():
+            if value is not None and name not in kind.names:
+                others = "rollers" if kind.elements == "balls" else "balls"
                 raise ValueError(
-                    f"BearingElement: `{name}` is for"
-                    f" {'rollers' if balls else 'balls'}, but the bearing is a"
+                    f"BearingElement: `{name}` is for {others}, but the bearing is a"
                     f" {type(bearing).__name__}."
                 )
-        coupled = isinstance(line_law, CoupledSlices)
-        if quadrature and coupled:
-            raise ValueError(
-                "BearingElement: `quadrature` is for independent slices, but `line_law`"
-                " is CoupledSlices(), which has slices of its own."
-            )
+        choices = kind.of(rows, **{name: given.get(name) for name in kind.names})
         # A jnp.float32 among float64 would stop the solvers, which keep one dtype.
-        bearing, line_law, point_law, raceway_control = in_one_dtype(
-            (bearing, line_law, point_law, raceway_control)
-        )
-        self.bearing = bearing
-        self.line_law = None if balls else line_law or Palmgren()
-        aligning = has_sphere(bearing)
-        if aligning and isinstance(kinematics, Linearised):
-            raise ValueError(
-                "BearingElement: `kinematics` is Linearised(), with which a"
-                " self-aligning bearing would resist its tilt; use Finite()."
-            )
-        constant = isinstance(kinematics, ConstantAngle)
-        two_sided = any(
-            isinstance(row.bearing, AbstractBallBearing)
-            and not row.bearing.is_one_sided
-            for row in rows_of(bearing)
-        )
-        if constant and two_sided:
-            raise ValueError(
-                "BearingElement: `kinematics` is ConstantAngle(), which is for balls of"
-                " one contact angle: of angular contact and thrust bearings."
-            )
-        sprung = any(row.spring is not None for row in rows_of(bearing))
-        if balls and sprung and (aligning or isinstance(kinematics, Finite)):
-            raise ValueError(
-                "BearingElement: a row has a spring, whose ring would slide along a"
-                " tilted seat; with Finite() kinematics that is not modelled."
-            )
-        self.kinematics = kinematics or (Finite() if aligning else Linearised())
-        # What has no use for it keeps none: an element can be made from its fields.
-        independent = not balls and not coupled
-        self.quadrature = (quadrature or ContactMapped()) if independent else None
+        self.bearing, self.choices = in_one_dtype((bearing, choices))
         self.equilibrium = equilibrium or TrustRegionNewton()
         self.cage_torque = cage_torque
-        self.point_law = (point_law or FreeAngle()) if balls else None
-        self.raceway_control = (raceway_control or OuterControl()) if balls else None
+        self._check(None)
         if jax.dtypes.canonicalize_dtype(float) != jnp.float64:
             warnings.warn(
                 "BearingElement: float64 is off; in float32 forces are good to 1e-5 at"
@@ -232,13 +190,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 f"BearingElement: `speed` is a {type(speed).__name__}; it must be a"
                 " Speed(inner, outer) in rad/s, or None."
             )
-        constant = isinstance(self.kinematics, ConstantAngle)
-        if speed is not None and constant and is_ball(self.bearing):
-            raise ValueError(
-                "BearingElement: `kinematics` is ConstantAngle(), with which nothing"
-                " holds a turning ball along its raceways; leave out `speed`, or use"
-                " Linearised()."
-            )
+        self._check(speed)
         designs = jnp.shape(rows_of(self.bearing)[0].bearing.pitch_diameter)
         if designs:
             raise ValueError(
@@ -250,11 +202,40 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         with jax.ensure_compile_time_eval():
             return self._model(speed)
 
+    def _check(self, speed):
+        for part in rows_of(self.bearing):
+            self.choices.check(part, speed)
+
     @eqx.filter_jit
     def _model(self, speed) -> BearingModel:
         alone = not isinstance(self.bearing, BearingSet)
         rows = tuple(self._row(part, speed, alone) for part in rows_of(self.bearing))
-        return BearingModel(rows, self.equilibrium, self.cage_torque)
+        return BearingModel(RowGroup.of(rows), self.equilibrium, self.cage_torque)
+
+    @property
+    def line_law(self) -> AbstractLineLaw | None:
+        """Law of the raceway contacts of rollers; `None` with balls."""
+        return getattr(self.choices, "line_law", None)
+
+    @property
+    def kinematics(self) -> AbstractKinematics:
+        """How rigid motions become coordinates of the contacts."""
+        return self.choices.kinematics
+
+    @property
+    def quadrature(self) -> AbstractQuadrature | None:
+        """Of roller contacts; `None` with balls and `CoupledSlices()`."""
+        return getattr(self.choices, "quadrature", None)
+
+    @property
+    def point_law(self) -> AbstractPointLaw | None:
+        """Constants of ball contacts; `None` with rollers."""
+        return getattr(self.choices, "point_law", None)
+
+    @property
+    def raceway_control(self) -> AbstractRacewayControl | None:
+        """Of turning balls; `None` with rollers."""
+        return getattr(self.choices, "raceway_control", None)
 
     def has_potential(self, speed: Speed | None = None) -> bool:
         """Whether all forces derive from `energy`, so that `stiffness` is symmetric.
@@ -264,46 +245,81 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """
         return eqx.filter_eval_shape(self.model, speed).has_potential
 
-    def energy(self, q: Ring, speed: Speed | None = None) -> Scalar:
+    def energy(
+        self, q: Ring, speed: Speed | None = None, *, near: State | None = None
+    ) -> Scalar:
         """Condensed strain energy V(q) [J].
 
         Args:
             q: Ring freedoms, outer then inner [m, rad].
             speed: Ring speeds; `None`: no inertia, and nothing of it compiled.
+            near: The rolling elements at ring freedoms near by, `evaluate(...).near`
+                or from `force`: they are then solved from there, in fewer steps.
 
         Raises:
             ValueError: If `q` is not of shape (12,).
             TypeError: If `speed` is not a `Speed`.
         """
-        return self._at("energy", q, speed)
+        return self._at("energy", q, speed, near)
 
-    def force(self, q: Ring, speed: Speed | None = None) -> Ring:
+    def force(
+        self,
+        q: Ring,
+        speed: Speed | None = None,
+        *,
+        near: State | None = None,
+        with_near: bool = False,
+    ) -> Any:
         """External load that holds the rings where they are [N, N m].
 
-        Args, raises: as `energy`.
-        """
-        return self._at("force", q, speed)
+        Args:
+            q, speed, near: As of `energy`.
+            with_near: Return (force, near) for the next call. Static.
 
-    def stiffness(self, q: Ring, speed: Speed | None = None) -> RingStiffness:
+        Raises: as `energy`.
+        """
+        return self._at("force", q, speed, near, with_near)
+
+    def stiffness(
+        self,
+        q: Ring,
+        speed: Speed | None = None,
+        *,
+        near: State | None = None,
+        with_near: bool = False,
+    ) -> Any:
         """Tangent stiffness d(force)/dq by static condensation [N/m, N, N m].
 
-        Args, raises: as `energy`.
+        Args, raises: as `force`.
         """
-        return self._at("stiffness", q, speed)
+        return self._at("stiffness", q, speed, near, with_near)
 
-    def evaluate(self, q: Ring, speed: Speed | None = None) -> Evaluated:
+    def evaluate(
+        self, q: Ring, speed: Speed | None = None, *, near: State | None = None
+    ) -> Evaluated:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
         Args, raises: as `energy`.
         """
-        return self._at("evaluate", q, speed)
+        return self._at("evaluate", q, speed, near)
 
-    def rows(self, q: Ring, speed: Speed | None = None) -> tuple[Row, ...]:
+    def rows(
+        self, q: Ring, speed: Speed | None = None, *, near: State | None = None
+    ) -> tuple[RowResults, ...]:
         """The rolling elements of every row, solved at given ring freedoms.
 
         Args, raises: as `energy`.
         """
-        return self._at("solve", q, speed)
+        return self._at("results", q, speed, near)
+
+    def nothing_near(self, speed: Speed | None = None) -> State:
+        """What `near` is before the first call: rolling elements of unknown places.
+
+        Args:
+            speed: Ring speeds or `None`, as of the calls.
+        """
+        model = self.model(speed)
+        return model.near(model.unsolved())
 
     def as_function(
         self,
@@ -345,6 +361,11 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             element, `parameters.speed` and `parameters.damping` what was given.
             Where a rolling element does not converge the force is NaN.
 
+            With a fifth argument, `near`, the function returns (force, near): the
+            rolling elements are solved from where they were, and what they became goes
+            into the next call. The first is `nothing_near(speed)`. An integrator that
+            carries it along in its state never starts cold.
+
         Raises:
             TypeError: If `speed` is not a `Speed`, or `damping` no number.
             ValueError: If `damping` is of another shape, not finite, or negative on
@@ -355,38 +376,37 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """
         return as_function(self, speed, damping, orbit)
 
-    def _at(self, name: str, q, speed):
+    def _at(self, name: str, q, speed, near, with_near=False) -> Any:
         """A function of the model, of all in one program if nothing is traced yet."""
         if is_traced(q):
-            return getattr(self.model(speed), name)(q)
-        return self._jitted(name, q, speed)
+            return self._evaluated(name, q, speed, near, with_near)
+        return self._jitted(name, q, speed, near, with_near)
 
     @eqx.filter_jit
-    def _jitted(self, name, q, speed):
-        return getattr(self.model(speed), name)(q)
+    def _jitted(self, *given):
+        return self._evaluated(*given)
 
-    def _row(self, part: SetRow, speed, alone) -> RowModel:
-        deviation = getattr(part.bearing, "ball_deviation", None)
-        if deviation is None:
-            return RowModel(part, self._one(part, speed), False, alone)
-        every = jax.vmap(lambda d: self._one(part, speed, d))(deviation)
-        return RowModel(part, every, True, alone)
+    def _evaluated(self, name, q, speed, near, with_near):
+        model = self.model(speed)
+        solved = model.solve(q, near)
+        value = getattr(model, name)(q, solved)
+        return (value, model.near(solved)) if with_near else value
 
-    def _one(self, part: SetRow, speed, deviation=None) -> AbstractModel:
-        bearing: Any = part.bearing
-        if isinstance(bearing, AbstractBallBearing):
-            assert self.point_law is not None and self.raceway_control is not None
-            law, control = self.point_law, self.raceway_control
-            return ball_model(part, law, self.kinematics, speed, control, deviation)
-        assert self.line_law is not None
-        # Coupled slices ask for a rule as all laws do, and do without.
-        quadrature = self.quadrature or ContactMapped()
-        constants = contact_constants(bearing, self.line_law, quadrature)
-        body_force = None if speed is None else inertia_force(constants, speed)
-        return RollerModel(
-            constants,
-            self.kinematics.prepare(constants),
-            self.kinematics,
-            quadrature,
-            body_force,
-        )
+    def _row(self, part: SetRow, speed, alone) -> Row:
+        bearing, deviation = part.bearing, deviation_of(part.bearing)
+
+        def one(diameter):
+            return self.choices.rolling_element(part, speed, diameter)
+
+        unlike = deviation.diameter is not None
+        element = jax.vmap(one)(deviation.diameter) if unlike else one(None)
+        place = None
+        if not alone:
+            none = jnp.zeros_like(part.position)
+            sign = none + (-1.0 if part.mirrored else 1.0)
+            itself = element.places_itself
+            position, offset = part.position, sign * part.inner_offset
+            place = Place(*((none, sign, none) if itself else (position, sign, offset)))
+        radius = 0.5 * bearing.pitch_diameter
+        azimuth, ratio = azimuths(bearing), orbit_ratio(bearing)
+        return Row(element, azimuth, ratio, radius, place, part.spring, unlike)

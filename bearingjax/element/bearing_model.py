@@ -2,23 +2,102 @@
 
 A design becomes a `BearingModel` once (`BearingElement.model`); energy, force and
 stiffness at any ring freedoms follow from that, as often as wanted.
+
+V(q) = Σ_rows Σ_elements min_x U(rings(q), x). The rolling elements are solved once
+(`solve`); from then on V is a function with known derivatives, the ring force is its
+`jax.grad` and the 12x12 stiffness its `jax.hessian`. Where part of the forces has no
+potential the same rules give the balance of all forces and its exact Jacobian.
 """
 
-import functools
-import operator
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Int
+from jaxtyping import Array, Float, Int
 
-from ..design import n_elements
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
-from .equilibrium import LocalState, Near, settle
-from .row import Row, RowModel
+from .equilibrium import Near, settle
+from .row import Row, RowResults, SolvedRow
+
+Azimuths = tuple[Float[Array, "..."], ...]
+"""Azimuths of the rolling elements of every group of rows [rad]."""
+
+
+class RowGroup(eqx.Module):
+    """Rows of one structure, worked on together.
+
+    Attributes:
+        rows: The rows stacked, with a leading axis; of a single one, as it is.
+        members: Which rows of the bearing these are. Static.
+    """
+
+    rows: Row
+    members: tuple[int, ...] = eqx.field(static=True)
+
+    @classmethod
+    def of(cls, rows: tuple[Row, ...]) -> "tuple[RowGroup, ...]":
+        """Like rows together, in the order of the first of each kind."""
+        kinds: list[list[int]] = []
+        for k, row in enumerate(rows):
+            same = (kind for kind in kinds if _alike(rows[kind[0]], row))
+            kind = next(same, None)
+            if kind is None:
+                kinds.append([k])
+            else:
+                kind.append(k)
+        return tuple(cls(_stacked([rows[k] for k in kind]), (*kind,)) for kind in kinds)
+
+    def each(self, function: Callable, *arrays) -> Any:
+        """Apply function(row, *arrays) to every row of the group.
+
+        Args:
+            function: Of one row.
+            *arrays: More arguments, stacked as the rows are.
+        """
+        if len(self.members) == 1:
+            return function(self.rows, *arrays)
+        return jax.vmap(function)(self.rows, *arrays)
+
+    def parts(self, stacked: Any) -> list[Any]:
+        """What belongs to each row, of what `each` returned."""
+        if len(self.members) == 1:
+            return [stacked]
+        count = len(self.members)
+        return [jax.tree.map(lambda a, k=k: a[k], stacked) for k in range(count)]
+
+
+def _alike(one, other):
+    leaves = [jax.tree.leaves(row) for row in (one, other)]
+    return jax.tree.structure(one) == jax.tree.structure(other) and all(
+        a.shape == b.shape for a, b in zip(*leaves, strict=True)
+    )
+
+
+def _stacked(rows):
+    if len(rows) == 1:
+        return rows[0]
+    return jax.tree.map(lambda *leaves: jnp.stack(leaves), *rows)
+
+
+class Solved(NamedTuple):
+    """A bearing whose rolling elements are solved at given ring freedoms.
+
+    Attributes:
+        azimuths: Where they are; with `cage_torque` less what the rings have turned
+            them, so that energy and force feel that.
+        groups: The solved rows, group by group.
+    """
+
+    azimuths: Azimuths
+    groups: tuple[SolvedRow, ...]
+
+    def floating(self) -> "Solved":
+        """Without counts and codes, which derivative rules take for structure."""
+        return self._replace(groups=tuple(row.floating() for row in self.groups))
 
 
 class Evaluated(NamedTuple):
@@ -33,7 +112,7 @@ class Evaluated(NamedTuple):
         residual: Largest relative residual of one [1].
         magnitude: Sum of the sizes of what the elements pass to the rings, in which
             the ring force may cancel [N].
-        near: `Row.near` of every row.
+        near: From which the next solve near by may start.
     """
 
     energy: Scalar
@@ -53,144 +132,245 @@ class BearingModel(eqx.Module):
     units as of the same functions of `BearingElement`.
 
     Attributes:
-        rows: Its rows.
+        groups: Its rows, like ones together.
         equilibrium: Local solver.
         cage_torque: Whether gz feels that it moves the rolling elements.
 
     Traced: all real numbers. Static: the classes, and `cage_torque`.
     """
 
-    rows: tuple[RowModel, ...]
+    groups: tuple[RowGroup, ...]
     equilibrium: AbstractMinimiser
     cage_torque: bool = eqx.field(static=True)
 
     @property
+    def rows(self) -> tuple[Row, ...]:
+        """Its rows, in their order."""
+        return self.in_order([group.rows for group in self.groups])
+
+    @property
     def has_potential(self) -> bool:
         """Whether all forces derive from the energy. Static."""
-        return all(row.element.has_potential for row in self.rows)
+        return all(group.rows.element.has_potential for group in self.groups)
+
+    @property
+    def dtype(self) -> Any:
+        """Floating type of its numbers."""
+        return self.groups[0].rows.ratio.dtype
+
+    def in_order(self, stacked) -> tuple:
+        """What belongs to each row, of what stands group by group."""
+        found = {}
+        for group, values in zip(self.groups, stacked, strict=True):
+            found |= dict(zip(group.members, group.parts(values), strict=True))
+        return tuple(found[k] for k in range(len(found)))
+
+    def azimuths(self, q: Ring | None = None) -> Azimuths:
+        """Azimuths of the rolling elements, turned by both gz, group by group [rad].
+
+        Args:
+            q: Ring freedoms [m, rad]; `None`: rings that have not turned.
+        """
+        if q is None:
+            return tuple(group.rows.azimuth for group in self.groups)
+        return tuple(
+            group.each(lambda row: row.azimuth + row.turn(q)) for group in self.groups
+        )
 
     @eqx.filter_jit
     def solve(
         self,
         q: Ring,
         near: tuple[Near, ...] | None = None,
-        turns: bool = False,
-    ) -> tuple[Row, ...]:
+        azimuths: Azimuths | None = None,
+    ) -> Solved:
         """Solve every rolling element at given ring freedoms.
 
         Args:
             q: Ring freedoms [m, rad].
             near: `Evaluated.near` at ring freedoms near by: fewer steps.
-            turns: Whether derivatives see that gz moves the rolling elements; with
-                `cage_torque` they always do. Static.
+            azimuths: Where the elements are; `None`: `azimuths` of q. Derivatives see
+                them move if they are passed, or with `cage_torque`.
+
+        Returns:
+            For `energy`, `force`, `stiffness`, `evaluate` and `results` at the same q.
 
         Raises:
             ValueError: If `q` is not of shape (12,).
         """
-        q = jnp.asarray(q, dtype=self.rows[0].part.bearing.pitch_diameter.dtype)
+        q = self._checked(q)
+        if azimuths is None:
+            azimuths = self.azimuths(q)
+            if not self.cage_torque:
+                azimuths = jax.lax.stop_gradient(azimuths)
+        known = [None] * len(self.groups) if near is None else near
+
+        def one(row, azimuth, *near):
+            before = near[0] if near else None
+            return row.solve(q, azimuth, self.equilibrium, before)
+
+        solved = (
+            group.each(one, at, *(() if before is None else (before,)))
+            for group, at, before in zip(self.groups, azimuths, known, strict=True)
+        )
+        solved = tuple(solved)
+        if self.cage_torque:
+            azimuths = self._turned(azimuths, q, -1.0)
+        return Solved(azimuths, solved)
+
+    def _turned(self, azimuths, q, sign=1.0):
+        return tuple(
+            group.each(lambda row, at: at + sign * row.turn(q), at)
+            for group, at in zip(self.groups, azimuths, strict=True)
+        )
+
+    def _places(self, q, solved):
+        """Azimuths of solved elements; with `cage_torque` as functions of q."""
+        return self._turned(solved.azimuths, q) if self.cage_torque else solved.azimuths
+
+    def _checked(self, q):
+        q = jnp.asarray(q, dtype=self.dtype)
         if q.shape != (12,):
             raise ValueError(
                 f"BearingElement: `q` has shape {q.shape}; it must be (12,): outer"
                 " ring (ux uy uz gx gy gz), then inner ring."
             )
-        known = [None] * len(self.rows) if near is None else near
-        return tuple(
-            row.solve(q, self.equilibrium, turns or self.cage_torque, one)
-            for row, one in zip(self.rows, known, strict=True)
-        )
+        return q
 
     @eqx.filter_jit
-    def energy(self, q: Ring) -> Scalar:
-        """Condensed strain energy V(q) [J]."""
-        return _total(row.energy() for row in self.solve(q))
+    def energy(self, q: Ring, solved: Solved | None = None) -> Scalar:
+        """Condensed strain energy V(q) [J].
+
+        Args:
+            q: Ring freedoms [m, rad].
+            solved: `solve` at q, if it is at hand.
+        """
+        return self._energy(*self._at(q, solved))
+
+    def _energy(self, q, solved):
+        azimuths = self._places(q, solved)
+        parts = [
+            jnp.sum(group.each(lambda row, *of_row: row.energy(q, *of_row), *given))
+            for group, *given in zip(self.groups, azimuths, solved.groups, strict=True)
+        ]
+        return sum(parts[1:], start=parts[0])
 
     @eqx.filter_jit
-    def force(self, q: Ring, turns: bool = False) -> Ring:
+    def force(self, q: Ring, solved: Solved | None = None) -> Ring:
         """External load that holds the rings where they are [N, N m].
 
-        Args:
-            q: Ring freedoms [m, rad].
-            turns: As of `solve`.
+        Args: as of `energy`.
         """
-        return self._force(self.solve(q, turns=turns), q)
-
-    def _force(self, rows: tuple[Row, ...], q: Ring) -> Ring:
-        forces = [row.sum_forces(row.forces()) for row in rows]
-        if self.cage_torque:
-            forces += [
-                row.cage_torque(force, q)
-                for row, force in zip(rows, forces, strict=True)
-            ]
-        return _total(forces)
+        return jax.grad(self._energy)(*self._at(q, solved))
 
     @eqx.filter_jit
-    def force_or_nan(self, q: Ring) -> Ring:
-        """As `force`, but NaN if a rolling element did not converge [N, N m].
-
-        Its derivatives see that gz moves the rolling elements.
-        """
-        rows = self.solve(q, turns=True)
-        converged = _settled(rows)[1] == Result.CONVERGED
+    def force_or_nan(self, q: Ring, solved: Solved | None = None) -> Ring:
+        """As `force`, but NaN if a rolling element did not converge [N, N m]."""
+        q, solved = self._at(q, solved)
+        converged = self.settled(solved)[0] == Result.CONVERGED
         # A product: the derivative of a failed case is then NaN too.
-        return self._force(rows, q) * jnp.where(converged, 1.0, jnp.nan)
+        return self.force(q, solved) * jnp.where(converged, 1.0, jnp.nan)
 
     @eqx.filter_jit
-    def stiffness(self, q: Ring) -> RingStiffness:
-        """Tangent stiffness d(force)/dq [N/m, N, N m]."""
-        if self.cage_torque:
-            return jax.jacfwd(self.force)(q)
-        return _total(row.stiffness() for row in self.solve(q))
+    def stiffness(self, q: Ring, solved: Solved | None = None) -> RingStiffness:
+        """Tangent stiffness d(force)/dq [N/m, N, N m].
+
+        Args: as of `energy`.
+        """
+        return jax.jacfwd(jax.grad(self._energy))(*self._at(q, solved))
 
     @eqx.filter_jit
-    def evaluate(self, q: Ring, rows: tuple[Row, ...] | None = None) -> Evaluated:
+    def evaluate(self, q: Ring, solved: Solved | None = None) -> Evaluated:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
-        Args:
-            q: Ring freedoms [m, rad].
-            rows: The elements solved at `q`, if they are at hand.
+        Args: as of `energy`.
         """
-        rows = self.solve(q) if rows is None else rows
-        if self.cage_torque:
-            stiffness = self.stiffness(q)
-        else:
-            stiffness = _total(row.stiffness() for row in rows)
-        states, result = _settled(rows)
+        q, solved = self._at(q, solved)
+
+        def forces(q):
+            energy, force = jax.value_and_grad(self._energy)(q, solved)
+            return force, (energy, force)
+
+        stiffness, (energy, force) = jax.jacfwd(forces, has_aux=True)(q)
+        result, steps, residual = self.settled(solved)
         return Evaluated(
-            energy=_total(row.energy() for row in rows),
-            force=self._force(rows, q),
+            energy=energy,
+            force=force,
             stiffness=stiffness,
             result=result,
-            steps=jnp.max(jnp.concatenate([s.steps for s in states])),
-            residual=jnp.max(jnp.concatenate([s.residual for s in states])),
-            magnitude=_total(
-                jnp.sum(jnp.abs(row.forces()[:, : row.model.element.n_forces]))
-                for row in rows
-            ),
-            near=tuple(row.near() for row in rows),
+            steps=steps,
+            residual=residual,
+            magnitude=self._magnitude(solved),
+            near=self.near(solved),
         )
 
-    def nothing_near(self) -> tuple[Near, ...]:
-        """`Evaluated.near` of which nothing is known yet."""
+    def _at(self, q, solved):
+        q = self._checked(q)
+        return q, self.solve(q) if solved is None else solved
 
-        def unknown(row):
-            zero = jnp.zeros((n_elements(row.part.bearing),), row.part.position.dtype)
-            section = row.each(lambda m, phi: m.section(phi), zero)
-            motions = row.seen(section, jnp.zeros((12,), zero.dtype))
-            n = row.element.n_unknowns
-            follow = jnp.repeat(motions[:, None], n, axis=1)
-            return Near(jnp.nan + follow[..., 0], follow, motions)
+    def results(self, q: Ring, solved: Solved) -> tuple[RowResults, ...]:
+        """What every solved row tells of its elements, with derivatives.
 
-        return tuple(unknown(row) for row in self.rows)
+        Args:
+            q: Ring freedoms [m, rad].
+            solved: `solve` at q.
+        """
+        azimuths = self._places(q, solved)
+        found = [
+            group.each(lambda row, *of_row: row.at(q, *of_row), *given)
+            for group, *given in zip(self.groups, azimuths, solved.groups, strict=True)
+        ]
+        return self.in_order(found)
 
+    def settled(self, solved: Solved) -> tuple[Int[Array, ""], Int[Array, ""], Scalar]:
+        """Worst `Result` code, most steps and largest residual of the elements."""
+        loads = [s.energies.beside.contact_load for s in solved.groups]
+        largest = jnp.max(jnp.stack([jnp.max(load) for load in loads]))
+        states = [settle(s.state, largest) for s in solved.groups]
+        codes = [s.result.reshape(-1) for s in states]
+        # The balance of a row with its spring has a code too.
+        springs = [
+            jnp.ravel(c) for s in solved.groups for c in jax.tree.leaves(s.balance)
+        ]
+        return (
+            worst(jnp.concatenate([*springs, *codes])),
+            jnp.max(jnp.concatenate([s.steps.reshape(-1) for s in states])),
+            jnp.max(jnp.concatenate([s.residual.reshape(-1) for s in states])),
+        )
 
-def _settled(rows: tuple[Row, ...]) -> tuple[list[LocalState], Int[Array, ""]]:
-    """Solved states of all elements, row by row, and their worst `Result` code."""
-    loads = [jnp.max(row.solved.contact_load) for row in rows]
-    largest = jnp.max(jnp.stack(loads))
-    states = [settle(row.state, largest) for row in rows]
-    springs = [r.pressed.result[None] for r in rows if r.pressed is not None]
-    return states, worst(jnp.concatenate([*springs, *(s.result for s in states)]))
+    def near(self, solved: Solved) -> tuple[Near, ...]:
+        """From which a solve near by may start."""
+        return tuple(
+            group.each(lambda row, s: s.near(row), state)
+            for group, state in zip(self.groups, solved.groups, strict=True)
+        )
 
+    def _magnitude(self, solved):
+        sizes = []
+        for group, state in zip(self.groups, solved.groups, strict=True):
+            count = group.rows.element.n_displacements
+            sizes.append(jnp.sum(jnp.abs(state.energies.gradient[..., :count])))
+        return sum(sizes[1:], start=sizes[0])
 
-def _total(parts) -> Any:
-    return functools.reduce(operator.add, parts)
+    def of_elements(self, function: Callable) -> list[Any]:
+        """Apply function(element) to the elements of every group of rows.
+
+        Like elements count once.
+        """
+        return [group.each(lambda row: row.each(function)) for group in self.groups]
+
+    def unsolved(self) -> Solved:
+        """Nothing solved yet: what `near` makes of it tells nothing."""
+        groups = (group.each(lambda row: row.unsolved()) for group in self.groups)
+        return Solved(self.azimuths(), tuple(groups))
+
+    def following(self, q: Ring, solved: Solved) -> Solved:
+        """Solved elements whose azimuths follow both gz in derivatives.
+
+        Args:
+            q: Ring freedoms at which they were solved [m, rad].
+            solved: The elements.
+        """
+        if self.cage_torque:
+            return solved
+        return solved._replace(azimuths=self.azimuths(q))

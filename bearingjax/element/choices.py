@@ -1,16 +1,35 @@
-"""What a `BearingElement` may be made of: the kinds of its choices, one dtype."""
+"""What a `BearingElement` may be made of: its laws and kinematics, and their rollers.
 
-from typing import Any
+The contacts of rollers and those of balls are described by one object each. It holds
+what was chosen, and makes rolling elements of a design. A new kind of rolling element
+is another such class, registered for its bearing with `choices_for`.
+"""
+
+import abc
+import functools
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 
-from ..contact.line import AbstractLineLaw
-from ..contact.point_law import AbstractPointLaw
+from ..contact.coupled import CoupledSlices
+from ..contact.line import AbstractLineLaw, Palmgren
+from ..contact.point_law import AbstractPointLaw, FreeAngle, balls_of
+from ..design import AbstractBallBearing, AbstractRollerBearing, SetRow
+from ..design.ball_types import SelfAligningBallRow, ThrustBallBearing
 from ..numerics.minimise import AbstractMinimiser
-from ..numerics.quadrature import AbstractQuadrature
-from .ball_speed import AbstractRacewayControl
-from .kinematics import AbstractKinematics
+from ..numerics.quadrature import AbstractQuadrature, ContactMapped
+from ..numerics.types import Scalar
+from .ball import Ball
+from .ball_contacts import GrooveGeometry
+from .ball_inertia import turning
+from .ball_speed import AbstractRacewayControl, OuterControl
+from .constants import TETHER, contact_constants
+from .inertia import Speed, inertia_force
+from .kinematics import AbstractKinematics, Finite, Linearised
+from .roller import Roller
+from .rolling_element import AbstractRollingElement
 
 KINDS = {
     "line_law": (
@@ -34,6 +53,204 @@ KINDS = {
     ),
 }
 """Of each choice of a `BearingElement`: its class, and what a message says of it."""
+
+
+class AbstractChoices(eqx.Module):
+    """What was chosen for the contacts of a kind of rolling element.
+
+    Attributes:
+        kinematics: How rigid motions become coordinates of the contacts.
+    """
+
+    kinematics: eqx.AbstractVar[AbstractKinematics]
+
+    elements: ClassVar[str]
+    """Name of the rolling elements in messages."""
+
+    names: ClassVar[tuple[str, ...]]
+    """Keywords of `BearingElement` that it takes, `kinematics` among them."""
+
+    @classmethod
+    @abc.abstractmethod
+    def of(cls, rows: tuple[SetRow, ...], **given: Any) -> "AbstractChoices":
+        """What was chosen, and the defaults for the rest.
+
+        Args:
+            rows: The rows, of a kind of bearing that this class is for.
+            **given: Choices by `names`; `None`: the default.
+
+        Raises:
+            ValueError: For choices that contradict each other or the bearing.
+        """
+
+    @abc.abstractmethod
+    def rolling_element(
+        self, part: SetRow, speed: Speed | None, deviation: Scalar | None
+    ) -> AbstractRollingElement:
+        """One rolling element of a row.
+
+        Args:
+            part: The row and its place.
+            speed: Ring speeds or `None`.
+            deviation: Diameter of this one less the common one [m]; `None`: it is.
+        """
+
+    def check(self, part: SetRow, speed: Speed | None) -> None:
+        """Raise if the choices are not for this row, or this speed."""
+
+
+@functools.singledispatch
+def choices_for(bearing: Any) -> type[AbstractChoices]:
+    """The choices that a kind of bearing has; register a new kind of bearing here.
+
+    Args:
+        bearing: A single row.
+    """
+    raise TypeError(
+        f"BearingElement: `bearing` is a {type(bearing).__name__}; it must be a roller"
+        " bearing, a ball bearing or a BearingSet."
+    )
+
+
+class RollerChoices(AbstractChoices):
+    """Line law, quadrature and kinematics of rollers.
+
+    Attributes:
+        line_law: Law of the raceway contacts.
+        quadrature: Of independent slices; `None` with slices that are coupled.
+        kinematics: How rigid motions become approaches.
+    """
+
+    line_law: AbstractLineLaw
+    quadrature: AbstractQuadrature | None
+    kinematics: AbstractKinematics
+
+    elements = "rollers"
+    names = ("line_law", "quadrature", "kinematics")
+
+    @classmethod
+    def of(cls, rows, line_law=None, quadrature=None, kinematics=None):
+        law = line_law or Palmgren()
+        if isinstance(law, CoupledSlices):
+            if quadrature:
+                raise ValueError(
+                    "BearingElement: `quadrature` is for independent slices, but"
+                    " `line_law` is CoupledSlices(), which has slices of its own."
+                )
+        else:
+            quadrature = quadrature or ContactMapped()
+        kinematics = kinematics or Linearised()
+        return cls(line_law=law, quadrature=quadrature, kinematics=kinematics)
+
+    def check(self, part, speed):
+        self.kinematics.check("roller")
+
+    def rolling_element(self, part, speed, deviation):
+        # Coupled slices ask for a rule as all laws do, and do without.
+        quadrature = self.quadrature or ContactMapped()
+        bearing: Any = part.bearing
+        constants = contact_constants(bearing, self.line_law, quadrature, deviation)
+        force = None if speed is None else inertia_force(constants, speed)
+        return Roller(
+            constants=constants,
+            geometry=self.kinematics.roller(constants),
+            quadrature=quadrature,
+            body_force=force,
+        )
+
+
+class BallChoices(AbstractChoices):
+    """Point law, raceway control and kinematics of balls.
+
+    Attributes:
+        point_law: Constants of the contacts.
+        raceway_control: Where turning balls roll without spin.
+        kinematics: How rigid motions become the places of groove centres.
+    """
+
+    point_law: AbstractPointLaw
+    raceway_control: AbstractRacewayControl
+    kinematics: AbstractKinematics
+
+    elements = "balls"
+    names = ("point_law", "raceway_control", "kinematics")
+
+    @classmethod
+    def of(cls, rows, point_law=None, raceway_control=None, kinematics=None):
+        aligning = any(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
+        default = Finite() if aligning else Linearised()
+        return cls(
+            point_law=point_law or FreeAngle(),
+            raceway_control=raceway_control or OuterControl(),
+            kinematics=kinematics or default,
+        )
+
+    def check(self, part, speed):
+        kinematics, bearing = self.kinematics, part.bearing
+        kinematics.check("ball")
+        name = type(kinematics).__name__
+        if isinstance(bearing, SelfAligningBallRow) and not kinematics.turns_far:
+            raise ValueError(
+                f"BearingElement: `kinematics` is {name}(), with which a self-aligning"
+                " bearing would resist its tilt; use Finite()."
+            )
+        one_sided = isinstance(bearing, AbstractBallBearing) and bearing.is_one_sided
+        if kinematics.holds_angles and not one_sided:
+            raise ValueError(
+                f"BearingElement: `kinematics` is {name}(), which is for balls of one"
+                " contact angle: of angular contact and thrust bearings."
+            )
+        if part.spring is not None and kinematics.turns_far:
+            raise ValueError(
+                "BearingElement: a row has a spring, whose ring would slide along a"
+                f" tilted seat; with {name}() kinematics that is not modelled."
+            )
+        if speed is not None and kinematics.holds_angles:
+            raise ValueError(
+                f"BearingElement: `kinematics` is {name}(), with which nothing holds a"
+                " turning ball along its raceways; leave out `speed`, or use"
+                " Linearised()."
+            )
+
+    def rolling_element(self, part, speed, deviation):
+        bearing: Any = part.bearing
+        diameter = bearing.ball_diameter
+        balls, grooves = balls_of(bearing), bearing.grooves
+        if deviation is not None:
+            diameter = diameter + deviation
+            balls = balls._replace(diameter=diameter)
+        control, law = self.raceway_control, self.point_law
+        inertia = None if speed is None else turning(bearing, diameter, speed, control)
+        centres = jnp.stack([jnp.stack([g.axial, g.radial]) for g in grooves])
+        geometry = GrooveGeometry(
+            start=-centres,
+            free=-centres / jnp.sqrt(jnp.sum(centres**2, axis=1, keepdims=True)),
+            reach=jnp.stack([g.radius - 0.5 * diameter for g in grooves]),
+            on_outer=tuple(g.on_outer for g in grooves),
+            open_side=tuple(g.open_side for g in grooves),
+            washers=isinstance(bearing, ThrustBallBearing),
+            straight=self.kinematics.holds_angles,
+        )
+        return Ball(
+            grooves=geometry,
+            geometry=self.kinematics.ball(part),
+            constant=law.constants(balls, grooves, bearing.free_cosine),
+            diameter=diameter,
+            # A contact pressed by a ten-thousandth of the ball diameter, E* D^(1/2).
+            tether=TETHER * balls.modulus * diameter * 1e-2,
+            turning=inertia,
+            follows_angle=law.follows_angle,
+        )
+
+
+@choices_for.register
+def _(bearing: AbstractRollerBearing) -> type[AbstractChoices]:
+    return RollerChoices
+
+
+@choices_for.register
+def _(bearing: AbstractBallBearing) -> type[AbstractChoices]:
+    return BallChoices
 
 
 def in_one_dtype(tree: Any) -> Any:

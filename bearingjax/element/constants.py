@@ -17,11 +17,12 @@ from ..design.bearing import AbstractRollerBearing
 from ..design.material import contact_modulus
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Scalar
+from .rolling_element import RingMotion, Unknowns
 
-# The guide spring, relative to the stiffness of a raceway contact (about 1e-6 N/m). It
+# The tether spring, relative to the stiffness of a raceway contact (about 1e-6 N/m). It
 # keeps a direction regular in which nothing else holds the roller. A roller that is
-# held by no more than the guide is loose and passes nothing (`equilibrium.is_loose`).
-GUIDE = 1e-14
+# held by no more than the tether is loose and passes nothing (`equilibrium.is_loose`).
+TETHER = 1e-14
 
 
 class RibContacts(eqx.Module):
@@ -64,7 +65,7 @@ class ContactConstants(eqx.Module):
         diameter: Mean roller diameter [m].
         half_length: Half the roller length [m].
         gap: Gap at each raceway, unloaded and centred [m].
-        guide: Guide spring constant [N/m].
+        tether: Tether spring constant [N/m].
         density: Density of the roller [kg/m³].
         modulus: Contact modulus E* of roller and ring [Pa].
     """
@@ -78,15 +79,26 @@ class ContactConstants(eqx.Module):
     diameter: Scalar
     half_length: Scalar
     gap: Scalar
-    guide: Scalar
+    tether: Scalar
     density: Scalar
     modulus: Scalar
+
+    def motion(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"]:
+        """Motion (t, m, θ) of the roller in its own axes [m, m, rad].
+
+        Args:
+            rings: Motions of the rings in roller axes [m, rad].
+            x: Its unknowns, from the mean of the rings, tilt times L/2 (3,) [m].
+        """
+        one = jnp.ones_like(self.half_length)
+        return rings.mean + x * jnp.stack([one, one, 1.0 / self.half_length])
 
 
 def contact_constants(
     bearing: AbstractRollerBearing,
     line_law: AbstractLineLaw,
     quadrature: AbstractQuadrature,
+    deviation: Scalar | None = None,
 ) -> ContactConstants:
     """Constants of every contact of a roller.
 
@@ -94,11 +106,17 @@ def contact_constants(
         bearing: The design.
         line_law: Law that gives the line constant.
         quadrature: Rule whose tables are wanted.
+        deviation: Mean diameter of this roller less the common one [m]; the raceways
+            stay where they are.
 
     Returns:
         Constants, differentiable with respect to every real number of the design.
     """
     length, diameter = bearing.roller_length, bearing.roller_diameter
+    gap = 0.25 * bearing.radial_internal_clearance
+    if deviation is not None:
+        diameter = diameter + deviation
+        gap = gap - 0.5 * deviation * jnp.cos(bearing.half_angle)
     constant = line_law.constant(bearing.material, bearing.rings, length)
 
     def line(raceway_profile):
@@ -118,8 +136,8 @@ def contact_constants(
         pitch_radius=0.5 * bearing.pitch_diameter,
         diameter=diameter,
         half_length=0.5 * length,
-        gap=0.25 * bearing.radial_internal_clearance,
-        guide=GUIDE * stiffness,
+        gap=gap,
+        tether=TETHER * stiffness,
         density=bearing.material.density,
         modulus=contact_modulus(bearing.material, bearing.rings),
     )

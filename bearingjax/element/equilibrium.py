@@ -1,18 +1,20 @@
 """Equilibrium of one rolling element between given rings, and its condensation.
 
 Its own unknowns are those that minimise its energy, a convex problem with linearised
-kinematics; where part of the forces has no potential, those that balance them.
+kinematics; where part of the forces has no potential, those that balance them. Without
+them, it is an energy of the ring motions alone.
 """
 
 import dataclasses
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
 from ..numerics import lanes
-from ..numerics.implicit import attach, recall, stop
+from ..numerics.expansion import Expansion
+from ..numerics.implicit import attach, stop
 from ..numerics.linear import dot, norm, smallest_pivot, solve, trace
 from ..numerics.minimise import (
     AbstractMinimiser,
@@ -22,11 +24,14 @@ from ..numerics.minimise import (
 )
 from ..numerics.result import Result
 from ..numerics.types import Scalar
-from .model import AbstractModel, Derivatives, Rings, Unknowns
+from .energy import derivatives, response, unpacked
+from .rolling_element import AbstractRollingElement, Unknowns
+
+Rings = Float[Array, " r"]
 
 
 class LocalState(NamedTuple):
-    """Solved state of one rolling element.
+    """Where a rolling element is in equilibrium, and how that was found.
 
     Attributes:
         x: Its unknowns (n,) [m].
@@ -34,7 +39,7 @@ class LocalState(NamedTuple):
         unbalanced: That force, of the unknowns in metres [N].
         steps: Evaluations that the solve took.
         result: `Result` code.
-        responses: `AbstractModel.responses` at x, or empty.
+        known: What its contacts bear there, `AbstractRollingElement.respond`.
     """
 
     x: Unknowns
@@ -42,16 +47,16 @@ class LocalState(NamedTuple):
     unbalanced: Scalar
     steps: Int[Array, ""]
     result: Int[Array, ""]
-    responses: Any = ()
+    known: Expansion
 
 
 class Near(NamedTuple):
     """A rolling element solved at rings near by, from which it may start.
 
     Attributes:
-        offset: Its unknowns less `AbstractModel.amid`, NaN if not known (n,) [m].
+        offset: Its unknowns less its midpoint, NaN if not known (n,) [m].
         follow: How its unknowns follow the rings (n, r).
-        rings: Motion of both rings then (r,) [m, rad].
+        rings: Motions of the rings then, see `energy.unpacked` (r,) [m, rad].
     """
 
     offset: Unknowns
@@ -59,8 +64,24 @@ class Near(NamedTuple):
     rings: Rings
 
 
+class Placed(NamedTuple):
+    """A rolling element in equilibrium: what an energy of the rings alone needs.
+
+    Attributes:
+        element: The rolling element.
+        x: Its own unknowns (n,) [m].
+        known: What its contacts bear there, `AbstractRollingElement.respond`.
+        magnitude: As of `solve_element` [m].
+    """
+
+    element: AbstractRollingElement
+    x: Unknowns
+    known: Expansion
+    magnitude: Scalar
+
+
 def solve_element(
-    model: AbstractModel,
+    element: AbstractRollingElement,
     rings: Rings,
     magnitude: Scalar,
     minimiser: AbstractMinimiser,
@@ -69,24 +90,23 @@ def solve_element(
     """Equilibrium of one rolling element in its own unknowns.
 
     Args:
-        model: The rolling element.
-        rings: Motion of both rings in its axes (r,) [m, rad].
+        element: The rolling element.
+        rings: Motions of the rings in its axes, see `energy.unpacked` (r,) [m, rad].
         magnitude: Size of the displacements from which `rings` was computed, for
             the round-off floor of the residual [m].
         minimiser: Local solver.
         near: Its state at rings near by; `None`: not known.
 
     Returns:
-        State whose `x` is differentiable, to every order, with respect to the model
-        (design and speeds) and the ring motion.
+        State without derivatives; `own_unknowns` attaches them.
 
     Raises:
         TypeError: If the solver needs a potential that the forces do not have.
 
-    Fails: `STEP_LIMIT`, `NON_FINITE`; `NO_LOAD_PATH` if inertia throws the element
-        off, because no contact holds it; `SADDLE` with finite kinematics.
+    Fails: `STEP_LIMIT`, `NON_FINITE`; `NO_LOAD_PATH` if inertia ejects the element,
+        because no contact holds it; `SADDLE` with finite kinematics.
     """
-    if not model.has_potential:
+    if not element.has_potential:
         if not isinstance(minimiser, TrustRegionNewton):
             raise TypeError(
                 f"BearingElement: `equilibrium` is {type(minimiser).__name__}(), which"
@@ -94,29 +114,61 @@ def solve_element(
                 " operating angle have none. Use TrustRegionNewton()."
             )
         minimiser = dataclasses.replace(minimiser, symmetric=False)
-    given = _prepare(*stop((model, rings, magnitude, near)))
-    state = lanes.run(_loop(minimiser), given)
+    frozen = stop((element, rings, magnitude, near))
+    if element.n_unknowns == 0:
+        return _without_unknowns(*frozen[:2])
+    given = _prepare(*frozen)
+    shapes = jax.eval_shape(response, element, rings, given.start)
+    return lanes.run(_loop(minimiser, shapes), given)
+
+
+def _without_unknowns(element, rings) -> LocalState:
+    known = response(element, rings, rings[:0])
+    finite = jnp.all(jnp.isfinite(rings))
+    result = jnp.where(finite, int(Result.CONVERGED), int(Result.NON_FINITE))
+    zero = jnp.zeros((), rings.dtype)
+    steps = jnp.zeros((), jnp.int32)
+    return LocalState(rings[:0], zero, zero, steps, result.astype(jnp.int32), known)
+
+
+def own_unknowns(placed: Placed, rings: Rings) -> Unknowns:
+    """Own unknowns of a solved rolling element, with their derivatives [m].
+
+    Args:
+        placed: The element and its equilibrium.
+        rings: Motions of the rings there (r,) [m, rad].
+
+    Returns:
+        (n,), differentiable to any order with respect to the element (design and
+        speeds) and the ring motions.
+    """
+    element = placed.element
+    if element.n_unknowns == 0:
+        return placed.x
 
     def residual(x, args):
-        model, rings = args
-        return model.derivatives(rings, x, of_own=True).gradient
+        element, rings = args
+        return derivatives(element, rings, x, of_own=True, with_hessian=False).gradient
 
-    x = attach(residual, state.x, (model, rings), model.has_potential)
-    return state._replace(x=x)
+    return attach(residual, placed.x, (element, rings), element.has_potential)
 
 
 def is_loose(
-    model: AbstractModel, off: Unknowns, magnitude: Scalar, load: Scalar, pull: Unknowns
+    element: AbstractRollingElement,
+    off: Unknowns,
+    magnitude: Scalar,
+    load: Scalar,
+    pull: Unknowns,
 ) -> Bool[Array, ""]:
-    """Whether a rolling element is held by no more than the guide spring.
+    """Whether a rolling element is held by no more than its tether spring.
 
     Its contacts then carry next to nothing, and what they carry does not balance, as
     a real squeeze between the rings does. The energy being convex, the load left out
     is bounded by the small one found here.
 
     Args:
-        model: The rolling element.
-        off: Its unknowns, less where the rings take it [m].
+        element: The rolling element.
+        off: Its unknowns, less its midpoint [m].
         magnitude: Size of the displacements of the rings [m].
         load: Sum of the sizes of contact loads and inertia force [N].
         pull: Derivative of the energy with respect to x [N].
@@ -124,54 +176,88 @@ def is_loose(
     Returns:
         False for NaN, which must not pass for an open contact.
     """
-    guide = model.guide
-    contacts = pull - guide * off
+    tether = element.tether
+    contacts = pull - tether * off
     unbalanced = dot(contacts, contacts) >= (0.03 * load) ** 2
     # About 1e-8 N. With ten times this, rollers jump that matter to loads of 1e-3 N;
     # with a tenth, some loose rollers do not come to rest (benchmarks/robust_*.py).
-    return unbalanced & (load <= 100.0 * guide * _size(model, off, magnitude))
+    return unbalanced & (load <= 100.0 * tether * _size(element, off, magnitude))
 
 
-def _size(model, x, magnitude):
-    return magnitude + model.gap + norm(x)
+def _size(element, x, magnitude):
+    return magnitude + element.seeking.gap + norm(x)
 
 
-def _load(model, derivatives):
-    load = jnp.sum(derivatives.contact_load)
-    inertia = model.inertia_size()
+def _load(element, known):
+    load = jnp.sum(known.beside)
+    inertia = element.seeking.inertia_size()
     return load if inertia is None else load + inertia
 
 
-def solved_derivatives(
-    model: AbstractModel, rings: Rings, magnitude: Scalar, state: LocalState
-) -> Derivatives:
-    """Energy and derivatives of a solved rolling element; all zero if it is loose.
+class Beside(NamedTuple):
+    """What is known of a condensed rolling element beside its energy.
 
-    Without this an element that the guide spring leans on two rings would pass the
-    stiffness of that contact, which falls only with the tenth root of its load (of a
-    ball, the third).
+    Attributes:
+        contact_load: Load of each contact (contact,) [N].
+        follow: How its unknowns follow the rings (n, r).
+    """
+
+    contact_load: Float[Array, " contact"]
+    follow: Float[Array, "n r"]
+
+
+def condensed(rings: Rings, placed: Placed, order: int = 2) -> Expansion:
+    """min_x U(rings, x) of a solved rolling element, its forces and stiffness.
+
+    All zero if it is loose. Without this an element that the tether leans on two rings
+    would pass the stiffness of that contact, which falls only with the tenth root of
+    its load (of a ball, the third).
 
     Args:
-        model, rings, magnitude: As in `solve_element`.
-        state: From `solve_element`.
+        rings: Motions of the rings where it was solved (r,) [m, rad].
+        placed: The element and its equilibrium.
+        order: 1 if forces are wanted, without stiffness and `Beside`. Static.
+
+    Returns:
+        Energy [J], forces on the rings (r,) [N, N m], stiffness (r, r), and `Beside`.
+        The stiffness is K_rr - K_rx K_xx⁻¹ K_xr; symmetric to round-off if there is a
+        potential.
+
+    Source: static condensation 9 to 6, Sorokin, Zhang, Ivannikov (2018).
     """
-    x, responses = state.x, state.responses
-    if jax.tree.leaves(responses):
-        # The last step of the solve has them; only a derivative needs them anew.
-        args = (model, rings, x)
-        responses = recall(type(model).responses, responses, args)
-    d = model.derivatives(rings, x, responses=responses)
-    load = _load(model, d)
-    pull = d.gradient[-model.n_unknowns :]
-    off = x - model.amid(rings)
-    loose = is_loose(*stop((model, off, magnitude, load, pull)))
-    return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), d)
+    element, known = placed.element, placed.known
+    n, r = element.n_unknowns, rings.shape[0]
+    x = own_unknowns(placed, rings)
+    d = derivatives(element, rings, x, known, with_hessian=order > 1)
+    found = Expansion(d.energy, d.gradient[:r], ())
+    if order > 1:
+        stiffness, follow = _condensed_stiffness(element, d.hessian, r)
+        found = found._replace(hessian=stiffness, beside=Beside(known.beside, follow))
+    if n == 0:
+        return found
+    off = x - element.seeking.midpoint(unpacked(element, rings))
+    size = _load(element, known)
+    given = element, off, placed.magnitude, size, d.gradient[r:]
+    loose = is_loose(*stop(given))
+    return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), found)
+
+
+def _condensed_stiffness(element, hessian, r):
+    """K_rr - K_rx K_xx⁻¹ K_xr, and -K_xx⁻¹ K_xr."""
+    if element.n_unknowns == 0:
+        return hessian, hessian[r:]
+    coupling, back = hessian[r:, :r], hessian[:r, r:]
+    symmetric = element.has_potential
+    moved = solve(hessian[r:, r:], coupling, symmetric)
+    left = coupling if symmetric else back.T
+    k = hessian[:r, :r] - jnp.sum(left[:, :, None] * moved[:, None, :], axis=0)
+    return (0.5 * (k + k.T) if symmetric else k), -moved
 
 
 class _Given(NamedTuple):
     """What a solve is given, and what depends on no step of it."""
 
-    model: AbstractModel
+    element: AbstractRollingElement
     rings: Rings
     magnitude: Scalar
     centre: Unknowns
@@ -180,51 +266,48 @@ class _Given(NamedTuple):
     is_open: Bool[Array, ""] | None
 
 
-def _prepare(model, rings, magnitude, near) -> _Given:
-    start, centre = model.first(rings), model.amid(rings)
+def _prepare(element, rings, magnitude, near) -> _Given:
+    seeking, motions = element.seeking, unpacked(element, rings)
+    start, centre = seeking.start(motions), seeking.midpoint(motions)
     if near is not None:
-        start = _followed(model, near, rings, start)
-    is_open = model.is_open(rings)
+        start = _followed(element, near, rings, start)
+    is_open = seeking.is_open(motions)
     if is_open is not None:
         start = jnp.where(is_open, centre, start)
-    radius = model.reach(rings) + model.gap + 1e-6 * model.diameter
-    return _Given(model, rings, magnitude, centre, start, radius, is_open)
+    radius = seeking.reach(motions) + seeking.gap + 1e-6 * element.diameter
+    return _Given(element, rings, magnitude, centre, start, radius, is_open)
 
 
-def _problem(given: _Given) -> Problem:
-    model, rings = given.model, given.rings
-    eps = jnp.finfo(rings.dtype).eps
+def _problem(given: _Given, shapes) -> Problem:
+    element, rings, magnitude = given.element, given.rings, given.magnitude
+    eps, seeking = jnp.finfo(rings.dtype).eps, element.seeking
 
     def function(x, with_hessian, *_):
-        responses = model.responses(rings, x)
-        d = model.derivatives(rings, x, of_own=True, responses=responses)
-        g, h = d.gradient, d.hessian
-        scale = _load(model, d)
-        # Round-off of positions, and what is small against the guide's own force.
-        size = _size(model, x, given.magnitude)
-        noise = size * (eps * trace(h) + 1e-6 * model.guide)
+        known = response(element, rings, x)
+        d = derivatives(element, rings, x, known, of_own=True)
+        scale = _load(element, known)
+        # Round-off of positions, and what is small against the tether's own force.
+        noise = eps * trace(d.hessian) + 1e-6 * element.tether
+        noise = _size(element, x, magnitude) * noise
         # A loose element need not be placed: its solve is over.
-        loose = is_loose(model, x - given.centre, given.magnitude, scale, g)
-        noise = jnp.where(loose, norm(g), noise)
+        loose = is_loose(element, x - given.centre, magnitude, scale, d.gradient)
+        noise = jnp.where(loose, norm(d.gradient), noise)
         scale = jnp.where(loose, jnp.inf, scale)
-        value = d.energy if model.has_potential else jnp.full_like(d.energy, jnp.nan)
-        hessian = h if with_hessian else h[:0]
-        return Evaluation(value, g, hessian, scale, noise, responses)
+        value = d.energy if element.has_potential else jnp.full_like(d.energy, jnp.nan)
+        hessian = d.hessian if with_hessian else d.hessian[:0]
+        return Evaluation(value, d.gradient, hessian, scale, noise, known)
 
-    def shape(x, step, size):
-        return model.shape(rings, x, step, size)
+    def corrected(x, step, size):
+        return seeking.corrected(unpacked(element, rings), x, step, size)
 
-    memory = jax.tree.map(
-        lambda a: jnp.zeros(a.shape, a.dtype),
-        jax.eval_shape(model.responses, rings, given.start),
-    )
-    shaping = shape if model.shapes_steps else None
-    return Problem(function, given.start, given.radius, shaping, memory)
+    memory = jax.tree.map(lambda a: jnp.zeros(a.shape, a.dtype), shapes)
+    correction = corrected if seeking.corrects_steps else None
+    return Problem(function, given.start, given.radius, correction, memory)
 
 
-def _loop(minimiser: AbstractMinimiser) -> lanes.Loop:
+def _loop(minimiser: AbstractMinimiser, shapes) -> lanes.Loop:
     """The search of one element, which an open one need not begin."""
-    loop = minimiser.loop(_problem)
+    loop = minimiser.loop(lambda given: _problem(given, shapes))
 
     def terminate(given, state):
         ended = loop.terminate(given, state)
@@ -240,61 +323,64 @@ def _loop(minimiser: AbstractMinimiser) -> lanes.Loop:
                 steps=jnp.where(is_open, 0, minimum.steps),
                 result=jnp.where(is_open, int(Result.CONVERGED), minimum.result),
             )
-        return _solved(given.model, given.rings, minimum)
+        return _solved(given.element, given.rings, minimum)
 
     return loop._replace(terminate=terminate, finish=finish)
 
 
-def _solved(model, rings, minimum) -> LocalState:
+def _solved(element, rings, minimum) -> LocalState:
     result = minimum.result
+    known = minimum.memory or response(element, rings, minimum.x)
     # Where part of the forces has no potential a pivot says nothing.
-    if model.has_potential and not model.is_convex:
-        h = model.derivatives(rings, minimum.x, of_own=True).hessian
+    if element.has_potential and not element.is_convex:
+        h = derivatives(element, rings, minimum.x, known, of_own=True).hessian
         saddle = (smallest_pivot(h) < -1e-9) & (result == Result.CONVERGED)
         result = jnp.where(saddle, int(Result.SADDLE), result)
-    if model.may_leave:
-        # Thrown off: inertia along a direction that only the guide holds.
-        lost = model.thrown_off(rings, minimum.x) & (result != int(Result.NON_FINITE))
+    if element.seeking.may_be_ejected:
+        # Inertia along a direction that only the tether holds.
+        motions = unpacked(element, rings)
+        lost = element.seeking.is_ejected(motions, minimum.x)
+        lost = lost & (result != int(Result.NON_FINITE))
         result = jnp.where(lost, int(Result.NO_LOAD_PATH), result)
-    result = result.astype(jnp.int32)
     return LocalState(
         minimum.x,
         minimum.residual,
         minimum.unbalanced,
         minimum.steps,
-        result,
-        minimum.memory,
+        result.astype(jnp.int32),
+        known,
     )
 
 
-def _followed(model, near, rings, otherwise):
+def _followed(element, near, rings, otherwise):
     """Where an element gets to that follows the rings from near by."""
     moved = rings - near.rings
+    seeking, before = element.seeking, unpacked(element, near.rings)
     step = near.follow @ moved
-    reach, length = model.reach(moved), norm(step)
+    reach, length = seeking.reach(unpacked(element, moved)), norm(step)
     # Barely held, it would go astray.
     step = step * jnp.minimum(1.0, reach / jnp.where(length > 0, length, 1.0))
-    x = near.offset + model.amid(near.rings) + step
+    x = near.offset + seeking.midpoint(before) + step
     return jnp.where(jnp.all(jnp.isfinite(x)), x, otherwise)
 
 
-def near_by(model: AbstractModel, rings: Rings, state: LocalState, solved) -> Near:
+def near_by(placed: Placed, rings: Rings, beside: Beside) -> Near:
     """What a solve at rings near by may start from.
 
     Args:
-        model, rings, state: As solved.
-        solved: Its `solved_derivatives`.
+        placed: The element and its equilibrium.
+        rings: Motions of the rings there (r,) [m, rad].
+        beside: Of its `condensed` energy.
     """
-    n = model.n_unknowns
-    h = solved.hessian
-    held = jnp.any(solved.contact_load > 0)
-    offset = jnp.where(held, state.x - model.amid(rings), jnp.nan)
-    follow = -solve(h[-n:, -n:], h[-n:, :-n], model.has_potential)
-    return stop(Near(offset, jnp.where(held, follow, 0.0), rings))
+    element = placed.element
+    held = jnp.any(beside.contact_load > 0)
+    off = placed.x - element.seeking.midpoint(unpacked(element, rings))
+    follow = jnp.where(held, beside.follow, 0.0)
+    return stop(Near(jnp.where(held, off, jnp.nan), follow, rings))
 
 
 def settle(state: LocalState, load: Scalar) -> LocalState:
-    """Forgive the elements whose imbalance is nothing beside the bearing's load.
+    """Count rolling elements as converged whose imbalance no result can feel.
 
     A ball in the unloaded half, with no more than a slow orbit's centrifugal force to
     seat it, may need more steps than there are; it does not matter.
@@ -309,28 +395,3 @@ def settle(state: LocalState, load: Scalar) -> LocalState:
         result=jnp.where(idle, int(Result.CONVERGED), state.result),
         residual=jnp.where(idle, 0.0, state.residual),
     )
-
-
-def condensed_force(model: AbstractModel, solved: Derivatives) -> Rings:
-    """Forces on the rings at the solved state, in the element's axes [N, N m]."""
-    return solved.gradient[: -model.n_unknowns]
-
-
-def condensed_stiffness(
-    model: AbstractModel, hessian: Float[Array, "m m"]
-) -> Float[Array, "r r"]:
-    """K_rr - K_rx K_xx⁻¹ K_xr; symmetric to round-off if there is a potential.
-
-    Args:
-        model: The rolling element.
-        hessian: Derivatives of its forces with respect to (rings, x).
-
-    Source: static condensation 9 to 6, Sorokin, Zhang, Ivannikov (2018).
-    """
-    n = model.n_unknowns
-    coupling, back = hessian[-n:, :-n], hessian[:-n, -n:]
-    symmetric = model.has_potential
-    moved = solve(hessian[-n:, -n:], coupling, symmetric)
-    left = coupling if symmetric else back.T
-    k = hessian[:-n, :-n] - jnp.sum(left[:, :, None] * moved[:, None, :], axis=0)
-    return 0.5 * (k + k.T) if symmetric else k

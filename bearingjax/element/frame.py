@@ -9,7 +9,7 @@ has (u axial, v radial, θ about e_t turning +z towards +r).
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..numerics.types import Ring, Scalar
+from ..numerics.types import Scalar
 
 FREEDOMS = ("ux", "uy", "uz", "gx", "gy", "gz")
 LOADS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
@@ -46,17 +46,17 @@ def section_matrix(azimuth: Scalar) -> Float[Array, "3 6"]:
     )
 
 
-def placement(position: Scalar, mirrored: bool) -> Float[Array, "6 6"]:
+def placement(position: Scalar, sign: Scalar) -> Float[Array, "6 6"]:
     """Ring freedoms at the origin of a row, from those of its set.
 
     A mirrored row sees z reversed: uz and the tilts change their sign.
 
     Args:
         position: z of the row's origin in the set [m].
-        mirrored: Whether the row is turned round. Static.
+        sign: -1 for a row that is turned round, else 1.
     """
-    sign = -1.0 if mirrored else 1.0
-    p = jnp.diag(jnp.asarray([1.0, 1.0, sign, sign, sign, 1.0], position.dtype))
+    one = jnp.ones_like(sign)
+    p = jnp.diag(jnp.stack([one, one, sign, sign, sign, one]))
     # Displacement of the point (0, 0, position): u + g x r.
     return p.at[0, 4].add(position).at[1, 3].add(-position)
 
@@ -137,22 +137,11 @@ def orbit(ratio: Scalar, outer: Scalar | float, inner: Scalar | float) -> Scalar
     return 0.5 * ((1.0 - ratio) * inner + (1.0 + ratio) * outer)
 
 
-def roller_azimuth(
-    first_azimuth: Scalar, n_rollers: int, ratio: Scalar, q: Ring
-) -> Float[Array, " roller"]:
-    """Azimuth of every roller after the rings have turned.
+def even_azimuths(first: Scalar, count: int) -> Float[Array, " element"]:
+    """Azimuths of evenly spaced rolling elements [rad].
 
     Args:
-        first_azimuth: Azimuth of roller 0 for unturned rings [rad].
-        n_rollers: Number of rollers.
-        ratio: G of `roll_ratio` [1].
-        q: Ring freedoms [m, rad]; only both gz count.
-
-    Returns:
-        Azimuths [rad].
-
-    Source: rolling without slip, φ = φ0 + `orbit`.
+        first: Azimuth of element 0 [rad].
+        count: Number of elements.
     """
-    turn = orbit(ratio, q[5], q[11])
-    pitch = 2.0 * jnp.pi / n_rollers
-    return first_azimuth + turn + pitch * jnp.arange(n_rollers, dtype=q.dtype)
+    return first + 2.0 * jnp.pi / count * jnp.arange(count, dtype=first.dtype)

@@ -15,11 +15,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import BearingSet, rows_of
 from ..design.checks import check
-from ..numerics.types import Ring, Scalar, as_real
+from ..numerics.types import Scalar, as_real
 from .inertia import Speed
-from .row import azimuths
 
 
 class FunctionParameters(eqx.Module):
@@ -41,8 +39,9 @@ class FunctionParameters(eqx.Module):
 Motion = Float[Array | np.ndarray, "12"]
 """Twelve numbers, outer ring first."""
 
-RingFunction = Callable[[Motion, Motion, Any, FunctionParameters], Ring]
-"""function(motion, velocity, time, parameters): `ring_force` or `orbiting_force`."""
+RingFunction = Callable[..., Any]
+"""function(motion, velocity, time, parameters, near=None): `ring_force` or
+`orbiting_force`."""
 
 
 def ring_force(
@@ -50,7 +49,8 @@ def ring_force(
     velocity: Motion,
     time: Scalar | float,
     parameters: FunctionParameters,
-) -> Ring:
+    near: Any = None,
+) -> Any:
     """Force that holds the rings, the rolling elements where gz has them.
 
     Args:
@@ -58,26 +58,16 @@ def ring_force(
         velocity: Their rates [m/s, rad/s].
         time: Not used.
         parameters: From `BearingElement.as_function`.
+        near: The rolling elements near by, as this function returned them.
 
     Returns:
-        Force (12,) [N, N m], NaN if a rolling element did not converge.
+        Force (12,) [N, N m], NaN if a rolling element did not converge; with `near`
+        (force, near) for the next call.
 
     Raises:
         ValueError: If `motion` or `velocity` is not of shape (12,).
     """
-    for name, value in (("motion", motion), ("velocity", velocity)):
-        if jnp.shape(value) != (12,):
-            raise ValueError(
-                f"BearingElement: `{name}` has shape {jnp.shape(value)}; it must be"
-                " (12,): outer ring (ux uy uz gx gy gz), then inner ring."
-            )
-    force = parameters.element.model(parameters.speed).force_or_nan(jnp.asarray(motion))
-    if parameters.damping is None:
-        return force
-    damping = parameters.damping
-    if damping.ndim == 0:
-        damping = damping * jnp.asarray(_BETWEEN_RINGS, damping.dtype)
-    return force + damping @ jnp.asarray(velocity)
+    return _force(motion, velocity, None, parameters, near)
 
 
 def orbiting_force(
@@ -85,7 +75,8 @@ def orbiting_force(
     velocity: Motion,
     time: Scalar | float,
     parameters: FunctionParameters,
-) -> Ring:
+    near: Any = None,
+) -> Any:
     """Force that holds the rings while the rolling elements orbit.
 
     `ring_force` with the elements turned by what the rings have turned at their
@@ -97,14 +88,33 @@ def orbiting_force(
         velocity: Their rates [m/s, rad/s].
         time: Time [s].
         parameters: From `BearingElement.as_function`.
+        near: As of `ring_force`.
 
     Returns, raises: as `ring_force`.
     """
-    element, speed = parameters.element, parameters.speed
-    if speed is not None:
-        element = _turned(element, speed, time)
-        parameters = FunctionParameters(element, speed, parameters.damping)
-    return ring_force(motion, velocity, time, parameters)
+    return _force(motion, velocity, time, parameters, near)
+
+
+def _force(motion, velocity, time, parameters, near):
+    for name, value in (("motion", motion), ("velocity", velocity)):
+        if jnp.shape(value) != (12,):
+            raise ValueError(
+                f"BearingElement: `{name}` has shape {jnp.shape(value)}; it must be"
+                " (12,): outer ring (ux uy uz gx gy gz), then inner ring."
+            )
+    speed, damping = parameters.speed, parameters.damping
+    model = parameters.element.model(speed)
+    motion = jnp.asarray(motion)
+    turned = motion
+    if time is not None and speed is not None:
+        turned = turned.at[_GZ].add(jnp.stack([speed.outer, speed.inner]) * time)
+    solved = model.solve(motion, near, model.azimuths(turned))
+    force = model.force_or_nan(motion, solved)
+    if damping is not None:
+        if damping.ndim == 0:
+            damping = damping * jnp.asarray(_BETWEEN_RINGS, damping.dtype)
+        force = force + damping @ jnp.asarray(velocity)
+    return force if near is None else (force, model.near(solved))
 
 
 def as_function(
@@ -149,23 +159,8 @@ def check_damping(owner: str, damping: Any, shapes: tuple[tuple[int, ...], ...])
     check(owner, "damping", good, "finite, its diagonal at least 0", damping, "N s/m")
 
 
-def _turned(element: Any, speed: Speed, time: Any) -> Any:
-    """The element with its rolling elements where they are at a time.
-
-    They are turned by their first azimuth, not by gz, which derivatives hold.
-    """
-    gz = jnp.zeros(12, speed.inner.dtype)
-    gz = gz.at[5].set(speed.outer * time).at[11].set(speed.inner * time)
-    first = [azimuths(row.bearing, gz)[0] for row in rows_of(element.bearing)]
-    return eqx.tree_at(_first_azimuths, element, first)
-
-
-def _first_azimuths(element: Any) -> list:
-    bearing = element.bearing
-    if isinstance(bearing, BearingSet):
-        return [row.bearing.first_azimuth for row in bearing.rows]
-    return [bearing.first_azimuth]
-
+_GZ = np.array([5, 11])
+"""Turns of both rings about the axis among their freedoms."""
 
 _BETWEEN_RINGS = np.kron([[1, -1], [-1, 1]], np.diag([1, 1, 1, 0, 0, 0]))
 """A dashpot between the origins of both rings, alike in x, y and z."""

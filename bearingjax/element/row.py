@@ -1,47 +1,88 @@
-"""Rows of rolling elements: solved at given ring motions, summed over the ring."""
+"""Rows of rolling elements: where they stand, solved, and their common energy."""
 
-import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jax import lax
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Float
 
-from ..design import AbstractRollerBearing, Bearing, SetRow, n_elements
-from ..numerics.implicit import attach, stop
+from ..design import (
+    AbstractRollerBearing,
+    Bearing,
+    PreloadSpring,
+    deviation_of,
+    n_elements,
+)
+from ..numerics.expansion import Expansion, expanded
+from ..numerics.implicit import attach, recall, stop
 from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
-from ..numerics.types import Ring, RingStiffness, Scalar
+from ..numerics.types import Ring, Scalar
+from .energy import response, unpacked
 from .equilibrium import (
+    Beside,
     LocalState,
     Near,
-    condensed_force,
-    condensed_stiffness,
+    Placed,
+    condensed,
     near_by,
+    own_unknowns,
     solve_element,
-    solved_derivatives,
 )
-from .frame import orbit, placement, roll_ratio, roller_azimuth, section_matrix
-from .model import Derivatives
+from .frame import (
+    FREEDOMS,
+    even_azimuths,
+    orbit,
+    placement,
+    roll_ratio,
+    section_matrix,
+)
+from .rolling_element import AbstractRollingElement, RingMotion, split
+
+_UZ, _GZ = FREEDOMS.index("uz"), FREEDOMS.index("gz")
+_TRANSLATIONS, _TILTS = slice(0, 3), slice(3, 5)
+
+Azimuth = Float[Array, " element"]
+"""Azimuth of every rolling element of a row [rad]."""
 
 
-class RowModel(eqx.Module):
-    """One row: its place, and what the energy of its rolling elements needs.
+class Place(NamedTuple):
+    """Where a row stands in its set.
 
     Attributes:
-        part: The row and its place.
-        element: One rolling element, common to all, a `RollerModel` or ball;
-            of unlike elements, with a leading axis.
-        unlike: Whether `element` has a leading axis. Static.
-        alone: Whether the row is the bearing, not part of a set. Static.
+        position: z of the origin that its elements count from [m].
+        sign: -1 for a row that is turned round, else 1.
+        offset: Axial place of the inner ring against the outer one, in the row's own
+            axes [m].
     """
 
-    part: SetRow
+    position: Scalar
+    sign: Scalar
+    offset: Scalar
+
+
+class Row(eqx.Module):
+    """One row of rolling elements, placed.
+
+    Attributes:
+        element: One rolling element, common to all; of unlike elements, with a leading
+            axis.
+        azimuth: Of every element for rings that have not turned [rad].
+        ratio: G = D cos α/d_m, with which the elements orbit [1].
+        pitch_radius: Of the circle of their centres [m].
+        place: Its place in a set; `None`: the row is the bearing.
+        spring: What presses it, or `None`.
+        unlike: Whether `element` has a leading axis. Static.
+    """
+
     element: Any
+    azimuth: Azimuth
+    ratio: Scalar
+    pitch_radius: Scalar
+    place: Place | None
+    spring: PreloadSpring | None
     unlike: bool = eqx.field(static=True)
-    alone: bool = eqx.field(static=True)
 
     def each(self, function: Callable, *arrays) -> Any:
         """Apply function(element, *arrays) to every rolling element.
@@ -56,264 +97,354 @@ class RowModel(eqx.Module):
         axes = (0 if self.unlike else None,) + (0,) * len(arrays)
         return jax.vmap(function, in_axes=axes)(self.element, *arrays)
 
-    @property
-    def position(self) -> Scalar:
-        """z of the origin that the elements count from, in the set [m]."""
-        position = self.part.position
-        return jnp.zeros_like(position) if self.element.places_itself else position
+    def turn(self, q: Ring) -> Scalar:
+        """How far the elements orbit when the rings turn by their gz [rad].
 
-    @property
-    def placement(self) -> Float[Array, "6 6"]:
-        """Ring freedoms in the row's own axes, from those at the node."""
-        return placement(self.position, self.part.mirrored)
+        Args:
+            q: Ring freedoms [m, rad]; only both gz count.
+        """
+        return _turn(self.ratio, q)
 
     def solve(
         self,
         q: Ring,
+        azimuth: Azimuth,
         minimiser: AbstractMinimiser,
-        turns: bool,
         near: Near | None,
-    ) -> "Row":
+    ) -> "SolvedRow":
         """Equilibrium of every rolling element at given ring freedoms.
 
         Args:
             q: Ring freedoms at the node [m, rad].
+            azimuth: Where its elements are.
             minimiser: Local solver. Static.
-            turns: Whether derivatives see the azimuth move with gz. Static.
-            near: `Row.near` at ring freedoms near by, or `None`.
+            near: `SolvedRow.near` at ring freedoms near by, or `None`.
+
+        Returns:
+            The solved row. It has no derivatives: those of what follows from it are
+            taken where it is used.
         """
-        part = self.part
-        azimuth = azimuths(part.bearing, q if turns else lax.stop_gradient(q))
-        # gz moves the elements only through the azimuth: its columns are zero.
-        section = self.each(lambda m, phi: m.section(phi), azimuth)
-        local = q
-        place = None
-        if not self.alone:
-            place = self.placement
-            local = jnp.concatenate([place @ q[:6], place @ q[6:]])
-            if not self.element.places_itself:
-                offset = -part.inner_offset if part.mirrored else part.inner_offset
-                local = local.at[_CLOSING].add(offset)
-        pressed = None
-        if part.spring is not None:
-            pressed = self._pressed(part.spring, local, section, minimiser)
-            local = local.at[_CLOSING].add(pressed.travel)
-        row = self._at(local, azimuth, section, minimiser, near)
-        if place is not None:
-            row = dataclasses.replace(row, section=section @ place)
-        return dataclasses.replace(row, pressed=pressed)
+        row, q, azimuth = stop((self, q, azimuth))
+        local = row.local(q)
+        if row.spring is None:
+            return row._solved(local, azimuth, minimiser, near)
+        return row._pressed(row.spring, local, azimuth, minimiser, near)
 
-    def _at(self, local, azimuth, section, minimiser, near=None) -> "Row":
-        """The elements at given motions in the row's own axes."""
-        magnitude = jnp.max(jnp.abs(local[jnp.array([0, 1, 2, 6, 7, 8])]))
-        tilt = jnp.max(jnp.abs(local[jnp.array([3, 4, 9, 10])]))
-        magnitude = magnitude + 0.5 * self.part.bearing.pitch_diameter * tilt
-        rings = self.seen(section, local)
+    def _solved(self, local, azimuth, minimiser, near) -> "SolvedRow":
+        shift = jnp.concatenate([r[_TRANSLATIONS] for r in local])
+        tilt = jnp.concatenate([r[_TILTS] for r in local])
+        magnitude = jnp.max(jnp.abs(shift))
+        magnitude = magnitude + self.pitch_radius * jnp.max(jnp.abs(tilt))
+        rings = self.seen(local, azimuth)
+
+        def one(element, rings, *near):
+            state = solve_element(element, rings, magnitude, minimiser, *near)
+            placed = Placed(element, state.x, state.known, magnitude)
+            return state, condensed(rings, placed), magnitude
+
         known = () if near is None else (near,)
-        state = self.each(
-            lambda m, r, *near: solve_element(m, r, magnitude, minimiser, *near),
-            rings,
-            *known,
-        )
-        solved = self.each(
-            lambda m, r, s: solved_derivatives(m, r, magnitude, s), rings, state
-        )
-        return Row(self, local, azimuth, section, rings, state, solved, None)
+        state, energies, magnitudes = self.each(one, rings, *known)
+        return SolvedRow(rings, magnitudes, state, energies)
 
-    def seen(
-        self, section: Float[Array, "element h 6"], q: Ring
-    ) -> Float[Array, "element r"]:
-        """Ring motions in the elements' axes.
+    def _pressed(self, spring, local, azimuth, minimiser, near) -> "SolvedRow":
+        """As `_solved`, with the travel of its spring, which the row balances."""
+
+        def function(travel, _, memory):
+            moved = _closed(local, travel[0])
+            solved = self._solved(moved, azimuth, minimiser, near)
+            energy, force, stiff = self._summed(moved, azimuth, solved)
+            stored, push, rate = spring.push(travel[0])
+            pull, own = force[_CLOSING] - push, stiff[_CLOSING, _CLOSING]
+            value = energy + stored
+            if not self.element.has_potential:
+                value = jnp.full_like(value, jnp.nan)
+            # Round-off of forces that cancel, and of positions in a stiff row.
+            sizes = jnp.sum(jnp.abs(solved.energies.gradient))
+            sizes = sizes + own * jnp.abs(travel[0]) + push
+            noise = jnp.finfo(travel.dtype).eps * sizes
+            hessian = (own + rate)[None, None]
+            return Evaluation(value, pull[None], hessian, push, noise, solved)
+
+        one = jnp.ones((1,), local.inner.dtype)
+        unknown = self.unsolved()._replace(travel=(), balance=())
+        minimum = TrustRegionNewton().minimise(
+            function,
+            0.0 * one,
+            2e-4 * self.pitch_radius,
+            memory=unknown,
+            direction=one,
+            tolerance=1e-13,
+        )
+        return minimum.memory._replace(travel=minimum.x[0], balance=minimum.result)
+
+    def _forces(self, local, azimuth, solved):
+        """Energy of all elements and its gradient in the row's own freedoms."""
+
+        def energy(q):
+            return self._sum(split(q), azimuth, solved)
+
+        return jax.value_and_grad(energy)(jnp.concatenate(local))
+
+    def _summed(self, local, azimuth, solved):
+        """As `_forces`, and its Hessian."""
+
+        def forces(q):
+            value, gradient = self._forces(split(q), azimuth, solved)
+            return gradient, (value, gradient)
+
+        q = jnp.concatenate(local)
+        stiffness, (value, force) = jax.jacfwd(forces, has_aux=True)(q)
+        return value, force, stiffness
+
+    def _sum(self, local, azimuth, solved):
+        """Energy of all elements at freedoms in the row's own axes."""
+
+        def one(element, rings, solved):
+            placed = solved.placed(element)
+            return expanded(condensed, rings, placed, solved.energies)
+
+        return jnp.sum(self.each(one, self.seen(local, azimuth), solved.elements()))
+
+    def energy(self, q: Ring, azimuth: Azimuth, solved: "SolvedRow") -> Scalar:
+        """Energy of the row as a function of the ring freedoms, solved there [J].
+
+        Its derivatives with respect to q are the forces on the node and their
+        Jacobian, also where part of the forces has no potential.
 
         Args:
-            section: Motion of one ring in an element's axes from its freedoms.
-            q: Ring freedoms in the axes of `section` [m, rad].
+            q: Ring freedoms at the node [m, rad].
+            azimuth: Where its elements are.
+            solved: The row solved there.
         """
-        if self.element.relative:
-            return section @ (q[6:] - q[:6])
-        return jnp.concatenate([section @ q[:6], section @ q[6:]], axis=1)
+        local = self.local(q)
+        if self.spring is None:
+            return self._sum(local, azimuth, solved)
+        args = self, azimuth, solved.floating()
+        return expanded(_with_spring, jnp.concatenate(local), args)
 
-    def _pressed(self, spring, local, section, minimiser) -> "Pressed":
-        """Travel of a spring that the row balances, and how it follows the rings."""
-        column = self.seen(section, jnp.zeros_like(local).at[_CLOSING].set(1.0))
-        azimuth = jnp.zeros(section.shape[:1], local.dtype)  # nothing asks for it
+    def at(self, q: Ring, azimuth: Azimuth, solved: "SolvedRow") -> "RowResults":
+        """What a solved row tells of its elements, with derivatives.
 
-        def balance(travel, args):
-            model, section, local, column = args
-            moved = local.at[_CLOSING].add(travel[0])
-            row = model._at(moved, azimuth, section, minimiser)
-            energy, force, rate = model.part.spring.push(travel[0])
-            pull = jnp.einsum("la,la->", column, row.forces()) - force
-            return row, jnp.stack([pull]), energy, rate, force
+        Args:
+            q, azimuth, solved: As of `energy`.
+        """
+        local, travel = self.local(q), None
+        if self.spring is not None:
+            travel = _travel(jnp.concatenate(local), (self, azimuth, solved.floating()))
+            local = _closed(local, travel)
+        rings = self.seen(local, azimuth)
 
-        args = (self, section, local, column)
-        frozen = stop(args)
-        symmetric = self.element.has_potential
+        def one(element, rings, solved):
+            placed = solved.placed(element)
+            x = own_unknowns(placed, rings)
 
-        def function(travel, _):
-            row, pull, energy, rate, force = balance(travel, frozen)
-            stiff = jnp.einsum("la,lab,lb->", frozen[3], row.blocks(), frozen[3])
-            value = energy + jnp.sum(row.solved.energy)
-            value = value if symmetric else jnp.full_like(value, jnp.nan)
-            # Round-off of forces that cancel, and of positions in a stiff row.
-            sizes = jnp.sum(jnp.abs(row.forces())) + stiff * jnp.abs(travel[0])
-            noise = jnp.finfo(local.dtype).eps * (sizes + force)
-            return Evaluation(value, pull, (stiff + rate)[None, None], force, noise)
+            def loads(element, rings, x):
+                return response(element, rings, x).beside
 
-        zero = jnp.zeros((1,), local.dtype)
-        radius = 1e-4 * self.part.bearing.pitch_diameter
-        solver = TrustRegionNewton()
-        minimum = solver.minimise(
-            function, zero, stop(radius), direction=jnp.ones_like(zero), tolerance=1e-13
-        )
-        found = attach(lambda y, args: balance(y, args)[1], minimum.x, args, symmetric)
-        energy, _, rate = spring.push(found[0])
-        return Pressed(found[0], energy, rate, column, minimum.result)
+            load = recall(loads, placed.known.beside, (element, rings, x))
+            # A loose one carries nothing.
+            nothing = solved.energies.beside.contact_load == 0.0
+            return x, jnp.where(nothing, 0.0, load)
+
+        x, load = self.each(one, rings, solved.elements())
+        return RowResults(self, local, azimuth, rings, x, load, travel)
+
+    def local(self, q: Ring) -> RingMotion:
+        """Ring freedoms at the row's origin, in its own axes, from those at the node.
+
+        Args:
+            q: Ring freedoms at the node [m, rad].
+        """
+        both = RingMotion(*split(q))
+        if self.place is None:
+            return both
+        moved = placement(self.place.position, self.place.sign)
+        outer, inner = (moved @ ring for ring in both)
+        return _closed(RingMotion(outer, inner), self.place.offset)
+
+    def seen(self, local: RingMotion, azimuth: Azimuth) -> Float[Array, "element r"]:
+        """Ring motions in the elements' axes, as their solves take them.
+
+        Args:
+            local: Ring freedoms in the row's own axes [m, rad].
+            azimuth: Where its elements are.
+        """
+
+        def one(element, azimuth):
+            axes = element.axes(azimuth)
+            if element.sees_difference:
+                return axes @ local.between
+            return jnp.concatenate([axes @ local.outer, axes @ local.inner])
+
+        return self.each(one, azimuth)
+
+    def unsolved(self) -> "SolvedRow":
+        """A row of which nothing is known yet, in the shape of a solved one."""
+        local = self.local(jnp.zeros((12,), self.ratio.dtype))
+        rings = jnp.zeros_like(self.seen(local, self.azimuth))
+        n, r = self.element.n_unknowns, rings.shape[1]
+        zero, none = jnp.zeros((), rings.dtype), jnp.zeros((), jnp.int32)
+
+        def one(element, rings):
+            x = jnp.zeros((n,), rings.dtype)
+            known = jax.eval_shape(lambda: response(element, rings, x))
+            known = jax.tree.map(lambda a: jnp.zeros(a.shape, a.dtype), known)
+            state = LocalState(x, zero, zero, none, none, known)
+            beside = Beside(known.beside, jnp.zeros((n, r), rings.dtype))
+            hessian = jnp.zeros((r, r), rings.dtype)
+            return state, Expansion(zero, rings, hessian, beside), zero
+
+        state, energies, magnitude = self.each(one, rings)
+        travel = () if self.spring is None else zero
+        balance = () if self.spring is None else none
+        return SolvedRow(rings, magnitude, state, energies, travel, balance)
 
 
-_CLOSING = 8
-"""Freedom that presses a row in its own axes: uz of the inner ring."""
-
-
-class Pressed(NamedTuple):
-    """A spring that presses a row.
+class SolvedRow(NamedTuple):
+    """All rolling elements of a row in equilibrium; leading axis element.
 
     Attributes:
-        travel: What its ring has slid on its seat, closing the row [m].
-        energy: Of the spring, less that at zero travel [J].
-        rate: Loss of its force per travel [N/m].
-        column: How the travel moves the rings in each element's axes (element, r).
-        result: `Result` code of the balance.
+        rings: Ring motions in the elements' axes (element, r).
+        magnitude: Size of the displacements that they come from (element,) [m].
+        state: Equilibria.
+        energies: Their condensed energies, forces and stiffness.
+        travel: What a spring's ring has slid on its seat, closing the row [m].
+        balance: `Result` code of the balance with the spring.
     """
 
-    travel: Scalar
-    energy: Scalar
-    rate: Scalar
-    column: Float[Array, "element r"]
-    result: Int[Array, ""]
-
-
-class Row(eqx.Module):
-    """All rolling elements of a row at given ring freedoms.
-
-    Attributes:
-        model: What they are.
-        local: Ring freedoms at the row's origin, mirrored with it (12,) [m, rad].
-        azimuth: (element,) [rad].
-        section: Motion of one ring in an element's axes from its six freedoms at the
-            node (element, h, 6).
-        rings: Ring motions in an element's axes (element, r).
-        state: Solved elements, leading axis element.
-        solved: Their energies, forces and derivatives there, likewise.
-        pressed: The spring that presses the row, or `None`.
-    """
-
-    model: RowModel
-    local: Ring
-    azimuth: Float[Array, " element"]
-    section: Float[Array, "element h 6"]
     rings: Float[Array, "element r"]
+    magnitude: Float[Array, " element"]
     state: LocalState
-    solved: Derivatives
-    pressed: Pressed | None
+    energies: Expansion
+    travel: Any = ()
+    balance: Any = ()
+
+    def near(self, row: Row) -> Near:
+        """What solves at ring freedoms near by may start from, leading axis element.
+
+        Args:
+            row: The row.
+        """
+
+        def one(element, rings, solved):
+            return near_by(solved.placed(element), rings, solved.energies.beside)
+
+        return row.each(one, self.rings, self.elements())
+
+    def elements(self) -> "SolvedElement":
+        """What the energy of every element needs, leading axis element."""
+        return SolvedElement(
+            self.state.x, self.state.known, self.magnitude, self.energies
+        )
+
+    def floating(self) -> "SolvedRow":
+        """Without counts and codes, which derivative rules take for structure."""
+        state = self.state._replace(steps=(), result=())
+        return self._replace(state=state, balance=())
+
+
+class SolvedElement(NamedTuple):
+    """What the energy of a solved element needs: see `equilibrium.Placed`."""
+
+    x: Float[Array, "..."]
+    known: Expansion
+    magnitude: Scalar
+    energies: Expansion
+
+    def placed(self, element: AbstractRollingElement) -> Placed:
+        """With the element itself."""
+        return Placed(element, self.x, self.known, self.magnitude)
+
+
+class RowResults(NamedTuple):
+    """A solved row as results see it; differentiable; leading axis element.
+
+    Attributes:
+        row: The row.
+        local: Ring freedoms in its own axes, its spring's travel included [m, rad].
+        azimuth: Where its elements are [rad].
+        rings: Ring motions in the elements' axes (element, r) [m, rad].
+        x: Own unknowns (element, n) [m].
+        contact_load: Load of each contact (element, contact) [N].
+        travel: Of its spring [m], or `None`.
+    """
+
+    row: Row
+    local: RingMotion
+    azimuth: Azimuth
+    rings: Float[Array, "element r"]
+    x: Float[Array, "element n"]
+    contact_load: Float[Array, "element contact"]
+    travel: Scalar | None
 
     @property
-    def part(self) -> SetRow:
-        """The row and its place."""
-        return self.model.part
+    def element(self) -> Any:
+        """One rolling element; of unlike elements, with a leading axis."""
+        return self.row.element
 
     def each(self, function: Callable, *arrays) -> Any:
         """Apply function(element, rings, x, *arrays) to every rolling element.
 
         Args:
-            function: Of one element.
+            function: Of one element, its `RingMotion` and its own unknowns.
             *arrays: More arguments, with leading axis element.
         """
-        return self.model.each(function, self.rings, self.state.x, *arrays)
 
-    def forces(self) -> Float[Array, "element r"]:
-        """What each element passes to the rings, in its axes [N, N m]."""
-        return self.model.each(condensed_force, self.solved)
+        def one(element, rings, x, *arrays):
+            return function(element, unpacked(element, rings), x, *arrays)
 
-    def sum_forces(self, shares: Float[Array, "element r"]) -> Ring:
-        """Forces on both nodes from `forces` [N, N m]."""
-        if self.model.element.relative:
-            inner = jnp.einsum("lai,la->i", self.section, shares)
-            return jnp.concatenate([-inner, inner])
-        pairs = shares.reshape(shares.shape[0], 2, -1)
-        return jnp.einsum("lai,lka->ki", self.section, pairs).reshape(-1)
+        return self.row.each(one, self.rings, self.x, *arrays)
 
-    def cage_torque(self, force: Ring, q: Ring) -> Ring:
-        """What turns the set of rolling elements, as moments on both gz [N m].
+    def motions(self) -> Float[Array, "element 3"]:
+        """Section motion (u, v, θ) of every element at the node [m, rad]."""
+        place = self.row.place
 
-        The virtual work of the forces on the rings when the azimuth moves with gz.
-        Turning the set within the rings is turning the rings back around it, so it is
-        the work of `force` on that turn of q.
+        def one(element, x, azimuth):
+            axes = element.axes(azimuth)
+            rings = RingMotion(axes @ self.local.outer, axes @ self.local.inner)
+            u, v, theta = element.motion(rings, x)
+            if place is not None:
+                u, theta = place.sign * u, place.sign * theta
+                v = v - place.position * theta
+            return jnp.stack([u, v, theta])
 
-        Args:
-            force: From `sum_forces` [N, N m].
-            q: Ring freedoms at the node [m, rad].
+        return self.row.each(one, self.x, self.azimuth)
 
-        Returns:
-            (12,), zero but for both gz.
-        """
-        turned = jnp.zeros_like(q)
-        for x in (0, 3, 6, 9):
-            turned = turned.at[x].set(-q[x + 1]).at[x + 1].set(q[x])
-        work, ratio = -jnp.sum(force * turned), orbit_ratio(self.part.bearing)
-        torque = jnp.zeros_like(q).at[5].set(work * orbit(ratio, 1.0, 0.0))
-        return torque.at[11].set(work * orbit(ratio, 0.0, 1.0))
-
-    def blocks(self) -> Float[Array, "element r r"]:
-        """Condensed stiffness of each element, in its axes [N/m, N, N m]."""
-        return self.model.each(condensed_stiffness, self.solved.hessian)
-
-    def stiffness(self) -> RingStiffness:
-        """Stiffness between both nodes, springs condensed [N/m, N, N m]."""
-        blocks = self.blocks()
-        total = self._sum_blocks(blocks)
-        if self.pressed is None:
+    def inertia(self) -> Float[Array, "6"] | None:
+        """What inertia does to its elements, at the node [N, N m], or `None`."""
+        parts = self.each(lambda element, rings, x: element.inertia(rings, x))
+        if parts is None:
+            return None
+        section = jax.vmap(section_matrix)(self.azimuth)
+        total = jnp.einsum("lai,la->i", section, parts)
+        place = self.row.place
+        if place is None:
             return total
-        column = self.pressed.column
-        right = self.sum_forces(jnp.einsum("lab,lb->la", blocks, column))
-        left = self.sum_forces(jnp.einsum("la,lab->lb", column, blocks))
-        own = jnp.einsum("la,lab,lb->", column, blocks, column) + self.pressed.rate
-        held = own > 0
-        share = jnp.where(held, 1.0 / jnp.where(held, own, 1.0), 0.0)
-        return total - share * jnp.outer(right, left)
-
-    def _sum_blocks(self, blocks):
-        """Stiffness between both nodes (12, 12) from `blocks`."""
-        section = self.section
-        if self.model.element.relative:
-            half = jnp.einsum("lab,lbj->laj", blocks, section)
-            k = jnp.einsum("lai,laj->ij", section, half)
-            return jnp.block([[k, -k], [-k, k]])
-        n, h, _ = section.shape
-        pairs = blocks.reshape(n, 2, h, 2, h)
-        half = jnp.einsum("lkamb,lbj->lakmj", pairs, section)
-        total = jnp.einsum("lai,lakmj->kimj", section, half)
-        return total.reshape(12, 12)
-
-    def near(self) -> Near:
-        """What solves at ring freedoms near by may start from, leading axis element."""
-        return self.model.each(near_by, self.rings, self.state, self.solved)
-
-    def energy(self) -> Scalar:
-        """Energy of the elements, and of the spring [J]."""
-        energy = jnp.sum(self.solved.energy)
-        return energy if self.pressed is None else energy + self.pressed.energy
+        return total @ placement(place.position, place.sign)
 
 
-def azimuths(bearing: Bearing, q: Ring) -> Float[Array, " element"]:
-    """Azimuth of every rolling element for given ring rotations gz [rad].
+_CLOSING = len(FREEDOMS) + _UZ
+"""uz of the inner ring among both rings' freedoms: what closes a row in its axes."""
+
+
+def azimuths(bearing: Bearing, q: Ring | None = None) -> Azimuth:
+    """Azimuth of every rolling element of a single row [rad].
 
     Args:
-        bearing: A single row.
-        q: Ring freedoms [m, rad]; only both gz count.
+        bearing: The design.
+        q: Ring freedoms, of which both gz turn the elements [m, rad]; `None`: none.
     """
-    ratio = orbit_ratio(bearing)
-    return roller_azimuth(bearing.first_azimuth, n_elements(bearing), ratio, q)
+    deviation = deviation_of(bearing).azimuth
+    found = even_azimuths(bearing.first_azimuth, n_elements(bearing))
+    if deviation is not None:
+        found = found + deviation
+    return found if q is None else found + _turn(orbit_ratio(bearing), q)
+
+
+def _turn(ratio, q):
+    """How far the elements have orbited, rolling without slip [rad]."""
+    outer, inner = split(q)
+    return orbit(ratio, outer[_GZ], inner[_GZ])
 
 
 def orbit_ratio(bearing: Bearing) -> Scalar:
@@ -325,22 +456,7 @@ def orbit_ratio(bearing: Bearing) -> Scalar:
     return roll_ratio(diameter, bearing.pitch_diameter, cosine)
 
 
-def motions(row: Row) -> Float[Array, "element 3"]:
-    """Section motion (u, v, θ) of every element at the node on the axis [m, rad]."""
-
-    position = row.model.position
-
-    def one(model, rings, x, azimuth):
-        outer = section_matrix(azimuth) @ row.local[:6]
-        u, v, theta = model.motion(rings, x, outer)
-        if row.part.mirrored:
-            u, theta = -u, -theta
-        return jnp.stack([u, v - position * theta, theta])
-
-    return row.each(one, row.azimuth)
-
-
-def inertia_load(rows: tuple[Row, ...]) -> Float[Array, "6"]:
+def inertia_load(rows: Iterable[RowResults]) -> Float[Array, "6"]:
     """What inertia does to all rolling elements, at the node [N, N m].
 
     The forces that hold both rings add up to minus this.
@@ -348,12 +464,43 @@ def inertia_load(rows: tuple[Row, ...]) -> Float[Array, "6"]:
     Args:
         rows: Solved rows.
     """
-    total = jnp.zeros((6,), rows[0].local.dtype)
-    for row in rows:
-        parts = row.each(lambda m, r, x: m.inertia(r, x))
-        if parts is not None:
-            section = jax.vmap(section_matrix)(row.azimuth)
-            total = (
-                total + jnp.einsum("lai,la->i", section, parts) @ row.model.placement
-            )
-    return total
+    found = [row.inertia() for row in rows]
+    parts = [part for part in found if part is not None]
+    return sum(parts, start=jnp.zeros((6,)))
+
+
+def _closed(local: RingMotion, travel: Scalar) -> RingMotion:
+    """The inner ring further along the axis, so that the row closes."""
+    return local._replace(inner=local.inner.at[_UZ].add(travel))
+
+
+def _travel(q, args) -> Scalar:
+    """Travel of the spring of a solved row, with its derivatives [m]."""
+    row, azimuth, solved = args
+
+    def balance(travel, args):
+        q, row, azimuth, solved = args
+
+        local = _closed(split(q), travel[0])
+        _, force = row._forces(local, azimuth, solved)
+        return force[_CLOSING, None] - row.spring.push(travel[0])[1]
+
+    symmetric = row.element.has_potential
+    return attach(balance, solved.travel[None], (q, *args), symmetric)[0]
+
+
+def _with_spring(q, args, order) -> Expansion:
+    """Energy of a solved row and its spring, whose travel is condensed."""
+    row, azimuth, solved = args
+    travel = _travel(q, args)
+    local = _closed(split(q), travel)
+    stored, _, rate = row.spring.push(travel)
+    if order < 2:
+        energy, force = row._forces(local, azimuth, solved)
+        return Expansion(energy + stored, force, ())
+    energy, force, stiffness = row._summed(local, azimuth, solved)
+    own = stiffness[_CLOSING, _CLOSING] + rate
+    held = own > 0
+    share = jnp.where(held, 1.0 / jnp.where(held, own, 1.0), 0.0)
+    taken = jnp.outer(stiffness[:, _CLOSING], stiffness[_CLOSING])
+    return Expansion(energy + stored, force, stiffness - share * taken)

@@ -1,5 +1,7 @@
 """What a designer asks of solved balls: contact angles, ellipses, pressures, spin."""
 
+from collections.abc import Sequence
+
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
@@ -7,11 +9,10 @@ from jaxtyping import Array, Float, Int
 
 from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
 from ..design import AbstractBallBearing
-from ..element.ball import AbstractBallModel
 from ..element.ball_contacts import angles
 from ..element.ball_inertia import gyroscopic_moment
 from ..element.ball_speed import BallKinematics
-from ..element.row import Row
+from ..element.row import RowResults
 from ..numerics.units import unit
 
 
@@ -64,14 +65,19 @@ class BallResults(eqx.Module):
         return self.contact_load > 1e-9 * self.contact_load.max()
 
 
-def ball_results(rows: tuple[Row, ...], law: AbstractPointLaw) -> dict:
+def ball_results(
+    rows: tuple[RowResults, ...],
+    bearings: Sequence[AbstractBallBearing],
+    law: AbstractPointLaw,
+) -> dict:
     """Fields of `BallResults`, `roller_load` and `roller_pressure`, of solved rows.
 
     Args:
         rows: Solved balls of all rows.
+        bearings: Designs of the rows.
         law: Law of the contact constants.
     """
-    parts = [_row_results(row, law) for row in rows]
+    parts = [_row_results(*pair, law) for pair in zip(rows, bearings, strict=True)]
     contacts = max(part["contact_load"].shape[1] for part in parts)
     out = {}
     for name in parts[0]:
@@ -97,15 +103,12 @@ def _spread(values, contacts):
     return jnp.zeros(shape, values.dtype).at[:, jnp.array([0, 2])].set(values)
 
 
-def _row_results(row: Row, law: AbstractPointLaw) -> dict:
-    bearing, model = row.part.bearing, row.model.element
-    assert isinstance(model, AbstractBallModel) and isinstance(
-        bearing, AbstractBallBearing
-    )
-    contacts = row.each(lambda m, r, x: m.contacts(r, x))
-    outwards = jnp.asarray(model.grooves.outwards)
+def _row_results(row: RowResults, bearing: AbstractBallBearing, law) -> dict:
+    ball = row.element
+    contacts = row.each(lambda ball, *at: ball.contacts(*at))
+    outwards = jnp.asarray(ball.grooves.outwards)
     vectors = outwards[None, :, None] * contacts.normal
-    load = row.solved.contact_load
+    load = row.contact_load
     balls = balls_of(bearing)
     cosine = law.cosine(bearing.free_cosine, vectors[..., 1].T)
     if bearing.ball_deviation is not None:
@@ -122,11 +125,11 @@ def _row_results(row: Row, law: AbstractPointLaw) -> dict:
     sides = jnp.where(loaded, jnp.sqrt(jnp.where(loaded, square, 1.0)), 0.0)
     pressure = ellipses.peak_pressure(load.T).T
     kinematics = moment = force = None
-    if model.turning is not None:
-        kinematics = row.each(lambda m, r, x: m.kinematics(m.contacts(r, x)))
-        turning = model.turning
+    if ball.turning is not None:
+        kinematics = row.each(lambda ball, *at: ball.carried(*at))
+        turning = ball.turning
         moment = gyroscopic_moment(turning.moment, kinematics)
-        force = row.each(lambda m, r, x: m.inertia(r, x)[1])
+        force = row.each(lambda ball, *at: ball.inertia(*at)[1])
         if not turning.control.has_moment:
             moment = jnp.zeros_like(moment)
     return {

@@ -10,7 +10,12 @@ from typing import Any, TypedDict, Unpack, overload
 import equinox as eqx
 from jaxtyping import Array, Int
 
-from ..design import AbstractBallBearing, AbstractRollerBearing, pitch_radius
+from ..design import (
+    AbstractBallBearing,
+    AbstractRollerBearing,
+    pitch_radius,
+    rows_of,
+)
 from ..element.bearing_element import BearingElement, check_element
 from ..element.bearing_model import BearingModel
 from ..element.inertia import Speed
@@ -161,7 +166,8 @@ def _solve(
     )
     # The search is not differentiated: derivatives are those of its end.
     frozen, still = stop(model), stop(balance)
-    begin = beginning(frozen, still, stop(case.start))
+    rows = rows_of(stop(element.bearing))
+    begin = beginning(rows, frozen, still, stop(case.start))
     minimum = search(frozen, still, begin, options)
     return solution_of(element, model, balance, case, options, begin, minimum)
 

@@ -6,7 +6,6 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from ..design import is_ball
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS
@@ -18,7 +17,7 @@ from .balance import Balance
 from .load_case import LoadCase
 from .load_search import Beginning, differentiable
 from .options import SolveOptions
-from .solution import BallSolution, RollerSolution, Solution, Stats, describe
+from .solution import Solution, Stats, describe, solution_kind
 from .warning_sizes import stiffness_scale
 
 
@@ -56,7 +55,9 @@ def solution_of(
     """
     y = differentiable(model, balance, minimum)
     q = balance.ring_freedoms(y)
-    fields, evaluated = describe(element, model, q, options.points, minimum.memory)
+    # gz may be prescribed: the results follow it through the azimuths.
+    solved = model.following(q, minimum.memory)
+    fields, evaluated = describe(element, model, q, options.points, solved)
     left = stop(balance.out_of_balance(fields["force"]))
     reference = jnp.where(begin.size > 0, begin.size, evaluated.magnitude)
     tiny = jnp.finfo(left.dtype).tiny
@@ -73,8 +74,7 @@ def solution_of(
         strong | far,
         fields["force"],
     )
-    kind = BallSolution if is_ball(element.bearing) else RollerSolution
-    return kind(
+    return solution_kind(element.choices)(
         **fields,
         element=element,
         speed=case.speed,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing
+from ..design import AbstractBallBearing, SetRow
 from ..element.bearing_model import BearingModel
 from ..numerics.implicit import attach, unless_failed
 from ..numerics.minimise import (
@@ -50,6 +50,7 @@ class Beginning(NamedTuple):
 
 
 def beginning(
+    rows: tuple[SetRow, ...],
     model: BearingModel,
     balance: Balance,
     start: Float[Array, "6"] | None,
@@ -61,13 +62,14 @@ def beginning(
     contacts that matter are found early and Newton's method stays on their side.
 
     Args:
+        rows: Designs of the rows.
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
         start: As of `solve_load`.
     """
     load, radius = balance.along(balance.load), balance.radius
     size = jnp.sqrt(load @ load)
-    play = _play(model)
+    play = _play(rows)
     pressing = _load_for(model, play)
     factor = jnp.where(size > 0, jnp.maximum(1.0, pressing / size), 1.0)
     y = balance.held
@@ -79,7 +81,8 @@ def beginning(
         factor = jnp.where(known, 1.0, factor)
     limit = 8.0 * radius + jnp.abs(y[5])
     step = 1e-7 * radius + play
-    return Beginning(y, step, limit, load, size, _largest_inertia(model), factor)
+    inertia = _largest_inertia(model, size)
+    return Beginning(y, step, limit, load, size, inertia, factor)
 
 
 def search(
@@ -102,7 +105,7 @@ def search(
         _energy(model, balance),
         begin.y,
         begin.step,
-        memory=model.nothing_near(),
+        memory=model.unsolved(),
         direction=direction,
         limit=begin.limit,
         force=begin.load,
@@ -116,9 +119,10 @@ def _energy(model: BearingModel, balance: Balance) -> Callable[..., Evaluation]:
     """The energy of the bearing as a function of the unknowns, without the load."""
     weight, moving = balance.free * balance.scale, balance.moving
 
-    def function(y, _, near):
+    def function(y, _, before):
         q = balance.ring_freedoms(y)
-        e = model.evaluate(q, model.solve(q, near))
+        solved = model.solve(q, model.near(before))
+        e = model.evaluate(q, solved)
         h = jnp.outer(weight, weight) * e.stiffness[moving, moving]
         # Round-off of forces that cancel, and of positions in a stiff bearing.
         floor = e.magnitude + jnp.trace(h) * jnp.sqrt(y @ y)
@@ -128,7 +132,7 @@ def _energy(model: BearingModel, balance: Balance) -> Callable[..., Evaluation]:
             hessian=h + jnp.diag(1.0 - balance.free),
             scale=e.magnitude,
             noise=jnp.finfo(y.dtype).eps * floor,
-            memory=e.near,
+            memory=solved,
         )
 
     return function
@@ -144,29 +148,29 @@ def differentiable(
     Args:
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        minimum: What the search found.
+        minimum: What the search found; its memory are the solved elements.
     """
     # All that is traced goes through the arguments: a derivative rule must not close
     # over it.
-    y = attach(_residual, minimum.x, (model, balance), model.has_potential)
+    args = model, balance, minimum.memory.floating()
+    y = attach(_residual, minimum.x, args, model.has_potential)
     return unless_failed(y, minimum.result == Result.CONVERGED)
 
 
 def _residual(y, args):
     """Zero in balance."""
-    model, balance = args
+    model, balance, solved = args
     # A held freedom follows what is prescribed for it, not `y`: between it and the
     # free ones the Jacobian would not be symmetric.
     held = balance.held
     q = balance.ring_freedoms(balance.free * y + held)
     # gz may be prescribed: the answer follows it through the azimuths.
-    force = model.force(q, turns=True)
+    force = model.force(q, model.following(q, solved))
     return balance.out_of_balance(force) + (1.0 - balance.free) * y - held
 
 
-def _play(model: BearingModel) -> Scalar:
+def _play(rows: tuple[SetRow, ...]) -> Scalar:
     """Largest play between the rings, radial or axial [m]."""
-    rows = [row.part for row in model.rows]
     plays = [row.bearing.play + jnp.abs(row.inner_offset) for row in rows]
     # Less than this and a small load would follow the groove in tiny steps.
     least = [
@@ -179,16 +183,12 @@ def _play(model: BearingModel) -> Scalar:
 
 def _load_for(model: BearingModel, approach: Scalar) -> Scalar:
     """Load of one raceway contact pressed by `approach` [N]."""
-    loads = [row.each(lambda one: one.pressed(approach)) for row in model.rows]
+    loads = model.of_elements(lambda one: one.seeking.pressed(approach))
     return jnp.max(jnp.stack([jnp.max(load) for load in loads]))
 
 
-def _largest_inertia(model: BearingModel) -> Scalar:
+def _largest_inertia(model: BearingModel, like: Scalar) -> Scalar:
     """Largest inertia force of a rolling element [N]."""
-    sizes = [row.each(lambda one: one.inertia_size()) for row in model.rows]
+    sizes = model.of_elements(lambda one: one.seeking.inertia_size())
     found = [jnp.max(size) for size in sizes if size is not None]
-    return (
-        jnp.max(jnp.stack(found))
-        if found
-        else jnp.zeros_like(model.rows[0].part.position)
-    )
+    return jnp.max(jnp.stack(found)) if found else jnp.zeros_like(like)

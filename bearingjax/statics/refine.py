@@ -1,6 +1,7 @@
 """One roller of a solved bearing, its contact with a raceway cell by cell."""
 
 import warnings
+from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -15,13 +16,12 @@ from ..contact.halfspace import (
 from ..contact.line import peak_pressure
 from ..contact.line_contact import AbstractLineContact
 from ..contact.slices import Compared, Slices
-from ..design import AbstractRollerBearing
+from ..design import AbstractRollerBearing, rows_of
 from ..element.bearing_element import BearingElement, check_element
 from ..element.constants import relative_radii
 from ..element.frame import RINGS
 from ..element.inertia import Speed
-from ..element.roller import RollerModel
-from ..element.row import Row
+from ..element.row import RowResults
 from ..numerics.types import Scalar, as_real
 from .rollers import approaches, contact_loads
 from .solution import RollerSolution, Solution
@@ -115,7 +115,7 @@ def refine(
         raise ValueError(
             f"refine: roller {roller} bears no load on the {raceway} raceway."
         )
-    row, place = _row_of(element, solution, roller, speed)
+    row, bearing, place = _row_of(element, solution, roller, speed)
     again = float(contact_loads(row)[0][place, ring])
     if not abs(again - float(loads[roller])) <= _SAME * float(loads[roller]):
         raise ValueError(
@@ -123,8 +123,8 @@ def refine(
             f" and {again:.5g} N in `element` where its rings are there: give the"
             " element that was solved, and the `speed` of its rings."
         )
-    a, b = approaches(row)[place, 2 * ring : 2 * ring + 2]
-    contact = roller_contact(row, ring, free_ends)
+    a, b = approaches(row)[place, ring]
+    contact = roller_contact(row, bearing, ring, free_ends)
     tilt = 2.0 * b / contact.roller_length
     solved = contact.solve(
         loads[roller], tilt=tilt, grid=grid, solver=solver, throw=throw
@@ -134,17 +134,20 @@ def refine(
 
 
 def roller_contact(
-    row: Row, ring: int, free_ends: FreeEnds | None = None
+    row: RowResults,
+    bearing: AbstractRollerBearing,
+    ring: int,
+    free_ends: FreeEnds | None = None,
 ) -> RollerContact:
     """Roller and raceway of a row as a contact of its own.
 
     Args:
         row: Solved rollers of one row.
+        bearing: Its design.
         ring: 0: outer, 1: inner raceway.
         free_ends: As of `RollerContact`.
     """
-    bearing, constants = row.part.bearing, _constants(row)
-    assert isinstance(bearing, AbstractRollerBearing)
+    constants = row.element.constants
     half, sign = bearing.half_angle, 1.0 - 2.0 * ring
     zero = jnp.zeros((1,), constants.diameter.dtype)
     roller_radius = 0.5 * constants.diameter / jnp.cos(half)
@@ -169,22 +172,19 @@ def roller_contact(
         )
 
 
-def _constants(row):
-    assert isinstance(row.model.element, RollerModel)
-    return row.model.element.constants
-
-
 def _row_of(element, solution, roller, speed):
-    """The row that a rolling element belongs to, solved, and its number there."""
-    rows = element.model(speed).solve(solution.displacement)
+    """The row of a rolling element, solved; its design; and its number there."""
+    model = element.model(speed)
+    rows = model.results(solution.displacement, model.solve(solution.displacement))
     ends = np.cumsum(solution.row_sizes)
     k = int(np.searchsorted(ends, roller, side="right"))
-    return rows[k], roller - int(ends[k] - solution.row_sizes[k])
+    bearing: Any = rows_of(element.bearing)[k].bearing
+    return rows[k], bearing, roller - int(ends[k] - solution.row_sizes[k])
 
 
 def _slices(row, ring, a, b, y) -> Slices:
     """What the bearing's own slices give at y."""
-    constants = _constants(row)
+    constants = row.element.constants
     line: AbstractLineContact = constants.lines[ring]
     xi = y / constants.half_length
     load: Scalar = line.along(constants.tables[ring], xi, a, b)

@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
@@ -11,8 +10,7 @@ from jaxtyping import Array, Bool, Float
 from ..contact.line import half_width, peak_pressure
 from ..design.rib import RIB_NAMES
 from ..element.constants import relative_radii
-from ..element.roller import RollerModel
-from ..element.row import Row
+from ..element.row import RowResults
 from ..numerics.units import unit
 
 EDGE_PRESSURE = 300e6
@@ -58,7 +56,7 @@ class RollerResults(eqx.Module):
         return self.edge_pressure > EDGE_PRESSURE
 
 
-def roller_results(rows: tuple[Row, ...], points: int) -> dict[str, Array]:
+def roller_results(rows: tuple[RowResults, ...], points: int) -> dict[str, Array]:
     """Fields of `RollerResults`, `roller_load` and `roller_pressure`, of solved rows.
 
     Args:
@@ -101,73 +99,67 @@ class Distribution(NamedTuple):
     edge_pressure: Array
 
 
-def distribution(row: Row, points: int) -> Distribution:
+def distribution(row: RowResults, points: int) -> Distribution:
     """Line load, pressure and half width along every roller, and their extremes.
 
     Args:
         row: Solved rollers.
         points: Number of positions, end to end.
     """
-    assert isinstance(row.model.element, RollerModel)
-    c = row.model.element.constants
-    dtype = c.half_length.dtype
+    dtype = row.contact_load.dtype
     xi = jnp.linspace(-1.0, 1.0, points, dtype=dtype)
     scan = jnp.linspace(-1.0, 1.0, _SCAN, dtype=dtype)
-    weight = relative_radii(c, c.half_length * scan) ** -0.9
 
-    def along(each):
-        loads, summits, places = [], [], []
+    def one(roller, approaches):
+        c = roller.constants
+        weight = relative_radii(c, c.half_length * scan) ** -0.9
+        loads, peaks, ends = [], [], []
         for k, (line, table) in enumerate(zip(c.lines, c.tables, strict=True)):
-            carried = line.carried(table, *each[2 * k : 2 * k + 2])
-            places.append(line.summits(carried, scan, weight[k]))
-            summits.append(line.at(carried, places[k]))
+            carried = line.carried(table, *approaches[k])
+            places = line.summits(carried, scan, weight[k])
+            summits = line.at(carried, places)
+            radius = relative_radii(c, c.half_length * places)[k]
+            pressures = peak_pressure(summits, radius, c.modulus)
+            peaks.append(jnp.max(pressures))
+            ends.append((summits[:2], pressures[:2]))
             loads.append(line.at(carried, xi))
-        return jnp.stack(loads), summits, places
+        load, radius = jnp.stack(loads), relative_radii(c, c.half_length * xi)
+        edge_load, edge_pressure = (jnp.stack(v) for v in zip(*ends, strict=True))
+        return Distribution(
+            c.half_length * xi,
+            load,
+            peak_pressure(load, radius, c.modulus),
+            half_width(load, radius, c.modulus),
+            jnp.stack(peaks),
+            edge_load,
+            edge_pressure,
+        )
 
-    load, summits, places = jax.vmap(along)(approaches(row))
-    count = places[0].shape[1]
-    both = jnp.concatenate(places, axis=1)
-    radius = relative_radii(c, c.half_length * both)
-    radius = jnp.concatenate([radius[0, :, :count], radius[1, :, count:]], axis=1)
-    peaks = peak_pressure(jnp.concatenate(summits, axis=1), radius, c.modulus)
-    peaks = peaks[:, :count], peaks[:, count:]
-    radius = relative_radii(c, c.half_length * xi)[None]
-    return Distribution(
-        c.half_length * xi,
-        load,
-        peak_pressure(load, radius, c.modulus),
-        half_width(load, radius, c.modulus),
-        jnp.stack([jnp.max(p, axis=1) for p in peaks], axis=1),
-        jnp.stack([load[:, :2] for load in summits], axis=1),
-        jnp.stack([p[:, :2] for p in peaks], axis=1),
-    )
+    found = row.row.each(one, approaches(row))
+    # All rollers are of one length.
+    return found._replace(position=found.position[0])
 
 
 def contact_loads(
-    row: Row,
+    row: RowResults,
 ) -> tuple[Float[Array, "roller 2"], Float[Array, "roller 4"]]:
     """Load of every roller on both raceways and on the four ribs [N]."""
-    raceways, ribs = jnp.split(row.solved.contact_load, [2], axis=1)
+    raceways, ribs = jnp.split(row.contact_load, [2], axis=1)
     all_ribs = jnp.zeros((raceways.shape[0], len(RIB_NAMES)), raceways.dtype)
-    assert isinstance(row.model.element, RollerModel)
-    present = row.model.element.constants.ribs
+    present = row.element.constants.ribs
     if present is not None:
         columns = jnp.array([RIB_NAMES.index(name) for name in present.names])
         all_ribs = all_ribs.at[:, columns].set(ribs)
     return raceways, all_ribs
 
 
-def approaches(row: Row) -> Float[Array, "roller contact"]:
-    """Approaches of every roller: a and b at the outer, at the inner raceway, ribs.
+def approaches(row: RowResults) -> Float[Array, "roller 2 2"]:
+    """Approaches of every roller at the outer and the inner raceway.
 
     Args:
         row: Solved rollers.
 
     Returns:
-        (roller, 4 + rib) [m]; a in the middle, b more of it at +L/2.
+        (roller, raceway, 2) [m]: a in the middle, and b more of it at +L/2.
     """
-    model = row.model.element
-    assert isinstance(model, RollerModel)
-    return jax.vmap(lambda r, x: model.kinematics.approaches(model.prepared, r, x))(
-        row.rings, row.state.x
-    )
+    return row.each(lambda roller, *at: roller.coordinates(*at).raceway)

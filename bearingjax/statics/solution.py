@@ -1,13 +1,17 @@
 """What a solved bearing is: everything that a designer asks of it."""
 
+import functools
+from typing import Any
+
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
+from ..design import Bearing, BearingSet, rows_of
 from ..element.bearing_element import BearingElement
-from ..element.bearing_model import BearingModel, Evaluated
-from ..element.equilibrium import Near
+from ..element.bearing_model import BearingModel, Evaluated, Solved
+from ..element.choices import BallChoices, RollerChoices
 from ..element.frame import (
     FREEDOMS,
     LOAD_UNITS,
@@ -16,7 +20,7 @@ from ..element.frame import (
     STIFFNESS_UNITS,
 )
 from ..element.inertia import Speed
-from ..element.row import Row, motions
+from ..element.row import RowResults
 from ..numerics.minimise import TrustRegionNewton
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
@@ -176,7 +180,7 @@ def describe(
     model: BearingModel,
     q: Ring,
     points: int,
-    near: tuple[Near, ...],
+    solved: Solved,
 ) -> tuple[dict, Evaluated]:
     """All fields of a `Solution` that follow from the ring freedoms.
 
@@ -185,19 +189,16 @@ def describe(
         model: Its model at the speeds.
         q: Ring freedoms [m, rad].
         points: Positions along a roller.
-        near: `Evaluated.near` at q or near by.
+        solved: Its rolling elements at q.
     """
-    rows = model.solve(q, near, turns=True)
-    evaluated = model.evaluate(q, rows)
-    if element.point_law is not None:
-        special = ball_results(rows, element.point_law)
-    else:
-        special = roller_results(rows, points)
+    rows = model.results(q, solved)
+    evaluated = model.evaluate(q, solved)
+    special = contact_results(element.choices, element.bearing, rows, points)
     return {
         "displacement": q,
         "force": evaluated.force,
         "stiffness": evaluated.stiffness,
-        "roller_motion": jnp.concatenate([motions(row) for row in rows]),
+        "roller_motion": jnp.concatenate([row.motions() for row in rows]),
         "azimuth": jnp.concatenate([row.azimuth for row in rows]),
         **_springs(rows),
         "row_sizes": tuple(row.azimuth.shape[0] for row in rows),
@@ -205,16 +206,56 @@ def describe(
     }, evaluated
 
 
-def _springs(rows: tuple[Row, ...]) -> dict:
-    if all(row.pressed is None for row in rows):
+@functools.singledispatch
+def contact_results(
+    choices: Any, bearing: Bearing | BearingSet, rows: tuple[RowResults, ...], points
+) -> dict:
+    """What the contacts of solved rows tell; register a new kind of choices here.
+
+    Args:
+        choices: Of the element.
+        bearing: Its design.
+        rows: Its solved rows.
+        points: Positions along a rolling element.
+
+    Returns:
+        Fields of the kind of `Solution` that `solution_kind` names. Of a kind of
+        rolling element that is not registered: the loads of its first two contacts,
+        outer and inner raceway, and pressures that are NaN, because nothing is known
+        of them.
+    """
+    load = jnp.concatenate([row.contact_load[:, :2] for row in rows])
+    return {"roller_load": load, "roller_pressure": jnp.full_like(load, jnp.nan)}
+
+
+@contact_results.register
+def _(choices: RollerChoices, bearing, rows, points):
+    return roller_results(rows, points)
+
+
+@contact_results.register
+def _(choices: BallChoices, bearing, rows, points):
+    designs: Any = [row.bearing for row in rows_of(bearing)]
+    return ball_results(rows, designs, choices.point_law)
+
+
+def solution_kind(choices: Any) -> type[Solution]:
+    """Kind of `Solution` that has the fields of `contact_results`."""
+    kinds = {RollerChoices: RollerSolution, BallChoices: BallSolution}
+    found = (kind for of, kind in kinds.items() if isinstance(choices, of))
+    return next(found, Solution)
+
+
+def _springs(rows: tuple[RowResults, ...]) -> dict:
+    if all(row.travel is None for row in rows):
         return {"spring_travel": None, "spring_force": None}
     travel, force = [], []
-    for row in rows:
-        spring, pressed = row.part.spring, row.pressed
-        if spring is None or pressed is None:
-            travel.append(jnp.zeros_like(row.part.position))
-            force.append(jnp.zeros_like(row.part.position))
+    for result in rows:
+        spring = result.row.spring
+        if spring is None or result.travel is None:
+            travel.append(jnp.zeros_like(result.row.ratio))
+            force.append(jnp.zeros_like(result.row.ratio))
         else:
-            travel.append(pressed.travel)
-            force.append(spring.push(pressed.travel)[1])
+            travel.append(result.travel)
+            force.append(spring.push(result.travel)[1])
     return {"spring_travel": jnp.stack(travel), "spring_force": jnp.stack(force)}

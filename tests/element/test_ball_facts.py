@@ -71,7 +71,7 @@ def along_the_orbit(displacement, count=720):
         bearing = eqx.tree_at(lambda b: b.first_azimuth, assumed(1).bearing, place)
         single = eqx.tree_at(lambda e: e.bearing, assumed(1), bearing)
         row = single.rows(displacement, SPEED)[0]
-        return row.solved.contact_load[0, 1]
+        return row.contact_load[0, 1]
 
     return jax.vmap(one)(jnp.linspace(0, 2 * jnp.pi, count, endpoint=False))
 

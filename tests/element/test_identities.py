@@ -45,8 +45,8 @@ def case(request):
 @eqx.filter_jit
 def _evaluate(element, q, speed):
     model = element.model(speed)
-    rows = model.solve(q)
-    return model.evaluate(q, rows), inertia_load(rows)
+    solved = model.solve(q)
+    return model.evaluate(q, solved), inertia_load(model.results(q, solved))
 
 
 def evaluate(element, q, speed):

@@ -108,7 +108,7 @@ def test_centrifugal_force_loads_the_outer_raceway():
     mass, _, _ = mass_and_inertia(element.model().rows[0].element.constants)
     orbit, _ = roller_speeds(element.model().rows[0].element.constants, speed)
     expected = float(mass * 0.03625 * orbit**2)
-    load = np.asarray(row.solved.contact_load[:, :2])
+    load = np.asarray(row.contact_load[:, :2])
     assert np.allclose(load[:, 0], expected, rtol=SOLVER)
     assert np.all(load[:, 1] == 0.0)
     # Quasi-static: by symmetry the rings feel no resultant.
@@ -163,16 +163,15 @@ def test_cage_torque_of_forces_without_potential_is_their_virtual_work():
     assert np.allclose(*blocks, rtol=SOLVER, atol=1e-3)
     # What the rings' forces do while the balls move on, each row seen by itself.
     torque, step = np.zeros(2), 1e-6
-    for row in kinds[0].rows(q, speed):
-        ends = [_rings_seen(row, q, sign * step) for sign in (1, -1)]
-        work = jnp.sum(row.forces() * (ends[0] - ends[1])) / (2 * step)
+    model = kinds[0].model(speed)
+    solved = model.solve(q)
+    parts = zip(model.rows, *(model.in_order(part) for part in solved), strict=True)
+    for row, azimuth, state in parts:
+        local = row.local(q)
+        # Ring motions in the balls' axes, the balls turned on.
+        ends = [row.seen(local, azimuth + sign * step) for sign in (1, -1)]
+        work = jnp.sum(state.energies.gradient * (ends[0] - ends[1])) / (2 * step)
         ratio = 0.0095 * np.cos(np.deg2rad(25)) / 0.052
         torque = torque + 0.5 * float(work) * np.array([1 + ratio, 1 - ratio])
     assert abs(torque[1]) > 1e-3
     assert np.allclose(through[[5, 11]], torque, rtol=DIFFERENCE)
-
-
-def _rings_seen(row, q, turn):
-    """Ring motions in the balls' axes, the balls turned on."""
-    section = row.model.each(lambda m, phi: m.section(phi), row.azimuth + turn)
-    return row.model.seen(section, row.local)

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.element.energy import unpacked
+from bearingjax.element.rolling_element import RingMotion
 
 MOTIONS = 40
 
@@ -24,14 +26,14 @@ def taper(profile):
     )  # fmt: skip
 
 
-class MaybeProudCrown(bj.CircularCrown):
+class MaybeProtrudingCrown(bj.CircularCrown):
     """Of rollers with this profile nothing is told: all are evaluated."""
 
-    proud = True
+    protruding = True
 
 
-class MaybeProudLogarithmic(bj.Logarithmic):
-    proud = True
+class MaybeProtrudingLogarithmic(bj.Logarithmic):
+    protruding = True
 
 
 def nup(profile):
@@ -44,10 +46,10 @@ DESIGNS = {
     "crowned": (
         lambda profile: cylindrical(roller_profile=profile),
         bj.CircularCrown(1.0),
-        MaybeProudCrown(1.0),
+        MaybeProtrudingCrown(1.0),
     ),
-    "logarithmic, NUP": (nup, bj.Logarithmic(), MaybeProudLogarithmic()),
-    "taper": (taper, bj.CircularCrown(2.0), MaybeProudCrown(2.0)),
+    "logarithmic, NUP": (nup, bj.Logarithmic(), MaybeProtrudingLogarithmic()),
+    "taper": (taper, bj.CircularCrown(2.0), MaybeProtrudingCrown(2.0)),
 }
 
 
@@ -74,11 +76,16 @@ def test_open_rollers_carry_nothing(design):
     element = bj.BearingElement(build(told))
     q = ring_motions()
     model = element.model()
-    (row,) = jax.vmap(model.solve)(q)
-    is_open = jax.vmap(jax.vmap(model.rows[0].element.is_open))(row.rings)
+    (row,) = jax.vmap(model.solve)(q).groups
+    roller = model.rows[0].element
+
+    def is_open(rings):
+        return roller.seeking.is_open(unpacked(roller, rings))
+
+    is_open = np.asarray(jax.vmap(jax.vmap(is_open))(row.rings))
     assert 0.1 < np.mean(is_open) < 0.9
     assert np.all(np.asarray(row.state.result) == bj.Result.CONVERGED)
-    assert np.all(np.asarray(row.solved.contact_load)[np.asarray(is_open)] == 0.0)
+    assert np.all(np.asarray(row.energies.beside.contact_load)[is_open] == 0.0)
     got = evaluated(element, q)
     want = evaluated(bj.BearingElement(build(untold)), q)
     for mine, theirs in zip(jax.tree.leaves(got), jax.tree.leaves(want), strict=True):
@@ -93,13 +100,16 @@ def test_a_profile_that_may_stand_out_is_not_told():
     profile = bj.Tabulated(s, jnp.array([15e-6, 0.0, 0.0, 15e-6]))
     element = bj.BearingElement(cylindrical(roller_profile=profile))
     assert float(profile.drop(jnp.zeros(()), 0.01, 0.01)) < -5e-7
-    model = element.model().rows[0].element
-    assert model.is_open(jnp.zeros(6)) is None
+    roller = element.model().rows[0].element
+    zero = jnp.zeros(3)
+    assert roller.seeking.is_open(RingMotion(zero, zero)) is None
 
 
 def test_what_is_not_a_number_is_not_open():
     model = bj.BearingElement(cylindrical(roller_profile=bj.CircularCrown(1.0))).model()
-    assert not model.rows[0].element.is_open(jnp.full(6, jnp.nan))
+    nothing = jnp.full(3, jnp.nan)
+    seeking = model.rows[0].element.seeking
+    assert not seeking.is_open(RingMotion(nothing, nothing))
     e = model.evaluate(jnp.full(12, jnp.nan))
     assert int(e.result) == bj.Result.NON_FINITE
 

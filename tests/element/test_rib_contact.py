@@ -75,8 +75,8 @@ def test_taper_rib_load_follows_from_balance():
     q = jnp.zeros(12).at[8].set(40e-6)
     row = element.rows(q)[0]
     axis, half = np.deg2rad(11), np.deg2rad(1.7235)
-    outer, inner = np.asarray(row.solved.contact_load[:, :2])[0]
-    rib = float(row.solved.contact_load[0, 2])
+    outer, inner = np.asarray(row.contact_load[:, :2])[0]
+    rib = float(row.contact_load[0, 2])
     ribs = element.model().rows[0].element.constants.ribs
     assert ribs is not None
     t_m = np.asarray(ribs.normal[0])

@@ -1,0 +1,85 @@
+"""What may differ from one rolling element of a row to the next."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..numerics.units import unit_of
+from .checks import check, concrete, is_real, is_traced
+
+
+class Deviation(NamedTuple):
+    """Differences of every rolling element of a row from the design.
+
+    Each is `None` where all are equal. Whatever is done with a row goes over the
+    leading axis of this.
+
+    Attributes:
+        diameter: Its diameter less the common one (element,) [m].
+        azimuth: Its azimuth less that of even spacing (element,) [rad].
+    """
+
+    diameter: Float[Array, "..."] | None
+    azimuth: Float[Array, "..."] | None
+
+
+def deviation_of(bearing: Any) -> Deviation:
+    """The deviations of the rolling elements of a single row."""
+    diameter = getattr(bearing, "ball_deviation", None)
+    if diameter is None:
+        diameter = getattr(bearing, "roller_deviation", None)
+    return Deviation(diameter, bearing.azimuth_deviation)
+
+
+def check_deviation(owner: Any, name: str, count: int, what: str) -> np.ndarray | None:
+    """Raise unless a deviation is one finite number for each rolling element.
+
+    Args:
+        owner: The bearing.
+        name: Field.
+        count: Number of rolling elements.
+        what: What it is, with its unit, in words.
+
+    Returns:
+        The numbers, if there are any and they are known.
+
+    Raises:
+        TypeError: If they are no numbers.
+        ValueError: If there are more or fewer than elements, or one is not finite.
+    """
+    value = getattr(owner, name)
+    if value is None or is_traced(value):
+        return None
+    kind = type(owner).__name__
+    if not is_real(value):
+        raise TypeError(
+            f"{kind}: `{name}` is {value!r}; it must be numbers in"
+            f" {unit_of(owner, name)}."
+        )
+    if np.shape(value) != (count,):
+        raise ValueError(
+            f"{kind}: `{name}` has shape {np.shape(value)}; it must be ({count},),"
+            f" {what}."
+        )
+    check(owner, name, np.isfinite(value), "finite")
+    return np.asarray(value)
+
+
+def check_spacing(owner: Any, count: int, diameter: float) -> None:
+    """Raise if rolling elements overlap around the pitch circle for their azimuths.
+
+    Args:
+        owner: The bearing, with `azimuth_deviation`.
+        count: Number of rolling elements.
+        diameter: Diameter of one [m].
+    """
+    what = "the azimuth of each rolling element less that of even spacing in rad"
+    value = check_deviation(owner, "azimuth_deviation", count, what)
+    numbers = concrete(owner.pitch_diameter)
+    if value is None or numbers is None or count < 2:
+        return
+    least = 2.0 * np.arcsin(min(1.0, diameter / numbers[0]))
+    between = 2.0 * np.pi / count + np.roll(value, -1) - value
+    allowed = f"such that neighbours stand at least {least:.6g} rad apart"
+    check(owner, "azimuth_deviation", between >= least, allowed)

@@ -1,0 +1,188 @@
+"""What a rolling element is: its place between two rings, and its energy.
+
+A rolling element gives the coordinates of its contacts, what its contacts bear there,
+and from both its energy (`energy.py`). Forces, stiffness, equilibrium and condensation
+follow from that and are written once for all rolling elements (`equilibrium.py`).
+Where a search for its equilibrium starts, and how its steps are corrected, stands apart
+in `seeking.py`.
+"""
+
+import abc
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..numerics.expansion import Expansion, expanded
+from ..numerics.types import Scalar
+from .seeking import Seeking
+
+Unknowns = Float[Array, " n"]
+
+
+class RingMotion(NamedTuple):
+    """Motions of both rings, in the same axes each [m, rad].
+
+    Attributes:
+        outer: Of the outer ring (h,).
+        inner: Of the inner ring (h,).
+    """
+
+    outer: Float[Array, " h"]
+    inner: Float[Array, " h"]
+
+    @property
+    def mean(self) -> Float[Array, " h"]:
+        """Mean of both (h,)."""
+        return 0.5 * (self.outer + self.inner)
+
+    @property
+    def between(self) -> Float[Array, " h"]:
+        """Motion of the inner ring against the outer one (h,)."""
+        return self.inner - self.outer
+
+
+def split(q: Float[Array, " r"]) -> RingMotion:
+    """Both rings' halves of their motions, one after the other [m, rad]."""
+    half = q.shape[0] // 2
+    return RingMotion(q[:half], q[half:])
+
+
+class AbstractRollingElement(eqx.Module):
+    """One rolling element between its rings, a roller or a ball.
+
+    Its own unknowns x (n,) are in metres; ring motions are seen in its own axes.
+    """
+
+    n_unknowns: eqx.AbstractClassVar[int]
+    """Number of own unknowns, n; zero if its place follows from the rings."""
+
+    diameter: eqx.AbstractVar[Scalar]
+    """Diameter of the rolling element [m]."""
+
+    tether: eqx.AbstractVar[Scalar]
+    """Constant of the spring that holds it where nothing else does [N/m].
+
+    So soft that no result feels it; zero for an element without unknowns.
+    """
+
+    @abc.abstractmethod
+    def axes(self, azimuth: Scalar) -> Float[Array, "h 6"]:
+        """Motion of one ring in the element's axes, from its six freedoms.
+
+        Args:
+            azimuth: Of the rolling element [rad].
+        """
+
+    @abc.abstractmethod
+    def coordinates(self, rings: RingMotion, x: Unknowns) -> Any:
+        """Coordinates of the contacts [m], a pytree of arrays (contact, k).
+
+        Args:
+            rings: Motions of the rings in the element's axes [m, rad].
+            x: Own unknowns (n,) [m].
+        """
+
+    @abc.abstractmethod
+    def respond(self, coordinates: Any) -> Expansion:
+        """What the contacts bear: energies [J], forces [N] and stiffness [N/m].
+
+        Args:
+            coordinates: From `coordinates`.
+
+        Returns:
+            Expansion whose `beside` is the load of each contact (contact,) [N].
+        """
+
+    @abc.abstractmethod
+    def energy(
+        self, rings: RingMotion, x: Unknowns, known: Expansion | None = None
+    ) -> Scalar:
+        """Strain energy less the potential of inertia, U - F·y [J].
+
+        Args:
+            rings: Motions of the rings in the element's axes [m, rad].
+            x: Own unknowns (n,) [m].
+            known: `respond` at this place, if it is at hand.
+        """
+
+    @abc.abstractmethod
+    def motion(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"]:
+        """(u, v, θ) of the rolling element at the node on the axis [m, m, rad].
+
+        Args:
+            rings: Motions of the rings in the element's axes [m, rad].
+            x: Own unknowns (n,) [m].
+        """
+
+    def inertia(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"] | None:
+        """What inertia does to the rolling element, or `None`.
+
+        Returns:
+            Generalised force on (u, v, θ): axial and radial force [N] and moment
+            about e_t, turning z towards r, at the node on the axis [N m].
+        """
+        return None
+
+    def reaction(
+        self, rings: RingMotion, x: Unknowns
+    ) -> tuple[RingMotion, Unknowns] | None:
+        """Generalised force beside the gradient of the energy, or `None`.
+
+        For what has no potential, such as gyroscopic moments [N, N m].
+        """
+        return None
+
+    @property
+    def seeking(self) -> Seeking:
+        """How its equilibrium is looked for."""
+        return Seeking(self)
+
+    @property
+    def has_potential(self) -> bool:
+        """Whether all forces derive from the energy. Static."""
+        return True
+
+    @property
+    def is_convex(self) -> bool:
+        """Whether that energy is convex. Static."""
+        return True
+
+    @property
+    def sees_difference(self) -> bool:
+        """Whether only the motion between the rings counts. Static.
+
+        The row then solves for that alone: half as many numbers.
+        """
+        return False
+
+    @property
+    def places_itself(self) -> bool:
+        """Whether it knows the place of its row, for rings that turn far. Static."""
+        return False
+
+    @property
+    def n_displacements(self) -> int:
+        """How many of the first motions of a ring are displacements. Static."""
+        return 2
+
+
+def contact_energy(
+    element: AbstractRollingElement, coordinates: Any, known: Expansion | None
+) -> Scalar:
+    """Energy of all contacts, with force and stiffness as its derivatives [J].
+
+    Args:
+        element: The rolling element.
+        coordinates: Its `coordinates`.
+        known: Its `respond` there, if it is at hand.
+    """
+    energies = expanded(_respond, coordinates, element, known)
+    parts = [jnp.sum(energy) for energy in jax.tree.leaves(energies)]
+    return sum(parts[1:], start=parts[0])
+
+
+def _respond(coordinates, element, _):
+    return element.respond(coordinates)

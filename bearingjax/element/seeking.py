@@ -1,0 +1,97 @@
+"""How the equilibrium of a rolling element is looked for: no physics, only hints.
+
+A rolling element is right with the defaults; with hints of its own it is found in
+fewer steps, or told to be open without any.
+"""
+
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from ..numerics.linear import dot
+from ..numerics.types import Scalar
+
+
+class Seeking(eqx.Module):
+    """Hints for the search of one rolling element's own unknowns.
+
+    In all of them `rings` are the motions of both rings in the element's axes, and `x`
+    its own unknowns (n,) [m].
+
+    Attributes:
+        element: The rolling element.
+    """
+
+    element: Any
+
+    @property
+    def gap(self) -> Scalar:
+        """Size of the gaps, unloaded and centred [m]."""
+        return jnp.zeros_like(self.element.diameter)
+
+    def reach(self, rings: Any) -> Scalar:
+        """How far the rings are from each other in the element's section [m]."""
+        return jnp.sum(jnp.abs(rings.between[: self.element.n_displacements]))
+
+    def pressed(self, approach: Scalar) -> Scalar:
+        """About the load of one raceway contact pressed by `approach` [N].
+
+        From this size on, contacts are pressed by more than the play between the rings.
+        Zero: not known, and a load solve then does without (`statics.load`).
+        """
+        return jnp.zeros_like(approach)
+
+    def inertia_size(self) -> Scalar | None:
+        """Size of the inertia forces [N], or `None` if there are none."""
+        return None
+
+    def midpoint(self, rings: Any) -> Float[Array, " n"]:
+        """Where the rings take the element, and its tether holds it (n,) [m]."""
+        return jnp.zeros((self.element.n_unknowns,), rings.outer.dtype)
+
+    def is_open(self, rings: Any) -> Bool[Array, ""] | None:
+        """Whether nothing touches the element at its midpoint, nor pulls it away.
+
+        It then is at rest there. Cheap, and never true of one that carries load.
+
+        Returns:
+            False for NaN; `None` if it cannot be told cheaply. Structure decides.
+        """
+        return None
+
+    def start(self, rings: Any) -> Float[Array, " n"]:
+        """Where a search for the equilibrium starts (n,) [m]."""
+        return self.midpoint(rings)
+
+    @property
+    def corrects_steps(self) -> bool:
+        """Whether `corrected` is worth its time. Static."""
+        return False
+
+    def corrected(
+        self,
+        rings: Any,
+        x: Float[Array, " n"],
+        step: Float[Array, " n"],
+        size: Scalar,
+    ) -> Float[Array, " n"]:
+        """A better step of x, from what is known of the contacts.
+
+        Args:
+            rings, x: Where the step begins.
+            step: Step of Newton's method (n,) [m].
+            size: Of the force out of balance at x [N].
+        """
+        return step
+
+    @property
+    def may_be_ejected(self) -> bool:
+        """Whether `is_ejected` is to be asked. Static."""
+        return self.inertia_size() is not None
+
+    def is_ejected(self, rings: Any, x: Float[Array, " n"]) -> Bool[Array, ""]:
+        """Whether inertia has taken the element where nothing real holds it."""
+        off = x - self.midpoint(rings)
+        return dot(off, off) > (10.0 * self.element.diameter) ** 2

@@ -1,0 +1,169 @@
+"""A function whose value, gradient and Hessian one pass has found, as a function again.
+
+An integral, or a solved equilibrium, gives all three at once. Left to automatic
+differentiation each would be worked out anew, and at great length. Here the values
+stand in their places in a chain of derivative rules: the derivative of the value is
+the gradient, that of the gradient the Hessian. What is above, geometry as a rule, is
+differentiated as usual: `jax.grad` and `jax.hessian` then cost next to nothing.
+
+Arrays are (..., k) for k arguments of one function each: many functions side by side,
+none of which depends on the arguments of another.
+"""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax.custom_derivatives import SymbolicZero
+
+from .implicit import stop
+
+
+class Expansion(NamedTuple):
+    """Value and derivatives of functions of u; pytrees of the structure of u.
+
+    Attributes:
+        value: (...) [any unit].
+        gradient: (..., k).
+        hessian: (..., k, k): derivatives of the gradient. It need not be symmetric:
+            of forces that have no potential the rule is the same.
+        beside: What else the pass has found; it has no derivatives here.
+    """
+
+    value: Any
+    gradient: Any
+    hessian: Any
+    beside: Any = ()
+
+
+Function = Callable[[Any, Any, int], Expansion]
+"""(u, args, order) -> `Expansion`, of which only what stands up to `order` is used: 0
+value, 1 gradient, 2 Hessian. What is beyond may be left out."""
+
+
+def expanded(
+    function: Function, u: Any, args: Any, known: Expansion | None = None
+) -> Any:
+    """The value of a function, with the derivatives that the same pass has found.
+
+    Args:
+        function: See `Function`; a plain function of a module, itself differentiable:
+            derivatives with respect to `args`, and of the Hessian, are taken of it.
+        u: Pytree of floating arrays (..., k).
+        args: Any pytree; what is not a floating array is static.
+        known: What `function` returns here, if it is at hand. It must be that.
+
+    Returns:
+        The value; differentiable to any order with respect to u and args.
+    """
+    (value, _, _), given = _orders(function, u, args, known)
+    return value(*given)
+
+
+def expanded_all(
+    function: Function, u: Any, args: Any, known: Expansion | None = None
+) -> Expansion:
+    """As `expanded`, but value, gradient and Hessian, each with its derivatives."""
+    orders, given = _orders(function, u, args, known)
+    value, gradient, hessian = (order(*given) for order in orders)
+    return Expansion(value, gradient, hessian, given[-1].beside)
+
+
+def _orders(function, u, args, known):
+    leaves, structure = jax.tree.flatten(args)
+    traced = [x if eqx.is_inexact_array(x) else None for x in leaves]
+    others = [None if eqx.is_inexact_array(x) else x for x in leaves]
+
+    def bound(u, traced, others, order=2):
+        return _plain((function, structure, order), u, traced, others)
+
+    if known is None:
+        known = bound(stop(u), stop(traced), others)
+
+    @jax.custom_jvp
+    def hessian(u, traced, others, known):
+        return known.hessian
+
+    @jax.custom_jvp
+    def gradient(u, traced, others, known):
+        return known.gradient
+
+    @jax.custom_jvp
+    def value(u, traced, others, known):
+        return known.value
+
+    def of_hessian(primals, tangents):
+        u, traced, others, _ = primals
+        change = jax.tree.map(_filled, (u, traced), tangents[:2])
+        _, third = jax.jvp(
+            lambda u, t: bound(u, t, others).hessian, (u, traced), change
+        )
+        return hessian(*primals), third
+
+    def of_gradient(primals, tangents):
+        moved = jax.tree.map(_times, hessian(*primals), tangents[0])
+        change = _and_of_args(bound, 1, primals, tangents, moved)
+        return gradient(*primals), change
+
+    def of_value(primals, tangents):
+        moved = jax.tree.map(_inner, gradient(*primals), tangents[0])
+        return value(*primals), _and_of_args(bound, 0, primals, tangents, moved)
+
+    hessian.defjvp(of_hessian, symbolic_zeros=True)
+    gradient.defjvp(of_gradient, symbolic_zeros=True)
+    value.defjvp(of_value, symbolic_zeros=True)
+    return (value, gradient, hessian), (u, traced, others, stop(known))
+
+
+@partial(jax.jit, static_argnums=0)
+def _plain(static, u, traced, others) -> Expansion:
+    """The function itself. Under `jit` its trace, and that of its derivative, is kept
+    and used again."""
+    function, structure, order = static
+    leaves = [o if t is None else t for t, o in zip(traced, others, strict=True)]
+    return function(u, jax.tree.unflatten(structure, leaves), order)
+
+
+def _and_of_args(bound, order, primals, tangents, change):
+    """`change` and that of function(u, args)[order] with the arguments beside u."""
+    u, traced, others, _ = primals
+    if all(_is_zero(leaf) for leaf in jax.tree.leaves(tangents[1])):
+        return change
+    dtraced = jax.tree.map(_filled, traced, tangents[1])
+    _, more = jax.jvp(
+        lambda t: bound(u, t, others, order)[order], (traced,), (dtraced,)
+    )
+    return jax.tree.map(jnp.add, change, more)
+
+
+def _times(matrix, change):
+    """Σ_j matrix[..., i, j] change[..., j]; written out, so that it fuses."""
+    if _is_zero(change):
+        return jnp.zeros(matrix.shape[:-1], matrix.dtype)
+    k = matrix.shape[-1]
+    if k > 3:
+        return jnp.sum(matrix * change[..., None, :], axis=-1)
+    terms = [matrix[..., j] * change[..., j : j + 1] for j in range(k)]
+    return sum(terms[1:], start=terms[0])
+
+
+def _inner(gradient, change):
+    """Σ_j gradient[..., j] change[..., j]."""
+    if _is_zero(change):
+        return jnp.zeros(gradient.shape[:-1], gradient.dtype)
+    k = gradient.shape[-1]
+    if k > 3:
+        return jnp.sum(gradient * change, axis=-1)
+    terms = [gradient[..., j] * change[..., j] for j in range(k)]
+    return sum(terms[1:], start=terms[0])
+
+
+def _filled(x, change):
+    return jnp.zeros_like(x) if _is_zero(change) else change
+
+
+def _is_zero(x):
+    return isinstance(x, SymbolicZero)
