@@ -39,8 +39,8 @@ class Ball(AbstractRollingElement):
         grooves: Where the grooves lie.
         geometry: How the ball moves against them.
         constant: From the point law (contact, ...).
-        diameter: Ball diameter [m].
-        tether: Spring constant of the tether [N/m].
+        ball_diameter: Ball diameter [m].
+        spring: Spring constant of the tether [N/m].
         turning: Speeds, or `None`.
         follows_angle: Whether the constants follow the operating angle.
 
@@ -50,14 +50,22 @@ class Ball(AbstractRollingElement):
     grooves: GrooveGeometry
     geometry: AbstractBallGeometry
     constant: Float[Array, "contact ..."]
-    diameter: Scalar
-    tether: Scalar
+    ball_diameter: Scalar
+    spring: Scalar
     turning: Turning | None
     follows_angle: bool = eqx.field(static=True)
 
     n_unknowns: ClassVar[int] = 2
 
     energy = ball_energy
+
+    @property
+    def diameter(self):
+        return self.ball_diameter
+
+    @property
+    def tether(self):
+        return self.spring
 
     def axes(self, azimuth):
         return self.geometry.axes(azimuth)

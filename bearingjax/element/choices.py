@@ -235,9 +235,9 @@ class BallChoices(AbstractChoices):
             grooves=geometry,
             geometry=self.kinematics.ball(part),
             constant=law.constants(balls, grooves, bearing.free_cosine),
-            diameter=diameter,
+            ball_diameter=diameter,
             # A contact pressed by a ten-thousandth of the ball diameter, E* D^(1/2).
-            tether=TETHER * balls.modulus * diameter * 1e-2,
+            spring=TETHER * balls.modulus * diameter * 1e-2,
             turning=inertia,
             follows_angle=law.follows_angle,
         )

@@ -1,6 +1,6 @@
 """One roller between its rings: its contacts with raceways and ribs."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -179,8 +179,8 @@ def _raceways(constants: ContactConstants, quadrature, at) -> Expansion:
         a.shape == b.shape for a, b in zip(*leaves, strict=True)
     )
     if same:
-        stacked = jax.tree.map(lambda a, b: jnp.stack([a, b]), *pairs)
-        return jax.vmap(one)(*stacked, at)
+        stacked: Any = jax.tree.map(lambda a, b: jnp.stack([a, b]), *pairs)
+        return jax.vmap(one)(stacked[0], stacked[1], at)
     results = [one(line, table, at[k]) for k, (line, table) in enumerate(pairs)]
     return jax.tree.map(lambda a, b: jnp.stack([a, b]), *results)
 

@@ -59,14 +59,18 @@ class AbstractRollingElement(eqx.Module):
     n_unknowns: eqx.AbstractClassVar[int]
     """Number of own unknowns, n; zero if its place follows from the rings."""
 
-    diameter: eqx.AbstractVar[Scalar]
-    """Diameter of the rolling element [m]."""
+    @property
+    @abc.abstractmethod
+    def diameter(self) -> Scalar:
+        """Diameter of the rolling element [m]."""
 
-    tether: eqx.AbstractVar[Scalar]
-    """Constant of the spring that holds it where nothing else does [N/m].
+    @property
+    def tether(self) -> Scalar:
+        """Constant of the spring that holds it where nothing else does [N/m].
 
-    So soft that no result feels it; zero for an element without unknowns.
-    """
+        So soft that no result feels it; zero for an element without unknowns.
+        """
+        return jnp.zeros_like(self.diameter)
 
     @abc.abstractmethod
     def axes(self, azimuth: Scalar) -> Float[Array, "h 6"]:

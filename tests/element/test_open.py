@@ -79,10 +79,10 @@ def test_open_rollers_carry_nothing(design):
     (row,) = jax.vmap(model.solve)(q).groups
     roller = model.rows[0].element
 
-    def is_open(rings):
+    def told(rings):
         return roller.seeking.is_open(unpacked(roller, rings))
 
-    is_open = np.asarray(jax.vmap(jax.vmap(is_open))(row.rings))
+    is_open = np.asarray(jax.vmap(jax.vmap(told))(row.rings))
     assert 0.1 < np.mean(is_open) < 0.9
     assert np.all(np.asarray(row.state.result) == bj.Result.CONVERGED)
     assert np.all(np.asarray(row.energies.beside.contact_load)[is_open] == 0.0)
