@@ -146,6 +146,11 @@ class AbstractBallBearing(eqx.Module):
         """All raceway arcs that a ball may touch, outer ring first."""
 
     @property
+    def holds_axially(self) -> bool:
+        """Whether it passes axial load from ring to ring, of one sense at least."""
+        return True
+
+    @property
     def is_one_sided(self) -> bool:
         """Whether it carries axial load in one direction only."""
         return False

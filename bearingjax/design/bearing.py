@@ -79,6 +79,12 @@ class AbstractRollerBearing(eqx.Module):
         return jnp.zeros_like(self.pitch_diameter)
 
     @property
+    def holds_axially(self) -> bool:
+        """Whether it passes axial load from ring to ring, of one sense at least."""
+        pairs = ("outer_minus", "inner_plus"), ("outer_plus", "inner_minus")
+        return any(set(pair) <= set(self.ribs.present) for pair in pairs)
+
+    @property
     def play(self) -> Scalar:
         """Largest play between the rings, radial or axial [m]; may be negative."""
         ribs = [getattr(self.ribs, name).axial_gap for name in self.ribs.present]
@@ -234,6 +240,10 @@ class TaperedRollerBearing(AbstractRollerBearing):
     roller_half_angle: Scalar = eqx.field(
         converter=as_real, metadata=unit("rad"), kw_only=True, default=0.0
     )
+
+    @property
+    def holds_axially(self) -> bool:
+        return True
 
     @property
     def axis_angle(self) -> Scalar:

@@ -167,3 +167,28 @@ def _filled(x, change):
 
 def _is_zero(x):
     return isinstance(x, SymbolicZero)
+
+
+def by_autodiff(function: Callable[[Any], Any], u: Any) -> Expansion:
+    """Expansion of functions side by side, by automatic differentiation.
+
+    For functions without integrals or powers that make their derivatives long.
+
+    Args:
+        function: Smooth function of (k,) -> scalar.
+        u: Arguments of each (..., k).
+
+    Returns:
+        Value (...), gradient (..., k) and Hessian (..., k, k).
+    """
+
+    def one(u):
+        def slopes(u):
+            value, gradient = jax.value_and_grad(function)(u)
+            return gradient, (value, gradient)
+
+        hessian, (value, gradient) = jax.jacfwd(slopes, has_aux=True)(u)
+        return Expansion(value, gradient, hessian)
+
+    flat = jax.vmap(one)(u.reshape(-1, u.shape[-1]))
+    return jax.tree.map(lambda a: a.reshape(*u.shape[:-1], *a.shape[1:]), flat)

@@ -8,8 +8,6 @@ from jaxtyping import Array, Float
 from ..design import (
     Bearing,
     BearingSet,
-    TaperedRollerBearing,
-    is_ball,
     is_self_aligning,
     rows_of,
 )
@@ -26,17 +24,9 @@ def restrained_freedoms(bearing: Bearing | BearingSet) -> tuple[str, ...]:
     Args:
         bearing: The design.
     """
-    axial = is_ball(bearing) or any(_ribs_hold(row.bearing) for row in rows_of(bearing))
+    axial = any(row.bearing.holds_axially for row in rows_of(bearing))
     tilts = () if is_self_aligning(bearing) else ("gx", "gy")
     return ("ux", "uy", *(("uz",) if axial else ()), *tilts)
-
-
-def _ribs_hold(bearing):
-    ribs = bearing.ribs.present
-    return isinstance(bearing, TaperedRollerBearing) or any(
-        set(pair) <= set(ribs)
-        for pair in (("outer_minus", "inner_plus"), ("outer_plus", "inner_minus"))
-    )
 
 
 def check_held(

@@ -5,8 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..design import AbstractBallBearing, AbstractRollerBearing, is_ball, rows_of
+from ..design import AbstractBallBearing, AbstractRollerBearing, rows_of
 from ..element.bearing_element import BearingElement
+from ..element.choices import BallChoices, RollerChoices
 from ..element.inertia import Speed
 from ..element.kinematics import Linearised
 from . import warning_sizes as of
@@ -37,11 +38,11 @@ def _always(element, speed):
 
 
 def _of_balls(element, speed):
-    return is_ball(element.bearing)
+    return isinstance(element.choices, BallChoices)
 
 
 def _of_rollers(element, speed):
-    return not is_ball(element.bearing)
+    return isinstance(element.choices, RollerChoices)
 
 
 def _has_ribs(element, speed):
@@ -221,7 +222,7 @@ KINDS: dict[str, Kind] = {
         of.truncated_balls,
     ),
     "lifted_ball": Kind(
-        lambda element, speed: is_ball(element.bearing) and speed is not None,
+        lambda element, speed: _of_balls(element, speed) and speed is not None,
         of.lifted_count,
         0.0,
         _lifted_words,
