@@ -51,7 +51,7 @@ def errors(got, want):
     )
     diagonal = np.sqrt(np.maximum(np.diag(want["stiffness"]), 0.0))
     largest = np.array([diagonal[kind == i].max() for i in (0, 1)])[kind]
-    # 1e-12 of the largest entry (guide spring, round-off), in units of the tolerance.
+    # 1e-12 of the largest entry (tether spring, round-off), in units of the tolerance.
     floor = ROUNDING / SOLVER * np.outer(largest, largest)
     scale = np.outer(diagonal, diagonal) + floor
     return force, (np.abs(k - want["stiffness"]) / scale).max()

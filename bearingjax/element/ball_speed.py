@@ -1,4 +1,4 @@
-"""A ball that is carried round: its kinematics, its inertia, and who reacts to it.
+"""A ball that is carried round: its kinematics, its inertia, and what holds it.
 
 In the section at a ball's azimuth a contact angle is counted from the radius towards
 +z. The ball's spin axis lies in the section at the pitch angle β, such that its spin
