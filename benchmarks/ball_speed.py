@@ -108,7 +108,7 @@ class CBall:
             b.ball_diameter * b.free_cosine / b.pitch_diameter,
             row.pitch_radius, ball.diameter, ball.tether, ball.grooves.gap,
             *np.ravel(grooves.start), *grooves.reach, *ball.constant,
-            *ball.lever[1], float(grooves.open_side[0]),
+            *-ball.geometry.tilted[1], float(grooves.open_side[0]),
         ]  # fmt: skip
         self.design = np.array([float(x) for x in numbers])
         self.force, self.stiffness = np.zeros(12), np.zeros((12, 12))

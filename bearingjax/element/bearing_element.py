@@ -93,6 +93,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         raceway_control: Of turning balls: `OuterControl()`, `InnerControl()`,
             `EqualShare()`, `LoadShare()`, `FrictionLimited(friction)`,
             `OperatingCentrifugal()` or `CentrifugalOnly()`.
+        choices: Laws and kinematics together, for those of the above that are not
+            given.
 
     Traced: all real numbers. Static: the classes, and `cage_torque`.
     """
@@ -113,6 +115,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         *,
         point_law: AbstractPointLaw | None = None,
         raceway_control: AbstractRacewayControl | None = None,
+        choices: AbstractChoices | None = None,
     ):
         """Defaults as above; what the rolling elements have no use for is an error.
 
@@ -157,7 +160,10 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                     f"BearingElement: `{name}` is for {others}, but the bearing is a"
                     f" {type(bearing).__name__}."
                 )
-        choices = kind.of(rows, **{name: given.get(name) for name in kind.names})
+        for name in kind.names:
+            if given.get(name) is None:
+                given[name] = getattr(choices, name, None)
+        choices = kind.of(rows, **{name: given[name] for name in kind.names})
         # A jnp.float32 among float64 would stop the solvers, which keep one dtype.
         self.bearing, self.choices = in_one_dtype((bearing, choices))
         self.equilibrium = equilibrium or TrustRegionNewton()

@@ -95,10 +95,6 @@ class Solved(NamedTuple):
     azimuths: Azimuths
     groups: tuple[SolvedRow, ...]
 
-    def floating(self) -> "Solved":
-        """Without counts and codes, which derivative rules take for structure."""
-        return self._replace(groups=tuple(row.floating() for row in self.groups))
-
 
 class Evaluated(NamedTuple):
     """Energy, force and stiffness of the bearing, and how its elements fared.

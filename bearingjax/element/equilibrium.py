@@ -69,14 +69,12 @@ class Placed(NamedTuple):
 
     Attributes:
         element: The rolling element.
-        x: Its own unknowns (n,) [m].
-        known: What its contacts bear there, `AbstractRollingElement.respond`.
+        state: Where that is.
         magnitude: As of `solve_element` [m].
     """
 
     element: AbstractRollingElement
-    x: Unknowns
-    known: Expansion
+    state: LocalState
     magnitude: Scalar
 
 
@@ -144,13 +142,13 @@ def own_unknowns(placed: Placed, rings: Rings) -> Unknowns:
     """
     element = placed.element
     if element.n_unknowns == 0:
-        return placed.x
+        return placed.state.x
 
     def residual(x, args):
         element, rings = args
         return derivatives(element, rings, x, of_own=True, with_hessian=False).gradient
 
-    return attach(residual, placed.x, (element, rings), element.has_potential)
+    return attach(residual, placed.state.x, (element, rings), element.has_potential)
 
 
 def is_loose(
@@ -225,7 +223,7 @@ def condensed(rings: Rings, placed: Placed, order: int = 2) -> Expansion:
 
     Source: static condensation 9 to 6, Sorokin, Zhang, Ivannikov (2018).
     """
-    element, known = placed.element, placed.known
+    element, known = placed.element, placed.state.known
     n, r = element.n_unknowns, rings.shape[0]
     x = own_unknowns(placed, rings)
     d = derivatives(element, rings, x, known, with_hessian=order > 1)
@@ -374,7 +372,7 @@ def near_by(placed: Placed, rings: Rings, beside: Beside) -> Near:
     """
     element = placed.element
     held = jnp.any(beside.contact_load > 0)
-    off = placed.x - element.seeking.midpoint(unpacked(element, rings))
+    off = placed.state.x - element.seeking.midpoint(unpacked(element, rings))
     follow = jnp.where(held, beside.follow, 0.0)
     return stop(Near(jnp.where(held, off, jnp.nan), follow, rings))
 

@@ -38,7 +38,7 @@ from .frame import (
     roll_ratio,
     section_matrix,
 )
-from .rolling_element import AbstractRollingElement, RingMotion, split
+from .rolling_element import RingMotion, split
 
 _UZ, _GZ = FREEDOMS.index("uz"), FREEDOMS.index("gz")
 _TRANSLATIONS, _TILTS = slice(0, 3), slice(3, 5)
@@ -139,7 +139,7 @@ class Row(eqx.Module):
 
         def one(element, rings, *near):
             state = solve_element(element, rings, magnitude, minimiser, *near)
-            placed = Placed(element, state.x, state.known, magnitude)
+            placed = Placed(element, state, magnitude)
             return state, condensed(rings, placed), magnitude
 
         known = () if near is None else (near,)
@@ -199,11 +199,10 @@ class Row(eqx.Module):
     def _sum(self, local, azimuth, solved):
         """Energy of all elements at freedoms in the row's own axes."""
 
-        def one(element, rings, solved):
-            placed = solved.placed(element)
-            return expanded(condensed, rings, placed, solved.energies)
+        def one(placed, rings, energies):
+            return expanded(condensed, rings, placed, energies)
 
-        return jnp.sum(self.each(one, self.seen(local, azimuth), solved.elements()))
+        return jnp.sum(solved.each(self, one, self.seen(local, azimuth)))
 
     def energy(self, q: Ring, azimuth: Azimuth, solved: "SolvedRow") -> Scalar:
         """Energy of the row as a function of the ring freedoms, solved there [J].
@@ -219,7 +218,7 @@ class Row(eqx.Module):
         local = self.local(q)
         if self.spring is None:
             return self._sum(local, azimuth, solved)
-        args = self, azimuth, solved.floating()
+        args = self, azimuth, solved
         return expanded(_with_spring, jnp.concatenate(local), args)
 
     def at(self, q: Ring, azimuth: Azimuth, solved: "SolvedRow") -> "RowResults":
@@ -230,23 +229,23 @@ class Row(eqx.Module):
         """
         local, travel = self.local(q), None
         if self.spring is not None:
-            travel = _travel(jnp.concatenate(local), (self, azimuth, solved.floating()))
+            travel = _travel(jnp.concatenate(local), (self, azimuth, solved))
             local = _closed(local, travel)
         rings = self.seen(local, azimuth)
 
-        def one(element, rings, solved):
-            placed = solved.placed(element)
+        def one(placed, rings, energies):
             x = own_unknowns(placed, rings)
 
             def loads(element, rings, x):
                 return response(element, rings, x).beside
 
-            load = recall(loads, placed.known.beside, (element, rings, x))
+            args = placed.element, rings, x
+            load = recall(loads, placed.state.known.beside, args)
             # A loose one carries nothing.
-            nothing = solved.energies.beside.contact_load == 0.0
+            nothing = energies.beside.contact_load == 0.0
             return x, jnp.where(nothing, 0.0, load)
 
-        x, load = self.each(one, rings, solved.elements())
+        x, load = solved.each(self, one, rings)
         return RowResults(self, local, azimuth, rings, x, load, travel)
 
     def local(self, q: Ring) -> RingMotion:
@@ -319,41 +318,28 @@ class SolvedRow(NamedTuple):
     travel: Any = ()
     balance: Any = ()
 
-    def near(self, row: Row) -> Near:
-        """What solves at ring freedoms near by may start from, leading axis element.
+    def each(self, row: Row, function: Callable, rings: Array) -> Any:
+        """Apply function(placed, rings, energies) to every rolling element.
 
         Args:
             row: The row.
+            function: Of one `Placed` element, the motions of its rings, and its
+                condensed energy.
+            rings: `rings`, or the same with derivatives.
         """
 
-        def one(element, rings, solved):
-            return near_by(solved.placed(element), rings, solved.energies.beside)
+        def one(element, rings, state, magnitude, energies):
+            return function(Placed(element, state, magnitude), rings, energies)
 
-        return row.each(one, self.rings, self.elements())
+        return row.each(one, rings, self.state, self.magnitude, self.energies)
 
-    def elements(self) -> "SolvedElement":
-        """What the energy of every element needs, leading axis element."""
-        return SolvedElement(
-            self.state.x, self.state.known, self.magnitude, self.energies
-        )
+    def near(self, row: Row) -> Near:
+        """What solves at ring freedoms near by may start from, leading axis element."""
 
-    def floating(self) -> "SolvedRow":
-        """Without counts and codes, which derivative rules take for structure."""
-        state = self.state._replace(steps=(), result=())
-        return self._replace(state=state, balance=())
+        def one(placed, rings, energies):
+            return near_by(placed, rings, energies.beside)
 
-
-class SolvedElement(NamedTuple):
-    """What the energy of a solved element needs: see `equilibrium.Placed`."""
-
-    x: Float[Array, "..."]
-    known: Expansion
-    magnitude: Scalar
-    energies: Expansion
-
-    def placed(self, element: AbstractRollingElement) -> Placed:
-        """With the element itself."""
-        return Placed(element, self.x, self.known, self.magnitude)
+        return self.each(row, one, self.rings)
 
 
 class RowResults(NamedTuple):

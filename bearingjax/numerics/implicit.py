@@ -23,7 +23,7 @@ def attach(residual, solution, args, symmetric: bool = True):
         residual: Function (y, args) -> array like `y`, with a positive
             (semi)definite Jacobian in y.
         solution: Solved y (n,); its own derivative is ignored.
-        args: Any pytree; what is not a floating array is static.
+        args: Any pytree; what is no array is static.
         symmetric: Whether the Jacobian is symmetric: `residual` is the gradient of
             an energy. Static.
 
@@ -68,8 +68,7 @@ def attach_by(residual, solution, args, correction):
     Args:
         residual: Function (y, args) -> pytree like `y`.
         solution: Solved y; its own derivative is ignored.
-        args: As in `attach`. What the rule needs and is traced must be a floating
-            array, flags too.
+        args: As in `attach`.
         correction: (residual as a function of y alone, y, change, args) -> change of y
             that undoes the change of the residual, -(∂residual/∂y)⁻¹·change; linear in
             `change`, and transposable for reverse mode.
@@ -77,25 +76,34 @@ def attach_by(residual, solution, args, correction):
     Returns:
         `solution`, differentiable with respect to `args`.
     """
-    traced, static = eqx.partition(args, eqx.is_inexact_array)
+    traced, others, joined = _parted(args)
 
-    def bound(y, traced):
-        return residual(y, eqx.combine(traced, static))
+    def bound(y, traced, others):
+        return residual(y, joined(traced, others))
 
     @jax.custom_jvp
-    def attached(y, traced):
+    def attached(y, traced, others):
         return y
 
     @attached.defjvp
     def _rule(primals, tangents):
-        y0, traced = primals
-        _, dtraced = tangents
-        y = attached(y0, traced)
-        _, change = jax.jvp(lambda t: bound(y, t), (traced,), (dtraced,))
-        now = eqx.combine(traced, static)
-        return y, correction(lambda v: bound(v, traced), y, change, now)
+        y0, traced, others = primals
+        y = attached(y0, traced, others)
+        _, change = jax.jvp(lambda t: bound(y, t, others), (traced,), (tangents[1],))
+        now = joined(traced, others)
+        return y, correction(lambda v: bound(v, traced, others), y, change, now)
 
-    return attached(stop(solution), traced)
+    return attached(stop(solution), traced, others)
+
+
+def _parted(args):
+    """Floating arrays of a pytree, its other arrays, and how to join them again.
+
+    A derivative rule must be given all that is traced, flags and counts too.
+    """
+    arrays, static = eqx.partition(args, eqx.is_array)
+    traced, others = eqx.partition(arrays, eqx.is_inexact_array)
+    return traced, others, lambda *parts: eqx.combine(*parts, static)
 
 
 def unless_failed(value, solved):
@@ -128,26 +136,26 @@ def recall(function, values, args):
     Args:
         function: Function of args -> pytree of floating arrays.
         values: What it returns; their own derivative is ignored.
-        args: Tuple of pytrees; what is not a floating array is static.
+        args: Tuple of pytrees; what is no array is static.
 
     Returns:
         `values`, differentiable with respect to `args`.
     """
-    traced, static = eqx.partition(args, eqx.is_inexact_array)
+    traced, others, joined = _parted(args)
 
     @jax.custom_jvp
-    def recalled(values, traced):
+    def recalled(values, traced, others):
         return values
 
     @recalled.defjvp
     def _rule(primals, tangents):
-        values, traced = primals
+        values, traced, others = primals
         _, change = jax.jvp(
-            lambda t: function(*eqx.combine(t, static)), (traced,), (tangents[1],)
+            lambda t: function(*joined(t, others)), (traced,), (tangents[1],)
         )
-        return recalled(values, traced), change
+        return recalled(*primals), change
 
-    return recalled(stop(values), traced)
+    return recalled(stop(values), traced, others)
 
 
 def stop(tree):

@@ -109,10 +109,16 @@ def design_numbers(design: Any) -> dict[str, Array]:
     """
     leaves, _ = jax.tree_util.tree_flatten_with_path(design)
     return {
-        ".".join(str(getattr(k, "name", getattr(k, "idx", k))) for k in keys): leaf
+        _path(keys): leaf
         for keys, leaf in leaves
         if jnp.shape(leaf) == () and jnp.issubdtype(jnp.result_type(leaf), jnp.floating)
     }
+
+
+def _path(keys) -> str:
+    names = ".".join(str(getattr(k, "name", getattr(k, "idx", k))) for k in keys)
+    # Laws are those of the element, as when it is made.
+    return names.removeprefix("choices.")
 
 
 def changed(design: Any, values: Mapping[str, Any]) -> Any:

@@ -152,7 +152,7 @@ def differentiable(
     """
     # All that is traced goes through the arguments: a derivative rule must not close
     # over it.
-    args = model, balance, minimum.memory.floating()
+    args = model, balance, minimum.memory
     y = attach(_residual, minimum.x, args, model.has_potential)
     return unless_failed(y, minimum.result == Result.CONVERGED)
 

@@ -106,7 +106,7 @@ def test_fact_6_condensed_stiffness_is_the_derivative_of_the_force(roller):
     @jax.jit
     def both(rings):
         state = solve_element(model, rings, magnitude, solver)
-        found = condensed(rings, Placed(model, state.x, state.known, magnitude))
+        found = condensed(rings, Placed(model, state, magnitude))
         return found.gradient, found.hessian
 
     # An unsymmetric state: the inner ring tilts too.

@@ -27,8 +27,8 @@ def aligning():
 @eqx.filter_jit
 def evaluate(element, q, speed=None):
     model = element.model(speed)
-    rows = model.solve(q)
-    return model.evaluate(q, rows), inertia_load(rows)
+    solved = model.solve(q)
+    return model.evaluate(q, solved), inertia_load(model.results(q, solved))
 
 
 def tilted(angle, direction=0.3):
