@@ -14,6 +14,8 @@ from .ball_speed import ball_mass as ball_mass
 from .bearing_element import BearingElement as BearingElement
 from .bearing_model import BearingModel as BearingModel
 from .bearing_model import Evaluated as Evaluated
+from .choices import AbstractChoices as AbstractChoices
+from .choices import choices_for as choices_for
 from .constants import ContactConstants as ContactConstants
 from .constants import contact_constants as contact_constants
 from .frame import FREEDOMS as FREEDOMS
@@ -30,6 +32,9 @@ from .kinematics import AbstractKinematics as AbstractKinematics
 from .kinematics import ConstantAngle as ConstantAngle
 from .kinematics import Finite as Finite
 from .kinematics import Linearised as Linearised
+from .rolling_element import AbstractRollingElement as AbstractRollingElement
+from .rolling_element import RingMotion as RingMotion
+from .rolling_element import contact_energy as contact_energy
 from .row import Row as Row
 from .row import RowResults as RowResults
 from .row import azimuths as azimuths

@@ -226,6 +226,10 @@ class BallSeeking(Seeking):
         return jnp.where(jnp.max(inner) < 0.0, seat, midway)
 
     @property
+    def keeps_response(self):
+        return False
+
+    @property
     def corrects_steps(self):
         return True
 

@@ -6,7 +6,7 @@ them, it is an energy of the ring motions alone.
 """
 
 import dataclasses
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -116,7 +116,9 @@ def solve_element(
     if element.n_unknowns == 0:
         return _without_unknowns(*frozen[:2])
     given = _prepare(*frozen)
-    shapes = jax.eval_shape(response, element, rings, given.start)
+    shapes: Any = ()
+    if element.seeking.keeps_response:
+        shapes = jax.eval_shape(response, element, rings, given.start)
     return lanes.run(_loop(minimiser, shapes), given)
 
 
@@ -293,7 +295,8 @@ def _problem(given: _Given, shapes) -> Problem:
         scale = jnp.where(loose, jnp.inf, scale)
         value = d.energy if element.has_potential else jnp.full_like(d.energy, jnp.nan)
         hessian = d.hessian if with_hessian else d.hessian[:0]
-        return Evaluation(value, d.gradient, hessian, scale, noise, known)
+        kept = known if seeking.keeps_response else ()
+        return Evaluation(value, d.gradient, hessian, scale, noise, kept)
 
     def corrected(x, step, size):
         return seeking.corrected(unpacked(element, rings), x, step, size)

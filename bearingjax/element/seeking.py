@@ -66,6 +66,14 @@ class Seeking(eqx.Module):
         return self.midpoint(rings)
 
     @property
+    def keeps_response(self) -> bool:
+        """Whether what the contacts bear is kept from the last step. Static.
+
+        Worth it where that takes longer to work out than to carry along.
+        """
+        return True
+
+    @property
     def corrects_steps(self) -> bool:
         """Whether `corrected` is worth its time. Static."""
         return False

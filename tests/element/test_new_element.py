@@ -15,12 +15,13 @@ from registry import balls
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.element.choices import AbstractChoices, choices_for
-from bearingjax.element.frame import section_matrix, to_roller_axes
-from bearingjax.element.rolling_element import (
+from bearingjax.element import (
+    AbstractChoices,
     AbstractRollingElement,
+    choices_for,
     contact_energy,
 )
+from bearingjax.element.frame import section_matrix, to_roller_axes
 from bearingjax.numerics.expansion import by_autodiff
 from bearingjax.numerics.power import positive_power
 from bearingjax.numerics.types import Scalar, as_real

@@ -42,7 +42,10 @@ def struck(monkeypatch):
     monkeypatch.setattr(sweep_program, "BLOCK", 1)
     monkeypatch.setattr(SWEEP, "CHUNK", 2)
     monkeypatch.setattr(resume, "CHUNK", 2)
-    return wanted
+    # Begun in the background, this process would not hear it.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield wanted
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.fixture
