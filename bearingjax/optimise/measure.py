@@ -66,7 +66,41 @@ class AbstractMeasure(eqx.Module):
         """SI unit."""
 
 
-class PeakPressure(AbstractMeasure):
+class AbstractSmooth(AbstractMeasure):
+    """A measure with a smooth maximum or minimum in it.
+
+    Attributes:
+        exponent: Of the smooth maximum or minimum, above 1. With a larger one it is
+            closer to the true one, but its derivative changes faster.
+    """
+
+    exponent: eqx.AbstractVar[float]
+
+    def __check_init__(self):
+        number(self, "exponent")
+        above = 1.0 < self.exponent <= 1e4
+        check(self, "exponent", above, "above 1 and at most 10000")
+
+
+class AbstractLargest(AbstractSmooth):
+    """The largest of many samples."""
+
+    @abc.abstractmethod
+    def samples(self, solution: Any) -> Float[Array, "..."]:
+        """The numbers, at least 0, of which the measure is the largest.
+
+        Args:
+            solution: Solutions of the cases, leading axis case.
+        """
+
+    def __call__(self, element, cases, solution):
+        return smooth_maximum(self.samples(solution), self.exponent)
+
+    def exact(self, element, cases, solution):
+        return jnp.max(self.samples(solution))
+
+
+class PeakPressure(AbstractLargest):
     """Largest contact pressure of all cases, elements, raceways and positions [Pa].
 
     The smooth maximum is over the peaks of all rollers and the `points` positions of
@@ -82,14 +116,8 @@ class PeakPressure(AbstractMeasure):
 
     exponent: float = eqx.field(static=True, default=EXPONENT)
 
-    def __check_init__(self):
-        _check_exponent(self)
-
-    def __call__(self, element, cases, solution):
-        return smooth_maximum(_pressures(solution), self.exponent)
-
-    def exact(self, element, cases, solution):
-        return jnp.max(solution.roller_pressure)
+    def samples(self, solution):
+        return _pressures(solution)
 
     @property
     def label(self):
@@ -100,7 +128,7 @@ class PeakPressure(AbstractMeasure):
         return unit_of(Solution, "roller_pressure")
 
 
-class MeanPressure(AbstractMeasure):
+class MeanPressure(AbstractSmooth):
     """Peak pressure of each case, its mean over the hours of the cases [Pa].
 
     Without hours all cases count alike.
@@ -113,17 +141,13 @@ class MeanPressure(AbstractMeasure):
 
     exponent: float = eqx.field(static=True, default=EXPONENT)
 
-    def __check_init__(self):
-        _check_exponent(self)
-
     def __call__(self, element, cases, solution):
         pressure = _pressures(solution)
         peaks = jax.vmap(lambda p: smooth_maximum(p, self.exponent))(pressure)
-        return jnp.sum(hour_weights(cases) * peaks)
+        return _mean(peaks, cases)
 
     def exact(self, element, cases, solution):
-        peaks = jnp.max(solution.roller_pressure, axis=(1, 2))
-        return jnp.sum(hour_weights(cases) * peaks)
+        return _mean(jnp.max(_pressures(solution), axis=1), cases)
 
     @property
     def label(self):
@@ -134,7 +158,7 @@ class MeanPressure(AbstractMeasure):
         return unit_of(Solution, "roller_pressure")
 
 
-class EdgeLoad(AbstractMeasure):
+class EdgeLoad(AbstractLargest):
     """Largest load per length at a roller end, of all cases and raceways [N/m].
 
     Attributes:
@@ -145,14 +169,12 @@ class EdgeLoad(AbstractMeasure):
 
     exponent: float = eqx.field(static=True, default=EXPONENT)
 
-    def __check_init__(self):
-        _check_exponent(self)
-
-    def __call__(self, element, cases, solution):
-        return smooth_maximum(_ends(solution), self.exponent)
-
-    def exact(self, element, cases, solution):
-        return jnp.max(_ends(solution))
+    def samples(self, solution):
+        if not isinstance(solution, RollerSolution):
+            raise ValueError(
+                "EdgeLoad: balls have no ends; the bearing must be of rollers."
+            )
+        return solution.edge_load
 
     @property
     def label(self):
@@ -163,7 +185,7 @@ class EdgeLoad(AbstractMeasure):
         return unit_of(RollerSolution, "edge_load")
 
 
-class Displacement(AbstractMeasure):
+class Displacement(AbstractLargest):
     """Largest size of a displacement of the moving ring against the other [m, rad].
 
     Attributes:
@@ -178,9 +200,8 @@ class Displacement(AbstractMeasure):
 
     def __check_init__(self):
         _check_freedom(self, self.freedom)
-        _check_exponent(self)
 
-    def _sizes(self, solution):
+    def samples(self, solution):
         if self.freedom not in solution.free:
             raise ValueError(
                 f"Displacement: `freedom` is {self.freedom!r}, which is not free: no"
@@ -188,12 +209,6 @@ class Displacement(AbstractMeasure):
             )
         moved = solution.displacement[:, 6:] - solution.displacement[:, :6]
         return jnp.abs(moved[:, FREEDOMS.index(self.freedom)])
-
-    def __call__(self, element, cases, solution):
-        return smooth_maximum(self._sizes(solution), self.exponent)
-
-    def exact(self, element, cases, solution):
-        return jnp.max(self._sizes(solution))
 
     @property
     def label(self):
@@ -204,7 +219,7 @@ class Displacement(AbstractMeasure):
         return unit_of(Solution, "displacement", (FREEDOMS.index(self.freedom),))
 
 
-class Stiffness(AbstractMeasure):
+class Stiffness(AbstractSmooth):
     """Smallest stiffness of the moving ring in one freedom, of all cases [N/m, N m].
 
     The diagonal of the tangent stiffness: the other freedoms are held.
@@ -221,7 +236,6 @@ class Stiffness(AbstractMeasure):
 
     def __check_init__(self):
         _check_freedom(self, self.freedom)
-        _check_exponent(self)
 
     def __call__(self, element, cases, solution):
         values = _stiffness(solution, self.freedom, self.freedom)
@@ -266,7 +280,7 @@ class StiffnessTarget(AbstractMeasure):
 
     def __call__(self, element, cases, solution):
         value = _stiffness(solution, self.freedom, self.other or self.freedom)
-        return jnp.sum(hour_weights(cases) * (value / self.target - 1.0) ** 2)
+        return _mean((value / self.target - 1.0) ** 2, cases)
 
     @property
     def least_size(self):
@@ -334,12 +348,9 @@ def _pressures(solution):
     return jnp.concatenate([samples, peaks], axis=1)
 
 
-def _ends(solution):
-    if not isinstance(solution, RollerSolution):
-        raise ValueError(
-            "EdgeLoad: balls have no ends; the bearing must be of rollers."
-        )
-    return solution.edge_load
+def _mean(values, cases):
+    """Mean over the hours of the cases."""
+    return jnp.sum(hour_weights(cases) * values)
 
 
 def _stiffness(solution, row, column):
@@ -354,9 +365,3 @@ def _check_freedom(owner, freedom):
             f"{type(owner).__name__}: `freedom` is {freedom!r}; it must be one of"
             f" {', '.join(FREEDOMS[:5])}."
         )
-
-
-def _check_exponent(owner):
-    number(owner, "exponent")
-    above = 1.0 < owner.exponent <= 1e4
-    check(owner, "exponent", above, "above 1 and at most 10000")
