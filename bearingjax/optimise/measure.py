@@ -67,14 +67,16 @@ class AbstractMeasure(eqx.Module):
 
 
 class AbstractSmooth(AbstractMeasure):
-    """A measure with a smooth maximum or minimum in it.
+    """A measure with a smooth maximum or minimum in it."""
 
-    Attributes:
-        exponent: Of the smooth maximum or minimum, above 1. With a larger one it is
-            closer to the true one, but its derivative changes faster.
-    """
+    @property
+    @abc.abstractmethod
+    def exponent(self) -> float:
+        """Exponent of the smooth maximum or minimum, above 1.
 
-    exponent: eqx.AbstractVar[float]
+        With a larger one it is closer to the true one, but its derivative changes
+        faster.
+        """
 
     def __check_init__(self):
         number(self, "exponent")
