@@ -27,11 +27,11 @@ from .quantity import SceneError as SceneError
 from .read import Scene as Scene
 from .read import load_bearing as load_bearing
 from .read import read_scene as read_scene
-from .read import shipped_scenes as shipped_scenes
 from .report import report as report
 from .resume import resume_cases as resume_cases
 from .run import run_optimisation as run_optimisation
 from .run import run_scene as run_scene
+from .scene_file import shipped_scenes as shipped_scenes
 from .sweep_run import design_columns as design_columns
 from .sweep_run import run_cases as run_cases
 from .sweep_run import sweep_report as sweep_report

@@ -23,7 +23,8 @@ from ..statics.preload import preload
 from ..statics.sweep import stack_designs
 from .cases_list import LARGEST, read_list
 from .quantity import SceneError, kind_of, to_si
-from .read import Scene, assign, find_scene, parse_bearing, scene_of
+from .read import Scene, scene_of
+from .scene_file import assign, find_scene, parse_bearing
 from .table import Table
 
 OPERATING = {

@@ -11,7 +11,8 @@ from ..contact.halfspace import FreeEnds, RollerContact
 from ..contact.line import AbstractLineLaw
 from ..design import Material
 from .bearing_table import read_material, read_profile
-from .read import find_scene, parse_scene, read_line_law
+from .choices_table import read_line_law
+from .scene_file import find_scene, parse_scene
 from .table import Table
 
 LAWS = ("palmgren", "iso16281")

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from .quantity import SceneError
-from .read import find_scene, parse_scene
+from .scene_file import find_scene, parse_scene
 
 Writer = Callable[[Path], None]
 """Writes a file at a path."""

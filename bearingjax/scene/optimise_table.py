@@ -23,7 +23,8 @@ from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
 from .cases_table import read_cases
 from .quantity import SceneError, kind_of
-from .read import Scene, find_scene, parse_bearing, scene_of
+from .read import Scene, scene_of
+from .scene_file import find_scene, parse_bearing
 from .table import Table, not_among
 
 OBJECTIVES = (

@@ -7,7 +7,7 @@ import pytest
 from tolerances import ROUNDING
 
 from bearingjax.design import MATERIALS, Material, contact_modulus
-from bearingjax.design.profile import STEEL_MODULUS
+from bearingjax.design.logarithmic import STEEL_MODULUS
 
 
 def test_named_materials():

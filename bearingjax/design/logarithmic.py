@@ -1,0 +1,172 @@
+"""Logarithmic profiles: standard, Lundberg, Johns-Gohar, Fujiwara-Kawase."""
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from .checks import check, in_range, is_traced, positive
+from .profile import AbstractProfile
+
+STEEL_MODULUS = 206e9 / (2.0 * (1.0 - 0.3**2))
+"""Contact modulus E* of steel on steel [Pa]."""
+
+
+class Logarithmic(AbstractProfile):
+    """Logarithmic profile of ISO/TS 16281, 0.00035 D ln(1/(1 - (2s/L)²)).
+
+    Infinite at the very end; here limited to 354 times coefficient times D,
+    which no load reaches.
+
+    Attributes:
+        coefficient: 0.00035 in the standard [1].
+
+    Traced: all fields.
+    Source: ISO/TS 16281:2008, reference geometry of rollers.
+    """
+
+    coefficient: Scalar = eqx.field(
+        converter=as_real, metadata=unit("1"), default=0.00035
+    )
+
+    def __check_init__(self):
+        positive(self, "coefficient")
+
+    def drop(self, position, length, diameter):
+        return self.coefficient * diameter * _log_one_over(2.0 * position / length, 1.0)
+
+
+class Lundberg(AbstractProfile):
+    """Lundberg's profile: even pressure along the roller at the design load.
+
+    Drop Q/(π L E*) ln(1/(1 - (2s/L)²)), infinite at the very end and limited there as
+    in `Logarithmic`. It is the drop of roller and raceway together: put it on one.
+
+    Attributes:
+        design_load: Load Q of the contact for which it is made [N].
+        contact_modulus: E* of the pair [Pa].
+
+    Traced: all fields.
+    Source: Lundberg (1939); in the form of Fujiwara and Kawase (2007).
+    """
+
+    design_load: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
+    contact_modulus: Scalar = eqx.field(
+        converter=as_real, metadata=unit("Pa"), default=STEEL_MODULUS
+    )
+
+    def __check_init__(self):
+        positive(self, "design_load")
+        positive(self, "contact_modulus")
+
+    def drop(self, position, length, diameter):
+        unit = self.design_load / (jnp.pi * length * self.contact_modulus)
+        return unit * _log_one_over(2.0 * position / length, 1.0)
+
+
+class JohnsGohar(AbstractProfile):
+    """Johns and Gohar's profile: Lundberg's with a finite end.
+
+    Drop Q/(π L E*) ln(1/(1 - (1 - 0.3033 b/a)(2s/L)²)) with a = L/2.
+
+    Attributes:
+        design_load: Load Q of the contact for which it is made [N].
+        half_width: Hertz half width b of the contact at that load, from
+            `contact.half_width(Q/L, relative radius, E*)` [m].
+        contact_modulus: E* of the pair [Pa].
+
+    Traced: all fields.
+    Source: Johns and Gohar (1981); in the form of Fujiwara and Kawase (2007).
+    """
+
+    design_load: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
+    half_width: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    contact_modulus: Scalar = eqx.field(
+        converter=as_real, metadata=unit("Pa"), default=STEEL_MODULUS
+    )
+
+    def __check_init__(self):
+        positive(self, "design_load")
+        positive(self, "half_width")
+        positive(self, "contact_modulus")
+
+    def drop(self, position, length, diameter):
+        unit = self.design_load / (jnp.pi * length * self.contact_modulus)
+        part = 1.0 - 0.3033 * self.half_width / (0.5 * length)
+        return unit * _log_one_over(2.0 * position / length, part)
+
+    def _check_against(self, length, diameter):
+        in_range(self, "half_width", 0.0, 0.5 * length)
+
+
+class FujiwaraKawase(AbstractProfile):
+    """Fujiwara and Kawase's modified logarithmic profile, three design parameters.
+
+    With A = K1 Q/(π L E*) and x running from 0 where the crowning begins to 1 at the
+    end of the roller, drop = A ln(1/(1 - (1 - exp(-zm/A)) x²)); the middle is straight.
+    The end drop is limited to some 350 A, which no load reaches.
+
+    Attributes:
+        design_load: Load Q of the contact [N].
+        load_factor: K1, factor on the design load [1].
+        crowned_fraction: K2, crowned part of the length, 0 < K2 ≤ 1 [1].
+        end_drop: zm, drop at the very end [m].
+        contact_modulus: E* of the pair [Pa].
+
+    Traced: all fields.
+    Source: Fujiwara and Kawase, NTN Technical Review 75 (2007), their E' = 2 E*.
+    """
+
+    design_load: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
+    load_factor: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    crowned_fraction: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    end_drop: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    contact_modulus: Scalar = eqx.field(
+        converter=as_real, metadata=unit("Pa"), default=STEEL_MODULUS
+    )
+
+    def __check_init__(self):
+        positive(self, "design_load")
+        positive(self, "load_factor")
+        positive(self, "crowned_fraction")
+        if not is_traced(self.crowned_fraction):
+            fraction, allowed = float(self.crowned_fraction), "above 0 and at most 1"
+            check(self, "crowned_fraction", fraction <= 1.0, allowed)
+        positive(self, "end_drop")
+        positive(self, "contact_modulus")
+
+    def drop(self, position, length, diameter):
+        load = self.load_factor * self.design_load
+        unit = load / (jnp.pi * length * self.contact_modulus)
+        # From the end of the roller, where 1 - x² would cancel: x = 1 - out.
+        crowned = 0.5 * length * self.crowned_fraction
+        out = jnp.minimum((0.5 * length - jnp.abs(position)) / crowned, 1.0)
+        rest = out * (2.0 - out) + jnp.exp(-self.end_drop / unit) * (1.0 - out) ** 2
+        return -unit * jnp.log(_floored(rest))
+
+    def kinks(self, length):
+        begin = 0.5 * length * (1.0 - self.crowned_fraction)
+        return (-begin, begin)
+
+
+def _log_one_over(x, part):
+    """ln(1/(1 - part x²)), limited where the argument vanishes."""
+    root = jnp.sqrt(part)
+    rest = (1.0 - root * x) * (1.0 + root * x)
+    if rest.dtype == jnp.float64:
+        return -jnp.log(_floored(rest))
+    # float32 has no number so small that loads would not reach the drop that it leaves,
+    # and a rounding of the position beside the end is no better.
+    least = 8.0 * jnp.finfo(rest.dtype).eps
+    return jnp.where(rest > least, -jnp.log(jnp.maximum(rest, least)), _MOST)
+
+
+_MOST = 354.198209
+"""Logarithm at the very end of a profile that is infinite there [1]: that of float64,
+half of ln(1/2.2e-308)."""
+
+
+def _floored(rest):
+    """At least the root of the smallest number, which keeps first and second
+    derivatives of its logarithm in range."""
+    return jnp.maximum(rest, jnp.sqrt(jnp.finfo(rest.dtype).tiny))

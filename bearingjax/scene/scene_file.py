@@ -1,0 +1,131 @@
+"""Scene files as text: where they are, TOML, and settings that change them."""
+
+import re
+import tomllib
+from collections.abc import Iterable
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import jax
+
+from .quantity import SceneError
+
+
+def shipped_scenes() -> dict[str, Path]:
+    """Scenes that come with the package, by name."""
+    folder = Path(str(files("bearingjax.scene") / "examples"))
+    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+
+
+def find_scene(source: str | Path) -> Path:
+    """Path of a scene file or of a shipped scene.
+
+    Raises:
+        SceneError: If there is none, or float64 is off.
+    """
+    if not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
+        raise SceneError(
+            "scenes are solved in float64, which is off: call"
+            ' jax.config.update("jax_enable_x64", True) before anything else'
+        )
+    path = Path(source)
+    if path.suffix != ".toml" and not path.is_file():
+        shipped = shipped_scenes()
+        if str(source) in shipped:
+            return shipped[str(source)]
+        raise SceneError(
+            f"{source}: neither a .toml file nor a shipped scene ({', '.join(shipped)})"
+        )
+    if not path.is_file():
+        problem = "is a folder; name a file" if path.is_dir() else "no such file"
+        raise SceneError(f"{source}: {problem}")
+    return path
+
+
+def is_contact(data: dict[str, Any]) -> bool:
+    """Whether parsed data are of one contact, not of a bearing."""
+    return "bearing" not in data and not {"roller", "raceway"}.isdisjoint(data)
+
+
+def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
+    """As `parse_scene`, of a bearing.
+
+    Raises:
+        SceneError: As `parse_scene`; if it is the scene of one contact.
+    """
+    data = parse_scene(path, settings)
+    if is_contact(data):
+        problem = "is the scene of one contact, a [roller] on a [raceway], not of a"
+        cure = f"`bearingjax contact {path.stem}` solves it"
+        raise SceneError(f"{path.name}: {problem} [bearing]; {cure}")
+    return data
+
+
+def parse_scene(path: Path, settings: Iterable[str]) -> dict[str, Any]:
+    """A scene file as parsed, with its settings changed.
+
+    Args:
+        path: Of the file.
+        settings: As in `read_scene`.
+
+    Raises:
+        SceneError: If it is no TOML, or a setting does not fit.
+    """
+    data = _parse(path)
+    for setting in settings:
+        _set(data, setting, path.name)
+    return data
+
+
+def _parse(path):
+    try:
+        # Editors of Windows put a mark before the text.
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        problem = f"cannot be read: {error.strerror or error}"
+        raise SceneError(f"{path.name}: {problem}") from error
+    except UnicodeDecodeError as error:
+        problem = f"cannot be read as TOML: {error}; save it as UTF-8"
+        raise SceneError(f"{path.name}: {problem}") from error
+    except (ValueError, RecursionError) as error:
+        # TOML syntax, and numbers too long to convert, are ValueErrors.
+        raise SceneError(f"{path.name}: cannot be read as TOML: {error}") from error
+
+
+def _set(data: dict, setting: str, file: str) -> None:
+    key, equals, text = setting.partition("=")
+    parts = [part.strip() for part in key.split(".")]
+    if not equals or not all(re.fullmatch(r"[A-Za-z0-9_-]+", p) for p in parts):
+        raise SceneError(
+            f"{file}: {setting!r} is not a setting; write key=value, such as"
+            ' "operating.load.Fy=-4 kN"'
+        )
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except ValueError:
+        parsed = {}
+    # Lines that follow would be lost: it is text then.
+    value = parsed["value"] if len(parsed) == 1 else text.strip()
+    assign(data, ".".join(parts), value, file)
+
+
+def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
+    """Set a dotted key in parsed data.
+
+    Args:
+        data: Changed in place.
+        key: Dotted key.
+        value: As parsed.
+        file: For the message.
+
+    Raises:
+        SceneError: If the key leads through what is no table.
+    """
+    parts = key.split(".")
+    for depth, part in enumerate(parts[:-1]):
+        data = data.setdefault(part, {})
+        if not isinstance(data, dict):
+            inner = ".".join(parts[: depth + 1])
+            raise SceneError(f"{file}: `{inner}` is not a table, so {key!r} fails")
+    data[parts[-1]] = value
