@@ -1,4 +1,4 @@
-"""What a designer asks of solved balls: contact angles, ellipses, pressures, spin."""
+"""Results of solved balls: contact angles, ellipses, pressures, spin."""
 
 from collections.abc import Sequence
 
@@ -22,14 +22,15 @@ class BallResults(eqx.Module):
 
     Attributes:
         contact_load: Load of each contact (ball, contact) [N].
-        contact_angle: Angle of the line of centres, open contacts too, positive where
-            the row carries an inner-ring load along +z (before it is mirrored)
-            (ball, contact) [rad]. Never beyond π/2; of a ball at the groove centre, 0.
+        contact_angle: Angle of the line through ball centre and groove centre, also
+            of open contacts, positive where the row carries an inner-ring load along
+            +z (before it is mirrored) (ball, contact) [rad]. At most π/2 in size; 0 for
+            a ball at the groove centre.
         contact_pressure: Hertz peak pressure (ball, contact) [Pa].
         semi_axes: Of the contact ellipse, in rolling direction and across
             (ball, contact, 2) [m].
         approach: Approach of ball and raceway, negative where apart (ball, contact)
-            [m]. A ball past the groove centre is as far from the raceway as it can be.
+            [m]. Beyond the groove centre it stays at its lowest value.
         shoulder_margin: Height of the shoulder above the end of the contact ellipse
             (ball, contact) [m]; negative: the ellipse is truncated. Infinite where no
             shoulder is given or no load carried.
@@ -96,7 +97,7 @@ def ball_results(
 
 
 def _spread(values, contacts):
-    """Contacts of a row with one arc per ring among rows with two."""
+    """Values of a row with one arc per ring in the shape of rows with two."""
     if values.ndim == 1 or values.shape[1] == contacts:
         return values
     shape = (values.shape[0], contacts, *values.shape[2:])
@@ -116,7 +117,7 @@ def _row_results(row: RowResults, bearing: AbstractBallBearing, law) -> dict:
         balls = balls._replace(diameter=diameters[None, :])
     ellipses = ball_ellipses(balls, bearing.grooves, cosine)
     axes = jnp.stack(ellipses.semi_axes(load.T), axis=-1).swapaxes(0, 1)
-    # Of two arcs the load of the raceway is that of the resultant.
+    # With two arcs the load of a raceway is the resultant of both.
     forces = load[..., None] * vectors
     half = load.shape[1] // 2
     pair = forces.reshape(load.shape[0], 2, half, 2).sum(axis=2)
@@ -150,8 +151,8 @@ def _row_results(row: RowResults, bearing: AbstractBallBearing, law) -> dict:
 def _margins(bearing, vectors, axes, load):
     """Shoulder height less the height of the far end of the ellipse [m].
 
-    The ellipse is laid on the arc of the groove; heights are counted from where the
-    raceway is deepest.
+    The ellipse is laid along the arc of the groove; heights are measured from the
+    deepest point of the raceway.
     """
     margins = []
     for k, groove in enumerate(bearing.grooves):

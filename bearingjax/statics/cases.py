@@ -22,15 +22,15 @@ from .solution import Solution
 class Cases(eqx.Module):
     """Operating cases, all fields with a leading axis (case,).
 
-    Nothing is judged by value here: a case with a NaN or an absurd number is solved,
-    fails, and says so in its own result code.
+    Loads, displacements and speeds are not checked by value: a case with a NaN or an
+    absurd number fails, with its own result code.
 
     Attributes:
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring (case, 6) [N, N m].
         prescribed: Displacements given instead of loads, by freedom (case,) [m, rad].
         fixed_displacement: Of the fixed ring (case, 6) [m, rad], or `None`: zero.
-        inner_speed: Of the inner ring (case,) [rad/s]; `None` with `outer_speed`
-            `None`: no inertia, and nothing of it compiled.
+        inner_speed: Of the inner ring (case,) [rad/s], or `None`. If both speeds are
+            `None` there is no inertia, and none is compiled.
         outer_speed: Of the outer ring (case,) [rad/s], or `None`.
         hours: Time that the machine spends in each case (case,) [h], or `None`.
         design: Which of several designs each case has (case,), or `None`.
@@ -65,7 +65,7 @@ class Cases(eqx.Module):
         hours: Any = None,
         design: Any = None,
     ):
-        """What has no case axis holds for all cases.
+        """Arguments without a case axis hold for all cases.
 
         Raises:
             TypeError: For text in place of numbers, or designs that are not whole.

@@ -21,18 +21,17 @@ from .solution import Solution
 from .warning import loose
 
 _SLACK = 1e-9
-"""Share of the largest stiffness below which nothing holds a direction [1]."""
+"""Share of the largest stiffness below which a direction counts as free [1]."""
 
 
 class OperatingPoint(eqx.Module):
-    """Where a load puts a bearing, and how stiff it is there.
+    """Equilibrium of a bearing under a load, and its stiffness there.
 
-    Small motions about it: force + stiffness (q - motion), the rolling elements
-    where they are.
+    Held at a nearby motion q, the rings take force + stiffness (q - motion), the
+    azimuths of the rolling elements unchanged.
 
     Attributes:
-        solution: All that `solve_load` found there; its `result` says whether it is
-            an answer.
+        solution: Of the load solve; check its `result`.
     """
 
     solution: Solution
@@ -54,7 +53,7 @@ class OperatingPoint(eqx.Module):
 
     @property
     def ring_stiffness(self) -> Float[Array, "6 6"]:
-        """That of the moving ring, the other one fixed (6, 6) [N/m, N, N m]."""
+        """Stiffness of the moving ring, the other one fixed (6, 6) [N/m, N, N m]."""
         first = 6 * RINGS.index(self.solution.moving_ring)
         return self.solution.stiffness[first : first + 6, first : first + 6]
 
@@ -63,9 +62,10 @@ class OperatingPoint(eqx.Module):
     ) -> Float[Array, "kept kept"]:
         """Stiffness of a few freedoms of the moving ring, the others condensed.
 
-        The others were free in the solve and follow without a change of their load,
-        K_kk - K_ko K_oo⁻¹ K_ok; or they were held or prescribed, and stay. A
-        direction that nothing holds (a slack tilt) drops out.
+        Freedoms that were free in the solve are condensed: they move so that their
+        load stays the same, K_kk - K_ko K_oo⁻¹ K_ok. Freedoms that were held or
+        prescribed do not move. A direction without stiffness (such as a tilt that no
+        contact resists) is left out.
 
         Args:
             keep: Freedoms to keep, in this order.
@@ -90,7 +90,7 @@ class OperatingPoint(eqx.Module):
         if not others:
             return block
         other = np.array([FREEDOMS.index(name) for name in others])
-        # All in N/m, so that small means the same for forces and moments.
+        # All in N/m, so that one threshold serves forces and moments.
         radius = self.solution.pitch_radius
         scale = jnp.diag(jnp.where(other < 3, jnp.ones_like(radius), 1.0 / radius))
         own = scale @ k[jnp.ix_(other, other)] @ scale
@@ -110,11 +110,11 @@ def linearise(
     speed: Speed | None = None,
     throw: bool = True,
 ) -> OperatingPoint:
-    """The bearing about its equilibrium under a load.
+    """Linearise a bearing about its equilibrium under a load.
 
-    The static linearisation of `element.as_function`: stiffness is its Jacobian
-    there, gz held, with the rolling elements where gz has them (zero:
-    `first_azimuth`).
+    This is the static linearisation of `element.as_function`: the stiffness is its
+    Jacobian there, gz held. The rolling elements stand at the azimuths that belong to
+    gz; for gz = 0 they are those of `first_azimuth`.
 
     Args:
         element, load, prescribed, free, fixed_ring, speed, throw: As `solve_load`.
@@ -126,7 +126,7 @@ def linearise(
         TypeError, ValueError, SolveError: As `solve_load`.
 
     Warns:
-        UserWarning: If nothing holds a free direction there, as without load.
+        UserWarning: If a free direction has no stiffness there, as without load.
 
     Fails: as `solve_load`; with `throw=False` read `solution.result`.
     """

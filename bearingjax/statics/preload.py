@@ -1,4 +1,4 @@
-"""Preload by force: where the rings of a set must be ground to press its rows so."""
+"""Preload by force: the ring offsets that give a set a wanted axial preload."""
 
 from typing import Any
 
@@ -16,11 +16,11 @@ from .support import restrained_freedoms
 def preload(
     element: BearingElement[Any], force: Scalar | float, *, throw: bool = True
 ) -> BearingElement[Any]:
-    """The set ground so that its rows press each other with a given force.
+    """The set, its rings ground so that its rows press each other with a given force.
 
-    Rings coaxial, still and unloaded, the rows that face +z carry `force` together,
-    and so do those that face -z. Rows of the same side move as one: each keeps the
-    `inner_offset` that it has against the others.
+    With the rings coaxial, at rest and unloaded, the rows that carry load along +z bear
+    `force` together, and so do those that carry load along -z. Rows of the same side
+    move together: the differences between their values of `inner_offset` stay.
 
     Args:
         element: A set with rows of both sides.
@@ -28,9 +28,9 @@ def preload(
         throw: Raise if a solve fails; otherwise the offsets are then NaN.
 
     Returns:
-        Element with new `inner_offset` (of a pair plus and minus half of what is
-        ground off in all), differentiable with respect to design and
-        force (implicit function theorem).
+        Element with new `inner_offset` (of a pair plus and minus half of the total
+        that is ground off), differentiable with respect to design and force (implicit
+        function theorem).
 
     Raises:
         TypeError: If `element` is no BearingElement.
@@ -44,7 +44,7 @@ def preload(
     for side in (False, True):
         sign = -1.0 if side else 1.0
         mine = [row for row in bearing.rows if row.mirrored is side]
-        # In the rows' own axes, side by side: coaxial rings do not feel where.
+        # In the rows' own axes, side by side: coaxial rings, so the place is no matter.
         rows = [
             SetRow(
                 r.bearing,
@@ -79,8 +79,9 @@ def check_preload(bearing: Bearing | BearingSet, force: Scalar | float) -> None:
 
     Raises:
         TypeError: If the force is no number.
-        ValueError: If it is no set, has no rows that face each other, a row that holds
-            no axial load, one solid ring or a spring, or if the force is not positive.
+        ValueError: If it is no set, no two rows face each other, the rows share one
+            inner ring, a row holds no axial load or has a spring, or the force is not
+            positive.
     """
     problem = None
     if not isinstance(bearing, BearingSet):

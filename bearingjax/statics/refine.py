@@ -27,12 +27,12 @@ from .rollers import approaches, contact_loads
 from .solution import RollerSolution, Solution
 
 _SAME = 1e-4
-"""Share of a load by which it may come out otherwise than in the solution: rollers are
-solved again, in single precision too."""
+"""Largest relative difference between the load of a roller in the solution and the same
+load solved again here; it allows for single precision."""
 
 
 class Refined(Compared):
-    """A roller's contact on the half-space, beside the slices of the bearing.
+    """Contact of a roller on the half-space, compared with the slices of the bearing.
 
     y runs along the generatrix as the `position` of a `RollerSolution` does, also in
     the mirrored rows of a set: from the large end of a taper to its small end.
@@ -64,8 +64,8 @@ def refine(
 ) -> Refined:
     """Contact of one roller of a solved bearing, both bodies elastic half-spaces.
 
-    Load and tilt are those of the bearing's slices; the half-space says what the
-    pressure is under them, ends included. The approach comes out anew.
+    Load and tilt are those of the solution, which works with slices. The half-space
+    gives the pressure under them, roller ends included, and its own approach.
 
     Args:
         element: The bearing that was solved.
@@ -110,7 +110,7 @@ def refine(
         raise ValueError(
             f"refine: `roller` is {roller}; it must be from 0 to {count - 1}."
         )
-    # Above round-off.
+    # More than round-off.
     if not float(loads[roller]) > 1e-9 * float(jnp.max(solution.roller_load)):
         raise ValueError(
             f"refine: roller {roller} bears no load on the {raceway} raceway."
@@ -173,7 +173,7 @@ def roller_contact(
 
 
 def _row_of(element, solution, roller, speed):
-    """The row of a rolling element, solved; its design; and its number there."""
+    """Solved row of a rolling element, design of the row, number within the row."""
     model = element.model(speed)
     rows = model.results(solution.displacement, model.solve(solution.displacement))
     ends = np.cumsum(solution.row_sizes)

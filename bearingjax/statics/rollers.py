@@ -1,4 +1,4 @@
-"""What a designer asks of solved rollers: rib loads, line loads, pressures."""
+"""Results of solved rollers: rib loads, line loads, pressures."""
 
 from typing import NamedTuple
 
@@ -14,16 +14,16 @@ from ..element.row import RowResults
 from ..numerics.units import unit
 
 EDGE_PRESSURE = 300e6
-"""Pressure at a roller end beyond which the end counts as loaded [Pa].
+"""Pressure at a roller end above which the end counts as edge-loaded [Pa].
 
-A fifth of 1500 MPa, the contact stress of the fatigue load limit of ISO 281: the peak
-that a line contact does not know, at a sharp end a small multiple of this, then stays
-harmless.
+A fifth of 1500 MPa, the contact stress at the fatigue load limit of ISO 281. The line
+contact leaves out the pressure peak at a sharp end, which is a small multiple of this
+pressure: up to this limit it stays harmless.
 """
 
 _SCAN = 33
-"""Positions from which the peak is sought: found to 1e-4 of the pressure at worst,
-between a straight part and a crown; profiles without kinks to 1e-6."""
+"""Positions at which the search for the largest pressure begins. It is found to 1e-6;
+with a kink in the profile, as from a straight part to a crown, to 1e-4."""
 
 
 class RollerResults(eqx.Module):
@@ -39,7 +39,8 @@ class RollerResults(eqx.Module):
         contact_half_width: Hertz half width (roller, 2, point) [m].
         edge_load: Load per length at the roller ends, at -L/2 and +L/2
             (roller, 2, end) [N/m].
-        edge_pressure: Hertz pressure there, which knows no peak (roller, 2, end) [Pa].
+        edge_pressure: Hertz pressure there, without the peak of a sharp end
+            (roller, 2, end) [Pa].
     """
 
     rib_load: Float[Array, "roller 4"] = eqx.field(metadata=unit("N"))
@@ -81,7 +82,7 @@ def roller_results(rows: tuple[RowResults, ...], points: int) -> dict[str, Array
 
 
 class Distribution(NamedTuple):
-    """What stands along every roller of a row.
+    """Line load and pressure along every roller of a row.
 
     Attributes:
         position: (point,) [m].
@@ -160,6 +161,6 @@ def approaches(row: RowResults) -> Float[Array, "roller 2 2"]:
         row: Solved rollers.
 
     Returns:
-        (roller, raceway, 2) [m]: a in the middle, and b more of it at +L/2.
+        (roller, raceway, 2) [m]: a in the middle, a + b at +L/2.
     """
     return row.each(lambda roller, *at: roller.coordinates(*at).raceway)

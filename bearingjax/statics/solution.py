@@ -1,4 +1,4 @@
-"""What a solved bearing is: everything that a designer asks of it."""
+"""Solution of a bearing: displacement, force, stiffness, loads, pressures, code."""
 
 import functools
 from typing import Any
@@ -30,14 +30,14 @@ from .rollers import RollerResults, roller_results
 
 
 class Stats(eqx.Module):
-    """How the solve went.
+    """Statistics of a load solve.
 
     Attributes:
         residual: Force out of balance on the free freedoms relative to the load,
             moments divided by the pitch radius [1].
         iterations: Steps of the load solve.
-        roller_residual: Largest relative residual of a roller [1].
-        roller_iterations: Most steps of a roller in the last evaluation.
+        roller_residual: Largest relative residual of a rolling element [1].
+        roller_iterations: Most steps of a rolling element in the last evaluation.
     """
 
     residual: Scalar = eqx.field(metadata=unit("1"))
@@ -47,11 +47,11 @@ class Stats(eqx.Module):
 
 
 class Solution(eqx.Module):
-    """A solved bearing. Axes: element is every roller or ball, of a set row by row;
+    """A solved bearing. Axes: element counts the rollers or balls, in a set row by row;
     raceway and ring are (outer, inner).
 
-    If `result` is not `CONVERGED` the numbers are those of the last step, not an
-    answer.
+    If `result` is not `CONVERGED` the numbers are those of the last step, not of an
+    equilibrium.
 
     Attributes:
         displacement: Ring freedoms (12,) [m, rad].
@@ -60,25 +60,25 @@ class Solution(eqx.Module):
             gyroscopic moments act or contact constants follow the operating angle.
         roller_load: Load of each roller or ball on each raceway (element, 2) [N].
         roller_pressure: Largest Hertz pressure of each roller or ball on each raceway
-            (element, 2) [Pa], found apart from the positions along the rollers.
+            (element, 2) [Pa]; of a roller also between the positions of the output.
         roller_motion: (u, v, θ) of each roller or ball in its section, at the node on
             the axis (element, 3) [m, m, rad].
         azimuth: Azimuth of each roller or ball [rad].
         result: `Result` code.
         unrestrained: Index of the freedom of the moving ring that no contact holds
             against the load, if the result is `NO_LOAD_PATH`; otherwise -1 (also if
-            it is a rolling element that nothing holds).
-        stats: How the solve went.
-        spring_travel: What each row's ring has slid on its seat, closing the row
-            (row,) [m], zero without a spring; `None` if no row has one.
+            it is a rolling element that no contact holds).
+        stats: Statistics of the load solve.
+        spring_travel: How far the spring has slid the ring of each row on its seat,
+            closing the row (row,) [m]; zero without a spring, `None` if no row has one.
         spring_force: Force of each row's spring (row,) [N], or `None`.
         row_sizes: Number of rolling elements of each row.
         pitch_radius: Of the bearing, the largest of a set [m].
-        element: What was solved.
+        element: The bearing that was solved.
         speed: Ring speeds, or `None`.
         free: Freedoms of the moving ring that were free.
-        held: Those that a support held, at a prescribed place or at zero: their part
-            of `force` is what it passes to the ring.
+        held: Freedoms of the moving ring that a support held, at a prescribed
+            displacement or at zero; `force` there is the reaction of the support.
         moving_ring: "outer" or "inner".
 
     Static: row_sizes, free, held, moving_ring.
@@ -210,7 +210,7 @@ def describe(
 def contact_results(
     choices: Any, bearing: Bearing | BearingSet, rows: tuple[RowResults, ...], points
 ) -> dict:
-    """What the contacts of solved rows tell; register a new kind of choices here.
+    """Results of the contacts of solved rows; register a new kind of choices here.
 
     Args:
         choices: Of the element.
@@ -221,8 +221,7 @@ def contact_results(
     Returns:
         Fields of the kind of `Solution` that `solution_kind` names. Of a kind of
         rolling element that is not registered: the loads of its first two contacts,
-        outer and inner raceway, and pressures that are NaN, because nothing is known
-        of them.
+        outer and inner raceway, and pressures of NaN, as they are unknown.
     """
     load = jnp.concatenate([row.contact_load[:, :2] for row in rows])
     return {"roller_load": load, "roller_pressure": jnp.full_like(load, jnp.nan)}

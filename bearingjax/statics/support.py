@@ -1,4 +1,4 @@
-"""What the bearing can hold, and what its surroundings hold instead."""
+"""Freedoms that the bearing restrains, and those that its surroundings hold."""
 
 from collections.abc import Iterable, Sequence
 
@@ -16,10 +16,10 @@ from ..element.frame import FREEDOMS, LOADS
 
 
 def restrained_freedoms(bearing: Bearing | BearingSet) -> tuple[str, ...]:
-    """Freedoms that the bearing can hold at all, against a load of the right sense.
+    """Freedoms that the bearing can restrain, against a load in the right direction.
 
-    Never gz; not gx and gy of a self-aligning bearing; uz for balls and tapers, and
-    where a pair of ribs passes axial load from ring to ring.
+    Never gz. Not gx and gy of a self-aligning bearing. uz with balls and tapered
+    rollers, and where a pair of ribs passes axial load from ring to ring.
 
     Args:
         bearing: The design.
@@ -38,18 +38,18 @@ def check_held(
     """Raise if known loads act on freedoms that are held.
 
     Args:
-        owner: Who was given them.
-        load: Loads of one or of many cases [N, N m]; traced ones are not judged here.
+        owner: Function that was called, for the message.
+        load: Loads of one or of many cases [N, N m]; traced ones are not checked.
         prescribed: Freedoms with given displacements.
         free: Freedoms that were chosen to be free, or `None`: the default.
 
     Raises:
-        ValueError: Naming the load, the freedom, and who holds it.
+        ValueError: Naming the load, the freedom, and why it is held.
     """
     if is_traced(load):
         return
     loads = np.nan_to_num(np.asarray(load).reshape(-1, 6))
-    # A moment about the axis is never held: its case has no load path.
+    # Not gz: a moment about the axis has no load path, which the result code says.
     left_out = () if free is None else set(FREEDOMS[:5]) - set(free) - set(prescribed)
     for names, why in ((prescribed, "prescribed"), (left_out, "not among `free`")):
         for index in sorted(FREEDOMS.index(name) for name in names):

@@ -1,9 +1,9 @@
 """Load sweeps: many cases of a bearing, or of many designs, in blocks and chunks.
 
-A chunk of some tens of cases is solved as one batch, small enough for the cache; chunk
-follows chunk on each device; blocks of chunks go over all devices and come back to the
-host, so that memory stays bounded however long the sweep is. JAX does the distribution,
-over the devices of one process or of many (`jax.distributed`).
+A chunk of some tens of cases is solved as one batch, small enough for the processor's
+cache. Each device solves one chunk after another. Results come back to the host after
+each block of chunks, so that memory stays bounded however long the sweep is. JAX
+distributes the chunks over the devices of one process or of many (`jax.distributed`).
 """
 
 from collections.abc import Callable, Sequence
@@ -26,7 +26,8 @@ from .sweep_program import WARNED, Program, Task
 from .warning import counted, given
 
 CHUNK = 64
-"""Cases of a batch: what fits the cache (benchmarks/batch_throughput.py)."""
+"""Cases solved as one batch: few enough for the processor's cache
+(benchmarks/batch_throughput.py)."""
 
 SUMMARIES: dict[str, Callable[[Solution], Array]] = {
     "peak_pressure": lambda s: jnp.max(s.roller_pressure),
@@ -47,7 +48,7 @@ class Sweep(eqx.Module):
     `Solution`. Where `result` is not `CONVERGED`, floating outputs are NaN.
 
     Attributes:
-        cases: What was asked.
+        cases: The cases that were solved.
         outputs: By name, leading axis case; among them `warning_KIND`, the size of
             every kind of warning that can arise (`statics.warning_kinds.KINDS`).
         moving_ring: "outer" or "inner".
@@ -91,7 +92,7 @@ class Sweep(eqx.Module):
         return counted(self.warned)
 
     def warning_counts(self) -> dict[str, int]:
-        """In how many cases each kind of warning is given; kinds of none left out."""
+        """Number of cases with each kind of warning; kinds without cases left out."""
         return {name: int(cases.sum()) for name, cases in given(self.warned).items()}
 
 
@@ -123,7 +124,7 @@ def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any
 
 
 def n_designs(element: BearingElement[Any]) -> int | None:
-    """Number of designs that an element holds (`stack_designs`), or `None`: one."""
+    """Number of designs stacked in an element (`stack_designs`); `None`: only one."""
     shape = np.shape(rows_of(element.bearing)[0].bearing.pitch_diameter)
     return shape[0] if shape else None
 
@@ -155,21 +156,22 @@ def sweep(
             function of one Solution; what is not kept is not computed. `None`: all
             fields of `Solution`.
         free, fixed_ring, points, tolerance, max_steps: As in `solve_load`.
-        neighbours: Cases that follow each other are alike, as on a fine grid: each
-            then starts from the solution before it. A case that ends at the step limit
-            so is solved again from the beginning.
+        neighbours: Set it if consecutive cases are similar, as on a fine grid: each
+            case then starts from the solution of the one before. A case that ends at
+            the step limit or at a saddle is solved again without that start.
         warn: Look for warnings (`bj.warnings`) in every case.
         chunk: Cases solved as one batch; default `CHUNK`.
         progress: Show a bar.
         devices: Over which the cases are spread; default all of `jax.devices()`, of
-            all processes. (`jax.config.update("jax_num_cpu_devices", 2)` before all
-            else makes two of a processor with two cores.)
-        stop: Asked between blocks; once it says true no other is begun, and cases left
-            have the code `NOT_RUN`. (A KeyboardInterrupt loses what was solved; a
-            signal handler that `stop` reads does not.) In all processes alike.
+            all processes. (`jax.config.update("jax_num_cpu_devices", 2)` before
+            anything else makes a processor with two cores two devices.)
+        stop: Called between blocks. Once it returns true no further block is begun,
+            and the remaining cases have the code `NOT_RUN`. It must return the same in
+            all processes. (A KeyboardInterrupt loses what was solved; a signal handler
+            whose flag `stop` returns does not.)
 
     Returns:
-        Sweep, whole in every process.
+        Sweep with all cases, in every process.
 
     Raises:
         ValueError: For unknown names, loads on held freedoms, designs that do not fit
@@ -202,7 +204,7 @@ def sweep(
 
 
 class Keep(eqx.Module):
-    """What is kept of a Solution, by name; `None`: all its arrays."""
+    """Picks outputs of a Solution by name; `None`: all its arrays, steps, residual."""
 
     names: tuple[str, ...] | None = eqx.field(static=True)
 

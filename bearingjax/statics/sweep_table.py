@@ -41,7 +41,7 @@ _LARGEST_OF = {"peak_pressure": "roller_pressure", "largest_load": "roller_load"
 def columns(
     sweep: Sweep, beside: Mapping[str, np.ndarray] | None = None
 ) -> dict[str, np.ndarray]:
-    """Columns by their header, "name [unit]": what was asked, then what came out.
+    """A sweep as columns by header, "name [unit]": first the cases, then the results.
 
     Arrays are spread over columns, `displacement_inner_uy [m]`. The result is the
     code's label; where it is not "converged", numbers are NaN. `warnings` holds the
@@ -49,7 +49,7 @@ def columns(
 
     Args:
         sweep: From `sweep`.
-        beside: More columns, which come first (case,).
+        beside: Further columns, placed first (case,).
 
     Returns:
         Header -> array (case,), in SI.
@@ -81,7 +81,7 @@ def _warned(sweep):
 
 
 def check_writable(path: Path) -> None:
-    """Raise unless `write` knows the format: to be asked before a long sweep.
+    """Raise unless `write` can write this format. Call it before a long sweep.
 
     Args:
         path: Of the table.
@@ -105,7 +105,7 @@ def write(
 
     Args:
         sweep: From `sweep`.
-        path: Its ending says the format.
+        path: Its ending, .csv or .parquet, sets the format.
         beside: As in `columns`.
 
     Raises:
@@ -129,7 +129,7 @@ def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
     """Columns of a table that `write` wrote.
 
     Args:
-        path: Its ending says the format.
+        path: Its ending, .csv or .parquet, sets the format.
         texts: Headers of columns that are text even if they look like numbers.
 
     Raises:
@@ -156,11 +156,12 @@ def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
 def restored(
     table: Mapping[str, np.ndarray], like: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
-    """Outputs of a sweep out of its columns.
+    """Outputs of a sweep, from the columns of its table.
 
     Args:
         table: From `read`.
-        like: Outputs of a sweep of the same kind, of any number of cases.
+        like: Outputs of a sweep of the same kind, with any number of cases: their
+            names, shapes and dtypes are taken.
 
     Returns:
         Outputs by name; `unrestrained`, which no table holds, is -1, and a warning
@@ -195,7 +196,7 @@ def restored(
 
 
 def _sizes(table, kind, count):
-    """Sizes of one kind of warning out of the column of warnings; -inf: not given."""
+    """Sizes of one kind of warning, from the column of warnings; -inf: not given."""
     found = np.full(count, -np.inf)
     for k, text in enumerate(table.get(WARNINGS, [])):
         for part in str(text or "").split("; "):
@@ -206,7 +207,7 @@ def _sizes(table, kind, count):
 
 
 def asked(cases: Cases) -> dict[str, np.ndarray]:
-    """Columns of what was asked, in SI, by their header.
+    """Columns of the cases (loads, displacements, speeds, hours), in SI, by header.
 
     Args:
         cases: Of the sweep.
@@ -250,7 +251,7 @@ def _label(name, index, shape):
     first = len(shape) - len(axes)
     field, entry = _LARGEST_OF.get(name, name), index
     if shape[max(first, 0) :] != tuple(map(len, axes)):
-        # A user's own array under the name of a field: what its axes are is not known.
+        # A user's own array under the name of a field: its axes are unknown.
         axes, first, entry = (), len(shape), ()
     last = [axis[k] for axis, k in zip(axes, index[first:], strict=True)]
     label = "_".join([name, *map(str, index[:first]), *last])

@@ -1,4 +1,4 @@
-"""What is doubtful in a solution: one list wherever solutions are told of."""
+"""Warnings about a solution: one list for the library and the command line."""
 
 from typing import Any
 
@@ -12,14 +12,14 @@ from .warning_kinds import KINDS
 
 
 def warnings(solution: Solution) -> list[str]:
-    """What is doubtful in a solution, a sentence each; empty if nothing is.
+    """Warnings about a solution, a sentence each; empty if there are none.
 
     The command line prints the same list; of many cases see `Sweep.warnings`.
 
     Args:
         solution: Concrete; with a leading case axis, as `optimise` has it, each
-            sentence says in how many cases. One that did not converge has none: its
-            numbers are no answer.
+            sentence says in how many cases. A case that did not converge gives no
+            warnings.
 
     Raises:
         TypeError: For a solution under `jit`, `vmap` or `grad`.
@@ -47,7 +47,7 @@ def warnings(solution: Solution) -> list[str]:
 
 
 def loose(solution: Solution) -> str:
-    """The warning that nothing holds a free direction, or "".
+    """The warning that a free direction has no stiffness, or "".
 
     Args:
         solution: Concrete, of one case.
@@ -57,7 +57,7 @@ def loose(solution: Solution) -> str:
 
 
 def sizes(solution: Solution) -> dict[str, Any]:
-    """Size of every kind of warning that can arise; NaN of a failed solve.
+    """Size of every kind of warning that can arise; NaN if the solve failed.
 
     Args:
         solution: Of one case, traced or not.
@@ -73,7 +73,7 @@ def sizes(solution: Solution) -> dict[str, Any]:
 
 
 def given(warned: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """In which cases each kind is given, by name (case,); kinds of none left out.
+    """Which cases have each kind, by name (case,); kinds without cases left out.
 
     Args:
         warned: Name -> `sizes` (case,).

@@ -20,10 +20,10 @@ class Kind(NamedTuple):
 
     Attributes:
         applies: (element, speed) -> whether it can arise at all. Static.
-        size: Of a solution, a scalar.
+        size: Solution -> size of the warning, a scalar.
         limit: Largest size that gives no warning, in the unit of `size`.
-        words: (size, where) -> the sentence; where is "" of many cases.
-        where: Of a concrete solution: what it concerns.
+        words: (size, where) -> the sentence; where is "" for many cases.
+        where: Concrete solution -> the rows, elements or numbers concerned, in words.
     """
 
     applies: Callable[[BearingElement, Speed | None], bool]
@@ -236,4 +236,4 @@ KINDS: dict[str, Kind] = {
         lambda s: of.of_raceways(s, of.ends_over(s)),
     ),
 }
-"""Every kind of warning, by name, in the order in which they are told."""
+"""Every kind of warning, by name, in the order in which they are reported."""

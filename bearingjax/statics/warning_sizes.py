@@ -1,7 +1,7 @@
-"""Numbers of a solution that may be too large, and what they concern.
+"""Sizes of warnings: numbers of a solution that may be too large, and where.
 
-Sizes are written in what NumPy and JAX share: a sweep finds them within its compiled
-program, `warnings` of a solution without compiling anything.
+They use only what NumPy and JAX share. A sweep works them out within its compiled
+program, `warnings` in NumPy, without compiling anything.
 """
 
 import math
@@ -25,26 +25,26 @@ from .rollers import EDGE_PRESSURE
 from .solution import BallSolution, RollerSolution, Solution
 
 LARGEST_PRESSURE = 4e9
-"""Contact pressure beyond which nothing is elastic any more [Pa]."""
+"""Contact pressure above which steel is no longer elastic [Pa]."""
 
 SOFTEST = 1e-7
-"""Stiffness over E* D that holds nothing [1]: a tenth of the softest tilt of a bearing
-under a tenth of a newton."""
+"""Stiffness over E* D up to which a direction counts as free [1]: a tenth of the lowest
+tilt stiffness of a bearing under 0.1 N."""
 
 SOFTEST_SHIFT = 3e-5
-"""Likewise of x, y and z alone: less than a millionth of a newton presses so little,
-such as the solver leaves where there is no load."""
+"""Likewise for x, y and z alone: the stiffness under less than 1e-6 N, a force that the
+solver may leave where there is no load."""
 
 _ROUND_OFF = 1e-9
-"""Likewise, over the largest stiffness [1]."""
+"""Likewise, as a share of the largest stiffness [1]."""
 
 LARGEST_TILT_ERROR = 0.03
-"""What small rotations leave out, over the largest approach [1]."""
+"""Largest error of small rotations, over the largest approach [1]."""
 
 LARGEST_SPEED = 1e6
 """n·dm, speed times pitch diameter [mm/min].
 
-Source: where tables of greases for rolling bearings end; of oil baths too.
+Source: upper end of tables for greases of rolling bearings, and for oil baths.
 """
 
 LARGEST_WIDTH, LARGEST_ELLIPSE = 0.1, 0.4
@@ -56,8 +56,8 @@ Source: Johnson, Contact Mechanics (1985), section 4.1: strains are of the order
 """
 
 LARGEST_ANGLE = math.radians(75.0)
-"""Angle of a contact from the middle of its raceway [rad]: there a shoulder would stand
-0.39 ball diameters high, twice the usual and more than any."""
+"""Largest angle of a contact from the middle of its raceway [rad]. A shoulder that
+reaches so far is 0.39 ball diameters high: twice the usual, and more than any."""
 
 _PLAUSIBLE = {
     "pitch_diameter": (1e-3, 15.0, "m"),
@@ -67,7 +67,7 @@ _PLAUSIBLE = {
     "elastic_modulus": (1e9, 1.2e12, "Pa"),
     "density": (500.0, 25e3, "kg/m³"),
 }
-"""From miniature to slewing bearings, from polymers to hard metal."""
+"""Usual ranges: from miniature to slewing bearings, from polymers to hard metal."""
 
 
 def stiffness_scale(bearing: Bearing | BearingSet) -> Any:
@@ -91,13 +91,13 @@ def _diameter(bearing):
 
 
 def _of_balls(solution: Solution) -> BallSolution:
-    """The solution of a ball bearing: kinds of balls are asked of no other."""
+    """The solution, of a ball bearing: warnings about balls arise for no other."""
     assert isinstance(solution, BallSolution)
     return solution
 
 
 def _of_rollers(solution: Solution) -> RollerSolution:
-    """The solution of a roller bearing: kinds of rollers are asked of no other."""
+    """The solution, of a roller bearing: warnings about rollers arise for no other."""
     assert isinstance(solution, RollerSolution)
     return solution
 
@@ -137,7 +137,7 @@ def of_raceways(solution: Solution, flags: Any) -> str:
 
 
 def _free_stiffness(solution):
-    """Stiffness of the free freedoms, all in N/m, and what holds nothing [N/m]."""
+    """Stiffness of the free freedoms, all in N/m, and how much counts as none [N/m]."""
     xp = namespace(solution.result)
     first = 6 * RINGS.index(solution.moving_ring)
     radius = xp.where(solution.pitch_radius > 0, solution.pitch_radius, 1.0)
@@ -153,7 +153,7 @@ def _free_stiffness(solution):
 
 
 def loose(solution: Solution) -> Any:
-    """Number of directions in which nothing holds the ring where it is.
+    """Number of free directions without stiffness.
 
     Source: Sylvester's law of inertia: as many pivots are negative as eigenvalues.
     """
@@ -170,7 +170,7 @@ def loose(solution: Solution) -> Any:
 
 
 def loose_names(solution: Solution) -> str:
-    """What `loose` counts, by the freedom that moves most in it."""
+    """Directions that `loose` counts, each by the freedom that moves most in it."""
     k, nothing = _free_stiffness(solution)
     values, vectors = np.linalg.eigh(k)
     names = {
@@ -182,7 +182,7 @@ def loose_names(solution: Solution) -> str:
 
 
 def idle_rows(solution: Solution) -> Any:
-    """Number of rows that pass nothing while others do."""
+    """Number of rows that carry no load while others do."""
     load = solution.roller_load.min(axis=1)
     tops = [part.max() for _, part in _by_row(solution, load)]
     most = _largest(solution, tops)
@@ -190,7 +190,7 @@ def idle_rows(solution: Solution) -> Any:
 
 
 def idle_numbers(solution: Solution) -> str:
-    """What `idle_rows` counts."""
+    """Rows that `idle_rows` counts, in words."""
     load = solution.roller_load.min(axis=1)
     tops = [part.max() for _, part in _by_row(solution, load)]
     idle = [k for k, top in enumerate(tops) if top <= 1e-9 * max(tops)]
@@ -204,7 +204,7 @@ def slack_springs(solution: Solution) -> Any:
 
 
 def slack_numbers(solution: Solution) -> str:
-    """What `slack_springs` counts."""
+    """Rows whose springs `slack_springs` counts, in words."""
     slack = (solution.spring_force == 0) & (solution.spring_travel != 0)
     return f"row {listed(np.flatnonzero(slack))}"
 
@@ -252,10 +252,10 @@ def groove_angles(solution: Solution) -> Any:
 
 
 def tilt_error(solution: Solution) -> Any:
-    """What small rotations leave out, R γ²/2, over what it is an error of [1].
+    """Error of small rotations, R γ²/2, relative to the quantity in error [1].
 
-    With tilts given, of the approach of the contacts, so that loads err by about as
-    much. Free tilts balance the load whatever they are: of the motion R γ.
+    With prescribed tilts that is the approach of the contacts, and loads err by about
+    as much. Free tilts adjust to the load, so that it is the motion R γ.
     """
     xp = namespace(solution.result)
     q, radius = solution.displacement, solution.pitch_radius
@@ -263,7 +263,7 @@ def tilt_error(solution: Solution) -> Any:
     if isinstance(solution, BallSolution):
         approach = solution.approach.max()
     else:
-        # About that of Palmgren's law: 2.5 b²/ρ of a half width b = 2 p ρ/E*.
+        # About the approach by Palmgren's law, 2.5 b²/ρ, half width b = 2 p ρ/E*.
         approach = _largest(
             solution,
             [
@@ -280,7 +280,7 @@ def tilt_error(solution: Solution) -> Any:
 
 
 def speed_factor(solution: Solution) -> Any:
-    """n·dm, of one ring against the other [mm/min]."""
+    """n·dm, n of one ring against the other [mm/min]."""
     assert solution.speed is not None
     turns = abs(solution.speed.inner - solution.speed.outer) * (30.0 / math.pi)
     return turns * (2e3 * solution.pitch_radius)
@@ -299,14 +299,14 @@ def _implausible(bearing):
 
 
 def oddities(solution: Solution) -> Any:
-    """How many numbers of the design are far outside those of bearings."""
+    """How many numbers of the design are far outside their usual ranges."""
     rows = rows_of(solution.element.bearing)
     odd = [odd for row in rows for *_, odd in _implausible(row.bearing)]
     return sum(_one(solution, flag) for flag in odd)
 
 
 def odd_names(solution: Solution) -> str:
-    """What `oddities` counts."""
+    """Numbers that `oddities` counts, in words."""
     rows = rows_of(solution.element.bearing)
     found = [part for row in rows for part in _implausible(row.bearing)]
     return ", ".join(
