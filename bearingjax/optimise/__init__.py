@@ -1,7 +1,7 @@
 """Design optimisation: variables, measures, constraints and the searches.
 
-The function `optimise` has the name of the folder: `bearingjax.optimise` is the
-function, and what else stands here is imported by `from bearingjax.optimise import`.
+`bearingjax.optimise` is the function of that name. Everything else is imported by
+`from bearingjax.optimise import ...`.
 """
 
 from .constraint import Constraint as Constraint

@@ -1,4 +1,4 @@
-"""Bounds on what is asked of a design."""
+"""Constraints of an optimisation: bounds on measures."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ class Constraint(eqx.Module):
         lower: Least value, or `None` [unit of the measure].
         upper: Largest value, or `None` [unit of the measure].
 
-    Traced: the bounds. Static: whether there are such.
+    Traced: the bounds. Static: which of them are given.
     """
 
     measure: Any

@@ -1,4 +1,4 @@
-"""A design with free numbers: objective, constraints and gradients over its cases."""
+"""A design with variables: objective, constraints, gradients over its cases."""
 
 import warnings
 from collections.abc import Callable, Sequence
@@ -21,21 +21,21 @@ from .trials import Trial
 from .variable import Variable, with_values
 
 CHUNK = 64
-"""Most cases that are solved side by side."""
+"""Most cases that are solved as one batch."""
 
 Measure = Callable[[BearingElement[Any], Cases, Solution], Any]
 Build = Callable[[BearingElement[Any]], BearingElement[Any]]
 
 
 class Outcome(NamedTuple):
-    """A design and how it fares.
+    """A design and its results.
 
     Attributes:
         values: Of the variables (variable,) [SI].
-        objective: The smooth objective.
-        exact: What it stands for: the true maximum.
-        constraints: The smooth measures that are bounded (constraint,).
-        exact_constraints: What they stand for (constraint,).
+        objective: The objective, smooth.
+        exact: The objective with the true maximum in place of the smooth one.
+        constraints: The measures that are bounded, smooth (constraint,).
+        exact_constraints: The same with true maxima and minima (constraint,).
         solution: Of all cases, leading axis case.
     """
 
@@ -62,7 +62,7 @@ class Bound(NamedTuple):
 
 
 class Problem:
-    """A design with free numbers, in the unit box of their bounds.
+    """An optimisation, its variables scaled by their bounds to the unit box (0 to 1).
 
     Args:
         element, cases, variables, objective, constraints: As of `optimise`, checked.
@@ -116,7 +116,7 @@ class Problem:
         return trial._replace(objective=trial.objective / self.size, slope=slope)
 
     def outcome(self, trial: Trial) -> tuple[BearingElement[Any], Outcome]:
-        """The design of a trial, and how it fares, by the program already compiled."""
+        """The design of a trial and its results, by the program already compiled."""
         values = self.values(trial.unit)
         element = with_values(self.element, self.paths, values)
         if self.build is not None:
@@ -180,11 +180,11 @@ class Problem:
 
 
 class Run(NamedTuple):
-    """What the compiled program finds.
+    """Results of the compiled program.
 
     Attributes:
-        measures: Objective and constrained measures (measure,).
-        exact: What they stand for (measure,).
+        measures: Objective and constrained measures, smooth (measure,).
+        exact: The same with true maxima and minima (measure,).
         solution: Of all cases, leading axis case.
         jacobian: d(measures)/d(unit) (measure, variable), if asked for.
     """
@@ -242,7 +242,7 @@ def _bounds(constraints):
 
 
 def _fault(found: Run) -> str:
-    """Why an evaluated design is no good, in words; empty if it is good."""
+    """Why an evaluated design is rejected, in words; empty if it is not."""
     results = np.asarray(found.solution.result)
     if results.any():
         k = int(np.argmax(results))

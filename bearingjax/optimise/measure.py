@@ -1,10 +1,10 @@
-"""What is asked of a design over its operating cases: one number each, smooth.
+"""Measures of a design over its operating cases: one smooth number each.
 
 A measure is any function (element, cases, solution) -> scalar, where the solution has
-a leading case axis; those here are Modules. Life over a load spectrum would be one
-more: the element has the design, the cases their hours and speeds.
+a leading case axis; those here are Modules. Life over a load spectrum can be added as
+one: the element has the design, the cases have hours and speeds.
 
-Their maxima and minima are smooth (`smooth.py`).
+Maxima and minima are smooth (`smooth.py`).
 """
 
 import abc
@@ -43,7 +43,7 @@ class AbstractMeasure(eqx.Module):
     def exact(
         self, element: BearingElement[Any], cases: Cases, solution: Solution
     ) -> Scalar:
-        """What the smooth number stands for: the true maximum or minimum.
+        """The measure with the true maximum or minimum in place of the smooth one.
 
         Args:
             element, cases, solution: As of a call.
@@ -52,7 +52,7 @@ class AbstractMeasure(eqx.Module):
 
     @property
     def least_size(self) -> float:
-        """Least value that an optimisation takes as the size of an objective."""
+        """Least number by which an optimisation divides it as an objective."""
         return 0.0
 
     @property
@@ -105,9 +105,9 @@ class AbstractLargest(AbstractSmooth):
 class PeakPressure(AbstractLargest):
     """Largest contact pressure of all cases, elements, raceways and positions [Pa].
 
-    The smooth maximum is over the peaks of all rollers and the `points` positions of
-    the solution: with few of those it has kinks where the peak leaps. Hours do not
-    count.
+    The smooth maximum is over the largest pressures of all contacts and, of rollers,
+    the pressures at the `points` positions of the solution. With few positions it has
+    kinks where the place of the largest pressure jumps. Hours do not matter.
 
     Attributes:
         exponent: Of the smooth maximum. With a larger one it is closer to the true
@@ -131,7 +131,7 @@ class PeakPressure(AbstractLargest):
 
 
 class MeanPressure(AbstractSmooth):
-    """Peak pressure of each case, its mean over the hours of the cases [Pa].
+    """Mean, over the hours of the cases, of the peak pressure of each case [Pa].
 
     Without hours all cases count alike.
 
@@ -256,9 +256,10 @@ class Stiffness(AbstractSmooth):
 
 
 class StiffnessTarget(AbstractMeasure):
-    """How far a stiffness is from what is wanted, (k/target - 1)² [1].
+    """Square of the relative difference of a stiffness from its target [1].
 
-    The mean over the hours of the cases; without hours all count alike.
+    The mean of (k/target - 1)² over the hours of the cases; without hours all count
+    alike.
 
     Attributes:
         target: Wanted stiffness, not zero [N/m, N, N m].
@@ -286,7 +287,8 @@ class StiffnessTarget(AbstractMeasure):
 
     @property
     def least_size(self):
-        # A miss of 1 %: where the target is met already, round-off must not look steep.
+        # A difference of 1 %: divided by less, round-off about a target that is met
+        # would look like a slope.
         return 1e-4
 
     @property
@@ -311,7 +313,7 @@ def label_of(measure: Any) -> str:
 
 
 def exact_of(measure: Any, element, cases: Cases, solution: Solution) -> Scalar:
-    """The exact value of a measure; of a plain function its value.
+    """`exact` of a measure; of a plain function its value.
 
     Args:
         measure: Any measure.
@@ -331,7 +333,7 @@ def least_size_of(measure: Any) -> float:
 
 
 def hour_weights(cases: Cases) -> Float[Array, " case"]:
-    """Share of each case in the hours; of cases without hours, all alike.
+    """Share of each case in all hours; equal shares if the cases have no hours.
 
     Args:
         cases: Operating cases.

@@ -1,8 +1,8 @@
-"""Design optimisation: the free numbers of a drawing that make a measure least.
+"""Design optimisation: values of design variables that minimise a measure.
 
-One compiled program solves all operating cases of a design and pulls the gradient of
-objective and constraints back through the equilibria (implicit function theorem,
-reverse mode): it costs little more than the solves.
+One compiled program solves all operating cases of a design and differentiates objective
+and constraints through the equilibria (implicit function theorem, reverse mode). The
+gradient costs little more than the solves.
 """
 
 import dataclasses
@@ -22,7 +22,7 @@ from .trials import Trial, Trials, optimality
 from .variable import Variable, check_variables
 
 NEAR = 0.05
-"""Share of the range of a variable within which a rejected design is called near."""
+"""Largest distance of a rejected design that is named, over a variable's range [1]."""
 
 
 class History(NamedTuple):
@@ -31,7 +31,7 @@ class History(NamedTuple):
     Attributes:
         values: Of the variables (step, variable) [SI].
         objective: The smooth objective (step,).
-        violation: Miss of the worst constraint over the size of its bound (step,).
+        violation: Largest violation of a constraint over the size of its bound (step,).
         gradient: As `Optimised.optimality` (step,) [1]; NaN with a method without
             gradients.
         evaluations: Designs evaluated so far (step,).
@@ -46,25 +46,25 @@ class History(NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class Optimised:
-    """What an optimisation found.
+    """Result of an optimisation.
 
     Attributes:
         element: The best design, its checks passed.
         initial: The starting design.
-        variables: What was free.
-        objective: What was made least.
-        constraints: What was kept.
-        values: Its numbers (variable,) [SI].
-        before: The starting design and how it fared.
-        after: The best design, likewise.
-        history: The way from one to the other.
+        variables: The design variables.
+        objective: The measure that was minimised.
+        constraints: Bounds on measures.
+        values: Variables of the best design (variable,) [SI].
+        before: Results of the starting design.
+        after: Results of the best design.
+        history: The steps from one to the other.
         n_evaluations: Designs that were evaluated, every case of each solved once.
-        n_gradients: Those of which the gradient was asked for.
+        n_gradients: Designs that were evaluated with gradients.
         rejected: Why designs were rejected, in order; empty if none was.
-        optimality: Largest part of the gradient of the best design that neither a
-            bound nor an active constraint holds back: of the objective over its size
-            at the start, by variables over their range [1]. Zero at a minimum. NaN
-            where it was not asked for: without gradients, at the step limit.
+        optimality: Largest component of the gradient of the best design that neither a
+            bound nor an active constraint cancels: of the objective over its size at
+            the start, by variables over their range [1]. Zero at a minimum. NaN if a
+            method without gradients did not report convergence.
         result: "converged" (`optimality` is within the tolerance and the constraints
             are kept), "step_limit", "stalled" (the method could not go on), or
             "infeasible" (no design was found that keeps the constraints).
@@ -110,49 +110,49 @@ def optimise(
     build: Build | None = None,
     progress: bool = False,
 ) -> Optimised:
-    """The design within bounds that makes an objective least over operating cases.
+    """Find the design within bounds that minimises an objective over operating cases.
 
-    A design with a case that does not solve, with a number that is not finite, or
-    that the drawing does not allow is rejected: the search is told of a slope that
-    rises away from its last step, and turns back. `rejected` lists the reasons. A
-    search with gradients that gives up at rejected designs is begun anew from a better
-    design beside them; if there is none, it has stalled, and the message names one.
+    A design is rejected if a case does not solve, a number is not finite, or its
+    dimensions are not allowed. The search then sees an objective that rises away from
+    its last step, and turns back. `rejected` lists the reasons. A search with gradients
+    that gives up at rejected designs is restarted from a better design nearby. If there
+    is none it has stalled, and the message names the nearest rejected design.
 
-    No search is called converged by its own word: the first-order conditions of Karush,
-    Kuhn and Tucker are checked at the best design, with exact gradients. They hold at a
-    saddle too, and at a minimum that is not the lowest: begin from several starts.
+    Convergence is not taken from the method: the first-order conditions of Karush,
+    Kuhn and Tucker are checked at the best design, with exact gradients. They also hold
+    at a saddle and at a local minimum: run it from several starts.
 
     Args:
         element: The design to start from.
         cases: Operating cases, all of this design.
-        variables: Its free numbers.
-        objective: What is made least: a measure such as `PeakPressure()`, or any
+        variables: The design variables.
+        objective: The measure to be minimised, such as `PeakPressure()`, or any
             smooth function (element, cases, solution) -> scalar.
         constraints: Bounds on measures.
         method: "l-bfgs-b" (the default without constraints), "slsqp" (with them),
             "adam" or any Optax gradient transformation, projected onto the bounds;
-            "nelder-mead", which asks for no gradients and is there to compare, or a
-            function like it (see `search` in `bearingjax/optimise/search.py`). Only
-            "slsqp" keeps constraints.
+            "nelder-mead", without gradients, for comparison; or a search function of
+            your own (see `search` in `bearingjax/optimise/search.py`). Only "slsqp"
+            keeps constraints.
         max_steps: Step limit of the search.
-        tolerance: `optimality` at which the search ends; constraints are kept to this
-            share of their bound, and within it count as active. 1e-5 moves the
-            objective by 1e-5 of its size at the most, over the whole range of a
-            variable; it stands well above the round-off of gradients (1e-9), though
-            p-norms near a minimax bend the more, the larger their exponent. In
-            float32: 1e-3. Of "nelder-mead": size of the simplex; it sees the objective
-            alone, which is flat to the square of the gradient, so that it counts as
-            converged with an `optimality` of up to the root of this.
-        points: Positions along the rollers that smooth maxima of the pressure sample
-            beside the peaks, which do not depend on them.
+        tolerance: `optimality` at which the search ends. Constraints are kept to this
+            share of their bound, and count as active within it. With 1e-5 the gradient
+            left changes the objective by at most 1e-5 of its size over the whole range
+            of a variable. Gradients are exact to 1e-9, but p-norms with a large
+            exponent curve sharply near a minimax. In float32 use 1e-3. For
+            "nelder-mead" it is the size of the simplex; as that method sees only the
+            objective, it counts as converged with an `optimality` of up to the square
+            root of this.
+        points: Positions along the rollers at which smooth maxima sample the pressure,
+            in addition to the peaks, which do not depend on them.
         free, fixed_ring: As of `solve_load`.
         solve_tolerance: `tolerance` of `solve_load`.
-        build: What is done to a changed design before it is solved, for example
+        build: Function applied to each changed design before it is solved, for example
             `lambda e: bj.preload(e, 400.0, throw=False)`.
         progress: Show a progress bar on standard error.
 
     Returns:
-        The best design and the way to it; read `result`.
+        The best design and the steps to it; check `result`.
 
     Raises:
         TypeError, ValueError: For wrong variables, measures, methods or numbers.
@@ -188,7 +188,7 @@ def optimise(
 def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimised:
     best = trials.attempt(ending.unit, slopes or ending.settled)
     if best.fault:
-        # A failed gradient at the end leaves the design as it was.
+        # Its gradient may have failed: take the last step.
         best = trials.steps[-1]
     result, text = verdict(trials, ending, best, slopes, max_steps, tolerance)
     if result != "converged":
@@ -234,10 +234,10 @@ def verdict(
     """Result of a search, and the same in words.
 
     Args:
-        trials: What was tried.
-        ending: What the search says.
-        best: The best design, with gradients if the search calls it so.
-        slopes: Whether the search asks for gradients.
+        trials: Designs that were tried.
+        ending: How the search ended.
+        best: The best design; with gradients if the search uses them or has settled.
+        slopes: Whether the search uses gradients.
         max_steps, tolerance: As of `optimise`.
     """
     left, n = optimality(best, tolerance), len(trials.steps) - 1
@@ -275,7 +275,7 @@ def _near_by(problem: Problem, trials: Trials, best: Trial) -> str:
 
 
 def _idle(problem: Problem, trials: Trials) -> str:
-    """Variables that nothing depended on at any step, in words; empty if none."""
+    """Variables on which nothing depended at any step, in words; empty if none."""
     slopes = [
         np.vstack([step.slope, step.margin_slopes])
         for step in trials.steps

@@ -1,4 +1,4 @@
-"""Searches for the least objective in the unit box: SciPy's, and Optax's descents."""
+"""Searches for the least objective in the unit box: by SciPy, and descent by Optax."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -13,19 +13,20 @@ METHODS = ("l-bfgs-b", "slsqp", "adam", "nelder-mead")
 """Searches by name; any Optax gradient transformation is another."""
 
 FIRST_STEP = 0.1
-"""Size of the first simplex, and about that of Adam's first steps, of the box."""
+"""Size of the first simplex, and about that of Adam's first steps [size of the box]."""
 
 _LENGTHS = (0.1, 0.03, 0.01, 0.003)
-"""Steps that are tried away from rejected designs, of the box."""
+"""Lengths of the steps that are tried where a search gave up [size of the box]."""
 
 _TURNS = tuple(np.deg2rad([45.0, 75.0, 87.0]))
-"""Angles by which they are turned off the steepest descent, to pass along the edge."""
+"""Angles of these steps to the steepest descent, to pass along the edge of the rejected
+designs [rad]."""
 
 _RUNS = 10
-"""How often a search is begun at the most."""
+"""Most starts of a search."""
 
 _PATIENCE = 20
-"""Rejected designs after which it is begun anew."""
+"""Rejected designs after which a search is restarted."""
 
 _ROUND_OFF = 1e-13
 """Change of the objective, over its size at the start, at which SciPy's searches end:
@@ -33,7 +34,7 @@ it is round-off. Whether they have converged is judged by the gradient (`arrived
 
 
 def takes_gradients(method: Any) -> bool:
-    """Whether a search asks for gradients; one's own does not.
+    """Whether a search uses gradients; a user's own search does not.
 
     Args:
         method: As of `search`.
@@ -45,10 +46,10 @@ class Ending(NamedTuple):
     """How a search ended.
 
     Attributes:
-        unit: Where (variable,).
-        settled: Whether the method says that it has converged.
-        text: What the method says.
-        limited: Whether it ran out of steps.
+        unit: Variables in the unit box (variable,).
+        settled: Whether the method reports that it has converged.
+        text: Message of the method.
+        limited: Whether the step limit was reached.
     """
 
     unit: np.ndarray
@@ -79,13 +80,13 @@ def search(
 ) -> Ending:
     """Look for the least objective with all margins at least 0.
 
-    A method with gradients ends where the first-order conditions hold. Where it gives
-    up before, at rejected designs as a rule, it is begun anew from a better design
-    near the best one, if there is any.
+    A method with gradients ends where the first-order conditions hold. If it gives up
+    before, usually at rejected designs, it is restarted from a better design near the
+    best one, if there is any.
 
     Args:
-        method: One of `METHODS`, an Optax gradient transformation, or a search of
-            one's own: attempt, start, max_steps, tolerance, step -> `Ending`.
+        method: One of `METHODS`, an Optax gradient transformation, or a user's own
+            search: (attempt, start, max_steps, tolerance, step) -> `Ending`.
         trials: Evaluates and records; its first step is the start.
         n_bounds: Number of margins.
         max_steps: Step limit.
@@ -141,23 +142,23 @@ def arrived(trial: Trial, tolerance: float) -> bool:
 
     Args:
         trial: With gradients.
-        tolerance: Of the gradient left, and of the bounds.
+        tolerance: Of `optimality`, and of the bounds.
     """
     flat = optimality(trial, tolerance) <= tolerance
     return flat and trial.violation <= tolerance
 
 
 def _merit(trial, tolerance):
-    """What is to be least: first the violation, if there is any."""
+    """Key that compares designs: first the violation, if any, then the objective."""
     missed = trial.violation if trial.violation > tolerance else 0.0
     return missed, trial.objective
 
 
 def _onward(attempt, here, rejected, tolerance) -> Trial | None:
-    """A design near by that is better by a good part of what its slope promises.
+    """A design nearby that is better by a tenth or more of what the slope predicts.
 
-    Straight down, and, if designs were rejected, turned off to all sides: what bars
-    the way may be passed along its edge.
+    Tried are steps along the steepest descent and, if designs were rejected, steps
+    turned to all sides, to pass along the edge of the rejected designs.
     """
     from scipy.linalg import null_space
 
@@ -215,7 +216,7 @@ def _method(method, n_bounds, max_steps) -> Callable[..., Ending]:
 def _quasi_newton(method, n_bounds, attempt, start, max_steps, tolerance, step):
     from scipy.optimize import minimize
 
-    # The gradient ends the search, in `step`.
+    # `step` ends the search, by the gradient.
     options: dict[str, Any] = {"ftol": _ROUND_OFF, "maxiter": max_steps}
     if method == "l-bfgs-b":
         options |= {"gtol": 0.0, "maxfun": 20 * max_steps}
@@ -226,8 +227,8 @@ def _quasi_newton(method, n_bounds, attempt, start, max_steps, tolerance, step):
     }
 
     def slope(x):
-        # SLSQP asks for gradients where it has arrived; its callback tells of every
-        # full step, taken or not.
+        # SLSQP asks for gradients only at points that it has accepted; its callback is
+        # called for every full step, accepted or not.
         if method == "slsqp":
             if attempt(x).fault:
                 raise _Stuck
@@ -284,7 +285,7 @@ def _descent(transformation, attempt, start, max_steps, tolerance, step):
     from optax.projections import projection_box
 
     point = jnp.asarray(start)
-    # Optax counts on JAX's standard promotion of dtypes.
+    # Optax relies on JAX's standard promotion of dtypes.
     with jax.numpy_dtype_promotion("standard"):
         state = transformation.init(point)
     here = attempt(start)

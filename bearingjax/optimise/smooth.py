@@ -1,8 +1,9 @@
 """Smooth maxima and minima of many samples.
 
-They are p-norms, which have a derivative wherever the peak stands: never below the true
-maximum of the samples, and above it by a factor of at most
-(number of samples)^(1/exponent); minima likewise, never above.
+They are p-norms, differentiable wherever the peak lies. A smooth maximum is never below
+the true maximum of the samples, and above it by a factor of at most
+(number of samples)^(1/exponent). A smooth minimum is never above the true minimum, and
+below it by at most the same factor.
 """
 
 import jax
@@ -12,7 +13,7 @@ from jaxtyping import Array, Float
 from ..numerics.types import Scalar
 
 EXPONENT = 64.0
-"""Of smooth maxima: with the 100 samples that stand near a peak, 7 % above it."""
+"""Default exponent: with 100 samples near a peak the maximum comes out 7 % above it."""
 
 
 def smooth_maximum(values: Float[Array, "..."], exponent: float = EXPONENT) -> Scalar:

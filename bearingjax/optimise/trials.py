@@ -12,9 +12,9 @@ class Trial(NamedTuple):
     Attributes:
         unit: Variables, 0 at the lower and 1 at the upper bound (variable,).
         objective: Objective over its size at the start.
-        slope: Its gradient (variable,), or `None`: not asked for.
-        margins: What is left to each bound of the constraints over the size of that
-            bound, ≥ 0 where it is kept (bound,).
+        slope: Its gradient (variable,), or `None`: not worked out.
+        margins: Distance to each bound of the constraints over the size of that bound,
+            ≥ 0 where it is kept (bound,).
         margin_slopes: Their gradients (bound, variable), or `None`.
         fault: Why the design was rejected; empty if it was not.
         solved: Whether its cases were solved at all.
@@ -30,19 +30,20 @@ class Trial(NamedTuple):
 
     @property
     def violation(self) -> float:
-        """By how much the worst constraint is missed; 0 if all are kept."""
+        """Largest violation of a constraint; 0 if all are kept."""
         return float(max(0.0, -self.margins.min(initial=0.0)))
 
 
 def remainder(trial: Trial, near: float) -> np.ndarray:
-    """What of the gradient no bound and no active constraint holds back (variable,).
+    """Part of the gradient that no bound and no active constraint cancels (variable,).
 
-    Against it the objective falls, and to first order all bounds are kept. Zero at a
-    minimum: the conditions of Karush, Kuhn and Tucker, multipliers of the right sign.
+    A step against it lowers the objective and, to first order, keeps all bounds. It is
+    zero at a minimum: these are the conditions of Karush, Kuhn and Tucker, with
+    multipliers of the right sign.
 
     Args:
         trial: With gradients.
-        near: How near a bound of a variable or a constraint counts as on it.
+        near: Distance within which a bound of a variable or a constraint is active.
     """
     from scipy.optimize import nnls
 
@@ -62,7 +63,7 @@ def remainder(trial: Trial, near: float) -> np.ndarray:
 
 
 def optimality(trial: Trial, near: float) -> float:
-    """Largest part of `remainder`; NaN without gradients.
+    """Largest component of `remainder` in size; NaN without gradients.
 
     Args:
         trial, near: As of `remainder`.
@@ -80,10 +81,10 @@ class Trials:
 
     Attributes:
         steps: Designs that the search has moved to, the start first.
-        evaluations: How many designs were solved until each of them.
+        evaluations: Number of designs solved up to each step.
         rejected: Designs that failed, in order.
-        n_evaluations: Designs that were solved.
-        n_gradients: Those of which the gradient was asked for.
+        n_evaluations: Number of designs that were solved.
+        n_gradients: Number of designs that were solved with gradients.
     """
 
     def __init__(self, evaluate: Callable[[np.ndarray, bool], Trial], start: Trial):
@@ -96,10 +97,10 @@ class Trials:
         self.n_gradients = int(start.slope is not None)
 
     def attempt(self, unit: np.ndarray, slopes: bool) -> Trial:
-        """The trial of a design, evaluated once though a search asks repeatedly.
+        """The trial of a design; the same design twice in a row is evaluated once.
 
-        A rejected one has the numbers of a cone that rises away from the last step, so
-        that searches turn back.
+        A rejected design is given an objective that rises linearly away from the last
+        step (a cone), so that searches turn back.
         """
         last = self._last
         known = last.slope is not None or not slopes
@@ -114,14 +115,14 @@ class Trials:
         return self._last
 
     def accept(self, trial: Trial) -> None:
-        """Note that the search has moved here, unless it stands still."""
+        """Record a step of the search, if it moved and the design is not rejected."""
         moved = np.any(trial.unit != self.steps[-1].unit)
         if moved and not trial.fault:
             self.steps.append(trial)
             self.evaluations.append(self.n_evaluations)
 
     def _cone(self, failed: Trial, slopes: bool) -> Trial:
-        """Numbers for a rejected design: those of the last step, rising from there."""
+        """Trial of a rejected design: objective of the last step, rising from there."""
         last = self.steps[-1]
         away = failed.unit - last.unit
         distance = float(np.linalg.norm(away)) or 1.0

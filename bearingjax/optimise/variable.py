@@ -1,4 +1,4 @@
-"""Free numbers of a design: where they stand, and between which bounds."""
+"""Design variables: their paths in the design, and their bounds."""
 
 import dataclasses
 import difflib
@@ -15,14 +15,14 @@ from ..element.bearing_element import BearingElement
 
 @dataclasses.dataclass(frozen=True)
 class Variable:
-    """A number of the design that may change.
+    """A number of the design that an optimisation may change.
 
     Attributes:
-        path: Where it stands in the element, "bearing.roller_profile.crown_radius"; in
+        path: Its dotted path in the element, "bearing.roller_profile.crown_radius"; in
             a set "bearing.rows.0.bearing.…". Several paths share one value.
         lower: Least value [SI].
         upper: Largest value [SI].
-        start: First value [SI]; `None`: what the design has.
+        start: First value [SI]; `None`: that of the design.
         name: In messages and reports; default: the first path.
 
     Raises:
@@ -77,7 +77,7 @@ class Variable:
             )
 
     def start_in(self, element: BearingElement[Any]) -> float:
-        """First value: `start`, or what stands in the design [SI].
+        """First value: `start`, or that of the design [SI].
 
         Args:
             element: The design.
@@ -117,12 +117,12 @@ def design_numbers(design: Any) -> dict[str, Array]:
 
 def _path(keys) -> str:
     names = ".".join(str(getattr(k, "name", getattr(k, "idx", k))) for k in keys)
-    # Laws are those of the element, as when it is made.
+    # Laws have the paths of the keywords of BearingElement.
     return names.removeprefix("choices.")
 
 
 def changed(design: Any, values: Mapping[str, Any]) -> Any:
-    """The design with other numbers, made anew, so that its checks run again.
+    """The design with other numbers, constructed again, so that its checks run.
 
     Args:
         design: An element, bearing or part.
@@ -153,7 +153,7 @@ def with_values(
 
     Args:
         element: The design.
-        paths: Where each number stands, one sequence of dotted paths a number.
+        paths: Dotted paths of each number, one sequence a number.
         values: The numbers [SI].
 
     Raises:
@@ -170,14 +170,15 @@ def check_variables(
 
     Args:
         element: The design.
-        variables: Its free numbers.
+        variables: Its design variables.
 
     Returns:
         The first values [SI].
 
     Raises:
         TypeError: If one is no Variable.
-        ValueError: As above, if there is none, or if a number is named twice.
+        ValueError: If a start or bound is not allowed, there is no variable, or a
+            number is named twice.
     """
     if not variables:
         raise ValueError("optimise: `variables` is empty; name at least one Variable.")
