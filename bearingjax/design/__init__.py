@@ -1,4 +1,4 @@
-"""What stands on the drawing: materials, profiles, ribs, bearings. Data, no solving."""
+"""Design data: materials, profiles, ribs, bearings. Nothing is solved here."""
 
 from .ball import AbstractBallBearing as AbstractBallBearing
 from .ball import Groove as Groove

@@ -1,4 +1,4 @@
-"""Ball bearings as they stand on the drawing: dimensions, checked, no solving.
+"""Ball bearings as on the drawing: dimensions and their checks.
 
 A groove is a torus: its section is a circle of the groove radius r = f D around the
 groove centre, f being the osculation. Unloaded, a ball that touches both raceways has
@@ -41,7 +41,7 @@ class Groove(NamedTuple):
         open_side: Whether the raceway goes on as a cylinder beyond the groove
             bottom, so that it carries on one side only. Static.
         deepest: Cosine of the angle, from the middle of the raceway, at which the
-            arc is deepest: 1 but where two arcs meet [1].
+            arc is deepest: 1 unless the raceway is two arcs [1].
     """
 
     on_outer: bool
@@ -53,7 +53,7 @@ class Groove(NamedTuple):
 
 
 class AbstractBallBearing(eqx.Module):
-    """What every single-row ball bearing has.
+    """Single-row ball bearing: what all types have in common.
 
     Attributes:
         n_balls: Number of balls.
@@ -68,7 +68,7 @@ class AbstractBallBearing(eqx.Module):
         azimuth_deviation: Azimuth of each ball less that of even spacing (ball,)
             [rad]; `None`: evenly spaced.
         outer_shoulder: Height of the outer shoulders above the groove bottom [m];
-            `None`: unknown, no truncation is looked for.
+            `None`: unknown, and truncation is not checked.
         inner_shoulder: Height of the inner shoulders above the groove bottom [m].
         material: Material of the balls.
         ring_material: Material of the rings; `None`: as the balls.
@@ -147,7 +147,7 @@ class AbstractBallBearing(eqx.Module):
 
     @property
     def holds_axially(self) -> bool:
-        """Whether it passes axial load from ring to ring, of one sense at least."""
+        """Whether it passes axial load from ring to ring, at least in one direction."""
         return True
 
     @property
@@ -160,7 +160,7 @@ class AbstractBallBearing(eqx.Module):
         """Largest play between the rings, radial or axial [m]; may be negative."""
         axial = 2.0 * self.centre_distance * jnp.sin(self.free_contact_angle)
         if self.is_one_sided:
-            return jnp.zeros_like(axial)  # its zero is where the balls touch
+            return jnp.zeros_like(axial)  # the balls touch at zero displacement
         return jnp.maximum(axial, 0.5 * self.clearance)
 
     @property
@@ -237,7 +237,7 @@ class AbstractBallBearing(eqx.Module):
         check_spacing(self, self.n_balls, ball)
         if value is None:
             return
-        # A ball as large as its groove has no point contact.
+        # A ball with the radius of its groove has no point contact.
         most = 2.0 * min(distances)
         allowed = (
             f"above {-ball:.6g} m and below {most:.6g} m, where a ball would"

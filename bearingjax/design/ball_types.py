@@ -237,7 +237,7 @@ class SelfAligningBallRow(AbstractBallBearing):
 
     The centre of the sphere is the origin of the bearing, on the axis, so that the
     rings tilt freely about it. `BearingSet.self_aligning` makes the bearing of two
-    such rows. At zero displacement the rings are centred; half of the play stands at
+    such rows. At zero displacement the rings are centred, with half of the play at
     each raceway.
 
     Attributes are those of `AbstractBallBearing` without `outer_osculation`, which
@@ -277,7 +277,8 @@ class SelfAligningBallRow(AbstractBallBearing):
 
     @property
     def play(self):
-        # Axially a row closes with the sine of its contact angle, radially its cosine.
+        # The gap along the contact angle gives axial play over its sine, radial play
+        # over its cosine.
         longer = jnp.maximum(1.0, 0.5 * self.pitch_diameter / self.row_offset)
         return 0.5 * self.clearance * longer
 

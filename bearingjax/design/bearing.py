@@ -1,4 +1,4 @@
-"""Roller bearings as they stand on the drawing: dimensions, checked, no solving."""
+"""Roller bearings as on the drawing: dimensions and their checks."""
 
 import math
 import warnings
@@ -18,16 +18,16 @@ from .rib import Ribs
 
 
 class AbstractRollerBearing(eqx.Module):
-    """What every single-row roller bearing has.
+    """Single-row roller bearing: what all types have in common.
 
     Attributes:
         n_rollers: Number of rollers.
         pitch_diameter: Diameter of the circle of the roller centres, D_pw [m].
         roller_diameter: Mean roller diameter, D_we [m].
         roller_length: Effective contact length along the generator, L_we [m].
-        radial_internal_clearance: Diametral play; unloaded and centred a quarter of
-            it stands at each raceway, along the contact normal. Negative is
-            preload [m].
+        radial_internal_clearance: Diametral play; negative is preload [m]. Unloaded
+            and centred, a quarter of it is the gap at each raceway, along the contact
+            normal.
         first_azimuth: Azimuth of roller 0, from +x towards +y [rad].
         roller_deviation: Mean diameter of each roller less `roller_diameter`
             (roller,) [m]; `None`: all equal.
@@ -80,7 +80,7 @@ class AbstractRollerBearing(eqx.Module):
 
     @property
     def holds_axially(self) -> bool:
-        """Whether it passes axial load from ring to ring, of one sense at least."""
+        """Whether it passes axial load from ring to ring, at least in one direction."""
         pairs = ("outer_minus", "inner_plus"), ("outer_plus", "inner_minus")
         return any(set(pair) <= set(self.ribs.present) for pair in pairs)
 
@@ -168,7 +168,7 @@ class AbstractRollerBearing(eqx.Module):
         if numbers is None:
             return
         pitch, diameter, length, axis, half, clearance = numbers
-        # Both ends of the roller: radius of the disc, and of the circle it runs on.
+        # Both ends of the roller: radius of the end, and of the circle of its centre.
         for side in (-1.0, 1.0):
             along = 0.5 * side * length * math.cos(half)
             radius = 0.5 * diameter - along * math.tan(half)
@@ -225,7 +225,7 @@ class TaperedRollerBearing(AbstractRollerBearing):
 
     The large roller ends lie at -z; an inner-ring load along +z closes the bearing.
     A roller with a half cone angle needs the large rib (`ribs.inner_minus`): without
-    it nothing frictionless holds the roller.
+    it no contact holds the roller along its axis, as there is no friction.
 
     Attributes are those of `AbstractRollerBearing`, and
         roller_axis_angle: Angle of the roller axis to the bearing axis [rad].
@@ -294,7 +294,7 @@ def _angles_and_size(taper):
 
 
 def _apexes(axis, half, pitch_diameter, diameter, m):
-    """The three apexes, with the functions of module `m` (NumPy's names)."""
+    """The three apexes; `m` is the module of sin, cos and tan: math or jax.numpy."""
     pitch = 0.5 * pitch_diameter
     z, r = 0.5 * diameter * m.sin(axis), 0.5 * diameter * m.cos(axis)
     return (

@@ -18,16 +18,16 @@ Bearing = AbstractRollerBearing | AbstractBallBearing
 
 
 class PreloadSpring(eqx.Module):
-    """Spring that presses one row of a set, its ring sliding axially.
+    """Spring that preloads one row of a set, by sliding one of its rings axially.
 
     Attributes:
-        force: What it presses with where the row just touches [N].
+        force: Spring force at the place where the row just touches [N].
         stiffness: Loss of force per travel that closes the row [N/m]; zero: a
             constant force.
 
-    The spring pushes, it does not pull: beyond travel force/stiffness it is slack.
-    Pushed back it gives way without end: there is no stop. Mounted, it presses with
-    a little less than `force`, by the travel in which the row takes it up.
+    The spring only pushes: beyond a travel of force/stiffness it is slack. In the
+    other direction there is no stop. Mounted, it presses with a little less than
+    `force`, because the row closes elastically under it.
 
     Traced: all fields.
     """
@@ -42,7 +42,7 @@ class PreloadSpring(eqx.Module):
     def push(self, travel: Scalar) -> tuple[Scalar, Scalar, Scalar]:
         """Energy [J], force [N] and its loss per travel [N/m] at a travel [m].
 
-        The energy is that given to the row, counted negative.
+        The energy is minus the work done on the row.
         """
         soft = self.stiffness == 0
         slack = (travel * self.stiffness > self.force) & ~soft
@@ -59,12 +59,13 @@ class SetRow(eqx.Module):
     Attributes:
         bearing: The single-row bearing.
         position: z of its origin in the set [m].
-        mirrored: Turned round: it carries an inner-ring load along -z.
-        inner_offset: Axial place of its inner ring against its outer ring, from
-            where the single bearing has it, along +z of the set [m]; how a set is
-            preloaded by grinding or by spacers.
-        spring: Spring that presses the row; its ring then slides on its seat by
-            `inner_offset` and what the balance asks.
+        mirrored: Whether it is turned round: it then carries an inner-ring load
+            along -z.
+        inner_offset: Axial offset of its inner ring against its outer ring from their
+            places in the single bearing, along +z of the set [m]: the preload by
+            ground rings or by spacers.
+        spring: Spring that preloads the row; its ring then slides on its seat, by a
+            travel that follows from equilibrium, added to `inner_offset`.
 
     Traced: position, inner_offset, spring.
     """
@@ -93,10 +94,10 @@ def _as_tuple(rows):
 
 
 class BearingSet(eqx.Module):
-    """Rows that share the node of the inner and the node of the outer ring.
+    """Rows of which all inner rings move together, and all outer rings.
 
-    The nodes lie at z = 0 of the set. Rows may differ in everything but must be all
-    of balls or all of rollers.
+    Motions and loads of both are taken at the node, z = 0 of the set. Rows may differ
+    in everything but must be all of balls or all of rollers.
 
     Attributes:
         rows: The rows, in any order.
@@ -120,8 +121,8 @@ class BearingSet(eqx.Module):
         Args:
             bearing: Either bearing of the pair.
             spacing: Distance of the middles of the rows [m].
-            preload_offset: Axial approach of the inner rings that presses each row by
-                half of it [m]; the total of both gaps that the nut closes.
+            preload_offset: Axial approach of the inner rings, half of it for each row
+                [m]: the whole gap that the nut closes.
             spring: Spring that presses the row at +z.
 
         Raises:
@@ -137,12 +138,12 @@ class BearingSet(eqx.Module):
         preload_offset=0.0,
         spring: PreloadSpring | None = None,
     ) -> "BearingSet":
-        """Pair in X arrangement (DF): forgiving of misalignment.
+        """Pair in X arrangement (DF): tolerates misalignment.
 
         Args:
             bearing, spacing, spring: As in `back_to_back`.
-            preload_offset: Axial approach of the outer rings that presses each row by
-                half of it [m].
+            preload_offset: Axial approach of the outer rings, half of it for each row
+                [m].
 
         Raises:
             ValueError: If `spacing` is not positive.
@@ -211,7 +212,7 @@ class BearingSet(eqx.Module):
                     f"BearingSet: `rows` holds a {type(row).__name__}; it must hold"
                     " SetRows."
                 )
-            # Two spheres about different centres would not align.
+            # Two spheres about different centres could not tilt together.
             numbers = concrete(row.position)
             aligning = isinstance(row.bearing, SelfAligningBallRow)
             if aligning and numbers is not None and numbers[0] != 0.0:
@@ -250,13 +251,13 @@ def is_ball(bearing: Bearing | BearingSet) -> bool:
 
 
 def is_self_aligning(bearing: Bearing | BearingSet) -> bool:
-    """Whether its rings tilt freely."""
+    """Whether its rings tilt freely, as in a self-aligning bearing."""
     rows = rows_of(bearing)
     return all(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
 
 
 def has_sphere(bearing: Bearing | BearingSet) -> bool:
-    """Whether an outer raceway is a sphere, which asks for finite rotations."""
+    """Whether an outer raceway is a sphere, which needs finite rotations."""
     rows = rows_of(bearing)
     return any(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
 

@@ -2,10 +2,10 @@
 
 Checks act on concrete numbers and let traced ones through: under `jit` or `grad` a
 design was checked when it was made, and a bad traced number ends in a result code.
-They compute with NumPy: an eager JAX operation would be compiled for nothing.
+They use NumPy, because an eager JAX operation would have to be compiled.
 
-What is checked is a field of the owner, whose value and unit are looked up there, or
-anything else, with value and unit `given` after all other arguments.
+A field of the owner is checked by its name: its value and unit are looked up. Of
+anything else, value and unit are `given` after all other arguments.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from ..numerics.units import unit_of
 
 
 def is_traced(value) -> bool:
-    """Whether a value is being traced, and has no number to look at."""
+    """Whether a value is being traced, so that its number is not known."""
     return isinstance(value, Tracer)
 
 
@@ -38,7 +38,7 @@ def check(owner, name: str, ok, allowed: str, *given: Any) -> None:
         name: Parameter.
         ok: Whether its value is allowed; skipped if traced.
         allowed: What is allowed, ending the sentence "it must be ...".
-        given: Value and unit, empty for a pure number, of what is no field of `owner`.
+        given: Value and unit (empty for a pure number) of what is no field of `owner`.
 
     Raises:
         ValueError: If `ok` is false.

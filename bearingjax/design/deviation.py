@@ -12,8 +12,8 @@ from .checks import check, concrete, is_real, is_traced
 class Deviation(NamedTuple):
     """Differences of every rolling element of a row from the design.
 
-    Each is `None` where all are equal. Whatever is done with a row goes over the
-    leading axis of this.
+    Each is `None` where all are equal. All work on a row is mapped over the leading
+    axis of this structure.
 
     Attributes:
         diameter: Its diameter less the common one (element,) [m].
@@ -46,7 +46,7 @@ def check_deviation(owner: Any, name: str, count: int, what: str) -> np.ndarray 
 
     Raises:
         TypeError: If they are no numbers.
-        ValueError: If there are more or fewer than elements, or one is not finite.
+        ValueError: If their number is not that of the elements, or one is not finite.
     """
     value = getattr(owner, name)
     if value is None or is_traced(value):
@@ -67,7 +67,7 @@ def check_deviation(owner: Any, name: str, count: int, what: str) -> np.ndarray 
 
 
 def check_spacing(owner: Any, count: int, diameter: float) -> None:
-    """Raise if rolling elements overlap around the pitch circle for their azimuths.
+    """Raise if the azimuths let rolling elements overlap around the pitch circle.
 
     Args:
         owner: The bearing, with `azimuth_deviation`.

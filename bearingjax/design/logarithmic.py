@@ -40,7 +40,7 @@ class Lundberg(AbstractProfile):
     """Lundberg's profile: even pressure along the roller at the design load.
 
     Drop Q/(π L E*) ln(1/(1 - (2s/L)²)), infinite at the very end and limited there as
-    in `Logarithmic`. It is the drop of roller and raceway together: put it on one.
+    in `Logarithmic`. It is the drop of roller and raceway together: use it on one.
 
     Attributes:
         design_load: Load Q of the contact for which it is made [N].
@@ -155,8 +155,8 @@ def _log_one_over(x, part):
     rest = (1.0 - root * x) * (1.0 + root * x)
     if rest.dtype == jnp.float64:
         return -jnp.log(_floored(rest))
-    # float32 has no number so small that loads would not reach the drop that it leaves,
-    # and a rounding of the position beside the end is no better.
+    # In float32 the smallest number would limit the drop to one that loads can reach,
+    # and so would the round-off of a position near the end: there take float64's limit.
     least = 8.0 * jnp.finfo(rest.dtype).eps
     return jnp.where(rest > least, -jnp.log(jnp.maximum(rest, least)), _MOST)
 
@@ -167,6 +167,6 @@ half of ln(1/2.2e-308)."""
 
 
 def _floored(rest):
-    """At least the root of the smallest number, which keeps first and second
-    derivatives of its logarithm in range."""
+    """At least the root of the smallest number, so that first and second derivatives
+    of its logarithm stay finite."""
     return jnp.maximum(rest, jnp.sqrt(jnp.finfo(rest.dtype).tiny))

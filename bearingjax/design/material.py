@@ -10,7 +10,7 @@ from .checks import in_range, positive
 
 
 class Material(eqx.Module):
-    """An isotropic elastic material; bearing steel unless told otherwise.
+    """An isotropic elastic material, by default bearing steel.
 
     Attributes:
         elastic_modulus: Young's modulus E [Pa].

@@ -1,4 +1,4 @@
-"""Whether the rolling elements of two rows take up the same place."""
+"""Whether the rolling elements of two rows overlap."""
 
 import math
 from typing import Any
@@ -8,7 +8,7 @@ from .checks import concrete
 
 
 def overlap(one: Any, other: Any) -> bool:
-    """Whether the sections of two rows overlap, as they orbit; traced ones do not.
+    """Whether the orbiting sections of two rows overlap; traced rows never do.
 
     Args:
         one, other: Rows of a set, both of balls or both of rollers.
@@ -66,7 +66,7 @@ def _corners(row):
 
 
 def _parted(mine, others):
-    """Whether a side of one convex polygon parts it from another."""
+    """Whether a side of one convex polygon separates it from another."""
     for k in range(len(mine)):
         (z, r), (z2, r2) = mine[k - 1], mine[k]
         normal = r2 - r, z - z2

@@ -23,7 +23,7 @@ class AbstractProfile(eqx.Module):
     """Profile of a roller or a raceway."""
 
     arcs: ClassVar[bool] = False
-    """Whether it is made of straight lines and flat arcs, kinks between them."""
+    """Whether it consists of straight lines and flat arcs with kinks between them."""
 
     protruding: ClassVar[bool] = False
     """Whether the drop may be negative somewhere."""
@@ -54,7 +54,7 @@ class AbstractProfile(eqx.Module):
     def around(self, position: Float[Array, "..."]) -> "AbstractProfile":
         """The profile between the two knots around each position [m].
 
-        Its `drop` takes positions of a shape that goes with that of `position`.
+        Its `drop` takes positions that broadcast with `position`.
         """
         return self
 
@@ -77,7 +77,7 @@ class AbstractProfile(eqx.Module):
         )
 
     def _check_against(self, length: float, diameter: float) -> None:
-        """What a profile has to check of its own, if all numbers are concrete."""
+        """Checks of this kind of profile; all numbers are concrete."""
 
 
 @eqx.filter_jit
@@ -163,7 +163,7 @@ class CrownedEnds(AbstractProfile):
             return _arc(out, self.crown_radius)
         begin = 0.5 * (length - self.straight_length) - self.dub_off_length
         crown = _arc(jnp.minimum(out, begin), self.crown_radius)
-        # The same slope on the sharper circle is met at `offset` from its top.
+        # The sharper arc has the same slope at `offset` from its top.
         offset = self.dub_off_radius * begin / self.crown_radius
         beyond = jnp.maximum(out - begin, 0.0)
         top = _arc(offset, self.dub_off_radius)
@@ -199,7 +199,7 @@ def _arc(x, radius):
 
 @_arc.defjvp
 def _arc_rule(primals, tangents):
-    # By hand, as quotients cost a division for each derivative of each derivative.
+    # By hand: differentiated quotients would need a division for each derivative.
     (x, radius), (dx, dradius) = primals, tangents
     drop = _arc(x, radius)
     inverse = _inverse_root(radius * radius - x * x)

@@ -1,4 +1,4 @@
-"""Ribs: what stands against the roller ends."""
+"""Ribs, against which the roller ends bear."""
 
 import equinox as eqx
 
@@ -46,7 +46,7 @@ class Rib(eqx.Module):
 
 
 class Ribs(eqx.Module):
-    """The ribs of a bearing; an absent one is `None` and costs nothing.
+    """The ribs of a bearing; an absent one is `None` and is not computed.
 
     Attributes:
         outer_minus: Rib of the outer ring at the -z end of the rollers.
@@ -70,8 +70,8 @@ class Ribs(eqx.Module):
             name: "N", "NU", "NJ" or "NUP".
             rib: Common data of the ribs.
             axial_internal_clearance: Total axial play of one ring against the other
-                between the ribs; a quarter of it stands at each rib [m]. `None`
-                keeps the rib's own gap.
+                between the ribs, a quarter of it at each rib [m]. `None` keeps the
+                gap of `rib`.
 
         Raises:
             ValueError: If the name is unknown.

@@ -16,11 +16,12 @@ from .profile import AbstractProfile
 class Tabulated(AbstractProfile):
     """A measured profile: a cubic from each point to the next.
 
-    Its slope in each point is that of the parabola through the point and both
-    neighbours, so that a parabolic crown is met exactly. From a step the cubics swing
-    out on both sides, by 0.074 of its height at even distances. With `ContactMapped`
-    every high spot bears, to 1e-6 of the load, at a time that grows with the points: of
-    fifty, four times that of five; of five hundred, forty. Thin what is smooth.
+    Its slope at each point is that of the parabola through the point and both
+    neighbours, so that a parabolic crown is exact. At a step the cubics overshoot on
+    both sides, with evenly spaced points by 0.074 of its height. With `ContactMapped`
+    every high spot carries its load, to 1e-6 of the whole, in a time that grows with
+    the number of points: fifty take four times as long as five, five hundred forty
+    times. Leave out points where the profile is smooth.
 
     Attributes:
         positions: s, ascending, from one roller end to the other or beyond (n,) [m].
@@ -34,7 +35,7 @@ class Tabulated(AbstractProfile):
     drops: Float[Array, " table"] = eqx.field(converter=as_real, metadata=unit("m"))
 
     protruding: ClassVar[bool] = True
-    """Between its points a cubic may swing out."""
+    """Between its points a cubic may overshoot below zero."""
 
     def __check_init__(self):
         shape = jnp.shape(self.positions)
@@ -71,7 +72,7 @@ class Tabulated(AbstractProfile):
             turn = (d[i + 1] - d[i]) / right - (d[i] - d[i - 1]) / left
             return turn / (left + right)
 
-        # The parabola of the left point passes into that of the right one.
+        # The parabola of the left point blends into that of the right one.
         first = bend(k)
         more = bend(k + 1) - first
         return _Cubic(s[k], (d[k], chord - step * first, first - more, more / step))
@@ -84,10 +85,10 @@ class Tabulated(AbstractProfile):
 
 
 class _Cubic(AbstractProfile):
-    """Between two points of a table.
+    """Cubic between two points of a table.
 
     Attributes:
-        start: The first of them (...) [m].
+        start: Position of the first point (...) [m].
         factors: Of the powers 0 to 3 of the distance from there (...) [m^(1-power)].
     """
 
