@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
@@ -78,37 +79,30 @@ def ball_results(
         bearings: Designs of the rows.
         law: Law of the contact constants.
     """
-    parts = [_row_results(*pair, law) for pair in zip(rows, bearings, strict=True)]
-    contacts = max(part["contact_load"].shape[1] for part in parts)
-    out = {}
-    for name in parts[0]:
-        values = [part[name] for part in parts]
-        if values[0] is None:
-            out[name] = None
-        elif name == "kinematics":
-            out[name] = BallKinematics(
-                *(jnp.concatenate(v) for v in zip(*values, strict=True))
-            )
-        elif name in ("roller_load", "roller_pressure"):
-            out[name] = jnp.concatenate(values)
-        else:
-            out[name] = jnp.concatenate([_spread(v, contacts) for v in values])
-    return out
+    contacts = max(row.contact_load.shape[1] for row in rows)
+    parts = [
+        _row_results(row, bearing, law, contacts)
+        for row, bearing in zip(rows, bearings, strict=True)
+    ]
+    return jax.tree.map(lambda *values: jnp.concatenate(values), *parts)
 
 
 def _spread(values, contacts):
     """Values of a row with one arc per ring in the shape of rows with two."""
-    if values.ndim == 1 or values.shape[1] == contacts:
+    if values.shape[1] == contacts:
         return values
     shape = (values.shape[0], contacts, *values.shape[2:])
     return jnp.zeros(shape, values.dtype).at[:, jnp.array([0, 2])].set(values)
 
 
-def _row_results(row: RowResults, bearing: AbstractBallBearing, law) -> dict:
+def _row_results(
+    row: RowResults, bearing: AbstractBallBearing, law, contacts: int
+) -> dict:
+    """As `ball_results`, of one row, with room for `contacts` contacts of a ball."""
     ball = row.element
-    contacts = row.each(lambda ball, *at: ball.contacts(*at))
+    touching = row.each(lambda ball, *at: ball.contacts(*at))
     outwards = jnp.asarray(ball.grooves.outwards)
-    vectors = outwards[None, :, None] * contacts.normal
+    vectors = outwards[None, :, None] * touching.normal
     load = row.contact_load
     balls = balls_of(bearing)
     cosine = law.cosine(bearing.free_cosine, vectors[..., 1].T)
@@ -133,15 +127,18 @@ def _row_results(row: RowResults, bearing: AbstractBallBearing, law) -> dict:
         force = row.each(lambda ball, *at: ball.inertia(*at)[1])
         if not turning.control.has_moment:
             moment = jnp.zeros_like(moment)
-    return {
-        "roller_load": sides,
+    by_contact = {
         "contact_load": load,
         "contact_angle": angles(vectors),
         "contact_pressure": pressure,
-        "roller_pressure": jnp.max(pressure.reshape(-1, 2, half), axis=2),
         "semi_axes": axes,
-        "approach": contacts.approach,
+        "approach": touching.approach,
         "shoulder_margin": _margins(bearing, vectors, axes, load),
+    }
+    return {
+        **{name: _spread(values, contacts) for name, values in by_contact.items()},
+        "roller_load": sides,
+        "roller_pressure": jnp.max(pressure.reshape(-1, 2, half), axis=2),
         "kinematics": kinematics,
         "gyroscopic_moment": moment,
         "centrifugal_force": force,

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
@@ -71,13 +72,11 @@ def roller_results(rows: tuple[RowResults, ...], points: int) -> dict[str, Array
             part._replace(position=jnp.tile(part.position, (load.shape[0], 1)))
             for part, load in zip(parts, loads, strict=True)
         ]
+    along = jax.tree.map(lambda *values: jnp.concatenate(values), *parts)
     return {
         "roller_load": jnp.concatenate(loads),
         "rib_load": jnp.concatenate(ribs),
-        **{
-            name: jnp.concatenate([getattr(part, name) for part in parts])
-            for name in Distribution._fields
-        },
+        **along._asdict(),
     }
 
 
