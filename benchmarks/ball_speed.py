@@ -140,16 +140,18 @@ def compile_c(folder):
     return ctypes.CDLL(target)
 
 
-def calls_of(el, q):
-    """The JAX variants: name -> function of q."""
+def calls_of(el, q, few=False):
+    """The JAX variants: name -> function of q; the `few` have one program."""
     filtered = eqx.filter_jit(single_call.both)
     model = el.model()
     given = jax.jit(lambda q: single_call.both(model, q))
-    return {
-        "filter_jit(element, q)": lambda q: filtered(el, q),
+    calls = {
         "jit(q), model given": given,
         "the same, ahead of time": given.lower(q).compile(),
     }
+    return (
+        calls if few else {"filter_jit(element, q)": lambda q: filtered(el, q)} | calls
+    )
 
 
 def ross_call(radial, el):
@@ -237,7 +239,7 @@ def main():
         results, calls, batch = {}, {}, single_call.batch_call(el)
         for name, (load, tilt) in LOADS.items():
             q = bj.solve_load(el, load, prescribed=tilt).displacement
-            calls = calls or calls_of(el, q)
+            calls = calls or calls_of(el, q, args.smoke)
             c = CBall(library, el)
             results[name] = single_call.study(c, el, q, rounds, block, calls, batch)
     formula = beside_ross(rounds, block)

@@ -79,6 +79,7 @@ RULES = {"mapped": bj.ContactMapped(32), "midpoint": bj.Midpoint(32)}
 CHUNKS = {"cpu": (16, 32, 64, 128, 256), "gpu": (1024, 4096, 16384)}
 BLOCK = {"cpu": 1024, "gpu": 16384}  # cases of a device between visits of the host
 FULL = {
+    "rules": ("mapped", "midpoint"),
     "chosen_at": 4096,
     "batches": (1_000, 10_000, 100_000, 1_000_000),
     "devices_at": 50_000,
@@ -87,6 +88,7 @@ FULL = {
     "rounds": 5,
 }
 SMOKE = {
+    "rules": ("mapped",),
     "chosen_at": 0,
     "batches": (1_000,),
     "devices_at": 0,
@@ -174,8 +176,8 @@ def best_chunk(sizes, device):
 def batches(sizes, chunk, device, folder):
     """Rows: ours beside C, for every rule and batch size."""
     rows = []
-    for rule, quadrature in RULES.items():
-        element = single_call.element(quadrature)
+    for rule in sizes["rules"]:
+        element = single_call.element(RULES[rule])
         library = single_call.compile_c(folder, element)
         c = single_call.CLoop(library, element)
         ours = Ours(element, chunk, [device])
@@ -404,7 +406,7 @@ def agrees(result):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", action="store_true", help="one line of figures")
-    parser.add_argument("--smoke", action="store_true", help="small batches")
+    parser.add_argument("--smoke", action="store_true", help="small batches, one rule")
     parser.add_argument("--device", choices=("cpu", "gpu"), default="cpu")
     parser.add_argument("--part", choices=PARTS, help="one part, in this process")
     parser.add_argument("--chunk", type=int, default=64, help="of a part by itself")

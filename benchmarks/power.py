@@ -163,7 +163,7 @@ def main():
     parser.add_argument("--json", action="store_true", help="one line per result")
     parser.add_argument("--smoke", action="store_true", help="small, few repeats")
     args = parser.parse_args()
-    rows = measure(SIZES[:1], 5) if args.smoke else measure(SIZES, 60)
+    rows = measure(SIZES[:1], 1) if args.smoke else measure(SIZES, 60)
     if args.json:
         for r in rows:
             print(json.dumps(r))

@@ -101,11 +101,13 @@ def random_rings(rng, count, clearance):
     return np.concatenate([common + 0.5 * between, common - 0.5 * between], axis=1)
 
 
-def run(count, solver, seed=0):
-    """One row per design: counts of codes, worst residual, steps."""
+def run(count, solver, seed=0, names=()):
+    """One row per design (some by `names`): counts of codes, worst residual, steps."""
     minimiser = SOLVERS[solver]
     rows = []
     for index, (name, bearing) in enumerate(designs().items()):
+        if names and name not in names:
+            continue
         element = bj.BearingElement(bearing)
         model = element.model().rows[0].element
 

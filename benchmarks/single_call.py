@@ -239,15 +239,17 @@ def both(element, q):
     return e.force, e.stiffness
 
 
-def jax_calls(el, q):
-    """The JAX variants: name -> function of q."""
+def jax_calls(el, q, few=False):
+    """The JAX variants: name -> function of q; the `few` have one program."""
     filtered = eqx.filter_jit(both)
     closed = jax.jit(lambda q: both(el, q))
-    return {
-        "filter_jit(element, q)": lambda q: filtered(el, q),
+    calls = {
         "jit(q), element closed over": closed,
         "the same, ahead of time": closed.lower(q).compile(),
     }
+    return (
+        calls if few else {"filter_jit(element, q)": lambda q: filtered(el, q)} | calls
+    )
 
 
 def batch_call(el):
@@ -435,7 +437,7 @@ def main():
                 q,
                 rounds,
                 block,
-                jax_calls(el, q),
+                jax_calls(el, q, args.smoke),
                 batch_call(el),
             )
             for case, (el, q) in list(cases().items())[: 1 if args.smoke else None]

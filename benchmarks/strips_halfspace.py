@@ -297,9 +297,9 @@ def show(result):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", action="store_true", help="one line of figures")
-    parser.add_argument("--smoke", action="store_true", help="few cells, two bands")
+    parser.add_argument("--smoke", action="store_true", help="few cells, one band")
     args = parser.parse_args()
-    n, fine = (15, 25) if args.smoke else (35, 279)
+    n, fine = (15, 15) if args.smoke else (35, 279)
     lengths, asked = ((n,), WIDTHS[1:2]) if args.smoke else ((n, 4 * n - 1), WIDTHS)
     result = {
         "n": n,
