@@ -3,6 +3,10 @@
 import gc
 import os
 
+# Every operation with the calls that led to it: slow to write, read by nobody here.
+# Processes that the tests start do without too.
+os.environ.setdefault("JAX_INCLUDE_FULL_TRACEBACKS_IN_LOCATIONS", "false")
+
 import jax
 import jaxtyping
 import pytest
@@ -18,15 +22,12 @@ if jax.__version__ == "0.10.1":
     FLAGS += " --xla_cpu_parallel_codegen_split_count=1"
 os.environ.setdefault("XLA_FLAGS", FLAGS)
 
-# Every operation with the calls that led to it: slow to write, read by nobody here.
-jax.config.update("jax_include_full_tracebacks_in_locations", False)
-
 jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")
 
 # Tracing makes many small objects; searching them for cycles took a sixth of the time.
-gc.set_threshold(200_000, 20, 50)
+gc.set_threshold(1_000_000, 10, 50)
 
 # Shapes and dtypes of annotated functions are checked at every call of the tests.
 install_import_hook("bearingjax", "beartype.beartype").__enter__()
@@ -46,13 +47,27 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: item.path.name not in LONGEST)
 
 
+MOST_MAPS = 10_000
+
+
+def _memory_maps():
+    """Of this process; on systems without a list of them: too many."""
+    try:
+        with open("/proc/self/maps") as maps:
+            return sum(1 for _ in maps)
+    except OSError:
+        return MOST_MAPS + 1
+
+
 @pytest.fixture(scope="module", autouse=True)
 def _drop_compiled_programs():
     """Every compiled program holds memory maps, of which Linux grants 65 530 a process;
-    beyond them the compiler dies of a segmentation fault."""
+    beyond them the compiler dies of a segmentation fault. A module makes some thousand;
+    what several modules call stays compiled as long as there is room."""
     yield
-    jax.clear_caches()
-    gc.collect()
+    if _memory_maps() > MOST_MAPS:
+        jax.clear_caches()
+        gc.collect()
 
 
 @pytest.fixture

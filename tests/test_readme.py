@@ -3,11 +3,14 @@
 import re
 from pathlib import Path
 
+import pytest
+
 import bearingjax as bj
 
 README = (Path(__file__).parent.parent / "README.md").read_text()
 
 
+@pytest.mark.usefixtures("untyped")
 def test_python_examples(capsys):
     blocks = re.findall(r"```python\n(.*?)```", README, re.S)
     assert len(blocks) == 10

@@ -17,6 +17,7 @@ def code(cell):
     return "".join(cell["source"])
 
 
+@pytest.mark.usefixtures("untyped")
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("*.ipynb")), ids=lambda p: p.stem)
 def test_code_runs(path):
     """Cells tagged with a package that is not installed are left out."""

@@ -1,6 +1,6 @@
-"""One process of a sweep: `python sweep_in_process.py OUT DEVICES [PORT COUNT RANK]`.
+"""One process of a sweep: `python sweep_in_process.py OUT DEVICES PORT COUNT RANK`.
 
-Run by test_sweep.py, to see a sweep over several devices and over several processes.
+Run by test_sweep.py, to see a sweep over several processes of several devices.
 """
 
 import sys
@@ -32,10 +32,9 @@ def loads(count=50):
     return out
 
 
-def main(out, devices, port=None, count=None, rank=None):
+def main(out, devices, port, count, rank):
     jax.config.update("jax_num_cpu_devices", int(devices))
-    if port is not None:
-        jax.distributed.initialize(f"127.0.0.1:{port}", int(count), int(rank))
+    jax.distributed.initialize(f"127.0.0.1:{port}", int(count), int(rank))
     solved = bj.sweep(small_element(), loads(), outputs=["displacement"], chunk=4)
     np.savez(
         out,

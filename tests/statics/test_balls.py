@@ -24,7 +24,7 @@ def angular():
 
 @pytest.fixture(scope="module")
 def deep():
-    bearing = balls(9, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6)
+    bearing = balls(7, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6)
     return bj.BearingElement(bearing)
 
 
@@ -202,17 +202,18 @@ def test_derivatives_with_respect_to_the_design():
     def stiffness(angle, osculation):
         bearing = balls(8, contact_angle=angle, inner_osculation=osculation)
         element = bj.BearingElement(bearing, point_law=bj.OperatingAngle())
-        return element.stiffness(q, bj.Speed(1500.0))[8, 8] * 1e-6
+        value = element.stiffness(q, bj.Speed(1500.0))[8, 8] * 1e-6
+        return value, value
 
     at = (jnp.asarray(0.4), jnp.asarray(0.52))
-    value = jax.jit(stiffness)
-    exact = jax.jit(jax.jacfwd(stiffness, argnums=(0, 1)))(*at)
+    slopes = jax.jit(jax.jacfwd(stiffness, argnums=(0, 1), has_aux=True))
+    exact, _ = slopes(*at)
     for k, step in enumerate((1e-5, 1e-6)):
         ends = []
         for sign in (1, -1):
             moved = list(at)
             moved[k] = moved[k] + sign * step
-            ends.append(float(value(*moved)))
+            ends.append(float(slopes(*moved)[1]))
         difference = (ends[0] - ends[1]) / (2 * step)
         assert float(exact[k]) == pytest.approx(difference, rel=1e-5)
 

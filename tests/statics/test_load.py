@@ -334,9 +334,9 @@ def test_second_derivative_of_the_displacement():
         load = factor * jnp.asarray([500.0, 0.0, 4000.0, 0.0, 0.0, 0.0])
         return 1e6 * bj.solve_load(element, load).displacement[8]
 
-    slope = jax.jit(jax.grad(sag))
-    bend = float(jax.jit(jax.grad(jax.grad(sag)))(1.0))
-    difference = float(slope(1.0 + 1e-4) - slope(1.0 - 1e-4)) / 2e-4
+    slope = jax.jit(jax.value_and_grad(jax.grad(sag)))
+    bend = float(slope(1.0)[1])
+    difference = float(slope(1.0 + 1e-4)[0] - slope(1.0 - 1e-4)[0]) / 2e-4
     assert bend == pytest.approx(difference, rel=1e-5)
     assert bend < 0.0  # a contact hardens
 
@@ -371,7 +371,7 @@ def test_rollers_that_a_crawling_bearing_throws_out():
 
 def test_small_robustness_run():
     """Seeded, small version of benchmarks/robust_loads.py."""
-    for row in robust_loads.run(2, seed=1, only=["NUP, logarithmic"]):
+    for row in robust_loads.run(2, seed=1, only=["NUP, logarithmic"], beyond=["taper"]):
         assert row.get("failed", 0) == 0 and row.get("silently_wrong", 0) == 0, row
         if "named_uz" in row:
             assert row["named_uz"] == row["uncarried_loads"], row

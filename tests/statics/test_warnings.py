@@ -41,7 +41,8 @@ def changed(element, **numbers):
                 owner = getattr(owner, part)
             return getattr(owner, last)
 
-        element = eqx.tree_at(get, element, jnp.asarray(value))
+        # Of the same type, so that the same program serves.
+        element = eqx.tree_at(get, element, jnp.asarray(value, float))
     return element
 
 
