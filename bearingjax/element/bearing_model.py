@@ -10,6 +10,7 @@ potential the same rules give the balance of all forces and its exact Jacobian.
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -21,6 +22,7 @@ from ..numerics.minimise import AbstractMinimiser
 from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .equilibrium import Near, settle
+from .rolling_element import split
 from .row import Row, RowResults, SolvedRow
 
 Azimuths = tuple[Float[Array, "..."], ...]
@@ -150,6 +152,12 @@ class BearingModel(eqx.Module):
         return all(group.rows.element.has_potential for group in self.groups)
 
     @property
+    def sees_difference(self) -> bool:
+        """Whether only the motion between the rings counts. Static."""
+        elements = [group.rows.element for group in self.groups]
+        return all(one.sees_difference for one in elements) and not self.cage_torque
+
+    @property
     def dtype(self) -> Any:
         """Floating type of its numbers."""
         return self.groups[0].rows.ratio.dtype
@@ -273,7 +281,7 @@ class BearingModel(eqx.Module):
 
         Args: as of `energy`.
         """
-        return jax.jacfwd(jax.grad(self._energy))(*self._at(q, solved))
+        return self._second(*self._at(q, solved))[0]
 
     @eqx.filter_jit
     def evaluate(self, q: Ring, solved: Solved | None = None) -> Evaluated:
@@ -282,12 +290,7 @@ class BearingModel(eqx.Module):
         Args: as of `energy`.
         """
         q, solved = self._at(q, solved)
-
-        def forces(q):
-            energy, force = jax.value_and_grad(self._energy)(q, solved)
-            return force, (energy, force)
-
-        stiffness, (energy, force) = jax.jacfwd(forces, has_aux=True)(q)
+        stiffness, energy, force = self._second(q, solved)
         result, steps, residual = self.settled(solved)
         return Evaluated(
             energy=energy,
@@ -299,6 +302,24 @@ class BearingModel(eqx.Module):
             magnitude=self._magnitude(solved),
             near=self.near(solved),
         )
+
+    def _second(self, q, solved):
+        """Stiffness, energy and force; half the work if only `between` counts."""
+        outer, inner = split(q)
+
+        def energy(inner):
+            return self._energy(jnp.concatenate([outer, inner]), solved)
+
+        def forces(function, q):
+            value, force = jax.value_and_grad(function)(q)
+            return force, (value, force)
+
+        if not self.sees_difference:
+            whole = partial(forces, lambda q: self._energy(q, solved))
+            stiffness, (value, force) = jax.jacfwd(whole, has_aux=True)(q)
+            return stiffness, value, force
+        k, (value, f) = jax.jacfwd(partial(forces, energy), has_aux=True)(inner)
+        return jnp.block([[k, -k], [-k, k]]), value, jnp.concatenate([-f, f])
 
     def _at(self, q, solved):
         q = self._checked(q)
