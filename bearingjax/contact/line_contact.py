@@ -170,7 +170,8 @@ class LineContact(AbstractLineContact):
     def table(self, quadrature):
         ends = self._intervals()
         if ends is None or not isinstance(quadrature, ContactMapped):
-            return quadrature.table(self.drop, self.kinks(), self.length.dtype)
+            kinks, dtype = self.kinks(), self.length.dtype
+            return quadrature.table(self.drop, kinks, dtype, self.arcs)
         # Each interval with the part of the profiles that it sees.
         middle = 0.25 * self.length * (ends[:-1] + ends[1:])[:, None]
         local = dataclasses.replace(

@@ -84,7 +84,7 @@ def solve_element(
     magnitude: Scalar,
     minimiser: AbstractMinimiser,
     near: Near | None = None,
-) -> LocalState:
+) -> tuple[LocalState, Expansion]:
     """Equilibrium of one rolling element in its own unknowns.
 
     Args:
@@ -96,7 +96,8 @@ def solve_element(
         near: Its state at rings near by; `None`: not known.
 
     Returns:
-        State without derivatives; `own_unknowns` attaches them.
+        Its state, without derivatives (`own_unknowns` attaches them), and its
+        `condensed` energy there.
 
     Raises:
         TypeError: If the solver needs a potential that the forces do not have.
@@ -114,12 +115,11 @@ def solve_element(
         minimiser = dataclasses.replace(minimiser, symmetric=False)
     frozen = stop((element, rings, magnitude, near))
     if element.n_unknowns == 0:
-        return _without_unknowns(*frozen[:2])
+        state = _without_unknowns(*frozen[:2])
+        return state, condensed(frozen[1], Placed(frozen[0], state, frozen[2]))
     given = _prepare(*frozen)
-    shapes: Any = ()
-    if element.seeking.keeps_response:
-        shapes = jax.eval_shape(response, element, rings, given.start)
-    return lanes.run(_loop(minimiser, shapes), given)
+    known = jax.eval_shape(response, element, rings, given.start)
+    return lanes.run(_loop(minimiser, known, given.is_open is not None), given)
 
 
 def _without_unknowns(element, rings) -> LocalState:
@@ -301,32 +301,42 @@ def _problem(given: _Given, shapes) -> Problem:
     def corrected(x, step, size):
         return seeking.corrected(unpacked(element, rings), x, step, size)
 
-    memory = jax.tree.map(lambda a: jnp.zeros(a.shape, a.dtype), shapes)
+    memory = _zeros(shapes)
     correction = corrected if seeking.corrects_steps else None
     return Problem(function, given.start, given.radius, correction, memory)
 
 
-def _loop(minimiser: AbstractMinimiser, shapes) -> lanes.Loop:
-    """The search of one element, which an open one need not begin."""
-    loop = minimiser.loop(lambda given: _problem(given, shapes))
+def _loop(minimiser: AbstractMinimiser, known, may_be_open) -> lanes.Loop:
+    """The search of one element, which an open one need not begin.
 
-    def terminate(given, state):
-        ended = loop.terminate(given, state)
-        return ended if given.is_open is None else ended | given.is_open
+    Args:
+        minimiser: Local solver.
+        known: Shapes of what its contacts bear.
+        may_be_open: Whether it is known of some elements that they are open.
+    """
+
+    def problem_of(given):
+        return _problem(given, known if given.element.seeking.keeps_response else ())
+
+    def ended(given, state):
+        placed = Placed(given.element, state, given.magnitude)
+        return state, condensed(given.rings, placed)
 
     def finish(given, state):
-        minimum, is_open = loop.finish(given, state), given.is_open
-        if is_open is not None:
-            # Its loop has not run.
-            minimum = minimum._replace(
-                residual=jnp.where(is_open, 0.0, minimum.residual),
-                unbalanced=jnp.where(is_open, 0.0, minimum.unbalanced),
-                steps=jnp.where(is_open, 0, minimum.steps),
-                result=jnp.where(is_open, int(Result.CONVERGED), minimum.result),
-            )
-        return _solved(given.element, given.rings, minimum)
+        return ended(given, _solved(given.element, given.rings, loop.finish(given, state)))
 
-    return loop._replace(terminate=terminate, finish=finish)
+    def rest(given):
+        zero, none = jnp.zeros_like(given.radius), jnp.zeros((), jnp.int32)
+        unloaded = LocalState(given.centre, zero, zero, none, none, _zeros(known))
+        nothing = jax.eval_shape(lambda: condensed(given.rings, Placed(given.element, unloaded, given.magnitude)))
+        return given.is_open, (unloaded, _zeros(nothing))
+
+    loop = minimiser.loop(problem_of)
+    return loop._replace(finish=finish, rest=rest if may_be_open else None)
+
+
+def _zeros(shapes):
+    return jax.tree.map(lambda a: jnp.zeros(a.shape, a.dtype), shapes)
 
 
 def _solved(element, rings, minimum) -> LocalState:

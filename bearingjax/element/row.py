@@ -138,9 +138,8 @@ class Row(eqx.Module):
         rings = self.seen(local, azimuth)
 
         def one(element, rings, *near):
-            state = solve_element(element, rings, magnitude, minimiser, *near)
-            placed = Placed(element, state, magnitude)
-            return state, condensed(rings, placed), magnitude
+            found = solve_element(element, rings, magnitude, minimiser, *near)
+            return *found, magnitude
 
         known = () if near is None else (near,)
         state, energies, magnitudes = self.each(one, rings, *known)

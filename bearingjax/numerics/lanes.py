@@ -1,7 +1,8 @@
-"""Iterations of many problems, few of which wait for the slowest.
+"""Iterations of many problems, none of which waits for the slowest.
 
-Under `vmap` a `while_loop` goes on with every lane until the last is done. Here all
-lanes go on only while most of them need it; the rest is gathered, some at a time.
+Under `vmap` a `while_loop` goes on with every lane until the last is done. Here the
+problems of a batch stand in a queue. Some at a time are at work, each in a slot; once
+part of the slots are done, their problems leave and the next ones enter.
 
 An example: how often each of many numbers halves until it is below a limit. What does
 not change from step to step is prepared by the caller, once, and is `given`:
@@ -28,11 +29,15 @@ from jax import lax
 from jax.custom_batching import custom_vmap
 from jaxtyping import Array, Bool
 
-PART = 8
-"""One lane in so many goes on at a time when no more than half are left."""
+FEWEST = 128
+"""Problems from which on there is a queue: fewer are stepped together by `vmap`."""
 
-LEAST = 16
-"""Fewest lanes that go on at a time: a pass of fewer costs its overhead."""
+import os
+PART = int(os.environ.get("QP","4"))
+"""One problem in so many is in a slot at a time."""
+
+MOST = int(os.environ.get("QM","256"))
+"""Most slots: what they hold should stay in the cache of a core."""
 
 SMALL = 64
 """Most numbers of a leaf that is packed with others."""
@@ -46,23 +51,35 @@ class Loop(NamedTuple):
         step: (given, state) -> next state.
         terminate: (given, state) -> whether to stop.
         finish: (given, last state) -> what is wanted of it.
+        rest: given -> (whether nothing is to be done, what is wanted then); `None`:
+            something always is.
     """
 
     init: Callable[[Any], Any]
     step: Callable[[Any, Any], Any]
     terminate: Callable[[Any, Any], Any]
     finish: Callable[[Any, Any], Any]
+    rest: Callable[[Any], tuple[Bool[Array, ""], Any]] | None = None
 
     def run(self, given) -> Any:
         """What comes out of the iteration."""
         begin = self.init(given)
         pack, unpack = packing(begin)
+        resting, rest = (None, None) if self.rest is None else self.rest(given)
+
+        def ended(packed):
+            done = self.terminate(given, unpack(packed))
+            return done if resting is None else done | resting
+
         last = lax.while_loop(
-            lambda packed: ~self.terminate(given, unpack(packed)),
+            lambda packed: ~ended(packed),
             lambda packed: pack(self.step(given, unpack(packed))),
             pack(begin),
         )
-        return self.finish(given, unpack(last))
+        found = self.finish(given, unpack(last))
+        if resting is None:
+            return found
+        return jax.tree.map(lambda a, b: jnp.where(resting, a, b), rest, found)
 
 
 class Either(NamedTuple):
@@ -88,15 +105,16 @@ def packing(example) -> tuple[Callable[[Any], list[Array]], Callable[[Any], Any]
     of small problems a fifth of the time.
 
     Args:
-        example: State with at least one floating leaf. Flags and integers become such
-            numbers: exact, up to 2²⁴ in float32.
+        example: State. Flags and integers become numbers of the type of its first
+            floating leaf: exact, up to 2²⁴ in float32.
 
     Returns:
         Functions state -> list of arrays -> state.
     """
     leaves, tree = jax.tree.flatten(example)
-    dtype = next(a.dtype for a in leaves if jnp.issubdtype(a.dtype, jnp.floating))
-    known = (dtype, bool, jnp.int32)
+    floating = [a.dtype for a in leaves if jnp.issubdtype(a.dtype, jnp.floating)]
+    dtype = floating[0] if floating else None
+    known = (dtype, bool, jnp.int32) if floating else ()
     small = [k for k, a in enumerate(leaves) if a.size <= SMALL and a.dtype in known]
     scalars = [k for k in small if not leaves[k].shape]
     vectors = [k for k in small if leaves[k].shape]
@@ -122,15 +140,18 @@ def packing(example) -> tuple[Callable[[Any], list[Array]], Callable[[Any], Any]
 
     def joined(state):
         found = jax.tree.leaves(state)
+        others = [found[k] for k in large]
+        if not small:
+            return others
         parts = [found[k].reshape(-1).astype(dtype) for k in vectors]
         numbers = [found[k].astype(dtype) for k in scalars]
         # Stacked first: XLA fuses no more than eight parts.
         parts = [*parts, *([jnp.stack(numbers)] if numbers else [])]
-        return [jnp.concatenate(parts), *(found[k] for k in large)]
+        return [*others, jnp.concatenate(parts)]
 
     def unpack(packed):
-        first, *rest = packed
-        found = dict(zip(large, rest, strict=True))
+        *others, first = packed if small else (*packed, None)
+        found = dict(zip(large, others, strict=True))
         begin = 0
         for k in (*vectors, *scalars):
             a = leaves[k]
@@ -220,55 +241,87 @@ def _in_lanes(loop, whole, flags, leaves):
         rest, mine = iter(common), iter(mine)
         return whole([next(mine if flag else rest) for flag in flags])
 
-    if jax.tree.leaves(own)[0].shape[0] // PART < LEAST:
+    count = own[0].shape[0]
+    if count < FEWEST:
         return jax.vmap(lambda mine: loop.run(given(mine)))(own)
-    state = jax.eval_shape(lambda mine: loop.init(given(mine)), [a[0] for a in own])
-    pack, unpack = packing(state)
-    packed = Loop(
-        lambda mine: pack(loop.init(given(mine))),
-        lambda mine, s: pack(loop.step(given(mine), unpack(s))),
-        lambda mine, s: loop.terminate(given(mine), unpack(s)),
-        lambda mine, s: loop.finish(given(mine), unpack(s)),
-    )
-    state = jax.vmap(packed.init)(own)
-    going = ~jax.vmap(packed.terminate)(own, state)
-    ended = _compacting(packed, own, state, going)
-    return jax.vmap(packed.finish)(own, ended)
+    return _queued(loop, given, own, count)
 
 
-def _compacting(loop, own, state, going):
-    """Passes with all lanes while most of them go on, then with some at a time.
+def _queued(loop, given, own, count):
+    """All problems, some at a time; see the top of this file."""
+    width = max(32, min(MOST, count // PART))
+    one = [jax.ShapeDtypeStruct(a.shape[1:], a.dtype) for a in own]
+    begin = jax.eval_shape(lambda mine: loop.init(given(mine)), one)
+    end = jax.eval_shape(lambda mine, s: loop.finish(given(mine), s), one, begin)
+    # Three arrays are moved about in place of very many.
+    pack_own, unpack_own = packing(one)
+    pack, unpack = packing(begin)
+    pack_end, unpack_end = packing(end)
 
-    Lanes are gathered anew once half of those at work are done, not sooner: gathering
-    costs a good part of a pass.
-    """
+    def enter(mine, fresh):
+        problem = given(unpack_own(mine))
+        state = loop.init(problem)
+        return pack(state), fresh & ~loop.terminate(problem, state)
 
-    def pass_(mine, state, going):
-        new = loop.step(mine, state)
-        new = jax.tree.map(lambda a, b: jnp.where(going, a, b), new, state)
-        return new, going & ~loop.terminate(mine, new)
+    def step(mine, state, going):
+        problem = given(unpack_own(mine))
+        new = pack(loop.step(problem, unpack(state)))
+        new = [jnp.where(going, a, b) for a, b in zip(new, state, strict=True)]
+        return new, going & ~loop.terminate(problem, unpack(new))
 
-    def passes(own, state, going, fewest):
-        """Until no more than `fewest` go on."""
-        return lax.while_loop(
-            lambda carry: jnp.sum(carry[1]) > fewest,
-            lambda carry: jax.vmap(pass_)(own, *carry),
+    def leave(mine, state):
+        return pack_end(loop.finish(given(unpack_own(mine)), unpack(state)))
+
+    def resting(mine):
+        idle, found = loop.rest(given(mine))
+        return idle, pack_end(found)
+
+    if loop.rest is None:
+        idle = jnp.zeros((count,), bool)
+        out = _blank(pack_end, end, count)
+    else:
+        idle, out = jax.vmap(resting)(own)
+    own = jax.vmap(pack_own)(own)
+    (queue,) = jnp.nonzero(~idle, size=count, fill_value=count)
+    waiting = jnp.sum(~idle)
+
+    def refilled(taken, place, state, going):
+        """The next of the queue in slots that do not go on."""
+        following = taken + jnp.cumsum(~going) - 1
+        fresh = queue.at[following].get(mode="fill", fill_value=count)
+        place = jnp.where(going, place, fresh)
+        mine = [a[jnp.minimum(place, count - 1)] for a in own]
+        entered, begun = jax.vmap(enter)(mine, ~going & (place < count))
+        state = [
+            jnp.where(going.reshape(-1, *[1] * (a.ndim - 1)), a, b)
+            for a, b in zip(state, entered, strict=True)
+        ]
+        return taken + jnp.sum(~going), place, mine, state, going | begun
+
+    def turn(carry):
+        out, taken, place, mine, state, going = carry
+        # Those at work leave the others alone until many slots are done: to refill
+        # them costs a good part of a step.
+        fewest = jnp.where(taken < waiting, width * int(os.environ.get("QF","2"))//4, 0)
+        state, going = lax.while_loop(
+            lambda now: jnp.sum(now[1]) > fewest,
+            lambda now: jax.vmap(step)(mine, *now),
             (state, going),
         )
+        found = jax.vmap(leave)(mine, state)
+        # What is out of range is dropped.
+        to = jnp.where(going, count, place)
+        out = [a.at[to].set(b, mode="drop") for a, b in zip(out, found, strict=True)]
+        return out, *refilled(taken, place, state, going)
 
-    count = going.shape[0]
-    width = count // PART
+    nobody = jnp.zeros((width,), bool)
+    none = jnp.zeros_like(waiting), jnp.zeros((width,), queue.dtype)
+    begin = refilled(*none, _blank(pack, begin, width), nobody)
+    carry = lax.while_loop(lambda c: jnp.any(c[2] < count), turn, (out, *begin))
+    return jax.vmap(unpack_end)(carry[0])
 
-    def some(carry):
-        state, going = carry
-        (place,) = jnp.nonzero(going, size=width, fill_value=count)
-        source = jnp.minimum(place, count - 1)
-        waiting = jnp.sum(going) > width
-        part = jax.tree.map(lambda a: a[source], (own, state))
-        fewest = jnp.where(waiting, width // 2, 0)
-        new = passes(part[0], part[1], place < count, fewest)
-        # Out of range is dropped.
-        return jax.tree.map(lambda a, b: a.at[place].set(b, mode="drop"), carry, new)
 
-    carry = passes(own, state, going, count // 2)
-    return lax.while_loop(lambda carry: jnp.any(carry[1]), some, carry)[0]
+def _blank(pack, example, count):
+    """Zeros in the shape of `count` packed examples."""
+    shapes = jax.eval_shape(pack, example)
+    return [jnp.zeros((count, *a.shape), a.dtype) for a in shapes]

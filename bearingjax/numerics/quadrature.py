@@ -25,9 +25,13 @@ from .implicit import attach_roots, stop
 
 Offset = Callable[[Array], Array]
 
-# Steps that find a zone edge from its scan interval: to 1e-14 on an arc; of any profile
-# to 1e-8 on the singular end of a logarithm, where less is in error in the integrals.
-_OF_ARCS, _OF_ANY = 3, 5
+# Steps that find a zone edge from its scan interval: to 1e-8 on the singular end of a
+# logarithm, where less is in error in the integrals.
+_OF_ANY = 5
+
+# On arcs, from the middle of a panel: steps to the top, and from there to the edges.
+# Both begin with the exact answer for a parabola.
+_TO_TOP, _OF_ARCS = 2, 2
 _SETTLED = 1e-9
 
 MOST_NODES = 500
@@ -56,8 +60,9 @@ class AbstractQuadrature(eqx.Module):
         """Fixed nodes τ in [-1, 1] and weights (they sum to 2)."""
 
     @abc.abstractmethod
-    def table(self, offset: Offset, kinks: tuple, dtype) -> tuple:
-        """What depends on the offset h alone, computed once per design."""
+    def table(self, offset: Offset, kinks: tuple, dtype, arcs: bool = False) -> tuple:
+        """What depends on the offset h alone, computed once per design; `arcs` as of
+        `nodes`."""
 
     @abc.abstractmethod
     def nodes(
@@ -97,7 +102,7 @@ class Midpoint(AbstractQuadrature):
         middle = 0.5 * (edges[1:] + edges[:-1])
         return middle, np.full(self.points, 2.0 / self.points)
 
-    def table(self, offset, kinks, dtype):
+    def table(self, offset, kinks, dtype, arcs=False):
         tau, _ = self.reference()
         return (offset(jnp.asarray(tau, dtype=dtype)),)
 
@@ -152,10 +157,12 @@ class ContactMapped(AbstractQuadrature):
         slope = 30.0 * t**2 * (1.0 - t) ** 2
         return 2.0 * graded - 1.0, w * slope
 
-    def table(self, offset, kinks, dtype):
+    def table(self, offset, kinks, dtype, arcs=False):
         one = jnp.ones((), dtype=dtype)
         ends = jnp.stack([-one, *kinks, one])
         start, end = ends[:-1], ends[1:]
+        if arcs:
+            return start, end
         index = jnp.arange(self.scan, dtype=dtype)[None, :]
         at = stop(_scan_point(index, start[:, None], end[:, None], self.scan))
         fixed, slope = jax.jvp(offset, (at,), (jnp.ones_like(at),))
@@ -163,10 +170,9 @@ class ContactMapped(AbstractQuadrature):
 
     def nodes(self, offset, args, table, a, b, arcs=False):
         start, end, *_ = table
-        left, right, inner = _loaded_interval(
-            _OF_ARCS if arcs else _OF_ANY,
-            lambda x: offset(stop(args), x),
-            *stop((*table, a, b)),
+        loaded = _loaded_arcs if arcs else _loaded_interval
+        left, right, inner = loaded(
+            lambda x: offset(stop(args), x), *stop((*table, a, b))
         )
 
         def argument(x, traced):
@@ -190,11 +196,54 @@ def _scan_point(index, start, end, count):
     return (start * right + end * left) / (left + right)
 
 
-def _loaded_interval(steps, offset, start, end, at, fixed, slope, a, b):
+def _loaded_arcs(offset, start, end, a, b):
+    """As `_loaded_interval`, where h is one arc in each panel: no scan.
+
+    The top of a + b ξ - h is found by Newton's method, the edges from there.
+    """
+    top = 0.5 * (start + end)
+    one = jnp.ones_like(top)
+
+    def slope_of(x):
+        return jax.jvp(offset, (x,), (jnp.ones_like(x),))
+
+    def expanded(x):
+        (h, h1), (_, h2) = jax.jvp(slope_of, (x,), (jnp.ones_like(x),))
+        return a + b * x - h, b - h1, -h2
+
+    for _ in range(_TO_TOP):
+        _, first, second = expanded(top)
+        bent = second < 0
+        step = first / jnp.where(bent, -second, 1.0)
+        # A straight line is highest at an end.
+        top = jnp.where(bent, top + step, jnp.where(first > 0, end, start))
+        top = jnp.clip(top, start, end)
+    side = jnp.asarray([[1.0], [-1.0]], dtype=a.dtype)
+    x = jnp.stack([top, top])
+    for _ in range(_OF_ARCS):
+        x = x + _to_edge(side, *expanded(x))
+    ends = jnp.stack([start, end])
+    value = a + b * ends - offset(ends)
+    top = jnp.broadcast_to(top, x.shape)
+    x = jnp.where(side > 0, jnp.clip(x, start * one, top), jnp.clip(x, top, end * one))
+    inner = value <= 0
+    left, right = jnp.where(inner, x, ends)
+    open_ = expanded(top)[0] <= 0
+    left, right = (jnp.where(open_[0], top[0], edge) for edge in (left, right))
+    return left, right, inner
+
+
+def _to_edge(side, value, first, second):
+    """Step to the root of the local parabola, the left one where `side` is 1."""
+    square = first * first - 2.0 * value * second
+    base = first + side * jnp.sqrt(jnp.maximum(square, 0.0))
+    return -2.0 * value / jnp.where(base == 0, 1.0, base)
+
+
+def _loaded_interval(offset, start, end, at, fixed, slope, a, b):
     """First and last zero of a + b ξ - h in each panel, and which are inside.
 
     Args:
-        steps: How many times an edge is refined.
         offset: h, elementwise.
         start, end: Panel ends (panel,).
         at, fixed, slope: Scan points, h and its derivative there (panel, scan).
@@ -223,7 +272,7 @@ def _loaded_interval(steps, offset, start, end, at, fixed, slope, a, b):
         for i in (inside, outside)
     )
     side = jnp.asarray([[1.0], [-1.0]], dtype=a.dtype)
-    x = refined_edges(steps, offset, a, b, inside, outside, side, some[None, :])
+    x = refined_edges(_OF_ANY, offset, a, b, inside, outside, side, some[None, :])
     inner = jnp.stack([f[:, 0] <= 0, f[:, -1] <= 0])
     left = jnp.where(inner[0], x[0], start)
     right = jnp.where(inner[1], x[1], end)
