@@ -12,6 +12,7 @@ moments of an integrand are one product with a constant basis (w, w τ, w τ²).
 
 import abc
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import equinox as eqx
@@ -21,6 +22,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from .elementwise import elementwise
 from .implicit import attach_roots, stop
 
 Offset = Callable[[Array], Array]
@@ -31,7 +33,7 @@ _OF_ANY = 5
 
 # On arcs, from the middle of a panel: steps to the top, and from there to the edges.
 # Both begin with the exact answer for a parabola.
-_TO_TOP, _OF_ARCS = 2, 2
+_TO_TOP, _OF_ARCS = 2, 1
 _SETTLED = 1e-9
 
 MOST_NODES = 500
@@ -170,10 +172,12 @@ class ContactMapped(AbstractQuadrature):
 
     def nodes(self, offset, args, table, a, b, arcs=False):
         start, end, *_ = table
-        loaded = _loaded_arcs if arcs else _loaded_interval
-        left, right, inner = loaded(
-            lambda x: offset(stop(args), x), *stop((*table, a, b))
-        )
+        frozen = stop((*table, a, b))
+        if arcs:
+            left, right, inner = _loaded_arcs(offset, stop(args), *frozen)
+        else:
+            known = partial(offset, stop(args))
+            left, right, inner = _loaded_interval(known, *frozen)
 
         def argument(x, traced):
             a, b, args = traced
@@ -196,13 +200,22 @@ def _scan_point(index, start, end, count):
     return (start * right + end * left) / (left + right)
 
 
-def _loaded_arcs(offset, start, end, a, b):
-    """As `_loaded_interval`, where h is one arc in each panel: no scan.
+def _loaded_arcs(offset, args, start, end, a, b):
+    """As `_loaded_interval`, where h is one arc in each panel: no scan."""
 
-    The top of a + b ξ - h is found by Newton's method, the edges from there.
+    def one(start, end, a, b, args):
+        return _loaded_arc(partial(offset, args), start, end, a, b)
+
+    left, right, first, last = elementwise(one, start, end, a, b, args)
+    return left, right, jnp.stack([first, last])
+
+
+def _loaded_arc(offset, start, end, a, b):
+    """Edges of a + b ξ - h > 0 in one panel, and whether they are inside; scalars.
+
+    The top is found by Newton's method, the edges from there as the roots of the local
+    parabola: both exact at once of a parabola, which a flat arc nearly is.
     """
-    top = 0.5 * (start + end)
-    one = jnp.ones_like(top)
 
     def slope_of(x):
         return jax.jvp(offset, (x,), (jnp.ones_like(x),))
@@ -211,6 +224,7 @@ def _loaded_arcs(offset, start, end, a, b):
         (h, h1), (_, h2) = jax.jvp(slope_of, (x,), (jnp.ones_like(x),))
         return a + b * x - h, b - h1, -h2
 
+    top = 0.5 * (start + end)
     for _ in range(_TO_TOP):
         _, first, second = expanded(top)
         bent = second < 0
@@ -218,19 +232,23 @@ def _loaded_arcs(offset, start, end, a, b):
         # A straight line is highest at an end.
         top = jnp.where(bent, top + step, jnp.where(first > 0, end, start))
         top = jnp.clip(top, start, end)
-    side = jnp.asarray([[1.0], [-1.0]], dtype=a.dtype)
-    x = jnp.stack([top, top])
+    at_top = expanded(top)
+    left, right = (top + _to_edge(side, *at_top) for side in (1.0, -1.0))
     for _ in range(_OF_ARCS):
-        x = x + _to_edge(side, *expanded(x))
-    ends = jnp.stack([start, end])
-    value = a + b * ends - offset(ends)
-    top = jnp.broadcast_to(top, x.shape)
-    x = jnp.where(side > 0, jnp.clip(x, start * one, top), jnp.clip(x, top, end * one))
-    inner = value <= 0
-    left, right = jnp.where(inner, x, ends)
-    open_ = expanded(top)[0] <= 0
-    left, right = (jnp.where(open_[0], top[0], edge) for edge in (left, right))
-    return left, right, inner
+        left = jnp.clip(left, start, top)
+        left = left + _to_edge(1.0, *expanded(left))
+        right = jnp.clip(right, top, end)
+        right = right + _to_edge(-1.0, *expanded(right))
+    loaded = at_top[0] > 0
+    inner = [a + b * x - offset(x) <= 0 for x in (start, end)]
+    left = jnp.where(inner[0], jnp.clip(left, start, top), start)
+    right = jnp.where(inner[1], jnp.clip(right, top, end), end)
+    return (
+        jnp.where(loaded, left, top),
+        jnp.where(loaded, right, top),
+        inner[0],
+        inner[1],
+    )
 
 
 def _to_edge(side, value, first, second):
