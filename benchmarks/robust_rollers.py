@@ -117,7 +117,7 @@ def run(count, solver, seed=0, names=()):
                 magnitude = jnp.max(jnp.abs(rings[jnp.array([0, 1, 3, 4])]))
                 # All that a roller without inertia sees of its rings.
                 rings = rings[3:] - rings[:3]
-                state = solve_element(model, rings, magnitude, minimiser)
+                state, _ = solve_element(model, rings, magnitude, minimiser)
                 known = response(model, rings, state.x)
                 d = derivatives(model, rings, state.x, known)
                 loads = jnp.sum(known.beside)

@@ -202,7 +202,9 @@ def scan_points(el):
     """Where C looks for the loaded zone; of equal slices their middles."""
     if isinstance(el.quadrature, bj.Midpoint):
         return el.quadrature.reference()[0]
-    return np.asarray(el.model().rows[0].element.constants.tables[0][2])[0]
+    t = np.linspace(0.0, 1.0, el.quadrature.scan)
+    left, right = t**5, (1.0 - t) ** 5
+    return (left - right) / (left + right)
 
 
 def pointer(array):

@@ -311,28 +311,41 @@ def _loop(minimiser: AbstractMinimiser, known, may_be_open) -> lanes.Loop:
 
     Args:
         minimiser: Local solver.
-        known: Shapes of what its contacts bear.
-        may_be_open: Whether it is known of some elements that they are open.
+        known: What its contacts bear, the shapes.
+        may_be_open: Whether the element can tell that it is open.
     """
 
     def problem_of(given):
         return _problem(given, known if given.element.seeking.keeps_response else ())
 
-    def ended(given, state):
-        placed = Placed(given.element, state, given.magnitude)
-        return state, condensed(given.rings, placed)
-
     def finish(given, state):
-        return ended(given, _solved(given.element, given.rings, loop.finish(given, state)))
+        element, rings = given.element, given.rings
+        state = _solved(element, rings, loop.finish(given, state))
+        return state, condensed(rings, Placed(element, state, given.magnitude))
 
     def rest(given):
-        zero, none = jnp.zeros_like(given.radius), jnp.zeros((), jnp.int32)
-        unloaded = LocalState(given.centre, zero, zero, none, none, _zeros(known))
-        nothing = jax.eval_shape(lambda: condensed(given.rings, Placed(given.element, unloaded, given.magnitude)))
-        return given.is_open, (unloaded, _zeros(nothing))
+        return given.is_open, unloaded(given.rings, given.centre, known)
 
     loop = minimiser.loop(problem_of)
     return loop._replace(finish=finish, rest=rest if may_be_open else None)
+
+
+def unloaded(rings: Rings, x: Unknowns, known: Any) -> tuple[LocalState, Expansion]:
+    """As `solve_element` returns it, of an element that carries nothing.
+
+    Args:
+        rings: Motions of the rings in its axes (r,) [m, rad].
+        x: Its unknowns (n,) [m].
+        known: What its contacts bear, the shapes.
+    """
+    n, r = x.shape[0], rings.shape[0]
+    zero, none = jnp.zeros((), rings.dtype), jnp.zeros((), jnp.int32)
+    nothing = _zeros(known)
+    state = LocalState(x, zero, zero, none, none, nothing)
+    beside = Beside(nothing.beside, jnp.zeros((n, r), rings.dtype))
+    return state, Expansion(
+        zero, jnp.zeros_like(rings), jnp.zeros((r, r), rings.dtype), beside
+    )
 
 
 def _zeros(shapes):

@@ -21,7 +21,6 @@ from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
 from ..numerics.types import Ring, Scalar
 from .energy import response, unpacked
 from .equilibrium import (
-    Beside,
     LocalState,
     Near,
     Placed,
@@ -29,6 +28,7 @@ from .equilibrium import (
     near_by,
     own_unknowns,
     solve_element,
+    unloaded,
 )
 from .frame import (
     FREEDOMS,
@@ -280,21 +280,16 @@ class Row(eqx.Module):
         """A row of which nothing is known yet, in the shape of a solved one."""
         local = self.local(jnp.zeros((12,), self.ratio.dtype))
         rings = jnp.zeros_like(self.seen(local, self.azimuth))
-        n, r = self.element.n_unknowns, rings.shape[1]
-        zero, none = jnp.zeros((), rings.dtype), jnp.zeros((), jnp.int32)
+        n, zero = self.element.n_unknowns, jnp.zeros((), rings.dtype)
 
         def one(element, rings):
             x = jnp.zeros((n,), rings.dtype)
             known = jax.eval_shape(lambda: response(element, rings, x))
-            known = jax.tree.map(lambda a: jnp.zeros(a.shape, a.dtype), known)
-            state = LocalState(x, zero, zero, none, none, known)
-            beside = Beside(known.beside, jnp.zeros((n, r), rings.dtype))
-            hessian = jnp.zeros((r, r), rings.dtype)
-            return state, Expansion(zero, rings, hessian, beside), zero
+            return *unloaded(rings, x, known), zero
 
         state, energies, magnitude = self.each(one, rings)
         travel = () if self.spring is None else zero
-        balance = () if self.spring is None else none
+        balance = () if self.spring is None else jnp.zeros((), jnp.int32)
         return SolvedRow(rings, magnitude, state, energies, travel, balance)
 
 

@@ -29,15 +29,9 @@ from jax import lax
 from jax.custom_batching import custom_vmap
 from jaxtyping import Array, Bool
 
-FEWEST = 128
-"""Problems from which on there is a queue: fewer are stepped together by `vmap`."""
-
-import os
-PART = int(os.environ.get("QP","4"))
-"""One problem in so many is in a slot at a time."""
-
-MOST = int(os.environ.get("QM","256"))
-"""Most slots: what they hold should stay in the cache of a core."""
+SLOTS, IDLE = 128, 64
+"""Slots, and how many of them may be idle, if not said otherwise. What the slots hold
+should stay in the cache of a core."""
 
 SMALL = 64
 """Most numbers of a leaf that is packed with others."""
@@ -150,9 +144,8 @@ def packing(example) -> tuple[Callable[[Any], list[Array]], Callable[[Any], Any]
         return [*others, jnp.concatenate(parts)]
 
     def unpack(packed):
-        *others, first = packed if small else (*packed, None)
-        found = dict(zip(large, others, strict=True))
-        begin = 0
+        found = dict(zip(large, packed, strict=False))
+        first, begin = packed[-1], 0
         for k in (*vectors, *scalars):
             a = leaves[k]
             part = first[begin : begin + a.size]
@@ -167,12 +160,16 @@ def _is_either(node):
     return isinstance(node, Either)
 
 
-def run(loop: Loop, given) -> Any:
+def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
     """`loop.run(given)`, which under `vmap` lets few lanes wait for others.
 
     Args:
         loop: Its functions see no traced number but those of `given`.
         given: Pytree; what is no array is static.
+        slots: How many problems of a batch are at work at a time, while others wait. A
+            batch of fewer than two times as many is stepped together by `vmap`.
+        idle: How many slots may be done before they are refilled, while problems wait.
+            It costs a part of a step, and more where states are large.
 
     Returns:
         As `Loop.finish`. Derivatives are not for here: see `implicit`.
@@ -189,18 +186,18 @@ def run(loop: Loop, given) -> Any:
 
     @one.def_vmap
     def _rule(size, batched, leaves):
-        out = _many(loop, whole, tuple(batched[0]))(leaves)
+        out = _many(loop, whole, (slots, idle), tuple(batched[0]))(leaves)
         return out, jax.tree.map(lambda _: True, out)
 
     return one(leaves)
 
 
-def _many(loop, whole, flags):
+def _many(loop, whole, slots, flags):
     """The loops of lanes, flagged leaves with a leading axis."""
 
     @custom_vmap
     def many(leaves):
-        return _in_lanes(loop, whole, flags, leaves)
+        return _in_lanes(loop, whole, slots, flags, leaves)
 
     @many.def_vmap
     def _rule(size, batched, leaves):
@@ -218,7 +215,7 @@ def _many(loop, whole, flags):
             return leaf.reshape(size * count, *leaf.shape[2:])
 
         joint = [joined(*x) for x in zip(leaves, flags, batched[0], strict=True)]
-        out = _many(loop, whole, both)(joint)
+        out = _many(loop, whole, slots, both)(joint)
         out = jax.tree.map(lambda a: a.reshape(size, count, *a.shape[1:]), out)
         return out, jax.tree.map(lambda _: True, out)
 
@@ -233,7 +230,7 @@ def _count(flags, leaves, batched):
     raise AssertionError("no leaf has lanes")
 
 
-def _in_lanes(loop, whole, flags, leaves):
+def _in_lanes(loop, whole, slots, flags, leaves):
     common = [leaf for leaf, flag in zip(leaves, flags, strict=True) if not flag]
     own = [leaf for leaf, flag in zip(leaves, flags, strict=True) if flag]
 
@@ -242,17 +239,20 @@ def _in_lanes(loop, whole, flags, leaves):
         return whole([next(mine if flag else rest) for flag in flags])
 
     count = own[0].shape[0]
-    if count < FEWEST:
+    if count < 2 * slots[0]:
         return jax.vmap(lambda mine: loop.run(given(mine)))(own)
-    return _queued(loop, given, own, count)
+    return _queued(loop, given, own, count, slots)
 
 
-def _queued(loop, given, own, count):
+def _queued(loop, given, own, count, slots):
     """All problems, some at a time; see the top of this file."""
-    width = max(32, min(MOST, count // PART))
+    width, spare = slots
     one = [jax.ShapeDtypeStruct(a.shape[1:], a.dtype) for a in own]
     begin = jax.eval_shape(lambda mine: loop.init(given(mine)), one)
-    end = jax.eval_shape(lambda mine, s: loop.finish(given(mine), s), one, begin)
+    if loop.rest is None:
+        end = jax.eval_shape(lambda mine, s: loop.finish(given(mine), s), one, begin)
+    else:
+        _, end = jax.eval_shape(lambda mine: loop.rest(given(mine)), one)
     # Three arrays are moved about in place of very many.
     pack_own, unpack_own = packing(one)
     pack, unpack = packing(begin)
@@ -302,7 +302,7 @@ def _queued(loop, given, own, count):
         out, taken, place, mine, state, going = carry
         # Those at work leave the others alone until many slots are done: to refill
         # them costs a good part of a step.
-        fewest = jnp.where(taken < waiting, width * int(os.environ.get("QF","2"))//4, 0)
+        fewest = jnp.where(taken < waiting, width - spare, 0)
         state, going = lax.while_loop(
             lambda now: jnp.sum(now[1]) > fewest,
             lambda now: jax.vmap(step)(mine, *now),

@@ -368,7 +368,11 @@ class TrustRegionNewton(AbstractMinimiser):
         return jnp.diag(jnp.clip(own / stiffest, self.softest, 1.0))
 
 
-def continuation(minimiser: AbstractMinimiser, problem: Problem, factor) -> Minimum:
+def continuation(
+    minimiser: AbstractMinimiser,
+    problem_of: Callable[[Any], Problem],
+    factor_of: Callable[[Any], Array],
+) -> Loop:
     """Minimise value - force·x, approached from a larger force.
 
     As with a barrier method, what matters to the end is found early, and Newton's
@@ -377,36 +381,40 @@ def continuation(minimiser: AbstractMinimiser, problem: Problem, factor) -> Mini
 
     Args:
         minimiser: Takes the steps.
-        problem: With a `force`; its step limit counts all steps.
-        factor: How many times the force the search begins with, at least 1.
-    """
-    goal = minimiser.goal(problem)
+        problem_of: Given -> problem with a `force`; its step limit counts all steps.
+        factor_of: Given -> how many times the force the search begins with, at least 1.
 
-    def larger(factor):
+    Returns:
+        The iteration, given -> `Minimum`.
+    """
+
+    def larger(problem, factor):
+        goal = minimiser.goal(problem)
         early = jnp.where(factor > 1.0, jnp.maximum(goal, 1e-2), goal)
         return problem._replace(force=factor * problem.force, tolerance=early)
 
-    def finish(_, carry):
-        state, factor = carry
-        return minimiser.finish(larger(factor)._replace(tolerance=goal), state)
+    def init(given):
+        return minimiser.init(problem_of(given)), factor_of(given)
 
-    def step(_, carry):
-        state, factor = carry
-        near = (factor > 1.0) & minimiser.settled(larger(factor), state)
+    def step(given, carry):
+        (state, factor), problem = carry, problem_of(given)
+        near = (factor > 1.0) & minimiser.settled(larger(problem, factor), state)
         near = near & (state.steps >= 0)
         factor = jnp.where(near, jnp.maximum(0.1 * factor, 1.0), factor)
         state = state._replace(
             radius=jnp.where(near, problem.radius, state.radius),
             stalled=state.stalled & ~near,
         )
-        return minimiser.step(larger(factor), state), factor
+        return minimiser.step(larger(problem, factor), state), factor
 
-    def terminate(_, carry):
-        state, factor = carry
-        settled = (factor <= 1.0) & minimiser.settled(larger(factor), state)
+    def terminate(given, carry):
+        (state, factor), problem = carry, problem_of(given)
+        settled = (factor <= 1.0) & minimiser.settled(larger(problem, factor), state)
         return (settled | minimiser.spent(problem, state)) & (state.steps >= 0)
 
-    def init(_):
-        return minimiser.init(problem), factor
+    def finish(given, carry):
+        (state, factor), problem = carry, problem_of(given)
+        goal = minimiser.goal(problem)
+        return minimiser.finish(larger(problem, factor)._replace(tolerance=goal), state)
 
-    return Loop(init, step, terminate, finish).run(None)
+    return Loop(init, step, terminate, finish)

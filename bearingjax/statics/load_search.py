@@ -13,6 +13,7 @@ from jaxtyping import Array, Float
 
 from ..design import AbstractBallBearing, SetRow
 from ..element.bearing_model import BearingModel
+from ..numerics import lanes
 from ..numerics.implicit import attach, unless_failed
 from ..numerics.minimise import (
     Evaluation,
@@ -25,6 +26,9 @@ from ..numerics.result import Result
 from ..numerics.types import Scalar
 from .balance import Balance
 from .options import SolveOptions
+
+SLOTS, IDLE = 32, 2
+"""Cases of a batch that are at work at a time, and how many of them may be done."""
 
 
 class Beginning(NamedTuple):
@@ -99,20 +103,34 @@ def search(
         begin: Where the search begins.
         options: Settings, the tolerance among them.
     """
-    direction = begin.load / jnp.where(begin.size > 0, begin.size, 1.0)
     solver = TrustRegionNewton(symmetric=model.has_potential, softest=0.03)
-    problem = Problem(
+    loop = continuation(solver, _problem, lambda given: given.begin.factor)
+    given = _Given(model, balance, begin, options)
+    return lanes.run(loop, given, slots=SLOTS, idle=IDLE)
+
+
+class _Given(NamedTuple):
+    """The arguments of `search`."""
+
+    model: BearingModel
+    balance: Balance
+    begin: Beginning
+    options: SolveOptions
+
+
+def _problem(given: _Given) -> Problem:
+    model, balance, begin, options = given
+    return Problem(
         _energy(model, balance),
         begin.y,
         begin.step,
         memory=model.unsolved(),
-        direction=direction,
+        direction=begin.load / jnp.where(begin.size > 0, begin.size, 1.0),
         limit=begin.limit,
         force=begin.load,
         tolerance=options.tolerance,
         max_steps=options.max_steps,
     )
-    return continuation(solver, problem, begin.factor)
 
 
 def _energy(model: BearingModel, balance: Balance) -> Callable[..., Evaluation]:

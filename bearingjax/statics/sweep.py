@@ -25,9 +25,9 @@ from .support import check_held
 from .sweep_program import WARNED, Program, Task
 from .warning import counted, given
 
-CHUNK = 64
-"""Cases solved as one batch: few enough for the processor's cache
-(benchmarks/batch_throughput.py)."""
+CHUNK, RUNS = 512, 128
+"""Cases of a batch, of which `load_search.SLOTS` are at work at a time, and runs of
+cases that start from their neighbours (benchmarks/load_solve_throughput.py)."""
 
 SUMMARIES: dict[str, Callable[[Solution], Array]] = {
     "peak_pressure": lambda s: jnp.max(s.roller_pressure),
@@ -160,7 +160,8 @@ def sweep(
             case then starts from the solution of the one before. A case that ends at
             the step limit or at a saddle is solved again without that start.
         warn: Look for warnings (`bj.warnings`) in every case.
-        chunk: Cases solved as one batch; default `CHUNK`.
+        chunk: Cases of a batch; default `CHUNK`. With `neighbours` the number of runs
+            into which the cases are cut; default `RUNS`.
         progress: Show a bar.
         devices: Over which the cases are spread; default all of `jax.devices()`, of
             all processes. (`jax.config.update("jax_num_cpu_devices", 2)` before
@@ -184,7 +185,8 @@ def sweep(
     options = SolveOptions(free, fixed_ring, points, tolerance, max_steps)
     options.check("sweep")
     every = _with_designs(element, every)
-    size = CHUNK if chunk is None else chunk
+    default = RUNS if neighbours else CHUNK
+    size = default if chunk is None else chunk
     if not isinstance(size, int) or size < 1:
         raise ValueError(f"sweep: `chunk` is {chunk!r}; a whole number of at least 1.")
     check_held("sweep", every.load, every.prescribed, options.free)

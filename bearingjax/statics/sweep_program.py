@@ -20,8 +20,8 @@ from .options import SolveOptions
 from .solution import Solution
 from .warning import sizes
 
-BLOCK = 64
-"""Chunks of a device between two visits of the host."""
+BLOCK = 4096
+"""Cases of a device between two visits of the host, or a chunk if that is more."""
 
 LARGEST = 4 * 2**30
 """Bytes that the outputs of a sweep may take."""
@@ -109,7 +109,8 @@ class Program:
         `NOT_RUN`."""
         n = cases.count
         lanes = self.mesh.size * min(self.chunk, math.ceil(n / self.mesh.size))
-        block = lanes * min(BLOCK, math.ceil(n / lanes))
+        chunks = max(1, BLOCK * self.mesh.size // lanes)
+        block = lanes * min(chunks, math.ceil(n / lanes))
         shard = NamedSharding(self.mesh, Spec("case"))
         held = jax.tree.map(np.asarray, cases)
         found: dict[str, np.ndarray] = {}

@@ -74,7 +74,7 @@ def test_packing():
     }
     pack, unpack = lanes.packing(jax.eval_shape(lambda: state))
     packed = pack(state)
-    assert [a.shape for a in packed] == [(8,), (lanes.SMALL + 1,)]
+    assert [a.shape for a in packed] == [(lanes.SMALL + 1,), (8,)]
     back = unpack(packed)
     other = jax.tree.map(jnp.zeros_like, state)
     for flag, want in ((True, state), (False, other)):

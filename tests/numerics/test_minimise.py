@@ -197,7 +197,7 @@ def test_continuation():
         problem = Problem(
             function, start, jnp.asarray(0.5), force=force, max_steps=max_steps
         )
-        return continuation(NEWTON, problem, factor)
+        return continuation(NEWTON, lambda _: problem, lambda _: factor).run(None)
 
     plain, larger = (pulled(jnp.asarray(f), 100) for f in (1.0, 1e4))
     assert plain.result == larger.result == Result.CONVERGED
