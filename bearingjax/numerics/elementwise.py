@@ -12,41 +12,50 @@ import jax
 import jax.numpy as jnp
 from jax import lax
 from jax.custom_batching import custom_vmap
+from jaxtyping import Array
 
 
-def elementwise(function: Callable, *args: Any) -> Any:
-    """Apply a function of scalars to arrays, element by element.
+def elementwise(function: Callable, rows: tuple[Array, ...], args: Any) -> Any:
+    """Apply a function of scalars to arrays, element by element. Without derivatives.
 
     Args:
-        function: Of pytrees of scalars -> pytree of scalars; it sees no traced number
-            but its arguments. Without derivatives.
-        *args: Pytrees of arrays that broadcast against each other; what is no array is
-            static.
+        function: (one element of each row, args) -> pytree of scalars; it sees no
+            traced number but its arguments.
+        rows: Arrays that broadcast against each other.
+        args: What every element sees whole, any pytree; what is no array is static.
 
     Returns:
         Pytree of arrays of the common shape.
     """
     arrays, static = eqx.partition(args, eqx.is_array)
     leaves, tree = jax.tree.flatten(arrays)
-    shape = jnp.broadcast_shapes(*(leaf.shape for leaf in leaves))
+    shape = jnp.broadcast_shapes(*(row.shape for row in rows))
 
-    def one(leaves):
-        return function(*eqx.combine(jax.tree.unflatten(tree, leaves), static))
+    def one(rows, leaves):
+        return function(*rows, eqx.combine(jax.tree.unflatten(tree, leaves), static))
 
     @custom_vmap
-    def apply(leaves):
-        shape = leaves[0].shape
+    def apply(rows, leaves):
+        shape = rows[0].shape
+
+        def long(x):
+            return x.reshape(-1, *x.shape[len(shape) :])
+
         # Written out: broadcast within a loop, they would keep it from vectorising.
-        rows = lax.optimization_barrier([leaf.reshape(-1) for leaf in leaves])
-        return jax.tree.map(lambda y: y.reshape(shape), jax.vmap(one)(rows))
+        given = lax.optimization_barrier(jax.tree.map(long, (rows, leaves)))
+        return jax.tree.map(lambda y: y.reshape(shape), jax.vmap(one)(*given))
 
     @apply.def_vmap
-    def _rule(size, batched, leaves):
-        whole = [
-            leaf if flag else jnp.broadcast_to(leaf, (size, *leaf.shape))
-            for leaf, flag in zip(leaves, batched[0], strict=True)
-        ]
-        out = apply(whole)
+    def _rule(size, batched, *given):
+        whole = jax.tree.map(
+            lambda flag, x: x if flag else jnp.broadcast_to(x, (size, *x.shape)),
+            tuple(batched),
+            given,
+        )
+        out = apply(*whole)
         return out, jax.tree.map(lambda _: True, out)
 
-    return apply([jnp.broadcast_to(leaf, shape) for leaf in leaves])
+    return apply(
+        [jnp.broadcast_to(row, shape) for row in rows],
+        [jnp.broadcast_to(leaf, (*shape, *leaf.shape)) for leaf in leaves],
+    )

@@ -31,9 +31,9 @@ Offset = Callable[[Array], Array]
 # logarithm, where less is in error in the integrals.
 _OF_ANY = 5
 
-# On arcs, from the middle of a panel: steps to the top, and from there to the edges.
-# Both begin with the exact answer for a parabola.
-_TO_TOP, _OF_ARCS = 2, 1
+# On arcs, from the middle of a panel: steps to the top, of which the first is exact for
+# a parabola, and to the edges, after the exact ones of the parabola at the top.
+_TO_TOP, _OF_ARCS = 2, 2
 _SETTLED = 1e-9
 
 MOST_NODES = 500
@@ -206,7 +206,7 @@ def _loaded_arcs(offset, args, start, end, a, b):
     def one(start, end, a, b, args):
         return _loaded_arc(partial(offset, args), start, end, a, b)
 
-    left, right, first, last = elementwise(one, start, end, a, b, args)
+    left, right, first, last = elementwise(one, (start, end, a, b), args)
     return left, right, jnp.stack([first, last])
 
 
@@ -232,23 +232,23 @@ def _loaded_arc(offset, start, end, a, b):
         # A straight line is highest at an end.
         top = jnp.where(bent, top + step, jnp.where(first > 0, end, start))
         top = jnp.clip(top, start, end)
-    at_top = expanded(top)
-    left, right = (top + _to_edge(side, *at_top) for side in (1.0, -1.0))
+    # Apart, or a compiler works out all of this anew for each edge.
+    value, first, second = lax.optimization_barrier(expanded(top))
+    # Of the parabola at the top; of a straight line the end.
+    highest = value - 0.5 * first * first / jnp.where(second < 0, second, -jnp.inf)
+    left, right = (top + _to_edge(s, value, first, second) for s in (1.0, -1.0))
     for _ in range(_OF_ARCS):
-        left = jnp.clip(left, start, top)
+        left, right = lax.optimization_barrier((left, right))
+        left = jnp.clip(left, start, end)
         left = left + _to_edge(1.0, *expanded(left))
-        right = jnp.clip(right, top, end)
+        right = jnp.clip(right, start, end)
         right = right + _to_edge(-1.0, *expanded(right))
-    loaded = at_top[0] > 0
     inner = [a + b * x - offset(x) <= 0 for x in (start, end)]
-    left = jnp.where(inner[0], jnp.clip(left, start, top), start)
-    right = jnp.where(inner[1], jnp.clip(right, top, end), end)
-    return (
-        jnp.where(loaded, left, top),
-        jnp.where(loaded, right, top),
-        inner[0],
-        inner[1],
-    )
+    left = jnp.where(inner[0], jnp.clip(left, start, end), start)
+    right = jnp.where(inner[1], jnp.clip(right, left, end), end)
+    loaded = highest > 0
+    left, right = (jnp.where(loaded, x, top) for x in (left, right))
+    return left, right, inner[0], inner[1]
 
 
 def _to_edge(side, value, first, second):

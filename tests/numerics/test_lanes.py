@@ -7,7 +7,7 @@ import pytest
 
 from bearingjax.numerics import lanes
 
-ROWS, COLUMNS = 7, 100  # 700 problems: more than there are lanes
+ROWS, COLUMNS = 7, 100  # 700 problems: more than there are slots
 
 
 # Twice the sum of slope·k over k < count, in `count` steps.
@@ -54,6 +54,58 @@ def test_lanes_are_the_loops_one_by_one(problems, axes):
     count, slope = whole
     np.testing.assert_array_equal(steps, count)
     np.testing.assert_allclose(total, slope * count * (count - 1), rtol=1e-13)
+
+
+@pytest.mark.parametrize("count, slots, idle", [(50, 8, 2), (17, 8, 7), (64, 8, 1)])
+def test_few_slots(count, slots, idle):
+    """More problems than slots; at the end some slots are empty."""
+    steps = np.arange(count) % 13
+    slope = np.linspace(-1.0, 1.0, count)
+    got = jax.vmap(lambda n, s: lanes.run(SUM, (n, s), slots, idle))(
+        jnp.asarray(steps), jnp.asarray(slope)
+    )
+    np.testing.assert_allclose(got[0], slope * steps * (steps - 1), rtol=1e-13)
+    np.testing.assert_array_equal(got[1], steps)
+
+
+@pytest.mark.parametrize("count", [1, 5, 300])
+@pytest.mark.parametrize("resting", ["none", "some", "all"])
+def test_resting_problems_are_not_begun(count, resting):
+    """They would run for ever; what they rest at is theirs."""
+    number = jnp.arange(1.0, count + 1.0)
+    odd = jnp.arange(count) % 2 == 1
+    rests = {"none": odd & False, "some": odd, "all": odd | True}[resting]
+
+    loop = lanes.Loop(
+        init=lambda given: given[0],
+        step=lambda given, s: jnp.where(given[1], s, s - 1.0),
+        terminate=lambda given, s: s <= 0.5,
+        finish=lambda given, s: (s, given[0]),
+        rest=lambda given: (given[1], (-given[0], jnp.zeros(()))),
+    )
+    left, was = jax.vmap(lambda n, r: lanes.run(loop, (n, r)))(number, rests)
+    np.testing.assert_array_equal(left, np.where(rests, -number, 0.0))
+    np.testing.assert_array_equal(was, np.where(rests, 0.0, number))
+
+
+def test_lanes_within_lanes():
+    """A loop whose every step runs another; both in slots."""
+
+    def inner(count):
+        return lanes.run(SUM, (count, jnp.ones(())), 4, 1)[0]
+
+    outer = lanes.Loop(
+        init=lambda given: (given[1], jnp.zeros(())),
+        step=lambda given, s: (s[0] - 1, s[1] + jnp.sum(jax.vmap(inner)(given[0]))),
+        terminate=lambda given, s: s[0] <= 0,
+        finish=lambda given, s: s[1],
+    )
+    counts = np.arange(60).reshape(20, 3) % 7
+    times = np.arange(20) % 5
+    got = jax.vmap(lambda c, t: lanes.run(outer, (c, t), 4, 1))(
+        jnp.asarray(counts), jnp.asarray(times)
+    )
+    np.testing.assert_allclose(got, times * np.sum(counts * (counts - 1), axis=1))
 
 
 def test_few_problems_and_one():

@@ -21,6 +21,7 @@ from bearingjax.numerics import ContactMapped, Midpoint, positive_power
 
 # Sizes of a real roller: drops of some micrometres, E-3.5 D of a logarithm.
 CROWN, LOG, FLAT, ARC = 12.5e-6, 3.5e-6, 0.4, 20e-6
+HALF = 5e-3
 TINY = math.sqrt(np.finfo(float).tiny)
 # (power, moment): energy; load and its moment; three of stiffness.
 WANTED = ((19, 0), (10, 0), (10, 1), (1, 0), (1, 1), (1, 2))
@@ -41,15 +42,23 @@ def flat_and_arc(p, xi):
     return p[0] * out * out
 
 
+def arc(p, xi):
+    """Of radius p, in half lengths; the half length is 5 mm."""
+    return HALF * xi * xi / (p[0] + jnp.sqrt(p[0] ** 2 - xi * xi))
+
+
 def straight(p, xi):
     return 0.0 * xi * p[0]
 
 
 class Case:
-    """A profile: h for JAX; h, h' and kinks for the reference; its parameters."""
+    """A profile: h for JAX; h, h' and kinks for the reference; its parameters.
 
-    def __init__(self, offset, p, plain, slope, kinks=lambda p: ()):
-        self.offset, self.p = offset, np.array(p)
+    `arcs`: whether the rule may take its panels for arcs.
+    """
+
+    def __init__(self, offset, p, plain, slope, kinks=lambda p: (), arcs=False):
+        self.offset, self.p, self.arcs = offset, np.array(p), arcs
         self.plain, self.slope, self.kinks = plain, slope, kinks
 
 
@@ -70,7 +79,20 @@ CASES = {
         lambda p: (-p[1], p[1]),
     ),
     "straight": Case(straight, [1.0], lambda p, x: 0.0, lambda p, x: 0.0),
+    # A radius of four half lengths is far from flat.
+    "arc": Case(
+        arc,
+        [4.0],
+        lambda p, x: HALF * x * x / (p[0] + math.sqrt(p[0] ** 2 - x * x)),
+        lambda p, x: HALF * x / math.sqrt(p[0] ** 2 - x * x),
+        arcs=True,
+    ),
 }
+for _name in ("crown", "flat and arc", "straight"):
+    _case = CASES[_name]
+    CASES[f"{_name}, no scan"] = Case(
+        _case.offset, _case.p, _case.plain, _case.slope, _case.kinks, arcs=True
+    )
 
 
 def motions(case, rng, count=200):
@@ -151,8 +173,8 @@ def integrals(rule, case, p, a, b):
     def bound(args, xi):
         return case.offset(args, xi)
 
-    table = rule.table(partial(case.offset, p), case.kinks(p), p.dtype)
-    nodes = rule.nodes(bound, p, table, a, b)
+    table = rule.table(partial(case.offset, p), case.kinks(p), p.dtype, case.arcs)
+    nodes = rule.nodes(bound, p, table, a, b, case.arcs)
     tau = jnp.asarray(rule.reference()[0])
     xi = nodes.middle[:, None] + nodes.half[:, None] * tau[None, :]
     weight = nodes.half[:, None] * rule.basis(p.dtype)[None, :, 0]
@@ -247,7 +269,7 @@ def test_derivatives_against_differences(solved):
         x = np.array([a, b, *case.p])
         got = np.concatenate([by_a[i][:, None], by_b[i][:, None], by_p[i]], axis=1)
         for j in range(2 if case.offset is straight else x.size):
-            step = 2e-10 if x[j] < 1e-3 else 1e-5
+            step = 2e-10 if j < 2 or x[j] < 1e-3 else 1e-5
             step = np.eye(x.size)[j] * step
             ends = [
                 reference(case, y[2:], y[0], y[1], top) for y in (x + step, x - step)
