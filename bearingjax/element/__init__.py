@@ -1,5 +1,6 @@
 """The bearing as an element: one energy, its equilibrium and its derivatives."""
 
+from .azimuth import azimuths as azimuths
 from .ball_speed import AbstractRacewayControl as AbstractRacewayControl
 from .ball_speed import BallKinematics as BallKinematics
 from .ball_speed import CentrifugalOnly as CentrifugalOnly
@@ -36,6 +37,5 @@ from .rolling_element import AbstractRollingElement as AbstractRollingElement
 from .rolling_element import RingMotion as RingMotion
 from .rolling_element import contact_energy as contact_energy
 from .row import Row as Row
-from .row import RowResults as RowResults
-from .row import azimuths as azimuths
-from .row import inertia_load as inertia_load
+from .solved_row import RowResults as RowResults
+from .solved_row import inertia_load as inertia_load

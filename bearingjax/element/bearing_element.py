@@ -20,6 +20,7 @@ from ..design.checks import is_traced
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Ring, Scalar
+from .azimuth import azimuths, orbit_ratio
 from .ball_speed import AbstractRacewayControl
 from .bearing_model import BearingModel, Evaluated, RowGroup
 from .choices import AbstractChoices, check_kinds, choices_for, in_one_dtype
@@ -27,7 +28,8 @@ from .equilibrium import Near
 from .function import FunctionParameters, RingFunction, as_function
 from .inertia import Speed
 from .kinematics import AbstractKinematics
-from .row import Place, Row, RowResults, azimuths, orbit_ratio
+from .row import Place, Row
+from .solved_row import RowResults
 
 State = tuple[Near, ...]
 """Rolling elements solved at ring freedoms near by."""

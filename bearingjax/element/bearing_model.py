@@ -23,7 +23,8 @@ from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .equilibrium import Near, settle
 from .rolling_element import split
-from .row import Row, RowResults, SolvedRow
+from .row import Row
+from .solved_row import RowResults, SolvedRow
 
 Azimuths = tuple[Float[Array, "..."], ...]
 """Azimuths of the rolling elements of every group of rows [rad]."""

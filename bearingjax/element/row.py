@@ -1,6 +1,6 @@
-"""Rows of rolling elements: where they stand, solved, and their common energy."""
+"""Rows of rolling elements: placed, solved, and their common energy."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -8,43 +8,20 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design import (
-    AbstractRollerBearing,
-    Bearing,
-    PreloadSpring,
-    deviation_of,
-    n_elements,
-)
+from ..design import PreloadSpring
 from ..numerics.expansion import Expansion, expanded
 from ..numerics.implicit import attach, recall, stop
 from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
 from ..numerics.types import Ring, Scalar
-from .energy import response, unpacked
-from .equilibrium import (
-    LocalState,
-    Near,
-    Placed,
-    condensed,
-    near_by,
-    own_unknowns,
-    solve_element,
-    unloaded,
-)
-from .frame import (
-    FREEDOMS,
-    even_azimuths,
-    orbit,
-    placement,
-    roll_ratio,
-    section_matrix,
-)
+from .azimuth import Azimuth, turn
+from .energy import response
+from .equilibrium import Near, condensed, own_unknowns, solve_element, unloaded
+from .frame import FREEDOMS, placement
 from .rolling_element import RingMotion, split
+from .solved_row import RowResults, SolvedRow
 
-_UZ, _GZ = FREEDOMS.index("uz"), FREEDOMS.index("gz")
+_UZ = FREEDOMS.index("uz")
 _TRANSLATIONS, _TILTS = slice(0, 3), slice(3, 5)
-
-Azimuth = Float[Array, " element"]
-"""Azimuth of every rolling element of a row [rad]."""
 
 
 class Place(NamedTuple):
@@ -103,7 +80,7 @@ class Row(eqx.Module):
         Args:
             q: Ring freedoms [m, rad]; only both gz count.
         """
-        return _turn(self.ratio, q)
+        return turn(self.ratio, q)
 
     def solve(
         self,
@@ -111,7 +88,7 @@ class Row(eqx.Module):
         azimuth: Azimuth,
         minimiser: AbstractMinimiser,
         near: Near | None,
-    ) -> "SolvedRow":
+    ) -> SolvedRow:
         """Equilibrium of every rolling element at given ring freedoms.
 
         Args:
@@ -130,7 +107,7 @@ class Row(eqx.Module):
             return row._solved(local, azimuth, minimiser, near)
         return row._pressed(row.spring, local, azimuth, minimiser, near)
 
-    def _solved(self, local, azimuth, minimiser, near) -> "SolvedRow":
+    def _solved(self, local, azimuth, minimiser, near) -> SolvedRow:
         shift = jnp.concatenate([r[_TRANSLATIONS] for r in local])
         tilt = jnp.concatenate([r[_TILTS] for r in local])
         magnitude = jnp.max(jnp.abs(shift))
@@ -145,7 +122,7 @@ class Row(eqx.Module):
         state, energies, magnitudes = self.each(one, rings, *known)
         return SolvedRow(rings, magnitudes, state, energies)
 
-    def _pressed(self, spring, local, azimuth, minimiser, near) -> "SolvedRow":
+    def _pressed(self, spring, local, azimuth, minimiser, near) -> SolvedRow:
         """As `_solved`, with the travel of its spring, which the row balances."""
 
         def function(travel, _, memory):
@@ -203,7 +180,7 @@ class Row(eqx.Module):
 
         return jnp.sum(solved.each(self, one, self.seen(local, azimuth)))
 
-    def energy(self, q: Ring, azimuth: Azimuth, solved: "SolvedRow") -> Scalar:
+    def energy(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> Scalar:
         """Energy of the row as a function of the ring freedoms, solved there [J].
 
         Its derivatives with respect to q are the forces on the node and their
@@ -220,7 +197,7 @@ class Row(eqx.Module):
         args = self, azimuth, solved
         return expanded(_with_spring, jnp.concatenate(local), args)
 
-    def at(self, q: Ring, azimuth: Azimuth, solved: "SolvedRow") -> "RowResults":
+    def at(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> RowResults:
         """What a solved row tells of its elements, with derivatives.
 
         Args:
@@ -276,7 +253,7 @@ class Row(eqx.Module):
 
         return self.each(one, azimuth)
 
-    def unsolved(self) -> "SolvedRow":
+    def unsolved(self) -> SolvedRow:
         """A row of which nothing is known yet, in the shape of a solved one."""
         local = self.local(jnp.zeros((12,), self.ratio.dtype))
         rings = jnp.zeros_like(self.seen(local, self.azimuth))
@@ -293,160 +270,8 @@ class Row(eqx.Module):
         return SolvedRow(rings, magnitude, state, energies, travel, balance)
 
 
-class SolvedRow(NamedTuple):
-    """All rolling elements of a row in equilibrium; leading axis element.
-
-    Attributes:
-        rings: Ring motions in the elements' axes (element, r).
-        magnitude: Size of the displacements that they come from (element,) [m].
-        state: Equilibria.
-        energies: Their condensed energies, forces and stiffness.
-        travel: What a spring's ring has slid on its seat, closing the row [m].
-        balance: `Result` code of the balance with the spring.
-    """
-
-    rings: Float[Array, "element r"]
-    magnitude: Float[Array, " element"]
-    state: LocalState
-    energies: Expansion
-    travel: Any = ()
-    balance: Any = ()
-
-    def each(self, row: Row, function: Callable, rings: Array) -> Any:
-        """Apply function(placed, rings, energies) to every rolling element.
-
-        Args:
-            row: The row.
-            function: Of one `Placed` element, the motions of its rings, and its
-                condensed energy.
-            rings: `rings`, or the same with derivatives.
-        """
-
-        def one(element, rings, state, magnitude, energies):
-            return function(Placed(element, state, magnitude), rings, energies)
-
-        return row.each(one, rings, self.state, self.magnitude, self.energies)
-
-    def near(self, row: Row) -> Near:
-        """What solves at ring freedoms near by may start from, leading axis element."""
-
-        def one(placed, rings, energies):
-            return near_by(placed, rings, energies.beside)
-
-        return self.each(row, one, self.rings)
-
-
-class RowResults(NamedTuple):
-    """A solved row as results see it; differentiable; leading axis element.
-
-    Attributes:
-        row: The row.
-        local: Ring freedoms in its own axes, its spring's travel included [m, rad].
-        azimuth: Where its elements are [rad].
-        rings: Ring motions in the elements' axes (element, r) [m, rad].
-        x: Own unknowns (element, n) [m].
-        contact_load: Load of each contact (element, contact) [N].
-        travel: Of its spring [m], or `None`.
-    """
-
-    row: Row
-    local: RingMotion
-    azimuth: Azimuth
-    rings: Float[Array, "element r"]
-    x: Float[Array, "element n"]
-    contact_load: Float[Array, "element contact"]
-    travel: Scalar | None
-
-    @property
-    def element(self) -> Any:
-        """One rolling element; of unlike elements, with a leading axis."""
-        return self.row.element
-
-    def each(self, function: Callable, *arrays) -> Any:
-        """Apply function(element, rings, x, *arrays) to every rolling element.
-
-        Args:
-            function: Of one element, its `RingMotion` and its own unknowns.
-            *arrays: More arguments, with leading axis element.
-        """
-
-        def one(element, rings, x, *arrays):
-            return function(element, unpacked(element, rings), x, *arrays)
-
-        return self.row.each(one, self.rings, self.x, *arrays)
-
-    def motions(self) -> Float[Array, "element 3"]:
-        """Section motion (u, v, θ) of every element at the node [m, rad]."""
-        place = self.row.place
-
-        def one(element, x, azimuth):
-            axes = element.axes(azimuth)
-            rings = RingMotion(axes @ self.local.outer, axes @ self.local.inner)
-            u, v, theta = element.motion(rings, x)
-            if place is not None:
-                u, theta = place.sign * u, place.sign * theta
-                v = v - place.position * theta
-            return jnp.stack([u, v, theta])
-
-        return self.row.each(one, self.x, self.azimuth)
-
-    def inertia(self) -> Float[Array, "6"] | None:
-        """What inertia does to its elements, at the node [N, N m], or `None`."""
-        parts = self.each(lambda element, rings, x: element.inertia(rings, x))
-        if parts is None:
-            return None
-        section = jax.vmap(section_matrix)(self.azimuth)
-        total = jnp.einsum("lai,la->i", section, parts)
-        place = self.row.place
-        if place is None:
-            return total
-        return total @ placement(place.position, place.sign)
-
-
 _CLOSING = len(FREEDOMS) + _UZ
 """uz of the inner ring among both rings' freedoms: what closes a row in its axes."""
-
-
-def azimuths(bearing: Bearing, q: Ring | None = None) -> Azimuth:
-    """Azimuth of every rolling element of a single row [rad].
-
-    Args:
-        bearing: The design.
-        q: Ring freedoms, of which both gz turn the elements [m, rad]; `None`: none.
-    """
-    deviation = deviation_of(bearing).azimuth
-    found = even_azimuths(bearing.first_azimuth, n_elements(bearing))
-    if deviation is not None:
-        found = found + deviation
-    return found if q is None else found + _turn(orbit_ratio(bearing), q)
-
-
-def _turn(ratio, q):
-    """How far the elements have orbited, rolling without slip [rad]."""
-    outer, inner = split(q)
-    return orbit(ratio, outer[_GZ], inner[_GZ])
-
-
-def orbit_ratio(bearing: Bearing) -> Scalar:
-    """G = D cos α/d_m of a row, with which its rolling elements orbit [1]."""
-    if isinstance(bearing, AbstractRollerBearing):
-        diameter, cosine = bearing.roller_diameter, jnp.cos(bearing.axis_angle)
-    else:
-        diameter, cosine = bearing.ball_diameter, bearing.free_cosine
-    return roll_ratio(diameter, bearing.pitch_diameter, cosine)
-
-
-def inertia_load(rows: Iterable[RowResults]) -> Float[Array, "6"]:
-    """What inertia does to all rolling elements, at the node [N, N m].
-
-    The forces that hold both rings add up to minus this.
-
-    Args:
-        rows: Solved rows.
-    """
-    found = [row.inertia() for row in rows]
-    parts = [part for part in found if part is not None]
-    return sum(parts, start=jnp.zeros((6,)))
 
 
 def _closed(local: RingMotion, travel: Scalar) -> RingMotion:

@@ -13,7 +13,7 @@ from ..design import AbstractBallBearing
 from ..element.ball_contacts import angles
 from ..element.ball_inertia import gyroscopic_moment
 from ..element.ball_speed import BallKinematics
-from ..element.row import RowResults
+from ..element.solved_row import RowResults
 from ..numerics.units import unit
 
 

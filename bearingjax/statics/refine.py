@@ -21,7 +21,7 @@ from ..element.bearing_element import BearingElement, check_element
 from ..element.constants import relative_radii
 from ..element.frame import RINGS
 from ..element.inertia import Speed
-from ..element.row import RowResults
+from ..element.solved_row import RowResults
 from ..numerics.types import Scalar, as_real
 from .rollers import approaches, contact_loads
 from .solution import RollerSolution, Solution

@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float
 from ..contact.line import half_width, peak_pressure
 from ..design.rib import RIB_NAMES
 from ..element.constants import relative_radii
-from ..element.row import RowResults
+from ..element.solved_row import RowResults
 from ..numerics.units import unit
 
 EDGE_PRESSURE = 300e6

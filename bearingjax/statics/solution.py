@@ -20,7 +20,7 @@ from ..element.frame import (
     STIFFNESS_UNITS,
 )
 from ..element.inertia import Speed
-from ..element.row import RowResults
+from ..element.solved_row import RowResults
 from ..numerics.minimise import TrustRegionNewton
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar

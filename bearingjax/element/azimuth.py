@@ -1,0 +1,48 @@
+"""Where the rolling elements of a row stand, and how they orbit."""
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..design import AbstractRollerBearing, Bearing, deviation_of, n_elements
+from ..numerics.types import Ring, Scalar
+from .frame import FREEDOMS, even_azimuths, orbit, roll_ratio
+from .rolling_element import split
+
+_GZ = FREEDOMS.index("gz")
+
+Azimuth = Float[Array, " element"]
+"""Azimuth of every rolling element of a row [rad]."""
+
+
+def azimuths(bearing: Bearing, q: Ring | None = None) -> Azimuth:
+    """Azimuth of every rolling element of a single row [rad].
+
+    Args:
+        bearing: The design.
+        q: Ring freedoms, of which both gz turn the elements [m, rad]; `None`: none.
+    """
+    deviation = deviation_of(bearing).azimuth
+    found = even_azimuths(bearing.first_azimuth, n_elements(bearing))
+    if deviation is not None:
+        found = found + deviation
+    return found if q is None else found + turn(orbit_ratio(bearing), q)
+
+
+def turn(ratio: Scalar, q: Ring) -> Scalar:
+    """How far the elements have orbited, rolling without slip [rad].
+
+    Args:
+        ratio: `orbit_ratio` of their row [1].
+        q: Ring freedoms [m, rad]; only both gz count.
+    """
+    outer, inner = split(q)
+    return orbit(ratio, outer[_GZ], inner[_GZ])
+
+
+def orbit_ratio(bearing: Bearing) -> Scalar:
+    """G = D cos α/d_m of a row, with which its rolling elements orbit [1]."""
+    if isinstance(bearing, AbstractRollerBearing):
+        diameter, cosine = bearing.roller_diameter, jnp.cos(bearing.axis_angle)
+    else:
+        diameter, cosine = bearing.ball_diameter, bearing.free_cosine
+    return roll_ratio(diameter, bearing.pitch_diameter, cosine)

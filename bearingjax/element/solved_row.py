@@ -1,0 +1,139 @@
+"""Rows whose rolling elements are in equilibrium, and what they tell."""
+
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..numerics.expansion import Expansion
+from ..numerics.types import Scalar
+from .azimuth import Azimuth
+from .energy import unpacked
+from .equilibrium import LocalState, Near, Placed, near_by
+from .frame import placement, section_matrix
+from .rolling_element import RingMotion
+
+
+class SolvedRow(NamedTuple):
+    """All rolling elements of a row in equilibrium; leading axis element.
+
+    Attributes:
+        rings: Ring motions in the elements' axes (element, r).
+        magnitude: Size of the displacements that they come from (element,) [m].
+        state: Equilibria.
+        energies: Their condensed energies, forces and stiffness.
+        travel: What a spring's ring has slid on its seat, closing the row [m].
+        balance: `Result` code of the balance with the spring.
+    """
+
+    rings: Float[Array, "element r"]
+    magnitude: Float[Array, " element"]
+    state: LocalState
+    energies: Expansion
+    travel: Any = ()
+    balance: Any = ()
+
+    def each(self, row: Any, function: Callable, rings: Array) -> Any:
+        """Apply function(placed, rings, energies) to every rolling element.
+
+        Args:
+            row: The `Row`.
+            function: Of one `Placed` element, the motions of its rings, and its
+                condensed energy.
+            rings: `rings`, or the same with derivatives.
+        """
+
+        def one(element, rings, state, magnitude, energies):
+            return function(Placed(element, state, magnitude), rings, energies)
+
+        return row.each(one, rings, self.state, self.magnitude, self.energies)
+
+    def near(self, row: Any) -> Near:
+        """What solves at ring freedoms near by may start from, leading axis element."""
+
+        def one(placed, rings, energies):
+            return near_by(placed, rings, energies.beside)
+
+        return self.each(row, one, self.rings)
+
+
+class RowResults(NamedTuple):
+    """A solved row as results see it; differentiable; leading axis element.
+
+    Attributes:
+        row: The `Row`.
+        local: Ring freedoms in its own axes, its spring's travel included [m, rad].
+        azimuth: Where its elements are [rad].
+        rings: Ring motions in the elements' axes (element, r) [m, rad].
+        x: Own unknowns (element, n) [m].
+        contact_load: Load of each contact (element, contact) [N].
+        travel: Of its spring [m], or `None`.
+    """
+
+    row: Any
+    local: RingMotion
+    azimuth: Azimuth
+    rings: Float[Array, "element r"]
+    x: Float[Array, "element n"]
+    contact_load: Float[Array, "element contact"]
+    travel: Scalar | None
+
+    @property
+    def element(self) -> Any:
+        """One rolling element; of unlike elements, with a leading axis."""
+        return self.row.element
+
+    def each(self, function: Callable, *arrays) -> Any:
+        """Apply function(element, rings, x, *arrays) to every rolling element.
+
+        Args:
+            function: Of one element, its `RingMotion` and its own unknowns.
+            *arrays: More arguments, with leading axis element.
+        """
+
+        def one(element, rings, x, *arrays):
+            return function(element, unpacked(element, rings), x, *arrays)
+
+        return self.row.each(one, self.rings, self.x, *arrays)
+
+    def motions(self) -> Float[Array, "element 3"]:
+        """Section motion (u, v, θ) of every element at the node [m, rad]."""
+        place = self.row.place
+
+        def one(element, x, azimuth):
+            axes = element.axes(azimuth)
+            rings = RingMotion(axes @ self.local.outer, axes @ self.local.inner)
+            u, v, theta = element.motion(rings, x)
+            if place is not None:
+                u, theta = place.sign * u, place.sign * theta
+                v = v - place.position * theta
+            return jnp.stack([u, v, theta])
+
+        return self.row.each(one, self.x, self.azimuth)
+
+    def inertia(self) -> Float[Array, "6"] | None:
+        """What inertia does to its elements, at the node [N, N m], or `None`."""
+        parts = self.each(lambda element, rings, x: element.inertia(rings, x))
+        if parts is None:
+            return None
+        section = jax.vmap(section_matrix)(self.azimuth)
+        total = jnp.einsum("lai,la->i", section, parts)
+        place = self.row.place
+        if place is None:
+            return total
+        return total @ placement(place.position, place.sign)
+
+
+def inertia_load(rows: Iterable[RowResults]) -> Float[Array, "6"]:
+    """What inertia does to all rolling elements, at the node [N, N m].
+
+    The forces that hold both rings add up to minus this.
+
+    Args:
+        rows: Solved rows.
+    """
+    found = [row.inertia() for row in rows]
+    parts = [part for part in found if part is not None]
+    return sum(parts, start=jnp.zeros((6,)))
