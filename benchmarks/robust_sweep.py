@@ -221,13 +221,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=1_000_000)
     parser.add_argument("--json", action="store_true", help="one line of figures")
-    parser.add_argument("--smoke", action="store_true", help="600 cases, one device")
+    parser.add_argument("--smoke", action="store_true", help="60 cases, one device")
     args = parser.parse_args()
     if not args.smoke:
         jax.config.update("jax_num_cpu_devices", 2)
     element = bj.BearingElement(bearing())
     sizes = SMOKE if args.smoke else {"sample": SAMPLE, "timed": TIMED}
-    found = survey(element, 600 if args.smoke else args.count, sizes["sample"])
+    found = survey(element, 60 if args.smoke else args.count, sizes["sample"])
     held = holding(element, sizes["timed"])
     if args.json:
         told = figures(found, held)

@@ -33,7 +33,12 @@ gc.set_threshold(1_000_000, 10, 50)
 install_import_hook("bearingjax", "beartype.beartype").__enter__()
 
 
-LONGEST = ("test_readme.py", "test_benchmarks.py", "test_notebooks.py")
+LONGEST = (
+    "test_readme.py",
+    "test_identities.py",
+    "test_benchmarks.py",
+    "test_notebooks.py",
+)
 """Begun first: at the end one of them would keep one worker at work alone."""
 
 

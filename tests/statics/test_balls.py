@@ -107,7 +107,9 @@ def test_states_of_a_four_point_bearing():
     """Pure thrust: two points. A large ball under a radial load: more."""
     element = ball_elements()["four-point, unlike balls, load share"][0]
     bearing = eqx.tree_at(
-        lambda b: b.radial_internal_clearance, element.bearing, jnp.asarray(20e-6)
+        lambda b: b.radial_internal_clearance,
+        element.bearing,
+        jnp.asarray(20e-6, float),
     )
     element = eqx.tree_at(lambda e: e.bearing, element, bearing)
     thrust = bj.solve_load(element, [0, 0, 2000.0, 0, 0, 0])

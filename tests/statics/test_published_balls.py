@@ -330,7 +330,7 @@ def test_harris_mindel_equilibrium():
         )
     )
     # The orbit is proportional to the speed, all but for the contact angles.
-    speed = 1500.0
+    speed = np.float64(1500.0)
     for _ in range(8):
         s = solve(speed)
         speed = speed * np.sqrt(303.45 * pound / float(s.centrifugal_force[0]))
