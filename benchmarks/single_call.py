@@ -19,7 +19,11 @@ Then the third case with 32 slices, as others would solve it (`peers.py`): NumPy
 `scipy.optimize.root`, `jax.scipy` BFGS and `optimistix.BFGS`, one of each per roller
 and all from midway; median of a call, first call (which compiles) apart.
 
-Run: python benchmarks/single_call.py [--json] [--smoke]
+Half of what a caller sees may be the hand-over from his thread to one of XLA: on one
+core (`--pinned`), or with calls that the calling thread itself carries out (`--inline`,
+`jax.config.update("jax_cpu_enable_async_dispatch", False)` before all else), it is gone.
+
+Run: python benchmarks/single_call.py [--json] [--smoke] [--pinned] [--inline]
 
 Last run:
 
@@ -425,7 +429,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", action="store_true", help="one line of figures")
     parser.add_argument("--smoke", action="store_true", help="one case, no peers")
+    parser.add_argument("--pinned", action="store_true", help="on one core")
+    parser.add_argument("--inline", action="store_true", help="by the calling thread")
     args = parser.parse_args()
+    # Before JAX starts its threads.
+    if args.pinned:
+        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    if args.inline:
+        jax.config.update("jax_cpu_enable_async_dispatch", False)
     rounds, block = (1, 2) if args.smoke else (40, 100)
     with tempfile.TemporaryDirectory() as folder:
         library = compile_c(folder, element())
