@@ -19,9 +19,9 @@ Then the third case with 32 slices, as others would solve it (`peers.py`): NumPy
 `scipy.optimize.root`, `jax.scipy` BFGS and `optimistix.BFGS`, one of each per roller
 and all from midway; median of a call, first call (which compiles) apart.
 
-Half of what a caller sees may be the hand-over from his thread to one of XLA: on one
-core (`--pinned`), or with calls that the calling thread itself carries out (`--inline`,
-`jax.config.update("jax_cpu_enable_async_dispatch", False)` before all else), it is gone.
+Half of what a caller sees may be the hand-over from his thread to one of XLA. It is
+gone on one core (`--pinned`), or where the calling thread does the work (`--inline`:
+`jax.config.update("jax_cpu_enable_async_dispatch", False)` before all else).
 
 Run: python benchmarks/single_call.py [--json] [--smoke] [--pinned] [--inline]
 
