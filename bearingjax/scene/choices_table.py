@@ -30,7 +30,7 @@ from ..element import (
 from ..numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.units import unit_of
-from ..statics.sweep import CHUNK
+from ..statics.load_search import SLOTS
 from .table import Table
 
 LINE_LAWS = {
@@ -106,10 +106,10 @@ def _quadrature(numerics: Table, n_rollers: int) -> AbstractQuadrature:
     rule = numerics.choice("quadrature", tuple(QUADRATURES), "contact_mapped")
     points = numerics.integer("points", None)
     if rule == "midpoint" and points is not None and points > MOST_SLICES:
-        size = 8e-9 * CHUNK * 2 * n_rollers * points
+        size = 8e-9 * SLOTS * 2 * n_rollers * points
         problem = (
             f"{points} is too many slices: {size:.3g} GB in each array of a sweep, of"
-            f" {CHUNK} cases at a time; at most {MOST_SLICES}"
+            f" {SLOTS} cases at a time; at most {MOST_SLICES}"
         )
         raise numerics.error("points", problem)
     with numerics.building():

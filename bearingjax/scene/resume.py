@@ -8,12 +8,15 @@ import jax
 import numpy as np
 
 from ..numerics.result import Result
-from ..statics.sweep import CHUNK, Sweep
+from ..statics.sweep import Sweep
 from ..statics.sweep_program import WARNED
 from ..statics.sweep_table import asked, read, restored
 from .cases_table import CaseTable
 from .quantity import SceneError
 from .sweep_run import design_columns, run_cases
+
+CHECKED = 64
+"""Cases that are solved again to see that a table is of this scene."""
 
 _CURE = "name the table of this scene, or begin anew without --resume"
 
@@ -57,7 +60,7 @@ def resume_cases(
     solved = np.flatnonzero(codes == Result.CONVERGED.label)
     if ran.size == 0:
         return run_cases(table, progress, stop)
-    again = (solved if solved.size else ran)[-CHUNK:]
+    again = (solved if solved.size else ran)[-CHECKED:]
     checked = run_cases(_part(table, again))
     try:
         outputs = restored(known, checked.outputs)

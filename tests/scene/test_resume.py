@@ -41,7 +41,7 @@ def struck(monkeypatch):
     monkeypatch.setattr(sweep_program, "_solve_block", solve)
     monkeypatch.setattr(sweep_program, "BLOCK", 1)
     monkeypatch.setattr(SWEEP, "CHUNK", 2)
-    monkeypatch.setattr(resume, "CHUNK", 2)
+    monkeypatch.setattr(resume, "CHECKED", 2)
     # Begun in the background, this process would not hear it.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield wanted
