@@ -19,39 +19,39 @@ Run: python benchmarks/batch_throughput.py [--json] [--smoke] [--device cpu|gpu]
 Last run:
 
 chunk         16      32      64     128     256
-µs/case     18.3    17.0    15.9    15.9    17.0
+µs/case     13.6    11.1    10.4    10.2     9.9
 
-in chunks of 128, one core
+in chunks of 256, one core
 rule          cases  ours, µs   C, µs   of C    error
-mapped         1000      16.7     5.6    34 %    5e-16
-mapped        10000      15.7     5.0    32 %    5e-16
-mapped       100000      16.8     5.1    30 %    5e-16
-mapped      1000000      20.8     5.4    26 %    5e-16
-midpoint       1000      11.6     2.8    24 %    1e-15
-midpoint      10000      10.1     2.6    26 %    1e-15
-midpoint     100000      10.4     2.6    25 %    1e-15
-midpoint    1000000      12.9     2.7    21 %    1e-15
+mapped         1000      10.7     4.3    41 %    7e-16
+mapped        10000      10.6     4.3    40 %    7e-16
+mapped       100000      10.4     4.3    41 %    7e-16
+mapped      1000000      12.6     4.3    34 %    7e-16
+midpoint       1000       7.8     2.3    30 %    1e-15
+midpoint      10000       8.0     2.3    29 %    1e-15
+midpoint     100000       7.8     2.3    30 %    1e-15
+midpoint    1000000       9.2     2.3    25 %    1e-15
 
 raceways unlike, midpoint     µs/case   ratio  error: force  stiffness
-ours                             23.5     1.0         0e+00      0e+00
-C                                 8.6     0.4         4e-16      1e-14
-NumPy, vectorised               142.0     6.0         1e-15      9e-14
-jax.scipy BFGS, vmapped       88419.9  3756.9         5e-07      4e-04
-SciPy root                     4418.1   187.7         8e-16      1e-15
-optimistix BFGS, vmapped       3943.3   167.5         5e-11      6e-10
+ours                             18.6     1.0         0e+00      0e+00
+C                                 7.9     0.4         4e-16      1e-14
+NumPy, vectorised               121.2     6.5         1e-15      9e-14
+jax.scipy BFGS, vmapped       56012.1  3007.9         5e-07      4e-04
+SciPy root                     3048.1   163.7         6e-16      1e-15
+optimistix BFGS, vmapped       2927.4   157.2         5e-11      6e-10
 
 µs/case       cases   one device    2 devices            C C, 2 threads
-mapped        50000         15.4          8.7          5.1          2.6
-midpoint      50000         11.6          6.3          2.7          1.4
+mapped        50000          9.6          5.4          4.2          2.1
+midpoint      50000          7.4          4.4          2.3          1.2
 
-1000000 cases kept: 10.9 s, peak memory 1.89 GiB
+1000000 cases kept: 8.1 s, peak memory 1.78 GiB
 
-speed against the C loop, one core, worst batch: 0.213 (at least 1): MISSED
-times faster than jax.scipy BFGS: 3.76e+03 (at least 50): met
-speed-up on two cores, worse rule: 1.77 (at least 1.8): MISSED
-peak memory, GiB: 1.89 (at most 2): met
+speed against the C loop, one core, worst batch: 0.253 (at least 1): MISSED
+times faster than jax.scipy BFGS: 3.01e+03 (at least 50): met
+speed-up on two cores, worse rule: 1.67 (at least 1.8): MISSED
+peak memory, GiB: 1.78 (at most 2): met
 
-AMD EPYC, 2 cores, load average 1.4; devices: 2 cpu; jax 0.10.1
+AMD EPYC, 2 cores, load average 1.2; devices: 2 cpu; jax 0.10.1
 """
 
 import argparse

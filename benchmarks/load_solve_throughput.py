@@ -17,38 +17,38 @@ Run: python benchmarks/load_solve_throughput.py [--json] [--smoke]
 
 Last run:
 
-straight raceways, random (trace and compile 19.4 s)
+straight raceways, random (trace and compile 15.6 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     410.5     2436    1.00   11.5    21       0   6e-16
-C                         2048      59.9    16691    0.15   11.5    21       0   0e+00
-SciPy root, our stiffness   64   12987.9       77   31.64   50.1    97       1   3e-01
-SciPy root, NumPy bearing   64   16765.3       60   40.84   49.5   107       3   4e-01
+bj.sweep                  2048     192.6     5193    1.00   11.5    21       0   7e-16
+C                         2048      54.0    18531    0.28   11.5    21       0   0e+00
+SciPy root, our stiffness   64   10221.0       98   53.08   50.0    97       1   3e-01
+SciPy root, NumPy bearing   64   12019.3       83   62.42   49.5   107       3   4e-01
 
-straight raceways, path (trace and compile 17.5 s)
+straight raceways, path (trace and compile 12.9 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     185.9     5378    1.00    4.2    13       0   1e-10
-C                         2048      34.8    28718    0.19    4.1    13       0   1e-10
-SciPy root, our stiffness   64   15926.4       63   85.65   47.7    86       2   5e-01
-SciPy root, NumPy bearing   64   20868.9       48  112.23   47.0    79       2   5e-01
+bj.sweep                  2048     103.5     9663    1.00    4.4    14       0   1e-10
+C                         2048      28.7    34847    0.28    4.1    13       0   1e-10
+SciPy root, our stiffness   64    9811.2      102   94.80   47.8    86       2   5e-01
+SciPy root, NumPy bearing   64   11262.1       89  108.83   47.0    79       2   5e-01
 
-unlike raceways, random (trace and compile 17.3 s)
+unlike raceways, random (trace and compile 16.6 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048    1248.2      801    1.00   11.6    22       0   5e-15
-C                         2048     226.0     4425    0.18   11.6    22       0   0e+00
-SciPy root, our stiffness   64   26242.9       38   21.02   52.8   105       1   3e-01
-SciPy root, NumPy bearing   64   90273.8       11   72.32   49.8    96       5   4e-01
+bj.sweep                  2048     526.5     1899    1.00   11.6    22       0   5e-15
+C                         2048     190.1     5259    0.36   11.6    22       0   0e+00
+SciPy root, our stiffness   64   17061.9       59   32.40   53.3   105       1   3e-01
+SciPy root, NumPy bearing   64   55823.5       18  106.02   49.8    96       5   4e-01
 
-unlike raceways, path (trace and compile 16.8 s)
+unlike raceways, path (trace and compile 16.2 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     505.2     1979    1.00    4.3    13       0   1e-10
-C                         2048      97.2    10286    0.19    4.1    13       0   1e-10
-SciPy root, our stiffness   64   17222.6       58   34.09   47.7    68       2   5e-01
-SciPy root, NumPy bearing   64   77337.6       13  153.07   49.2    76       2   5e-01
+bj.sweep                  2048     264.8     3777    1.00    4.4    13       0   1e-10
+C                         2048      95.0    10530    0.36    4.1    13       0   1e-10
+SciPy root, our stiffness   64   15436.1       65   58.30   48.2    76       2   5e-01
+SciPy root, NumPy bearing   64   58209.4       17  219.85   49.2    76       2   5e-01
 
-time against C, worst: 6.85 (at most 2): MISSED
-times faster than SciPy: 21 (at least 100): MISSED
+time against C, worst: 3.61 (at most 2): MISSED
+times faster than SciPy: 32.4 (at least 100): MISSED
 
-one core; AMD EPYC, 2 cores, load average 1.2; devices: 1 cpu; jax 0.10.1
+one core; AMD EPYC, 2 cores, load average 1.0; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse

@@ -230,6 +230,10 @@ class BallSeeking(Seeking):
         return False
 
     @property
+    def slots(self):
+        return 128, 64
+
+    @property
     def corrects_steps(self):
         return True
 

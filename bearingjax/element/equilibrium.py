@@ -119,7 +119,8 @@ def solve_element(
         return state, condensed(frozen[1], Placed(frozen[0], state, frozen[2]))
     given = _prepare(*frozen)
     known = jax.eval_shape(response, element, rings, given.start)
-    return lanes.run(_loop(minimiser, known, given.is_open is not None), given)
+    loop = _loop(minimiser, known, given.is_open is not None)
+    return lanes.run(loop, given, *element.seeking.slots)
 
 
 def _without_unknowns(element, rings) -> LocalState:

@@ -10,6 +10,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
+from ..numerics import lanes
 from ..numerics.linear import dot
 from ..numerics.types import Scalar
 
@@ -72,6 +73,15 @@ class Seeking(eqx.Module):
         Worth it where that takes longer to work out than to carry along.
         """
         return True
+
+    @property
+    def slots(self) -> tuple[int, int]:
+        """How many of a batch are solved at a time, and how many of them may be done
+        before others follow (`lanes.run`). Static.
+
+        More where a step costs little beside its overhead.
+        """
+        return lanes.SLOTS, lanes.IDLE
 
     @property
     def corrects_steps(self) -> bool:

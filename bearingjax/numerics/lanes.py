@@ -29,7 +29,7 @@ from jax import lax
 from jax.custom_batching import custom_vmap
 from jaxtyping import Array, Bool
 
-SLOTS, IDLE = 128, 64
+SLOTS, IDLE = 64, 16
 """Slots, and how many of them may be idle, if not said otherwise. What the slots hold
 should stay in the cache of a core."""
 

@@ -27,7 +27,7 @@ from ..numerics.types import Scalar
 from .balance import Balance
 from .options import SolveOptions
 
-SLOTS, IDLE = 32, 2
+SLOTS, IDLE = 64, 4
 """Cases of a batch that are at work at a time, and how many of them may be done."""
 
 

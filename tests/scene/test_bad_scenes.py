@@ -718,8 +718,8 @@ SETTINGS = {
     "slices": (
         "cylindrical_rig",
         "numerics={quadrature='midpoint', points=100000}",
-        "`numerics.points`: 100000 is too many slices: 0.614 GB in each array of a"
-        " sweep, of 32 cases at a time; at most 10000",
+        "`numerics.points`: 100000 is too many slices: 1.23 GB in each array of a"
+        " sweep, of 64 cases at a time; at most 10000",
     ),
     "coupled slices": (
         "cylindrical_rig",
