@@ -34,6 +34,7 @@ _OF_ANY = 5
 # On arcs, from the middle of a panel: steps to the top, of which the first is exact for
 # a parabola, and to the edges, after the exact ones of the parabola at the top.
 _TO_TOP, _OF_ARCS = 2, 2
+_INSET = 1e-9  # share of a panel that its ends are not approached to
 _SETTLED = 1e-9
 
 MOST_NODES = 500
@@ -224,6 +225,9 @@ def _loaded_arc(offset, start, end, a, b):
         (h, h1), (_, h2) = jax.jvp(slope_of, (x,), (jnp.ones_like(x),))
         return a + b * x - h, b - h1, -h2
 
+    # At the very ends, kinks, derivatives would be those of the next panel.
+    inset = _INSET * (end - start)
+    low, high = start + inset, end - inset
     top = 0.5 * (start + end)
     for _ in range(_TO_TOP):
         _, first, second = expanded(top)
@@ -231,7 +235,7 @@ def _loaded_arc(offset, start, end, a, b):
         step = first / jnp.where(bent, -second, 1.0)
         # A straight line is highest at an end.
         top = jnp.where(bent, top + step, jnp.where(first > 0, end, start))
-        top = jnp.clip(top, start, end)
+        top = jnp.clip(top, low, high)
     # Apart, or a compiler works out all of this anew for each edge.
     value, first, second = lax.optimization_barrier(expanded(top))
     # Of the parabola at the top; of a straight line the end.
@@ -239,9 +243,9 @@ def _loaded_arc(offset, start, end, a, b):
     left, right = (top + _to_edge(s, value, first, second) for s in (1.0, -1.0))
     for _ in range(_OF_ARCS):
         left, right = lax.optimization_barrier((left, right))
-        left = jnp.clip(left, start, end)
+        left = jnp.clip(left, low, high)
         left = left + _to_edge(1.0, *expanded(left))
-        right = jnp.clip(right, start, end)
+        right = jnp.clip(right, low, high)
         right = right + _to_edge(-1.0, *expanded(right))
     inner = [a + b * x - offset(x) <= 0 for x in (start, end)]
     left = jnp.where(inner[0], jnp.clip(left, start, end), start)
