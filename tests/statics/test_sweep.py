@@ -16,7 +16,8 @@ import pytest
 from sweep_in_process import loads, small_element
 
 import bearingjax as bj
-from bearingjax.statics import SolveOptions, sweep_program, sweep_table
+from bearingjax.numerics import lanes
+from bearingjax.statics import SolveOptions, load_search, sweep_program, sweep_table
 from bearingjax.statics.sweep import n_designs
 
 SCRIPT = Path(__file__).with_name("sweep_in_process.py")
@@ -86,6 +87,27 @@ def test_a_case_lost_from_its_neighbour_is_solved_again(swept, monkeypatch):
     np.testing.assert_allclose(
         solved.displacement[3], swept.displacement[11], rtol=1e-8, atol=1e-14
     )
+
+
+def test_cases_in_a_queue_are_solved_as_together(swept, monkeypatch):
+    """Fewer slots than cases: each bad one leaves its slot to the next."""
+    used, honest = [], lanes._queued
+
+    def seen(loop, given, own, count, slots):
+        used.append(slots[0])
+        return honest(loop, given, own, count, slots)
+
+    monkeypatch.setattr(lanes, "_queued", seen)
+    monkeypatch.setattr(load_search, "SLOTS", 6)
+    jax.clear_caches()  # a search traced before has the slots of then
+    names = ["displacement", "stiffness", "largest_load", "iterations"]
+    queued = bj.sweep(ELEMENT, loads(), outputs=names, chunk=50)
+    assert 6 in used
+    np.testing.assert_array_equal(queued.result, swept.result)
+    np.testing.assert_array_equal(queued.iterations, swept.iterations)
+    for name in names[:3]:
+        got, want = getattr(queued, name), getattr(swept, name)
+        np.testing.assert_allclose(got, want, rtol=1e-9, atol=1e-12 * np.nanmax(want))
 
 
 def test_blocks_follow_each_other(swept, monkeypatch):
