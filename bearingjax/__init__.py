@@ -12,6 +12,7 @@ from importlib.metadata import version as _version
 from . import contact as contact
 from . import design as design
 from . import element as element
+from . import lubrication as lubrication
 from . import numerics as numerics
 from . import plot as plot
 from . import rotor as rotor
@@ -60,6 +61,7 @@ from .element import LoadShare as LoadShare
 from .element import OperatingCentrifugal as OperatingCentrifugal
 from .element import OuterControl as OuterControl
 from .element import Speed as Speed
+from .lubrication import Lubricant as Lubricant
 from .numerics import BFGS as BFGS
 from .numerics import ContactMapped as ContactMapped
 from .numerics import Midpoint as Midpoint

@@ -13,7 +13,9 @@ import pytest
 import bearingjax as bj
 
 PACKAGE = Path(bj.__file__).parent
-LAYERS = "numerics design contact element statics optimise rotor scene plot cli".split()
+LAYERS = (
+    "numerics design contact lubrication element statics optimise rotor scene plot cli"
+).split()
 # What the plots show is what statics and below provide; scene and plot stand side by
 # side, and only the command line and the top level see both.
 NOT_SEEN = {"plot": {"scene", "rotor"}, "scene": {"plot"}}

@@ -120,6 +120,22 @@ def _positive_power_jvp(numerator, denominator, primals, tangents):
     return value, (numerator / denominator) * slope * dx
 
 
+def smooth_power(
+    x: Float[Array, "..."], exponent: float, scale: float
+) -> Float[Array, "..."]:
+    """|x|^exponent, made smooth at x = 0 where the true power has no derivative.
+
+    x²·(x² + scale²)^(exponent/2 - 1): for |x| above 1e4 scales the power itself to
+    1e-8, near zero a parabola.
+
+    Args:
+        x: Base, of any unit.
+        exponent: At most 2. Static.
+        scale: Where the parabola ends, unit of `x`; its square must not underflow.
+    """
+    return x * x * (x * x + scale * scale) ** (0.5 * exponent - 1.0)
+
+
 def _integer_power(x: Array, n: int) -> Array:
     if n < 0:
         return 1.0 / _integer_power(x, -n)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tolerances import ROUNDING
 
-from bearingjax.numerics import ninth_root, positive_power
+from bearingjax.numerics import ninth_root, positive_power, smooth_power
 
 EXPONENTS = ((19, 9), (10, 9), (1, 9), (5, 2), (3, 2), (4, 3), (2, 1))
 # About 1e-15 and 1e-7 are stated; a few units in the last place more in the corners.
@@ -142,3 +142,15 @@ def test_forward_and_reverse_agree_on_arrays():
     want = 19 / 9 * np.maximum(x, 0.0) ** (10 / 9)
     np.testing.assert_allclose(reverse, want, rtol=ROUNDING)
     np.testing.assert_allclose(forward, want, rtol=ROUNDING)
+
+
+def test_smooth_power():
+    """The power itself far from zero, even, and finite with its derivatives at zero."""
+    x = jnp.asarray([1e-9, -3e-5, 2.0])
+    np.testing.assert_allclose(
+        smooth_power(x, 0.67, 1e-16), np.abs(x) ** 0.67, rtol=ROUNDING
+    )
+    zero = jnp.asarray(0.0)
+    for order, want in enumerate((0.0, 0.0, 2.0 * (1e-8) ** (0.67 - 2.0))):
+        got = nested(lambda x: smooth_power(x, 0.67, 1e-8), order)(zero)
+        np.testing.assert_allclose(got, want, rtol=ROUNDING)

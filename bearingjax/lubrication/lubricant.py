@@ -1,0 +1,180 @@
+"""A lubricant: viscosity, density and what follows from them."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool, Float
+
+from ..design.checks import instance, is_traced, non_negative, positive
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from .viscosity import (
+    AbstractAmbient,
+    AbstractCoefficient,
+    AbstractPressureLaw,
+    as_coefficient,
+    level_off,
+)
+
+GLASS = float(np.log(1e12))
+"""ln of the viscosity in Pa s at which a liquid counts as a glass."""
+
+# ln of the factor by which a viscosity may go beyond that of a glass.
+_BEYOND = 10.0
+
+_NODES = 64
+
+
+class Density(eqx.Module):
+    """Density at atmospheric pressure, falling evenly with temperature.
+
+    Attributes:
+        value: Density at the reference [kg/m³].
+        slope: Loss per kelvin [kg/(m³ K)].
+        reference_temperature: Temperature of the reference [K].
+
+    Traced: all fields.
+    """
+
+    value: Scalar = eqx.field(converter=as_real, metadata=unit("kg/m³"))
+    slope: Scalar = eqx.field(
+        converter=as_real, metadata=unit("kg/(m³ K)"), default=0.64
+    )
+    reference_temperature: Scalar = eqx.field(
+        converter=as_real, metadata=unit("K"), default=288.15
+    )
+
+    def __check_init__(self):
+        positive(self, "value")
+        non_negative(self, "slope")
+        positive(self, "reference_temperature")
+
+    def at(self, temperature: Scalar | float) -> Scalar:
+        """Density [kg/m³] at a temperature [K]."""
+        warmer = as_real(temperature) - self.reference_temperature
+        return self.value - self.slope * warmer
+
+
+class Lubricant(eqx.Module):
+    """An oil: viscosity over temperature and pressure, density.
+
+    Temperatures are in K, pressures in Pa above atmosphere. All values are finite from
+    -40 to 200 °C and up to 4 GPa: beyond 1e12 Pa s, where liquids are glasses, the
+    viscosity levels off at 2e16 Pa s, and `outside_fluid_range` says so.
+
+    Attributes:
+        ambient: Viscosity at atmospheric pressure, over temperature.
+        pressure: How it grows with pressure.
+        density: Density over temperature.
+        coefficient: Pressure-viscosity coefficient for films, or a plain number [1/Pa];
+            default the slope of the pressure law at p = 0.
+        thermal_conductivity: Thermal conductivity [W/(m K)].
+
+    Traced: all numbers. Static: the classes.
+    """
+
+    ambient: AbstractAmbient
+    pressure: AbstractPressureLaw
+    density: Density
+    coefficient: AbstractCoefficient | None = eqx.field(
+        converter=as_coefficient, default=None
+    )
+    thermal_conductivity: Scalar = eqx.field(
+        converter=as_real, metadata=unit("W/(m K)"), default=0.14
+    )
+
+    def __check_init__(self):
+        instance(self, "ambient", AbstractAmbient)
+        instance(self, "pressure", AbstractPressureLaw)
+        instance(self, "density", Density)
+        positive(self, "thermal_conductivity")
+
+    def viscosity(
+        self, pressure: Float[Array, "..."] | float, temperature: Scalar | float
+    ) -> Float[Array, "..."]:
+        """Dynamic viscosity [Pa s].
+
+        Args:
+            pressure: Pressure, at least 0 [Pa].
+            temperature: Temperature [K].
+        """
+        return jnp.exp(
+            level_off(self._log_viscosity(pressure, temperature), GLASS, _BEYOND)
+        )
+
+    def outside_fluid_range(
+        self, pressure: Float[Array, "..."] | float, temperature: Scalar | float
+    ) -> Bool[Array, "..."]:
+        """Whether the law gives a glass; arguments as in `viscosity`."""
+        return ~(self._log_viscosity(pressure, temperature) <= GLASS)
+
+    def kinematic_viscosity(self, temperature: Scalar | float) -> Scalar:
+        """Kinematic viscosity at atmospheric pressure [m²/s], temperature in K."""
+        return self.viscosity(0.0, temperature) / self.density.at(temperature)
+
+    def pressure_coefficient(self, temperature: Scalar | float) -> Scalar:
+        """Pressure-viscosity coefficient of films [1/Pa], temperature in K."""
+        kelvin = _kelvin(temperature)
+        if self.coefficient is None:
+            return self._slope(kelvin)
+        density = self.density.at(kelvin)
+        ambient = self.ambient.log_viscosity(kelvin, density)
+        return self.coefficient.value(ambient, density)
+
+    def isoviscous_coefficient(self, temperature: Scalar | float) -> Scalar:
+        """Reciprocal asymptotic isoviscous pressure α* = 1/∫ μ(0)/μ(p) dp [1/Pa].
+
+        Args:
+            temperature: Temperature [K].
+
+        Source: Blok (1963); 64 nodes of Gauss and Legendre in p/(p + 1/α).
+        """
+        kelvin = _kelvin(temperature)
+        node, weight = np.polynomial.legendre.leggauss(_NODES)
+        share = 0.5 * (1.0 + node)
+        far = jnp.asarray(share / (1.0 - share), kelvin.dtype)
+        weight = jnp.asarray(0.5 * weight / (1.0 - share) ** 2, kelvin.dtype)
+        slope = self._slope(kelvin)
+        thicker = self.viscosity(far / slope, kelvin)
+        return slope / jnp.dot(weight, self.viscosity(0.0, kelvin) / thicker)
+
+    def thermal_loading(
+        self, temperature: Scalar | float, speed: Scalar | float
+    ) -> Scalar:
+        """Thermal loading parameter L = β μ₀ u²/k of the inlet [1].
+
+        β is the relative loss of viscosity per kelvin.
+
+        Args:
+            temperature: Temperature at the inlet [K].
+            speed: Entrainment speed u [m/s].
+        """
+        temperature, speed = _kelvin(temperature), as_real(speed)
+        _, slope = jax.jvp(
+            lambda t: self.viscosity(0.0, t),
+            (temperature,),
+            (jnp.ones_like(temperature),),
+        )
+        return -slope * speed * speed / self.thermal_conductivity
+
+    def _log_viscosity(self, pressure, temperature):
+        pressure, temperature = as_real(pressure), _kelvin(temperature)
+        density = self.density.at(temperature)
+        ambient = self.ambient.log_viscosity(temperature, density)
+        ratio = self.pressure.log_ratio(pressure, temperature, ambient, density)
+        return ambient + ratio
+
+    def _slope(self, temperature):
+        """d ln μ/dp at p = 0 [1/Pa]."""
+        zero, one = jnp.zeros_like(temperature), jnp.ones_like(temperature)
+        _, slope = jax.jvp(
+            lambda p: self._log_viscosity(p, temperature), (zero,), (one,)
+        )
+        return slope
+
+
+def _kelvin(temperature):
+    if not is_traced(temperature):
+        positive("Lubricant", "temperature", temperature, "K")
+    return as_real(temperature)

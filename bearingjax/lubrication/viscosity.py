@@ -1,0 +1,319 @@
+"""Viscosity over temperature and over pressure.
+
+A law gives the natural logarithm of the viscosity, because the viscosity itself grows
+by a factor of a million in a contact.
+"""
+
+import abc
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..design.checks import check, in_range, is_traced, non_negative, number, positive
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from .viscosity_index import viscosity_at_100
+
+
+def level_off(x: Array, at, width) -> Array:
+    """x up to `at`, from there smoothly (twice) to at most `at` + `width`."""
+    over = jnp.maximum(x - at, 0.0)
+    return jnp.where(x > at, at + width * jnp.tanh(over / width), x)
+
+
+class AbstractAmbient(eqx.Module):
+    """Viscosity at atmospheric pressure, over temperature."""
+
+    @abc.abstractmethod
+    def log_viscosity(self, temperature: Scalar, density: Scalar) -> Scalar:
+        """ln of the dynamic viscosity in Pa s.
+
+        Args:
+            temperature: Temperature [K].
+            density: Density at this temperature [kg/m³].
+        """
+
+
+class AbstractPressureLaw(eqx.Module):
+    """How the viscosity grows with pressure."""
+
+    @abc.abstractmethod
+    def log_ratio(
+        self,
+        pressure: Float[Array, "..."],
+        temperature: Scalar,
+        ambient: Scalar,
+        density: Scalar,
+    ) -> Float[Array, "..."]:
+        """ln of the viscosity over that at atmospheric pressure [1].
+
+        Args:
+            pressure: Pressure, at least 0 [Pa].
+            temperature: Temperature [K].
+            ambient: ln of the dynamic viscosity at atmospheric pressure in Pa s.
+            density: Density at this temperature [kg/m³].
+        """
+
+
+class AbstractCoefficient(eqx.Module):
+    """Pressure-viscosity coefficient α over the viscosity at atmospheric pressure."""
+
+    @abc.abstractmethod
+    def value(self, ambient: Scalar, density: Scalar) -> Scalar:
+        """α [1/Pa]; arguments as in `AbstractPressureLaw.log_ratio`."""
+
+
+class ConstantCoefficient(AbstractCoefficient):
+    """The same coefficient at all temperatures.
+
+    Attributes:
+        coefficient: α [1/Pa].
+
+    Traced: all fields.
+    """
+
+    coefficient: Scalar = eqx.field(converter=as_real, metadata=unit("1/Pa"))
+
+    def __check_init__(self):
+        non_negative(self, "coefficient")
+
+    def value(self, ambient, density):
+        return self.coefficient
+
+
+class DynamicCoefficient(AbstractCoefficient):
+    """α = factor·(dynamic viscosity in Pa s)^exponent.
+
+    Attributes:
+        factor: α at 1 Pa s [1/Pa].
+        exponent: Exponent [1].
+
+    Traced: all fields.
+    """
+
+    factor: Scalar = eqx.field(converter=as_real, metadata=unit("1/Pa"))
+    exponent: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+
+    def __check_init__(self):
+        positive(self, "factor")
+        number(self, "exponent")
+
+    def value(self, ambient, density):
+        return self.factor * jnp.exp(self.exponent * ambient)
+
+
+class KinematicCoefficient(AbstractCoefficient):
+    """α = factor·(kinematic viscosity in mm²/s)^exponent.
+
+    Attributes:
+        factor: α at 1 mm²/s [1/Pa].
+        exponent: Exponent [1].
+
+    Traced: all fields.
+    Source: Gold, Schmidt, Dicke, Loos & Assmann, J. Synthetic Lubrication 18 (2001)
+        51-79; mineral oil: 9.904e-9 and 0.139.
+    """
+
+    factor: Scalar = eqx.field(converter=as_real, metadata=unit("1/Pa"))
+    exponent: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+
+    def __check_init__(self):
+        positive(self, "factor")
+        number(self, "exponent")
+
+    def value(self, ambient, density):
+        kinematic = 1e6 * jnp.exp(ambient) / density
+        return self.factor * kinematic**self.exponent
+
+
+def as_coefficient(value) -> Any:
+    """Converter: a plain number is the coefficient at all temperatures [1/Pa]."""
+    kept = value is None or isinstance(value, AbstractCoefficient)
+    return value if kept else ConstantCoefficient(value)
+
+
+class Walther(AbstractAmbient):
+    """Kinematic viscosity through two points: ln ln(ν + 0.7 mm²/s) is linear in ln T.
+
+    Valid: viscosities above 2 mm²/s; at 1 mm²/s the full standard gives 3 % less.
+
+    Attributes:
+        cold: Lower temperature [K].
+        cold_viscosity: Kinematic viscosity there [m²/s].
+        hot: Higher temperature [K].
+        hot_viscosity: Kinematic viscosity there, below the other one [m²/s].
+
+    Traced: all fields.
+    Source: Walther (1931); ASTM D341 without its terms for thin liquids.
+    """
+
+    cold: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+    cold_viscosity: Scalar = eqx.field(converter=as_real, metadata=unit("m²/s"))
+    hot: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+    hot_viscosity: Scalar = eqx.field(converter=as_real, metadata=unit("m²/s"))
+
+    def __check_init__(self):
+        for name in ("cold", "hot"):
+            positive(self, name)
+        for name in ("cold_viscosity", "hot_viscosity"):
+            in_range(self, name, 0.3e-6, jnp.inf)
+        if not any(is_traced(v) for v in (self.cold, self.hot)):
+            low = float(self.cold)
+            check(self, "hot", self.hot > low, f"above `cold`, {low:.6g} K")
+        if not any(is_traced(v) for v in (self.cold_viscosity, self.hot_viscosity)):
+            most = float(self.cold_viscosity)
+            words = f"below `cold_viscosity`, {most:.6g} m²/s"
+            check(self, "hot_viscosity", self.hot_viscosity < most, words)
+
+    @classmethod
+    def from_grade(
+        cls, grade: Scalar | float, viscosity_index: Scalar | float = 95.0
+    ) -> "Walther":
+        """An oil of an ISO viscosity grade.
+
+        Args:
+            grade: ISO VG: kinematic viscosity at 40 °C in mm²/s.
+            viscosity_index: Viscosity index, 0 to 400 [1].
+
+        Source: ISO 3448; viscosity at 100 °C by ASTM D2270.
+        """
+        positive(cls, "grade", grade, "mm²/s")
+        cold = 1e-6 * as_real(grade)
+        hot = viscosity_at_100(cold, viscosity_index)
+        return cls(313.15, cold, 373.15, hot)
+
+    def log_viscosity(self, temperature, density):
+        def bent(viscosity):
+            return jnp.log(jnp.log(1e6 * viscosity + 0.7))
+
+        start, end = bent(self.cold_viscosity), bent(self.hot_viscosity)
+        along = jnp.log(temperature / self.cold) / jnp.log(self.hot / self.cold)
+        kinematic = jnp.exp(jnp.exp(start + (end - start) * along)) - 0.7
+        return jnp.log(1e-6 * kinematic * density)
+
+
+class Exponential(AbstractAmbient):
+    """μ = reference·exp(first·D + second·D²), D = 1/T - 1/T_R.
+
+    Attributes:
+        reference_viscosity: Dynamic viscosity at T_R [Pa s].
+        reference_temperature: T_R [K].
+        first: Factor of D [K].
+        second: Factor of D² [K²].
+
+    Traced: all fields.
+    Source: the form of the ADORE programs (Gupta).
+    """
+
+    reference_viscosity: Scalar = eqx.field(converter=as_real, metadata=unit("Pa s"))
+    reference_temperature: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+    first: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+    second: Scalar = eqx.field(converter=as_real, metadata=unit("K²"))
+
+    def __check_init__(self):
+        positive(self, "reference_viscosity")
+        positive(self, "reference_temperature")
+        number(self, "first")
+        number(self, "second")
+
+    def log_viscosity(self, temperature, density):
+        d = 1.0 / temperature - 1.0 / self.reference_temperature
+        return jnp.log(self.reference_viscosity) + d * (self.first + d * self.second)
+
+
+class Barus(AbstractPressureLaw):
+    """μ = μ₀·exp(α p).
+
+    Far too stiff above some 0.5 GPa. A coefficient of zero: viscosity without pressure.
+
+    Attributes:
+        coefficient: α, or a plain number [1/Pa].
+
+    Source: Barus (1893).
+    """
+
+    coefficient: AbstractCoefficient = eqx.field(converter=as_coefficient)
+
+    def log_ratio(self, pressure, temperature, ambient, density):
+        return self.coefficient.value(ambient, density) * pressure
+
+
+class Roelands(AbstractPressureLaw):
+    """μ = μ₀·exp{(ln μ₀ + 9.67)·[(1 + 5.1e-9 p)^Z - 1]}, slope α at p = 0.
+
+    Attributes:
+        coefficient: α, or a plain number [1/Pa]; Z = α/[5.1e-9 (ln μ₀ + 9.67)].
+
+    Valid: viscosities at atmospheric pressure above 0.063 mPa s.
+    Source: Roelands (1966), in the form of Hamrock.
+    """
+
+    coefficient: AbstractCoefficient = eqx.field(converter=as_coefficient)
+
+    def log_ratio(self, pressure, temperature, ambient, density):
+        depth = ambient + 9.67
+        z = self.coefficient.value(ambient, density) / (5.1e-9 * depth)
+        return depth * jnp.expm1(z * jnp.log1p(5.1e-9 * pressure))
+
+
+class FreeVolume(AbstractAmbient, AbstractPressureLaw):
+    """Doolittle's free volume with Tait's equation of state, over both T and p.
+
+    μ = μ_R exp{B R0 [(Vi/ViR)/(V/VR - R0 Vi/ViR) - 1/(1 - R0)]}. The free volume is
+    kept from vanishing; where that begins the oil has long been a glass.
+
+    Attributes:
+        reference_viscosity: μ_R [Pa s].
+        B: Doolittle's parameter [1].
+        R0: Occupied volume over the whole one at the reference, above 0, below 1 [1].
+        epsilon: Growth of the occupied volume with temperature [1/K].
+        a_V: Growth of the volume with temperature [1/K].
+        K0_prime: Growth of the bulk modulus with pressure, K0' [1].
+        K00: Bulk modulus at p = 0, extrapolated to 0 K [Pa].
+        beta_K: Its decay with temperature: K0 = K00 exp(-β_K T) [1/K].
+        reference_temperature: T_R [K].
+
+    Traced: all fields.
+    Source: Doolittle (1951); Bair & Kottke, Tribology Transactions 46 (2003) 289-295,
+        in Bair's notation.
+    """
+
+    reference_viscosity: Scalar = eqx.field(converter=as_real, metadata=unit("Pa s"))
+    B: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    R0: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    epsilon: Scalar = eqx.field(converter=as_real, metadata=unit("1/K"))
+    a_V: Scalar = eqx.field(converter=as_real, metadata=unit("1/K"))
+    K0_prime: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    K00: Scalar = eqx.field(converter=as_real, metadata=unit("Pa"))
+    beta_K: Scalar = eqx.field(converter=as_real, metadata=unit("1/K"))
+    reference_temperature: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+
+    def __check_init__(self):
+        for name in ("reference_viscosity", "B", "K00", "reference_temperature"):
+            positive(self, name)
+        in_range(self, "R0", 0.0, 1.0)
+        in_range(self, "K0_prime", -1.0, jnp.inf)
+        for name in ("epsilon", "a_V", "beta_K"):
+            number(self, name)
+
+    def log_viscosity(self, temperature, density):
+        zero = jnp.zeros_like(temperature)
+        return jnp.log(self.reference_viscosity) + self._exponent(zero, temperature)
+
+    def log_ratio(self, pressure, temperature, ambient, density):
+        zero = jnp.zeros_like(temperature)
+        return self._exponent(pressure, temperature) - self._exponent(zero, temperature)
+
+    def _exponent(self, pressure, temperature):
+        warmer = temperature - self.reference_temperature
+        occupied = self.R0 * (1.0 + self.epsilon * warmer)
+        modulus = self.K00 * jnp.exp(-self.beta_K * temperature)
+        stiffer = 1.0 + self.K0_prime
+        squeezed = 1.0 - jnp.log1p(stiffer * pressure / modulus) / stiffer
+        free = (1.0 + self.a_V * warmer) * squeezed - occupied
+        # The first term may reach 40, in the end 80.
+        least = self.B * occupied / 40.0
+        free = -level_off(-free, -least, 0.5 * least)
+        return self.B * (occupied / free - self.R0 / (1.0 - self.R0))

@@ -1,0 +1,230 @@
+"""Viscosity, density and pressure coefficients against printed numbers.
+
+Printed: the pins of the oil MIL-L-23699 (method 001), tables and examples of ASTM D2270
+and D341; tolerances are half of the last printed digit unless said.
+"""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.integrate import simpson
+from tolerances import DIFFERENCE, ROUNDING
+
+import bearingjax as bj
+from bearingjax.lubrication import (
+    OILS,
+    Barus,
+    ConstantCoefficient,
+    Density,
+    Exponential,
+    FreeVolume,
+    Roelands,
+    Walther,
+    free_volume_23699,
+    iso_vg,
+    mil_l_23699,
+    viscosity_at_100,
+)
+
+WARM = 303.15
+OIL = mil_l_23699()
+FREE = free_volume_23699()
+PURE = bj.Lubricant(FREE, FREE, OIL.density)
+"""The fitted free volume law over temperature as well."""
+AMBIENT = Exponential(0.1, 313.15, 3000.0, 0.0)
+
+
+def test_mil_l_23699():
+    assert abs(float(OIL.viscosity(0.0, WARM)) - 0.03764) < 5e-6
+    assert abs(float(OIL.pressure_coefficient(WARM)) - 15.1e-9) < 0.05e-9
+    assert abs(float(OIL.density.at(WARM)) - 964.0) < 0.5
+    assert abs(float(OIL.kinematic_viscosity(313.15)) - 26.7e-6) < 0.05e-6
+    # Printed as 5.4: 5.45 cut off.
+    assert abs(float(OIL.kinematic_viscosity(373.15)) - 5.4e-6) < 0.06e-6
+    for temperature, want in ((233.0, 1016), (300.0, 966), (367.0, 922), (422.0, 884)):
+        assert abs(float(OIL.density.at(temperature)) / want - 1.0) < 6e-3
+
+
+@pytest.mark.parametrize(
+    "pressure, want, digit",
+    [(0.5e9, 51.5, 0.1), (0.8e9, 7.03e3, 10), (1e9, 4.1e5, 1e4)],
+)
+def test_viscosity_under_pressure(pressure, want, digit):
+    for oil in (OIL, PURE):
+        assert abs(float(oil.viscosity(pressure, WARM)) - want) < 0.5 * digit
+
+
+def test_free_volume_law():
+    """Its limits at p = 0, α* and the fit to the correlation over temperature."""
+    np.testing.assert_allclose(PURE.viscosity(0.0, WARM), 0.0376390, rtol=ROUNDING)
+    slope = 2.30134 * 0.728634 / (1 - 0.728634) ** 2 / (9e9 * np.exp(-6.5e-3 * WARM))
+    np.testing.assert_allclose(PURE.pressure_coefficient(WARM), slope, rtol=ROUNDING)
+    assert abs(float(PURE.isoviscous_coefficient(WARM)) - 15.96e-9) < 0.005e-9
+    for celsius in (20.0, 40.0, 70.0, 100.0, 130.0):
+        kelvin = 273.15 + celsius
+        ratio = PURE.viscosity(0.0, kelvin) / OIL.viscosity(0.0, kelvin)
+        assert abs(float(ratio) - 1.0) < 0.03
+        star = PURE.isoviscous_coefficient(kelvin) / OIL.pressure_coefficient(kelvin)
+        assert abs(float(star) - 1.0) < (0.062 if celsius <= 100 else 0.13)
+
+
+@pytest.mark.parametrize("oil", [PURE, iso_vg(100.0)], ids=["free volume", "Roelands"])
+def test_isoviscous_coefficient(oil):
+    """The integral by Simpson's rule instead."""
+    pressure = np.linspace(0.0, 3e9, 20_001)
+    viscosity = np.asarray(oil.viscosity(jnp.asarray(pressure), WARM))
+    whole = simpson(viscosity[0] / viscosity, x=pressure)
+    got = float(oil.isoviscous_coefficient(WARM))
+    np.testing.assert_allclose(got, 1.0 / whole, rtol=1e-8)
+
+
+def test_barus_and_roelands():
+    alpha, pressure = 2e-8, jnp.asarray([0.0, 1e8, 1e9])
+    ambient = 0.1 * np.exp(3000.0 * (1 / WARM - 1 / 313.15))
+    barus = bj.Lubricant(AMBIENT, Barus(alpha), Density(880.0))
+    want = ambient * np.exp(alpha * np.asarray(pressure))
+    np.testing.assert_allclose(barus.viscosity(pressure, WARM), want, rtol=ROUNDING)
+    roelands = bj.Lubricant(AMBIENT, Roelands(alpha), Density(880.0))
+    depth = np.log(ambient) + 9.67
+    grown = (1 + 5.1e-9 * np.asarray(pressure)) ** (alpha / (5.1e-9 * depth))
+    want = ambient * np.exp(depth * (grown - 1))
+    np.testing.assert_allclose(roelands.viscosity(pressure, WARM), want, rtol=1e-11)
+    for oil in (barus, roelands):
+        np.testing.assert_allclose(oil.pressure_coefficient(WARM), alpha, rtol=ROUNDING)
+    given = bj.Lubricant(AMBIENT, Barus(alpha), Density(880.0), coefficient=1.5e-8)
+    assert float(given.pressure_coefficient(WARM)) == 1.5e-8
+
+
+def test_viscosity_index_of_the_standard():
+    """The examples of ASTM D2270 with their exact index; and its table: an oil as thin
+    at 40 °C as H has index 100, as L index 0. The quadratics meet it to 1e-3."""
+    for cold, hot, index in ((73.30, 8.86, 92.43), (22.83, 5.05, 156.37)):
+        got = 1e6 * float(viscosity_at_100(1e-6 * cold, index))
+        assert abs(got - hot) < 5e-3
+    assert abs(1e6 * float(viscosity_at_100(53.47e-6, 111.30)) - 7.80) < 5e-3
+    table = {2.5: (11.45, 9.063), 5: (40.23, 28.49), 8: (100, 59.6), 20: (493.2, 229.5)}
+    for hot, (low, high) in (table | {40: (1730, 651.8), 70: (4905, 1558)}).items():
+        for cold, index in ((low, 0.0), (high, 100.0)):
+            got = 1e6 * float(viscosity_at_100(1e-6 * cold, index))
+            np.testing.assert_allclose(got, hot, rtol=1e-3)
+
+
+def test_iso_grades():
+    """Grade at 40 °C; between the points the line of ASTM D341."""
+    for grade in (10, 46, 460):
+        oil = OILS[f"ISO VG {grade}"]()
+        np.testing.assert_allclose(oil.kinematic_viscosity(313.15), 1e-6 * grade)
+    law = Walther(313.15, 100e-6, 373.15, 11.1e-6)
+    lines = [np.log10(np.log10(v + 0.7)) for v in (100.0, 11.1)]
+    share = np.log10(343.15 / 313.15) / np.log10(373.15 / 313.15)
+    want = 10 ** (10 ** (lines[0] + share * (lines[1] - lines[0]))) - 0.7
+    got = np.exp(float(law.log_viscosity(jnp.asarray(343.15), jnp.asarray(900.0))))
+    np.testing.assert_allclose(got, 900e-6 * want, rtol=ROUNDING)
+
+
+def test_finite_from_cold_to_hot_and_up_to_four_gigapascal():
+    """Value and gradient; beyond the fluid range the flag says so."""
+    grid = [
+        g.ravel()
+        for g in jnp.meshgrid(jnp.linspace(0, 4e9, 9), jnp.linspace(233.15, 473.15, 5))
+    ]
+    barus = bj.Lubricant(iso_vg(460.0).ambient, Barus(4e-8), Density(900.0))
+
+    @jax.jit
+    def both(oil, pressure, temperature):
+        log = lambda p, t: jnp.log(oil.viscosity(p, t))  # noqa: E731
+        value, slopes = jax.vmap(jax.value_and_grad(log, (0, 1)))(pressure, temperature)
+        return value, *slopes, oil.outside_fluid_range(0.0, 300.0)
+
+    flag = jax.jit(jax.vmap(bj.Lubricant.outside_fluid_range, (None, 0, 0)))
+    for oil in (OIL, PURE, iso_vg(10.0), iso_vg(460.0), barus):
+        value, by_pressure, by_temperature, _ = both(oil, *grid)
+        assert np.all(np.isfinite([value, by_pressure, by_temperature]))
+        assert np.all(by_pressure >= 0) and np.all(value < 37.7)
+        np.testing.assert_array_equal(flag(oil, *grid), value > np.log(1e12))
+        alpha = jax.jit(jax.vmap(oil.isoviscous_coefficient))(grid[1][::9])
+        assert np.all(np.isfinite(alpha)) and np.all(alpha > 0)
+
+
+def test_derivatives_by_every_number():
+    """Against central differences, of ln μ at 0.6 GPa, α* and the film coefficient."""
+    vg = iso_vg(68.0)
+
+    def measures(oil, temperature):
+        found = (
+            oil.viscosity(6e8, temperature),
+            oil.isoviscous_coefficient(temperature),
+            oil.pressure_coefficient(temperature),
+        )
+        return jnp.log(jnp.stack(found))
+
+    for oil in (PURE, vg):
+        leaves, tree = jax.tree.flatten((oil, jnp.asarray(WARM)))
+        at = jnp.stack(leaves)
+        of = jax.jit(lambda x, tree=tree: measures(*jax.tree.unflatten(tree, [*x])))
+        exact = jax.jit(jax.jacfwd(of))(at) * at[None]
+        for k in range(at.size):
+            step = 1e-5 * at[k]
+            up, down = (of(at.at[k].add(s * step)) for s in (1.0, -1.0))
+            np.testing.assert_allclose(
+                exact[:, k], (up - down) / 2e-5, atol=1e2 * DIFFERENCE, rtol=DIFFERENCE
+            )
+    by_grade = jax.grad(lambda g: iso_vg(g).viscosity(0.0, 373.15))(jnp.asarray(100.0))
+    ends = [float(iso_vg(100.0 + s).viscosity(0.0, 373.15)) for s in (0.01, -0.01)]
+    np.testing.assert_allclose(by_grade, (ends[0] - ends[1]) / 0.02, rtol=DIFFERENCE)
+
+
+def test_float32():
+    """ln μ loses 2e-6 of its terms, of which the largest is 20: μ is right to 1e-4."""
+    narrow = jax.tree.map(lambda x: x.astype(jnp.float32), PURE)
+    pressure = jnp.linspace(0.0, 1.2e9, 13)
+    got = narrow.viscosity(pressure.astype(jnp.float32), jnp.float32(WARM))
+    assert got.dtype == jnp.float32
+    np.testing.assert_allclose(got, PURE.viscosity(pressure, WARM), rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    "make, message",
+    [
+        (
+            lambda: Walther(313.15, -1e-5, 373.15, 1e-6),
+            r"`cold_viscosity` is -1e-05 m²/s",
+        ),
+        (lambda: Walther(-1.0, 1e-5, 373.15, 1e-6), r"`cold` is -1 K.*above 0 K"),
+        (
+            lambda: Walther(373.15, 1e-5, 313.15, 1e-6),
+            r"`hot` is 313.15 K.*above `cold`",
+        ),
+        (lambda: Walther(313.15, 1e-5, 373.15, 1e-4), r"below `cold_viscosity`"),
+        (lambda: Walther.from_grade(-32.0), r"`grade` is -32 mm²/s.*above 0"),
+        (
+            lambda: Walther.from_grade(1.0),
+            r"`viscosity` is 1e-06 m²/s.*at least 6.473e-06",
+        ),
+        (lambda: iso_vg(32.0, 500.0), r"`index` is 500; .*at least 0 and below 400"),
+        (
+            lambda: Exponential(-0.1, 300.0, 1.0, 1.0),
+            r"`reference_viscosity` is -0.1 Pa s",
+        ),
+        (
+            lambda: FreeVolume(0.1, 2.0, 1.2, 0, 0, 11, 9e9, 0, 300),
+            r"`R0` is 1.2; .*below 1",
+        ),
+        (lambda: ConstantCoefficient(np.nan), r"`coefficient` is nan 1/Pa.*finite"),
+        (lambda: Density(-880.0), r"`value` is -880 kg/m³.*above 0"),
+        (
+            lambda: OIL.viscosity(0.0, -5.0),
+            r"Lubricant: `temperature` is -5 K.*above 0 K",
+        ),
+    ],
+)
+def test_bad_input(make, message):
+    with pytest.raises(ValueError, match=message) as raised:
+        make()
+    assert "\n" not in str(raised.value)
+
+
+def test_parts_of_the_wrong_kind(untyped):
+    with pytest.raises(TypeError, match="`pressure` is a Exponential; it must be"):
+        bj.Lubricant(AMBIENT, AMBIENT, Density(880.0))
