@@ -1,5 +1,13 @@
 """Oil between rolling surfaces: viscosity, films, traction."""
 
+from .film import Film as Film
+from .film import Regime as Regime
+from .film import at_least as at_least
+from .film import inlet_heating as inlet_heating
+from .film import lambda_ratio as lambda_ratio
+from .film import line_film as line_film
+from .film import point_film as point_film
+from .film import starvation as starvation
 from .lubricant import Density as Density
 from .lubricant import Lubricant as Lubricant
 from .oils import OILS as OILS
