@@ -14,6 +14,16 @@ from .oils import OILS as OILS
 from .oils import free_volume_23699 as free_volume_23699
 from .oils import iso_vg as iso_vg
 from .oils import mil_l_23699 as mil_l_23699
+from .patch import Patch as Patch
+from .patch import ellipse_patch as ellipse_patch
+from .patch import line_patch as line_patch
+from .traction import AbstractTraction as AbstractTraction
+from .traction import DryFriction as DryFriction
+from .traction import Eyring as Eyring
+from .traction import LimitingStress as LimitingStress
+from .traction import Newtonian as Newtonian
+from .traction import Resultants as Resultants
+from .traction import SlipCurve as SlipCurve
 from .viscosity import AbstractAmbient as AbstractAmbient
 from .viscosity import AbstractCoefficient as AbstractCoefficient
 from .viscosity import AbstractPressureLaw as AbstractPressureLaw

@@ -1,0 +1,233 @@
+"""Traction: shear stress against slip, and what comes of it over a contact.
+
+Slip is the speed of the body that is looked at (the ball) relative to the other one:
+u_x + y·spin in rolling direction and u_y - x·spin across. A law gives the resistance
+g ≥ 0 of the shear stress τ = -g u on that body, as a smooth function of |u|²: traction
+never does work on the slip, and it is smooth where there is none.
+"""
+
+import abc
+from typing import NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..design.checks import non_negative, positive
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from .patch import Patch
+
+# Slip speed below which the empirical curve is linear [m/s].
+_NO_SLIP = 1e-6
+
+
+class Resultants(NamedTuple):
+    """Traction of a whole contact on the body whose slip was given.
+
+    Attributes:
+        force: In rolling direction and across (2,) [N].
+        moment: ∫(x τ_y - y τ_x) dA, about the axis from x to y [N m]. Against the sense
+            of `spin`, whose slip (y, -x) turns from y to x: a positive spin has a
+            positive moment.
+        heat: Power turned to heat, -∫τ·u dA = spin·moment - force·slip [W].
+    """
+
+    force: Float[Array, "2"]
+    moment: Scalar
+    heat: Scalar
+
+
+class AbstractTraction(eqx.Module):
+    """A law of traction."""
+
+    @abc.abstractmethod
+    def resistance(
+        self,
+        slip_squared: Float[Array, "*n"],
+        film: Scalar,
+        pressure: Float[Array, "*n"],
+        viscosity: Float[Array, "*n"],
+    ) -> Float[Array, "*n"]:
+        """Shear stress over slip speed, g in τ = -g u [Pa s/m].
+
+        Args:
+            slip_squared: Square of the slip speed [m²/s²].
+            film: Film thickness, above 0 [m].
+            pressure: Pressure [Pa].
+            viscosity: Viscosity at that pressure [Pa s].
+        """
+
+    def stress(
+        self,
+        slip: Float[Array, "2"],
+        film: Scalar | float,
+        pressure: Scalar | float,
+        viscosity: Scalar | float,
+    ) -> Float[Array, "2"]:
+        """Shear stress on the body at a point [Pa].
+
+        Args:
+            slip: Slip of the body (2,) [m/s].
+            film, pressure, viscosity: As in `resistance`.
+        """
+        given = (as_real(x) for x in (film, pressure, viscosity))
+        return -self.resistance(jnp.dot(slip, slip), *given) * slip
+
+    def resultants(
+        self,
+        patch: Patch,
+        film: Scalar | float,
+        slip: Float[Array, "2"],
+        spin: Scalar | float,
+    ) -> Resultants:
+        """Traction of the whole contact.
+
+        Args:
+            patch: Contact under its load.
+            film: Film thickness, above 0 (see `at_least`), the same all over [m].
+            slip: Slip in the middle, u_x and u_y (2,) [m/s].
+            spin: Spin w of the slip (u_x + y w, u_y - x w) [rad/s].
+        """
+        spin = as_real(spin)
+        ux, uy = slip[0] + patch.y * spin, slip[1] - patch.x * spin
+        squared = ux * ux + uy * uy
+        resistance = patch.area * self.resistance(
+            squared, as_real(film), patch.pressure, patch.viscosity
+        )
+        return Resultants(
+            force=-jnp.stack([jnp.dot(resistance, ux), jnp.dot(resistance, uy)]),
+            moment=jnp.dot(resistance, patch.y * ux - patch.x * uy),
+            heat=jnp.dot(resistance, squared),
+        )
+
+
+class Newtonian(AbstractTraction):
+    """A film that is sheared evenly: τ = -μ(p) u/h.
+
+    Linear in slip and spin, so that the moments of the viscosity are enough. Unphysical
+    above some 1 GPa, where no oil bears μ u/h.
+    """
+
+    def resistance(self, slip_squared, film, pressure, viscosity):
+        return viscosity / film
+
+    def resultants(self, patch, film, slip, spin):
+        spin = as_real(spin)
+        total, by_x, by_y, polar = patch.moments / as_real(film)
+        force = -total * slip - spin * jnp.stack([by_y, -by_x])
+        moment = by_y * slip[0] - by_x * slip[1] + polar * spin
+        return Resultants(force, moment, spin * moment - jnp.dot(force, slip))
+
+
+class Eyring(AbstractTraction):
+    """Oil that thins with shear: τ = τ_E asinh(μ u/(h τ_E)).
+
+    Attributes:
+        stress_scale: Eyring stress τ_E, 2 to 10 MPa for mineral oils [Pa].
+
+    Traced: all fields.
+    Source: Eyring (1936); Johnson & Tevaarwerk, Proc. Royal Society A 356 (1977).
+    """
+
+    stress_scale: Scalar = eqx.field(
+        converter=as_real, metadata=unit("Pa"), default=5e6
+    )
+
+    def __check_init__(self):
+        positive(self, "stress_scale")
+
+    def resistance(self, slip_squared, film, pressure, viscosity):
+        newtonian = viscosity / film
+        strain = newtonian / self.stress_scale
+        return newtonian * _arsinh_over(strain * strain * slip_squared)
+
+
+class LimitingStress(AbstractTraction):
+    """Oil that yields: τ = τ_N/sqrt(1 + (τ_N/τ_L)²), τ_N = μ u/h, τ_L = τ_0 + Λ p.
+
+    Attributes:
+        slope: Λ, the traction coefficient of a plastic film [1].
+        ambient: Limiting stress without pressure, τ_0 [Pa].
+
+    Traced: all fields.
+    Source: limiting stress proportional to pressure: Bair & Winer, J. Lubrication
+        Technology 101 (1979) 258-265; the smooth transition is the circle of Lee &
+        Hamrock (1990).
+    """
+
+    slope: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.05)
+    ambient: Scalar = eqx.field(converter=as_real, metadata=unit("Pa"), default=1e5)
+
+    def __check_init__(self):
+        non_negative(self, "slope")
+        positive(self, "ambient")
+
+    def resistance(self, slip_squared, film, pressure, viscosity):
+        newtonian = viscosity / film
+        strain = newtonian / (self.ambient + self.slope * pressure)
+        return newtonian / jnp.sqrt(1.0 + strain * strain * slip_squared)
+
+
+class SlipCurve(AbstractTraction):
+    """Measured traction: τ = p [far (1 - exp(-C u)) + B u exp(-C u)].
+
+    Rises by far·C + B per slip speed, may pass a maximum, and ends at `far`.
+
+    Attributes:
+        far: Traction coefficient at large slip [1].
+        rise: B [s/m].
+        decay: C [s/m].
+
+    Traced: all fields.
+    Source: Gupta, Advanced Dynamics of Rolling Elements (1984), (A + B u) exp(-C u) + D
+        with far = D = -A, so that it starts at zero.
+    """
+
+    far: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    rise: Scalar = eqx.field(converter=as_real, metadata=unit("s/m"))
+    decay: Scalar = eqx.field(converter=as_real, metadata=unit("s/m"))
+
+    def __check_init__(self):
+        non_negative(self, "far")
+        non_negative(self, "rise")
+        positive(self, "decay")
+
+    def resistance(self, slip_squared, film, pressure, viscosity):
+        speed = jnp.sqrt(slip_squared + _NO_SLIP**2)
+        exponent = -self.decay * speed
+        begun = -self.far * jnp.expm1(exponent) / speed
+        return pressure * (begun + self.rise * jnp.exp(exponent))
+
+
+class DryFriction(AbstractTraction):
+    """Coulomb's friction, τ = f p u/sqrt(u² + creep²), linear at slips below `creep`.
+
+    Attributes:
+        friction: Coefficient of friction f [1].
+        creep: Slip speed at which it has reached 0.71 f [m/s].
+
+    Traced: all fields.
+    """
+
+    friction: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.1)
+    creep: Scalar = eqx.field(converter=as_real, metadata=unit("m/s"), default=1e-3)
+
+    def __check_init__(self):
+        non_negative(self, "friction")
+        positive(self, "creep")
+
+    def resistance(self, slip_squared, film, pressure, viscosity):
+        speed = jnp.sqrt(slip_squared + self.creep * self.creep)
+        return self.friction * pressure / speed
+
+
+def _arsinh_over(square):
+    """asinh(z)/z of z², smooth at z = 0."""
+    small = square < 1e-2
+    z = jnp.sqrt(jnp.where(small, 1.0, square))
+    w = jnp.where(small, square, 0.0)
+    series = jnp.ones_like(w)
+    for ratio in (169 / 210, 121 / 156, 81 / 110, 49 / 72, 25 / 42, 9 / 20, 1 / 6):
+        series = 1.0 - ratio * w * series
+    return jnp.where(small, series, jnp.arcsinh(z) / z)
