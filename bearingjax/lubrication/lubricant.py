@@ -111,7 +111,8 @@ class Lubricant(eqx.Module):
 
     def kinematic_viscosity(self, temperature: Scalar | float) -> Scalar:
         """Kinematic viscosity at atmospheric pressure [m²/s], temperature in K."""
-        return self.viscosity(0.0, temperature) / self.density.at(temperature)
+        kelvin = _kelvin(temperature)
+        return self._thin(kelvin) / self.density.at(kelvin)
 
     def pressure_coefficient(self, temperature: Scalar | float) -> Scalar:
         """Pressure-viscosity coefficient of films [1/Pa], temperature in K."""
@@ -137,7 +138,7 @@ class Lubricant(eqx.Module):
         weight = jnp.asarray(0.5 * weight / (1.0 - share) ** 2, kelvin.dtype)
         slope = self._slope(kelvin)
         thicker = self.viscosity(far / slope, kelvin)
-        return slope / jnp.dot(weight, self.viscosity(0.0, kelvin) / thicker)
+        return slope / jnp.dot(weight, self._thin(kelvin) / thicker)
 
     def thermal_loading(
         self, temperature: Scalar | float, speed: Scalar | float
@@ -150,13 +151,13 @@ class Lubricant(eqx.Module):
             temperature: Temperature at the inlet [K].
             speed: Entrainment speed u [m/s].
         """
-        temperature, speed = _kelvin(temperature), as_real(speed)
-        _, slope = jax.jvp(
-            lambda t: self.viscosity(0.0, t),
-            (temperature,),
-            (jnp.ones_like(temperature),),
-        )
+        kelvin, speed = _kelvin(temperature), as_real(speed)
+        _, slope = jax.jvp(self._thin, (kelvin,), (jnp.ones_like(kelvin),))
         return -slope * speed * speed / self.thermal_conductivity
+
+    def _thin(self, kelvin):
+        """Viscosity at atmospheric pressure [Pa s]."""
+        return self.viscosity(jnp.zeros_like(kelvin), kelvin)
 
     def _log_viscosity(self, pressure, temperature):
         pressure, temperature = as_real(pressure), _kelvin(temperature)

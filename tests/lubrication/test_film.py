@@ -136,19 +136,22 @@ def test_inlet_heating():
     p, loading, slide = 1.2e9, 2.0, 0.4
     above = 1 - 13.2 * p / (2 * E_STAR) * loading**0.42
     below = 1 + 0.213 * (1 + 2.23 * slide**0.83) * loading**0.64
-    got = [inlet_heating(loading, p, E_STAR, s * slide) for s in (1, -1)]
+    heated = jax.jit(inlet_heating)
+    got = [heated(loading, p, E_STAR, s * slide) for s in (1, -1)]
     np.testing.assert_allclose(got, above / below, rtol=1e-8)
-    assert float(inlet_heating(0.0, p, E_STAR, slide)) == 1.0
+    assert float(heated(0.0, p, E_STAR, slide)) == 1.0
     # Positive, and with a continuous slope, however hot.
-    share = jax.vmap(jax.value_and_grad(lambda x: inlet_heating(x, 3e9, E_STAR, 1.0)))
+    share = jax.value_and_grad(lambda x: inlet_heating(x, 3e9, E_STAR, 1.0))
+    share = jax.jit(jax.vmap(share))
     value, slope = share(jnp.geomspace(1e-3, 1e5, 4001))
     assert np.all(value > 0) and np.all(slope < 0)
     assert np.max(np.abs(np.diff(np.log(-slope)))) < 0.02
     oil = mil_l_23699()
     step = 1e-3
-    ends = [float(oil.viscosity(0.0, 303.15 + s * step)) for s in (1, -1)]
-    want = -(ends[0] - ends[1]) / (2 * step) * SPEED**2 / 0.14
-    np.testing.assert_allclose(oil.thermal_loading(303.15, SPEED), want, rtol=1e-7)
+    of = jax.jit(lambda t: (oil.viscosity(0.0, t), oil.thermal_loading(t, SPEED)))
+    up, here, down = (of(303.15 + s * step) for s in (1, 0, -1))
+    want = -(up[0] - down[0]) / (2 * step) * SPEED**2 / 0.14
+    np.testing.assert_allclose(here[1], want, rtol=1e-7)
 
 
 def test_starvation():
@@ -173,18 +176,22 @@ def test_lambda_ratio():
 def test_float32():
     """Sums of logarithms up to 25: 2e-6."""
     at = [*POINT, SPEED, 0.3, 0.05]
-    got = measures([jnp.float32(x) for x in at])
+    got = jax.jit(measures)([jnp.float32(x) for x in at])
     assert got.dtype == jnp.float32
-    np.testing.assert_allclose(got, measures(at), rtol=1e-5)
+    np.testing.assert_allclose(got, jax.jit(measures)(at), rtol=1e-5)
 
 
 def test_of_an_oil():
     """A film under `vmap` over loads and speeds, with the numbers of an oil."""
     oil = iso_vg(68.0)
-    mu, alpha = oil.viscosity(0.0, 343.15), oil.pressure_coefficient(343.15)
-    loads, speeds = jnp.asarray([10.0, 100.0, 1000.0]), jnp.asarray([1.0, 2.0, 4.0])
-    film = jax.vmap(lambda q: point_film(q, 6.0, RADIUS, E_STAR, mu, alpha))(loads)
-    got = jax.vmap(lambda f, u: f.central(u))(film, speeds)
+
+    @jax.jit
+    @jax.vmap
+    def central(load, speed):
+        mu, alpha = oil.viscosity(0.0, 343.15), oil.pressure_coefficient(343.15)
+        return point_film(load, 6.0, RADIUS, E_STAR, mu, alpha).central(speed)
+
+    got = central(jnp.asarray([10.0, 100.0, 1000.0]), jnp.asarray([1.0, 2.0, 4.0]))
     np.testing.assert_allclose(
         got / got[0], [1, 2**0.67 * 10**-0.067, 4**0.67 * 0.1**0.134]
     )

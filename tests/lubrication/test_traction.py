@@ -220,7 +220,7 @@ def test_thinning_near_zero():
         return law.resistance(z * z, one, 0.0 * one, one)
 
     z = jnp.asarray([1e-8, 1e-3, 0.0999, 0.1, 0.1001, 3.0, 1e8])
-    value, slope = jax.vmap(jax.value_and_grad(ratio))(z)
+    value, slope = jax.jit(jax.vmap(jax.value_and_grad(ratio)))(z)
     np.testing.assert_allclose(value, np.arcsinh(z) / z, rtol=1e-14)
     want = (1 / np.sqrt(1 + z**2) - value) / z
     np.testing.assert_allclose(slope[1:], want[1:], rtol=1e-9)
@@ -260,7 +260,7 @@ def test_unloaded():
         return jnp.stack([listed(each) for each in found])
 
     both = jax.jit(lambda load, law: (of(load, law), jax.jacfwd(of)(load, law)))
-    for law in LAWS.values():
+    for law in (Newtonian(), LAWS["eyring"]):
         value, slope = both(jnp.asarray(0.0), law)
         np.testing.assert_array_equal(value, 0.0)
         assert np.all(np.isfinite(slope))
