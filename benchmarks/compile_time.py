@@ -77,15 +77,23 @@ print(json.dumps([(b[0] - a[0], b[1] - a[1]) for a, b in zip(marks, marks[1:])])
 STEPS = ("import jax", "import bearingjax", "bearing and element", "evaluate", "again")
 COMMAND = "import sys; from bearingjax.cli import main; sys.exit(main())"
 SIZES = """
-import re, sys
+import functools, re, sys
 import equinox as eqx, jax
 jax.config.update("jax_enable_x64", True)
 import bearingjax as bj
 
-def equations(jaxpr):
+def inner(equation):
+    params = dict(equation.params)
+    if equation.primitive.name == "lanes":  # not traced before it is lowered
+        program = functools.partial(params.pop("task").program, **params)
+        shapes = [(v.aval.shape, v.aval.dtype) for v in equation.invars]
+        given = [jax.ShapeDtypeStruct(*shape) for shape in shapes]
+        return [jax.make_jaxpr(program)(*given).jaxpr]
     is_inner = lambda value: hasattr(value, "eqns")
-    params = jax.tree.leaves([e.params for e in jaxpr.eqns], is_leaf=is_inner)
-    return len(jaxpr.eqns) + sum(equations(p) for p in params if is_inner(p))
+    return [p for p in jax.tree.leaves(params, is_leaf=is_inner) if is_inner(p)]
+
+def equations(jaxpr):
+    return len(jaxpr.eqns) + sum(equations(p) for e in jaxpr.eqns for p in inner(e))
 
 scene = bj.read_scene(sys.argv[1])
 

@@ -324,11 +324,12 @@ def _loop(minimiser: AbstractMinimiser, known, may_be_open) -> lanes.Loop:
         state = _solved(element, rings, loop.finish(given, state))
         return state, condensed(rings, Placed(element, state, given.magnitude))
 
-    def rest(given):
-        return given.is_open, unloaded(given.rings, given.centre, known)
+    def blank(given):
+        return unloaded(given.rings, given.centre, known)
 
+    rests = (lambda given: given.is_open) if may_be_open else None
     loop = minimiser.loop(problem_of)
-    return loop._replace(finish=finish, rest=rest if may_be_open else None)
+    return loop._replace(finish=finish, blank=blank, rests=rests)
 
 
 def unloaded(rings: Rings, x: Unknowns, known: Any) -> tuple[LocalState, Expansion]:

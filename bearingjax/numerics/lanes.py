@@ -19,14 +19,18 @@ not change from step to step is prepared by the caller, once, and is `given`:
 once.
 """
 
-from collections.abc import Callable
+import dataclasses
+import functools
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jax import lax
-from jax.custom_batching import custom_vmap
+from jax.core import ShapedArray
+from jax.extend.core import Primitive
+from jax.interpreters import batching, mlir
 from jaxtyping import Array, Bool
 
 SLOTS, IDLE = 64, 16
@@ -45,21 +49,24 @@ class Loop(NamedTuple):
         step: (given, state) -> next state.
         terminate: (given, state) -> whether to stop.
         finish: (given, last state) -> what is wanted of it.
-        rest: given -> (whether nothing is to be done, what is wanted then); `None`:
-            something always is.
+        blank: given -> something of the same shapes and types as `finish` returns,
+            which need not be traced then to know them; `None`: it is.
+        rests: given -> whether nothing is to be done; then `blank` is what is wanted.
+            `None`: something always is.
     """
 
     init: Callable[[Any], Any]
     step: Callable[[Any, Any], Any]
     terminate: Callable[[Any, Any], Any]
     finish: Callable[[Any, Any], Any]
-    rest: Callable[[Any], tuple[Bool[Array, ""], Any]] | None = None
+    blank: Callable[[Any], Any] | None = None
+    rests: Callable[[Any], Bool[Array, ""]] | None = None
 
     def run(self, given) -> Any:
         """What comes out of the iteration."""
         begin = self.init(given)
         pack, unpack = packing(begin)
-        resting, rest = (None, None) if self.rest is None else self.rest(given)
+        resting = None if self.rests is None else self.rests(given)
 
         def ended(packed):
             done = self.terminate(given, unpack(packed))
@@ -73,7 +80,13 @@ class Loop(NamedTuple):
         found = self.finish(given, unpack(last))
         if resting is None:
             return found
-        return jax.tree.map(lambda a, b: jnp.where(resting, a, b), rest, found)
+        assert self.blank is not None, "`rests` needs `blank`"
+        nothing = self.blank(given)
+        return jax.tree.map(lambda a, b: jnp.where(resting, a, b), nothing, found)
+
+    def shapes(self, given) -> Any:
+        """Shapes and types of what `run` returns."""
+        return jax.eval_shape(self.run if self.blank is None else self.blank, given)
 
 
 class Either(NamedTuple):
@@ -163,6 +176,9 @@ def _is_either(node):
 def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
     """`loop.run(given)`, which under `vmap` lets few lanes wait for others.
 
+    The loop is traced when the program is lowered, and so once: one problem and a
+    batch, over any number of axes, are one operation until then.
+
     Args:
         loop: Its functions see no traced number but those of `given`.
         given: Pytree; what is no array is static.
@@ -172,7 +188,7 @@ def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
             It costs a part of a step, and more where states are large.
 
     Returns:
-        As `Loop.finish`. Derivatives are not for here: see `implicit`.
+        As `Loop.finish`. It has no derivatives: see `implicit`.
     """
     arrays, static = eqx.partition(given, eqx.is_array)
     leaves, tree = jax.tree.flatten(arrays)
@@ -180,79 +196,125 @@ def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
     def whole(leaves):
         return eqx.combine(jax.tree.unflatten(tree, leaves), static)
 
-    @custom_vmap
-    def one(leaves):
-        return loop.run(whole(leaves))
-
-    @one.def_vmap
-    def _rule(size, batched, leaves):
-        out = _many(loop, whole, (slots, idle), tuple(batched[0]))(leaves)
-        return out, jax.tree.map(lambda _: True, out)
-
-    return one(leaves)
+    shapes, returned = jax.tree.flatten(loop.shapes(given))
+    task = _Task(loop, whole, (slots, idle), [(a.shape, a.dtype) for a in shapes])
+    out = _lanes.bind(*leaves, task=task, flags=(False,) * len(leaves), count=None)
+    return jax.tree.unflatten(returned, out)
 
 
-def _many(loop, whole, slots, flags):
-    """The loops of lanes, flagged leaves with a leading axis."""
+@dataclasses.dataclass(frozen=True, eq=False)
+class _Task:
+    """What the lanes of one `run` have in common.
 
-    @custom_vmap
-    def many(leaves):
-        return _in_lanes(loop, whole, slots, flags, leaves)
+    Attributes:
+        loop: The iteration.
+        whole: Leaves of one problem -> what its functions are given.
+        slots: Slots, and how many of them may be idle.
+        out: Shape and type of every leaf of what comes out.
+    """
 
-    @many.def_vmap
-    def _rule(size, batched, leaves):
-        count = _count(flags, leaves, batched[0])
-        both = tuple(a or b for a, b in zip(flags, batched[0], strict=True))
+    loop: Loop
+    whole: Callable[[Sequence[Array]], Any]
+    slots: tuple[int, int]
+    out: list[tuple[tuple[int, ...], Any]]
 
-        def joined(leaf, old, new):
-            if not (old or new):
-                return leaf
-            if not new:
-                leaf = jnp.broadcast_to(leaf, (size, *leaf.shape))
-            elif not old:
-                shape = (size, count, *leaf.shape[1:])
-                leaf = jnp.broadcast_to(leaf[:, None], shape)
-            return leaf.reshape(size * count, *leaf.shape[2:])
+    def program(self, *leaves: Array, flags: tuple[bool, ...], count: int | None):
+        """What the operation computes.
 
-        joint = [joined(*x) for x in zip(leaves, flags, batched[0], strict=True)]
-        out = _many(loop, whole, slots, both)(joint)
-        out = jax.tree.map(lambda a: a.reshape(size, count, *a.shape[1:]), out)
-        return out, jax.tree.map(lambda _: True, out)
+        Args:
+            *leaves: Of what is given.
+            flags: Which of them have an axis of lanes in front.
+            count: How many lanes; `None`: one problem, without such an axis.
 
-    return many
+        Returns:
+            Leaves of what comes out, each with the axis of lanes.
+        """
+        if count is None:
+            found = self.loop.run(self.whole(leaves))
+        else:
+            found = _in_lanes(self, flags, leaves, count)
+        found = jax.tree.leaves(found)
+        known = [(a.shape, a.dtype) for a in self.avals(count)]
+        assert known == [(a.shape, a.dtype) for a in found], (known, found)
+        return found
+
+    def avals(self, count: int | None) -> list[ShapedArray]:
+        """Shapes and types of what comes out."""
+        front = () if count is None else (count,)
+        return [ShapedArray((*front, *a), dtype) for a, dtype in self.out]
 
 
-def _count(flags, leaves, batched):
-    """Number of lanes, of leaves that may have one axis more in front."""
-    for leaf, flag, more in zip(leaves, flags, batched, strict=True):
-        if flag:
-            return leaf.shape[1 if more else 0]
-    raise AssertionError("no leaf has lanes")
+_lanes = Primitive("lanes")
+_lanes.multiple_results = True
 
 
-def _in_lanes(loop, whole, slots, flags, leaves):
+@_lanes.def_impl
+def _called(*leaves, task, **choices):
+    return jax.jit(functools.partial(task.program, **choices))(*leaves)
+
+
+@_lanes.def_abstract_eval
+def _abstract(*leaves, task, flags, count):
+    return task.avals(count)
+
+
+def _lowered(*leaves, task, **choices):
+    return task.program(*leaves, **choices)
+
+
+mlir.register_lowering(_lanes, mlir.lower_fun(_lowered))
+
+
+def _batched(leaves, axes, *, task, flags, count):
+    """One more axis of `vmap` makes more lanes of the same kind."""
+    more = [axis is not batching.not_mapped for axis in axes]
+    leaves = [
+        jnp.moveaxis(leaf, axis, 0) if new else leaf
+        for leaf, axis, new in zip(leaves, axes, more, strict=True)
+    ]
+    size = next(leaf.shape[0] for leaf, new in zip(leaves, more, strict=True) if new)
+    both = tuple(a or b for a, b in zip(flags, more, strict=True))
+
+    def joined(leaf, old, new):
+        if count is None or not (old or new):
+            return leaf
+        if not new:
+            leaf = jnp.broadcast_to(leaf, (size, *leaf.shape))
+        elif not old:
+            shape = (size, count, *leaf.shape[1:])
+            leaf = jnp.broadcast_to(leaf[:, None], shape)
+        return leaf.reshape(size * count, *leaf.shape[2:])
+
+    joint = [joined(*x) for x in zip(leaves, flags, more, strict=True)]
+    lanes = size if count is None else size * count
+    out = _lanes.bind(*joint, task=task, flags=both, count=lanes)
+    if count is not None:
+        out = [a.reshape(size, count, *a.shape[1:]) for a in out]
+    return out, [0] * len(out)
+
+
+batching.primitive_batchers[_lanes] = _batched
+
+
+def _in_lanes(task, flags, leaves, count):
     common = [leaf for leaf, flag in zip(leaves, flags, strict=True) if not flag]
     own = [leaf for leaf, flag in zip(leaves, flags, strict=True) if flag]
 
     def given(mine):
         rest, mine = iter(common), iter(mine)
-        return whole([next(mine if flag else rest) for flag in flags])
+        return task.whole([next(mine if flag else rest) for flag in flags])
 
-    count = own[0].shape[0]
-    if count < 2 * slots[0]:
-        return jax.vmap(lambda mine: loop.run(given(mine)))(own)
-    return _queued(loop, given, own, count, slots)
+    if count < 2 * task.slots[0]:
+        return jax.vmap(lambda mine: task.loop.run(given(mine)))(own)
+    return _queued(task, given, own, count)
 
 
-def _queued(loop, given, own, count, slots):
+def _queued(task, given, own, count):
     """All problems, some at a time; see the top of this file."""
-    width, spare = slots
+    loop, (width, spare) = task.loop, task.slots
     one = [jax.ShapeDtypeStruct(a.shape[1:], a.dtype) for a in own]
     begin = jax.eval_shape(lambda mine: loop.init(given(mine)), one)
-    if loop.rest is None:
-        end = jax.eval_shape(lambda mine, s: loop.finish(given(mine), s), one, begin)
-    else:
-        _, end = jax.eval_shape(lambda mine: loop.rest(given(mine)), one)
+    end = task.avals(None)
     # Three arrays are moved about in place of very many.
     pack_own, unpack_own = packing(one)
     pack, unpack = packing(begin)
@@ -270,13 +332,14 @@ def _queued(loop, given, own, count, slots):
         return new, going & ~loop.terminate(problem, unpack(new))
 
     def leave(mine, state):
-        return pack_end(loop.finish(given(unpack_own(mine)), unpack(state)))
+        found = loop.finish(given(unpack_own(mine)), unpack(state))
+        return pack_end(jax.tree.leaves(found))
 
     def resting(mine):
-        idle, found = loop.rest(given(mine))
-        return idle, pack_end(found)
+        problem = given(mine)
+        return loop.rests(problem), pack_end(jax.tree.leaves(loop.blank(problem)))
 
-    if loop.rest is None:
+    if loop.rests is None:
         idle = jnp.zeros((count,), bool)
         out = _blank(pack_end, end, count)
     else:

@@ -141,6 +141,12 @@ class Minimum(NamedTuple):
     memory: Any = ()
 
 
+def blank(problem: Problem) -> Minimum:
+    """Of the shapes of a minimum."""
+    zero, none = jnp.zeros((), problem.start.dtype), jnp.zeros((), jnp.int32)
+    return Minimum(problem.start, zero, zero, none, none, problem.memory)
+
+
 class AbstractMinimiser(eqx.Module):
     """Minimises a smooth function of a few unknowns, scaled to one unit.
 
@@ -180,6 +186,7 @@ class AbstractMinimiser(eqx.Module):
             lambda given, state: self.step(problem_of(given), state),
             lambda given, state: self.terminate(problem_of(given), state),
             lambda given, state: self.finish(problem_of(given), state),
+            lambda given: blank(problem_of(given)),
         )
 
     @abc.abstractmethod
@@ -417,4 +424,4 @@ def continuation(
         goal = minimiser.goal(problem)
         return minimiser.finish(larger(problem, factor)._replace(tolerance=goal), state)
 
-    return Loop(init, step, terminate, finish)
+    return Loop(init, step, terminate, finish, lambda given: blank(problem_of(given)))

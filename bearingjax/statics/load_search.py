@@ -6,13 +6,15 @@ converges from anywhere, or runs away where nothing holds the load, and says so.
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..design import AbstractBallBearing, SetRow
-from ..element.bearing_model import BearingModel
+from ..element.bearing_model import BearingModel, Solved
 from ..numerics import lanes
 from ..numerics.implicit import attach, unless_failed
 from ..numerics.minimise import (
@@ -104,7 +106,10 @@ def search(
         options: Settings, the tolerance among them.
     """
     solver = TrustRegionNewton(symmetric=model.has_potential, softest=0.03)
-    loop = continuation(solver, _problem, lambda given: given.begin.factor)
+    # To know its shapes takes a part of the time of tracing a solve: once.
+    shapes = jax.eval_shape(model.unsolved)
+    problem = partial(_problem, shapes=shapes)
+    loop = continuation(solver, problem, lambda given: given.begin.factor)
     given = _Given(model, balance, begin, options)
     return lanes.run(loop, given, slots=SLOTS, idle=IDLE)
 
@@ -118,13 +123,15 @@ class _Given(NamedTuple):
     options: SolveOptions
 
 
-def _problem(given: _Given) -> Problem:
+def _problem(given: _Given, shapes: Solved) -> Problem:
     model, balance, begin, options = given
+    # Nothing carries a load, so no solve starts from it.
+    unsolved = jax.tree.map(lambda a: jnp.zeros(a.shape, a.dtype), shapes)
     return Problem(
         _energy(model, balance),
         begin.y,
         begin.step,
-        memory=model.unsolved(),
+        memory=unsolved,
         direction=begin.load / jnp.where(begin.size > 0, begin.size, 1.0),
         limit=begin.limit,
         force=begin.load,

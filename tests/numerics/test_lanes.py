@@ -81,7 +81,8 @@ def test_resting_problems_are_not_begun(count, resting):
         step=lambda given, s: jnp.where(given[1], s, s - 1.0),
         terminate=lambda given, s: s <= 0.5,
         finish=lambda given, s: (s, given[0]),
-        rest=lambda given: (given[1], (-given[0], jnp.zeros(()))),
+        blank=lambda given: (-given[0], jnp.zeros(())),
+        rests=lambda given: given[1],
     )
     left, was = jax.vmap(lambda n, r: lanes.run(loop, (n, r)))(number, rests)
     np.testing.assert_array_equal(left, np.where(rests, -number, 0.0))

@@ -93,9 +93,9 @@ def test_cases_in_a_queue_are_solved_as_together(swept, monkeypatch):
     """Fewer slots than cases: each bad one leaves its slot to the next."""
     used, honest = [], lanes._queued
 
-    def seen(loop, given, own, count, slots):
-        used.append(slots[0])
-        return honest(loop, given, own, count, slots)
+    def seen(task, *of_lanes):
+        used.append(task.slots[0])
+        return honest(task, *of_lanes)
 
     monkeypatch.setattr(lanes, "_queued", seen)
     monkeypatch.setattr(load_search, "SLOTS", 6)
