@@ -9,13 +9,8 @@ from jaxtyping import Array, Bool, Float
 from ..design.checks import instance, is_traced, non_negative, positive
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .viscosity import (
-    AbstractAmbient,
-    AbstractCoefficient,
-    AbstractPressureLaw,
-    as_coefficient,
-    level_off,
-)
+from .coefficient import AbstractCoefficient, as_coefficient
+from .viscosity import AbstractAmbient, AbstractPressureLaw, level_off
 
 GLASS = float(np.log(1e12))
 """ln of the viscosity in Pa s at which a liquid counts as a glass."""

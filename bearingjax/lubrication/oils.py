@@ -6,15 +6,9 @@ from functools import partial
 import jax.numpy as jnp
 
 from ..numerics.types import Scalar, as_real
+from .coefficient import DynamicCoefficient, KinematicCoefficient
 from .lubricant import Density, Lubricant
-from .viscosity import (
-    DynamicCoefficient,
-    Exponential,
-    FreeVolume,
-    KinematicCoefficient,
-    Roelands,
-    Walther,
-)
+from .viscosity import Exponential, FreeVolume, Roelands, Walther
 
 GRADES = (10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460)
 """ISO viscosity grades among the named oils."""

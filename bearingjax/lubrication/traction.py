@@ -114,9 +114,9 @@ class Newtonian(AbstractTraction):
 
     def resultants(self, patch, film, slip, spin):
         spin = as_real(spin)
-        total, by_x, by_y, polar = patch.moments / as_real(film)
-        force = -total * slip - spin * jnp.stack([by_y, -by_x])
-        moment = by_y * slip[0] - by_x * slip[1] + polar * spin
+        total, first, polar = patch.moments / as_real(film)
+        force = -jnp.stack([total * slip[0] + first * spin, total * slip[1]])
+        moment = first * slip[0] + polar * spin
         return Resultants(force, moment, spin * moment - jnp.dot(force, slip))
 
 

@@ -125,15 +125,16 @@ def smooth_power(
 ) -> Float[Array, "..."]:
     """|x|^exponent, made smooth at x = 0 where the true power has no derivative.
 
-    x²·(x² + scale²)^(exponent/2 - 1): for |x| above 1e4 scales the power itself to
-    1e-8, near zero a parabola.
+    scale^exponent·y²·(1 + y²)^(exponent/2 - 1) with y = x/scale: the power itself to
+    1e-8 above 1e4 scales, a parabola near zero.
 
     Args:
         x: Base, of any unit.
         exponent: At most 2. Static.
-        scale: Where the parabola ends, unit of `x`; its square must not underflow.
+        scale: Where the parabola ends, unit of `x`.
     """
-    return x * x * (x * x + scale * scale) ** (0.5 * exponent - 1.0)
+    square = (x / scale) ** 2
+    return scale**exponent * square * (1.0 + square) ** (0.5 * exponent - 1.0)
 
 
 def _integer_power(x: Array, n: int) -> Array:

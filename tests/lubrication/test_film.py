@@ -179,6 +179,9 @@ def test_float32():
     got = jax.jit(measures)([jnp.float32(x) for x in at])
     assert got.dtype == jnp.float32
     np.testing.assert_allclose(got, jax.jit(measures)(at), rtol=1e-5)
+    film = point_film(*(jnp.float32(x) for x in POINT))
+    chain = jax.jit(jax.grad(jax.grad(film.central)))
+    assert np.isfinite(chain(jnp.float32(0.0)))
 
 
 def test_of_an_oil():

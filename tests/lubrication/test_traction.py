@@ -1,5 +1,6 @@
 """Traction of whole contacts against plain integrals in NumPy and closed forms."""
 
+from functools import partial
 from typing import Any
 
 import jax
@@ -279,6 +280,34 @@ def test_high_pressure():
         for peak in (1e9, 2.5e9, 4e9):
             value, slope = heat(jnp.asarray(peak), law)
             assert np.isfinite(value) and np.isfinite(slope) and value > 0
+
+
+def test_nodes_are_enough():
+    """The errors that `ellipse_patch` and `line_patch` state, against many nodes, with
+    the rolling pole outside and inside the ellipse; largest of force, moment, heat."""
+    oil, peaks = mil_l_23699(), jnp.asarray([0.5e9, 1e9, 1.5e9, 4e9])
+    laws = Newtonian(), Eyring(), LimitingStress()
+    motions = [(jnp.asarray(u), NUMBERS[5]) for u in ((0.05, 0.01), (0.01, 0.003))]
+
+    @partial(jax.jit, static_argnums=(0, 1))
+    @partial(jax.vmap, in_axes=(None, None, 0))
+    def found(radial, angular, peak):
+        axes, half = NUMBERS[:2], jnp.asarray([1e-4])
+        patch = ellipse_patch(oil, WARM, *axes, peak, radial=radial, angular=angular)
+        slices = 0 * half, half, 0.5 * jnp.pi * peak * half, half
+        line = line_patch(oil, WARM, *slices, across=radial // 2)
+        whole = [
+            [listed(law.resultants(patch, FILM, *motion)) for motion in motions]
+            for law in laws
+        ]
+        return jnp.asarray(whole), line.moments[0]
+
+    (got, got_line), (want, want_line) = found(24, 32, peaks), found(120, 240, peaks)
+    newtonian, *yielding = np.max(np.abs(got / want - 1), axis=(2, 3)).T
+    np.testing.assert_array_less(newtonian, [1e-13, 1e-13, 2e-6, 7e-3])
+    np.testing.assert_array_less(yielding, [[1e-9, 1e-3, 9e-3, 9e-3]] * 2)
+    line = np.abs(got_line / want_line - 1)
+    np.testing.assert_array_less(line, [5e-8, 6e-8, 2e-5, 2e-2])
 
 
 def test_float32():

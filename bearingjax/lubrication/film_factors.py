@@ -1,0 +1,92 @@
+"""What becomes of a film: heated or starved inlet, rest, rough surfaces."""
+
+import jax.numpy as jnp
+
+from ..design.checks import check, is_traced, non_negative, number, positive
+from ..numerics.power import smooth_power
+from ..numerics.types import Scalar, as_real
+
+
+def inlet_heating(
+    loading: Scalar | float,
+    peak_pressure: Scalar | float,
+    modulus: Scalar | float,
+    slide_to_roll: Scalar | float,
+) -> Scalar:
+    """Factor of the film, at most 1, for the oil sheared warm in the inlet.
+
+    (1 - 13.2 (p/E') L^0.42)/(1 + 0.213 (1 + 2.23 S^0.83) L^0.64). Where the numerator
+    would fall below one half, far outside its range, it goes on as a hyperbola.
+
+    Args:
+        loading: Thermal loading parameter L, from `Lubricant.thermal_loading` [1].
+        peak_pressure: Hertz's largest pressure [Pa].
+        modulus: Contact modulus E*; E' is twice it [Pa].
+        slide_to_roll: S, slip over entrainment speed, of either sign [1].
+
+    Source: Gupta, Cheng, Zhu, Forster & Schrand, Tribology Transactions 35 (1992)
+        269-274.
+    """
+    heat = as_real(loading)
+    relative = as_real(peak_pressure) / (2.0 * as_real(modulus))
+    x = 13.2 * relative * smooth_power(heat, 0.42, 1e-8)
+    pressed = jnp.where(x < 0.5, 1.0 - x, 0.25 / jnp.maximum(x, 0.5))
+    sheared = 1.0 + 2.23 * smooth_power(as_real(slide_to_roll), 0.83, 1e-6)
+    return pressed / (1.0 + 0.213 * sheared * smooth_power(heat, 0.64, 1e-8))
+
+
+def starvation(
+    inlet: Scalar | float,
+    central: Scalar | float,
+    minimum: Scalar | float,
+    radius: Scalar | float,
+    semi_axis: Scalar | float,
+) -> tuple[Scalar, Scalar]:
+    """Factors of central and least film, at most 1, where too little oil stands.
+
+    Args:
+        inlet: Distance of the oil's edge from the middle of the contact, over the
+            semi-axis in rolling direction, above 1 [1].
+        central, minimum: Films with plenty of oil [m].
+        radius: Relative radius in rolling direction [m].
+        semi_axis: Semi-axis in rolling direction [m].
+
+    Source: Hamrock & Dowson, J. Lubrication Technology 99 (1977) 15-23.
+    """
+    number("starvation", "inlet", inlet, "")
+    if not is_traced(inlet):
+        words = "above 1, the edge of the contact"
+        check("starvation", "inlet", inlet > 1.0, words, inlet, "")
+    inlet, scale = as_real(inlet), as_real(radius) / as_real(semi_axis) ** 2
+
+    def factor(film, share, exponent, power):
+        # Inlet distance that is enough over the one there is.
+        enough = share * smooth_power(as_real(film) * scale, exponent, 1e-8)
+        return jnp.maximum(enough / (inlet - 1.0), 1.0) ** -power
+
+    return factor(central, 3.06, 0.58, 0.29), factor(minimum, 3.34, 0.56, 0.25)
+
+
+def at_least(film: Scalar, least: Scalar | float) -> Scalar:
+    """Film that a rest does not take away: sqrt(film² + least²) [m].
+
+    Args:
+        film: Film thickness [m].
+        least: Positive thickness, such as the composite roughness [m].
+    """
+    positive("at_least", "least", least, "m")
+    return jnp.sqrt(film * film + as_real(least) ** 2)
+
+
+def lambda_ratio(
+    film: Scalar | float, roughness: Scalar | float, other: Scalar | float
+) -> Scalar:
+    """Film over composite roughness, film/sqrt(R1² + R2²) [1].
+
+    Args:
+        film: Film thickness, usually the least [m].
+        roughness, other: Root mean square roughness of both surfaces [m].
+    """
+    non_negative("lambda_ratio", "roughness", roughness, "m")
+    positive("lambda_ratio", "other", other, "m")
+    return as_real(film) / jnp.hypot(as_real(roughness), as_real(other))
