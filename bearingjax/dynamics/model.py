@@ -1,0 +1,66 @@
+"""What a ball bearing needs in order to skid: oil, traction, cage, drag."""
+
+import equinox as eqx
+
+from ..design import AbstractBallBearing, BearingSet, rows_of
+from ..design.checks import instance, positive
+from ..element.bearing_element import BearingElement
+from ..lubrication import AbstractTraction, Lubricant, Newtonian
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from .surroundings import Cage, Drag
+
+
+class SkidModel(eqx.Module):
+    """A ball bearing whose balls may slip.
+
+    Attributes:
+        element: The bearing, of one row of like balls evenly spaced. Its raceway
+            control says what holds the gyroscopic moment where contact loads and angles
+            are solved; `EqualShare()` is that of the source.
+        lubricant: Oil.
+        temperature: Of the oil in all contacts [K].
+        traction: Law of traction.
+        drag: Of the oil and air between the rings.
+        cage: Cage.
+        least_film: Thickness that remains of a film at rest, such as the composite
+            roughness [m].
+
+    Traced: all numbers. Static: the classes.
+    """
+
+    element: BearingElement
+    lubricant: Lubricant
+    temperature: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+    traction: AbstractTraction = Newtonian()
+    drag: Drag = Drag()
+    cage: Cage = Cage()
+    least_film: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=1e-8)
+
+    def __check_init__(self):
+        instance(self, "element", BearingElement)
+        bearing = self.element.bearing
+        if isinstance(bearing, BearingSet) or not isinstance(
+            bearing, AbstractBallBearing
+        ):
+            kind = type(bearing).__name__
+            raise TypeError(
+                f"SkidModel: `element` is of a {kind}; it must be of one ball bearing."
+            )
+        for name in ("ball_deviation", "azimuth_deviation"):
+            if getattr(bearing, name) is not None:
+                raise ValueError(
+                    f"SkidModel: `element` has a `{name}`; all balls must be alike and"
+                    " evenly spaced, so that one orbit stands for all."
+                )
+        instance(self, "lubricant", Lubricant)
+        positive(self, "temperature")
+        instance(self, "traction", AbstractTraction)
+        instance(self, "drag", Drag)
+        instance(self, "cage", Cage)
+        positive(self, "least_film")
+
+    @property
+    def bearing(self) -> AbstractBallBearing:
+        """Design of the bearing."""
+        return rows_of(self.element.bearing)[0].bearing

@@ -1,0 +1,88 @@
+"""What surrounds the balls: the oil that they plough through, and the cage."""
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..design.checks import in_range, non_negative, positive
+from ..numerics.power import smooth_power
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+
+_REST = 1e-3
+"""Speed below which drag falls as its square [m/s]."""
+
+
+class Drag(eqx.Module):
+    """Drag of balls in a mixture of oil and air.
+
+    π/32 ρ c_v D² (d_m ω_c)^1.95 in SI units, against the orbit; ρ is the fill times
+    the density of the oil. The exponent is an empirical reduction of the square, so
+    that the formula holds for m/s alone.
+
+    Attributes:
+        coefficient: Drag coefficient c_v [1].
+        fill: Share of oil in the space between the rings [1].
+
+    Traced: all fields.
+    Source: Harris & Kotzalas, Advanced Concepts of Bearing Technology.
+    """
+
+    coefficient: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=2.0)
+    fill: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.1)
+
+    def __check_init__(self):
+        non_negative(self, "coefficient")
+        in_range(self, "fill", 0.0, 1.0)
+
+    def force(
+        self, orbit: Scalar, diameter: Scalar, pitch_radius: Scalar, density: Scalar
+    ) -> Scalar:
+        """Force on a ball, in the sense in which angles are counted [N].
+
+        Args:
+            orbit: Orbital speed [rad/s].
+            diameter: Ball diameter [m].
+            pitch_radius: Radius of the orbit [m].
+            density: Of the oil [kg/m³].
+        """
+        speed = 2.0 * pitch_radius * orbit
+        mixture = self.fill * density * self.coefficient
+        size = jnp.pi / 32.0 * mixture * diameter**2 * smooth_power(speed, 1.95, _REST)
+        return -jnp.sign(speed) * size
+
+
+class Cage(eqx.Module):
+    """A rigid cage, guided by nothing: balls push it, and it pushes them.
+
+    Attributes:
+        pocket_clearance: Play of a ball in its pocket along the orbit, from front to
+            rear [m].
+        stiffness: Of a pocket against a ball [N/m].
+        inertia: Moment of inertia about the bearing axis [kg m²].
+
+    Traced: all fields.
+    """
+
+    pocket_clearance: Scalar = eqx.field(
+        converter=as_real, metadata=unit("m"), default=2e-4
+    )
+    stiffness: Scalar = eqx.field(converter=as_real, metadata=unit("N/m"), default=1e6)
+    inertia: Scalar = eqx.field(
+        converter=as_real, metadata=unit("kg m²"), default=2.5e-5
+    )
+
+    def __check_init__(self):
+        non_negative(self, "pocket_clearance")
+        positive(self, "stiffness")
+        positive(self, "inertia")
+
+    def force(self, lag: Scalar) -> Scalar:
+        """On a ball, in the sense in which angles are counted [N].
+
+        Args:
+            lag: How far its pocket is ahead of it, along the orbit [m].
+        """
+        play = 0.5 * self.pocket_clearance
+        return self.stiffness * (
+            jnp.maximum(lag - play, 0.0) - jnp.maximum(-lag - play, 0.0)
+        )
