@@ -11,6 +11,7 @@ from importlib.metadata import version as _version
 
 from . import contact as contact
 from . import design as design
+from . import dynamics as dynamics
 from . import element as element
 from . import lubrication as lubrication
 from . import numerics as numerics

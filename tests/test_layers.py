@@ -14,7 +14,8 @@ import bearingjax as bj
 
 PACKAGE = Path(bj.__file__).parent
 LAYERS = (
-    "numerics design contact lubrication element statics optimise dynamics rotor scene plot cli"
+    "numerics design contact lubrication element statics optimise dynamics rotor scene"
+    " plot cli"
 ).split()
 # What the plots show is what statics and below provide; scene and plot stand side by
 # side, and only the command line and the top level see both.

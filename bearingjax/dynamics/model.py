@@ -2,7 +2,7 @@
 
 import equinox as eqx
 
-from ..design import AbstractBallBearing, BearingSet, rows_of
+from ..design import AbstractBallBearing
 from ..design.checks import instance, positive
 from ..element.bearing_element import BearingElement
 from ..lubrication import AbstractTraction, Lubricant, Newtonian
@@ -40,9 +40,7 @@ class SkidModel(eqx.Module):
     def __check_init__(self):
         instance(self, "element", BearingElement)
         bearing = self.element.bearing
-        if isinstance(bearing, BearingSet) or not isinstance(
-            bearing, AbstractBallBearing
-        ):
+        if not isinstance(bearing, AbstractBallBearing):
             kind = type(bearing).__name__
             raise TypeError(
                 f"SkidModel: `element` is of a {kind}; it must be of one ball bearing."
@@ -63,4 +61,6 @@ class SkidModel(eqx.Module):
     @property
     def bearing(self) -> AbstractBallBearing:
         """Design of the bearing."""
-        return rows_of(self.element.bearing)[0].bearing
+        bearing = self.element.bearing
+        assert isinstance(bearing, AbstractBallBearing)  # checked when it was made
+        return bearing

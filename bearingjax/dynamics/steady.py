@@ -20,13 +20,14 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..design.checks import is_traced
 from ..element.ball_speed import ball_kinematics
 from ..element.inertia import Speed
 from ..numerics import lanes
 from ..numerics.implicit import attach_by, stop, unless_failed
 from ..numerics.linear import solve
 from ..numerics.result import Result, raise_unless_converged
-from ..numerics.types import Scalar
+from ..numerics.types import Scalar, namespace
 from ..numerics.units import unit
 from ..statics.balls import BallResults
 from ..statics.load import solve_load
@@ -108,19 +109,19 @@ class SteadySkid(eqx.Module):
     result: Int[Array, ""]
 
     @property
-    def slip(self) -> Float[Array, " place"]:
+    def slip(self) -> Float[Array | np.ndarray, "*n place"]:
         """1 - orbit/rolling orbit (place,) [1]."""
         return 1.0 - self.orbit_speed / self.rolling_orbit_speed
 
     @property
-    def sliding_speed(self) -> Float[Array, "place contact"]:
+    def sliding_speed(self) -> Float[Array | np.ndarray, "*n place contact"]:
         """Sizes of `sliding` (place, contact) [m/s]."""
-        return jnp.sqrt(jnp.sum(self.sliding**2, axis=-1))
+        return namespace(self.sliding).sqrt((self.sliding**2).sum(axis=-1))
 
     @property
-    def pitch_angle(self) -> Float[Array, " place"]:
+    def pitch_angle(self) -> Float[Array | np.ndarray, "*n place"]:
         """Angle between spin axis and bearing axis (place,) [rad]."""
-        return jnp.arctan2(self.spin[:, 1], -self.spin[:, 2])
+        return namespace(self.spin).arctan2(self.spin[..., 1], -self.spin[..., 2])
 
 
 def steady_skid(
@@ -175,7 +176,7 @@ def _places(model, solution, places):
     balls = solution.azimuth.shape[-1]
     loads = solution.contact_load
     if places is None:
-        if not isinstance(loads, jax.core.Tracer):
+        if not is_traced(loads):
             least, most = np.min(loads, axis=0), np.max(loads, axis=0)
             if np.all(most - least <= 1e-6 * np.max(most)):
                 return 1
@@ -223,7 +224,8 @@ class _State(NamedTuple):
 def _steady(model, solution, speed, count) -> SteadySkid:
     bearing, law = model.bearing, model.element.point_law
     bearing_model = model.element.model(speed)
-    azimuth = solution.azimuth[0] + 2.0 * jnp.pi * jnp.arange(count) / count
+    turn = jnp.asarray(2.0 * np.pi * np.arange(count) / count, model.temperature.dtype)
+    azimuth = solution.azimuth[0] + turn
     at = bearing_model, bearing, law, solution.displacement, azimuth
     load, angle = contact_loads(*at)
     oil = model.lubricant, model.temperature, model.least_film
@@ -332,6 +334,7 @@ def _inertia(given):
 
 
 def _solve(matrix, right):
+    """Of a matrix with positive diagonal."""
     if right.shape[0] == 4:
         return solve(matrix, right, False)
     return jnp.linalg.solve(matrix, right)
@@ -384,7 +387,8 @@ def _finish(given, state):
 
 
 def _correction(of_y, y, change, given):
-    return -_solve(_jacobian(given, y), change.reshape(-1)).reshape(y.shape)
+    # Traction resists: it is the negative Jacobian whose diagonal is positive.
+    return _solve(-_jacobian(given, y), change.reshape(-1)).reshape(y.shape)
 
 
 def _results(given, solution, azimuth, y, rolling, residual, steps, result):

@@ -64,7 +64,9 @@ def test_no_slip_for_any_spin_axis(ball):
         for speed in (Speed(inner=209.0), Speed(inner=-50.0, outer=130.0)):
             normals = jnp.stack([jnp.sin(ball.angle), jnp.cos(ball.angle)], axis=1)
             gamma = jnp.asarray(DIAMETER / PITCH_DIAMETER)
-            k = ball_kinematics(*normals, jnp.asarray(share), gamma, speed)
+            k = ball_kinematics(
+                normals[0], normals[1], jnp.asarray(share), gamma, speed
+            )
             across, along = k.rotation * k.axis
             spin = jnp.stack([jnp.zeros_like(along), across, -along])
             moving = sliding(ball, BallState(spin, k.orbit), speed)
