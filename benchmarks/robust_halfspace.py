@@ -14,14 +14,14 @@ Run: python benchmarks/robust_halfspace.py [--count 500] [--json] [--smoke]
 Last run:
 
             steps  most  results
-upright        16    71  127 solved
+upright        16    69  127 solved
 tilted         17    54  116 solved
 moment         19    67  129 solved, 1 beyond the ends, and says so
 approach       17    59  127 solved
 
-not solved: 0 (goal 0); 251 s
+not solved: 0 (goal 0); 162 s
 
-AMD EPYC, 2 cores, load average 4.3; devices: 1 cpu; jax 0.10.1
+AMD EPYC, 2 cores, load average 1.6; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
