@@ -39,7 +39,7 @@ _STEPS = 300
 _TOLERANCE = {"float64": 1e-10, "float32": 1e-3}
 _FIRST = 1e-5
 """First step in time [s]."""
-_PLACES = 48
+_PLACES = 96
 """Least number of places along an orbit."""
 
 
@@ -142,13 +142,17 @@ def steady_skid(
         load: On the moving ring, as of `solve_load` (6,) [N, N m].
         speed: Ring speeds.
         places: Places along the orbit, a multiple of the number of balls, or 1 where
-            all balls bear the same; static. Default: 1 if they do, else at least 48 (so
+            all balls bear the same; static. Default: 1 if they do, else at least 96 (so
             too if it cannot be known, because the load is traced).
         prescribed, free, fixed_ring: As of `solve_load`.
         throw: Raise if it cannot be solved; otherwise read `result`.
 
     Returns:
         The motion, differentiable with respect to design, oil, load and speeds.
+
+    Errors of the places, of the orbit speed of an angular contact bearing at 250 N
+        axially and 160 N radially, against an integration in time: 3e-4 with 50, 2e-6
+        with 100, 3e-8 with 200. More slip in a narrow zone needs more.
 
     Raises:
         ValueError: For a number of places that does not suit.
