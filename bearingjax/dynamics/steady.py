@@ -158,7 +158,8 @@ def steady_skid(
         ValueError: For a number of places that does not suit.
         SolveError: If not solved, and `throw` is set.
 
-    Fails: codes of the load solve; `STEP_LIMIT`, `NON_FINITE`.
+    Fails: codes of the load solve; `STEP_LIMIT`, `NON_FINITE`; `GRID_MISFIT` if one
+        place stands for balls that bear unlike loads.
     """
     solution = solve_load(
         model.element,
@@ -178,19 +179,29 @@ def steady_skid(
 
 def _places(model, solution, places):
     balls = solution.azimuth.shape[-1]
-    loads = solution.contact_load
+    known = not is_traced(solution.contact_load)
     if places is None:
-        if not is_traced(loads):
-            least, most = np.min(loads, axis=0), np.max(loads, axis=0)
-            if np.all(most - least <= 1e-6 * np.max(most)):
-                return 1
+        if known and not bool(_unlike(solution)):
+            return 1
         return balls * -(-_PLACES // balls)
+    if known and places == 1 and bool(_unlike(solution)):
+        raise ValueError(
+            "steady_skid: `places` is 1, but the balls bear unlike loads; it must be a"
+            f" multiple of the {balls} balls."
+        )
     if places != 1 and (places % balls or places < 1):
         raise ValueError(
             f"steady_skid: `places` is {places}; it must be 1 or a multiple of the"
             f" {balls} balls."
         )
     return places
+
+
+def _unlike(solution):
+    """Whether the balls bear unlike loads."""
+    loads = solution.contact_load
+    spread = jnp.max(loads, axis=0) - jnp.min(loads, axis=0)
+    return jnp.any(spread > 1e-6 * jnp.max(loads))
 
 
 def _message(found):
@@ -249,7 +260,11 @@ def _steady(model, solution, speed, count) -> SteadySkid:
     given = _Given(model, ball, speed, density, along, start)
     loop = lanes.Loop(_init, _step, _terminate, _finish)
     y, residual, steps, result = lanes.run(loop, stop(given), 16 if count == 1 else 2)
-    result = jnp.maximum(result, solution.result)
+    if count == 1:
+        # One ball does not stand for all.
+        misfit = _unlike(solution) & (result == int(Result.CONVERGED))
+        result = jnp.where(misfit, int(Result.GRID_MISFIT), result)
+    result = jnp.maximum(result, solution.result).astype(jnp.int32)
     y = attach_by(_residual, y, given, _correction)
     y = unless_failed(y, result == int(Result.CONVERGED))
     return _results(given, solution, azimuth, y, rolling, residual, steps, result)

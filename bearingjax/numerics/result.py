@@ -19,7 +19,8 @@ class Result(enum.IntEnum):
     NOT_RUN = 5
     """A case of a sweep that was ended before its turn; no solver returns it."""
     GRID_MISFIT = 6
-    """Cells that do not hold or do not tell a half-space contact."""
+    """Cells that do not hold or do not tell a half-space contact, or too few places
+    along an orbit."""
 
     @property
     def label(self) -> str:

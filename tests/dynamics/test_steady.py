@@ -33,16 +33,26 @@ ASIDE = float(0.02 * BEARING.ball_diameter * np.sin(np.radians(25.0)))
 ring's motion and load [m]."""
 
 
-def under(axial, model=MODEL, **choices):
-    load = jnp.zeros(6).at[2].set(axial)
+def under(axial, model=MODEL, radial=0.0, **choices):
+    load = jnp.zeros(6).at[2].set(axial).at[0].set(radial)
     return steady_skid(model, load, speed=SPEED, free=FREE, places=1, **choices)
 
 
 @pytest.fixture(scope="module")
-def axial():
-    """All loads in one call."""
-    loads = jnp.asarray(list(ENDS))
-    return jax.jit(jax.vmap(lambda F: under(F, throw=False)))(loads)
+def one_place():
+    """All loads in one call, and a last one that is not axial."""
+
+    def end(axial, radial):
+        return under(axial, radial=radial, throw=False)
+
+    loads = jnp.asarray([*ENDS, 600.0])
+    radial = jnp.zeros(len(ENDS) + 1).at[-1].set(200.0)
+    return jax.jit(jax.vmap(end))(loads, radial)
+
+
+@pytest.fixture(scope="module")
+def axial(one_place):
+    return jax.tree.map(lambda a: a[:-1], one_place)
 
 
 @pytest.fixture(scope="module")
@@ -229,6 +239,12 @@ def test_standstill_and_both_rings():
     mirrored = forward.spin * jnp.array([[1.0, -1.0, -1.0]])
     np.testing.assert_allclose(back.spin, mirrored, rtol=1e-6, atol=1e-6)
     np.testing.assert_allclose(back.friction_torque, -forward.friction_torque)
+
+
+def test_one_place_does_not_stand_for_unlike_balls(one_place):
+    assert int(one_place.result[-1]) == Result.GRID_MISFIT
+    with pytest.raises(ValueError, match="unlike loads"):
+        under(600.0, radial=200.0)
 
 
 def test_failure_is_told():
