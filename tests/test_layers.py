@@ -90,6 +90,19 @@ def test_import_leaves_jax_and_matplotlib_alone():
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
 
 
+def test_import_makes_no_array():
+    # An array would fix the number of devices, and the precision of a default value.
+    code = (
+        "import importlib, pkgutil, jax, bearingjax\n"
+        "for info in pkgutil.walk_packages(bearingjax.__path__, 'bearingjax.'):\n"
+        "    if not info.name.endswith('__main__'):\n"
+        "        importlib.import_module(info.name)\n"
+        "jax.config.update('jax_num_cpu_devices', 2)\n"
+        "assert len(jax.devices('cpu')) == 2\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+
+
 def test_float64_is_asked_for():
     code = (
         "import warnings, bearingjax as bj\n"

@@ -32,9 +32,9 @@ class SkidModel(eqx.Module):
     element: BearingElement
     lubricant: Lubricant
     temperature: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
-    traction: AbstractTraction = Newtonian()
-    drag: Drag = Drag()
-    cage: Cage = Cage()
+    traction: AbstractTraction = eqx.field(default_factory=Newtonian)
+    drag: Drag = eqx.field(default_factory=Drag)
+    cage: Cage = eqx.field(default_factory=Cage)
     least_film: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=1e-8)
 
     def __check_init__(self):
