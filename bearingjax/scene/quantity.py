@@ -21,6 +21,7 @@ _WRITTEN = {
         "kNmm": "kN mm",
         "MNm": "MN m",
     },
+    "viscosity": {"Pas": "Pa s", "mPas": "mPa s"},
 }
 """What else is written for a unit, by kind. As a speed 1/min counts revolutions, as
 in the standards of machines; pint's radians would be less by 2 pi."""
@@ -39,6 +40,18 @@ KINDS = {
     "line load": ("N/m", "N/mm"),
     "line constant": ("N/m^(19/9)", "N/m^(19/9)"),
     "point constant": ("N/m^(3/2)", "N/m^(3/2)"),
+    "time": ("s", "s"),
+    "temperature": ("K", "°C"),
+    "square of a temperature": ("K²", "K^2"),
+    "temperature coefficient": ("1/K", "1/K"),
+    "pressure coefficient": ("1/Pa", "1/GPa"),
+    "viscosity": ("Pa s", "mPa s"),
+    "kinematic viscosity": ("m²/s", "mm^2/s"),
+    "density slope": ("kg/(m³ K)", "kg/(m^3 K)"),
+    "thermal conductivity": ("W/(m K)", "W/(m K)"),
+    "moment of inertia": ("kg m²", "kg mm^2"),
+    "sliding speed": ("m/s", "mm/s"),
+    "reciprocal speed": ("s/m", "s/m"),
 }
 """Kind of quantity to its unit and a unit that a message may suggest. Of kinds with
 one and the same unit, the first is meant where a unit is all that is known."""
@@ -127,13 +140,14 @@ def to_si(text: object, kind: str) -> float:
     name = _WRITTEN.get(kind, {}).get(name.replace(" ", ""), name)
     if not _UNIT.fullmatch(name):
         raise SceneError(f"{text!r} has the unknown unit {name!r}; {wanted}")
-    value = float(number) * _factor(text, name, unit, kind, wanted)
+    value = _converted(float(number), text, name, unit, kind, wanted)
     if not math.isfinite(value):
         raise SceneError(f"{text!r} is out of range; {wanted}")
     return value
 
 
-def _factor(text, name, unit, kind, wanted):
+def _converted(number, text, name, unit, kind, wanted):
+    """The number in another unit, if it is one of this kind."""
     article = "an" if kind == "angle" else "a"
     registry = _units()
     try:
@@ -151,7 +165,9 @@ def _factor(text, name, unit, kind, wanted):
         raise SceneError(f"{text!r} is a frequency; give rpm, deg/s or rad/s")
     if kind == "angle" and not _turns(str(given)):
         raise SceneError(f"{text!r} is not an angle; {wanted}")
-    return float(one.to(target).magnitude)
+    if kind == "temperature":
+        return float(registry.Quantity(number, given).to(target).magnitude)
+    return number * float(one.to(target).magnitude)
 
 
 def _turns(unit: str) -> bool:

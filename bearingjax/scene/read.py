@@ -105,7 +105,7 @@ def scene_of(data: dict[str, Any], path: Path) -> Scene:
     """
     top = Table(data, path.name)
     # What other commands ask for.
-    top.skip("cases", "optimise")
+    top.skip("cases", "optimise", "lubricant", "cage", "dynamics")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         bearing, preload = read_bearing(top)

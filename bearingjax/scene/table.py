@@ -178,6 +178,10 @@ class Table:
         self._children.append(child)
         return child
 
+    def empty(self, key: str) -> "Table":
+        """Sub-table without keys, where a word stands for one."""
+        return Table({}, self._file, self._full(key))
+
     def tables(self, key: str) -> "list[Table]":
         """List of sub-tables, at least one."""
         values = self._get(key, _MISSING, "a list of tables")

@@ -26,6 +26,8 @@ SHIPPED = (
     "needle",
     "nj_axial",
     "self_aligning",
+    "skid_axial",
+    "skid_combined",
     "sprung_pair",
     "tapered",
 )

@@ -1,0 +1,219 @@
+"""The [lubricant], [cage] and [dynamics] tables of a scene: balls that skid."""
+
+import dataclasses
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..design import AbstractBallBearing
+from ..dynamics import Cage, Drag, SkidModel
+from ..element import Speed
+from .lubricant_table import read_lubricant, read_traction
+from .read import Scene, scene_of
+from .scene_file import find_scene, parse_bearing
+from .table import Table
+
+AXES = ("vertical", "horizontal")
+STARTS = ("rolling", "rest")
+MOST_TIMES = 20_000
+"""Most times of a run: some 5 kB each as JSON."""
+MOST_PLACES = 2000
+"""Most places along an orbit: a matrix of 0.5 GB."""
+
+
+@dataclasses.dataclass(frozen=True)
+class SkidScene:
+    """What a scene asks for of balls that skid, in SI.
+
+    Attributes:
+        scene: The scene without it; its speeds are those of the load solve.
+        model: The bearing with its oil and what surrounds the balls.
+        oil: Name of the oil, or of the law of its viscosity.
+        speeds: Times [s] and speeds of inner and outer ring [rad/s] between which the
+            rings change evenly, or `None` for the constant ones of the scene.
+        duration: Of the motion [s]; `None` if the end state is asked for.
+        start: "rolling" or "rest": how the balls begin.
+        axis: "vertical" or "horizontal".
+        n_times: Number of times that are reported.
+        places: Places along the orbit, or `None` for the default.
+        tolerance: Of the integration in time.
+        max_steps: Step limit of it.
+        warnings: What was assumed, or is odd but possible.
+    """
+
+    scene: Scene
+    model: SkidModel
+    oil: str
+    speeds: tuple[np.ndarray, np.ndarray, np.ndarray] | None
+    duration: float | None
+    start: str
+    axis: str
+    n_times: int
+    places: int | None
+    tolerance: float
+    max_steps: int
+    warnings: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the file without its ending."""
+        return self.scene.name
+
+    @property
+    def steady(self) -> bool:
+        """Whether the end state is asked for."""
+        return self.duration is None
+
+    @property
+    def speed(self) -> Speed:
+        """Ring speeds of the load solve."""
+        assert self.scene.speed is not None  # checked when it was read
+        return self.scene.speed
+
+
+def read_skid(
+    source: str | Path, settings: Iterable[str] = (), *, steady: bool = False
+) -> SkidScene:
+    """Read a scene of balls that skid.
+
+    Args:
+        source, settings: As in `read_scene`.
+        steady: Whether the end state is asked for; what is of time is checked all the
+            same, but may be missing.
+
+    Raises:
+        SceneError: One line that names file, key, fault and what is allowed.
+    """
+    path = find_scene(source)
+    data = parse_bearing(path, settings)
+    top = Table(data, path.name)
+    scene = scene_of(data, path)
+    _check_bearing(top, scene)
+    lubricant = top.table("lubricant", required=True)
+    cage, dynamics = top.table("cage"), top.table("dynamics")
+    oil, temperature, odd = read_lubricant(lubricant)
+    traction = read_traction(lubricant)
+    values: dict[str, Any] = {
+        "cage": _built(cage, Cage, cage.fields(Cage)),
+        "drag": _built(dynamics, Drag, _drag(dynamics)),
+    }
+    film = dynamics.quantity("least_film", "length", None)
+    if film is not None:
+        values["least_film"] = film
+    with dynamics.building():
+        model = SkidModel(scene.element, oil, temperature, traction, **values)
+    speeds = _speeds(dynamics, scene.speed)
+    found = SkidScene(
+        scene=scene,
+        model=model,
+        oil=str(lubricant.raw("name", None) or lubricant.raw("law", None)),
+        speeds=speeds,
+        **_time(dynamics, steady),
+        places=_places(dynamics, steady, model.bearing.n_balls),
+        warnings=(*scene.warnings, *odd),
+    )
+    for table in (lubricant, cage, dynamics):
+        table.finish()
+    return found
+
+
+def _built(table, kind, values):
+    with table.building():
+        return kind(**values)
+
+
+def _check_bearing(top: Table, scene: Scene) -> None:
+    """One row of balls under rings that turn."""
+    if not isinstance(scene.element.bearing, AbstractBallBearing):
+        if "set" in top:
+            raise top.error("set", "is of several rows; balls skid in one, without")
+        bearing = top.table("bearing")
+        kind = bearing.word("type")
+        raise bearing.error("type", f"{kind!r} is not a single row of balls that skid")
+    if scene.speed is None:
+        operating = top.table("operating")
+        problem = "is missing, and so is `outer_speed`; nothing skids at rest"
+        raise operating.error("inner_speed", problem)
+
+
+def _drag(dynamics: Table) -> dict[str, float]:
+    keys = {"coefficient": "drag_coefficient", "fill": "fill"}
+    given = {name: dynamics.number(key, None) for name, key in keys.items()}
+    return {name: value for name, value in given.items() if value is not None}
+
+
+def _time(dynamics: Table, steady: bool) -> dict:
+    """What the integration in time is given."""
+    duration = dynamics.quantity("duration", "time", None)
+    if duration is None and not steady:
+        problem = "is missing; give a time, or ask for the end state with --steady"
+        raise dynamics.error("duration", problem)
+    if duration is not None and not 0.0 < duration <= 1e5:
+        problem = f"{duration:g} s is not allowed; above 0 and at most 100000 s"
+        raise dynamics.error("duration", problem)
+    n_times = dynamics.integer("n_times", 501, least=2)
+    if n_times > MOST_TIMES:
+        raise dynamics.error("n_times", f"{n_times} is too many; at most {MOST_TIMES}")
+    tolerance = dynamics.number("tolerance", 1e-6)
+    if not 1e-12 <= tolerance <= 1e-2:
+        problem = f"{tolerance:g} is not allowed; from 1e-12 to 0.01"
+        raise dynamics.error("tolerance", problem)
+    return {
+        "duration": None if steady else duration,
+        "start": dynamics.choice("start", STARTS, "rolling"),
+        "axis": dynamics.choice("axis", AXES, "vertical"),
+        "n_times": n_times,
+        "tolerance": tolerance,
+        "max_steps": dynamics.integer("max_steps", 20_000),
+    }
+
+
+def _places(dynamics: Table, steady: bool, balls: int) -> int | None:
+    places = dynamics.integer("places", None)
+    if places is None:
+        return None
+    if places > MOST_PLACES:
+        problem = f"{places} is too many; at most {MOST_PLACES}"
+        raise dynamics.error("places", problem)
+    if steady and places != 1 and places % balls:
+        problem = f"{places} is not allowed; 1 or a multiple of the {balls} balls"
+        raise dynamics.error("places", problem)
+    if not steady and 1 < places < 6:
+        raise dynamics.error("places", f"{places} is not allowed; 1 or at least 6")
+    return places
+
+
+def _speeds(dynamics: Table, speed: Speed | None):
+    """Times and ring speeds, or `None` for constant ones."""
+    assert speed is not None  # checked before
+    ramp = dynamics.quantity("ramp", "time", None)
+    if "speed" not in dynamics:
+        if ramp is None:
+            return None
+        if not ramp > 0:
+            raise dynamics.error("ramp", f"{ramp:g} s must be above 0")
+        inner, outer = float(speed.inner), float(speed.outer)
+        return np.array([0.0, ramp]), np.array([0.0, inner]), np.array([0.0, outer])
+    if ramp is not None:
+        raise dynamics.error("ramp", "give either `speed` over time or this, not both")
+    table = dynamics.table("speed")
+    time = np.array(table.quantities("time", "time"))
+    if not len(time) or not (np.diff(time) > 0).all() or time[0] < 0:
+        raise table.error("time", "must be rising times from 0 s on")
+    inner, outer = (_ring_speeds(table, ring, time) for ring in ("inner", "outer"))
+    if inner is None and outer is None:
+        raise table.error("inner", "is missing, and so is `outer`; give one of them")
+    still = np.zeros_like(time)
+    return time, still if inner is None else inner, still if outer is None else outer
+
+
+def _ring_speeds(table: Table, ring: str, time):
+    if ring not in table:
+        return None
+    speeds = np.array(table.quantities(ring, "speed"))
+    if speeds.shape != time.shape:
+        problem = f"has {len(speeds)} speeds for {len(time)} times"
+        raise table.error(ring, problem)
+    return speeds
