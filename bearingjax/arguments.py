@@ -86,6 +86,27 @@ def parser() -> argparse.ArgumentParser:
     contact.add_argument(
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
     )
+    skid = commands.add_parser(
+        "skid",
+        help="balls that skid: over time, or in the end",
+        description="How the balls of a bearing and its cage move in the oil of its"
+        " [lubricant], over the time of its [dynamics], or in the end.",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
+    )
+    _add_common(skid)
+    skid.add_argument(
+        "--steady", action="store_true", help="the end state, without the way there"
+    )
+    skid.add_argument(
+        "--table",
+        metavar="OUT",
+        type=Path,
+        help="write a row per time, or per place along the orbit (.csv, .parquet)",
+    )
+    skid.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
+    skid.add_argument("--quiet", action="store_true", help="no progress bar")
     return top
 
 

@@ -1,4 +1,4 @@
-"""The command line: `bearingjax solve SCENE.toml`, `sweep`, `optimise`, `contact`."""
+"""The command line: `bearingjax solve`, `sweep`, `optimise`, `contact`, `skid`."""
 
 import contextlib
 import gc
@@ -183,13 +183,9 @@ def _sweep(options) -> int:
         sweep_report,
         write_sweep_json,
     )
-    from .statics.sweep_table import check_writable, write
+    from .statics.sweep_table import write
 
-    if options.table is not None:
-        try:
-            check_writable(options.table)
-        except (ValueError, ImportError) as error:
-            raise SceneError(str(error)) from error
+    _check_table(options)
     _check_outputs(options)
     _devices(options)
     if options.resume and options.table is None:
@@ -352,6 +348,57 @@ def _tell_lost(scene, cases) -> int:
     return status
 
 
+def _skid(options) -> int:
+    from .scene import (
+        read_skid,
+        run_skid,
+        skid_columns,
+        skid_message,
+        skid_report,
+        write_skid_json,
+    )
+    from .statics.sweep_table import write_columns
+
+    _check_table(options)
+    _check_outputs(options)
+    task = read_skid(options.scene, options.set, steady=options.steady)
+    run = run_skid(task, shown=not options.quiet and sys.stderr.isatty())
+
+    def draw(path):
+        from .plot import skid_overview
+
+        figure = skid_overview(task.model, run.found, run.state, title=task.name)
+        figure.savefig(path, dpi=150)
+
+    def tabulate(path):
+        write_columns(skid_columns(run), path)
+
+    _write(
+        (options.json, lambda path: write_skid_json(path, run)),
+        (options.table, tabulate if run.has_numbers else None),
+        (options.plot, draw if run.converged else None),
+    )
+    if not run.converged:
+        text = f"{run.result.label}: {skid_message(run)}"
+        print(f"bearingjax: {text}", file=sys.stderr)
+        return NOT_SOLVED
+    print(skid_report(run), flush=True)
+    return SOLVED
+
+
+def _check_table(options) -> None:
+    """Fail before anything is solved if a table cannot be written."""
+    from .scene import SceneError
+    from .statics.sweep_table import check_writable
+
+    if options.table is None:
+        return
+    try:
+        check_writable(options.table)
+    except (ValueError, ImportError) as error:
+        raise SceneError(str(error)) from error
+
+
 def _check_outputs(options) -> None:
     """Fail before anything is solved if outputs cannot be written or hit an input."""
     from .scene import check_outputs, scene_files
@@ -389,4 +436,5 @@ _COMMANDS = {
     "sweep": _sweep,
     "optimise": _optimise,
     "contact": _contact,
+    "skid": _skid,
 }

@@ -17,3 +17,13 @@ from .pressure import pressure_map as pressure_map
 from .pressure import pressure_profiles as pressure_profiles
 from .profiles import profile as profile
 from .section import cross_section as cross_section
+from .skid import cage_speed as cage_speed
+from .skid import power_bars as power_bars
+from .skid import skid_overview as skid_overview
+from .skid_contact import heat_map as heat_map
+from .skid_contact import sliding_ellipse as sliding_ellipse
+from .skid_contact import sliding_map as sliding_map
+from .skid_orbit import load_over_orbit as load_over_orbit
+from .skid_orbit import sliding_over_orbit as sliding_over_orbit
+from .skid_orbit import spin_over_orbit as spin_over_orbit
+from .skid_orbit import zones as zones

@@ -32,6 +32,15 @@ from .resume import resume_cases as resume_cases
 from .run import run_optimisation as run_optimisation
 from .run import run_scene as run_scene
 from .scene_file import shipped_scenes as shipped_scenes
+from .skid_output import skid_as_dict as skid_as_dict
+from .skid_output import skid_columns as skid_columns
+from .skid_output import skid_message as skid_message
+from .skid_output import write_skid_json as write_skid_json
+from .skid_report import skid_report as skid_report
+from .skid_run import SkidRun as SkidRun
+from .skid_run import run_skid as run_skid
+from .skid_table import SkidScene as SkidScene
+from .skid_table import read_skid as read_skid
 from .sweep_run import design_columns as design_columns
 from .sweep_run import run_cases as run_cases
 from .sweep_run import sweep_report as sweep_report

@@ -46,7 +46,7 @@ def _bearing(scene, solution):
         lines += _springs(bearing, solution)
     head = scene.name if not lines else "each row"
     row = rows_of(bearing)[0].bearing
-    own = _ball_row(row, head) if is_ball(bearing) else _roller_row(row, head)
+    own = ball_row(row, head) if is_ball(bearing) else _roller_row(row, head)
     return "\n".join([*lines, *own])
 
 
@@ -67,7 +67,8 @@ def _springs(bearing, solution):
     ]
 
 
-def _ball_row(bearing, head):
+def ball_row(bearing, head) -> list[str]:
+    """Kind and sizes of a row of balls, in words."""
     pitch, diameter = (
         1e3 * float(x) for x in (bearing.pitch_diameter, bearing.ball_diameter)
     )

@@ -112,13 +112,27 @@ def write(
         ValueError, ImportError: As `check_writable`.
         OSError: If the file cannot be written.
     """
+    write_columns(columns(sweep, beside), path)
+
+
+def write_columns(found: Mapping[str, np.ndarray], path: str | Path) -> None:
+    """Write columns to a .csv or .parquet file (with pyarrow).
+
+    Args:
+        found: Columns by header, of the same length.
+        path: Its ending, .csv or .parquet, sets the format.
+
+    Raises:
+        ValueError, ImportError: As `check_writable`.
+        OSError: If the file cannot be written.
+    """
     path = Path(path)
     check_writable(path)
     import pyarrow
     import pyarrow.csv
     import pyarrow.parquet
 
-    table = pyarrow.table(columns(sweep, beside))
+    table = pyarrow.table(found)
     if path.suffix.lower() == ".csv":
         pyarrow.csv.write_csv(table, path)
     else:
