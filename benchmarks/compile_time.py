@@ -176,61 +176,68 @@ def bearings():
     return [name for name, path in scenes.items() if "[bearing]" in path.read_text()]
 
 
+def row(what, times, scene="", tree=None, size=(None, None)):
+    """Median, shortest, longest of (wall, processor) [s]; median processor time."""
+    return {
+        "what": what,
+        "scene": scene,
+        "tree": tree,
+        "median_s": float(np.median(times, axis=0)[0]),
+        "min_s": float(np.min(times, axis=0)[0]),
+        "max_s": float(np.max(times, axis=0)[0]),
+        "processor_s": float(np.median(times, axis=0)[1]),
+        "goal_s": GOALS.get(what),
+        "equations": size[0],
+        "instructions": size[1],
+    }
+
+
+def gathered(runs):
+    """Times of every step, out of one dict of steps for every run."""
+    runs = list(runs)
+    return {what: [steps[what] for steps in runs] for what in runs[0]}
+
+
+def import_and_add():
+    """(wall, processor) [s] of a process that imports JAX and adds two arrays."""
+    with tempfile.TemporaryDirectory() as cache:
+        return {"import jax and add": run([ADD], cache)[1]}
+
+
 def measure(scenes, repeats, trees):
-    """A row for every step: median, shortest, longest; median processor time."""
-    found = {}
+    """Rows, each as soon as it is measured. Trees take turns within a scene."""
     for tree in trees:
         with tempfile.TemporaryDirectory() as cache:
             run(["import bearingjax.cli"], cache, tree)  # which writes the bytecode
-    for _ in range(repeats):
-        with tempfile.TemporaryDirectory() as cache:
-            found.setdefault(("import jax and add", "", None), []).append(
-                run([ADD], cache)[1]
-            )
-        for what, seconds in library().items():
-            found.setdefault((what, "", None), []).append(seconds)
-        for scene in scenes:
-            for tree in trees:
-                for what, seconds in command_line(scene, tree).items():
-                    found.setdefault((what, scene, tree), []).append(seconds)
-    size = {(scene, tree): sizes(scene, tree) for scene in scenes for tree in trees}
-    return [
-        {
-            "what": what,
-            "scene": scene,
-            "tree": tree,
-            "median_s": float(np.median(times, axis=0)[0]),
-            "min_s": float(np.min(times, axis=0)[0]),
-            "max_s": float(np.max(times, axis=0)[0]),
-            "processor_s": float(np.median(times, axis=0)[1]),
-            "goal_s": GOALS.get(what),
-            "equations": size.get((scene, tree), (None, None))[0],
-            "instructions": size.get((scene, tree), (None, None))[1],
-        }
-        for (what, scene, tree), times in found.items()
-    ]
+    for program in (import_and_add, library):
+        for what, times in gathered(program() for _ in range(repeats)).items():
+            yield row(what, times)
+    for scene in scenes:
+        runs = [[command_line(scene, tree) for tree in trees] for _ in range(repeats)]
+        for tree, of_tree in zip(trees, zip(*runs, strict=True), strict=True):
+            size = sizes(scene, tree)
+            for what, times in gathered(of_tree).items():
+                yield row(what, times, scene, tree, size)
 
 
-def show(rows, repeats, load):
-    print(
+def head():
+    return (
         f"{'seconds':26}{'scene':17}{'median':>7}{'min':>7}{'max':>7}{'CPU':>7}"
         f"{'goal':>5}{'equations':>10}{'instr.':>8}"
     )
-    for r in rows:
-        goal = "" if r["goal_s"] is None else f"{r['goal_s']:.1f}"
-        missed = r["goal_s"] is not None and r["median_s"] > r["goal_s"]
-        size = ""
-        if r["equations"] is not None:
-            size = f"{r['equations']:10d}{r['instructions']:8d}"
-        print(
-            f"{r['what']:26}{r['scene']:17}{r['median_s']:7.2f}{r['min_s']:7.2f}"
-            f"{r['max_s']:7.2f}{r['processor_s']:7.2f}{goal:>5}{size}"
-            + ("  missed" if missed else "")
-            + (f"  {r['tree']}" if r["tree"] else "")
-        )
-    print(
-        f"\n{repeats} repeats; {processor()}, {os.cpu_count()} cores,"
-        f" load average before {load:.1f}"
+
+
+def line(r):
+    goal = "" if r["goal_s"] is None else f"{r['goal_s']:.1f}"
+    missed = r["goal_s"] is not None and r["median_s"] > r["goal_s"]
+    size = ""
+    if r["equations"] is not None:
+        size = f"{r['equations']:10d}{r['instructions']:8d}"
+    return (
+        f"{r['what']:26}{r['scene']:17}{r['median_s']:7.2f}{r['min_s']:7.2f}"
+        f"{r['max_s']:7.2f}{r['processor_s']:7.2f}{goal:>5}{size}"
+        + ("  missed" if missed else "")
+        + (f"  {r['tree']}" if r["tree"] else "")
     )
 
 
@@ -245,12 +252,16 @@ def main():
     repeats = 1 if args.smoke else args.repeats
     load = os.getloadavg()[0]
     trees = [None] if args.beside is None else [os.path.abspath(args.beside), None]
-    rows = measure([] if args.smoke else args.scenes or bearings(), repeats, trees)
-    if args.json:
-        for r in rows:
-            print(json.dumps(r))
-    else:
-        show(rows, repeats, load)
+    scenes = [] if args.smoke else args.scenes or bearings()
+    if not args.json:
+        print(head())
+    for r in measure(scenes, repeats, trees):
+        print(json.dumps(r) if args.json else line(r), flush=True)
+    if not args.json:
+        print(
+            f"\n{repeats} repeats; {processor()}, {os.cpu_count()} cores,"
+            f" load average before {load:.1f}"
+        )
     return 0
 
 
