@@ -77,6 +77,11 @@ class AbstractPointLaw(eqx.Module):
         """Whether c changes with the operating angle. Static."""
         return False
 
+    @property
+    def curvature_follows_angle(self) -> bool:
+        """Whether `cosine` depends on the operating angle. Static."""
+        return True
+
     def cosine(
         self, free: Scalar, operating: Float[Array, "..."]
     ) -> Float[Array, "..."]:
@@ -110,6 +115,10 @@ class FreeAngle(AbstractPointLaw):
     Source: Hertz (1882) through `ball_ellipses`.
     """
 
+    @property
+    def curvature_follows_angle(self):
+        return False
+
     def cosine(self, free, operating):
         return jnp.broadcast_to(free, operating.shape)
 
@@ -119,6 +128,10 @@ class FreeAngle(AbstractPointLaw):
 
 class ZeroAngle(AbstractPointLaw):
     """Hertz constants with the curvatures at contact angle zero, as ISO/TS 16281."""
+
+    @property
+    def curvature_follows_angle(self):
+        return False
 
     def cosine(self, free, operating):
         return jnp.ones_like(operating)

@@ -4,7 +4,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..contact.point_law import ball_ellipses, balls_of
+from ..contact.hertz import Ellipse
+from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
 from ..design.ball import AbstractBallBearing
 from ..element.ball_speed import ball_mass
 from ..element.bearing_model import BearingModel
@@ -17,7 +18,7 @@ from .ball_motion import LoadedBall
 def contact_loads(
     model: BearingModel,
     bearing: AbstractBallBearing,
-    law,
+    law: AbstractPointLaw,
     q: Ring,
     azimuth: Float[Array, " station"],
 ) -> tuple[Float[Array, "station contact"], Float[Array, "station contact"]]:
@@ -36,14 +37,31 @@ def contact_loads(
     return found["contact_load"], found["contact_angle"]
 
 
+def contact_ellipses(
+    bearing: AbstractBallBearing,
+    law: AbstractPointLaw,
+    cosine: Float[Array, " contact"],
+) -> Ellipse:
+    """Contact ellipses of a ball, for any load.
+
+    Args:
+        bearing: The design.
+        law: Law of its contact constants, which says where curvatures are taken.
+        cosine: Cosines of the contact angles (contact,) [1].
+    """
+    at = law.cosine(bearing.free_cosine, cosine)
+    return ball_ellipses(balls_of(bearing), bearing.grooves, at)
+
+
 def loaded_ball(
     bearing: AbstractBallBearing,
-    law,
+    law: AbstractPointLaw,
     lubricant: Lubricant,
     temperature: Scalar,
     least_film: Scalar,
     load: Float[Array, " contact"],
     angle: Float[Array, " contact"],
+    ellipses: Ellipse | None = None,
 ) -> LoadedBall:
     """A ball under given contact loads.
 
@@ -55,10 +73,11 @@ def loaded_ball(
         least_film: What remains of every film at rest [m].
         load: Contact loads (contact,) [N].
         angle: Contact angles (contact,) [rad].
+        ellipses: From `contact_ellipses`, if they are at hand.
     """
     balls, grooves = balls_of(bearing), bearing.grooves
-    cosine = law.cosine(bearing.free_cosine, jnp.cos(angle))
-    ellipses = ball_ellipses(balls, grooves, cosine)
+    if ellipses is None:
+        ellipses = contact_ellipses(bearing, law, jnp.cos(angle))
     axes = ellipses.semi_axes(load)
     outwards = tuple(1.0 if groove.on_outer else -1.0 for groove in grooves)
     turn = jnp.asarray(outwards) * balls.diameter / balls.pitch_diameter

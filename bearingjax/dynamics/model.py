@@ -2,6 +2,7 @@
 
 import equinox as eqx
 
+from ..contact.point_law import AbstractPointLaw
 from ..design import AbstractBallBearing
 from ..design.checks import instance, positive
 from ..element.bearing_element import BearingElement
@@ -64,3 +65,10 @@ class SkidModel(eqx.Module):
         bearing = self.element.bearing
         assert isinstance(bearing, AbstractBallBearing)  # checked when it was made
         return bearing
+
+    @property
+    def point_law(self) -> AbstractPointLaw:
+        """Law of the contact constants."""
+        law = self.element.point_law
+        assert law is not None  # balls have one
+        return law

@@ -237,7 +237,7 @@ class _State(NamedTuple):
 
 @partial(eqx.filter_jit)
 def _steady(model, solution, speed, count) -> SteadySkid:
-    bearing, law = model.bearing, model.element.point_law
+    bearing, law = model.bearing, model.point_law
     bearing_model = model.element.model(speed)
     turn = jnp.asarray(2.0 * np.pi * np.arange(count) / count, model.temperature.dtype)
     azimuth = solution.azimuth[0] + turn
@@ -245,7 +245,7 @@ def _steady(model, solution, speed, count) -> SteadySkid:
     load, angle = contact_loads(*at)
     oil = model.lubricant, model.temperature, model.least_film
     ball = jax.vmap(partial(loaded_ball, bearing, law, *oil))(load, angle)
-    rolling = jax.vmap(partial(_rolling, speed))(ball)
+    rolling = jax.vmap(partial(rolling_ball, speed))(ball)
     start = jnp.stack(
         [
             jnp.zeros_like(rolling.orbit),
@@ -270,7 +270,7 @@ def _steady(model, solution, speed, count) -> SteadySkid:
     return _results(given, solution, azimuth, y, rolling, residual, steps, result)
 
 
-def _rolling(speed, ball):
+def rolling_ball(speed, ball):
     """Outer raceway control at the contact angles."""
     direction = jnp.stack([jnp.sin(ball.angle), jnp.cos(ball.angle)], axis=1)
     half = len(ball.outwards) // 2

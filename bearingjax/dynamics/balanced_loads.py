@@ -1,0 +1,103 @@
+"""What balls bear, ring and balls balanced anew at every time, wherever they are.
+
+For loads that vary in time, and for balls that are not evenly spaced. Ring and balls
+follow the load without inertia in the sections of the bearing: where they stand is
+unknown, along with the motion, and balanced by the same steps in time.
+"""
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..contact.hertz import Ellipse
+from ..element.ball_contacts import angles
+from ..element.bearing_model import BearingModel
+from ..element.energy import derivatives, unpacked
+from ..element.inertia import Speed
+from ..element.rolling_element import RingMotion, split
+from ..numerics.types import Scalar
+from ..statics.balance import Balance
+from .ball_motion import LoadedBall
+from .loaded import loaded_ball
+from .model import SkidModel
+
+
+class BalancedLoads(eqx.Module):
+    """Loads of the balls from balances at every time.
+
+    Attributes:
+        skid: The bearing and its oil.
+        prepared: The bearing at ring speeds that do not change, or `None`.
+        ellipses: Of its contacts, or `None` where they change with their angles.
+        balance: Which freedoms of the ring are free.
+        load: Function of time [s] that returns the load on the ring (6,) [N, N m];
+            a pytree.
+        unit: Of the unknowns [m].
+        force: Of what is not balanced [N].
+    """
+
+    skid: SkidModel
+    prepared: BearingModel | None
+    ellipses: Ellipse | None
+    balance: Balance
+    load: Callable[[Scalar], Any]
+    unit: Scalar
+    force: Scalar
+
+    n_own: ClassVar[int] = 2
+    n_shared: ClassVar[int] = 6
+
+    def at(
+        self,
+        azimuth: Scalar,
+        speed: Speed,
+        centre: Float[Array, "2"],
+        ring: Float[Array, "6"],
+    ) -> tuple[LoadedBall, Float[Array, "2"], Float[Array, "6"]]:
+        """A ball, the force that is not balanced on it, and its share of the force
+        that holds the ring [N].
+
+        Args:
+            azimuth: Where it is [rad].
+            speed: Of the rings.
+            centre: Its centre (z, r) from where the rings take it [m].
+            ring: Unknowns of the ring's balance [m].
+        """
+        skid, model = self.skid, self.prepared
+        if model is None:
+            model = skid.element.model(speed)
+        ball = model.rows[0].element
+        axes = ball.axes(azimuth)
+        both = RingMotion(*split(self.balance.ring_freedoms(ring)))
+        seen = axes @ both.between
+        if not ball.sees_difference:
+            seen = jnp.concatenate([axes @ both.outer, axes @ both.inner])
+        forces = derivatives(ball, seen, centre, with_hessian=False).gradient
+        moved = ball.coordinates(unpacked(ball, seen), centre)
+        outwards = jnp.asarray(ball.grooves.outwards, moved.dtype)
+        angle = angles(outwards[:, None] * ball.grooves.touch(moved).normal)
+        load = ball.respond(moved).beside
+        oil = skid.lubricant, skid.temperature, skid.least_film
+        law, contacts = skid.point_law, (load, angle, self.ellipses)
+        loaded = loaded_ball(skid.bearing, law, *oil, *contacts)
+        on_rings = unpacked(ball, forces[:-2])
+        moving = on_rings.outer if self.balance.outer_moves else on_rings.inner
+        if ball.sees_difference and self.balance.outer_moves:
+            moving = -on_rings.inner
+        return loaded, -forces[-2:], self.balance.along(axes.T @ moving)
+
+    def push(self, time: Scalar, ring: Float[Array, "6"]) -> Float[Array, "6"]:
+        """The load in the balance of the ring; of a held freedom, how far it is from
+        where it is held, as a force [N].
+
+        Args:
+            time: Time [s].
+            ring: Unknowns of the balance [m].
+        """
+        balance = self.balance
+        apart = (1.0 - balance.free) * ring - balance.held
+        load = jnp.asarray(self.load(time), ring.dtype)
+        return balance.along(load) - apart * (self.force / self.unit)

@@ -1,0 +1,131 @@
+"""What the balls of a solved bearing move in, and how they begin."""
+
+from collections.abc import Callable
+from functools import partial
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..element.inertia import Speed
+from ..numerics.implicit import stop
+from ..numerics.types import Scalar
+from ..statics.balance import Balance
+from ..statics.solution import BallSolution
+from .balanced_loads import BalancedLoads
+from .load_table import LoadTable, load_table
+from .loaded import contact_ellipses, contact_loads, loaded_ball
+from .model import SkidModel
+from .motion import SkidState, Surroundings
+from .ring_speed import SpeedTable
+from .steady import rolling_ball
+
+
+def tabulated(
+    model: SkidModel, solution: BallSolution, speed: Speed, places: int
+) -> LoadTable:
+    """What the balls of a solved bearing bear, around it.
+
+    Args:
+        model: The bearing and its oil.
+        solution: Of its load.
+        speed: Ring speeds of that solution.
+        places: Number of places. Static.
+    """
+    bearing, law = model.bearing, model.point_law
+    even = 2.0 * np.pi * np.arange(places) / places
+    azimuth = jnp.asarray(even, solution.azimuth.dtype)
+    if places == 1:
+        azimuth = solution.azimuth[:1]
+    at = model.element.model(speed), bearing, law, solution.displacement, azimuth
+    oil = model.lubricant, model.temperature, model.least_film
+    return load_table(
+        jax.vmap(partial(loaded_ball, bearing, law, *oil))(*contact_loads(*at))
+    )
+
+
+@eqx.filter_jit
+def surroundings(
+    model: SkidModel,
+    solution: BallSolution,
+    load_speed: Speed,
+    speed: SpeedTable,
+    gravity: Scalar,
+    places: int,
+) -> tuple[Surroundings, SkidState]:
+    """What the balls of a solved bearing move in, and how they begin by rolling.
+
+    Args:
+        model: The bearing and its oil.
+        solution: Of its load.
+        load_speed: Ring speeds of that solution.
+        speed: Ring speeds over time.
+        gravity: Against y [m/s²].
+        places: Of the table. Static.
+    """
+    table = tabulated(model, solution, load_speed, places)
+    centre = jnp.zeros((*solution.azimuth.shape, 0))
+    return _begun(model, table, solution, speed, gravity, centre, jnp.zeros(0))
+
+
+@eqx.filter_jit
+def balanced_surroundings(
+    model: SkidModel,
+    solution: BallSolution,
+    balance: Balance,
+    load: Callable,
+    speed: SpeedTable,
+    gravity: Scalar,
+) -> tuple[Surroundings, SkidState]:
+    """As `surroundings`, for a ring that is balanced at every time.
+
+    Args:
+        model, solution, speed, gravity: As of `surroundings`.
+        balance: Which freedoms are free.
+        load: Function of time [s] (6,) [N, N m].
+    """
+    q, zero = solution.displacement, jnp.zeros_like(speed.time[0])
+    now = model.element.model(speed.at(zero))
+    row, prepared = now.rows[0], now if speed.time.shape[0] == 1 else None
+    solved = row.solve(q, solution.azimuth, now.equilibrium, None)
+    ring, centre = q[balance.moving] / balance.scale, solved.state.x
+    size = 1.0 + jnp.max(jnp.abs(solution.contact_load))
+    unit = 1e-3 * model.bearing.ball_diameter
+    law, ellipses = model.point_law, None
+    if not law.curvature_follows_angle:
+        cosines = jnp.ones_like(solution.contact_angle[0])
+        ellipses = contact_ellipses(model.bearing, law, cosines)
+    known = prepared, ellipses
+    loads = BalancedLoads(model, *known, balance, load, *stop((unit, size)))
+    return _begun(model, loads, solution, speed, gravity, centre, ring)
+
+
+def _begun(model, loads, solution, speed, gravity, centre, ring):
+    density = model.lubricant.density.at(model.temperature)
+    around = Surroundings(model, loads, speed, solution.azimuth, density, gravity)
+    return around, rolling_start(around, centre, ring)
+
+
+def rolling_start(
+    around: Surroundings,
+    centre: Float[Array, "ball z"],
+    ring: Float[Array, " unknown"],
+) -> SkidState:
+    """Balls that roll with outer raceway control, in the middle of their pockets.
+
+    Args:
+        around: What the balls move in.
+        centre, ring: As of `SkidState` [m].
+    """
+    speed = around.speed.at(around.speed.time[0] * 0.0)
+    ball, _, _ = jax.vmap(lambda at, c: around.loads.at(at, speed, c, ring))(
+        around.place, centre
+    )
+    rolling = jax.vmap(partial(rolling_ball, speed))(ball)
+    along = rolling.rotation[:, None] * rolling.axis
+    spin = jnp.stack([jnp.zeros_like(rolling.orbit), along[:, 0], -along[:, 1]], axis=1)
+    none = jnp.zeros_like(rolling.orbit)
+    turning = jnp.mean(rolling.orbit)
+    return SkidState(spin, rolling.orbit, none, turning, none[0], centre, ring)

@@ -1,0 +1,170 @@
+"""Equations of like bodies that meet only through what they share.
+
+The Jacobian of bodies and shared unknowns is an arrow: a small block for every body,
+and a border. Its blocks are found and factorised side by side. Sums, such as work,
+follow the motion and act on nothing; unknowns without mass are balanced at every time.
+"""
+
+import abc
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import jax.scipy.linalg as jsl
+from jaxtyping import Array, Float
+
+from ..numerics.types import Scalar
+
+
+class Coupled(NamedTuple):
+    """State of a system, or its change per second.
+
+    Attributes:
+        own: Unknowns of the bodies (body, k).
+        shared: Shared ones (m,).
+        sums: Integrals along the motion (w,).
+    """
+
+    own: Float[Array, "body k"]
+    shared: Float[Array, " m"]
+    sums: Float[Array, " w"]
+
+
+class Masses(NamedTuple):
+    """1, or 0 for an unknown that is balanced at every time.
+
+    Attributes:
+        own: Of the unknowns of a body (k,).
+        shared: Of the shared ones (m,).
+    """
+
+    own: Float[Array, " k"]
+    shared: Float[Array, " m"]
+
+    def times(self, change: Coupled) -> Coupled:
+        """M x of a change x; sums have the mass 1."""
+        own = self.own[None, :] * change.own
+        return Coupled(own, self.shared * change.shared, change.sums)
+
+
+class AbstractSystem(eqx.Module):
+    """Like bodies and what they share, to be passed as Diffrax's `args`."""
+
+    @abc.abstractmethod
+    def body(
+        self,
+        which: Any,
+        time: Scalar,
+        own: Float[Array, " k"],
+        shared: Float[Array, " m"],
+    ) -> tuple[Float[Array, " k"], Float[Array, " m"], Float[Array, " w"]]:
+        """Of one body: its rates (k,), its parts of those of the shared unknowns (m,)
+        and of the sums (w,).
+
+        Args:
+            which: The body: a slice of `bodies`.
+            time: Time [s].
+            own: Its unknowns.
+            shared: The shared ones.
+        """
+
+    @abc.abstractmethod
+    def beside(
+        self, time: Scalar, shared: Float[Array, " m"]
+    ) -> tuple[Float[Array, " m"], Float[Array, " w"]]:
+        """Parts of the rates of shared unknowns and sums that are of no body."""
+
+    @property
+    @abc.abstractmethod
+    def bodies(self) -> Any:
+        """What tells the bodies apart, leading axis body."""
+
+    @property
+    @abc.abstractmethod
+    def masses(self) -> "Masses":
+        """Of all unknowns."""
+
+    def rates(self, time: Scalar, state: Coupled) -> Coupled:
+        """All changes per second; of an unknown without mass, what is not balanced."""
+        rates, shared, sums = jax.vmap(self.body, (0, None, 0, None))(
+            self.bodies, time, state.own, state.shared
+        )
+        of_shared, of_sums = self.beside(time, state.shared)
+        return Coupled(
+            rates, of_shared + jnp.sum(shared, axis=0), of_sums + jnp.sum(sums, axis=0)
+        )
+
+    def slopes(self, time: Scalar, state: Coupled) -> "Slopes":
+        """The Jacobian of `rates`, in its blocks."""
+        k, m = state.own.shape[1], state.shared.shape[0]
+
+        def of_body(unknowns, which):
+            own, shared, time = jnp.split(unknowns, [k, k + m])
+            return jnp.concatenate(self.body(which, time[0], own, shared))
+
+        def of_rest(unknowns):
+            return jnp.concatenate(self.beside(unknowns[-1], unknowns[:-1]))
+
+        common = jnp.append(state.shared, time)
+        whole = jax.vmap(lambda own: jnp.concatenate([own, common]))(state.own)
+        body = jax.vmap(jax.jacfwd(of_body))(whole, self.bodies)
+        rest = jnp.sum(body[:, k:, k:], axis=0) + jax.jacfwd(of_rest)(common)
+        return Slopes(
+            body[:, :k, :k],
+            body[:, :k, k:-1],
+            body[:, k:, :k],
+            rest[:, :m],
+            Coupled(body[:, :k, -1], rest[:m, m], rest[m:, m]),
+        )
+
+
+class Slopes(NamedTuple):
+    """Derivatives of rates.
+
+    Attributes:
+        own: Of bodies' rates by their own unknowns (body, k, k).
+        across: Of bodies' rates by the shared unknowns (body, k, m).
+        down: Of shared rates and sums by own unknowns (body, m + w, k).
+        shared: Of shared rates and sums by the shared unknowns (m + w, m).
+        time: Of all by time.
+    """
+
+    own: Float[Array, "body k k"]
+    across: Float[Array, "body k m"]
+    down: Float[Array, "body row k"]
+    shared: Float[Array, "row m"]
+    time: Coupled
+
+    def solver(self, masses: Masses, scale: Scalar) -> Callable[[Coupled], Coupled]:
+        """Function that solves (M scale - J) x = right for x.
+
+        Args:
+            masses: Of the unknowns.
+            scale: Factor of the masses [1/s].
+        """
+        m = masses.shared.shape[0]
+        own = _factors(jnp.diag(masses.own * scale)[None] - self.own)
+        follow = _solved(own, self.across)
+        border = jnp.einsum("bij,bjk->ik", self.down[:, :m], follow)
+        shared = _factors(jnp.diag(masses.shared * scale) - self.shared[:m] - border)
+
+        def solve(right):
+            alone = _solved(own, right.own[..., None])[..., 0]
+            pulled = right.shared + jnp.einsum("bij,bj->i", self.down[:, :m], alone)
+            of_shared = _solved(shared, pulled[:, None])[:, 0]
+            of_own = alone + jnp.einsum("bij,j->bi", follow, of_shared)
+            sums = jnp.einsum("bij,bj->i", self.down[:, m:], of_own)
+            sums = right.sums + sums + self.shared[m:] @ of_shared
+            return Coupled(of_own, of_shared, sums / scale)
+
+        return solve
+
+
+def _factors(matrix):
+    return jsl.lu_factor(matrix, check_finite=False)
+
+
+def _solved(factors, right):
+    return jsl.lu_solve(factors, right, check_finite=False)

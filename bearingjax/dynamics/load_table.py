@@ -1,0 +1,183 @@
+"""What balls bear around the bearing, tabulated once for an integration in time.
+
+Loads, angles and all else that depends on the load alone are worked out at places
+spread evenly around the bearing, and joined by a periodic spline of fifth degree.
+Viscosities and films, which change by orders of magnitude, are interpolated as their
+logarithms; areas and pressures, which vanish with the load, as they are.
+"""
+
+from math import comb, factorial
+from typing import ClassVar, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..element.inertia import Speed
+from ..numerics.types import Scalar
+from .ball_motion import LoadedBall
+
+_DEGREE = 5
+
+
+class _Row(NamedTuple):
+    """A `LoadedBall` in numbers that can be interpolated."""
+
+    load: Array
+    angle: Array
+    x: Array
+    y: Array
+    area: Array
+    pressure: Array
+    log_viscosity: Array
+    extent: Array
+    log_mean: Array
+    log_film: Array
+
+
+class LoadTable(eqx.Module):
+    """Loaded balls over the azimuth; from `load_table`.
+
+    Attributes:
+        coefficients: Of the spline, leading axis place; of one place: what is there.
+        like: A ball, for what does not depend on its place.
+
+    Largest errors against an evaluation at the azimuth itself, five balls under 250 N
+        axial and 160 N radial load (27 to 300 N on a contact), with 24, 48, 96 and 192
+        places: loads and angles 9e-5, 7e-7, 4e-9, 5e-11, viscosities at every azimuth
+        2e-3, 4e-5, 2e-7, 2e-9 of themselves. Where a ball loses its load, errors fall
+        with the distance of the places only slowly.
+    """
+
+    coefficients: _Row
+    like: LoadedBall
+
+    n_own: ClassVar[int] = 0
+    n_shared: ClassVar[int] = 0
+    unit: ClassVar[float] = 1.0
+    force: ClassVar[float] = 1.0
+
+    def push(self, time: Scalar, ring: Array) -> Array:
+        """Nothing is left to balance (0,) [N]."""
+        return jnp.zeros_like(ring)
+
+    def at(
+        self, azimuth: Scalar, speed: Speed, centre: Array, ring: Array
+    ) -> tuple[LoadedBall, Array, Array]:
+        """As of `BalancedLoads`; the azimuth alone counts."""
+        return self.ball(azimuth), jnp.zeros_like(centre), jnp.zeros_like(ring)
+
+    def ball(self, azimuth: Scalar) -> LoadedBall:
+        """Ball at a place.
+
+        Args:
+            azimuth: Any angle [rad].
+        """
+        count = self.coefficients.load.shape[0]
+        if count == 1:
+            return _ball(jax.tree.map(lambda c: c[0], self.coefficients), self.like)
+        place = azimuth * (0.5 * count / jnp.pi)
+        below = jnp.floor(jax.lax.stop_gradient(place))
+        powers = jnp.stack([(place - below) ** k for k in range(_DEGREE + 1)])
+        weight = jnp.asarray(_pieces(), powers.dtype) @ powers
+        first = below.astype(jnp.int32) - _DEGREE // 2
+        index = (first + jnp.arange(_DEGREE + 1, dtype=jnp.int32)) % count
+        row = jax.tree.map(
+            lambda c: jnp.tensordot(weight, c[index], axes=1), self.coefficients
+        )
+        return _ball(row, self.like)
+
+
+def load_table(balls: LoadedBall) -> LoadTable:
+    """A table.
+
+    Args:
+        balls: At one place, or at places spread evenly around the bearing from azimuth
+            zero on, at least 6; leading axis place.
+    """
+    rows = jax.vmap(_row)(balls)
+    if rows.load.shape[0] > 1:
+        rows = jax.tree.map(_coefficients, rows)
+    return LoadTable(rows, jax.tree.map(lambda b: b[0], balls))
+
+
+def _row(ball):
+    patch, film = ball.patch, ball.film
+    polar = jnp.sum(patch.area * (patch.x**2 + patch.y**2), axis=-1)
+    extent = jnp.stack([jnp.sum(patch.area, axis=-1), polar], axis=-1)
+    loaded = extent > 0
+    least = jnp.min(patch.viscosity, axis=-1)[:, None]
+    # Mean viscosities, of force and of spin moment: they are finite without load.
+    mean = patch.moments[:, ::2] / jnp.where(loaded, extent, 1.0)
+    mean = jnp.where(loaded, mean, least)
+    films = jnp.concatenate(
+        [film.unit_speed[:, None], film.central_factor[:, None], film.factors], axis=1
+    )
+    return _Row(
+        ball.load,
+        ball.angle,
+        patch.x,
+        patch.y,
+        patch.area,
+        patch.pressure,
+        jnp.log(patch.viscosity),
+        extent,
+        jnp.log(mean),
+        jnp.log(films),
+    )
+
+
+def _ball(row, like):
+    # A spline may pass below zero beside places without load.
+    total, polar = jnp.moveaxis(
+        jnp.maximum(row.extent, 0.0) * jnp.exp(row.log_mean), -1, 0
+    )
+    films = jnp.exp(row.log_film)
+    patch = eqx.tree_at(
+        lambda p: (p.x, p.y, p.area, p.pressure, p.viscosity, p.moments),
+        like.patch,
+        (
+            row.x,
+            row.y,
+            jnp.maximum(row.area, 0.0),
+            jnp.maximum(row.pressure, 0.0),
+            jnp.exp(row.log_viscosity),
+            # Of an ellipse: ∫μ y dA vanishes.
+            jnp.stack([total, jnp.zeros_like(total), polar], axis=-1),
+        ),
+    )
+    film = eqx.tree_at(
+        lambda f: (f.unit_speed, f.central_factor, f.factors),
+        like.film,
+        (films[:, 0], films[:, 1], films[:, 2:]),
+    )
+    new = jnp.maximum(row.load, 0.0), row.angle, patch, film
+    return eqx.tree_at(lambda b: (b.load, b.angle, b.patch, b.film), like, new)
+
+
+def _pieces():
+    """B-spline of degree p by its pieces (piece, power of the way across a knot span).
+
+    In the order of the coefficients: the oldest one is in its last piece.
+    """
+    p = _DEGREE
+    pieces = np.zeros((p + 1, p + 1))
+    for i in range(p + 1):
+        for k in range(i + 1):
+            sign = (-1) ** k * comb(p + 1, k) / factorial(p)
+            for m in range(p + 1):
+                pieces[p - i, m] += sign * comb(p, m) * (i - k) ** (p - m)
+    return pieces
+
+
+def _coefficients(values: Float[Array, "place ..."]) -> Float[Array, "place ..."]:
+    """Of the periodic spline through values at its knots."""
+    count = values.shape[0]
+    kernel = np.zeros(count)
+    for k, weight in enumerate(_pieces()[:, 0]):
+        kernel[(k - _DEGREE // 2) % count] += weight
+    symbol = np.fft.rfft(kernel).real.reshape(-1, *[1] * (values.ndim - 1))
+    waves = jnp.fft.rfft(values, axis=0)
+    return jnp.fft.irfft(waves / jnp.asarray(symbol, waves.dtype), n=count, axis=0)

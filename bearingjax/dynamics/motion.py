@@ -1,0 +1,276 @@
+"""All balls of a bearing and its cage in motion: their state and how it changes.
+
+A ball's place is its lead over its pocket, so that the pocket's force depends on one
+small number. Balls know of each other through the cage, and through the ring where the
+load is balanced anew at every time; so they are the bodies of an `AbstractSystem`.
+
+The force of a pocket has a kink where contact begins; it is kept, not rounded off. The
+force itself is continuous and has a potential, so that the power balance is exact, and
+the pocket clearance stays what it is; the step control makes a few short steps there.
+"""
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..numerics.types import Scalar
+from .balanced_loads import BalancedLoads
+from .ball_motion import (
+    BallState,
+    LoadedBall,
+    Sliding,
+    Tractions,
+    kinetic_energy,
+    rates,
+    sliding,
+    tractions,
+)
+from .coupled import AbstractSystem, Coupled, Masses
+from .load_table import LoadTable
+from .model import SkidModel
+from .ring_speed import SpeedTable
+
+
+class Work(NamedTuple):
+    """Work [J] or power [W]: the drive's is that of the others and what is stored.
+
+    Attributes:
+        drive: What turns the rings.
+        contacts: Heat of the raceway contacts.
+        drag: Lost in the oil between the rings.
+    """
+
+    drive: Array
+    contacts: Array
+    drag: Array
+
+
+class SkidState(NamedTuple):
+    """Motion of all balls and the cage, and where the ring is.
+
+    Attributes:
+        spin: Of each ball relative to its orbiting frame, tangential, radial, axial
+            (ball, 3) [rad/s].
+        orbit: Orbital speeds (ball,) [rad/s].
+        lead: Angle by which each ball is ahead of the middle of its pocket (ball,)
+            [rad].
+        cage_speed: Of the cage [rad/s].
+        cage_turn: Angle by which the cage has turned [rad].
+        centre: Of each ball (z, r) from where the rings take it (ball, 2) [m].
+        ring: Unknowns of the ring's balance (6,) [m].
+
+    Where the loads are tabulated there is nothing in centre (ball, 0) and ring (0,).
+    """
+
+    spin: Float[Array, "ball 3"]
+    orbit: Float[Array, " ball"]
+    lead: Float[Array, " ball"]
+    cage_speed: Scalar
+    cage_turn: Scalar
+    centre: Float[Array, "ball z"]
+    ring: Float[Array, " unknown"]
+
+
+class Surroundings(eqx.Module):
+    """What the balls move in.
+
+    Attributes:
+        model: Traction law, drag, cage.
+        loads: What the balls bear.
+        speed: Of the rings, over time.
+        place: Azimuths of the pockets at rest (ball,) [rad].
+        density: Of the oil [kg/m³].
+        gravity: Acceleration against y [m/s²].
+    """
+
+    model: SkidModel
+    loads: LoadTable | BalancedLoads
+    speed: SpeedTable
+    place: Float[Array, " ball"]
+    density: Scalar
+    gravity: Scalar
+
+
+class OneBall(NamedTuple):
+    """A ball at an instant.
+
+    Attributes:
+        ball: What it bears.
+        azimuth: Where it is [rad].
+        state: Its motion.
+        moving: Its motion against the raceways.
+        pulls: Tractions.
+        push: Force of the cage, in the sense in which angles are counted [N].
+        drag: Force of the oil, likewise [N].
+        weight: Force of gravity, likewise [N].
+        unbalanced: Force on it in its section that is not balanced [N].
+        on_ring: Its share of the force that holds the ring [N].
+    """
+
+    ball: LoadedBall
+    azimuth: Scalar
+    state: BallState
+    moving: Sliding
+    pulls: Tractions
+    push: Scalar
+    drag: Scalar
+    weight: Scalar
+    unbalanced: Float[Array, " z"]
+    on_ring: Float[Array, " unknown"]
+
+    @property
+    def ring_torque(self) -> tuple[Scalar, Scalar]:
+        """On the inner and on the outer ring about the bearing axis [N m]."""
+        torque, outer = self.pulls.ring_torque, self.ball.side > 0
+        on_inner = jnp.sum(jnp.where(outer, 0.0, torque))
+        return on_inner, jnp.sum(jnp.where(outer, torque, 0.0))
+
+
+def one_ball(
+    around: Surroundings, time: Scalar, place: Scalar, state: SkidState
+) -> OneBall:
+    """A ball at an instant.
+
+    Args:
+        around: What the balls move in.
+        time: Time [s].
+        place: Azimuth of its pocket at rest [rad].
+        state: Of this ball alone, with cage and ring.
+    """
+    model, azimuth = around.model, place + state.cage_turn + state.lead
+    motion, speed = BallState(state.spin, state.orbit), around.speed.at(time)
+    here = azimuth, speed, state.centre, state.ring
+    ball, unbalanced, on_ring = around.loads.at(*here)
+    moving = sliding(ball, motion, speed)
+    turning = motion.orbit, ball.diameter, ball.pitch_radius
+    return OneBall(
+        ball,
+        azimuth,
+        motion,
+        moving,
+        tractions(ball, model.traction, moving),
+        model.cage.force(-state.lead * ball.pitch_radius),
+        model.drag.force(*turning, around.density),
+        -ball.mass * around.gravity * jnp.cos(azimuth),
+        unbalanced,
+        on_ring,
+    )
+
+
+_AXES: Any = (0, 0, 0, None, None, 0, None)
+"""Axes of the balls in their state."""
+
+
+def each_ball(around: Surroundings, time: Scalar, state: SkidState) -> OneBall:
+    """All balls at an instant, leading axis ball; arguments as of `one_ball`."""
+
+    def one(place, state):
+        return one_ball(around, time, place, state)
+
+    return jax.vmap(one, in_axes=(0, SkidState(*_AXES)))(around.place, state)
+
+
+def power(around: Surroundings, time: Scalar, ball: OneBall) -> Work:
+    """Momentary powers of one ball [W]; arguments as of `one_ball`."""
+    speed, (on_inner, on_outer) = around.speed.at(time), ball.ring_torque
+    return Work(
+        drive=-on_inner * speed.inner - on_outer * speed.outer,
+        contacts=jnp.sum(ball.pulls.resultants.heat),
+        drag=-ball.drag * ball.ball.pitch_radius * ball.state.orbit,
+    )
+
+
+def energies(around: Surroundings, ball: OneBall) -> tuple[Scalar, Scalar]:
+    """Kinetic energy of one ball; potential one of its pocket and weight [J]."""
+    of_ball, cage = ball.ball, around.model.cage
+    height = of_ball.pitch_radius * jnp.sin(ball.azimuth)
+    pressed = ball.push**2 / (2.0 * cage.stiffness)
+    weight = of_ball.mass * around.gravity * height
+    return kinetic_energy(of_ball, ball.state), pressed + weight
+
+
+class SkidSystem(AbstractSystem):
+    """Balls and cage as bodies with shared unknowns, in units of their own.
+
+    Attributes:
+        around: What the balls move in.
+        speed: Unit of speeds [rad/s].
+        energy: Unit of work [J].
+    """
+
+    around: Surroundings
+    speed: Scalar
+    energy: Scalar
+
+    @property
+    def bodies(self) -> Float[Array, " ball"]:
+        """Azimuths of the pockets at rest [rad]."""
+        return self.around.place
+
+    @property
+    def masses(self) -> Masses:
+        """Speeds and angles change; balls and ring are balanced at every time."""
+        loads, real = self.around.loads, self.speed.dtype
+        own = [1.0] * 5 + [0.0] * loads.n_own
+        shared = [1.0] * 2 + [0.0] * loads.n_shared
+        return Masses(jnp.asarray(own, real), jnp.asarray(shared, real))
+
+    @property
+    def _units(self):
+        """Of the unknowns: of a ball, and shared."""
+        loads, one = self.around.loads, jnp.ones_like(self.speed)
+        own = [self.speed] * 4 + [one] + [loads.unit * one] * loads.n_own
+        shared = [self.speed, one] + [loads.unit * one] * loads.n_shared
+        return jnp.stack(own), jnp.stack(shared)
+
+    def packed(self, state: SkidState) -> Coupled:
+        """A motion at which no work has been done yet."""
+        of_balls = state.orbit[:, None], state.lead[:, None]
+        own = jnp.concatenate([state.spin, *of_balls, state.centre], axis=1)
+        of_cage = jnp.stack([state.cage_speed, state.cage_turn])
+        shared = jnp.concatenate([of_cage, state.ring])
+        units = self._units
+        own = own / units[0][None, :]
+        return Coupled(own, shared / units[1], jnp.zeros(3, own.dtype))
+
+    def unpacked(self, packed: Coupled) -> tuple[SkidState, Work]:
+        """The motion, and the work that has been done."""
+        work = Work(*(packed.sums * self.energy))
+        return self._state(packed.own, packed.shared), work
+
+    def _state(self, own, shared):
+        """Of one ball or of all, with cage and ring."""
+        units = self._units
+        own = own * jnp.broadcast_to(units[0], own.shape)
+        shared = shared * units[1]
+        of_ball = own[..., :3], own[..., 3], own[..., 4]
+        return SkidState(*of_ball, shared[0], shared[1], own[..., 5:], shared[2:])
+
+    def body(self, which, time, own, shared):
+        """As of `AbstractSystem`: a ball."""
+        around, state = self.around, self._state(own, shared)
+        ball = one_ball(around, time, which, state)
+        force = ball.push + ball.drag + ball.weight
+        change = rates(ball.ball, ball.state, ball.pulls, force)
+        turning = jnp.stack([change.orbit, state.orbit - state.cage_speed])
+        of_cage = -ball.ball.pitch_radius * ball.push / around.model.cage.inertia
+        of_cage = jnp.stack([of_cage, jnp.zeros_like(of_cage)])
+        # Forces out of balance, in units so large as the lengths that they move.
+        yielding = around.loads.unit / around.loads.force
+        own = jnp.concatenate([change.spin, turning, yielding * ball.unbalanced])
+        shared = jnp.concatenate([of_cage, -yielding * ball.on_ring])
+        work = jnp.stack(list(power(around, time, ball)))
+        units = self._units
+        return own / units[0], shared / units[1], work / self.energy
+
+    def beside(self, time, shared):
+        """As of `AbstractSystem`: how the cage turns, and the load on the ring."""
+        loads, units = self.around.loads, self._units[1]
+        own = shared * units
+        turning = jnp.stack([jnp.zeros_like(own[0]), own[0]])
+        push = loads.push(time, own[2:]) * (loads.unit / loads.force)
+        changes = jnp.concatenate([turning, push]) / units
+        return changes, jnp.zeros(3, changes.dtype)

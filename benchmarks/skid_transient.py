@@ -1,0 +1,195 @@
+"""What does an error cost in the way to skidding? Beside SciPy on the same equations.
+
+The bearing of Han & Chu, 12 balls and a cage, 65 states with the integrated powers,
+from rolling on: 40 N axial for 100 ms; 600 N axial and 400 N radial for 20 ms, where
+contacts hold balls with rates up to 2e10 1/s and balls strike the cage. SciPy's BDF and
+Radau get the right-hand side written in NumPy, all balls at once, and make their
+Jacobian by differences, as users would. Error: the largest of all orbital speeds at 21
+times, relative to the motion at the finest tolerance of ours. Time: a call, median of
+the rounds, in shuffled order, the load solve included in ours.
+
+Run: python benchmarks/skid_transient.py [--smoke]
+
+Last run:
+
+Not yet run in whole.
+"""
+
+import argparse
+import statistics
+import sys
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+import numpy as np  # noqa: E402
+from han_chu import ELEMENT, FREE, MODEL, SPEED  # noqa: E402
+from scipy.integrate import solve_ivp  # noqa: E402
+from timing import machine, shuffled, timed  # noqa: E402
+
+from bearingjax.dynamics import skid  # noqa: E402
+from bearingjax.dynamics.beginning import surroundings  # noqa: E402
+from bearingjax.dynamics.load_table import _pieces  # noqa: E402
+from bearingjax.dynamics.ring_speed import as_table  # noqa: E402
+from bearingjax.numerics.types import as_real  # noqa: E402
+from bearingjax.statics.load import solve_load  # noqa: E402
+
+CASES = {
+    "axial": ([0.0, 0.0, 40.0, 0.0, 0.0, 0.0], 0.1, 1),
+    "both loads": ([400.0, 0.0, 600.0, 0.0, 0.0, 0.0], 0.02, 96),
+}
+
+
+class InNumPy:
+    """The right-hand side, speeds in units of the inner ring's."""
+
+    def __init__(self, load, places):
+        solution = solve_load(ELEMENT, load, speed=SPEED, free=FREE)
+        given = solution, SPEED, as_table(SPEED), as_real(0.0), places
+        around, start = jax.tree.map(np.asarray, surroundings(MODEL, *given))
+        ball, row = around.loads.like, around.loads.coefficients
+        self.table = [row.angle, row.extent, row.log_mean, row.log_film[..., :2]]
+        self.pieces, self.count = _pieces(), places
+        self.balls, self.place = len(around.place), around.place
+        self.mass, self.moment = ball.mass, ball.moment
+        self.radius, self.pitch = 0.5 * ball.diameter, ball.pitch_radius
+        self.side, self.least = np.asarray(ball.outwards), ball.least_film
+        self.rings = np.where(self.side > 0, 0.0, SPEED.inner)
+        self.exponent = ball.film.central_exponent
+        drag, cage = MODEL.drag, MODEL.cage
+        mixture = drag.fill * around.density * drag.coefficient
+        self.ploughed = float(np.pi / 32.0 * mixture * ball.diameter**2)
+        self.play = 0.5 * float(cage.pocket_clearance)
+        self.stiffness, self.inertia = float(cage.stiffness), float(cage.inertia)
+        self.unit = float(SPEED.inner)
+        self.energy = float(
+            self.balls * ball.mass * (0.4 * self.pitch * self.unit) ** 2
+        )
+        states = [start.spin.ravel(), start.orbit, start.lead]
+        states += [[start.cage_speed], [start.cage_turn], [0.0, 0.0, 0.0]]
+        self.scale = np.ones(5 * self.balls + 5)
+        self.scale[: 4 * self.balls] = self.scale[5 * self.balls] = self.unit
+        self.scale[-3:] = self.energy
+        self.start = np.concatenate(states) / self.scale
+
+    def loaded(self, azimuth):
+        if self.count == 1:
+            return self.table
+        place = azimuth * self.count / (2.0 * np.pi)
+        below = np.floor(place).astype(int)
+        powers = (place - below)[:, None] ** np.arange(self.pieces.shape[1])
+        weight = powers @ self.pieces.T
+        index = (below[:, None] + np.arange(weight.shape[1]) - 2) % self.count
+        return [np.einsum("bw,bw...->b...", weight, c[index]) for c in self.table]
+
+    def __call__(self, _, y):
+        n, y = self.balls, y * self.scale
+        spin, orbit, lead = y[: 3 * n].reshape(n, 3), y[3 * n : 4 * n], y[4 * n : 5 * n]
+        cage_speed, turn = y[5 * n], y[5 * n + 1]
+        angle, extent, log_mean, log_film = self.loaded(self.place + turn + lead)
+        cos, sin, side = np.cos(angle), np.sin(angle), self.side
+        wx, wy, wz = (spin[:, k, None] for k in range(3))
+        rolling = side * self.radius * (wy * sin - wz * cos)
+        lever = self.pitch + self.radius * side * cos
+        passing = orbit[:, None] - self.rings
+        ux, ut = rolling - passing * lever, side * self.radius * wx
+        turned = wy * cos + (wz + passing) * sin
+        speed = 0.5 * (rolling + passing * lever)
+        scaled = (speed / np.exp(log_film[..., 0]) / 1e-16) ** 2
+        power = 1e-16**self.exponent * scaled
+        power = power * (1.0 + scaled) ** (0.5 * self.exponent - 1.0)
+        film = np.sqrt((np.exp(log_film[..., 1]) * power) ** 2 + self.least**2)
+        total, polar = np.moveaxis(extent * np.exp(log_mean), -1, 0) / film
+        fx, ft, m = -total * ux, -total * ut, polar * turned
+        heat = turned * m - fx * ux - ft * ut
+        arm = self.radius * side
+        about = [arm * ft, arm * fx * sin - m * cos, -arm * fx * cos - m * sin]
+        about = np.stack([t.sum(axis=1) for t in about], axis=1)
+        about += (
+            self.moment
+            * orbit[:, None]
+            * np.stack([spin[:, 1], -spin[:, 0], np.zeros(n)], axis=1)
+        )
+        way = 2.0 * self.pitch * orbit
+        square = (way / 1e-3) ** 2
+        size = 1e-3**1.95 * square * (1.0 + square) ** (0.5 * 1.95 - 1.0)
+        drag = -np.sign(way) * self.ploughed * size
+        lag = -lead * self.pitch
+        push = np.maximum(lag - self.play, 0.0) - np.maximum(-lag - self.play, 0.0)
+        push = push * self.stiffness
+        change = (push + drag - fx.sum(axis=1)) / (self.mass * self.pitch)
+        spinning = about / self.moment
+        spinning[:, 2] -= change
+        torque = (fx * lever + m * sin) * self.rings
+        cage = -self.pitch * push.sum() / self.inertia
+        works = [-torque.sum(), heat.sum(), -(drag * self.pitch * orbit).sum()]
+        rates = [spinning.ravel(), change, orbit - cage_speed, [cage], [cage_speed]]
+        return np.concatenate([*rates, works]) / self.scale
+
+    def orbits(self, method, times, tolerance):
+        found = solve_ivp(
+            self,
+            (0.0, times[-1]),
+            self.start,
+            method=method,
+            t_eval=times,
+            rtol=tolerance,
+            atol=tolerance,
+        )
+        return found.y[3 * self.balls : 4 * self.balls].T * self.unit, found.nfev
+
+
+def ours(load, duration, tolerance):
+    return skid(
+        MODEL,
+        np.asarray(load),
+        speed=SPEED,
+        duration=duration,
+        free=FREE,
+        n_times=21,
+        tolerance=tolerance,
+        max_steps=50_000,
+    )
+
+
+def main():
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--smoke", action="store_true")
+    smoke = parser.parse_args().smoke
+    names = ["axial"] if smoke else list(CASES)
+    tolerances = [1e-5] if smoke else [1e-4, 1e-6, 1e-8]
+    print("case        method    tolerance    error   time, ms   steps or calls")
+    for name in names:
+        load, duration, places = CASES[name]
+        duration = 0.002 if smoke else duration
+        other, times = InNumPy(load, places), np.linspace(0.0, duration, 21)
+        exact = ours(load, duration, 1e-10)
+        calls, errors, counts = {}, {}, {}
+        for tol in tolerances:
+            calls["ours", tol] = lambda t=tol: ours(load, duration, t)  # noqa: B023
+            for method in ("BDF", "Radau"):
+                calls[method, tol] = (
+                    lambda m=method, t=tol: other.orbits(m, times, t)  # noqa: B023
+                )
+        for key, call in calls.items():
+            _, out = timed(call)
+            mine = key[0] == "ours"
+            orbit, counts[key] = (out.orbit_speed, int(out.steps)) if mine else out
+            errors[key] = np.max(np.abs(orbit / exact.orbit_speed - 1.0))
+            assert errors[key] < 0.1, (key, errors[key])
+        seconds = shuffled(calls, 1 if smoke else 3, warm=False)
+        for key in calls:
+            median = 1e3 * statistics.median(seconds[key])
+            print(
+                f"{name:11} {key[0]:8} {key[1]:10.0e} {errors[key]:9.1e}"
+                f" {median:9.1f} {counts[key]:9d}"
+            )
+    print(machine())
+
+
+if __name__ == "__main__":
+    main()
