@@ -1,9 +1,10 @@
 """Results of skidding in time."""
 
 import equinox as eqx
-import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..numerics.types import namespace
 from ..numerics.units import unit
 from ..statics.solution import BallSolution
 from .motion import SkidState, Work
@@ -65,34 +66,34 @@ class SkidHistory(eqx.Module):
     result: Int[Array, ""]
 
     @property
-    def orbit_speed(self) -> Float[Array, "time ball"]:
+    def orbit_speed(self) -> Float[Array | np.ndarray, "time ball"]:
         """Orbital speeds (time, ball) [rad/s]."""
         return self.state.orbit
 
     @property
-    def spin(self) -> Float[Array, "time ball 3"]:
+    def spin(self) -> Float[Array | np.ndarray, "time ball 3"]:
         """Spins relative to the orbiting frames (time, ball, 3) [rad/s]."""
         return self.state.spin
 
     @property
-    def cage_speed(self) -> Float[Array, " time"]:
+    def cage_speed(self) -> Float[Array | np.ndarray, " time"]:
         """Speed of the cage (time,) [rad/s]."""
         return self.state.cage_speed
 
     @property
-    def slip(self) -> Float[Array, "time ball"]:
+    def slip(self) -> Float[Array | np.ndarray, "time ball"]:
         """1 - orbit/rolling orbit (time, ball) [1]; zero where rings stand still."""
-        still = self.rolling_orbit_speed == 0
-        rolling = jnp.where(still, 1.0, self.rolling_orbit_speed)
-        return jnp.where(still, 0.0, 1.0 - self.orbit_speed / rolling)
+        xp, still = namespace(self.orbit_speed), self.rolling_orbit_speed == 0
+        rolling = xp.where(still, 1.0, self.rolling_orbit_speed)
+        return xp.where(still, 0.0, 1.0 - self.orbit_speed / rolling)
 
     @property
-    def sliding_speed(self) -> Float[Array, "time ball contact"]:
+    def sliding_speed(self) -> Float[Array | np.ndarray, "time ball contact"]:
         """Sizes of `sliding` (time, ball, contact) [m/s]."""
-        return jnp.sqrt(jnp.sum(self.sliding**2, axis=-1))
+        return namespace(self.sliding).sqrt((self.sliding**2).sum(axis=-1))
 
     @property
-    def imbalance(self) -> Float[Array, " time"]:
+    def imbalance(self) -> Float[Array | np.ndarray, " time"]:
         """Work of the drive that is not accounted for (time,) [J]."""
         stored = self.kinetic_energy + self.potential_energy
         work = self.work
