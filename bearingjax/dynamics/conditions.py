@@ -14,6 +14,7 @@ from ..element.inertia import Speed
 from .ball_motion import BallState, sliding
 from .loaded import loaded_ball
 from .model import SkidModel
+from .ring_speed import SpeedTable
 
 
 class Conditions(NamedTuple):
@@ -34,19 +35,22 @@ class Conditions(NamedTuple):
     outside_fluid_range: Bool[Array, "..."]
 
 
-def conditions(model: SkidModel, found: Any, speed: Speed) -> Conditions:
+def conditions(model: SkidModel, found: Any, speed: Speed | SpeedTable) -> Conditions:
     """Conditions in all contacts.
 
     Args:
         model: The bearing and its oil.
         found: How its balls move; from `steady_skid` or `skid`.
-        speed: Ring speeds, the same throughout.
+        speed: Ring speeds, those over time of a motion in time.
     """
     load = found.contact_load
     lead, n = load.shape[:-1], load.shape[-1]
 
     def flat(values, *shape):
         return jnp.broadcast_to(values, (*lead, *shape)).reshape(-1, *shape)
+
+    if isinstance(speed, SpeedTable):
+        speed = jax.vmap(speed.at)(found.time)
 
     def of_ring(ring):
         return flat(jnp.reshape(ring, (-1,) + (1,) * (len(lead) - 1)))

@@ -15,6 +15,9 @@ NEWTONIAN_PRESSURE = 1e9
 GROSS = 0.1
 """Slip of a ball from which skidding is gross [1]."""
 
+STARTED = 0.1
+"""Share of the fastest rolling from which times count, of a motion in time [1]."""
+
 MIXED = 3.0
 """Least film over what remains of a film at rest below which surfaces touch [1]."""
 
@@ -29,6 +32,10 @@ def skid_warnings(model: SkidModel, found: Any, state: Conditions) -> list[str]:
     """
     found, state = jax.tree.map(np.asarray, (found, state))
     loaded = found.contact_load > 1e-9 * np.nanmax(found.contact_load, initial=0.0)
+    # Before the rings turn there is no film, and slip means nothing.
+    rolling = np.abs(found.rolling_orbit_speed)
+    turning = rolling >= STARTED * np.nanmax(rolling, initial=0.0)
+    loaded &= turning[..., None]
     told = (
         _wander(model, found),
         _slip(found, loaded),
@@ -53,10 +60,7 @@ def _wander(model, found):
 
 
 def _slip(found, loaded):
-    # In the end, of a motion in time: it may begin at rest.
-    slip = found.slip if hasattr(found, "wander") else found.slip[-1]
-    carrying = loaded if hasattr(found, "wander") else loaded[-1]
-    largest = np.abs(slip[carrying.all(axis=-1)]).max(initial=0.0)
+    largest = np.abs(found.slip[loaded.all(axis=-1)]).max(initial=0.0)
     if not largest > GROSS:
         return ""
     return (

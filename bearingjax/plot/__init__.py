@@ -27,3 +27,12 @@ from .skid_orbit import load_over_orbit as load_over_orbit
 from .skid_orbit import sliding_over_orbit as sliding_over_orbit
 from .skid_orbit import spin_over_orbit as spin_over_orbit
 from .skid_orbit import zones as zones
+from .skid_time import cage_force_over_time as cage_force_over_time
+from .skid_time import load_over_time as load_over_time
+from .skid_time import power_over_time as power_over_time
+from .skid_time import sliding_over_time as sliding_over_time
+from .skid_time import sliding_spectrum as sliding_spectrum
+from .skid_time import slip_over_time as slip_over_time
+from .skid_time import spectrum as spectrum
+from .skid_time import speed_over_time as speed_over_time
+from .skid_time import spin_over_time as spin_over_time

@@ -5,12 +5,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..dynamics import Conditions, SkidModel, SteadySkid, by_raceway
+from ..dynamics import Conditions, SkidHistory, SkidModel, SteadySkid, by_raceway
 from .skid_contact import heat_map, sliding_ellipse, sliding_map
 from .skid_orbit import (
     load_over_orbit,
     sliding_over_orbit,
     spin_over_orbit,
+)
+from .skid_time import (
+    cage_force_over_time,
+    load_over_time,
+    power_over_time,
+    sliding_over_time,
+    sliding_spectrum,
+    slip_over_time,
+    speed_over_time,
+    spin_over_time,
 )
 from .style import (
     COLOURS,
@@ -30,22 +40,63 @@ if TYPE_CHECKING:
 
 
 def skid_overview(
-    model: SkidModel, found: SteadySkid, state: Conditions, title: str = ""
+    model: SkidModel,
+    found: SteadySkid | SkidHistory,
+    state: Conditions,
+    title: str = "",
 ) -> "matplotlib.figure.Figure":
     """One page on balls that skid.
 
     Of an end state: load, sliding and spin along the orbit, sliding and heat over the
-    hottest contact, powers; where all balls move alike, both contacts of a ball.
+    hottest contact, powers; where all balls move alike, both contacts of a ball. Of a
+    motion in time: what `plot.skid_time` has, over time.
 
     Args:
         model: The bearing and its oil.
-        found: From `steady_skid`.
+        found: From `steady_skid` or `skid`.
         state: From `conditions`.
         title: Head of the page; the kind of bearing if empty.
 
     Returns:
-        The figure, 15 by 9 inches.
+        The figure, 15 by 9 inches; of a motion in time 18 by 9.
     """
+    if isinstance(found, SkidHistory):
+        figure = _over_time(found)
+    else:
+        figure = _end(model, found, state)
+    head(figure, title or type(model.bearing).__name__)
+    return figure
+
+
+def _over_time(found):
+    figure = pyplot().figure(figsize=(18.0, 9.0))
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    axes = figure.subplots(2, 4).ravel()
+    drawn = (
+        speed_over_time,
+        slip_over_time,
+        spin_over_time,
+        power_over_time,
+        load_over_time,
+        sliding_over_time,
+        _spectrum,
+        cage_force_over_time,
+    )
+    for draw, ax in zip(drawn, axes, strict=True):
+        draw(found, ax)
+    return figure
+
+
+def _spectrum(found, ax):
+    """Or why there is none."""
+    try:
+        sliding_spectrum(found, ax)
+    except ValueError as error:
+        ax.set_axis_off()
+        ax.text(0.5, 0.5, str(error), ha="center", transform=ax.transAxes)
+
+
+def _end(model, found, state):
     figure = pyplot().figure(figsize=(15.0, 9.0))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
     alike = len(found.azimuth) == 1
@@ -68,7 +119,6 @@ def skid_overview(
         at = (int(place), int(contact))
     _contact(model, found, state, at, axes["slip"], axes["heat"])
     power_bars(found, axes["power"])
-    head(figure, title or type(model.bearing).__name__)
     return figure
 
 

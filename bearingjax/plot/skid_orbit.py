@@ -5,14 +5,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..dynamics import SteadySkid, by_raceway
-from .style import COLOURS, GREY, INNER, RACEWAYS, ROLLER, SMALL, axes_or_new
+from .style import COLOURS, GREY, RACEWAYS, SMALL, SPIN_COLOURS, SPIN_NAMES, axes_or_new
 
 if TYPE_CHECKING:
     import matplotlib.axes
-
-SPIN_COLOURS = (GREY, ROLLER, INNER)
-"""Of the spin about x, y and z."""
-SPIN_NAMES = ("tangential", "radial", "axial")
 
 _LOADED = "0.88"
 """Colour of zones B and D."""

@@ -21,6 +21,10 @@ SMALL = 9.0
 RACEWAYS = ("outer", "inner")
 COLOURS = {"outer": OUTER, "inner": INNER}
 
+SPIN_NAMES = ("tangential", "radial", "axial")
+SPIN_COLOURS = (GREY, ROLLER, INNER)
+"""Parts of the spin of a ball, x, y and z."""
+
 
 def pyplot():
     """`matplotlib.pyplot`, imported at the first plot.

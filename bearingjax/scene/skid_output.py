@@ -1,5 +1,6 @@
 """What other programs read of balls that skid: JSON and tables, in SI."""
 
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from .files import write_numbers
 from .skid_run import SkidRun
 
 UNITS = {
+    "azimuth": "rad",
     "orbit_speed": "rad/s",
     "rolling_orbit_speed": "rad/s",
     "slip": "",
@@ -24,13 +26,23 @@ UNITS = {
     "sliding_speed": "m/s",
     "contact_spin": "rad/s",
     "heat": "W",
+    "cage_force": "N",
 }
-"""What is told of each ball, with its unit."""
+"""What is told of each ball, with its unit; the last of a motion in time."""
 
-OF_BALL = ("orbit_speed", "rolling_orbit_speed", "slip", "spin")
+OF_BALL = ("azimuth", "orbit_speed", "rolling_orbit_speed", "slip", "spin")
 """Of these a ball has one; of the others one for each raceway."""
 
-AXES = ("x", "y", "z")
+OF_TIME = {
+    "time": "s",
+    "cage_speed": "rad/s",
+    "rolling_cage_speed": "rad/s",
+    "friction_torque": "N m",
+    "kinetic_energy": "J",
+    "potential_energy": "J",
+    "imbalance": "J",
+}
+"""What is told of each time, with its unit."""
 
 
 def skid_as_dict(run: SkidRun) -> dict[str, Any]:
@@ -40,22 +52,25 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
         run: From `run_skid`.
 
     Returns:
-        cage_speed, rolling_cage_speed, wander, friction_torque, power; `azimuth` and
-        what `UNITS` lists for each ball where it stands in the solved bearing, those of
-        contacts for each raceway (outer, inner), of two arcs that of the more loaded
-        one; the same at all places along the `orbit`; result, message, residual,
-        iterations, warnings and version. Without a solution numbers are left out.
+        cage_speed, rolling_cage_speed, friction_torque, power, and what `UNITS` lists
+        for each ball, those of contacts for each raceway (outer, inner), of two arcs
+        that of the more loaded one. Of an end state the balls are where they stand in
+        the solved bearing, `orbit` has the same at all places, and `wander`. Of a
+        motion in time all have a leading axis `time`; besides there are what `OF_TIME`
+        lists and `work`; null stands at times that were not reached. And result,
+        message, residual, iterations, warnings and version. Without a solution numbers
+        are left out.
     """
     from .. import __version__
 
-    found = run.found
-    residual = float(found.residual)
+    residual, steady = _residual(run), run.task.steady
+    numbers = (_end if steady else _motion)(run) if run.has_numbers else {}
     return {
-        **(_steady(run) if run.result is Result.CONVERGED else {}),
+        **numbers,
         "result": run.result.label,
         "message": skid_message(run),
         "residual": residual if np.isfinite(residual) else None,
-        "iterations": int(found.steps),
+        "iterations": int(run.found.steps),
         "warnings": list(run.warnings),
         "version": __version__,
     }
@@ -73,35 +88,61 @@ def write_skid_json(path: str | Path, run: SkidRun) -> None:
 def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
     """A run as columns by header, "name [unit]": a row for each place along the orbit.
 
+    Of a motion in time a row for each time that was reached, with columns of each ball,
+    "slip_3".
+
     Args:
-        run: From `run_skid`, converged.
+        run: From `run_skid`, with numbers.
     """
     balls = each_ball(run)
-    columns = {"azimuth [rad]": run.found.azimuth}
+    columns = {}
+    if not run.task.steady:
+        reached = np.isfinite(run.found.cage_speed)
+        whole = {**_of_time(run), **{n: np.asarray(v) for n, v in _powers(run).items()}}
+        units = OF_TIME | dict.fromkeys(_powers(run), "W")
+        columns = {_header(name, units[name]): v for name, v in whole.items()}
+        columns = {header: v[reached] for header, v in columns.items()}
+        balls = {name: values[reached] for name, values in balls.items()}
     for name, values in balls.items():
-        ends = [""]
-        if values.ndim > 1:
-            ends = [f"_{end}" for end in (AXES if name == "spin" else RINGS)]
-        unit = f" [{UNITS[name]}]" if UNITS[name] else ""
-        parts = values.reshape(len(values), -1).T
-        columns |= {f"{name}{e}{unit}": p for e, p in zip(ends, parts, strict=True)}
+        columns |= _spread(name, values, run.task.steady)
     return columns
 
 
+def _spread(name, values, steady):
+    """Columns of values (row, …) with their headers."""
+    axes: list[Any] = [] if steady else [range(values.shape[1])]
+    if name == "spin":
+        axes.append("xyz")
+    elif name not in OF_BALL and name != "cage_force":
+        axes.append(RINGS)
+    parts = values.reshape(len(values), -1).T
+    ends = itertools.product(*axes)
+    return {
+        _header("_".join([name, *map(str, end)]), UNITS[name]): part
+        for end, part in zip(ends, parts, strict=True)
+    }
+
+
+def _header(name, unit):
+    return f"{name} [{unit}]" if unit else name
+
+
 def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
-    """What `UNITS` lists, at all places along the orbit; contacts by raceway.
+    """What `UNITS` lists, at all places along the orbit or times; contacts by raceway.
 
     Args:
         run: From `run_skid`.
     """
-    found = run.found
-    values = {name: np.asarray(getattr(found, name, None)) for name in UNITS}
-    values["least_film"] = run.state.least_film
-    load = found.contact_load
-    return {
-        name: v if name in OF_BALL else by_raceway(v, load)
-        for name, v in values.items()
-    }
+    found, told = run.found, {}
+    for name in UNITS:
+        values = run.state.least_film if name == "least_film" else None
+        values = getattr(found, name, values)
+        if values is None:
+            continue
+        whole = name in OF_BALL or name == "cage_force"
+        values = np.asarray(values)
+        told[name] = values if whole else by_raceway(values, found.contact_load)
+    return told
 
 
 def at_balls(run: SkidRun) -> np.ndarray:
@@ -110,10 +151,18 @@ def at_balls(run: SkidRun) -> np.ndarray:
     return np.arange(balls) * places // balls
 
 
-def rolling_cage_speed(run: SkidRun) -> float:
-    """Speed of the cage if all balls rolled, each where it is [rad/s]."""
-    rolling = run.found.rolling_orbit_speed
-    return float(len(rolling) / (1.0 / rolling).sum()) if rolling.all() else 0.0
+def rolling_cage_speed(run: SkidRun) -> np.ndarray:
+    """Speed of the cage if all balls rolled, each where it is [rad/s].
+
+    Of an end state one number, of a motion in time the mean of the balls (time,).
+
+    Args:
+        run: From `run_skid`.
+    """
+    rolling = np.asarray(run.found.rolling_orbit_speed)
+    if not run.task.steady:
+        return rolling.mean(axis=1)
+    return np.asarray(1.0 / np.mean(1.0 / rolling) if rolling.all() else 0.0)
 
 
 def skid_message(run: SkidRun) -> str:
@@ -124,27 +173,68 @@ def skid_message(run: SkidRun) -> str:
     """
     if not run.loads_solved:
         return message(run.found.solution, run.task.scene.moving_ring)
-    if run.result is Result.CONVERGED:
+    if run.converged:
         return "converged"
-    return (
-        f"No even motion of the balls was found in {int(run.found.steps)} steps; force"
-        f" out of balance {float(run.found.residual):.1e} of the tractions. Take other"
-        " `dynamics.places`, or integrate in time, without --steady."
-    )
+    steps = int(run.found.steps)
+    if run.task.steady:
+        return (
+            f"No even motion of the balls was found in {steps} steps; force out of"
+            f" balance {_residual(run):.1e} of the tractions. Take other"
+            " `dynamics.places`, or integrate in time, without --steady."
+        )
+    time = run.found.time
+    last = f"{time[run.reached - 1]:.4g} s" if run.reached else "the first time"
+    where = f"The motion was followed to {last} of {time[-1]:.4g} s in {steps} steps"
+    if run.result is Result.STEP_LIMIT:
+        return f"{where}. Raise `dynamics.max_steps`, or take a larger tolerance."
+    return f"{where}; there the steps shrink to nothing, as beside what is no number."
 
 
-def _steady(run):
+def _residual(run) -> float:
+    """Of an end state the forces left, of a motion the work of the drive, relative."""
     found = run.found
-    orbit = {"azimuth": found.azimuth, **each_ball(run)}
-    places = at_balls(run)
-    own = {name: values[places].tolist() for name, values in orbit.items()}
+    if run.task.steady:
+        return float(found.residual)
+    missing, done = np.abs(found.imbalance), np.abs(found.work.drive)
+    reached = np.isfinite(missing)
+    if not reached.any() or not done[reached].any():
+        return np.nan
+    return float(missing[reached].max() / done[reached].max())
+
+
+def _powers(run) -> dict[str, Any]:
+    found = run.found
+    powers = found.power._asdict()
+    # Pockets give back what they take up.
+    return powers if "cage" in powers else powers | {"cage": 0.0 * powers["drag"]}
+
+
+def _end(run):
+    found = run.found
+    orbit = each_ball(run)
+    own = {name: values[at_balls(run)].tolist() for name, values in orbit.items()}
     own["azimuth"] = found.solution.azimuth.tolist()
     return {
         "cage_speed": float(found.cage_speed),
-        "rolling_cage_speed": rolling_cage_speed(run),
+        "rolling_cage_speed": float(rolling_cage_speed(run)),
         **own,
         "friction_torque": float(found.friction_torque),
-        "power": {k: float(v) for k, v in found.power._asdict().items()},
+        "power": {k: float(v) for k, v in _powers(run).items()},
         "wander": float(found.wander),
         "orbit": {name: values.tolist() for name, values in orbit.items()},
+    }
+
+
+def _of_time(run):
+    given = {"rolling_cage_speed": rolling_cage_speed(run)}
+    return {n: np.asarray(given.get(n, getattr(run.found, n, 0))) for n in OF_TIME}
+
+
+def _motion(run):
+    listed = {**_of_time(run), **each_ball(run)}
+    work = run.found.work._asdict()
+    return {
+        **{name: values.tolist() for name, values in listed.items()},
+        "power": {k: v.tolist() for k, v in _powers(run).items()},
+        "work": {k: v.tolist() for k, v in work.items()},
     }

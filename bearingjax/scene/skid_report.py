@@ -19,8 +19,8 @@ def skid_report(run: SkidRun) -> str:
     Args:
         run: From `run_skid`, converged.
     """
-    parts = [_bearing(run), _whole(run), _balls(run), _ending(run)]
-    return f"\n{_RULE}\n".join(parts)
+    whole = _end(run) if run.task.steady else _motion(run)
+    return f"\n{_RULE}\n".join([_bearing(run), whole, _balls(run), _ending(run)])
 
 
 def _bearing(run):
@@ -31,11 +31,11 @@ def _bearing(run):
         for name, value in zip(LOADS, task.scene.load, strict=True)
         if value
     )
-    speed = task.speed
+    speed, varies = task.speed, "" if task.loads is None else ", varying in time"
     return "\n".join(
         [
             *ball_row(model.bearing, task.name),
-            f"load on the {task.scene.moving_ring} ring: {load or 'none'};"
+            f"load on the {task.scene.moving_ring} ring: {load or 'none'}{varies};"
             f" inner ring {_rpm(speed.inner)}, outer ring {_rpm(speed.outer)}",
             f"{task.oil} at {described(model.lubricant, float(model.temperature))};"
             f" traction: {named[type(model.traction)]}",
@@ -47,21 +47,29 @@ def _rpm(speed):
     return f"{float(speed) * _RPM:.5g} rpm"
 
 
-def _whole(run):
-    found, power = run.found, run.found.power
-    rolling, speed = rolling_cage_speed(run), float(found.cage_speed)
+def _cage(speed, rolling):
     slip = f", slip {100.0 * (1.0 - speed / rolling):.3g} %" if rolling else ""
-    play = float(run.task.model.cage.pocket_clearance)
-    lines = [
+    return (
         f"cage            {speed:.6g} rad/s ({_rpm(speed)}); pure rolling"
-        f" {rolling:.6g} rad/s{slip}",
-        f"friction torque {1e3 * _clean(found.friction_torque):.5g} N mm on the inner"
-        " ring",
+        f" {rolling:.6g} rad/s{slip}"
+    )
+
+
+def _torque(torque):
+    return f"friction torque {1e3 * _clean(torque):.5g} N mm on the inner ring"
+
+
+def _end(run):
+    found, power = run.found, run.found.power
+    lines = [
+        _cage(float(found.cage_speed), float(rolling_cage_speed(run))),
+        _torque(found.friction_torque),
         f"power           drive {_clean(power.drive):.5g} W = contacts"
         f" {_clean(power.contacts):.5g} W + drag {_clean(power.drag):.5g} W + cage"
         f" {_clean(power.cage):.5g} W",
     ]
     if len(found.azimuth) > 1:
+        play = float(run.task.model.cage.pocket_clearance)
         lines.append(
             f"balls wander    {1e6 * float(found.wander):.4g} µm about even motion;"
             f" pocket clearance {1e6 * play:.4g} µm"
@@ -69,40 +77,79 @@ def _whole(run):
     return "\n".join(lines)
 
 
+def _motion(run):
+    found = run.found
+    work, slip = found.work, found.slip
+    kinetic, potential = (
+        float(energy[-1] - energy[0])
+        for energy in (found.kinetic_energy, found.potential_energy)
+    )
+    when, _ = np.unravel_index(np.argmax(np.abs(slip)), slip.shape)
+    force = np.abs(found.cage_force)
+    pressed = 100.0 * np.mean(force > 0)
+    return "\n".join(
+        [
+            f"after {float(found.time[-1]):.4g} s:",
+            _cage(float(found.cage_speed[-1]), float(rolling_cage_speed(run)[-1])),
+            _torque(found.friction_torque[-1]),
+            f"over the time:  work of the drive {_clean(work.drive[-1]):.5g} J ="
+            f" contacts {_clean(work.contacts[-1]):.5g} J + drag"
+            f" {_clean(work.drag[-1]):.5g} J + motion {_clean(kinetic):.5g} J"
+            f" + pockets and weights {_clean(potential):.5g} J",
+            f"slip of a ball  at most {100.0 * np.abs(slip).max():.4g} %, at"
+            f" {float(found.time[when]):.4g} s",
+            f"cage            presses on a ball with {force.max():.4g} N at most; a"
+            f" ball touches its pocket for {pressed:.3g} % of the time",
+        ]
+    )
+
+
 def _balls(run):
-    """A line for each ball, or one where all move alike."""
-    places = at_balls(run)
-    alike = len(run.found.azimuth) == 1
-    balls = {name: values[places] for name, values in each_ball(run).items()}
-    angle = np.rad2deg(run.found.pitch_angle[places])
-    azimuth = np.rad2deg(run.found.solution.azimuth) % 360.0
+    """A line for each ball, or one where all move alike; in the end."""
+    found, steady = run.found, run.task.steady
+    alike = steady and len(found.azimuth) == 1
+    rows = at_balls(run) if steady else slice(None)
+    told = {n: (v if steady else v[-1])[rows] for n, v in each_ball(run).items()}
+    angle = np.rad2deg(np.arctan2(told["spin"][:, 1], -told["spin"][:, 2]))
+    azimuth = found.solution.azimuth if steady else told["azimuth"]
+    azimuth = np.rad2deg(azimuth) % 360.0
     pairs = "".join(f"{name:>18}" for name in ("film, µm", "sliding, mm/s", "heat, W"))
     sides = f"{'outer':>9}{'inner':>9}"
     lines = [
         f"  ball azimuth{'load, N':>18}    slip  pitch{pairs}",
         f"{'deg':>14}{sides}{'%':>8}{'deg':>7}{3 * sides}",
     ]
-    for k in range(1 if alike else len(places)):
+    for k in range(1 if alike else len(azimuth)):
         where = "   all       -" if alike else f"{k:6d}{azimuth[k]:8.1f}"
-        load, film = balls["contact_load"][k], 1e6 * balls["film"][k]
-        slide, heat = 1e3 * balls["sliding_speed"][k], balls["heat"][k]
+        load, film = told["contact_load"][k], 1e6 * told["film"][k]
+        slide, heat = 1e3 * told["sliding_speed"][k], told["heat"][k]
         after = "".join(f"{v:9.3g}" for v in (*film, *slide, *heat))
         lines.append(
-            f"{where}{load[0]:9.4g}{load[1]:9.4g}{100.0 * balls['slip'][k]:8.3g}"
+            f"{where}{load[0]:9.4g}{load[1]:9.4g}{100.0 * told['slip'][k]:8.3g}"
             f"{angle[k]:7.1f}{after}"
         )
     return "\n".join(lines)
 
 
 def _ending(run):
-    found = run.found
-    regimes = np.unique(run.state.regime)
+    found, regime = run.found, run.state.regime
+    regimes = np.unique(regime if run.task.steady else regime[-1])
     names = [Regime(int(r)).name.lower().replace("_", " and ") for r in regimes]
+    if run.task.steady:
+        done = (
+            f"converged in {int(found.steps)} steps, residual"
+            f" {float(found.residual):.1e} of the tractions"
+        )
+    else:
+        missing = float(np.abs(found.imbalance).max())
+        done = (
+            f"integrated in {int(found.steps)} steps, {int(found.rejected)} of them"
+            f" rejected; {missing:.1e} J of the work not accounted for"
+        )
     return "\n".join(
         [
             f"films: {', '.join(names)}",
-            f"converged in {int(found.steps)} steps, residual"
-            f" {float(found.residual):.1e} of the tractions",
+            done,
             *(f"warning: {text}" for text in run.warnings),
         ]
     )

@@ -4,9 +4,16 @@ import dataclasses
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
-from ..dynamics import conditions, skid_warnings, steady_skid
+from ..dynamics import (
+    SkidState,
+    conditions,
+    skid,
+    skid_warnings,
+    steady_skid,
+)
 from ..numerics.result import Result
 from ..statics.warning import warnings
 from .quantity import SceneError
@@ -19,9 +26,9 @@ class SkidRun:
 
     Attributes:
         task: What was asked.
-        found: How the balls move, `SteadySkid`; read its `result`.
+        found: How the balls move, `SteadySkid` or `SkidHistory`; read its `result`.
         state: `Conditions` in the contacts.
-        warnings: What is doubtful; none where there is no solution.
+        warnings: What is doubtful; none where it was not solved to the end.
     """
 
     task: SkidScene
@@ -41,8 +48,13 @@ class SkidRun:
 
     @property
     def has_numbers(self) -> bool:
-        """Whether there is anything to be told."""
-        return self.converged
+        """Whether there is anything to be told: a motion in time may end early."""
+        return self.converged or (not self.task.steady and self.reached > 0)
+
+    @property
+    def reached(self) -> int:
+        """How many of the times were reached, of a motion in time."""
+        return int(np.isfinite(self.found.cage_speed).sum())
 
     @property
     def loads_solved(self) -> bool:
@@ -63,35 +75,72 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
     Raises:
         SceneError: For settings that do not suit the load.
 
-    Fails: as `steady_skid`.
+    Fails: as `steady_skid` and `skid`.
     """
-    scene = task.scene
-    if not task.steady:
-        problem = "a motion in time is not provided for; ask for the end: --steady"
-        raise SceneError(f"{task.name}: {problem}")
     try:
-        found: Any = steady_skid(
-            task.model,
-            scene.load,
-            speed=task.speed,
-            places=task.places,
-            prescribed=scene.prescribed,
-            free=scene.free,
-            fixed_ring=scene.fixed_ring,
-            throw=False,
-        )
+        found, speed = _end(task) if task.steady else _motion(task, shown)
     except ValueError as error:
         raise SceneError(f"{task.name}: {error}") from error
-    state = conditions(task.model, found, task.speed)
-    held, state = jax.tree.map(_held, (found, state))
-    told = task.warnings
+    held, state = jax.tree.map(_held, (found, conditions(task.model, found, speed)))
+    told = (*task.warnings, *(_left_out(task) if task.steady else ()))
     if Result(int(held.result)) is Result.CONVERGED:
-        told = (
-            *told,
-            *warnings(found.solution),
-            *skid_warnings(task.model, held, state),
-        )
+        doubtful = skid_warnings(task.model, held, state)
+        told = (*told, *warnings(found.solution), *doubtful)
     return SkidRun(task, held, state, told)
+
+
+def _left_out(task):
+    """What the scene has and the end state leaves out."""
+    if task.axis == "horizontal":
+        yield "the end state leaves out gravity along the orbits; solve in time"
+    if task.loads is not None:
+        yield "the end state is that of [operating], not of a load over time"
+
+
+def _supports(task):
+    scene = task.scene
+    return {
+        "prescribed": scene.prescribed,
+        "free": scene.free,
+        "fixed_ring": scene.fixed_ring,
+        "places": task.places,
+        "throw": False,
+    }
+
+
+def _end(task) -> tuple[Any, Any]:
+    asked = _supports(task)
+    found = steady_skid(task.model, task.scene.load, speed=task.speed, **asked)
+    return found, task.speed
+
+
+def _motion(task, shown) -> tuple[Any, Any]:
+    speed = task.speed if task.speeds is None else task.speeds
+    found = skid(
+        task.model,
+        task.scene.load if task.loads is None else task.loads,
+        speed=speed,
+        duration=task.duration,
+        n_times=task.n_times,
+        start=_still(task) if task.start == "rest" else None,
+        load_speed=task.speed,
+        axis=task.axis,
+        balanced=task.balanced,
+        tolerance=task.tolerance,
+        max_steps=task.max_steps,
+        derivatives="forward",
+        progress=shown,
+        **_supports(task),
+    )
+    return found, speed
+
+
+def _still(task) -> SkidState:
+    """Balls and cage at rest, in the middle of their pockets."""
+    balls = task.model.bearing.n_balls
+    zero, each = jnp.zeros(()), jnp.zeros(balls)
+    nothing = jnp.zeros((balls, 0)), jnp.zeros(0)
+    return SkidState(jnp.zeros((balls, 3)), each, each, zero, zero, *nothing)
 
 
 def _held(leaf):

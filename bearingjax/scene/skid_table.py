@@ -8,9 +8,19 @@ from typing import Any
 import numpy as np
 
 from ..design import AbstractBallBearing
-from ..dynamics import Cage, Drag, SkidModel
+from ..dynamics import (
+    Cage,
+    Drag,
+    LoadHistory,
+    SinusoidalLoad,
+    SkidModel,
+    SpeedTable,
+    ramp,
+)
 from ..element import Speed
+from ..element.frame import LOAD_UNITS, LOADS
 from .lubricant_table import read_lubricant, read_traction
+from .quantity import kind_of
 from .read import Scene, scene_of
 from .scene_file import find_scene, parse_bearing
 from .table import Table
@@ -31,8 +41,9 @@ class SkidScene:
         scene: The scene without it; its speeds are those of the load solve.
         model: The bearing with its oil and what surrounds the balls.
         oil: Name of the oil, or of the law of its viscosity.
-        speeds: Times [s] and speeds of inner and outer ring [rad/s] between which the
-            rings change evenly, or `None` for the constant ones of the scene.
+        speeds: Ring speeds over time, or `None` for the constant ones of the scene.
+        loads: Load over time, or `None` for the constant one of the scene.
+        balanced: As of `skid`.
         duration: Of the motion [s]; `None` if the end state is asked for.
         start: "rolling" or "rest": how the balls begin.
         axis: "vertical" or "horizontal".
@@ -46,7 +57,9 @@ class SkidScene:
     scene: Scene
     model: SkidModel
     oil: str
-    speeds: tuple[np.ndarray, np.ndarray, np.ndarray] | None
+    speeds: SpeedTable | None
+    loads: LoadHistory | SinusoidalLoad | None
+    balanced: bool | None
     duration: float | None
     start: str
     axis: str
@@ -104,12 +117,12 @@ def read_skid(
         values["least_film"] = film
     with dynamics.building():
         model = SkidModel(scene.element, oil, temperature, traction, **values)
-    speeds = _speeds(dynamics, scene.speed)
     found = SkidScene(
         scene=scene,
         model=model,
         oil=str(lubricant.raw("name", None) or lubricant.raw("law", None)),
-        speeds=speeds,
+        speeds=_speeds(dynamics, scene.speed),
+        **_loads(dynamics, scene.load),
         **_time(dynamics, steady),
         places=_places(dynamics, steady, model.bearing.n_balls),
         warnings=(*scene.warnings, *odd),
@@ -166,7 +179,7 @@ def _time(dynamics: Table, steady: bool) -> dict:
         "axis": dynamics.choice("axis", AXES, "vertical"),
         "n_times": n_times,
         "tolerance": tolerance,
-        "max_steps": dynamics.integer("max_steps", 20_000),
+        "max_steps": dynamics.integer("max_steps", 200_000),
     }
 
 
@@ -185,35 +198,70 @@ def _places(dynamics: Table, steady: bool, balls: int) -> int | None:
     return places
 
 
-def _speeds(dynamics: Table, speed: Speed | None):
-    """Times and ring speeds, or `None` for constant ones."""
+def _speeds(dynamics: Table, speed: Speed | None) -> SpeedTable | None:
+    """Ring speeds over time, or `None` for constant ones."""
     assert speed is not None  # checked before
-    ramp = dynamics.quantity("ramp", "time", None)
+    duration = dynamics.quantity("ramp", "time", None)
     if "speed" not in dynamics:
-        if ramp is None:
+        if duration is None:
             return None
-        if not ramp > 0:
-            raise dynamics.error("ramp", f"{ramp:g} s must be above 0")
-        inner, outer = float(speed.inner), float(speed.outer)
-        return np.array([0.0, ramp]), np.array([0.0, inner]), np.array([0.0, outer])
-    if ramp is not None:
+        if not duration > 0:
+            raise dynamics.error("ramp", f"{duration:g} s must be above 0")
+        return ramp(duration, speed)
+    if duration is not None:
         raise dynamics.error("ramp", "give either `speed` over time or this, not both")
     table = dynamics.table("speed")
+    time = _times(table)
+    inner, outer = (_series(table, ring, "speed", time) for ring in ("inner", "outer"))
+    if inner is None and outer is None:
+        raise table.error("inner", "is missing, and so is `outer`; give one of them")
+    return SpeedTable(time, np.zeros_like(time) if inner is None else inner, outer)
+
+
+def _loads(dynamics: Table, load: tuple[float, ...]) -> dict:
+    """Load over time, and whether the ring is balanced at every time."""
+    balanced = dynamics.flag("balanced", None) if "balanced" in dynamics else None
+    if "load" not in dynamics:
+        return {"loads": None, "balanced": balanced}
+    if balanced is False:
+        raise dynamics.error("balanced", "a `load` over time is balanced at every time")
+    table = dynamics.table("load")
+    kinds = {name: kind_of(unit) for name, unit in zip(LOADS, LOAD_UNITS, strict=True)}
+    if "amplitude" in table:
+        parts = table.table("amplitude")
+        amplitude = [parts.quantity(name, kind, 0.0) for name, kind in kinds.items()]
+        if not any(amplitude):
+            raise table.error("amplitude", 'names no load, such as { Fy = "80 N" }')
+        speed = table.quantity("speed", "speed")
+        phase = table.quantity("phase", "angle", 0.0)
+        return {
+            "loads": SinusoidalLoad(load, amplitude, speed, phase),
+            "balanced": balanced,
+        }
+    time = _times(table)
+    series = [_series(table, name, kind, time) for name, kind in kinds.items()]
+    if all(values is None for values in series):
+        names = ", ".join(LOADS)
+        raise table.error("Fz", f"is missing; give one at least of {names}")
+    still = zip(series, load, strict=True)
+    whole = [np.full(len(time), v) if given is None else given for given, v in still]
+    loads = LoadHistory(time, np.stack(whole, axis=1))
+    return {"loads": loads, "balanced": balanced}
+
+
+def _times(table: Table) -> np.ndarray:
     time = np.array(table.quantities("time", "time"))
     if not len(time) or not (np.diff(time) > 0).all() or time[0] < 0:
         raise table.error("time", "must be rising times from 0 s on")
-    inner, outer = (_ring_speeds(table, ring, time) for ring in ("inner", "outer"))
-    if inner is None and outer is None:
-        raise table.error("inner", "is missing, and so is `outer`; give one of them")
-    still = np.zeros_like(time)
-    return time, still if inner is None else inner, still if outer is None else outer
+    return time
 
 
-def _ring_speeds(table: Table, ring: str, time):
-    if ring not in table:
+def _series(table: Table, key: str, kind: str, time: np.ndarray):
+    """Values at the times, or `None` if there are none."""
+    if key not in table:
         return None
-    speeds = np.array(table.quantities(ring, "speed"))
-    if speeds.shape != time.shape:
-        problem = f"has {len(speeds)} speeds for {len(time)} times"
-        raise table.error(ring, problem)
-    return speeds
+    values = np.array(table.quantities(key, kind))
+    if values.shape != time.shape:
+        problem = f"has {len(values)} values for {len(time)} times"
+        raise table.error(key, problem)
+    return values

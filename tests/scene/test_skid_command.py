@@ -1,9 +1,12 @@
 """`bearingjax skid`: exit status, files, and that they hold what the library says."""
 
 import csv
+import dataclasses
 import json
 from typing import Any
 
+import equinox as eqx
+import jax
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -13,7 +16,15 @@ from tolerances import ROUNDING
 from bearingjax import plot
 from bearingjax.dynamics import skid_warnings
 from bearingjax.lubrication import Regime
-from bearingjax.scene import read_skid, run_skid, skid_as_dict, skid_report
+from bearingjax.numerics import Result
+from bearingjax.scene import (
+    read_skid,
+    run_skid,
+    skid_as_dict,
+    skid_columns,
+    skid_message,
+    skid_report,
+)
 
 # Six balls under axial and radial load, at twelve places.
 GIVEN = (
@@ -23,6 +34,12 @@ GIVEN = (
     "dynamics.places=12",
 )
 SMALL = ("skid", "skid_combined", *(w for s in GIVEN for w in ("--set", s)))
+# The same bearing under an axial load, from rest to full speed in a millisecond.
+START = (
+    "bearing.n_balls=6",
+    "dynamics={duration='2 ms', ramp='1 ms', n_times=9, axis='horizontal'}",
+)
+RUN_UP = ("skid", "skid_axial", *(w for s in START for w in ("--set", s)))
 PICTURE = 1e-3  # 25 rings of points, the outermost where the pressure ends as a root
 WORDS = {"result", "message", "residual", "iterations", "warnings", "version"}
 
@@ -39,6 +56,12 @@ def close_figures():
 def end():
     """The end state."""
     return run_skid(read_skid("skid_combined", GIVEN, steady=True))
+
+
+@pytest.fixture(scope="module")
+def history():
+    """The motion in time."""
+    return run_skid(read_skid("skid_axial", START))
 
 
 def test_end_state(run, end, tmp_path):
@@ -83,6 +106,100 @@ def test_end_state(run, end, tmp_path):
         column = [float(row[header]) for row in rows]
         np.testing.assert_allclose(column, value, rtol=ROUNDING)
     assert picture.stat().st_size > 20_000
+
+
+def test_motion_in_time(run, history, tmp_path):
+    out, table, picture = (tmp_path / f"run.{kind}" for kind in ("json", "csv", "png"))
+    outputs = ("--json", out, "--table", table, "--plot", picture)
+    done = run(*RUN_UP, *outputs)
+    assert done.status == 0 and done.err == ""
+    assert done.out == skid_report(history) + "\n"
+    numbers, found = json.loads(out.read_text()), history.found
+    assert numbers == skid_as_dict(history)
+    np.testing.assert_allclose(
+        numbers["time"], np.linspace(0.0, 2e-3, 9), rtol=ROUNDING
+    )
+    for name in (
+        "cage_speed",
+        "azimuth",
+        "orbit_speed",
+        "rolling_orbit_speed",
+        "slip",
+        "spin",
+        "film",
+        "sliding_speed",
+        "contact_load",
+        "cage_force",
+        "friction_torque",
+        "kinetic_energy",
+        "potential_energy",
+    ):
+        assert numbers[name] == getattr(found, name).tolist()
+    assert set(numbers["power"]) == {"drive", "contacts", "drag", "cage"}
+    assert numbers["power"]["drive"] == found.power.drive.tolist()
+    assert numbers["work"]["contacts"] == found.work.contacts.tolist()
+    assert numbers["cage_speed"][0] == 0.0 < numbers["cage_speed"][-1]
+    # Of what the drive does all but round-off is found again.
+    assert numbers["residual"] < 1e-6
+    with table.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    for header, value in (
+        ("time [s]", found.time),
+        ("cage_speed [rad/s]", found.cage_speed),
+        ("contacts [W]", found.power.contacts),
+        ("slip_5", found.slip[:, 5]),
+        ("spin_2_y [rad/s]", found.spin[:, 2, 1]),
+        ("film_3_inner [m]", found.film[:, 3, 1]),
+        ("cage_force_1 [N]", found.cage_force[:, 1]),
+    ):
+        column = [float(row[header]) for row in rows]
+        np.testing.assert_allclose(column, value, rtol=ROUNDING)
+    assert picture.stat().st_size > 20_000
+
+
+def test_start_at_rest_under_turning_rings():
+    """A table of speeds, and of what scenes say beside it."""
+    turning = "speed={time=['0 s', '1 ms'], inner=['2000 rpm', '2000 rpm']}"
+    text = f"dynamics={{duration='2 ms', n_times=9, start='rest', {turning} }}"
+    done = run_skid(read_skid("skid_axial", [START[0], text]))
+    assert done.converged
+    assert (done.found.slip[0] == 1.0).all()
+    assert done.found.cage_speed[0] == 0.0 < done.found.cage_speed[-1]
+    assert not done.found.potential_energy[0].any()
+    assert any("gross skidding, slip up to 100 %" in text for text in done.warnings)
+
+
+def test_a_motion_that_ends_early_is_told_as_far_as_it_goes(run, history, tmp_path):
+    """Five of nine times, as if the step limit had been met."""
+    found = history.found
+
+    def lost(values):
+        values = np.array(values)
+        if values.ndim and len(values) == 9 and values.dtype == float:
+            values[5:] = np.nan
+        return values
+
+    half = jax.tree.map(lost, found)
+    half = eqx.tree_at(
+        lambda f: (f.solution, f.time, f.result),
+        half,
+        (found.solution, found.time, np.asarray(int(Result.STEP_LIMIT))),
+    )
+    ended = dataclasses.replace(history, found=half, warnings=())
+    numbers = skid_as_dict(ended)
+    assert numbers["result"] == "step_limit"
+    assert numbers["cage_speed"][:5] == found.cage_speed[:5].tolist()
+    assert np.isnan(numbers["cage_speed"][5:]).all()
+    assert skid_message(ended).startswith("The motion was followed to 0.001 s of 0.002")
+    assert {len(column) for column in skid_columns(ended).values()} == {5}
+    out, picture = tmp_path / "half.json", tmp_path / "half.png"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("bearingjax.scene.run_skid", lambda *_, **__: ended)
+        done = run(*RUN_UP, "--json", out, "--plot", picture)
+    assert done.status == 3 and done.out == ""
+    assert "bearingjax: step_limit: The motion was followed to 0.001 s" in done.err
+    assert json.loads(out.read_text())["orbit_speed"][5] == [None] * 6
+    assert not picture.exists()
 
 
 def test_report(end):
@@ -140,6 +257,14 @@ def test_what_is_doubtful(end):
     assert "films down to 0.02 µm, less than 3 times" in told(least_film=2e-8)
 
 
+def test_end_state_says_what_it_leaves_out():
+    given = ("dynamics.axis=horizontal", "dynamics.load={time=['0 s'], Fy=['1 N']}")
+    asked = read_skid("skid_combined", [*GIVEN, *given], steady=True)
+    told = run_skid(asked).warnings
+    assert told[0].startswith("the end state leaves out gravity along the orbits")
+    assert told[1].startswith("the end state is that of [operating], not of a load")
+
+
 def lines(ax):
     return [np.asarray(line.get_ydata()) for line in ax.get_lines()]
 
@@ -154,6 +279,62 @@ def test_pictures_along_the_orbit(end):
     assert "[mm/s]" in ax.get_ylabel() and "[deg]" in ax.get_xlabel()
     for k, spin in enumerate(lines(plot.spin_over_orbit(found))):
         np.testing.assert_array_equal(spin[:-1], found.spin[:, k])
+
+
+def test_pictures_over_time(history):
+    found = history.found
+    shown = {
+        plot.speed_over_time: (1, found.cage_speed),
+        plot.slip_over_time: (0, 100.0 * found.slip.mean(axis=1)),
+        plot.spin_over_time: (2, found.spin[:, 0, 2]),
+        plot.load_over_time: (1, found.contact_load[:, 0, 1]),
+        plot.sliding_over_time: (0, 1e3 * found.sliding_speed[:, 0, 0]),
+        plot.cage_force_over_time: (1, found.cage_force.min(axis=1)),
+        plot.power_over_time: (3, found.power.drive),
+    }
+    page = plot.skid_overview(history.task.model, found, history.state)
+    assert "6 times are too few; at least 8" in page.axes[6].texts[0].get_text()
+    for draw, (k, values) in shown.items():
+        ax = draw(found)
+        np.testing.assert_allclose(lines(ax)[k], values, rtol=ROUNDING)
+        assert ax.get_xlabel() == "time [s]" and "[" in ax.get_ylabel()
+
+
+def test_spectrum_of_a_sine(history):
+    """Of amplitude 3 mm/s about 5 mm/s on the fourth line; the cage is marked."""
+    time = np.linspace(0.0, 1.0, 64, endpoint=False)
+    slide = np.zeros((64, 6, 2, 2))
+    slide[:, 0, 1, 0] = 5e-3 + 3e-3 * np.sin(2.0 * np.pi * 4.0 * time)
+    found = history.found
+    turning = eqx.tree_at(
+        lambda f: (f.time, f.sliding, f.contact_load, f.state.cage_speed),
+        found,
+        (time, slide, np.ones((64, 6, 2)), np.full(64, 2.0 * np.pi * 2.0)),
+    )
+    got = plot.spectrum(turning, begin=0.0)
+    assert got.frequency[4] == pytest.approx(4.0)
+    assert got.amplitude[4] == pytest.approx(3e-3)
+    assert got.amplitude[6:].max() < 1e-12
+    assert got.cage == pytest.approx(2.0)
+    ax = plot.sliding_spectrum(turning, begin=0.0)
+    marks = [np.asarray(line.get_xdata())[0] for line in ax.get_lines()[1:]]
+    np.testing.assert_allclose(marks, 2.0 * np.arange(1, 13))
+    with pytest.raises(ValueError, match="3 times are too few; at least 8"):
+        plot.spectrum(found, begin=1.5e-3)
+    uneven = eqx.tree_at(lambda f: f.time, found, found.time**2)
+    with pytest.raises(ValueError, match="the times are not even"):
+        plot.spectrum(uneven)
+
+
+def test_cage_speed_over_load(end):
+    """Two cases, one of them lost."""
+    two = jax.tree.map(lambda leaf: np.stack([leaf, leaf]), end.found)
+    two = eqx.tree_at(lambda f: f.result, two, np.array([0, int(Result.STEP_LIMIT)]))
+    speed, rolling = lines(plot.cage_speed([100.0, 200.0], two))
+    assert speed[0] == float(end.found.cage_speed) and np.isnan(speed[1])
+    assert (rolling > speed[0]).all()
+    with pytest.raises(ValueError, match=r"`load` has the shape \(3,\)"):
+        plot.cage_speed([1.0, 2.0, 3.0], two)
 
 
 def test_heat_of_a_contact_is_that_of_its_picture(end):

@@ -8,7 +8,15 @@ from tolerances import ROUNDING
 
 import bearingjax as bj
 from bearingjax import SceneError
-from bearingjax.dynamics import Cage, Drag, SkidModel
+from bearingjax.dynamics import (
+    Cage,
+    Drag,
+    LoadHistory,
+    SinusoidalLoad,
+    SkidModel,
+    SpeedTable,
+    ramp,
+)
 from bearingjax.lubrication import (
     Barus,
     Density,
@@ -175,7 +183,7 @@ WRONG = {
     "key of dynamics": (
         ["dynamics.least_flim=1 um"],
         "`dynamics.least_flim`: unknown key (did you mean `least_film`?); known in"
-        " [dynamics]: axis, drag_coefficient, duration, fill, ",
+        " [dynamics]: axis, balanced, drag_coefficient, duration, fill, ",
     ),
     "nothing turns": (
         ["operating={load={Fz='80 N'}}"],
@@ -194,7 +202,7 @@ SPEEDS = {
     ),
     "a speed too few": (
         "time=['0 s', '1 s'], inner=['0 rpm']",
-        "`dynamics.speed.inner`: has 1 speeds for 2 times",
+        "`dynamics.speed.inner`: has 1 values for 2 times",
     ),
     "no speeds": (
         "time=['0 s', '1 s']",
@@ -204,6 +212,34 @@ SPEEDS = {
     "frequency": (
         "time=['0 s'], inner=['50 Hz']",
         "`dynamics.speed.inner`: '50 Hz' is a frequency; give rpm, deg/s or rad/s",
+    ),
+}
+
+
+LOADS = {
+    "balanced": (
+        "balanced=false, load={time=['0 s'], Fy=['1 N']}",
+        "`dynamics.balanced`: a `load` over time is balanced at every time",
+    ),
+    "no component": (
+        "load={time=['0 s']}",
+        "`dynamics.load.Fz`: is missing; give one at least of Fx, Fy, Fz, Mx, My, Mz",
+    ),
+    "no amplitude": (
+        "load={amplitude={}, speed='1 rpm'}",
+        "`dynamics.load.amplitude`: names no load, such as",
+    ),
+    "a load too many": (
+        "load={time=['0 s'], Fy=['1 N', '2 N']}",
+        "`dynamics.load.Fy`: has 2 values for 1 times",
+    ),
+    "no frequency": (
+        "load={amplitude={Fy='80 N'}}",
+        "`dynamics.load.speed`: is missing; it must be a speed",
+    ),
+    "unknown component": (
+        "load={time=['0 s'], Fy=['1 N'], Fw=['1 N']}",
+        "`dynamics.load.Fw`: unknown key; known in [dynamics.load]: Fx, Fy, Fz, Mx, My",
     ),
 }
 
@@ -239,6 +275,28 @@ def test_wrong_speeds(table, message):
     assert str(error.value).startswith(f"skid_axial.toml: {message}")
 
 
+@pytest.mark.parametrize("given, message", LOADS.values(), ids=LOADS.keys())
+def test_wrong_loads(given, message):
+    with pytest.raises(SceneError) as error:
+        read_skid("skid_combined", [f"dynamics={{duration='1 s', {given} }}"])
+    assert str(error.value).startswith(f"skid_combined.toml: {message}")
+
+
+def test_loads_over_time():
+    """What is not named stays as it is."""
+    times = "load={time=['0 s', '20 ms'], Fy=['0 N', '0.3 kN'], Mx=['0 Nm', '1 Nm']}"
+    task = read_skid("skid_combined", [f"dynamics={{duration='1 s', {times} }}"])
+    rows = [[0.0, 0.0, 600.0, 0.0, 0.0, 0.0], [0.0, 300.0, 600.0, 1.0, 0.0, 0.0]]
+    assert same(task.loads, LoadHistory([0.0, 0.02], rows))
+    assert task.balanced is None
+    wave = "load={amplitude={Fy='80 N'}, speed='30 rpm', phase='90 deg'}"
+    task = read_skid("skid_combined", [f"dynamics={{duration='1 s', {wave} }}"])
+    wanted = SinusoidalLoad(task.scene.load, [0, 80.0, 0, 0, 0, 0], np.pi, 0.5 * np.pi)
+    assert same(task.loads, wanted)
+    task = read_skid("skid_combined", ["dynamics={duration='1 s', balanced=true}"])
+    assert task.loads is None and task.balanced is True
+
+
 def test_rollers_and_places_of_the_end_state():
     with pytest.raises(SceneError, match="`lubricant`: is missing; it must be a table"):
         read_skid("deep_groove", ["operating.inner_speed=1 rpm"])
@@ -256,11 +314,7 @@ def test_shipped_scenes_are_those_of_the_paper():
     assert task.scene.load == (0.0, 0.0, 80.0, 0.0, 0.0, 0.0)
     assert (task.oil, task.duration, task.axis) == ("MIL-L-23699", 0.4, "vertical")
     assert (task.start, task.n_times, task.places) == ("rolling", 501, None)
-    assert task.speeds is not None
-    time, inner, outer = task.speeds
-    np.testing.assert_allclose(time, [0.0, 0.1])
-    np.testing.assert_allclose(inner, [0.0, 2000.0 * np.pi / 30.0], rtol=ROUNDING)
-    assert not outer.any()
+    assert same(task.speeds, ramp(0.1, task.speed))
     combined = read_skid("skid_combined")
     assert same(combined.model, MODEL)
     assert combined.speeds is None
@@ -287,10 +341,9 @@ def test_what_stands_in_the_tables_of_surroundings():
     assert (task.duration, task.axis, task.start) == (0.25, "horizontal", "rest")
     assert (task.n_times, task.tolerance, task.max_steps) == (11, 1e-5, 99)
     assert task.places == 24
-    assert task.speeds is not None
-    time, inner, outer = task.speeds
-    assert time.tolist() == [0.0, 1.0, 2.0] and not inner.any()
-    np.testing.assert_allclose(outer, [0.0, 2 * np.pi, np.pi], rtol=ROUNDING)
+    assert same(
+        task.speeds, SpeedTable([0.0, 1.0, 2.0], [0.0] * 3, [0.0, 2 * np.pi, np.pi])
+    )
 
 
 def test_oils():
