@@ -35,15 +35,15 @@ def tabulated(
         places: Number of places. Static.
     """
     bearing, law = model.bearing, model.point_law
-    even = 2.0 * np.pi * np.arange(places) / places
-    azimuth = jnp.asarray(even, solution.azimuth.dtype)
-    if places == 1:
-        azimuth = solution.azimuth[:1]
-    at = model.element.model(speed), bearing, law, solution.displacement, azimuth
     oil = model.lubricant, model.temperature, model.least_film
-    return load_table(
-        jax.vmap(partial(loaded_ball, bearing, law, *oil))(*contact_loads(*at))
-    )
+    at = solution.contact_load[:1], solution.contact_angle[:1]
+    if places > 1:
+        even = 2.0 * np.pi * np.arange(places) / places
+        azimuth = jnp.asarray(even, solution.azimuth.dtype)
+        here = solution.displacement, azimuth
+        at = contact_loads(model.element.model(speed), bearing, law, *here)
+    balls = jax.vmap(partial(loaded_ball, bearing, law, *oil))(*at)
+    return load_table(balls, model.traction.by_nodes)
 
 
 @eqx.filter_jit

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import jax.scipy.linalg as jsl
 from jaxtyping import Array, Float
 
+from ..numerics.linear import solve
 from ..numerics.types import Scalar
 
 
@@ -145,26 +145,39 @@ class Slopes(NamedTuple):
             scale: Factor of the masses [1/s].
         """
         m = masses.shared.shape[0]
-        own = _factors(jnp.diag(masses.own * scale)[None] - self.own)
-        follow = _solved(own, self.across)
-        border = jnp.einsum("bij,bjk->ik", self.down[:, :m], follow)
-        shared = _factors(jnp.diag(masses.shared * scale) - self.shared[:m] - border)
+        own = jax.vmap(_inverse)(jnp.diag(masses.own * scale)[None] - self.own)
+        follow = jax.vmap(_product)(own, self.across)
+        border = jnp.sum(jax.vmap(_product)(self.down[:, :m], follow), axis=0)
+        shared = _inverse(jnp.diag(masses.shared * scale) - self.shared[:m] - border)
 
-        def solve(right):
-            alone = _solved(own, right.own[..., None])[..., 0]
-            pulled = right.shared + jnp.einsum("bij,bj->i", self.down[:, :m], alone)
-            of_shared = _solved(shared, pulled[:, None])[:, 0]
-            of_own = alone + jnp.einsum("bij,j->bi", follow, of_shared)
-            sums = jnp.einsum("bij,bj->i", self.down[:, m:], of_own)
-            sums = right.sums + sums + self.shared[m:] @ of_shared
+        def solved(right):
+            alone = jax.vmap(_times)(own, right.own)
+            pulls = jax.vmap(_times)(self.down[:, :m], alone)
+            of_shared = _times(shared, right.shared + jnp.sum(pulls, axis=0))
+            of_own = alone + jax.vmap(_times, (0, None))(follow, of_shared)
+            sums = jnp.sum(jax.vmap(_times)(self.down[:, m:], of_own), axis=0)
+            sums = right.sums + sums + _times(self.shared[m:], of_shared)
             return Coupled(of_own, of_shared, sums / scale)
 
-        return solve
+        return solved
 
 
-def _factors(matrix):
-    return jsl.lu_factor(matrix, check_finite=False)
+_WRITTEN_OUT = 5
+"""Unknowns up to which elimination written out is faster than a call of LAPACK."""
 
 
-def _solved(factors, right):
-    return jsl.lu_solve(factors, right, check_finite=False)
+def _inverse(matrix):
+    """Friction makes the diagonal heavy: elimination needs no search for pivots."""
+    n = matrix.shape[0]
+    if n > _WRITTEN_OUT:
+        return jnp.linalg.inv(matrix)
+    return solve(matrix, jnp.eye(n, dtype=matrix.dtype), False)
+
+
+def _times(matrix, vector):
+    """Written as a sum, so that it fuses."""
+    return jnp.sum(matrix * vector[None, :], axis=1)
+
+
+def _product(a, b):
+    return jnp.sum(a[:, :, None] * b[None, :, :], axis=1)

@@ -90,17 +90,26 @@ class LoadTable(eqx.Module):
         return _ball(row, self.like)
 
 
-def load_table(balls: LoadedBall) -> LoadTable:
+def load_table(balls: LoadedBall, nodes: bool = True) -> LoadTable:
     """A table.
 
     Args:
         balls: At one place, or at places spread evenly around the bearing from azimuth
             zero on, at least 6; leading axis place.
+        nodes: Whether the nodes of the patches are wanted, or their moments alone.
+            Static.
     """
     rows = jax.vmap(_row)(balls)
+    if not nodes:
+        patch = balls.patch.without_nodes()
+        balls = eqx.tree_at(lambda b: b.patch, balls, patch)
+        rows = rows._replace(**{name: patch.x for name in _OF_NODES})
     if rows.load.shape[0] > 1:
         rows = jax.tree.map(_coefficients, rows)
     return LoadTable(rows, jax.tree.map(lambda b: b[0], balls))
+
+
+_OF_NODES = ("x", "y", "area", "pressure", "log_viscosity")
 
 
 def _row(ball):

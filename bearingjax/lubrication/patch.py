@@ -36,6 +36,13 @@ class Patch(eqx.Module):
     viscosity: Float[Array, " node"] = eqx.field(metadata=unit("Pa s"))
     moments: Float[Array, "3"] = eqx.field(metadata=unit(("N s", "N m s", "N m² s")))
 
+    def without_nodes(self) -> "Patch":
+        """The moments alone, for a law of traction that needs no more."""
+        none = jnp.zeros((*self.area.shape[:-1], 0), self.area.dtype)
+        return eqx.tree_at(
+            lambda p: (p.x, p.y, p.area, p.pressure, p.viscosity), self, (none,) * 5
+        )
+
 
 def ellipse_patch(
     lubricant: Lubricant,

@@ -7,7 +7,7 @@ never does work on the slip, and it is smooth where there is none.
 """
 
 import abc
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -39,7 +39,13 @@ class Resultants(NamedTuple):
 
 
 class AbstractTraction(eqx.Module):
-    """A law of traction."""
+    """A law of traction.
+
+    Attributes:
+        by_nodes: Whether `resultants` needs the nodes of a patch, or its moments alone.
+    """
+
+    by_nodes: ClassVar[bool] = True
 
     @abc.abstractmethod
     def resistance(
@@ -108,6 +114,8 @@ class Newtonian(AbstractTraction):
     Linear in slip and spin, so that the moments of the viscosity are enough. Unphysical
     above some 1 GPa, where no oil bears μ u/h.
     """
+
+    by_nodes = False
 
     def resistance(self, slip_squared, film, pressure, viscosity):
         return viscosity / film
