@@ -57,6 +57,8 @@ def zones(found: SteadySkid) -> list[Zone]:
     # Of the axial load each ball bears the same on the mean.
     angle = by_raceway(found.contact_angle, found.contact_load)[:, 1]
     axial = np.mean(inner * np.sin(angle))
+    if abs(np.mean(angle)) < 1e-6:
+        return []
     over = inner - axial / np.sin(np.mean(angle))
     after = np.roll(over, -1)
     up, down = (
@@ -104,10 +106,9 @@ def load_over_orbit(
     """
     ax = axes_or_new(ax)
     _raceways(ax, found, by_raceway(found.contact_load, found.contact_load))
-    _finish(ax, found)
+    _finish(ax, found, "Load on a ball")
     ax.set_ylim(bottom=0.0)
     ax.set_ylabel("contact load [N]")
-    ax.set_title("Load on a ball", pad=_PAD)
     return ax
 
 
@@ -131,10 +132,9 @@ def sliding_over_orbit(
     azimuth, slip = _closed(found, 100.0 * np.asarray(found.slip))
     other.plot(azimuth, slip, ":", color=GREY, label="orbit slip")
     other.set_ylabel("slip of the orbit [%]", color=GREY)
-    _finish(ax, found, other)
+    _finish(ax, found, "Sliding in the middle of the contacts", other)
     ax.set_ylim(bottom=0.0)
     ax.set_ylabel("sliding speed [mm/s]")
-    ax.set_title("Sliding in the middle of the contacts", pad=_PAD)
     return ax
 
 
@@ -154,9 +154,8 @@ def spin_over_orbit(
     azimuth, spin = _closed(found, np.asarray(found.spin))
     for k, name in enumerate(SPIN_NAMES):
         ax.plot(azimuth, spin[:, k], color=SPIN_COLOURS[k], label=name)
-    _finish(ax, found)
+    _finish(ax, found, "Spin of a ball")
     ax.set_ylabel("spin [rad/s]")
-    ax.set_title("Spin of a ball", pad=_PAD)
     return ax
 
 
@@ -176,9 +175,11 @@ def _closed(found, values):
     return around, values[np.append(order, order[0])]
 
 
-def _finish(ax, found, *others):
-    """Shade and name the zones; axis of azimuth, grid, legend."""
-    for zone in zones(found):
+def _finish(ax, found, title, *others):
+    """Shade and name the zones; title, axis of azimuth, grid, legend."""
+    parts = zones(found)
+    ax.set_title(title, pad=_PAD if parts else None)
+    for zone in parts:
         begin, end = np.rad2deg(zone.begin), np.rad2deg(zone.end)
         for turn in np.arange(np.floor(begin / 360.0), np.ceil(end / 360.0)) * 360.0:
             low, high = max(begin - turn, 0.0), min(end - turn, 360.0)

@@ -255,14 +255,16 @@ def sliding_spectrum(
     ax = axes_or_new(ax)
     amplitude = 1e3 * lines.amplitude
     ax.semilogy(lines.frequency, amplitude, color=COLOURS[raceway], linewidth=1.2)
-    highest = lines.frequency[-1]
-    if lines.cage > 0:
+    highest, apart = lines.frequency[-1], lines.frequency[1]
+    if 2.0 * apart < lines.cage <= highest:
         highest = min(highest, 12.0 * lines.cage)
         for k in range(1, int(highest / lines.cage) + 1):
-            line = ax.axvline(k * lines.cage, color=GREY, linestyle=":", linewidth=0.8)
-        if highest >= lines.cage:
-            line.set_label(f"multiples of the cage's {lines.cage:.4g} Hz")
-            ax.legend(fontsize=SMALL, loc="upper right")
+            mark = ax.axvline(k * lines.cage, color=GREY, linestyle=":", linewidth=0.8)
+        mark.set_label(f"multiples of the cage's {lines.cage:.4g} Hz")
+        ax.legend(fontsize=SMALL, loc="upper right")
+    else:
+        told = f"lines {apart:.3g} Hz apart: too few for the cage's {lines.cage:.3g} Hz"
+        ax.text(0.5, 0.95, told, ha="center", fontsize=SMALL, transform=ax.transAxes)
     shown = amplitude[lines.frequency <= highest]
     top = float(shown.max(initial=0.0))
     if top > 0:

@@ -11,6 +11,8 @@ from .skid_run import SkidRun
 
 _RULE = "-" * 78
 _RPM = 30.0 / np.pi
+_SMALL = 1e-6
+"""Load over the largest one up to which a contact counts as open."""
 
 
 def skid_report(run: SkidRun) -> str:
@@ -113,27 +115,34 @@ def _balls(run):
     angle = np.rad2deg(np.arctan2(told["spin"][:, 1], -told["spin"][:, 2]))
     azimuth = found.solution.azimuth if steady else told["azimuth"]
     azimuth = np.rad2deg(azimuth) % 360.0
+    small = _SMALL * told["contact_load"].max()
     pairs = "".join(f"{name:>18}" for name in ("film, µm", "sliding, mm/s", "heat, W"))
     sides = f"{'outer':>9}{'inner':>9}"
     lines = [
-        f"  ball azimuth{'load, N':>18}    slip  pitch{pairs}",
-        f"{'deg':>14}{sides}{'%':>8}{'deg':>7}{3 * sides}",
+        f"  ball azimuth{'load, N':>18}      slip  pitch{pairs}",
+        f"{'deg':>14}{sides}{'%':>10}{'deg':>7}{3 * sides}",
     ]
     for k in range(1 if alike else len(azimuth)):
         where = "   all       -" if alike else f"{k:6d}{azimuth[k]:8.1f}"
-        load, film = told["contact_load"][k], 1e6 * told["film"][k]
-        slide, heat = 1e3 * told["sliding_speed"][k], told["heat"][k]
-        after = "".join(f"{v:9.3g}" for v in (*film, *slide, *heat))
+        load = told["contact_load"][k]
+        film, slide = 1e6 * told["film"][k], 1e3 * told["sliding_speed"][k]
+        # An open contact has no film worth printing.
+        bears = np.tile(load > small, 3)
+        values = zip((*film, *slide, *told["heat"][k]), bears, strict=True)
+        after = "".join(f"{v:9.3g}" if yes else f"{'-':>9}" for v, yes in values)
+        before = "".join(f"{v if v > small else 0.0:9.4g}" for v in load)
         lines.append(
-            f"{where}{load[0]:9.4g}{load[1]:9.4g}{100.0 * told['slip'][k]:8.3g}"
-            f"{angle[k]:7.1f}{after}"
+            f"{where}{before}{100.0 * told['slip'][k]:10.3g}"
+            f"{_clean(round(angle[k], 1)):7.1f}{after}"
         )
     return "\n".join(lines)
 
 
 def _ending(run):
-    found, regime = run.found, run.state.regime
-    regimes = np.unique(regime if run.task.steady else regime[-1])
+    found, regime, load = run.found, run.state.regime, run.found.contact_load
+    if not run.task.steady:
+        regime, load = regime[-1], load[-1]
+    regimes = np.unique(regime[load > _SMALL * load.max()])
     names = [Regime(int(r)).name.lower().replace("_", " and ") for r in regimes]
     if run.task.steady:
         done = (

@@ -309,16 +309,19 @@ def test_spectrum_of_a_sine(history):
     turning = eqx.tree_at(
         lambda f: (f.time, f.sliding, f.contact_load, f.state.cage_speed),
         found,
-        (time, slide, np.ones((64, 6, 2)), np.full(64, 2.0 * np.pi * 2.0)),
+        (time, slide, np.ones((64, 6, 2)), np.full(64, 2.0 * np.pi * 3.0)),
     )
     got = plot.spectrum(turning, begin=0.0)
     assert got.frequency[4] == pytest.approx(4.0)
     assert got.amplitude[4] == pytest.approx(3e-3)
     assert got.amplitude[6:].max() < 1e-12
-    assert got.cage == pytest.approx(2.0)
+    assert got.cage == pytest.approx(3.0)
     ax = plot.sliding_spectrum(turning, begin=0.0)
     marks = [np.asarray(line.get_xdata())[0] for line in ax.get_lines()[1:]]
-    np.testing.assert_allclose(marks, 2.0 * np.arange(1, 13))
+    np.testing.assert_allclose(marks, 3.0 * np.arange(1, 11))
+    slow = eqx.tree_at(lambda f: f.state.cage_speed, turning, np.full(64, 6.0))
+    told = plot.sliding_spectrum(slow, begin=0.0).texts[0].get_text()
+    assert told == "lines 1 Hz apart: too few for the cage's 0.955 Hz"
     with pytest.raises(ValueError, match="3 times are too few; at least 8"):
         plot.spectrum(found, begin=1.5e-3)
     uneven = eqx.tree_at(lambda f: f.time, found, found.time**2)
