@@ -1,4 +1,4 @@
-"""Dynamics: balls that skid."""
+"""Dynamics: balls and rollers that skid."""
 
 from .conditions import Conditions as Conditions
 from .conditions import by_raceway as by_raceway
@@ -10,9 +10,10 @@ from .ring_load import LoadHistory as LoadHistory
 from .ring_load import SinusoidalLoad as SinusoidalLoad
 from .ring_speed import SpeedTable as SpeedTable
 from .ring_speed import ramp as ramp
-from .steady import Power as Power
-from .steady import SteadySkid as SteadySkid
 from .steady import steady_skid as steady_skid
+from .steady_results import Power as Power
+from .steady_results import SteadyRollerSkid as SteadyRollerSkid
+from .steady_results import SteadySkid as SteadySkid
 from .surroundings import Cage as Cage
 from .surroundings import Drag as Drag
 from .transient import skid as skid

@@ -21,6 +21,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ..element.ball_speed import ball_kinematics
 from ..element.inertia import Speed
 from ..lubrication import AbstractTraction, Film, Patch, Resultants, at_least
 from ..numerics.types import Scalar
@@ -77,6 +78,11 @@ class LoadedBall(eqx.Module):
         """Distance of every contact from the bearing axis [m]."""
         return self.pitch_radius + 0.5 * self.diameter * self.side * jnp.cos(self.angle)
 
+    @property
+    def frontal_area(self) -> Scalar:
+        """Area that it turns towards the oil along its orbit [m²]."""
+        return 0.25 * jnp.pi * self.diameter**2
+
 
 class Sliding(NamedTuple):
     """Motion of a ball against its raceways, leading axis contact.
@@ -108,6 +114,24 @@ class Tractions(NamedTuple):
     resultants: Resultants
     moment: Float[Array, "contact 3"]
     ring_torque: Float[Array, " contact"]
+
+
+def outer_control(ball: LoadedBall, speed: Speed) -> BallState:
+    """Motion without slip, and without spin at the outer raceway.
+
+    Args:
+        ball: The ball.
+        speed: Ring speeds.
+    """
+    direction = jnp.stack([jnp.sin(ball.angle), jnp.cos(ball.angle)], axis=1)
+    half = len(ball.outwards) // 2
+    weighted = (ball.load + 1e-9)[:, None] * direction
+    sums = weighted[:half].sum(axis=0), weighted[half:].sum(axis=0)
+    outer, inner = (v / jnp.sqrt(v @ v) for v in sums)
+    ratio = 0.5 * ball.diameter / ball.pitch_radius
+    found = ball_kinematics(outer, inner, jnp.ones_like(ratio), ratio, speed)
+    across, along = found.rotation * found.axis
+    return BallState(jnp.stack([jnp.zeros_like(across), across, -along]), found.orbit)
 
 
 def sliding(ball: LoadedBall, state: BallState, speed: Speed) -> Sliding:

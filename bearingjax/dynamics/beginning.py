@@ -15,12 +15,12 @@ from ..numerics.types import Scalar
 from ..statics.balance import Balance
 from ..statics.solution import BallSolution
 from .balanced_loads import BalancedLoads
+from .ball_motion import outer_control
 from .load_table import LoadTable, load_table
 from .loaded import contact_ellipses, contact_loads, loaded_ball
 from .model import SkidModel
 from .motion import SkidState, Surroundings
 from .ring_speed import SpeedTable
-from .steady import rolling_ball
 
 
 def tabulated(
@@ -123,9 +123,6 @@ def rolling_start(
     ball, _, _ = jax.vmap(lambda at, c: around.loads.at(at, speed, c, ring))(
         around.place, centre
     )
-    rolling = jax.vmap(partial(rolling_ball, speed))(ball)
-    along = rolling.rotation[:, None] * rolling.axis
-    spin = jnp.stack([jnp.zeros_like(rolling.orbit), along[:, 0], -along[:, 1]], axis=1)
-    none = jnp.zeros_like(rolling.orbit)
-    turning = jnp.mean(rolling.orbit)
-    return SkidState(spin, rolling.orbit, none, turning, none[0], centre, ring)
+    rolling = jax.vmap(partial(outer_control, speed=speed))(ball)
+    none, turning = jnp.zeros_like(rolling.orbit), jnp.mean(rolling.orbit)
+    return SkidState(*rolling, none, turning, none[0], centre, ring)

@@ -42,7 +42,11 @@ def conditions(model: SkidModel, found: Any, speed: Speed | SpeedTable) -> Condi
         model: The bearing and its oil.
         found: How its balls move; from `steady_skid` or `skid`.
         speed: Ring speeds, those over time of a motion in time.
+
+    Raises:
+        TypeError: If it is a bearing of rollers.
     """
+    model.check_balls("conditions")
     load = found.contact_load
     lead, n = load.shape[:-1], load.shape[-1]
 

@@ -1,18 +1,33 @@
-"""What the contacts of the balls bear, from a solved bearing, and the oil in them."""
+"""What the contacts of balls and rollers bear, from a solved bearing, and their oil."""
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ..contact.hertz import Ellipse
+from ..contact.line import half_width
 from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
 from ..design.ball import AbstractBallBearing
 from ..element.ball_speed import ball_mass
 from ..element.bearing_model import BearingModel
-from ..lubrication import Lubricant, ellipse_patch, point_film
+from ..element.constants import ContactConstants, relative_radii
+from ..element.inertia import mass_and_inertia
+from ..lubrication import (
+    Lubricant,
+    ellipse_patch,
+    line_film,
+    line_patch,
+    point_film,
+)
 from ..numerics.types import Ring, Scalar
+from ..statics import rollers
 from ..statics.balls import ball_results
 from .ball_motion import LoadedBall
+from .roller_motion import LoadedRoller
+
+_SLICES = 16
+"""Slices of a roller, spaced as the nodes of Gauss and Legendre."""
 
 
 def contact_loads(
@@ -104,3 +119,82 @@ def loaded_ball(
         least_film=least_film,
         outwards=outwards,
     )
+
+
+def roller_loads(
+    model: BearingModel, q: Ring, azimuth: Float[Array, " station"]
+) -> tuple[Float[Array, "station 2"], Float[Array, "station 2 slice"]]:
+    """Loads of a roller on both raceways at places along its orbit.
+
+    Args:
+        model: The bearing, of one row of like rollers.
+        q: Ring freedoms of the equilibrium [m, rad].
+        azimuth: The places [rad].
+
+    Returns:
+        Contact loads [N], and loads per length of its slices [N/m].
+    """
+    (row,) = model.rows
+    solved = row.at(q, azimuth, row.solve(q, azimuth, model.equilibrium, None))
+    load, _ = rollers.contact_loads(solved)
+    return load, rollers.line_loads(solved, jnp.asarray(_slices()[0], load.dtype))
+
+
+def loaded_roller(
+    constants: ContactConstants,
+    lubricant: Lubricant,
+    temperature: Scalar,
+    least_film: Scalar,
+    load: Float[Array, "2"],
+    line_load: Float[Array, "2 slice"],
+) -> LoadedRoller:
+    """A roller under given loads.
+
+    The film of a contact is the same all along it, that of the line load q averaged
+    over the load, ∫ q² ds/∫ q ds: it falls with the 0.17th power of the load alone.
+
+    Args:
+        constants: Contact constants of the roller.
+        lubricant: Oil.
+        temperature: Of the oil [K].
+        least_film: What remains of every film at rest [m].
+        load: Contact loads (outer, inner) (2,) [N].
+        line_load: Loads per length of its slices, from `roller_loads` [N/m].
+    """
+    c, dtype = constants, load.dtype
+    node, weight = (jnp.asarray(v, dtype) for v in _slices())
+    position, width = c.half_length * node, c.half_length * weight
+    radius = relative_radii(c, position)
+    viscosity = lubricant.viscosity(0.0, temperature)
+    coefficient = lubricant.pressure_coefficient(temperature)
+
+    def contact(line_load, radius):
+        half = half_width(line_load, radius, c.modulus)
+        patch = line_patch(lubricant, temperature, position, width, line_load, half)
+        total = jnp.dot(width, line_load)
+        loaded = total > 0
+        square = jnp.dot(width, line_load**2) / jnp.where(loaded, total, 1.0)
+        middle = jnp.mean(radius)
+        film = line_film(
+            jnp.where(loaded, square, 0.0), middle, c.modulus, viscosity, coefficient
+        )
+        return patch, film
+
+    patch, film = jax.vmap(contact)(line_load, radius)
+    mass, moment, _ = mass_and_inertia(c)
+    return LoadedRoller(
+        mass=mass,
+        moment=moment,
+        diameter=c.diameter,
+        length=2.0 * c.half_length,
+        pitch_radius=c.pitch_radius,
+        load=load,
+        patch=patch,
+        film=film,
+        least_film=least_film,
+    )
+
+
+def _slices():
+    """Positions from -1 to 1 along a roller, and their shares of that length."""
+    return np.polynomial.legendre.leggauss(_SLICES)

@@ -1,9 +1,15 @@
-"""What a ball bearing needs in order to skid: oil, traction, cage, drag."""
+"""What a bearing needs in order to skid: oil, traction, cage, drag."""
+
+from typing import Any
 
 import equinox as eqx
 
 from ..contact.point_law import AbstractPointLaw
-from ..design import AbstractBallBearing
+from ..design import (
+    AbstractBallBearing,
+    CylindricalRollerBearing,
+    NeedleRollerBearing,
+)
 from ..design.checks import instance, positive
 from ..element.bearing_element import BearingElement
 from ..lubrication import AbstractTraction, Lubricant, Newtonian
@@ -11,14 +17,17 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .surroundings import Cage, Drag
 
+_KINDS = AbstractBallBearing, CylindricalRollerBearing, NeedleRollerBearing
+
 
 class SkidModel(eqx.Module):
-    """A ball bearing whose balls may slip.
+    """A ball or cylindrical roller bearing whose balls or rollers may slip.
 
     Attributes:
-        element: The bearing, of one row of like balls evenly spaced. Its raceway
-            control says what holds the gyroscopic moment where contact loads and angles
-            are solved; `EqualShare()` is that of the source.
+        element: The bearing, of one row of like balls, or of cylindrical or needle
+            rollers, evenly spaced. The raceway control of balls says what holds the
+            gyroscopic moment where contact loads and angles are solved;
+            `EqualShare()` is that of the source.
         lubricant: Oil.
         temperature: Of the oil in all contacts [K].
         traction: Law of traction.
@@ -41,16 +50,17 @@ class SkidModel(eqx.Module):
     def __check_init__(self):
         instance(self, "element", BearingElement)
         bearing = self.element.bearing
-        if not isinstance(bearing, AbstractBallBearing):
+        if not isinstance(bearing, _KINDS):
             kind = type(bearing).__name__
             raise TypeError(
-                f"SkidModel: `element` is of a {kind}; it must be of one ball bearing."
+                f"SkidModel: `element` is of a {kind}; it must be of one ball bearing,"
+                " or of one bearing of cylindrical or needle rollers."
             )
-        for name in ("ball_deviation", "azimuth_deviation"):
-            if getattr(bearing, name) is not None:
+        for name in ("ball_deviation", "roller_deviation", "azimuth_deviation"):
+            if getattr(bearing, name, None) is not None:
                 raise ValueError(
-                    f"SkidModel: `element` has a `{name}`; all balls must be alike and"
-                    " evenly spaced, so that one orbit stands for all."
+                    f"SkidModel: `element` has a `{name}`; all balls or rollers must"
+                    " be alike and evenly spaced, so that one orbit stands for all."
                 )
         instance(self, "lubricant", Lubricant)
         positive(self, "temperature")
@@ -60,15 +70,29 @@ class SkidModel(eqx.Module):
         positive(self, "least_film")
 
     @property
-    def bearing(self) -> AbstractBallBearing:
+    def bearing(self) -> Any:
         """Design of the bearing."""
-        bearing = self.element.bearing
-        assert isinstance(bearing, AbstractBallBearing)  # checked when it was made
-        return bearing
+        return self.element.bearing
 
     @property
     def point_law(self) -> AbstractPointLaw:
-        """Law of the contact constants."""
+        """Law of the contact constants of balls."""
         law = self.element.point_law
         assert law is not None  # balls have one
         return law
+
+    def check_balls(self, title: str) -> None:
+        """Raise unless it is a ball bearing.
+
+        Args:
+            title: What asks for one.
+
+        Raises:
+            TypeError: If it is another bearing.
+        """
+        if not isinstance(self.bearing, AbstractBallBearing):
+            kind = type(self.bearing).__name__
+            raise TypeError(
+                f"{title}: `model` is of a {kind}; it must be of a ball bearing."
+                " `steady_skid` takes rollers too."
+            )

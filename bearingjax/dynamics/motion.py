@@ -145,7 +145,7 @@ def one_ball(
     here = azimuth, speed, state.centre, state.ring
     ball, unbalanced, on_ring = around.loads.at(*here)
     moving = sliding(ball, motion, speed)
-    turning = motion.orbit, ball.diameter, ball.pitch_radius
+    turning = motion.orbit, ball.frontal_area, ball.pitch_radius
     return OneBall(
         ball,
         azimuth,

@@ -1,4 +1,4 @@
-"""What surrounds the balls: the oil that they plough through, and the cage."""
+"""What surrounds balls and rollers: the oil that they plough through, and the cage."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -13,11 +13,12 @@ _REST = 1e-3
 
 
 class Drag(eqx.Module):
-    """Drag of balls in a mixture of oil and air.
+    """Drag of balls and rollers in a mixture of oil and air.
 
-    π/32 ρ c_v D² (d_m ω_c)^1.95 in SI units, against the orbit; ρ is the fill times
-    the density of the oil. The exponent is an empirical reduction of the square, so
-    that the formula holds for m/s alone.
+    1/8 ρ c_v A (d_m ω_c)^1.95 in SI units, against the orbit; ρ is the fill times the
+    density of the oil, A the frontal area: π D²/4 of a ball, D L of a roller. The
+    exponent is an empirical reduction of the square, so that the formula holds for m/s
+    alone.
 
     Attributes:
         coefficient: Drag coefficient c_v [1].
@@ -35,29 +36,29 @@ class Drag(eqx.Module):
         in_range(self, "fill", 0.0, 1.0)
 
     def force(
-        self, orbit: Scalar, diameter: Scalar, pitch_radius: Scalar, density: Scalar
+        self, orbit: Scalar, area: Scalar, pitch_radius: Scalar, density: Scalar
     ) -> Scalar:
-        """Force on a ball, in the sense in which angles are counted [N].
+        """Force on a ball or roller, in the sense in which angles are counted [N].
 
         Args:
             orbit: Orbital speed [rad/s].
-            diameter: Ball diameter [m].
+            area: Frontal area [m²].
             pitch_radius: Radius of the orbit [m].
             density: Of the oil [kg/m³].
         """
         speed = 2.0 * pitch_radius * orbit
         mixture = self.fill * density * self.coefficient
-        size = jnp.pi / 32.0 * mixture * diameter**2 * smooth_power(speed, 1.95, _REST)
+        size = 0.125 * mixture * area * smooth_power(speed, 1.95, _REST)
         return -jnp.sign(speed) * size
 
 
 class Cage(eqx.Module):
-    """A rigid cage, guided by nothing: balls push it, and it pushes them.
+    """A rigid cage, guided by nothing: balls or rollers push it, and it pushes them.
 
     Attributes:
-        pocket_clearance: Play of a ball in its pocket along the orbit, from front to
-            rear [m].
-        stiffness: Of a pocket against a ball [N/m].
+        pocket_clearance: Play of a ball or roller in its pocket along the orbit, from
+            front to rear [m].
+        stiffness: Of a pocket against what is in it [N/m].
         inertia: Moment of inertia about the bearing axis [kg m²].
 
     Traced: all fields.
@@ -77,7 +78,7 @@ class Cage(eqx.Module):
         positive(self, "inertia")
 
     def force(self, lag: Scalar) -> Scalar:
-        """On a ball, in the sense in which angles are counted [N].
+        """On a ball or roller, in the sense in which angles are counted [N].
 
         Args:
             lag: How far its pocket is ahead of it, along the orbit [m].

@@ -26,13 +26,13 @@ from ..statics.load import solve_load
 from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
 from .balanced_loads import BalancedLoads
+from .ball_motion import outer_control
 from .beginning import balanced_surroundings, surroundings
 from .history import SkidHistory
 from .integration import Options, integrated
 from .model import SkidModel
 from .motion import SkidState, each_ball, energies, power
 from .ring_speed import SpeedTable, as_table
-from .steady import rolling_ball
 
 _PLACES = 96
 """Places of the table."""
@@ -108,12 +108,14 @@ def skid(
         The motion, differentiable with respect to design, oil, load, speeds and start.
 
     Raises:
+        TypeError: If it is a bearing of rollers.
         ValueError: For settings that do not exist.
         SolveError: If the end is not reached, and `throw` is set.
 
     Fails: codes of the load solve; `STEP_LIMIT`; `NON_FINITE` where steps shrink to
         nothing, as beside rates that are not numbers.
     """
+    model.check_balls("skid")
     _check(axis, derivatives, places, duration, tolerance, max_steps, n_times)
     table, zero = as_table(speed), jnp.zeros_like(as_real(duration))
     if times is None:
@@ -254,7 +256,7 @@ def _reported(around, time, state):
     )
     kinetic, potential = energy
     speed, on_inner = around.speed.at(time), balls.ring_torque[0]
-    rolling = jax.vmap(partial(rolling_ball, speed))(balls.ball)
+    rolling = jax.vmap(partial(outer_control, speed=speed))(balls.ball)
     return dict(
         azimuth=balls.azimuth,
         contact_load=balls.ball.load,

@@ -184,8 +184,8 @@ def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
         given: Pytree; what is no array is static.
         slots: How many problems of a batch are at work at a time, while others wait. A
             batch of fewer than two times as many is stepped together by `vmap`.
-        idle: How many slots may be done before they are refilled, while problems wait.
-            It costs a part of a step, and more where states are large.
+        idle: How many slots may be done before they are refilled, while problems wait;
+            at most all. It costs a part of a step, and more where states are large.
 
     Returns:
         As `Loop.finish`. It has no derivatives: see `implicit`.
@@ -197,7 +197,9 @@ def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
         return eqx.combine(jax.tree.unflatten(tree, leaves), static)
 
     shapes, returned = jax.tree.flatten(loop.shapes(given))
-    task = _Task(loop, whole, (slots, idle), [(a.shape, a.dtype) for a in shapes])
+    # With more than all of them it would wait for ever.
+    pair = slots, min(idle, slots)
+    task = _Task(loop, whole, pair, [(a.shape, a.dtype) for a in shapes])
     out = _lanes.bind(*leaves, task=task, flags=(False,) * len(leaves), count=None)
     return jax.tree.unflatten(returned, out)
 

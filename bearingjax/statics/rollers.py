@@ -153,6 +153,24 @@ def contact_loads(
     return raceways, all_ribs
 
 
+def line_loads(
+    row: RowResults, xi: Float[Array, " point"]
+) -> Float[Array, "roller 2 point"]:
+    """Load per length of every roller on both raceways [N/m].
+
+    Args:
+        row: Solved rollers.
+        xi: Positions s/(L/2) along the roller, from -1 to 1 (point,).
+    """
+
+    def one(roller, approaches):
+        c = roller.constants
+        contacts = zip(c.lines, c.tables, approaches, strict=True)
+        return jnp.stack([line.along(table, xi, *at) for line, table, at in contacts])
+
+    return row.row.each(one, approaches(row))
+
+
 def approaches(row: RowResults) -> Float[Array, "roller 2 2"]:
     """Approaches of every roller at the outer and the inner raceway.
 

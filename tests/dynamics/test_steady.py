@@ -5,11 +5,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from han_chu import BEARING, ELEMENT, FREE, MODEL, SPEED
+from registry import taper
 from tolerances import DIFFERENCE
 
 import bearingjax as bj
 from bearingjax.dynamics import Drag, SkidModel, steady_skid
-from bearingjax.dynamics.steady import _derivatives
+from bearingjax.dynamics.orbit_search import derivatives
 from bearingjax.element.inertia import Speed
 from bearingjax.lubrication import mil_l_23699
 from bearingjax.numerics.result import Result, SolveError
@@ -188,7 +189,7 @@ def test_derivative_along_the_orbit(count):
     phi = 2.0 * np.pi * np.arange(count) / count
     for n in range((count + 1) // 2):
         for wave, slope in ((np.cos, lambda x: -np.sin(x)), (np.sin, np.cos)):
-            got = _derivatives(count) @ wave(n * phi)
+            got = derivatives(count) @ wave(n * phi)
             np.testing.assert_allclose(got, n * slope(n * phi), atol=1e-12)
 
 
@@ -259,9 +260,8 @@ def test_bad_input():
     with pytest.raises(ValueError, match="multiple of the 12 balls"):
         steady_skid(MODEL, [0, 0, 100.0, 0, 0, 0], speed=SPEED, free=FREE, places=7)
     oil = mil_l_23699()
-    roller = bj.BearingElement(bj.CylindricalRollerBearing(6, 0.065, 0.010, 0.010))
     with pytest.raises(TypeError, match="of one ball bearing"):
-        SkidModel(roller, oil, 303.15)
+        SkidModel(bj.BearingElement(taper()), oil, 303.15)
     with pytest.raises(ValueError, match="temperature"):
         SkidModel(ELEMENT, oil, -3.0)
     with pytest.raises(TypeError, match="lubricant"):

@@ -56,9 +56,10 @@ def test_lanes_are_the_loops_one_by_one(problems, axes):
     np.testing.assert_allclose(total, slope * count * (count - 1), rtol=1e-13)
 
 
-@pytest.mark.parametrize("count, slots, idle", [(50, 8, 2), (17, 8, 7), (64, 8, 1)])
+@pytest.mark.parametrize("count, slots, idle", [(50, 8, 2), (17, 8, 7), (9, 2, 16)])
 def test_few_slots(count, slots, idle):
-    """More problems than slots; at the end some slots are empty."""
+    """More problems than slots; at the end some slots are empty. No more of them can be
+    idle than there are."""
     steps = np.arange(count) % 13
     slope = np.linspace(-1.0, 1.0, count)
     got = jax.vmap(lambda n, s: lanes.run(SUM, (n, s), slots, idle))(

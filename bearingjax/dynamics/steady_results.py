@@ -1,0 +1,126 @@
+"""What is known of skidding balls and rollers in the end."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from ..numerics.types import Scalar, namespace
+from ..numerics.units import unit
+from ..statics.solution import BallSolution, RollerSolution
+
+
+class Power(NamedTuple):
+    """Mean powers [W]: the drive's is the sum of the others.
+
+    Attributes:
+        drive: What turns the rings.
+        contacts: Heat of the raceway contacts.
+        drag: Lost in the oil between the rings.
+        cage: Lost at the cage.
+    """
+
+    drive: Scalar
+    contacts: Scalar
+    drag: Scalar
+    cage: Scalar
+
+
+class SteadyMotion(eqx.Module):
+    """What is known of balls and of rollers. Axes: place along the orbit; contact.
+
+    Attributes:
+        azimuth: The places (place,) [rad]; one place stands for all where all bear
+            the same.
+        contact_load: Loads (place, contact) [N].
+        orbit_speed: Orbital speed (place,) [rad/s].
+        rolling_orbit_speed: That of pure rolling (place,) [rad/s].
+        film: Central films (place, contact) [m].
+        heat: Of each contact (place, contact) [W].
+        cage_speed: Mean orbital speed [rad/s].
+        friction_torque: That turns the inner ring, the mean over the orbit [N m].
+        power: Mean powers.
+        residual: Force out of balance relative to the tractions [1].
+        steps: Steps of the search.
+        result: `Result` code.
+    """
+
+    azimuth: Float[Array, " place"] = eqx.field(metadata=unit("rad"))
+    contact_load: Float[Array, "place contact"] = eqx.field(metadata=unit("N"))
+    orbit_speed: Float[Array, " place"] = eqx.field(metadata=unit("rad/s"))
+    rolling_orbit_speed: Float[Array, " place"] = eqx.field(metadata=unit("rad/s"))
+    film: Float[Array, "place contact"] = eqx.field(metadata=unit("m"))
+    heat: Float[Array, "place contact"] = eqx.field(metadata=unit("W"))
+    cage_speed: Scalar = eqx.field(metadata=unit("rad/s"))
+    friction_torque: Scalar = eqx.field(metadata=unit("N m"))
+    power: Power
+    residual: Scalar = eqx.field(metadata=unit("1"))
+    steps: Int[Array, ""]
+    result: Int[Array, ""]
+
+    @property
+    def slip(self) -> Float[Array | np.ndarray, "*n place"]:
+        """1 - orbit/rolling orbit (place,) [1]."""
+        return 1.0 - self.orbit_speed / self.rolling_orbit_speed
+
+
+class SteadySkid(SteadyMotion):
+    """How skidding balls move in the end. Axis contact as of `BallResults`; pure
+    rolling is outer raceway control at the contact angles.
+
+    Attributes are those of `SteadyMotion`, and
+        solution: The bearing under its load.
+        contact_angle: Angles (place, contact) [rad].
+        spin: Of the ball relative to its orbiting frame, tangential, radial, axial
+            (place, 3) [rad/s].
+        sliding: Slip in the middle of the contacts, along the rolling direction and
+            across (place, contact, 2) [m/s].
+        contact_spin: About the contact normals (place, contact) [rad/s].
+        wander: How far a ball goes ahead of even motion and falls behind it, together
+            [m]: less than the pocket clearance, or the cage takes part.
+    """
+
+    solution: BallSolution
+    contact_angle: Float[Array, "place contact"] = eqx.field(metadata=unit("rad"))
+    spin: Float[Array, "place 3"] = eqx.field(metadata=unit("rad/s"))
+    sliding: Float[Array, "place contact 2"] = eqx.field(metadata=unit("m/s"))
+    contact_spin: Float[Array, "place contact"] = eqx.field(metadata=unit("rad/s"))
+    wander: Scalar = eqx.field(metadata=unit("m"))
+
+    @property
+    def sliding_speed(self) -> Float[Array | np.ndarray, "*n place contact"]:
+        """Sizes of `sliding` (place, contact) [m/s]."""
+        return namespace(self.sliding).sqrt((self.sliding**2).sum(axis=-1))
+
+    @property
+    def pitch_angle(self) -> Float[Array | np.ndarray, "*n place"]:
+        """Angle between spin axis and bearing axis (place,) [rad]."""
+        return namespace(self.spin).arctan2(self.spin[..., 1], -self.spin[..., 2])
+
+
+class SteadyRollerSkid(SteadyMotion):
+    """How skidding rollers move in the end. Contacts (outer, inner).
+
+    All orbit with the cage, so that `orbit_speed` is the same everywhere.
+
+    Attributes are those of `SteadyMotion`, and
+        solution: The bearing under its load.
+        spin: About the roller axis, relative to the orbiting frame (place,) [rad/s].
+        rolling_spin: That of pure rolling (place,) [rad/s].
+        sliding: Slip along the rolling direction (place, contact) [m/s].
+        cage_force: Of the cage on a roller, in the sense in which angles are counted:
+            where it is positive the rear of a pocket pushes, else the front holds back
+            (place,) [N].
+    """
+
+    solution: RollerSolution
+    spin: Float[Array, " place"] = eqx.field(metadata=unit("rad/s"))
+    rolling_spin: Float[Array, " place"] = eqx.field(metadata=unit("rad/s"))
+    sliding: Float[Array, "place contact"] = eqx.field(metadata=unit("m/s"))
+    cage_force: Float[Array, " place"] = eqx.field(metadata=unit("N"))
+
+    @property
+    def sliding_speed(self) -> Float[Array | np.ndarray, "*n place contact"]:
+        """Sizes of `sliding` (place, contact) [m/s]."""
+        return abs(self.sliding)
