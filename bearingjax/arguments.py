@@ -88,9 +88,9 @@ def parser() -> argparse.ArgumentParser:
     )
     skid = commands.add_parser(
         "skid",
-        help="balls that skid: over time, or in the end",
-        description="How the balls of a bearing and its cage move in the oil of its"
-        " [lubricant], over the time of its [dynamics], or in the end.",
+        help="balls and rollers that skid: over time, or in the end",
+        description="How the balls or rollers of a bearing move with its cage in its"
+        " [lubricant], over the time of its [dynamics] (balls), or in the end.",
         epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
     )
     _add_common(skid)

@@ -1,4 +1,4 @@
-"""Warnings about balls that skid: one list for the library and the command line."""
+"""Warnings about what skids: one list for the library and the command line."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ NEWTONIAN_PRESSURE = 1e9
 """Pressure from which no oil bears the stress of a Newtonian film [Pa]."""
 
 GROSS = 0.1
-"""Slip of a ball from which skidding is gross [1]."""
+"""Slip of a ball or roller from which skidding is gross [1]."""
 
 STARTED = 0.1
 """Share of the fastest rolling from which times count, of a motion in time [1]."""
@@ -22,13 +22,13 @@ MIXED = 3.0
 """Least film over what remains of a film at rest below which surfaces touch [1]."""
 
 
-def skid_warnings(model: SkidModel, found: Any, state: Conditions) -> list[str]:
+def skid_warnings(model: SkidModel, found: Any, state: Conditions | None) -> list[str]:
     """What is doubtful about a skidding motion, a sentence each.
 
     Args:
         model: The bearing, its oil and what surrounds the balls.
-        found: How its balls move, concrete; from `steady_skid` or `skid`.
-        state: From `conditions`.
+        found: How its balls or rollers move, concrete; from `steady_skid` or `skid`.
+        state: From `conditions`; of rollers `None`.
     """
     found, state = jax.tree.map(np.asarray, (found, state))
     loaded = found.contact_load > 1e-9 * np.nanmax(found.contact_load, initial=0.0)
@@ -36,10 +36,14 @@ def skid_warnings(model: SkidModel, found: Any, state: Conditions) -> list[str]:
     rolling = np.abs(found.rolling_orbit_speed)
     turning = rolling >= STARTED * np.nanmax(rolling, initial=0.0)
     loaded &= turning[..., None]
+    if state is None:
+        pressure = found.solution.roller_pressure
+        told = _slip(found, loaded), _newtonian(model, pressure)
+        return [text for text in told if text]
     told = (
         _wander(model, found),
         _slip(found, loaded),
-        _newtonian(model, state, loaded),
+        _newtonian(model, np.where(loaded, state.peak_pressure, 0.0)),
         _glass(model, state, loaded),
         _regimes(state, loaded),
         _mixed(model, state, loaded),
@@ -69,8 +73,8 @@ def _slip(found, loaded):
     )
 
 
-def _newtonian(model, state, loaded):
-    pressure = np.where(loaded, state.peak_pressure, 0.0).max(initial=0.0)
+def _newtonian(model, pressures):
+    pressure = float(np.max(pressures))
     if type(model.traction) is not Newtonian or not pressure > NEWTONIAN_PRESSURE:
         return ""
     return (

@@ -23,6 +23,8 @@ from .skid import skid_overview as skid_overview
 from .skid_contact import heat_map as heat_map
 from .skid_contact import sliding_ellipse as sliding_ellipse
 from .skid_contact import sliding_map as sliding_map
+from .skid_orbit import cage_force_over_orbit as cage_force_over_orbit
+from .skid_orbit import heat_over_orbit as heat_over_orbit
 from .skid_orbit import load_over_orbit as load_over_orbit
 from .skid_orbit import sliding_over_orbit as sliding_over_orbit
 from .skid_orbit import spin_over_orbit as spin_over_orbit

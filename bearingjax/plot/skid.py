@@ -1,13 +1,22 @@
-"""Pages on balls that skid, and the cage speed over the load."""
+"""Pages on balls and rollers that skid, and the cage speed over the load."""
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..dynamics import Conditions, SkidHistory, SkidModel, SteadySkid, by_raceway
+from ..dynamics import (
+    Conditions,
+    SkidHistory,
+    SkidModel,
+    SteadyRollerSkid,
+    SteadySkid,
+    by_raceway,
+)
 from .skid_contact import heat_map, sliding_ellipse, sliding_map
 from .skid_orbit import (
+    cage_force_over_orbit,
+    heat_over_orbit,
     load_over_orbit,
     sliding_over_orbit,
     spin_over_orbit,
@@ -41,20 +50,21 @@ if TYPE_CHECKING:
 
 def skid_overview(
     model: SkidModel,
-    found: SteadySkid | SkidHistory,
-    state: Conditions,
+    found: SteadySkid | SteadyRollerSkid | SkidHistory,
+    state: Conditions | None,
     title: str = "",
 ) -> "matplotlib.figure.Figure":
-    """One page on balls that skid.
+    """One page on balls or rollers that skid.
 
     Of an end state: load, sliding and spin along the orbit, sliding and heat over the
-    hottest contact, powers; where all balls move alike, both contacts of a ball. Of a
-    motion in time: what `plot.skid_time` has, over time.
+    hottest contact, powers; where all balls move alike, both contacts of a ball; of
+    rollers heat and cage force along the orbit. Of a motion in time: what
+    `plot.skid_time` has, over time.
 
     Args:
         model: The bearing and its oil.
         found: From `steady_skid` or `skid`.
-        state: From `conditions`.
+        state: From `conditions`; of rollers `None`.
         title: Head of the page; the kind of bearing if empty.
 
     Returns:
@@ -62,6 +72,8 @@ def skid_overview(
     """
     if isinstance(found, SkidHistory):
         figure = _over_time(found)
+    elif isinstance(found, SteadyRollerSkid):
+        figure = _rollers(found)
     else:
         figure = _end(model, found, state)
     head(figure, title or type(model.bearing).__name__)
@@ -83,6 +95,22 @@ def _over_time(found):
         cage_force_over_time,
     )
     for draw, ax in zip(drawn, axes, strict=True):
+        draw(found, ax)
+    return figure
+
+
+def _rollers(found):
+    figure = pyplot().figure(figsize=(15.0, 9.0))
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    drawn = (
+        load_over_orbit,
+        sliding_over_orbit,
+        spin_over_orbit,
+        heat_over_orbit,
+        cage_force_over_orbit,
+        power_bars,
+    )
+    for draw, ax in zip(drawn, figure.subplots(2, 3).ravel(), strict=True):
         draw(found, ax)
     return figure
 
@@ -123,7 +151,7 @@ def _end(model, found, state):
 
 
 def power_bars(
-    found: SteadySkid, ax: "matplotlib.axes.Axes | None" = None
+    found: SteadySkid | SteadyRollerSkid, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
     """Mean power of the drive [W], and where it goes.
 

@@ -1,11 +1,20 @@
-"""Balls that skid, along their orbit: load, sliding and spin at every azimuth."""
+"""Balls and rollers that skid, along their orbit: load, sliding, spin, cage force."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..dynamics import SteadySkid, by_raceway
-from .style import COLOURS, GREY, RACEWAYS, SMALL, SPIN_COLOURS, SPIN_NAMES, axes_or_new
+from ..dynamics import SteadyRollerSkid, SteadySkid, by_raceway
+from .style import (
+    COLOURS,
+    GREY,
+    RACEWAYS,
+    ROLLER,
+    SMALL,
+    SPIN_COLOURS,
+    SPIN_NAMES,
+    axes_or_new,
+)
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -16,6 +25,9 @@ _HEADROOM = 0.14
 """Room for the legend, over that of the curves."""
 _PAD = 20
 """Room for the names of the zones below a title [pt]."""
+
+
+Steady = SteadySkid | SteadyRollerSkid
 
 
 class Zone(NamedTuple):
@@ -33,7 +45,7 @@ class Zone(NamedTuple):
     loaded: bool
 
 
-def zones(found: SteadySkid) -> list[Zone]:
+def zones(found: Steady) -> list[Zone]:
     """Parts of the orbit in which balls bear more than under the axial load alone.
 
     Under axial and radial load on a ring that may tilt there are two, B and D, of
@@ -47,6 +59,8 @@ def zones(found: SteadySkid) -> list[Zone]:
 
     Source: Han & Chu, J. Sound Vib. 354 (2015) 219-235, figures 11 and 12.
     """
+    if not isinstance(found, SteadySkid):
+        return []  # of rollers
     azimuth, load = (
         np.asarray(found.azimuth),
         by_raceway(found.contact_load, found.contact_load),
@@ -93,9 +107,9 @@ def zones(found: SteadySkid) -> list[Zone]:
 
 
 def load_over_orbit(
-    found: SteadySkid, ax: "matplotlib.axes.Axes | None" = None
+    found: Steady, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Contact loads of a ball [N] against its azimuth [deg], zones B and D shaded.
+    """Contact loads [N] against its azimuth [deg], zones B and D shaded.
 
     Args:
         found: From `steady_skid`, with places.
@@ -106,14 +120,14 @@ def load_over_orbit(
     """
     ax = axes_or_new(ax)
     _raceways(ax, found, by_raceway(found.contact_load, found.contact_load))
-    _finish(ax, found, "Load on a ball")
+    _finish(ax, found, "Load")
     ax.set_ylim(bottom=0.0)
     ax.set_ylabel("contact load [N]")
     return ax
 
 
 def sliding_over_orbit(
-    found: SteadySkid, ax: "matplotlib.axes.Axes | None" = None
+    found: Steady, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
     """Sliding speed in the middle of the contacts [mm/s] against azimuth [deg].
 
@@ -139,9 +153,10 @@ def sliding_over_orbit(
 
 
 def spin_over_orbit(
-    found: SteadySkid, ax: "matplotlib.axes.Axes | None" = None
+    found: Steady, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Spin of a ball in its orbiting frame [rad/s] against azimuth [deg].
+    """Spin in the orbiting frame [rad/s] against azimuth [deg]; of rollers about their
+    axes, beside pure rolling.
 
     Args:
         found: From `steady_skid`, with places.
@@ -152,10 +167,55 @@ def spin_over_orbit(
     """
     ax = axes_or_new(ax)
     azimuth, spin = _closed(found, np.asarray(found.spin))
-    for k, name in enumerate(SPIN_NAMES):
-        ax.plot(azimuth, spin[:, k], color=SPIN_COLOURS[k], label=name)
-    _finish(ax, found, "Spin of a ball")
+    if isinstance(found, SteadySkid):
+        for k, name in enumerate(SPIN_NAMES):
+            ax.plot(azimuth, spin[:, k], color=SPIN_COLOURS[k], label=name)
+    else:
+        rolling = _closed(found, np.asarray(found.rolling_spin))[1]
+        ax.plot(azimuth, spin, color=SPIN_COLOURS[2], label="spin")
+        ax.plot(azimuth, rolling, "--", color=GREY, label="rolling", linewidth=1)
+    _finish(ax, found, "Spin")
     ax.set_ylabel("spin [rad/s]")
+    return ax
+
+
+def heat_over_orbit(
+    found: Steady, ax: "matplotlib.axes.Axes | None" = None
+) -> "matplotlib.axes.Axes":
+    """Heat of the contacts [W] against azimuth [deg].
+
+    Args:
+        found: From `steady_skid`, with places.
+        ax: Axes; a new figure if `None`.
+
+    Returns:
+        The axes.
+    """
+    ax = axes_or_new(ax)
+    _raceways(ax, found, by_raceway(found.heat, found.contact_load))
+    _finish(ax, found, "Heat of the contacts")
+    ax.set_ylim(bottom=0.0)
+    ax.set_ylabel("heat [W]")
+    return ax
+
+
+def cage_force_over_orbit(
+    found: SteadyRollerSkid, ax: "matplotlib.axes.Axes | None" = None
+) -> "matplotlib.axes.Axes":
+    """Force of the cage on a roller [N] against azimuth [deg].
+
+    Args:
+        found: From `steady_skid`, of rollers.
+        ax: Axes; a new figure if `None`.
+
+    Returns:
+        The axes.
+    """
+    ax = axes_or_new(ax)
+    azimuth, force = _closed(found, np.asarray(found.cage_force))
+    ax.plot(azimuth, force, color=ROLLER, label="above zero: pushed forwards")
+    _finish(ax, found, "Force of the cage on a roller")
+    ax.set_ylabel("cage force [N]")
     return ax
 
 

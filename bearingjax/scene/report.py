@@ -46,7 +46,7 @@ def _bearing(scene, solution):
         lines += _springs(bearing, solution)
     head = scene.name if not lines else "each row"
     row = rows_of(bearing)[0].bearing
-    own = ball_row(row, head) if is_ball(bearing) else _roller_row(row, head)
+    own = ball_row(row, head) if is_ball(bearing) else roller_row(row, head)
     return "\n".join([*lines, *own])
 
 
@@ -96,7 +96,8 @@ def _osculation(value):
     return "of a sphere" if value is None else f"{float(value):.4g}"
 
 
-def _roller_row(bearing, head):
+def roller_row(bearing, head) -> list[str]:
+    """Kind and sizes of a row of rollers, in words."""
     size = [bearing.pitch_diameter, bearing.roller_diameter, bearing.roller_length]
     pitch, diameter, length = (1e3 * float(x) for x in size)
     kind = type(bearing).__name__.removesuffix("RollerBearing").lower()

@@ -1,4 +1,4 @@
-"""What other programs read of balls that skid: JSON and tables, in SI."""
+"""What other programs read of balls or rollers that skid: JSON and tables, in SI."""
 
 import itertools
 from pathlib import Path
@@ -26,12 +26,22 @@ UNITS = {
     "sliding_speed": "m/s",
     "contact_spin": "rad/s",
     "heat": "W",
+    "rolling_spin": "rad/s",
     "cage_force": "N",
 }
-"""What is told of each ball, with its unit; the last of a motion in time."""
+"""What is told of each ball or roller, with its unit; of rollers, and of balls in time,
+their cage force, of rollers their spin in pure rolling."""
 
-OF_BALL = ("azimuth", "orbit_speed", "rolling_orbit_speed", "slip", "spin")
-"""Of these a ball has one; of the others one for each raceway."""
+OF_ONE = (
+    "azimuth",
+    "orbit_speed",
+    "rolling_orbit_speed",
+    "slip",
+    "spin",
+    "rolling_spin",
+    "cage_force",
+)
+"""Of these a ball or roller has one; of the others one for each raceway."""
 
 OF_TIME = {
     "time": "s",
@@ -53,9 +63,10 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
 
     Returns:
         cage_speed, rolling_cage_speed, friction_torque, power, and what `UNITS` lists
-        for each ball, those of contacts for each raceway (outer, inner), of two arcs
-        that of the more loaded one. Of an end state the balls are where they stand in
-        the solved bearing, `orbit` has the same at all places, and `wander`. Of a
+        for each ball or roller, those of contacts for each raceway (outer, inner), of
+        two arcs that of the more loaded one. Of an end state they are where they stand
+        in the solved bearing, `orbit` has the same at all places, and of balls there is
+        `wander`. Of a
         motion in time all have a leading axis `time`; besides there are what `OF_TIME`
         lists and `work`; null stands at times that were not reached. And result,
         message, residual, iterations, warnings and version. Without a solution numbers
@@ -113,7 +124,7 @@ def _spread(name, values, steady):
     axes: list[Any] = [] if steady else [range(values.shape[1])]
     if name == "spin":
         axes.append("xyz")
-    elif name not in OF_BALL and name != "cage_force":
+    elif name not in OF_ONE:
         axes.append(RINGS)
     parts = values.reshape(len(values), -1).T
     ends = itertools.product(*axes)
@@ -135,18 +146,21 @@ def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
     """
     found, told = run.found, {}
     for name in UNITS:
-        values = run.state.least_film if name == "least_film" else None
-        values = getattr(found, name, values)
+        values = getattr(found, name, None)
+        if name == "least_film" and run.state is not None:
+            values = run.state.least_film
         if values is None:
             continue
-        whole = name in OF_BALL or name == "cage_force"
         values = np.asarray(values)
-        told[name] = values if whole else by_raceway(values, found.contact_load)
+        if name == "spin" and values.ndim == 1:  # of rollers, about their axes
+            values = values[:, None] * np.array([0.0, 0.0, 1.0])
+        one = name in OF_ONE
+        told[name] = values if one else by_raceway(values, found.contact_load)
     return told
 
 
 def at_balls(run: SkidRun) -> np.ndarray:
-    """Places at which the balls stand in the solved bearing (ball,)."""
+    """Places at which balls or rollers stand in the solved bearing (ball,)."""
     places, balls = len(run.found.azimuth), len(run.found.solution.azimuth)
     return np.arange(balls) * places // balls
 
@@ -178,7 +192,7 @@ def skid_message(run: SkidRun) -> str:
     steps = int(run.found.steps)
     if run.task.steady:
         return (
-            f"No even motion of the balls was found in {steps} steps; force out of"
+            f"No even motion was found in {steps} steps; force out of"
             f" balance {_residual(run):.1e} of the tractions. Take other"
             " `dynamics.places`, or integrate in time, without --steady."
         )
@@ -220,7 +234,7 @@ def _end(run):
         **own,
         "friction_torque": float(found.friction_torque),
         "power": {k: float(v) for k, v in _powers(run).items()},
-        "wander": float(found.wander),
+        **({"wander": float(found.wander)} if hasattr(found, "wander") else {}),
         "orbit": {name: values.tolist() for name, values in orbit.items()},
     }
 

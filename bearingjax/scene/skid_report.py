@@ -1,11 +1,12 @@
-"""Balls that skid, as text for people."""
+"""Balls or rollers that skid, as text for people."""
 
 import numpy as np
 
+from ..design import is_ball
 from ..element.frame import LOADS
 from ..lubrication import Regime
 from .lubricant_table import TRACTIONS, described
-from .report import ball_row
+from .report import ball_row, roller_row
 from .skid_output import at_balls, each_ball, rolling_cage_speed
 from .skid_run import SkidRun
 
@@ -16,7 +17,7 @@ _SMALL = 1e-6
 
 
 def skid_report(run: SkidRun) -> str:
-    """Readable report of balls that skid.
+    """Readable report of balls or rollers that skid.
 
     Args:
         run: From `run_skid`, converged.
@@ -27,6 +28,7 @@ def skid_report(run: SkidRun) -> str:
 
 def _bearing(run):
     task, model = run.task, run.task.model
+    row = ball_row if is_ball(model.bearing) else roller_row
     named = {kind: name for name, kind in TRACTIONS.items()}
     load = ", ".join(
         f"{name} {value:.5g} {'N' if name[0] == 'F' else 'N m'}"
@@ -36,7 +38,7 @@ def _bearing(run):
     speed, varies = task.speed, "" if task.loads is None else ", varying in time"
     return "\n".join(
         [
-            *ball_row(model.bearing, task.name),
+            *row(model.bearing, task.name),
             f"load on the {task.scene.moving_ring} ring: {load or 'none'}{varies};"
             f" inner ring {_rpm(speed.inner)}, outer ring {_rpm(speed.outer)}",
             f"{task.oil} at {described(model.lubricant, float(model.temperature))};"
@@ -70,7 +72,15 @@ def _end(run):
         f" {_clean(power.contacts):.5g} W + drag {_clean(power.drag):.5g} W + cage"
         f" {_clean(power.cage):.5g} W",
     ]
-    if len(found.azimuth) > 1:
+    if hasattr(found, "cage_force"):
+        least, most = (
+            float(f) for f in (found.cage_force.min(), found.cage_force.max())
+        )
+        lines.append(
+            f"cage            pushes a roller with up to {most:.4g} N, holds one back"
+            f" with up to {-least:.4g} N"
+        )
+    elif len(found.azimuth) > 1:
         play = float(run.task.model.cage.pocket_clearance)
         lines.append(
             f"balls wander    {1e6 * float(found.wander):.4g} µm about even motion;"
@@ -107,20 +117,22 @@ def _motion(run):
 
 
 def _balls(run):
-    """A line for each ball, or one where all move alike; in the end."""
+    """A line for each ball or roller, or one where all move alike; in the end."""
     found, steady = run.found, run.task.steady
+    balls = run.state is not None
     alike = steady and len(found.azimuth) == 1
     rows = at_balls(run) if steady else slice(None)
     told = {n: (v if steady else v[-1])[rows] for n, v in each_ball(run).items()}
-    angle = np.rad2deg(np.arctan2(told["spin"][:, 1], -told["spin"][:, 2]))
+    own = 100.0 * told["slip"], _pitch(told) if balls else told["cage_force"]
     azimuth = found.solution.azimuth if steady else told["azimuth"]
     azimuth = np.rad2deg(azimuth) % 360.0
     small = _SMALL * told["contact_load"].max()
     pairs = "".join(f"{name:>18}" for name in ("film, µm", "sliding, mm/s", "heat, W"))
     sides = f"{'outer':>9}{'inner':>9}"
     lines = [
-        f"  ball azimuth{'load, N':>18}      slip  pitch{pairs}",
-        f"{'deg':>14}{sides}{'%':>10}{'deg':>7}{3 * sides}",
+        f"{'  ball' if balls else 'roller'} azimuth{'load, N':>18}{'slip':>10}"
+        f"{'pitch' if balls else 'cage':>8}{pairs}",
+        f"{'deg':>14}{sides}{'%':>10}{'deg' if balls else 'N':>8}{3 * sides}",
     ]
     for k in range(1 if alike else len(azimuth)):
         where = "   all       -" if alike else f"{k:6d}{azimuth[k]:8.1f}"
@@ -129,21 +141,33 @@ def _balls(run):
         # An open contact has no film worth printing.
         bears = np.tile(load > small, 3)
         values = zip((*film, *slide, *told["heat"][k]), bears, strict=True)
-        after = "".join(f"{v:9.3g}" if yes else f"{'-':>9}" for v, yes in values)
+        after = "".join(_number(v) if yes else f"{'-':>9}" for v, yes in values)
         before = "".join(f"{v if v > small else 0.0:9.4g}" for v in load)
         lines.append(
-            f"{where}{before}{100.0 * told['slip'][k]:10.3g}"
-            f"{_clean(round(angle[k], 1)):7.1f}{after}"
+            f"{where}{before}{own[0][k]:10.3g}{_clean(round(own[1][k], 1)):8.1f}{after}"
         )
     return "\n".join(lines)
 
 
-def _ending(run):
-    found, regime, load = run.found, run.state.regime, run.found.contact_load
+def _pitch(told):
+    """Angles between spin and bearing axis [deg]."""
+    return np.rad2deg(np.arctan2(told["spin"][:, 1], -told["spin"][:, 2]))
+
+
+def _films(run):
+    """Regimes of the films of balls, in the end."""
+    if run.state is None:
+        return []
+    regime, load = run.state.regime, run.found.contact_load
     if not run.task.steady:
         regime, load = regime[-1], load[-1]
     regimes = np.unique(regime[load > _SMALL * load.max()])
     names = [Regime(int(r)).name.lower().replace("_", " and ") for r in regimes]
+    return [f"films: {', '.join(names)}"]
+
+
+def _ending(run):
+    found = run.found
     if run.task.steady:
         done = (
             f"converged in {int(found.steps)} steps, residual"
@@ -157,11 +181,15 @@ def _ending(run):
         )
     return "\n".join(
         [
-            f"films: {', '.join(names)}",
+            *_films(run),
             done,
             *(f"warning: {text}" for text in run.warnings),
         ]
     )
+
+
+def _number(value):
+    return f"{value:9.0f}" if value >= 1e3 else f"{value:9.3g}"
 
 
 def _clean(value):

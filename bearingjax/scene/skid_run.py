@@ -1,4 +1,4 @@
-"""Running what a scene asks for of balls that skid."""
+"""Running what a scene asks for of balls or rollers that skid."""
 
 import dataclasses
 from typing import Any
@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ..design import is_ball
 from ..dynamics import (
     SkidState,
     conditions,
@@ -22,12 +23,13 @@ from .skid_table import SkidScene
 
 @dataclasses.dataclass(frozen=True)
 class SkidRun:
-    """What came of a scene of balls that skid, as NumPy holds it.
+    """What came of a scene of balls or rollers that skid, as NumPy holds it.
 
     Attributes:
         task: What was asked.
-        found: How the balls move, `SteadySkid` or `SkidHistory`; read its `result`.
-        state: `Conditions` in the contacts.
+        found: How they move, `SteadySkid`, `SteadyRollerSkid` or `SkidHistory`; read
+            its `result`.
+        state: `Conditions` in the contacts; of rollers `None`.
         warnings: What is doubtful; none where it was not solved to the end.
     """
 
@@ -58,12 +60,12 @@ class SkidRun:
 
     @property
     def loads_solved(self) -> bool:
-        """Whether the bearing was solved, in which the balls move."""
+        """Whether the bearing was solved, in which they move."""
         return bool(self.found.solution.converged)
 
 
 def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
-    """How the balls of a scene skid.
+    """How the balls or rollers of a scene skid.
 
     Args:
         task: From `read_skid`.
@@ -81,7 +83,9 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
         found, speed = _end(task) if task.steady else _motion(task, shown)
     except ValueError as error:
         raise SceneError(f"{task.name}: {error}") from error
-    held, state = jax.tree.map(_held, (found, conditions(task.model, found, speed)))
+    balls = is_ball(task.model.bearing)
+    state = conditions(task.model, found, speed) if balls else None
+    held, state = jax.tree.map(_held, (found, state))
     told = (*task.warnings, *(_left_out(task) if task.steady else ()))
     if Result(int(held.result)) is Result.CONVERGED:
         doubtful = skid_warnings(task.model, held, state)

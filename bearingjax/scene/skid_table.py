@@ -1,4 +1,4 @@
-"""The [lubricant], [cage] and [dynamics] tables of a scene: balls that skid."""
+"""The [lubricant], [cage] and [dynamics] tables of a scene: what skids."""
 
 import dataclasses
 from collections.abc import Iterable
@@ -7,7 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ..design import AbstractBallBearing
+from ..design import (
+    AbstractBallBearing,
+    BearingSet,
+    CylindricalRollerBearing,
+    NeedleRollerBearing,
+    n_elements,
+)
 from ..dynamics import (
     Cage,
     Drag,
@@ -35,7 +41,7 @@ MOST_PLACES = 2000
 
 @dataclasses.dataclass(frozen=True)
 class SkidScene:
-    """What a scene asks for of balls that skid, in SI.
+    """What a scene asks for of balls or rollers that skid, in SI.
 
     Attributes:
         scene: The scene without it; its speeds are those of the load solve.
@@ -89,7 +95,7 @@ class SkidScene:
 def read_skid(
     source: str | Path, settings: Iterable[str] = (), *, steady: bool = False
 ) -> SkidScene:
-    """Read a scene of balls that skid.
+    """Read a scene of balls or rollers that skid.
 
     Args:
         source, settings: As in `read_scene`.
@@ -103,7 +109,7 @@ def read_skid(
     data = parse_bearing(path, settings)
     top = Table(data, path.name)
     scene = scene_of(data, path)
-    _check_bearing(top, scene)
+    _check_bearing(top, scene, steady)
     lubricant = top.table("lubricant", required=True)
     cage, dynamics = top.table("cage"), top.table("dynamics")
     oil, temperature, odd = read_lubricant(lubricant)
@@ -124,7 +130,7 @@ def read_skid(
         speeds=_speeds(dynamics, scene.speed),
         **_loads(dynamics, scene.load),
         **_time(dynamics, steady),
-        places=_places(dynamics, steady, model.bearing.n_balls),
+        places=_places(dynamics, steady, n_elements(model.bearing)),
         warnings=(*scene.warnings, *odd),
     )
     for table in (lubricant, cage, dynamics):
@@ -137,14 +143,20 @@ def _built(table, kind, values):
         return kind(**values)
 
 
-def _check_bearing(top: Table, scene: Scene) -> None:
-    """One row of balls under rings that turn."""
-    if not isinstance(scene.element.bearing, AbstractBallBearing):
-        if "set" in top:
-            raise top.error("set", "is of several rows; balls skid in one, without")
-        bearing = top.table("bearing")
-        kind = bearing.word("type")
-        raise bearing.error("type", f"{kind!r} is not a single row of balls that skid")
+def _check_bearing(top: Table, scene: Scene, steady: bool) -> None:
+    """One row of balls or cylindrical rollers under rings that turn."""
+    design, bearing = scene.element.bearing, top.table("bearing")
+    if isinstance(design, BearingSet):
+        key = "set" if "set" in top else "bearing"
+        raise top.error(key, "is of several rows; balls or rollers skid in one")
+    kind = bearing.word("type")
+    rollers = isinstance(design, CylindricalRollerBearing | NeedleRollerBearing)
+    if not rollers and not isinstance(design, AbstractBallBearing):
+        problem = f"{kind!r} does not skid; balls, cylindrical and needle rollers do"
+        raise bearing.error("type", problem)
+    if rollers and not steady:
+        problem = f"{kind!r} skids in its end state alone; ask for it with --steady"
+        raise bearing.error("type", problem)
     if scene.speed is None:
         operating = top.table("operating")
         problem = "is missing, and so is `outer_speed`; nothing skids at rest"
@@ -183,15 +195,16 @@ def _time(dynamics: Table, steady: bool) -> dict:
     }
 
 
-def _places(dynamics: Table, steady: bool, balls: int) -> int | None:
+def _places(dynamics: Table, steady: bool, count: int) -> int | None:
     places = dynamics.integer("places", None)
     if places is None:
         return None
     if places > MOST_PLACES:
         problem = f"{places} is too many; at most {MOST_PLACES}"
         raise dynamics.error("places", problem)
-    if steady and places != 1 and places % balls:
-        problem = f"{places} is not allowed; 1 or a multiple of the {balls} balls"
+    if steady and places != 1 and places % count:
+        number = f"a multiple of the number of balls or rollers, {count}"
+        problem = f"{places} is not allowed; 1 or {number}"
         raise dynamics.error("places", problem)
     if not steady and 1 < places < 6:
         raise dynamics.error("places", f"{places} is not allowed; 1 or at least 6")

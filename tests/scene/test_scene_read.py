@@ -28,6 +28,7 @@ SHIPPED = (
     "self_aligning",
     "skid_axial",
     "skid_combined",
+    "skid_roller",
     "sprung_pair",
     "tapered",
 )

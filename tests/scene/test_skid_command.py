@@ -34,6 +34,13 @@ GIVEN = (
     "dynamics.places=12",
 )
 SMALL = ("skid", "skid_combined", *(w for s in GIVEN for w in ("--set", s)))
+# Seven rollers at twice as many places.
+ROLLERS = (
+    "bearing.n_rollers=7",
+    "operating.load.Fx=200 N",
+    "dynamics.places=14",
+)
+FEW = ("skid", "skid_roller", *(w for s in ROLLERS for w in ("--set", s)))
 # The same bearing under an axial load, from rest to full speed in a millisecond.
 START = (
     "bearing.n_balls=6",
@@ -157,6 +164,37 @@ def test_motion_in_time(run, history, tmp_path):
     assert picture.stat().st_size > 20_000
 
 
+def test_rollers(run, tmp_path):
+    out, table, picture = (tmp_path / f"end.{kind}" for kind in ("json", "csv", "png"))
+    outputs = ("--json", out, "--table", table, "--plot", picture)
+    done = run(*FEW, "--steady", *outputs)
+    assert done.status == 0 and done.err == ""
+    end = run_skid(read_skid("skid_roller", ROLLERS, steady=True))
+    assert done.out == skid_report(end) + "\n"
+    numbers, found = json.loads(out.read_text()), end.found
+    assert numbers == skid_as_dict(end)
+    for name in ("orbit_speed", "slip", "film", "sliding_speed", "cage_force", "heat"):
+        assert numbers[name] == getattr(found, name)[::2].tolist()
+    spin = np.array(numbers["spin"])  # about the roller axis alone, as that of a ball
+    assert spin.shape == (7, 3) and not spin[:, :2].any()
+    np.testing.assert_array_equal(spin[:, 2], found.spin[::2])
+    assert "cage            pushes a roller with up to" in done.out
+    with table.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    column = [float(row["cage_force [N]"]) for row in rows]
+    np.testing.assert_allclose(column, found.cage_force, rtol=ROUNDING)
+    assert picture.stat().st_size > 20_000
+    shown = {
+        plot.cage_force_over_orbit: (0, found.cage_force),
+        plot.heat_over_orbit: (1, found.heat[:, 1]),
+        plot.spin_over_orbit: (1, found.rolling_spin),
+    }
+    for draw, (k, values) in shown.items():
+        np.testing.assert_array_equal(lines(draw(found))[k][:-1], values)
+    done = run(*FEW)
+    assert done.status == 2 and "skids in its end state alone; ask for it" in done.err
+
+
 def test_start_at_rest_under_turning_rings():
     """A table of speeds, and of what scenes say beside it."""
     turning = "speed={time=['0 s', '1 ms'], inner=['2000 rpm', '2000 rpm']}"
@@ -231,7 +269,10 @@ def test_bad_input(run, tmp_path):
     done = run(*SMALL, "--steady", *table)
     assert done.status == 2 and "a table ends in .csv or .parquet" in done.err
     done = run(*SMALL, "--steady", "--set", "dynamics.places=1")
-    assert done.status == 2 and "`places` is 1, but the balls bear unlike" in done.err
+    assert (
+        done.status == 2
+        and "`places` is 1, but balls or rollers bear unlike" in done.err
+    )
     done = run("skid", "deep_groove", "--steady")
     assert done.status == 2 and "`operating.inner_speed`: is missing" in done.err
 

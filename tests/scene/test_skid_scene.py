@@ -191,7 +191,7 @@ WRONG = {
     ),
     "set": (
         ["set={arrangement='tandem', spacing='20 mm'}"],
-        "`set`: is of several rows; balls skid in one, without",
+        "`set`: is of several rows; balls or rollers skid in one",
     ),
 }
 # The same beside a table of speeds in place of the ramp.
@@ -300,9 +300,17 @@ def test_loads_over_time():
 def test_rollers_and_places_of_the_end_state():
     with pytest.raises(SceneError, match="`lubricant`: is missing; it must be a table"):
         read_skid("deep_groove", ["operating.inner_speed=1 rpm"])
-    with pytest.raises(SceneError, match="'needle_roller' is not a single row of ball"):
+    with pytest.raises(
+        SceneError, match="'needle_roller' skids in its end state alone"
+    ):
         read_skid("needle")
-    with pytest.raises(SceneError, match="1 or a multiple of the 12 balls"):
+    with pytest.raises(SceneError, match="'tapered_roller' does not skid; balls, cyl"):
+        read_skid("tapered", steady=True)
+    with pytest.raises(SceneError, match="`bearing`: is of several rows; balls or rol"):
+        read_skid("self_aligning", steady=True)
+    with pytest.raises(
+        SceneError, match="1 or a multiple of the number .* rollers, 12"
+    ):
         read_skid("skid_axial", ["dynamics.places=100"], steady=True)
     assert read_skid("skid_axial", ["dynamics.places=100"]).places == 100
 
@@ -322,6 +330,14 @@ def test_shipped_scenes_are_those_of_the_paper():
     end = read_skid("skid_axial", ["dynamics={}"], steady=True)
     assert end.steady and end.duration is None
     assert same(end.model, MODEL)  # the defaults are the same numbers
+
+
+def test_shipped_roller_scene():
+    task = read_skid("skid_roller", steady=True)
+    assert task.model.bearing.n_rollers == 36 and task.places == 108
+    assert same(task.model.traction, LimitingStress())
+    assert same(task.model.drag, Drag(2.0, 0.02))
+    assert task.scene.free == ("ux", "uy")
 
 
 def test_what_stands_in_the_tables_of_surroundings():
