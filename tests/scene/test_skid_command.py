@@ -15,7 +15,7 @@ from tolerances import ROUNDING
 
 from bearingjax import plot
 from bearingjax.dynamics import skid_warnings
-from bearingjax.lubrication import Regime
+from bearingjax.lubrication import Newtonian, Regime
 from bearingjax.numerics import Result
 from bearingjax.scene import (
     read_skid,
@@ -191,6 +191,13 @@ def test_rollers(run, tmp_path):
     }
     for draw, (k, values) in shown.items():
         np.testing.assert_array_equal(lines(draw(found))[k][:-1], values)
+    pressed = eqx.tree_at(
+        lambda f: f.solution.roller_pressure, found, np.full((7, 2), 1.2e9)
+    )
+    thin = dataclasses.replace(end.task.model, traction=Newtonian())
+    slip, text = skid_warnings(thin, pressed, None)
+    assert slip.startswith("gross skidding, slip up to")
+    assert text.startswith("a Newtonian film at 1.2 GPa")
     done = run(*FEW)
     assert done.status == 2 and "skids in its end state alone; ask for it" in done.err
 
@@ -379,6 +386,32 @@ def test_cage_speed_over_load(end):
     assert (rolling > speed[0]).all()
     with pytest.raises(ValueError, match=r"`load` has the shape \(3,\)"):
         plot.cage_speed([1.0, 2.0, 3.0], two)
+
+
+@pytest.mark.parametrize("sense, before, behind", [(1.0, 0, 180), (-1.0, 180, 0)])
+def test_zones_of_a_load_with_two_waves(end, sense, before, behind):
+    """Above the mean about 90 and 270 deg, at 90 deg higher; no zones of even loads."""
+    azimuth = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    wave = -60.0 * np.cos(2.0 * azimuth)
+    higher = np.where(wave < 0, 1.5, np.where(azimuth < np.pi, 2.0, 1.0))
+    load = np.repeat((100.0 + higher * wave)[:, None], 2, axis=1)
+    flat = np.full_like(load, 0.4)
+    found = eqx.tree_at(
+        lambda f: (f.azimuth, f.contact_load, f.contact_angle, f.cage_speed),
+        end.found,
+        (azimuth, load, flat, np.asarray(80.0 * sense)),
+    )
+    a, b, c, d = plot.zones(found)
+    assert [zone.name for zone in (a, b, c, d)] == list("ABCD")
+    middle = [np.rad2deg(0.5 * (z.begin + z.end)) % 360.0 for z in (a, b, c, d)]
+    near = np.array([before, 90.0, behind, 270.0])
+    apart = (np.array(middle) - near + 180.0) % 360.0 - 180.0
+    np.testing.assert_allclose(apart, 0.0, atol=1e-9)
+    assert b.loaded and d.loaded and not a.loaded and not c.loaded
+    widths = [zone.end - zone.begin for zone in (a, b, c, d)]
+    np.testing.assert_allclose(sum(widths), 2.0 * np.pi, rtol=ROUNDING)
+    single = eqx.tree_at(lambda f: f.contact_load, found, np.full_like(load, 100.0))
+    assert plot.zones(single) == []
 
 
 def test_heat_of_a_contact_is_that_of_its_picture(end):
