@@ -4,6 +4,7 @@ from .conditions import Conditions as Conditions
 from .conditions import by_raceway as by_raceway
 from .conditions import conditions as conditions
 from .history import SkidHistory as SkidHistory
+from .history import SkidRollerHistory as SkidRollerHistory
 from .model import SkidModel as SkidModel
 from .motion import SkidState as SkidState
 from .ring_load import LoadHistory as LoadHistory

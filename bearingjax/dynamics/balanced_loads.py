@@ -14,6 +14,7 @@ from jaxtyping import Array, Float
 
 from ..contact.hertz import Ellipse
 from ..element.ball_contacts import angles
+from ..element.ball_speed import ball_mass
 from ..element.bearing_model import BearingModel
 from ..element.energy import derivatives, unpacked
 from ..element.inertia import Speed
@@ -48,7 +49,14 @@ class BalancedLoads(eqx.Module):
     force: Scalar
 
     n_own: ClassVar[int] = 2
+    n_spins: ClassVar[int] = LoadedBall.n_spins
     n_shared: ClassVar[int] = 6
+
+    @property
+    def mass(self) -> Scalar:
+        """Of a ball [kg]."""
+        bearing = self.skid.bearing
+        return ball_mass(bearing.ball_diameter, bearing.material.density)[0]
 
     def at(
         self,

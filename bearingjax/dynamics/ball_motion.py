@@ -14,7 +14,7 @@ Source: Han & Chu, J. Sound Vib. 354 (2015) 219-235, the formulas derived anew, 
     rings that both turn and any number of contacts.
 """
 
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import equinox as eqx
 import jax
@@ -68,6 +68,8 @@ class LoadedBall(eqx.Module):
     least_film: Scalar
     outwards: tuple[float, ...] = eqx.field(static=True)
 
+    n_spins: ClassVar[int] = 3
+
     @property
     def side(self) -> Float[Array, " contact"]:
         """s of every contact: 1 on the outer ring, -1 on the inner one."""
@@ -115,8 +117,13 @@ class Tractions(NamedTuple):
     moment: Float[Array, "contact 3"]
     ring_torque: Float[Array, " contact"]
 
+    @property
+    def heat(self) -> Float[Array, "*n contact"]:
+        """Power turned to heat (contact,) [W]."""
+        return self.resultants.heat
 
-def outer_control(ball: LoadedBall, speed: Speed) -> BallState:
+
+def rolling(ball: LoadedBall, speed: Speed) -> BallState:
     """Motion without slip, and without spin at the outer raceway.
 
     Args:
@@ -146,14 +153,14 @@ def sliding(ball: LoadedBall, state: BallState, speed: Speed) -> Sliding:
     wx, wy, wz = state.spin
     radius = 0.5 * ball.diameter
     # Speeds along x in the orbiting frame: of the ball's surface, of the raceway's.
-    rolling = side * radius * (wy * sin - wz * cos)
+    surface = side * radius * (wy * sin - wz * cos)
     passing = state.orbit - _ring_speed(ball, speed)
     raceway = passing * ball.lever
-    across = jnp.broadcast_to(side * radius * wx, rolling.shape)
+    across = jnp.broadcast_to(side * radius * wx, surface.shape)
     return Sliding(
-        slip=jnp.stack([rolling - raceway, across], axis=-1),
+        slip=jnp.stack([surface - raceway, across], axis=-1),
         spin=wy * cos + (wz + passing) * sin,
-        entrainment=0.5 * (rolling + raceway),
+        entrainment=0.5 * (surface + raceway),
     )
 
 

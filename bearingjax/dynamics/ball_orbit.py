@@ -18,7 +18,7 @@ from ..statics.solution import BallSolution
 from .ball_motion import (
     BallState,
     LoadedBall,
-    outer_control,
+    rolling,
     sliding,
     tractions,
     unbalanced,
@@ -133,9 +133,7 @@ class BallOrbit(AbstractOrbit):
             contact_load=ball.load,
             contact_angle=ball.angle,
             orbit_speed=around,
-            rolling_orbit_speed=jax.vmap(partial(outer_control, speed=speed))(
-                ball
-            ).orbit,
+            rolling_orbit_speed=jax.vmap(partial(rolling, speed=speed))(ball).orbit,
             spin=y[:, :3],
             film=pulls.film,
             sliding=moving.slip,
@@ -174,7 +172,7 @@ def ball_orbit(
     at = model.element.model(load_speed), bearing, law, solution.displacement, azimuth
     oil = model.lubricant, model.temperature, model.least_film
     ball = jax.vmap(partial(loaded_ball, bearing, law, *oil))(*contact_loads(*at))
-    start = jax.vmap(partial(outer_control, speed=speed))(ball)
+    start = jax.vmap(partial(rolling, speed=speed))(ball)
     start = jnp.concatenate([start.spin, start.orbit[:, None]], axis=1).reshape(-1)
     density = model.lubricant.density.at(model.temperature)
     along = jnp.asarray(derivatives(azimuth.shape[0]), azimuth.dtype)

@@ -1,4 +1,4 @@
-"""What the balls of a solved bearing move in, and how they begin."""
+"""What the balls or rollers of a solved bearing move in, and how they begin."""
 
 from collections.abc import Callable
 from functools import partial
@@ -13,20 +13,19 @@ from ..element.inertia import Speed
 from ..numerics.implicit import stop
 from ..numerics.types import Scalar
 from ..statics.balance import Balance
-from ..statics.solution import BallSolution
+from ..statics.solution import BallSolution, RollerSolution
 from .balanced_loads import BalancedLoads
-from .ball_motion import outer_control
 from .load_table import LoadTable, load_table
-from .loaded import contact_ellipses, contact_loads, loaded_ball
+from .loaded import contact_ellipses, contact_loads, loaded_ball, loaded_rollers
 from .model import SkidModel
-from .motion import SkidState, Surroundings
+from .motion import SkidState, Surroundings, mechanics
 from .ring_speed import SpeedTable
 
 
 def tabulated(
-    model: SkidModel, solution: BallSolution, speed: Speed, places: int
+    model: SkidModel, solution: BallSolution | RollerSolution, speed: Speed, places: int
 ) -> LoadTable:
-    """What the balls of a solved bearing bear, around it.
+    """What the balls or rollers of a solved bearing bear, around it.
 
     Args:
         model: The bearing and its oil.
@@ -34,22 +33,26 @@ def tabulated(
         speed: Ring speeds of that solution.
         places: Number of places. Static.
     """
+    azimuth = solution.azimuth[:1]
+    if places > 1:
+        even = 2.0 * np.pi * np.arange(places) / places
+        azimuth = jnp.asarray(even, solution.azimuth.dtype)
+    q, nodes = solution.displacement, model.traction.by_nodes
+    if not isinstance(solution, BallSolution):
+        return load_table(loaded_rollers(model, q, speed, azimuth), nodes)
     bearing, law = model.bearing, model.point_law
     oil = model.lubricant, model.temperature, model.least_film
     at = solution.contact_load[:1], solution.contact_angle[:1]
     if places > 1:
-        even = 2.0 * np.pi * np.arange(places) / places
-        azimuth = jnp.asarray(even, solution.azimuth.dtype)
-        here = solution.displacement, azimuth
-        at = contact_loads(model.element.model(speed), bearing, law, *here)
+        at = contact_loads(model.element.model(speed), bearing, law, q, azimuth)
     balls = jax.vmap(partial(loaded_ball, bearing, law, *oil))(*at)
-    return load_table(balls, model.traction.by_nodes)
+    return load_table(balls, nodes)
 
 
 @eqx.filter_jit
 def surroundings(
     model: SkidModel,
-    solution: BallSolution,
+    solution: BallSolution | RollerSolution,
     load_speed: Speed,
     speed: SpeedTable,
     gravity: Scalar,
@@ -113,7 +116,7 @@ def rolling_start(
     centre: Float[Array, "ball z"],
     ring: Float[Array, " unknown"],
 ) -> SkidState:
-    """Balls that roll with outer raceway control, in the middle of their pockets.
+    """Balls that roll with outer raceway control, or rollers, in mid pocket.
 
     Args:
         around: What the balls move in.
@@ -123,6 +126,7 @@ def rolling_start(
     ball, _, _ = jax.vmap(lambda at, c: around.loads.at(at, speed, c, ring))(
         around.place, centre
     )
-    rolling = jax.vmap(partial(outer_control, speed=speed))(ball)
+    rolling = jax.vmap(partial(mechanics(ball).rolling, speed=speed))(ball)
+    spin = rolling.spin.reshape(*rolling.orbit.shape, -1)
     none, turning = jnp.zeros_like(rolling.orbit), jnp.mean(rolling.orbit)
-    return SkidState(*rolling, none, turning, none[0], centre, ring)
+    return SkidState(spin, rolling.orbit, none, turning, none[0], centre, ring)

@@ -6,28 +6,22 @@ from jaxtyping import Array, Float, Int
 
 from ..numerics.types import namespace
 from ..numerics.units import unit
-from ..statics.solution import BallSolution
+from ..statics.solution import BallSolution, RollerSolution
 from .motion import SkidState, Work
 
 
-class SkidHistory(eqx.Module):
-    """Motion of skidding balls over time; NaN at times that were not reached. Axes:
-    time; ball; contact, as of `BallSolution`.
+class SkidMotion(eqx.Module):
+    """Motion of balls or rollers over time; NaN at times that were not reached. Axes:
+    time; ball or roller; contact.
 
     Attributes:
-        solution: The bearing under its load at the beginning.
         time: Times (time,) [s].
         state: The motion, leading axis time; `SkidState`.
         azimuth: Of the balls (time, ball) [rad].
         contact_load: Loads (time, ball, contact) [N].
-        contact_angle: Angles (time, ball, contact) [rad].
-        rolling_orbit_speed: With outer raceway control at the contact angles (time,
-            ball) [rad/s].
+        rolling_orbit_speed: That of pure rolling (time, ball) [rad/s].
         displacement: Ring freedoms, outer ring first (time, 12) [m, rad].
         film: Central films (time, ball, contact) [m].
-        sliding: Slip in the middle of the contacts, along the rolling direction and
-            across (time, ball, contact, 2) [m/s].
-        contact_spin: About the contact normals (time, ball, contact) [rad/s].
         heat: Of each contact (time, ball, contact) [W].
         cage_force: Of the cage on the balls, in the sense in which angles are counted
             (time, ball) [N].
@@ -41,19 +35,15 @@ class SkidHistory(eqx.Module):
         result: `Result` code.
     """
 
-    solution: BallSolution
     time: Float[Array, " time"] = eqx.field(metadata=unit("s"))
     state: SkidState
     azimuth: Float[Array, "time ball"] = eqx.field(metadata=unit("rad"))
     contact_load: Float[Array, "time ball contact"] = eqx.field(metadata=unit("N"))
-    contact_angle: Float[Array, "time ball contact"] = eqx.field(metadata=unit("rad"))
     rolling_orbit_speed: Float[Array, "time ball"] = eqx.field(metadata=unit("rad/s"))
     displacement: Float[Array, "time 12"] = eqx.field(
         metadata=unit(("m", "m", "m", "rad", "rad", "rad") * 2)
     )
     film: Float[Array, "time ball contact"] = eqx.field(metadata=unit("m"))
-    sliding: Float[Array, "time ball contact 2"] = eqx.field(metadata=unit("m/s"))
-    contact_spin: Float[Array, "time ball contact"] = eqx.field(metadata=unit("rad/s"))
     heat: Float[Array, "time ball contact"] = eqx.field(metadata=unit("W"))
     cage_force: Float[Array, "time ball"] = eqx.field(metadata=unit("N"))
     friction_torque: Float[Array, " time"] = eqx.field(metadata=unit("N m"))
@@ -71,11 +61,6 @@ class SkidHistory(eqx.Module):
         return self.state.orbit
 
     @property
-    def spin(self) -> Float[Array | np.ndarray, "time ball 3"]:
-        """Spins relative to the orbiting frames (time, ball, 3) [rad/s]."""
-        return self.state.spin
-
-    @property
     def cage_speed(self) -> Float[Array | np.ndarray, " time"]:
         """Speed of the cage (time,) [rad/s]."""
         return self.state.cage_speed
@@ -88,13 +73,59 @@ class SkidHistory(eqx.Module):
         return xp.where(still, 0.0, 1.0 - self.orbit_speed / rolling)
 
     @property
-    def sliding_speed(self) -> Float[Array | np.ndarray, "time ball contact"]:
-        """Sizes of `sliding` (time, ball, contact) [m/s]."""
-        return namespace(self.sliding).sqrt((self.sliding**2).sum(axis=-1))
-
-    @property
     def imbalance(self) -> Float[Array | np.ndarray, " time"]:
         """Work of the drive that is not accounted for (time,) [J]."""
         stored = self.kinetic_energy + self.potential_energy
         work = self.work
         return work.drive - work.contacts - work.drag - (stored - stored[0])
+
+
+class SkidHistory(SkidMotion):
+    """Motion of skidding balls over time. Axis contact as of `BallSolution`; pure
+    rolling is outer raceway control at the contact angles.
+
+    Attributes are those of `SkidMotion`, and
+        solution: The bearing under its load at the beginning.
+        contact_angle: Angles (time, ball, contact) [rad].
+        sliding: Slip in the middle of the contacts, along the rolling direction and
+            across (time, ball, contact, 2) [m/s].
+        contact_spin: About the contact normals (time, ball, contact) [rad/s].
+    """
+
+    solution: BallSolution
+    contact_angle: Float[Array, "time ball contact"] = eqx.field(metadata=unit("rad"))
+    sliding: Float[Array, "time ball contact 2"] = eqx.field(metadata=unit("m/s"))
+    contact_spin: Float[Array, "time ball contact"] = eqx.field(metadata=unit("rad/s"))
+
+    @property
+    def spin(self) -> Float[Array | np.ndarray, "time ball 3"]:
+        """Spins relative to the orbiting frames (time, ball, 3) [rad/s]."""
+        return self.state.spin
+
+    @property
+    def sliding_speed(self) -> Float[Array | np.ndarray, "time ball contact"]:
+        """Sizes of `sliding` (time, ball, contact) [m/s]."""
+        return namespace(self.sliding).sqrt((self.sliding**2).sum(axis=-1))
+
+
+class SkidRollerHistory(SkidMotion):
+    """Motion of skidding rollers over time. Contacts (outer, inner).
+
+    Attributes are those of `SkidMotion`, and
+        solution: The bearing under its load.
+        sliding: Slip along the rolling direction (time, roller, contact) [m/s].
+    """
+
+    solution: RollerSolution
+    sliding: Float[Array, "time roller contact"] = eqx.field(metadata=unit("m/s"))
+
+    @property
+    def spin(self) -> Float[Array | np.ndarray, "time roller"]:
+        """About the roller axes, relative to the orbiting frames (time, roller)
+        [rad/s]."""
+        return self.state.spin[..., 0]
+
+    @property
+    def sliding_speed(self) -> Float[Array | np.ndarray, "time roller contact"]:
+        """Sizes of `sliding` (time, roller, contact) [m/s]."""
+        return abs(self.sliding)

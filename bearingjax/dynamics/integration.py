@@ -7,7 +7,6 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..element.ball_speed import ball_mass
 from ..numerics.implicit import stop
 from ..numerics.result import Result
 from ..numerics.types import Scalar
@@ -26,7 +25,7 @@ class Options(eqx.Module):
 
     Attributes:
         tolerance: Of speeds relative to the fastest ring, of angles in rad, of work
-            relative to the kinetic energy of rolling balls [1].
+            relative to the kinetic energy of rolling balls or rollers [1].
         max_steps: Step limit. Static.
         derivatives: "reverse" or "forward". Static.
         progress: Whether a bar is shown. Static.
@@ -144,8 +143,7 @@ def _system(around, start):
     rings = jnp.concatenate([around.speed.inner, around.speed.outer])
     fastest = jnp.max(jnp.abs(jnp.concatenate([rings, start.orbit])))
     fastest = jnp.where(fastest > 0, fastest, 1.0)
-    mass, _ = ball_mass(bearing.ball_diameter, bearing.material.density)
-    energy = count * mass * (0.2 * bearing.pitch_diameter * fastest) ** 2
+    energy = count * around.loads.mass * (0.2 * bearing.pitch_diameter * fastest) ** 2
     return SkidSystem(around, *stop((fastest, energy)))
 
 

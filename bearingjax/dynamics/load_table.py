@@ -1,4 +1,4 @@
-"""What balls bear around the bearing, tabulated once for an integration in time.
+"""What balls or rollers bear around the bearing, tabulated for integrations in time.
 
 Loads, angles and all else that depends on the load alone are worked out at places
 spread evenly around the bearing, and joined by a periodic spline of fifth degree.
@@ -18,15 +18,16 @@ from jaxtyping import Array, Float
 from ..element.inertia import Speed
 from ..numerics.types import Scalar
 from .ball_motion import LoadedBall
+from .roller_motion import LoadedRoller
 
 _DEGREE = 5
 
 
 class _Row(NamedTuple):
-    """A `LoadedBall` in numbers that can be interpolated."""
+    """A `LoadedBall` or `LoadedRoller` in numbers that can be interpolated."""
 
     load: Array
-    angle: Array
+    angle: Array | None
     x: Array
     y: Array
     area: Array
@@ -38,26 +39,36 @@ class _Row(NamedTuple):
 
 
 class LoadTable(eqx.Module):
-    """Loaded balls over the azimuth; from `load_table`.
+    """Loaded balls or rollers over the azimuth; from `load_table`.
 
     Attributes:
         coefficients: Of the spline, leading axis place; of one place: what is there.
-        like: A ball, for what does not depend on its place.
+        like: One of them, for what does not depend on its place.
 
     Largest errors against an evaluation at the azimuth itself, five balls under 250 N
         axial and 160 N radial load (27 to 300 N on a contact), with 24, 48, 96 and 192
         places: loads and angles 9e-5, 7e-7, 4e-9, 5e-11, viscosities at every azimuth
-        2e-3, 4e-5, 2e-7, 2e-9 of themselves. Where a ball loses its load, errors fall
-        with the distance of the places only slowly.
+        2e-3, 4e-5, 2e-7, 2e-9 of themselves. Where a ball or roller loses its load,
+        errors fall with the distance of the places only slowly.
     """
 
     coefficients: _Row
-    like: LoadedBall
+    like: LoadedBall | LoadedRoller
 
     n_own: ClassVar[int] = 0
     n_shared: ClassVar[int] = 0
     unit: ClassVar[float] = 1.0
     force: ClassVar[float] = 1.0
+
+    @property
+    def n_spins(self) -> int:
+        """Number of its spins."""
+        return self.like.n_spins
+
+    @property
+    def mass(self) -> Scalar:
+        """Its mass [kg]."""
+        return self.like.mass
 
     def push(self, time: Scalar, ring: Array) -> Array:
         """Nothing is left to balance (0,) [N]."""
@@ -65,12 +76,12 @@ class LoadTable(eqx.Module):
 
     def at(
         self, azimuth: Scalar, speed: Speed, centre: Array, ring: Array
-    ) -> tuple[LoadedBall, Array, Array]:
+    ) -> tuple[LoadedBall | LoadedRoller, Array, Array]:
         """As of `BalancedLoads`; the azimuth alone counts."""
         return self.ball(azimuth), jnp.zeros_like(centre), jnp.zeros_like(ring)
 
-    def ball(self, azimuth: Scalar) -> LoadedBall:
-        """Ball at a place.
+    def ball(self, azimuth: Scalar) -> LoadedBall | LoadedRoller:
+        """Ball or roller at a place.
 
         Args:
             azimuth: Any angle [rad].
@@ -90,7 +101,7 @@ class LoadTable(eqx.Module):
         return _ball(row, self.like)
 
 
-def load_table(balls: LoadedBall, nodes: bool = True) -> LoadTable:
+def load_table(balls: LoadedBall | LoadedRoller, nodes: bool = True) -> LoadTable:
     """A table.
 
     Args:
@@ -126,7 +137,7 @@ def _row(ball):
     )
     return _Row(
         ball.load,
-        ball.angle,
+        getattr(ball, "angle", None),
         patch.x,
         patch.y,
         patch.area,
@@ -153,7 +164,8 @@ def _ball(row, like):
             jnp.maximum(row.area, 0.0),
             jnp.maximum(row.pressure, 0.0),
             jnp.exp(row.log_viscosity),
-            # Of an ellipse: ∫μ y dA vanishes.
+            # ∫μ y dA: of an ellipse it vanishes; on a roller without spin about the
+            # contact normal it has no effect.
             jnp.stack([total, jnp.zeros_like(total), polar], axis=-1),
         ),
     )
@@ -162,8 +174,11 @@ def _ball(row, like):
         like.film,
         (films[:, 0], films[:, 1], films[:, 2:]),
     )
-    new = jnp.maximum(row.load, 0.0), row.angle, patch, film
-    return eqx.tree_at(lambda b: (b.load, b.angle, b.patch, b.film), like, new)
+    new = jnp.maximum(row.load, 0.0), patch, film
+    ball = eqx.tree_at(lambda b: (b.load, b.patch, b.film), like, new)
+    if row.angle is None:
+        return ball
+    return eqx.tree_at(lambda b: b.angle, ball, row.angle)
 
 
 def _pieces():

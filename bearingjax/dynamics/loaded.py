@@ -1,5 +1,7 @@
 """What the contacts of balls and rollers bear, from a solved bearing, and their oil."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -12,7 +14,7 @@ from ..design.ball import AbstractBallBearing
 from ..element.ball_speed import ball_mass
 from ..element.bearing_model import BearingModel
 from ..element.constants import ContactConstants, relative_radii
-from ..element.inertia import mass_and_inertia
+from ..element.inertia import Speed, mass_and_inertia
 from ..lubrication import (
     Lubricant,
     ellipse_patch,
@@ -24,6 +26,7 @@ from ..numerics.types import Ring, Scalar
 from ..statics import rollers
 from ..statics.balls import ball_results
 from .ball_motion import LoadedBall
+from .model import SkidModel
 from .roller_motion import LoadedRoller
 
 _SLICES = 16
@@ -138,6 +141,24 @@ def roller_loads(
     solved = row.at(q, azimuth, row.solve(q, azimuth, model.equilibrium, None))
     load, _ = rollers.contact_loads(solved)
     return load, rollers.line_loads(solved, jnp.asarray(_slices()[0], load.dtype))
+
+
+def loaded_rollers(
+    model: SkidModel, q: Ring, speed: Speed, azimuth: Float[Array, " station"]
+) -> LoadedRoller:
+    """A roller at places along its orbit, leading axis place.
+
+    Args:
+        model: The bearing and its oil.
+        q: Ring freedoms of the equilibrium [m, rad].
+        speed: Ring speeds of that equilibrium.
+        azimuth: The places [rad].
+    """
+    bearing = model.element.model(speed)
+    constants = bearing.rows[0].element.constants
+    oil = model.lubricant, model.temperature, model.least_film
+    make = partial(loaded_roller, constants, *oil)
+    return jax.vmap(make)(*roller_loads(bearing, q, azimuth))
 
 
 def loaded_roller(

@@ -94,5 +94,4 @@ class SkidModel(eqx.Module):
             kind = type(self.bearing).__name__
             raise TypeError(
                 f"{title}: `model` is of a {kind}; it must be of a ball bearing."
-                " `steady_skid` takes rollers too."
             )

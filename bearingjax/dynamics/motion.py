@@ -1,4 +1,7 @@
-"""All balls of a bearing and its cage in motion: their state and how it changes.
+"""All balls or rollers of a bearing and its cage in motion, and how that changes.
+
+Both move by equations of the same names, in `ball_motion` and `roller_motion`: what
+they bear says which. Below, balls are balls or rollers.
 
 A ball's place is its lead over its pocket, so that the pocket's force depends on one
 small number. Balls know of each other through the cage, and through the ring where the
@@ -17,21 +20,14 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar
+from . import ball_motion, roller_motion
 from .balanced_loads import BalancedLoads
-from .ball_motion import (
-    BallState,
-    LoadedBall,
-    Sliding,
-    Tractions,
-    kinetic_energy,
-    rates,
-    sliding,
-    tractions,
-)
+from .ball_motion import BallState, LoadedBall
 from .coupled import AbstractSystem, Coupled, Masses
 from .load_table import LoadTable
 from .model import SkidModel
 from .ring_speed import SpeedTable
+from .roller_motion import LoadedRoller, RollerState
 
 
 class Work(NamedTuple):
@@ -53,7 +49,7 @@ class SkidState(NamedTuple):
 
     Attributes:
         spin: Of each ball relative to its orbiting frame, tangential, radial, axial
-            (ball, 3) [rad/s].
+            (ball, 3); of a roller about its axis (roller, 1) [rad/s].
         orbit: Orbital speeds (ball,) [rad/s].
         lead: Angle by which each ball is ahead of the middle of its pocket (ball,)
             [rad].
@@ -65,7 +61,7 @@ class SkidState(NamedTuple):
     Where the loads are tabulated there is nothing in centre (ball, 0) and ring (0,).
     """
 
-    spin: Float[Array, "ball 3"]
+    spin: Float[Array, "ball axis"]
     orbit: Float[Array, " ball"]
     lead: Float[Array, " ball"]
     cage_speed: Scalar
@@ -98,11 +94,11 @@ class OneBall(NamedTuple):
     """A ball at an instant.
 
     Attributes:
-        ball: What it bears.
+        ball: What it bears: `LoadedBall` or `LoadedRoller`.
         azimuth: Where it is [rad].
-        state: Its motion.
-        moving: Its motion against the raceways.
-        pulls: Tractions.
+        state: Its motion: `BallState` or `RollerState`.
+        moving: Its motion against the raceways: `Sliding` or `RollerSliding`.
+        pulls: `Tractions` or `RollerTractions`.
         push: Force of the cage, in the sense in which angles are counted [N].
         drag: Force of the oil, likewise [N].
         weight: Force of gravity, likewise [N].
@@ -110,11 +106,11 @@ class OneBall(NamedTuple):
         on_ring: Its share of the force that holds the ring [N].
     """
 
-    ball: LoadedBall
+    ball: Any
     azimuth: Scalar
-    state: BallState
-    moving: Sliding
-    pulls: Tractions
+    state: Any
+    moving: Any
+    pulls: Any
     push: Scalar
     drag: Scalar
     weight: Scalar
@@ -129,6 +125,11 @@ class OneBall(NamedTuple):
         return on_inner, jnp.sum(jnp.where(outer, torque, 0.0))
 
 
+def mechanics(ball: LoadedBall | LoadedRoller) -> Any:
+    """The module with its equations."""
+    return roller_motion if isinstance(ball, LoadedRoller) else ball_motion
+
+
 def one_ball(
     around: Surroundings, time: Scalar, place: Scalar, state: SkidState
 ) -> OneBall:
@@ -141,17 +142,20 @@ def one_ball(
         state: Of this ball alone, with cage and ring.
     """
     model, azimuth = around.model, place + state.cage_turn + state.lead
-    motion, speed = BallState(state.spin, state.orbit), around.speed.at(time)
+    speed = around.speed.at(time)
     here = azimuth, speed, state.centre, state.ring
     ball, unbalanced, on_ring = around.loads.at(*here)
-    moving = sliding(ball, motion, speed)
-    turning = motion.orbit, ball.frontal_area, ball.pitch_radius
+    of, motion = mechanics(ball), BallState(state.spin, state.orbit)
+    if isinstance(ball, LoadedRoller):
+        motion = RollerState(state.spin[0], state.orbit)
+    moving = of.sliding(ball, motion, speed)
+    turning = state.orbit, ball.frontal_area, ball.pitch_radius
     return OneBall(
         ball,
         azimuth,
         motion,
         moving,
-        tractions(ball, model.traction, moving),
+        of.tractions(ball, model.traction, moving),
         model.cage.force(-state.lead * ball.pitch_radius),
         model.drag.force(*turning, around.density),
         -ball.mass * around.gravity * jnp.cos(azimuth),
@@ -178,7 +182,7 @@ def power(around: Surroundings, time: Scalar, ball: OneBall) -> Work:
     speed, (on_inner, on_outer) = around.speed.at(time), ball.ring_torque
     return Work(
         drive=-on_inner * speed.inner - on_outer * speed.outer,
-        contacts=jnp.sum(ball.pulls.resultants.heat),
+        contacts=jnp.sum(ball.pulls.heat),
         drag=-ball.drag * ball.ball.pitch_radius * ball.state.orbit,
     )
 
@@ -189,7 +193,8 @@ def energies(around: Surroundings, ball: OneBall) -> tuple[Scalar, Scalar]:
     height = of_ball.pitch_radius * jnp.sin(ball.azimuth)
     pressed = ball.push**2 / (2.0 * cage.stiffness)
     weight = of_ball.mass * around.gravity * height
-    return kinetic_energy(of_ball, ball.state), pressed + weight
+    kinetic = mechanics(of_ball).kinetic_energy(of_ball, ball.state)
+    return kinetic, pressed + weight
 
 
 class SkidSystem(AbstractSystem):
@@ -214,7 +219,7 @@ class SkidSystem(AbstractSystem):
     def masses(self) -> Masses:
         """Speeds and angles change; balls and ring are balanced at every time."""
         loads, real = self.around.loads, self.speed.dtype
-        own = [1.0] * 5 + [0.0] * loads.n_own
+        own = [1.0] * (loads.n_spins + 2) + [0.0] * loads.n_own
         shared = [1.0] * 2 + [0.0] * loads.n_shared
         return Masses(jnp.asarray(own, real), jnp.asarray(shared, real))
 
@@ -222,7 +227,11 @@ class SkidSystem(AbstractSystem):
     def _units(self):
         """Of the unknowns: of a ball, and shared."""
         loads, one = self.around.loads, jnp.ones_like(self.speed)
-        own = [self.speed] * 4 + [one] + [loads.unit * one] * loads.n_own
+        own = (
+            [self.speed] * (loads.n_spins + 1)
+            + [one]
+            + [loads.unit * one] * loads.n_own
+        )
         shared = [self.speed, one] + [loads.unit * one] * loads.n_shared
         return jnp.stack(own), jnp.stack(shared)
 
@@ -246,21 +255,23 @@ class SkidSystem(AbstractSystem):
         units = self._units
         own = own * jnp.broadcast_to(units[0], own.shape)
         shared = shared * units[1]
-        of_ball = own[..., :3], own[..., 3], own[..., 4]
-        return SkidState(*of_ball, shared[0], shared[1], own[..., 5:], shared[2:])
+        n = self.around.loads.n_spins
+        of_ball = own[..., :n], own[..., n], own[..., n + 1]
+        return SkidState(*of_ball, shared[0], shared[1], own[..., n + 2 :], shared[2:])
 
     def body(self, which, time, own, shared):
         """As of `AbstractSystem`: a ball."""
         around, state = self.around, self._state(own, shared)
         ball = one_ball(around, time, which, state)
         force = ball.push + ball.drag + ball.weight
-        change = rates(ball.ball, ball.state, ball.pulls, force)
+        change = mechanics(ball.ball).rates(ball.ball, ball.state, ball.pulls, force)
         turning = jnp.stack([change.orbit, state.orbit - state.cage_speed])
         of_cage = -ball.ball.pitch_radius * ball.push / around.model.cage.inertia
         of_cage = jnp.stack([of_cage, jnp.zeros_like(of_cage)])
         # Forces out of balance, in units so large as the lengths that they move.
         yielding = around.loads.unit / around.loads.force
-        own = jnp.concatenate([change.spin, turning, yielding * ball.unbalanced])
+        spins = jnp.reshape(change.spin, (-1,))
+        own = jnp.concatenate([spins, turning, yielding * ball.unbalanced])
         shared = jnp.concatenate([of_cage, -yielding * ball.on_ring])
         work = jnp.stack(list(power(around, time, ball)))
         units = self._units

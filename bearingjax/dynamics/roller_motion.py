@@ -10,7 +10,7 @@ Left out: friction on ribs and in cage pockets, the resistance of rolling itself
 the misaligned roller's sliding along its axis.
 """
 
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import equinox as eqx
 import jax
@@ -58,6 +58,8 @@ class LoadedRoller(eqx.Module):
     patch: Patch
     film: Film
     least_film: Scalar
+
+    n_spins: ClassVar[int] = 1
 
     @property
     def side(self) -> Float[Array, "2"]:

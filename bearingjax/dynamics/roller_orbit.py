@@ -20,7 +20,7 @@ from ..design import n_elements
 from ..element.inertia import Speed
 from ..numerics.types import Scalar
 from ..statics.solution import RollerSolution
-from .loaded import loaded_roller, roller_loads
+from .loaded import loaded_rollers
 from .model import SkidModel
 from .orbit_search import AbstractOrbit, derivatives
 from .roller_motion import (
@@ -157,12 +157,7 @@ def roller_orbit(
         load_speed: Ring speeds of that solution.
         azimuth: The places, spread evenly (place,) [rad].
     """
-    bearing = model.element.model(load_speed)
-    (row,) = bearing.rows
-    loads = roller_loads(bearing, solution.displacement, azimuth)
-    oil = model.lubricant, model.temperature, model.least_film
-    make = partial(loaded_roller, row.element.constants, *oil)
-    roller = jax.vmap(make)(*loads)
+    roller = loaded_rollers(model, solution.displacement, load_speed, azimuth)
     free = jax.vmap(partial(rolling, speed=speed))(roller)
     density = model.lubricant.density.at(model.temperature)
     along = jnp.asarray(derivatives(azimuth.shape[0]), azimuth.dtype)

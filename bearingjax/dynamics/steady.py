@@ -82,7 +82,7 @@ def steady_skid(
         fixed_ring=fixed_ring,
         throw=throw,
     )
-    count = _places(solution, places)
+    count = _places(model.bearing, solution, places)
     found = _steady(model, solution, speed, carried, count)
     if not throw:
         return found
@@ -93,22 +93,26 @@ def _check_places(bearing, places):
     number = n_elements(bearing)
     if places is None or places == 1 or (places > 0 and places % number == 0):
         return
-    kind = "balls" if is_ball(bearing) else "rollers"
     raise ValueError(
         f"steady_skid: `places` is {places}; it must be 1 or a multiple of the"
-        f" {number} {kind}."
+        f" {number} {_kind(bearing)}."
     )
 
 
-def _places(solution, places):
-    number, known = solution.azimuth.shape[-1], not is_traced(solution.roller_load)
+def _kind(bearing):
+    return "balls" if is_ball(bearing) else "rollers"
+
+
+def _places(bearing, solution, places):
+    number, kind = n_elements(bearing), _kind(bearing)
+    known = not is_traced(solution.roller_load)
     alike = known and not bool(_unlike(solution))
     if places is None:
         return 1 if alike else number * -(-_PLACES // number)
     if known and places == 1 and not alike:
         raise ValueError(
-            "steady_skid: `places` is 1, but balls or rollers bear unlike loads; it"
-            f" must be a multiple of their number, {number}."
+            f"steady_skid: `places` is 1, but the {kind} bear unlike loads; it must be"
+            f" a multiple of the {number} {kind}."
         )
     return places
 

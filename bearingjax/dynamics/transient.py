@@ -1,4 +1,4 @@
-"""How balls begin to skid: a bearing with its cage, integrated in time.
+"""How balls and rollers begin to skid: a bearing with its cage, integrated in time.
 
 Contacts hold a ball with rates of 1e6 1/s and far beyond, against orbits of some 10 ms:
 the method is implicit, with the exact Jacobian. The powers are integrated with the
@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import pitch_radius
+from ..design import is_ball, pitch_radius
 from ..design.checks import count, is_traced, positive
 from ..element.inertia import Speed
 from ..numerics.implicit import stop
@@ -26,12 +26,11 @@ from ..statics.load import solve_load
 from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
 from .balanced_loads import BalancedLoads
-from .ball_motion import outer_control
 from .beginning import balanced_surroundings, surroundings
-from .history import SkidHistory
+from .history import SkidHistory, SkidRollerHistory
 from .integration import Options, integrated
 from .model import SkidModel
-from .motion import SkidState, each_ball, energies, power
+from .motion import SkidState, each_ball, energies, mechanics, power
 from .ring_speed import SpeedTable, as_table
 
 _PLACES = 96
@@ -60,8 +59,8 @@ def skid(
     free: Sequence[str] | None = None,
     fixed_ring: str = "outer",
     throw: bool = True,
-) -> SkidHistory:
-    """How the balls of a bearing and its cage move.
+) -> Any:
+    """How the balls or rollers of a bearing and its cage move.
 
     Contact loads and angles are quasi-static. Of a constant load they are tabulated
     around the bearing, for the ring where `solve_load` finds it. Of a load that varies
@@ -89,8 +88,8 @@ def skid(
             default: those at the end. Balanced ones are of the speeds of the time.
         axis: "vertical": no gravity along the orbits; "horizontal": it acts against y,
             along the orbits alone, as its radial part is small beside contact loads.
-        balanced: Whether the ring is balanced at every time. Static. Default: if the
-            load is a function of time.
+        balanced: Whether the ring is balanced at every time; of balls alone. Static.
+            Default: if the load is a function of time.
         places: Of the table, 1 where all balls bear the same, or at least 6; static.
             Default: 1 if they do, else 96 (so too if the load is traced).
         tolerance: Of speeds relative to the fastest ring, of angles in rad, of work
@@ -105,17 +104,17 @@ def skid(
         throw: Raise if the end is not reached; otherwise read `result`.
 
     Returns:
-        The motion, differentiable with respect to design, oil, load, speeds and start.
+        `SkidHistory` of balls, `SkidRollerHistory` of rollers, differentiable with
+        respect to design, oil, load, speeds and start.
 
     Raises:
-        TypeError: If it is a bearing of rollers.
+        TypeError: If the ring of a roller bearing is to be balanced at every time.
         ValueError: For settings that do not exist.
         SolveError: If the end is not reached, and `throw` is set.
 
     Fails: codes of the load solve; `STEP_LIMIT`; `NON_FINITE` where steps shrink to
         nothing, as beside rates that are not numbers.
     """
-    model.check_balls("skid")
     _check(axis, derivatives, places, duration, tolerance, max_steps, n_times)
     table, zero = as_table(speed), jnp.zeros_like(as_real(duration))
     if times is None:
@@ -128,6 +127,8 @@ def skid(
             "skid: `load` varies in time; `balanced` must not be false, as no table"
             " holds its contact loads."
         )
+    if balanced:
+        model.check_balls("skid with `balanced`")
     at = table.at(zero) if balanced else table.at(as_real(duration))
     if load_speed is not None and not balanced:
         at = load_speed
@@ -143,7 +144,7 @@ def skid(
         )
     else:
         if places is None:
-            places = 1 if _alike(solution.contact_load) else _PLACES
+            places = 1 if _alike(solution.roller_load) else _PLACES
         around, rolling = surroundings(model, solution, at, table, gravity, places)
     options = Options(as_real(tolerance), max_steps, derivatives, progress)
     start = rolling if start is None else _taken_up(start, rolling)
@@ -236,7 +237,8 @@ def _skid(around, solution, start, times, duration, options):
     if isinstance(around.loads, BalancedLoads):
         q = jax.vmap(around.loads.balance.ring_freedoms)(moved.state.ring)
     result = jnp.maximum(moved.result, solution.result)
-    return SkidHistory(
+    kind = SkidHistory if is_ball(around.model.bearing) else SkidRollerHistory
+    return kind(
         solution=solution,
         time=times,
         displacement=q,
@@ -256,16 +258,19 @@ def _reported(around, time, state):
     )
     kinetic, potential = energy
     speed, on_inner = around.speed.at(time), balls.ring_torque[0]
-    rolling = jax.vmap(partial(outer_control, speed=speed))(balls.ball)
+    rolling = jax.vmap(partial(mechanics(balls.ball).rolling, speed=speed))(balls.ball)
+    of_balls = {}
+    if is_ball(around.model.bearing):
+        angle, spin = balls.ball.angle, balls.moving.spin
+        of_balls = {"contact_angle": angle, "contact_spin": spin}
     return dict(
+        **of_balls,
         azimuth=balls.azimuth,
         contact_load=balls.ball.load,
-        contact_angle=balls.ball.angle,
         rolling_orbit_speed=rolling.orbit,
         film=balls.pulls.film,
         sliding=balls.moving.slip,
-        contact_spin=balls.moving.spin,
-        heat=balls.pulls.resultants.heat,
+        heat=balls.pulls.heat,
         cage_force=balls.push,
         friction_torque=-jnp.sum(on_inner),
         power=powers,

@@ -8,7 +8,7 @@ from registry import bearings
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.dynamics import Drag, SkidModel, ball_motion, skid, steady_skid
+from bearingjax.dynamics import Cage, Drag, SkidModel, ball_motion, skid, steady_skid
 from bearingjax.dynamics.loaded import loaded_roller
 from bearingjax.dynamics.roller_motion import (
     RollerState,
@@ -146,10 +146,8 @@ def test_an_unloaded_roller_feels_nothing():
         assert all(np.all(np.isfinite(s)) for s in slopes(nothing, spin))
 
 
-def steady(at):
-    """Of load [N], inner and outer speed [rad/s], fill [1], clearance [m], warmth [K]
-    and diameter [m]."""
-    load, inner, outer, fill, clearance, warmer, diameter = at
+def bearing_model(at, cage=None):
+    _, _, _, fill, clearance, warmer, diameter = at
     bearing = bj.CylindricalRollerBearing(
         ROLLERS,
         0.0725,
@@ -158,9 +156,16 @@ def steady(at):
         roller_profile=BEARING.roller_profile,
         radial_internal_clearance=clearance,
     )
-    model = SkidModel(
-        bj.BearingElement(bearing), OIL, WARM + warmer, drag=Drag(fill=fill)
-    )
+    drag, cage = Drag(fill=fill), Cage() if cage is None else cage
+    element = bj.BearingElement(bearing)
+    return SkidModel(element, OIL, WARM + warmer, drag=drag, cage=cage)
+
+
+def steady(at):
+    """Of load [N], inner and outer speed [rad/s], fill [1], clearance [m], warmth [K]
+    and diameter [m]."""
+    load, inner, outer, *_ = at
+    model = bearing_model(at)
     loads = jnp.zeros(6).at[0].set(load)
     speed = Speed(inner=inner, outer=outer)
     return steady_skid(
@@ -281,10 +286,42 @@ def test_gradients(found):
     np.testing.assert_allclose(slopes, want, rtol=100 * DIFFERENCE)
 
 
+def test_in_time_they_end_where_the_steady_state_is(found):
+    """With pockets so tight and stiff that all orbit with the cage; from rolling on,
+    the last orbits."""
+    end = found[0][1000.0]
+    model = bearing_model(BASE, Cage(pocket_clearance=0.0, stiffness=1e7))
+    turn, duration = 2.0 * np.pi / float(end.cage_speed), 0.3
+    moved = skid(
+        model,
+        [1000.0, 0, 0, 0, 0, 0],
+        speed=Speed(inner=FAST),
+        duration=duration,
+        times=np.append(0.0, duration - turn * np.linspace(2.0, 0.0, 201)),
+        tolerance=1e-5,
+        free=["ux", "uy"],
+    )
+    assert moved.slip[0] == pytest.approx(0.0, abs=1e-9)
+    last = np.asarray(moved.slip)[2:]
+    np.testing.assert_allclose(np.mean(last), end.slip[0], rtol=1e-4)
+    torque = np.mean(moved.friction_torque[2:])
+    np.testing.assert_allclose(torque, end.friction_torque, rtol=1e-4)
+    assert np.max(np.abs(moved.imbalance)) < 1e-6 * moved.work.drive[-1]
+    # Spins, and what the pockets do: rear and front, at the places of the steady state.
+    azimuth = np.mod(np.asarray(moved.azimuth)[2:], 2.0 * np.pi).ravel()
+    for k in (0, 7, 14, 21):
+        apart = np.mod(azimuth - end.azimuth[k] + np.pi, 2.0 * np.pi) - np.pi
+        near = np.abs(apart) < 0.05
+        spin = np.mean(np.asarray(moved.spin)[2:].ravel()[near])
+        np.testing.assert_allclose(spin, end.spin[k], rtol=2e-3)
+        force = np.mean(np.asarray(moved.cage_force)[2:].ravel()[near])
+        np.testing.assert_allclose(force, end.cage_force[k], atol=0.5)
+
+
 def test_bad_input():
     model = SkidModel(bj.BearingElement(BEARING), OIL, WARM)
     load, free = [300.0, 0, 0, 0, 0, 0], ["ux", "uy"]
     with pytest.raises(ValueError, match="multiple of the 7 rollers"):
         steady_skid(model, load, speed=Speed(inner=FAST), free=free, places=10)
     with pytest.raises(TypeError, match="ball bearing"):
-        skid(model, load, speed=Speed(inner=FAST), duration=0.1)
+        skid(model, load, speed=Speed(inner=FAST), duration=0.1, balanced=True)

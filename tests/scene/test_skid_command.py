@@ -276,10 +276,7 @@ def test_bad_input(run, tmp_path):
     done = run(*SMALL, "--steady", *table)
     assert done.status == 2 and "a table ends in .csv or .parquet" in done.err
     done = run(*SMALL, "--steady", "--set", "dynamics.places=1")
-    assert (
-        done.status == 2
-        and "`places` is 1, but balls or rollers bear unlike" in done.err
-    )
+    assert done.status == 2 and "`places` is 1, but the balls bear unlike" in done.err
     done = run("skid", "deep_groove", "--steady")
     assert done.status == 2 and "`operating.inner_speed`: is missing" in done.err
 
