@@ -109,8 +109,8 @@ def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
     columns = {}
     if not run.task.steady:
         reached = np.isfinite(run.found.cage_speed)
-        whole = {**_of_time(run), **{n: np.asarray(v) for n, v in _powers(run).items()}}
-        units = OF_TIME | dict.fromkeys(_powers(run), "W")
+        powers = {f"power_{n}": np.asarray(v) for n, v in _powers(run).items()}
+        whole, units = _of_time(run) | powers, OF_TIME | dict.fromkeys(powers, "W")
         columns = {_header(name, units[name]): v for name, v in whole.items()}
         columns = {header: v[reached] for header, v in columns.items()}
         balls = {name: values[reached] for name, values in balls.items()}

@@ -34,7 +34,7 @@ from .table import Table
 AXES = ("vertical", "horizontal")
 STARTS = ("rolling", "rest")
 MOST_TIMES = 20_000
-"""Most times of a run: some 5 kB each as JSON."""
+"""Most times of a run: some 8 kB each as JSON."""
 MOST_PLACES = 2000
 """Most places along an orbit: a matrix of 0.5 GB."""
 

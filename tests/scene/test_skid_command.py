@@ -153,7 +153,7 @@ def test_motion_in_time(run, history, tmp_path):
     for header, value in (
         ("time [s]", found.time),
         ("cage_speed [rad/s]", found.cage_speed),
-        ("contacts [W]", found.power.contacts),
+        ("power_contacts [W]", found.power.contacts),
         ("slip_5", found.slip[:, 5]),
         ("spin_2_y [rad/s]", found.spin[:, 2, 1]),
         ("film_3_inner [m]", found.film[:, 3, 1]),
