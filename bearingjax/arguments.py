@@ -90,7 +90,7 @@ def parser() -> argparse.ArgumentParser:
         "skid",
         help="balls and rollers that skid: over time, or in the end",
         description="How the balls or rollers of a bearing move with its cage in its"
-        " [lubricant], over the time of its [dynamics] (balls), or in the end.",
+        " [lubricant], over the time of its [dynamics], or in the end.",
         epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
     )
     _add_common(skid)

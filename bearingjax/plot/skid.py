@@ -9,6 +9,7 @@ from ..dynamics import (
     Conditions,
     SkidHistory,
     SkidModel,
+    SkidRollerHistory,
     SteadyRollerSkid,
     SteadySkid,
     by_raceway,
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
 
 def skid_overview(
     model: SkidModel,
-    found: SteadySkid | SteadyRollerSkid | SkidHistory,
+    found: SteadySkid | SteadyRollerSkid | SkidHistory | SkidRollerHistory,
     state: Conditions | None,
     title: str = "",
 ) -> "matplotlib.figure.Figure":
@@ -70,7 +71,7 @@ def skid_overview(
     Returns:
         The figure, 15 by 9 inches; of a motion in time 18 by 9.
     """
-    if isinstance(found, SkidHistory):
+    if isinstance(found, SkidHistory | SkidRollerHistory):
         figure = _over_time(found)
     elif isinstance(found, SteadyRollerSkid):
         figure = _rollers(found)

@@ -1,10 +1,10 @@
-"""Balls that skid, over time: speeds, slip, spin, cage forces, powers, spectrum."""
+"""Balls and rollers that skid, over time: speeds, slip, forces, powers, spectrum."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..dynamics import SkidHistory, by_raceway
+from ..dynamics import SkidHistory, SkidRollerHistory, by_raceway
 from .style import (
     COLOURS,
     GREY,
@@ -21,6 +21,8 @@ from .style import (
 if TYPE_CHECKING:
     import matplotlib.axes
 
+History = SkidHistory | SkidRollerHistory
+
 _BAND = 0.25
 _BEYOND = 1.5
 """How far an axis goes beyond all but the shortest peaks."""
@@ -29,7 +31,7 @@ _FLOOR = 1e-3
 
 
 def speed_over_time(
-    found: SkidHistory, ax: "matplotlib.axes.Axes | None" = None
+    found: History, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
     """Speed of the cage and orbits of the balls, beside pure rolling [rad/s].
 
@@ -42,16 +44,18 @@ def speed_over_time(
     """
     ax = axes_or_new(ax)
     rolling = np.asarray(found.rolling_orbit_speed)
-    _spread(ax, found, found.orbit_speed, ROLLER, "balls")
+    _spread(ax, found, found.orbit_speed, ROLLER, f"{_kind(found)}s")
     ax.plot(found.time, found.cage_speed, color=INNER, label="cage")
     ax.plot(
         found.time, rolling.mean(axis=1), "--", color=GREY, label="rolling", linewidth=1
     )
-    return _finish(ax, found, "speed [rad/s]", "Cage and orbits of the balls")
+    return _finish(
+        ax, found, "speed [rad/s]", f"Cage and orbits of the {_kind(found)}s"
+    )
 
 
 def slip_over_time(
-    found: SkidHistory, ax: "matplotlib.axes.Axes | None" = None
+    found: History, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
     """Slip of the orbits against pure rolling [%].
 
@@ -63,12 +67,12 @@ def slip_over_time(
         The axes.
     """
     ax = axes_or_new(ax)
-    _spread(ax, found, 100.0 * np.asarray(found.slip), ROLLER, "balls")
+    _spread(ax, found, 100.0 * np.asarray(found.slip), ROLLER, f"{_kind(found)}s")
     return _finish(ax, found, "slip of the orbit [%]", "Slip")
 
 
 def spin_over_time(
-    found: SkidHistory, ax: "matplotlib.axes.Axes | None" = None, *, ball: int = 0
+    found: History, ax: "matplotlib.axes.Axes | None" = None, *, ball: int = 0
 ) -> "matplotlib.axes.Axes":
     """Spin of a ball in its orbiting frame [rad/s].
 
@@ -81,14 +85,17 @@ def spin_over_time(
         The axes.
     """
     ax = axes_or_new(ax)
-    for k, name in enumerate(SPIN_NAMES):
-        spin = np.asarray(found.spin)[:, ball, k]
-        ax.plot(found.time, spin, color=SPIN_COLOURS[k], label=name)
-    return _finish(ax, found, "spin [rad/s]", f"Spin of ball {ball}")
+    spin = np.asarray(found.spin)[:, ball]
+    if isinstance(found, SkidHistory):
+        for k, name in enumerate(SPIN_NAMES):
+            ax.plot(found.time, spin[:, k], color=SPIN_COLOURS[k], label=name)
+    else:
+        ax.plot(found.time, spin, color=SPIN_COLOURS[2], label="about its axis")
+    return _finish(ax, found, "spin [rad/s]", f"Spin of {_kind(found)} {ball}")
 
 
 def load_over_time(
-    found: SkidHistory, ax: "matplotlib.axes.Axes | None" = None, *, ball: int = 0
+    found: History, ax: "matplotlib.axes.Axes | None" = None, *, ball: int = 0
 ) -> "matplotlib.axes.Axes":
     """Contact loads of a ball [N].
 
@@ -103,11 +110,11 @@ def load_over_time(
     ax = axes_or_new(ax)
     _raceways(ax, found, found.contact_load, ball)
     ax.set_ylim(bottom=0.0)
-    return _finish(ax, found, "contact load [N]", f"Load on ball {ball}")
+    return _finish(ax, found, "contact load [N]", f"Load on {_kind(found)} {ball}")
 
 
 def sliding_over_time(
-    found: SkidHistory, ax: "matplotlib.axes.Axes | None" = None, *, ball: int = 0
+    found: History, ax: "matplotlib.axes.Axes | None" = None, *, ball: int = 0
 ) -> "matplotlib.axes.Axes":
     """Sliding speed of a ball in the middle of its contacts [mm/s].
 
@@ -122,11 +129,13 @@ def sliding_over_time(
     ax = axes_or_new(ax)
     _raceways(ax, found, 1e3 * np.asarray(found.sliding_speed), ball)
     ax.set_ylim(bottom=0.0)
-    return _finish(ax, found, "sliding speed [mm/s]", f"Sliding of ball {ball}")
+    return _finish(
+        ax, found, "sliding speed [mm/s]", f"Sliding of {_kind(found)} {ball}"
+    )
 
 
 def cage_force_over_time(
-    found: SkidHistory, ax: "matplotlib.axes.Axes | None" = None
+    found: History, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
     """Forces of the cage on the balls, in the sense in which angles are counted [N].
 
@@ -141,11 +150,13 @@ def cage_force_over_time(
     force = np.asarray(found.cage_force)
     ax.plot(found.time, force.max(axis=1), color=OUTER, label="pushed most")
     ax.plot(found.time, force.min(axis=1), color=INNER, label="held back most")
-    return _finish(ax, found, "cage force [N]", "Force of the cage on a ball")
+    return _finish(
+        ax, found, "cage force [N]", f"Force of the cage on a {_kind(found)}"
+    )
 
 
 def power_over_time(
-    found: SkidHistory, ax: "matplotlib.axes.Axes | None" = None
+    found: History, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
     """Power of the drive [W], and where it goes.
 
@@ -159,18 +170,24 @@ def power_over_time(
     ax = axes_or_new(ax)
     power = found.power
     stored = power.drive - power.contacts - power.drag
-    for values, name, colour, style in (
+    curves = (
         (power.contacts, "contacts", INNER, "-"),
         (power.drag, "drag", ROLLER, "-"),
         (stored, "motion", OUTER, ":"),
         (power.drive, "drive", "black", "-"),
-    ):
+    )
+    for values, name, colour, style in curves:
         ax.plot(found.time, values, style, color=colour, label=name, linewidth=1.2)
     # A start that does not suit costs, for a moment, a hundred times the rest.
-    most = float(np.nanquantile(np.abs(power.drive), 0.98))
+    sizes = [np.nanquantile(np.abs(values), 0.98) for values, *_ in curves]
+    most = _BEYOND * float(max(sizes))
     low, high = ax.get_ylim()
-    ax.set_ylim(max(low, -_BEYOND * most), min(high, _BEYOND * most))
+    ax.set_ylim(max(low, -most), min(high, most))
     return _finish(ax, found, "power [W]", "Power of the drive, and where it goes")
+
+
+def _kind(found):
+    return "ball" if isinstance(found, SkidHistory) else "roller"
 
 
 class Spectrum(NamedTuple):
@@ -188,7 +205,7 @@ class Spectrum(NamedTuple):
 
 
 def spectrum(
-    found: SkidHistory,
+    found: History,
     *,
     ball: int = 0,
     raceway: str = "inner",
@@ -231,7 +248,7 @@ def spectrum(
 
 
 def sliding_spectrum(
-    found: SkidHistory,
+    found: History,
     ax: "matplotlib.axes.Axes | None" = None,
     *,
     ball: int = 0,

@@ -152,8 +152,8 @@ def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
         if values is None:
             continue
         values = np.asarray(values)
-        if name == "spin" and values.ndim == 1:  # of rollers, about their axes
-            values = values[:, None] * np.array([0.0, 0.0, 1.0])
+        if name == "spin" and run.state is None:  # of rollers, about their axes
+            values = values[..., None] * np.array([0.0, 0.0, 1.0])
         one = name in OF_ONE
         told[name] = values if one else by_raceway(values, found.contact_load)
     return told

@@ -97,7 +97,7 @@ def _motion(run):
         for energy in (found.kinetic_energy, found.potential_energy)
     )
     when, _ = np.unravel_index(np.argmax(np.abs(slip)), slip.shape)
-    force = np.abs(found.cage_force)
+    force, kind = np.abs(found.cage_force), "ball" if run.state else "roller"
     pressed = 100.0 * np.mean(force > 0)
     return "\n".join(
         [
@@ -108,10 +108,10 @@ def _motion(run):
             f" contacts {_clean(work.contacts[-1]):.5g} J + drag"
             f" {_clean(work.drag[-1]):.5g} J + motion {_clean(kinetic):.5g} J"
             f" + pockets and weights {_clean(potential):.5g} J",
-            f"slip of a ball  at most {100.0 * np.abs(slip).max():.4g} %, at"
-            f" {float(found.time[when]):.4g} s",
-            f"cage            presses on a ball with {force.max():.4g} N at most; a"
-            f" ball touches its pocket for {pressed:.3g} % of the time",
+            f"slip            of a {kind} at most {100.0 * np.abs(slip).max():.4g} %,"
+            f" at {float(found.time[when]):.4g} s",
+            f"cage            presses on a {kind} with {force.max():.4g} N at most; a"
+            f" {kind} touches its pocket for {pressed:.3g} % of the time",
         ]
     )
 

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..design import is_ball
+from ..design import is_ball, n_elements
 from ..dynamics import (
     SkidState,
     conditions,
@@ -27,7 +27,7 @@ class SkidRun:
 
     Attributes:
         task: What was asked.
-        found: How they move, `SteadySkid`, `SteadyRollerSkid` or `SkidHistory`; read
+        found: How they move, `SteadySkid`, `SkidHistory` or those of rollers; read
             its `result`.
         state: `Conditions` in the contacts; of rollers `None`.
         warnings: What is doubtful; none where it was not solved to the end.
@@ -140,11 +140,12 @@ def _motion(task, shown) -> tuple[Any, Any]:
 
 
 def _still(task) -> SkidState:
-    """Balls and cage at rest, in the middle of their pockets."""
-    balls = task.model.bearing.n_balls
-    zero, each = jnp.zeros(()), jnp.zeros(balls)
-    nothing = jnp.zeros((balls, 0)), jnp.zeros(0)
-    return SkidState(jnp.zeros((balls, 3)), each, each, zero, zero, *nothing)
+    """Balls or rollers and cage at rest, in the middle of their pockets."""
+    bearing = task.model.bearing
+    count, spins = n_elements(bearing), 3 if is_ball(bearing) else 1
+    zero, each = jnp.zeros(()), jnp.zeros(count)
+    nothing = jnp.zeros((count, 0)), jnp.zeros(0)
+    return SkidState(jnp.zeros((count, spins)), each, each, zero, zero, *nothing)
 
 
 def _held(leaf):

@@ -12,6 +12,7 @@ from ..design import (
     BearingSet,
     CylindricalRollerBearing,
     NeedleRollerBearing,
+    is_ball,
     n_elements,
 )
 from ..dynamics import (
@@ -109,7 +110,7 @@ def read_skid(
     data = parse_bearing(path, settings)
     top = Table(data, path.name)
     scene = scene_of(data, path)
-    _check_bearing(top, scene, steady)
+    _check_bearing(top, scene)
     lubricant = top.table("lubricant", required=True)
     cage, dynamics = top.table("cage"), top.table("dynamics")
     oil, temperature, odd = read_lubricant(lubricant)
@@ -128,7 +129,7 @@ def read_skid(
         model=model,
         oil=str(lubricant.raw("name", None) or lubricant.raw("law", None)),
         speeds=_speeds(dynamics, scene.speed),
-        **_loads(dynamics, scene.load),
+        **_loads(dynamics, scene),
         **_time(dynamics, steady),
         places=_places(dynamics, steady, n_elements(model.bearing)),
         warnings=(*scene.warnings, *odd),
@@ -143,7 +144,7 @@ def _built(table, kind, values):
         return kind(**values)
 
 
-def _check_bearing(top: Table, scene: Scene, steady: bool) -> None:
+def _check_bearing(top: Table, scene: Scene) -> None:
     """One row of balls or cylindrical rollers under rings that turn."""
     design, bearing = scene.element.bearing, top.table("bearing")
     if isinstance(design, BearingSet):
@@ -153,9 +154,6 @@ def _check_bearing(top: Table, scene: Scene, steady: bool) -> None:
     rollers = isinstance(design, CylindricalRollerBearing | NeedleRollerBearing)
     if not rollers and not isinstance(design, AbstractBallBearing):
         problem = f"{kind!r} does not skid; balls, cylindrical and needle rollers do"
-        raise bearing.error("type", problem)
-    if rollers and not steady:
-        problem = f"{kind!r} skids in its end state alone; ask for it with --steady"
         raise bearing.error("type", problem)
     if scene.speed is None:
         operating = top.table("operating")
@@ -231,9 +229,14 @@ def _speeds(dynamics: Table, speed: Speed | None) -> SpeedTable | None:
     return SpeedTable(time, np.zeros_like(time) if inner is None else inner, outer)
 
 
-def _loads(dynamics: Table, load: tuple[float, ...]) -> dict:
+def _loads(dynamics: Table, scene: Scene) -> dict:
     """Load over time, and whether the ring is balanced at every time."""
+    load, balls = scene.load, is_ball(scene.element.bearing)
     balanced = dynamics.flag("balanced", None) if "balanced" in dynamics else None
+    for key, given in (("balanced", balanced), ("load", "load" in dynamics)):
+        if given and not balls:
+            problem = "is for balls; rollers have the constant load of [operating]"
+            raise dynamics.error(key, problem)
     if "load" not in dynamics:
         return {"loads": None, "balanced": balanced}
     if balanced is False:

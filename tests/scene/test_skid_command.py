@@ -198,8 +198,27 @@ def test_rollers(run, tmp_path):
     slip, text = skid_warnings(thin, pressed, None)
     assert slip.startswith("gross skidding, slip up to")
     assert text.startswith("a Newtonian film at 1.2 GPa")
-    done = run(*FEW)
-    assert done.status == 2 and "skids in its end state alone; ask for it" in done.err
+
+
+@pytest.mark.slow
+def test_rollers_in_time(run, tmp_path):
+    """From rest under turning rings: as balls, but for the spin about one axis."""
+    given = (*ROLLERS[:2], "dynamics={duration='1 ms', n_times=9, start='rest'}")
+    words = [word for setting in given for word in ("--set", setting)]
+    picture = tmp_path / "run.png"
+    done = run("skid", "skid_roller", *words, "--plot", picture)
+    assert done.status == 0 and picture.stat().st_size > 20_000
+    history = run_skid(read_skid("skid_roller", given))
+    assert done.out == skid_report(history) + "\n"
+    numbers, found = skid_as_dict(history), history.found
+    spin = np.array(numbers["spin"])
+    assert spin.shape == (9, 7, 3) and not spin[..., :2].any()
+    np.testing.assert_array_equal(spin[..., 2], found.spin)
+    assert numbers["slip"][0] == [1.0] * 7
+    assert numbers["cage_force"] == found.cage_force.tolist()
+    drawn = lines(plot.spin_over_time(found, ball=3))
+    np.testing.assert_array_equal(drawn[0], found.spin[:, 3])
+    assert plot.load_over_time(found).get_title() == "Load on roller 0"
 
 
 def test_start_at_rest_under_turning_rings():

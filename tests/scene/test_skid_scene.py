@@ -300,10 +300,10 @@ def test_loads_over_time():
 def test_rollers_and_places_of_the_end_state():
     with pytest.raises(SceneError, match="`lubricant`: is missing; it must be a table"):
         read_skid("deep_groove", ["operating.inner_speed=1 rpm"])
-    with pytest.raises(
-        SceneError, match="'needle_roller' skids in its end state alone"
-    ):
-        read_skid("needle")
+    with pytest.raises(SceneError, match="is for balls; rollers have the constant loa"):
+        read_skid("skid_roller", ["dynamics.load={time=['0 s'], Fx=['1 N']}"])
+    with pytest.raises(SceneError, match="`dynamics.balanced`: is for balls; rollers"):
+        read_skid("skid_roller", ["dynamics.balanced=true"])
     with pytest.raises(SceneError, match="'tapered_roller' does not skid; balls, cyl"):
         read_skid("tapered", steady=True)
     with pytest.raises(SceneError, match="`bearing`: is of several rows; balls or rol"):
