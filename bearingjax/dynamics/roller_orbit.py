@@ -37,9 +37,13 @@ from .steady_results import Power, SteadyRollerSkid
 class RollerOrbit(AbstractOrbit):
     """Equations of the rollers; unknowns are the spin at each place, and the orbit.
 
+    Both are counted from pure rolling: where oil is stiff, slips are smaller than the
+    round-off of the speeds, and so they are no differences of speeds.
+
     Attributes:
         model: The bearing, its oil and what surrounds the rollers.
         roller: A roller at all places (place,).
+        rolls: Its motion in pure rolling (place,).
         speed: Ring speeds.
         density: Of the oil [kg/m³].
         along: Matrix of derivatives along the orbit (place, place) [1].
@@ -48,40 +52,47 @@ class RollerOrbit(AbstractOrbit):
 
     model: SkidModel
     roller: LoadedRoller
+    rolls: RollerState
     speed: Speed
     density: Scalar
     along: Float[Array, "place place"]
     start: Float[Array, " unknown"]
 
-    def _local(self, roller, spin, slope, orbit):
+    def _local(self, roller, rolls, spin, slope, orbit):
         """Spin and orbit out of balance at one place [N], and the size of forces."""
-        state = RollerState(spin, orbit)
-        pulls, drag = self.forces(roller, state)
+        state, _, pulls, drag = self.forces(roller, rolls, spin, orbit)
         moment, force = unbalanced(roller, pulls, drag)
         radius = 0.5 * roller.diameter
-        out = (moment - roller.moment * orbit * slope) / radius
+        out = (moment - roller.moment * state.orbit * slope) / radius
         size = jnp.sum(jnp.abs(pulls.force)) + jnp.abs(drag)
         return (out, force), size
 
-    def forces(self, roller, state):
-        """Tractions on a roller, and the force of the oil between the rings [N]."""
-        moving = sliding(roller, state, self.speed)
+    def forces(self, roller, rolls, spin, orbit):
+        """Motion of a roller, that against its raceways, tractions, and the force of
+        the oil between the rings [N]; `spin` and `orbit` from pure rolling."""
+        state = RollerState(rolls.spin + spin, rolls.orbit + orbit)
+        # Linear in all speeds, and rolling does not slip.
+        moving = sliding(roller, state, self.speed)._replace(
+            slip=sliding(roller, RollerState(spin, orbit), Speed()).slip
+        )
         drag = self.model.drag.force(
             state.orbit, roller.frontal_area, roller.pitch_radius, self.density
         )
-        return tractions(roller, self.model.traction, moving), drag
+        return state, moving, tractions(roller, self.model.traction, moving), drag
 
     def unbalanced(self, y):
         spin, orbit = y[:-1], y[-1]
-        each = jax.vmap(self._local, in_axes=(0, 0, 0, None))
-        (out, force), sizes = each(self.roller, spin, self.along @ spin, orbit)
+        each = jax.vmap(self._local, in_axes=(0, 0, 0, 0, None))
+        given = self.roller, self.rolls, spin, self.along @ spin, orbit
+        (out, force), sizes = each(*given)
         return jnp.concatenate([out, jnp.mean(force, keepdims=True)]), sizes
 
     def jacobian(self, y):
         spin, orbit = y[:-1], y[-1]
-        function = jax.jacfwd(self._local, argnums=(1, 2, 3), has_aux=True)
-        each = jax.vmap(function, in_axes=(0, 0, 0, None))
-        (of_out, of_force), _ = each(self.roller, spin, self.along @ spin, orbit)
+        function = jax.jacfwd(self._local, argnums=(2, 3, 4), has_aux=True)
+        each = jax.vmap(function, in_axes=(0, 0, 0, 0, None))
+        given = self.roller, self.rolls, spin, self.along @ spin, orbit
+        (of_out, of_force), _ = each(*given)
         own, sloped, orbiting = of_out
         spins = jnp.diag(own) + sloped[:, None] * self.along
         share = 1.0 / spin.shape[0]
@@ -101,18 +112,15 @@ class RollerOrbit(AbstractOrbit):
 
     def described(self, y, **known):
         roller, speed = self.roller, self.speed
-        spin = y[:-1]
-        around = jnp.full_like(spin, y[-1])
 
-        def one(roller, spin, around):
-            state = RollerState(spin, around)
-            pulls, drag = self.forces(roller, state)
+        def one(roller, rolls, spin):
+            state, moving, pulls, drag = self.forces(roller, rolls, spin, y[-1])
             push = jnp.sum(pulls.force) - drag
-            lost = -drag * roller.pitch_radius * around
-            rolls = rolling(roller, speed)
-            return sliding(roller, state, speed), pulls, push, lost, rolls
+            lost = -drag * roller.pitch_radius * state.orbit
+            return state, moving, pulls, push, lost
 
-        moving, pulls, push, lost, rolls = jax.vmap(one)(roller, spin, around)
+        found = jax.vmap(one)(roller, self.rolls, y[:-1])
+        state, moving, pulls, push, lost = found
         rollers = n_elements(self.model.bearing)
 
         def mean(values):
@@ -121,14 +129,14 @@ class RollerOrbit(AbstractOrbit):
         on_outer, on_inner = (mean(pulls.ring_torque[:, k]) for k in range(2))
         return SteadyRollerSkid(
             contact_load=roller.load,
-            orbit_speed=around,
-            rolling_orbit_speed=rolls.orbit,
-            spin=spin,
-            rolling_spin=rolls.spin,
+            orbit_speed=state.orbit,
+            rolling_orbit_speed=self.rolls.orbit,
+            spin=state.spin,
+            rolling_spin=self.rolls.spin,
             film=pulls.film,
             sliding=moving.slip,
             heat=pulls.heat,
-            cage_speed=y[-1],
+            cage_speed=state.orbit[0],
             cage_force=push,
             friction_torque=-on_inner,
             power=Power(
@@ -158,13 +166,14 @@ def roller_orbit(
         azimuth: The places, spread evenly (place,) [rad].
     """
     roller = loaded_rollers(model, solution.displacement, load_speed, azimuth)
-    free = jax.vmap(partial(rolling, speed=speed))(roller)
+    rolls = jax.vmap(partial(rolling, speed=speed))(roller)
     density = model.lubricant.density.at(model.temperature)
     along = jnp.asarray(derivatives(azimuth.shape[0]), azimuth.dtype)
-    start = jnp.append(free.spin, free.orbit[0])
+    start = jnp.zeros(azimuth.shape[0] + 1, azimuth.dtype)
     return RollerOrbit(
         model=model,
         roller=roller,
+        rolls=rolls,
         speed=speed,
         density=density,
         along=along,

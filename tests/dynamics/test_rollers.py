@@ -185,14 +185,15 @@ def found():
     loads = [BASE.copy() for _ in LOADS]
     for at, load in zip(loads, LOADS, strict=True):
         at[0] = load
-    slow, back, none, rest, both, lost = (BASE.copy() for _ in range(6))
+    slow, back, none, rest, both, stiff, lost = (BASE.copy() for _ in range(7))
     slow[1], back[1], none[3], rest[1] = 0.5 * FAST, -FAST, 0.0, 0.0
     both[2], lost[0] = -200.0, np.nan
+    stiff[0], stiff[5] = 20_000.0, -110.0  # oil that is a glass: no slip to speak of
     eye = np.diag(STEPS)
     moved = [BASE + n * step for step in eye for n in (-2.0, -1.0, 1.0, 2.0)]
-    cases = jnp.asarray([*loads, slow, back, none, rest, both, lost, *moved])
+    cases = jnp.asarray([*loads, slow, back, none, rest, both, stiff, lost, *moved])
     all_of = jax.tree.map(np.asarray, jax.jit(jax.vmap(steady))(cases))
-    names = [*LOADS, "slow", "back", "none", "rest", "both", "lost"]
+    names = [*LOADS, "slow", "back", "none", "rest", "both", "stiff", "lost"]
     ends = {n: jax.tree.map(lambda a, k=k: a[k], all_of) for k, n in enumerate(names)}
     return ends, jax.tree.map(lambda a: a[len(names) :], all_of)
 
@@ -228,7 +229,7 @@ def test_loads_are_those_of_the_bearing(found):
 def test_balances(found):
     """Power of the drive is heat; forces of the cage add up to nothing; tractions on
     a roller add up to those of cage and oil."""
-    for name in (*LOADS, "slow", "back", "both"):
+    for name in (*LOADS, "slow", "back", "both", "stiff"):
         end = found[0][name]
         p = end.power
         lost = p.contacts + p.drag + p.cage
