@@ -1,0 +1,123 @@
+"""A map of skidding: slip of the cage over axial load and speed.
+
+The bearing of Han & Chu, 25 axial loads of 20 to 600 N times 40 speeds of 500 to 12 000
+rpm: 1000 end states in one call of `steady_skid` under `jax.vmap`, load solves
+included. Beside it the same loads and speeds one after the other, and the error against
+a second call from which every point is solved alone. Under a radial load too, of two
+thirds of the axial one, 96 places along the orbit: 5 x 8 points.
+
+Run: python benchmarks/skid_map.py [--smoke] [--plot OUT.png]
+
+Last run:
+
+Not yet run.
+"""
+
+import argparse
+import sys
+from functools import partial
+from pathlib import Path
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+from han_chu import FREE, MODEL  # noqa: E402
+from timing import machine, timed  # noqa: E402
+
+from bearingjax import Speed  # noqa: E402
+from bearingjax.dynamics import steady_skid  # noqa: E402
+
+RADIAL = 2.0 / 3.0
+
+
+def end_state(places, share, load, speed):
+    """Mean slip, friction torque, result of one point."""
+    force = jnp.zeros(6).at[0].set(share * load).at[2].set(load)
+    found = steady_skid(
+        MODEL, force, speed=Speed(inner=speed), free=FREE, places=places, throw=False
+    )
+    slip = 1.0 - found.cage_speed / jnp.mean(found.rolling_orbit_speed)
+    return slip, found.friction_torque, found.result
+
+
+@eqx.filter_jit
+def together(places, share, loads, speeds):
+    """All points in one call."""
+    return jax.vmap(partial(end_state, places, share))(loads, speeds)
+
+
+def grid(loads, speeds):
+    """All pairs, one after the other."""
+    pairs = np.meshgrid(loads, np.asarray(speeds) * np.pi / 30.0, indexing="ij")
+    return tuple(jnp.asarray(p.ravel()) for p in pairs)
+
+
+def draw(loads, speeds, slip, path):
+    """The map."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+    percent = 100.0 * slip.reshape(len(loads), len(speeds))
+    levels = [0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
+    norm = plt.matplotlib.colors.BoundaryNorm(levels, 256)
+    drawn = axes.pcolormesh(speeds, loads, percent, norm=norm, shading="gouraud")
+    lines = axes.contour(speeds, loads, percent, [1.0, 10.0], colors="white")
+    axes.clabel(lines, fmt=lambda value: f"{value:g} %")
+    figure.colorbar(drawn, label="slip of the cage, %")
+    axes.set(xlabel="speed of the inner ring, rpm", ylabel="axial load, N")
+    figure.savefig(path, dpi=150)
+
+
+def run(name, places, share, loads, speeds, alone):
+    """Time of a map, and of points of it alone; returns the slips."""
+    points = grid(loads, speeds)
+    given = places, share
+    first, _ = timed(lambda: together(*given, *points))
+    again, (slip, torque, result) = timed(lambda: together(*given, *points))
+    count = slip.shape[0]
+    failed = int(np.sum(np.asarray(result) != 0))
+    assert np.all(np.isfinite(np.asarray(slip)[np.asarray(result) == 0]))
+    single = jax.jit(partial(end_state, *given))
+    picked = np.linspace(0, count - 1, alone).astype(int)
+    jax.block_until_ready(single(*(p[0] for p in points)))
+    seconds, worst = 0.0, 0.0
+    for k in picked:
+        one, found = timed(lambda k=k: single(*(p[k] for p in points)))
+        seconds += one
+        if not int(result[k]):
+            worst = max(worst, abs(float(found[0] - slip[k])))
+    print(
+        f"{name}: {count} points, first {first:.1f} s, again {1e3 * again:.0f} ms,"
+        f" {1e6 * again / count:.0f} us a point; alone {1e6 * seconds / alone:.0f} us;"
+        f" not solved {failed}; slip {100 * float(jnp.nanmin(slip)):.3f} to"
+        f" {100 * float(jnp.nanmax(slip)):.1f} %; together and alone differ by"
+        f" {worst:.0e}",
+        flush=True,
+    )
+    return np.asarray(slip)
+
+
+def main():
+    """Print the times, draw the map."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--smoke", action="store_true")
+    parser.add_argument("--plot", metavar="OUT.png")
+    args = parser.parse_args()
+    loads, speeds = np.linspace(20.0, 600.0, 25), np.linspace(500.0, 12e3, 40)
+    if args.smoke:
+        loads, speeds = loads[::12], speeds[::20]
+    slip = run("axial", 1, 0.0, loads, speeds, 2 if args.smoke else 50)
+    if args.plot:
+        draw(loads, speeds, slip, args.plot)
+    if not args.smoke:
+        run("combined", 96, RADIAL, loads[4::5], speeds[::5], 5)
+    print(machine())
+
+
+if __name__ == "__main__":
+    main()
