@@ -29,6 +29,11 @@ from .model import SkidModel
 from .ring_speed import SpeedTable
 from .roller_motion import LoadedRoller, RollerState
 
+_REST = 1e-8
+"""Time in which a force out of balance moves ring and balls by their unit [s]: without
+load nothing holds the ring, and the balance alone would be singular. Under a load that
+swings at 200 rad/s the balance is out by some 1e-7 of the largest contact load."""
+
 
 class Work(NamedTuple):
     """Work [J] or power [W]: the drive's is that of the others and what is stored.
@@ -217,10 +222,11 @@ class SkidSystem(AbstractSystem):
 
     @property
     def masses(self) -> Masses:
-        """Speeds and angles change; balls and ring are balanced at every time."""
+        """Speeds and angles change; balls and ring are balanced at every time, but for
+        the way that a ring goes which nothing holds."""
         loads, real = self.around.loads, self.speed.dtype
-        own = [1.0] * (loads.n_spins + 2) + [0.0] * loads.n_own
-        shared = [1.0] * 2 + [0.0] * loads.n_shared
+        own = [1.0] * (loads.n_spins + 2) + [_REST] * loads.n_own
+        shared = [1.0] * 2 + [_REST] * loads.n_shared
         return Masses(jnp.asarray(own, real), jnp.asarray(shared, real))
 
     @property

@@ -3,7 +3,7 @@
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..design.checks import in_range, non_negative, positive
+from ..design.checks import check, is_traced, non_negative, positive
 from ..numerics.power import smooth_power
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
@@ -33,7 +33,9 @@ class Drag(eqx.Module):
 
     def __check_init__(self):
         non_negative(self, "coefficient")
-        in_range(self, "fill", 0.0, 1.0)
+        non_negative(self, "fill")
+        if not is_traced(self.fill):
+            check(self, "fill", bool(self.fill <= 1.0), "at most 1")
 
     def force(
         self, orbit: Scalar, area: Scalar, pitch_radius: Scalar, density: Scalar

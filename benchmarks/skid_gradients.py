@@ -1,0 +1,162 @@
+"""Are the derivatives of skidding those of differences, of every real number?
+
+Slip of the cage, friction torque and largest sliding speed, of the bearing of Han & Chu
+at the end state (`steady_skid`, 120 N axial) and after 3 ms from rolling (`skid`, 16 N,
+pockets without clearance), with respect to preload, speeds and every real number of
+design, oil, drag and cage. All in one pass backwards; forwards too, one way. Beside
+them central differences with steps from 1e-2 to 1e-6 of the number: the least of
+the errors over the steps, which form a V. Errors are relative to the derivative, or to
+a thousandth of what is differentiated over the number where that is more (numbers that
+do not matter).
+
+Run: python benchmarks/skid_gradients.py [--smoke]
+
+Last run (the way in time, which needs some ten minutes, not yet):
+
+end state: 38 numbers; forwards and backwards agree to 7e-14
+  slip: largest errors contact_angle 4e-07, inner 7e-09, least_film 5e-09
+  torque: largest errors inner_osculation 1e-07, outer_osculation 4e-08,
+    reference_viscosity 2e-08
+  sliding: largest errors inner_osculation 1e-08, density 3e-09,
+    reference_viscosity 3e-09
+"""
+
+import argparse
+import sys
+from functools import partial
+from pathlib import Path
+
+import jax
+import jax.flatten_util
+
+jax.config.update("jax_enable_x64", True)
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+from han_chu import FREE, MODEL  # noqa: E402
+from timing import machine  # noqa: E402
+
+from bearingjax import Speed  # noqa: E402
+from bearingjax.dynamics import skid, steady_skid  # noqa: E402
+
+WHAT = "slip", "torque", "sliding"
+STEPS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6
+BOUNDS = {"end state": 1e-6, "in time": 1e-4}
+
+
+def numbers(load):
+    """All that may be changed: one pytree."""
+    cage = eqx.tree_at(
+        lambda m: m.cage.pocket_clearance, MODEL, jnp.zeros_like(MODEL.temperature)
+    )
+    return {
+        "load": jnp.asarray(load),
+        "inner": jnp.asarray(209.4395),
+        "outer": jnp.asarray(0.0),
+        "model": cage,
+    }
+
+
+def given(numbers):
+    """Arguments of both functions."""
+    load = jnp.zeros(6).at[2].set(numbers["load"])
+    return load, Speed(inner=numbers["inner"], outer=numbers["outer"])
+
+
+def of_results(found, orbit, rolling):
+    sliding = jnp.max(jnp.sqrt(jnp.sum(found.sliding**2, axis=-1)))
+    torque = jnp.ravel(found.friction_torque)[-1]
+    return jnp.stack([1.0 - orbit / rolling, torque, sliding])
+
+
+def end_state(numbers, _):
+    load, speed = given(numbers)
+    found = steady_skid(
+        numbers["model"], load, speed=speed, free=FREE, places=1, throw=False
+    )
+    return of_results(found, found.cage_speed, found.rolling_orbit_speed[0])
+
+
+def in_time(numbers, derivatives):
+    load, speed = given(numbers)
+    found = skid(
+        numbers["model"],
+        load,
+        speed=speed,
+        duration=0.003,
+        tolerance=1e-8,
+        free=FREE,
+        n_times=2,
+        places=1,
+        max_steps=512,
+        derivatives=derivatives,
+        throw=False,
+    )
+    rolling = found.rolling_orbit_speed[-1, 0]
+    last = eqx.tree_at(lambda f: f.sliding, found, found.sliding[-1])
+    return of_results(last, found.cage_speed[-1], rolling)
+
+
+def flat(tree):
+    """All real numbers in a row, their names, and the way back."""
+    inexact, rest = eqx.partition(tree, eqx.is_inexact_array)
+    vector, back = jax.flatten_util.ravel_pytree(inexact)
+    names = [
+        jax.tree_util.keystr(path) + (f"[{k}]" if leaf.size > 1 else "")
+        for path, leaf in jax.tree_util.tree_leaves_with_path(inexact)
+        for k in range(leaf.size)
+    ]
+    return vector, names, lambda v: eqx.combine(back(v), rest)
+
+
+def compared(name, function, load, steps):
+    """Print the worst errors; whether they are within bounds."""
+    vector, names, back = flat(numbers(load))
+    size = jnp.where(vector == 0, 1.0, jnp.abs(vector))
+    # Tilts and lengths of zero, such as a pocket without clearance, move a little.
+    size = jnp.where(vector == 0, 1e-6, size)
+
+    @partial(jax.jit, static_argnums=1)
+    def value(factors, derivatives):
+        return function(back(vector + factors * size), derivatives)
+
+    none = jnp.zeros_like(vector)
+    slopes = jax.jit(jax.jacrev(lambda f: value(f, "reverse")))(none)
+    assert np.all(np.isfinite(slopes))
+    way = jnp.asarray(np.random.default_rng(0).normal(size=vector.size))
+    _, forward = jax.jvp(lambda f: value(f, "forward"), (none,), (way,))
+    both = np.max(np.abs(forward - slopes @ way) / np.abs(forward))
+    here = np.abs(value(none, "reverse"))
+    found = np.full((len(WHAT), vector.size), np.inf)
+    for k in range(vector.size):
+        for step in steps:
+            ends = [value(none.at[k].set(s), "reverse") for s in (step, -step)]
+            slope = (ends[0] - ends[1]) / (2.0 * step)
+            scale = np.maximum(np.abs(slopes[:, k]), 1e-3 * here)
+            found[:, k] = np.fmin(found[:, k], np.abs(slope - slopes[:, k]) / scale)
+    print(f"{name}: {vector.size} numbers; forwards and backwards agree to {both:.0e}")
+    within = both < BOUNDS[name]
+    for row, what in zip(found, WHAT, strict=True):
+        order = np.argsort(row)[::-1][:3]
+        worst = ", ".join(f"{names[k]} {row[k]:.0e}" for k in order)
+        print(f"  {what}: largest errors {worst}", flush=True)
+        within = within and row[order[0]] < BOUNDS[name]
+    return within
+
+
+def main():
+    """Print the errors."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--smoke", action="store_true")
+    smoke = parser.parse_args().smoke
+    within = compared("end state", end_state, 120.0, STEPS[2:3] if smoke else STEPS)
+    if not smoke:
+        within = compared("in time", in_time, 16.0, STEPS) and within
+    print(machine())
+    return 0 if within else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
