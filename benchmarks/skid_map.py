@@ -69,11 +69,12 @@ def grid(loads, speeds):
 def draw(loads, speeds, slip, path):
     """The map."""
     import matplotlib.pyplot as plt
+    from matplotlib.colors import BoundaryNorm
 
     figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
     percent = 100.0 * slip.reshape(len(loads), len(speeds))
     levels = [-2.0, -1.0, -0.5, 0.0, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
-    norm = plt.matplotlib.colors.BoundaryNorm(levels, 256)
+    norm = BoundaryNorm(levels, 256)
     drawn = axes.pcolormesh(speeds, loads, percent, norm=norm, shading="gouraud")
     lines = axes.contour(speeds, loads, percent, [1.0, 10.0], colors="white")
     axes.clabel(lines, fmt=lambda value: f"{value:g} %")
