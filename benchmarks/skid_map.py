@@ -1,4 +1,4 @@
-"""A map of skidding: slip of the cage over axial load and speed.
+"""How much does the cage slip? A map over axial load and speed.
 
 The bearing of Han & Chu, 25 axial loads of 20 to 600 N times 40 speeds of 500 to 12 000
 rpm: 1000 end states in one call of `steady_skid` under `jax.vmap`, load solves
