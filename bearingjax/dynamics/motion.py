@@ -32,7 +32,7 @@ from .roller_motion import LoadedRoller, RollerState
 _REST = 1e-8
 """Time in which a force out of balance moves ring and balls by their unit [s]: without
 load nothing holds the ring, and the balance alone would be singular. Under a load that
-swings at 200 rad/s the balance is out by some 1e-7 of the largest contact load."""
+swings at 200 rad/s the balance is out by some 1e-5 of the largest contact load."""
 
 
 class Work(NamedTuple):

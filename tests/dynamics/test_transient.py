@@ -173,8 +173,9 @@ def test_loads_that_vary_are_those_of_the_bearing_at_every_time(varying):
     """Solved alone, with the balls where they are at that time."""
     swing, found = varying
     assert np.ptp(found.displacement[:, 6]) > 5e-7
-    # Of 300 N: the ring follows the load within 1e-8 s; between steps there are cubics.
-    for k, near in ((0, 8e-5), (7, 3e-2), (20, 8e-5)):
+    # The ring follows the load within 1e-8 s, which is 1e-5 of the 300 N; between steps
+    # there are cubics.
+    for k, near in ((0, 8e-5), (7, 3e-2), (20, 4e-3)):
         azimuth = np.asarray(found.azimuth[k])
         even = azimuth[0] + 2.0 * np.pi * np.arange(BALLS) / BALLS
         aside = (azimuth - even + np.pi) % (2.0 * np.pi) - np.pi
@@ -191,7 +192,7 @@ def test_loads_that_vary_are_those_of_the_bearing_at_every_time(varying):
         got = found.contact_angle[k]
         np.testing.assert_allclose(got, want.contact_angle, atol=1e-2 * near)
         got = found.displacement[k]
-        np.testing.assert_allclose(got, want.displacement, atol=2e-6 * near)
+        np.testing.assert_allclose(got, want.displacement, atol=2e-5 * near)
 
 
 def test_power_balance_under_a_load_that_varies(varying):
