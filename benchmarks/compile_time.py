@@ -14,20 +14,20 @@ that XLA makes of them. `--beside TREE` runs another checkout in turn.
 Run: python benchmarks/compile_time.py [--json] [--smoke] [--repeats N]
          [--scenes NAME...] [--beside TREE]
 
-Last run, with eight other jobs on two cores (load average 10), so that only processor
-time tells; in it importing JAX and adding two arrays takes 0.75 s, `--version` 1.3 s:
+Last run, `--repeats 1`, nine scenes, while importing JAX and adding two arrays took
+0.87 s, and the first force and stiffness of the library 4.76 s:
 
-processor seconds          scene             solve, first  solve, second
-                           tapered                    6.4           2.0
-                           cylindrical_ribs           6.2           1.9
-                           cylindrical_rig            5.2           2.0
-                           fujiwara_kawase            6.1           1.9
-                           needle                     6.1           2.0
-                           nj_axial                   6.6           2.1
-                           hybrid_spindle             6.4           2.0
-                           deep_groove                6.1           2.1
-                           angular_contact           10.9           2.4
-                           ball_pair                 16.8           2.8
+seconds                    solve, first  solve, second  equations  instr.
+tapered                            5.98           2.04       5751   11102
+needle                             6.15           1.90       6611   11651
+nj_axial                           4.33           1.44       6157   11465
+hybrid_spindle                     4.89           1.57       5862   11162
+deep_groove                        4.21           1.57       5075   10510
+angular_contact                    5.93           1.75       8103   18025
+ball_pair                          6.25           1.83       9647   19800
+sprung_pair                        9.63           2.46      14912   31831
+self_aligning                     10.31           2.17      14113   26455
+AMD EPYC, 2 cores, load average before 1.3; jax 0.10.1
 """
 
 import argparse
