@@ -17,5 +17,9 @@ from .steady_results import SteadyRollerSkid as SteadyRollerSkid
 from .steady_results import SteadySkid as SteadySkid
 from .surroundings import Cage as Cage
 from .surroundings import Drag as Drag
+from .system import CageSlip as CageSlip
+from .system import FrictionPower as FrictionPower
+from .system import FrictionTorque as FrictionTorque
+from .system import SkidSystem as SkidSystem
 from .transient import skid as skid
 from .warning import skid_warnings as skid_warnings

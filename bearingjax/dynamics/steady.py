@@ -6,7 +6,6 @@ by the cage (`roller_orbit`).
 """
 
 from collections.abc import Sequence
-from functools import partial
 from typing import Any
 
 import equinox as eqx
@@ -71,7 +70,7 @@ def steady_skid(
     Fails: codes of the load solve; `STEP_LIMIT`, `NON_FINITE`; `GRID_MISFIT` if one
         place stands for balls that bear unlike loads.
     """
-    _check_places(model.bearing, places)
+    check_places("steady_skid", model.bearing, places)
     carried = speed if load_speed is None else load_speed
     solution = solve_load(
         model.element,
@@ -83,19 +82,29 @@ def steady_skid(
         throw=throw,
     )
     count = _places(model.bearing, solution, places)
-    found = _steady(model, solution, speed, carried, count)
+    found = end_state(model, solution, speed, carried, count)
     if not throw:
         return found
     return raise_unless_converged(found, found.result, lambda: _message(found))
 
 
-def _check_places(bearing, places):
+def check_places(owner: str, bearing: Any, places: int | None) -> None:
+    """Raise for a number of places that does not suit.
+
+    Args:
+        owner: Function or class that was called.
+        bearing: The design.
+        places: As of `steady_skid`.
+
+    Raises:
+        ValueError: If it is neither 1 nor a multiple of the number of balls.
+    """
     number = n_elements(bearing)
     if places is None or places == 1 or (places > 0 and places % number == 0):
         return
     raise ValueError(
-        f"steady_skid: `places` is {places}; it must be 1 or a multiple of the"
-        f" {number} {_kind(bearing)}."
+        f"{owner}: `places` is {places}; it must be 1 or a multiple of the {number}"
+        f" {_kind(bearing)}."
     )
 
 
@@ -108,13 +117,23 @@ def _places(bearing, solution, places):
     known = not is_traced(solution.roller_load)
     alike = known and not bool(_unlike(solution))
     if places is None:
-        return 1 if alike else number * -(-_PLACES // number)
+        return 1 if alike else enough_places(bearing)
     if known and places == 1 and not alike:
         raise ValueError(
             f"steady_skid: `places` is 1, but the {kind} bear unlike loads; it must be"
             f" a multiple of the {number} {kind}."
         )
     return places
+
+
+def enough_places(bearing: Any) -> int:
+    """Default number of places along an orbit, where loads are unlike.
+
+    Args:
+        bearing: The design.
+    """
+    number = n_elements(bearing)
+    return number * -(-_PLACES // number)
 
 
 def _unlike(solution):
@@ -126,14 +145,34 @@ def _unlike(solution):
 
 def _message(found):
     label = Result(int(found.result)).label
-    return (
-        f"steady_skid: {label} after {int(found.steps)} steps; force out of balance"
-        f" {float(found.residual):.1e} of the tractions."
-    )
+    return f"steady_skid: {label} after {failure(found)}."
 
 
-@partial(eqx.filter_jit)
-def _steady(model, solution, speed, load_speed, count) -> SteadyMotion:
+def failure(found: SteadyMotion) -> str:
+    """How far a search came that failed, in words.
+
+    Args:
+        found: One end state, concrete.
+    """
+    out = f"force out of balance {float(found.residual):.1e} of the tractions"
+    return f"{int(found.steps)} steps; {out}"
+
+
+@eqx.filter_jit
+def end_state(
+    model: SkidModel, solution: Any, speed: Speed, load_speed: Speed, count: int
+) -> Any:
+    """How the balls or rollers of a solved bearing skid in the end; never raises.
+
+    Args:
+        model: The bearing, its oil and what surrounds the balls.
+        solution: Of its load.
+        speed: Ring speeds.
+        load_speed: Ring speeds of that solution.
+        count: Number of places along the orbit. Static.
+
+    Returns, Fails: As of `steady_skid`.
+    """
     turn = jnp.asarray(2.0 * np.pi * np.arange(count) / count, model.temperature.dtype)
     azimuth = solution.azimuth[0] + turn
     make = ball_orbit if is_ball(model.bearing) else roller_orbit

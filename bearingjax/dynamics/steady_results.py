@@ -64,6 +64,12 @@ class SteadyMotion(eqx.Module):
         """1 - orbit/rolling orbit (place,) [1]."""
         return 1.0 - self.orbit_speed / self.rolling_orbit_speed
 
+    @property
+    def cage_slip(self) -> Scalar:
+        """1 - cage speed/that of pure rolling, whose mean is in time, too [1]."""
+        rolling = self.rolling_orbit_speed
+        return 1.0 - self.cage_speed * (1.0 / rolling).mean(axis=-1)
+
 
 class SteadySkid(SteadyMotion):
     """How skidding balls move in the end. Axis contact as of `BallResults`; pure

@@ -9,22 +9,21 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..element.bearing_element import BearingElement
 from ..numerics.result import Result, SolveError
-from ..statics.cases import Cases, solve_case
+from ..statics.cases import Cases
 from ..statics.options import SolveOptions
-from ..statics.solution import Solution, message
 from ..statics.warning import warnings as warnings_of
 from .constraint import Constraint
 from .measure import exact_of, least_size_of
+from .system import Design, failure, loads_of, solved_case
 from .trials import Trial
 from .variable import Variable, with_values
 
 CHUNK = 64
 """Most cases that are solved as one batch."""
 
-Measure = Callable[[BearingElement[Any], Cases, Solution], Any]
-Build = Callable[[BearingElement[Any]], BearingElement[Any]]
+Measure = Callable[[Any, Cases, Any], Any]
+Build = Callable[[Any], Any]
 
 
 class Outcome(NamedTuple):
@@ -49,7 +48,7 @@ class Outcome(NamedTuple):
     @property
     def warnings(self) -> list[str]:
         """A sentence for each kind of warning: in how many cases, and the worst."""
-        return warnings_of(self.solution)
+        return warnings_of(loads_of(self.solution))
 
 
 class Bound(NamedTuple):
@@ -72,7 +71,7 @@ class Problem:
 
     def __init__(
         self,
-        element: BearingElement[Any],
+        element: Design,
         cases: Cases,
         variables: Sequence[Variable],
         objective: Measure,
@@ -115,7 +114,7 @@ class Problem:
         slope = None if trial.slope is None else trial.slope / self.size
         return trial._replace(objective=trial.objective / self.size, slope=slope)
 
-    def outcome(self, trial: Trial) -> tuple[BearingElement[Any], Outcome]:
+    def outcome(self, trial: Trial) -> tuple[Any, Outcome]:
         """The design of a trial and its results, by the program already compiled."""
         values = self.values(trial.unit)
         element = with_values(self.element, self.paths, values)
@@ -163,7 +162,7 @@ class Problem:
         except ValueError as error:
             return failed._replace(fault=f"not a design: {error}", solved=False)
         found = self.run(unit, slopes)
-        fault = _fault(found)
+        fault = _fault(self.element, found)
         if fault:
             return failed._replace(fault=fault)
         # Searches are done in float64, also where the bearing is solved in float32.
@@ -206,7 +205,7 @@ def _program(
             design = build(design)
 
         def one(case):
-            return solve_case(design, case, options)
+            return solved_case(design, case, options)
 
         if cases.count <= CHUNK:
             solution = jax.vmap(one)(cases)
@@ -241,14 +240,14 @@ def _bounds(constraints):
                 yield Bound(k + 1, sign, float(limit), abs(float(limit)) or 1.0)
 
 
-def _fault(found: Run) -> str:
+def _fault(design: Design, found: Run) -> str:
     """Why an evaluated design is rejected, in words; empty if it is not."""
     results = np.asarray(found.solution.result)
     if results.any():
         k = int(np.argmax(results))
         one = jax.tree.map(lambda leaf: leaf[k], found.solution)
         label = Result(int(results[k])).label
-        return f"case {k}: {label}: {message(one, one.moving_ring)}"
+        return f"case {k}: {label}: {failure(design, one)}"
     if not np.isfinite(found.measures).all():
         return f"a measure is not finite: {np.asarray(found.measures).tolist()}"
     if found.jacobian is not None and not np.isfinite(found.jacobian).all():

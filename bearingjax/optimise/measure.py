@@ -1,8 +1,10 @@
 """Measures of a design over its operating cases: one smooth number each.
 
 A measure is any function (element, cases, solution) -> scalar, where the solution has
-a leading case axis; those here are Modules. Life over a load spectrum can be added as
-one: the element has the design, the cases have hours and speeds.
+a leading case axis; those here are Modules. The solution of a system (`system.py`) is
+what it solves, such as a skidding end state; those here look at the loads in it. Life
+over a load spectrum can be added as one: the element has the design, the cases have
+hours and speeds.
 
 Maxima and minima are smooth (`smooth.py`).
 """
@@ -16,33 +18,29 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..design.checks import check, number
-from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS, STIFFNESS_UNITS
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit, unit_of
 from ..statics.cases import Cases
 from ..statics.solution import RollerSolution, Solution
 from .smooth import EXPONENT, smooth_maximum, smooth_minimum
+from .system import Design, loads_of
 
 
 class AbstractMeasure(eqx.Module):
     """One number of a design over its cases."""
 
     @abc.abstractmethod
-    def __call__(
-        self, element: BearingElement[Any], cases: Cases, solution: Solution
-    ) -> Scalar:
+    def __call__(self, element: Design, cases: Cases, solution: Any) -> Scalar:
         """The measure, smooth in the design.
 
         Args:
             element: The design.
             cases: Its operating cases.
-            solution: Their solutions, leading axis case.
+            solution: What was solved of them, leading axis case.
         """
 
-    def exact(
-        self, element: BearingElement[Any], cases: Cases, solution: Solution
-    ) -> Scalar:
+    def exact(self, element: Design, cases: Cases, solution: Any) -> Scalar:
         """The measure with the true maximum or minimum in place of the smooth one.
 
         Args:
@@ -172,6 +170,7 @@ class EdgeLoad(AbstractLargest):
     exponent: float = eqx.field(static=True, default=EXPONENT)
 
     def samples(self, solution):
+        solution = loads_of(solution)
         if not isinstance(solution, RollerSolution):
             raise ValueError(
                 "EdgeLoad: balls have no ends; the bearing must be of rollers."
@@ -204,6 +203,7 @@ class Displacement(AbstractLargest):
         _check_freedom(self, self.freedom)
 
     def samples(self, solution):
+        solution = loads_of(solution)
         if self.freedom not in solution.free:
             raise ValueError(
                 f"Displacement: `freedom` is {self.freedom!r}, which is not free: no"
@@ -312,7 +312,7 @@ def label_of(measure: Any) -> str:
     return getattr(measure, "__name__", type(measure).__name__)
 
 
-def exact_of(measure: Any, element, cases: Cases, solution: Solution) -> Scalar:
+def exact_of(measure: Any, element: Design, cases: Cases, solution: Any) -> Scalar:
     """`exact` of a measure; of a plain function its value.
 
     Args:
@@ -344,6 +344,7 @@ def hour_weights(cases: Cases) -> Float[Array, " case"]:
 
 def _pressures(solution):
     """Pressures of all contacts, of rollers also along them (case, sample)."""
+    solution = loads_of(solution)
     count = solution.contact_pressure.shape[0]
     samples = solution.contact_pressure.reshape(count, -1)
     if not isinstance(solution, RollerSolution):
@@ -358,6 +359,7 @@ def _mean(values, cases):
 
 
 def _stiffness(solution, row, column):
+    solution = loads_of(solution)
     first = 6 * RINGS.index(solution.moving_ring)
     i, j = (first + FREEDOMS.index(name) for name in (row, column))
     return solution.stiffness[:, i, j]

@@ -11,13 +11,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..element.bearing_element import BearingElement, check_element
 from ..statics.cases import Cases
 from ..statics.options import SolveOptions
 from ..statics.support import check_held
 from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem
+from .measure import label_of
 from .search import METHODS, Ending, search, takes_gradients
+from .system import Design, check_design
 from .trials import Trial, Trials, optimality
 from .variable import Variable, check_variables
 
@@ -71,8 +72,8 @@ class Optimised:
         message: The same in words.
     """
 
-    element: BearingElement[Any]
-    initial: BearingElement[Any]
+    element: Any
+    initial: Any
     variables: tuple[Variable, ...]
     objective: Measure
     constraints: tuple[Constraint, ...]
@@ -94,7 +95,7 @@ class Optimised:
 
 
 def optimise(
-    element: BearingElement[Any],
+    element: Design,
     cases: Cases,
     variables: Sequence[Variable],
     objective: Measure,
@@ -123,7 +124,8 @@ def optimise(
     at a saddle and at a local minimum: run it from several starts.
 
     Args:
-        element: The design to start from.
+        element: The design to start from: an element, or a system, such as
+            `bearingjax.dynamics.SkidSystem`, whose balls may slip.
         cases: Operating cases, all of this design.
         variables: The design variables.
         objective: The measure to be minimised, such as `PeakPressure()`, or any
@@ -158,10 +160,10 @@ def optimise(
         TypeError, ValueError: For wrong variables, measures, methods or numbers.
         SolveError: If the starting design does not solve.
     """
-    check_element("optimise", element)
     variables, constraints = tuple(variables), tuple(constraints)
     method = _check_method(method, constraints)
     _check_call(cases, objective, constraints, max_steps, tolerance)
+    check_design("optimise", element, cases)
     options = SolveOptions(free, fixed_ring, points, solve_tolerance)
     options.check("optimise", "solve_tolerance")
     check_held("optimise", cases.load, cases.prescribed, options.free)
@@ -191,6 +193,8 @@ def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimise
         # Its gradient may have failed: take the last step.
         best = trials.steps[-1]
     result, text = verdict(trials, ending, best, slopes, max_steps, tolerance)
+    if result == "infeasible":
+        text += _missed(problem, best)
     if result != "converged":
         text += _near_by(problem, trials, best)
     text += _idle(problem, trials)
@@ -257,6 +261,16 @@ def verdict(
     if np.isfinite(left):
         text += f"; gradient left {left:.1e}, above {allowed:.1e}"
     return "stalled", text
+
+
+def _missed(problem: Problem, best: Trial) -> str:
+    """Which measure misses its bound most, in words."""
+    bound = problem.bounds[int(np.argmin(best.margins))]
+    measure = problem.measures[bound.measure]
+    value = bound.limit + bound.sign * bound.size * best.margins.min()
+    side = "below" if bound.sign > 0 else "above"
+    name = label_of(measure)
+    return f"; {name} is {value:.6g}, {side} its bound {bound.limit:.6g}"
 
 
 def _near_by(problem: Problem, trials: Trials, best: Trial) -> str:

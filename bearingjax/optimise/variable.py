@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array
 
-from ..element.bearing_element import BearingElement
+from .system import Design
 
 
 @dataclasses.dataclass(frozen=True)
@@ -19,7 +19,8 @@ class Variable:
 
     Attributes:
         path: Its dotted path in the element, "bearing.roller_profile.crown_radius"; in
-            a set "bearing.rows.0.bearing.…". Several paths share one value.
+            a set "bearing.rows.0.bearing.…"; in a system from there,
+            "model.element.bearing.…". Several paths share one value.
         lower: Least value [SI].
         upper: Largest value [SI].
         start: First value [SI]; `None`: that of the design.
@@ -76,7 +77,7 @@ class Variable:
                 f" its bounds, {self.lower:g} and {self.upper:g}."
             )
 
-    def start_in(self, element: BearingElement[Any]) -> float:
+    def start_in(self, element: Design) -> float:
         """First value: `start`, or that of the design [SI].
 
         Args:
@@ -116,9 +117,9 @@ def design_numbers(design: Any) -> dict[str, Array]:
 
 
 def _path(keys) -> str:
-    names = ".".join(str(getattr(k, "name", getattr(k, "idx", k))) for k in keys)
+    names = [str(getattr(k, "name", getattr(k, "idx", k))) for k in keys]
     # Laws have the paths of the keywords of BearingElement.
-    return names.removeprefix("choices.")
+    return ".".join(name for name in names if name != "choices")
 
 
 def changed(design: Any, values: Mapping[str, Any]) -> Any:
@@ -146,9 +147,7 @@ def changed(design: Any, values: Mapping[str, Any]) -> Any:
     return dataclasses.replace(design, **parts)
 
 
-def with_values(
-    element: BearingElement[Any], paths: Sequence[Sequence[str]], values: Any
-) -> BearingElement[Any]:
+def with_values(element: Design, paths: Sequence[Sequence[str]], values: Any) -> Any:
     """The element with other numbers, each at all of its paths.
 
     Args:
@@ -163,9 +162,7 @@ def with_values(
     return changed(element, {path: v for several, v in pairs for path in several})
 
 
-def check_variables(
-    element: BearingElement[Any], variables: Sequence[Variable]
-) -> list[float]:
+def check_variables(element: Design, variables: Sequence[Variable]) -> list[float]:
     """Raise unless the design allows the start and each bound by itself.
 
     Args:
