@@ -4,6 +4,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..numerics.linear import lengths
 from ..numerics.types import namespace
 from ..numerics.units import unit
 from ..statics.solution import BallSolution, RollerSolution
@@ -105,7 +106,7 @@ class SkidHistory(SkidMotion):
     @property
     def sliding_speed(self) -> Float[Array | np.ndarray, "time ball contact"]:
         """Sizes of `sliding` (time, ball, contact) [m/s]."""
-        return namespace(self.sliding).sqrt((self.sliding**2).sum(axis=-1))
+        return lengths(self.sliding)
 
 
 class SkidRollerHistory(SkidMotion):

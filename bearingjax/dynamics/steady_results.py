@@ -6,6 +6,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..numerics.linear import lengths
 from ..numerics.types import Scalar, namespace
 from ..numerics.units import unit
 from ..statics.solution import BallSolution, RollerSolution
@@ -65,10 +66,15 @@ class SteadyMotion(eqx.Module):
         return 1.0 - self.orbit_speed / self.rolling_orbit_speed
 
     @property
-    def cage_slip(self) -> Scalar:
-        """1 - cage speed/that of pure rolling, whose mean is in time, too [1]."""
-        rolling = self.rolling_orbit_speed
-        return 1.0 - self.cage_speed * (1.0 / rolling).mean(axis=-1)
+    def cage_slip(self) -> Float[Array | np.ndarray, "*n"]:
+        """1 - cage speed/that of pure rolling [1]; zero where rings stand still.
+
+        Both are means in time.
+        """
+        rolling, xp = self.rolling_orbit_speed, namespace(self.rolling_orbit_speed)
+        still = rolling == 0
+        slow = xp.where(still, 0.0, 1.0 / xp.where(still, 1.0, rolling)).mean(axis=-1)
+        return xp.where(still.all(axis=-1), 0.0, 1.0 - self.cage_speed * slow)
 
 
 class SteadySkid(SteadyMotion):
@@ -97,7 +103,7 @@ class SteadySkid(SteadyMotion):
     @property
     def sliding_speed(self) -> Float[Array | np.ndarray, "*n place contact"]:
         """Sizes of `sliding` (place, contact) [m/s]."""
-        return namespace(self.sliding).sqrt((self.sliding**2).sum(axis=-1))
+        return lengths(self.sliding)
 
     @property
     def pitch_angle(self) -> Float[Array | np.ndarray, "*n place"]:

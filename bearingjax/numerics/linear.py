@@ -9,6 +9,8 @@ from typing import Any
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from .types import namespace
+
 
 def dot(a: Float[Array, " n"], b: Float[Array, " n"]) -> Float[Array, ""]:
     """a · b.
@@ -22,6 +24,17 @@ def dot(a: Float[Array, " n"], b: Float[Array, " n"]) -> Float[Array, ""]:
 def norm(a: Float[Array, " n"]) -> Float[Array, ""]:
     """|a| [unit of a]."""
     return jnp.sqrt(dot(a, a))
+
+
+def lengths(vectors: Any) -> Any:
+    """Lengths of vectors along the last axis; where one is 0 its derivative is 0.
+
+    Args:
+        vectors: Arrays of NumPy or of JAX (…, component) [any unit].
+    """
+    xp, squares = namespace(vectors), (vectors**2).sum(axis=-1)
+    none = squares == 0
+    return xp.where(none, 0.0, xp.sqrt(xp.where(none, 1.0, squares)))
 
 
 def quadratic(matrix: Float[Array, "n n"], a: Float[Array, " n"]) -> Float[Array, ""]:

@@ -7,7 +7,7 @@ import pytest
 from tolerances import ROUNDING, SOLVER
 
 from bearingjax.numerics import smallest_pivot, solve_symmetric
-from bearingjax.numerics.linear import dot, norm, quadratic, trace
+from bearingjax.numerics.linear import dot, lengths, norm, quadratic, trace
 
 solve_many = jax.jit(jax.vmap(solve_symmetric))
 pivot_many = jax.jit(jax.vmap(smallest_pivot))
@@ -121,3 +121,10 @@ def test_written_out_products():
     np.testing.assert_allclose(norm(x), np.linalg.norm(a), rtol=ROUNDING)
     np.testing.assert_allclose(quadratic(m, x), a @ matrix @ a, rtol=ROUNDING)
     np.testing.assert_allclose(trace(m), np.trace(matrix), rtol=ROUNDING)
+
+
+def test_lengths_have_derivatives_at_zero():
+    vectors = np.array([[3.0, -4.0], [0.0, 0.0]])
+    np.testing.assert_array_equal(lengths(vectors), [5.0, 0.0])
+    slopes = jax.grad(lambda v: jnp.sum(lengths(v)))(jnp.asarray(vectors))
+    np.testing.assert_allclose(slopes, [[0.6, -0.8], [0.0, 0.0]], rtol=ROUNDING)

@@ -22,7 +22,7 @@ from .steady import check_places, end_state, enough_places, failure
 from .steady_results import SteadyMotion
 
 
-class SkidSystem(AbstractSystem):
+class SkiddingBearing(AbstractSystem):
     """A preloaded bearing whose balls or rollers may slip, for `bearingjax.optimise`.
 
     Every case is solved as by `steady_skid`. Any number may be a variable:
@@ -45,7 +45,7 @@ class SkidSystem(AbstractSystem):
     def __check_init__(self):
         instance(self, "model", SkidModel)
         number(self, "preload")
-        check_places("SkidSystem", self.model.bearing, self.places)
+        check_places("SkiddingBearing", self.model.bearing, self.places)
 
     def check(self, cases):
         if cases.inner_speed is None and cases.outer_speed is None:
@@ -78,7 +78,7 @@ class SkidSystem(AbstractSystem):
 class FrictionTorque(AbstractMeasure):
     """Mean, over the hours of the cases, of the size of the friction torque [N m].
 
-    Without hours all cases count alike. Of a `SkidSystem`.
+    Without hours all cases count alike. Of a `SkiddingBearing`.
     """
 
     def __call__(self, element, cases, solution):
@@ -97,7 +97,8 @@ class FrictionTorque(AbstractMeasure):
 class FrictionPower(AbstractMeasure):
     """Mean, over the hours of the cases, of the power that the bearing turns to heat.
 
-    That of all its parts, in W. Without hours all cases count alike. Of a `SkidSystem`.
+    That of all its parts, in W. Without hours all cases count alike. Of a
+    `SkiddingBearing`.
     """
 
     def __call__(self, element, cases, solution):
@@ -114,9 +115,13 @@ class FrictionPower(AbstractMeasure):
 
 
 class CageSlip(AbstractLargest):
-    """Largest slip of the cage of all cases, none where it is below zero [1].
+    """Largest slip of the cage of all cases, whether it lags or leads [1].
 
-    As of `SteadyMotion.cage_slip`. Hours do not matter. Of a `SkidSystem`.
+    Size of `SteadyMotion.cage_slip`. Hours do not matter. Of a `SkiddingBearing`.
+
+    Both count as skidding. At high speed gyroscopic moments lay the spin axes of the
+    balls flat, towards the bearing axis. Balls then roll past the outer raceway faster
+    than in pure rolling, and the cage leads, although they slide.
 
     Attributes:
         exponent: Of the smooth maximum over the cases.
@@ -127,7 +132,7 @@ class CageSlip(AbstractLargest):
     exponent: float = eqx.field(static=True, default=EXPONENT)
 
     def samples(self, solution: Any) -> Float[Array, "..."]:
-        return jnp.maximum(_skidding(self, solution).cage_slip, 0.0)
+        return jnp.abs(_skidding(self, solution).cage_slip)
 
     @property
     def label(self):
@@ -142,6 +147,6 @@ def _skidding(measure, solution) -> SteadyMotion:
     if not isinstance(solution, SteadyMotion):
         raise ValueError(
             f"{type(measure).__name__}: nothing skids in what was solved; optimise a"
-            " `SkidSystem` of bearingjax.dynamics in place of the element."
+            " `SkiddingBearing` of bearingjax.dynamics in place of the element."
         )
     return solution
