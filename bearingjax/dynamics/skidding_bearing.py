@@ -47,6 +47,10 @@ class SkiddingBearing(AbstractSystem):
         number(self, "preload")
         check_places("SkiddingBearing", self.model.bearing, self.places)
 
+    @property
+    def element(self):
+        return self.model.element
+
     def check(self, cases):
         if cases.inner_speed is None and cases.outer_speed is None:
             raise ValueError(

@@ -14,6 +14,11 @@ from ..statics.solution import Solution, message
 class AbstractSystem(eqx.Module):
     """A bearing and what else its cases need, which says itself how they are solved."""
 
+    @property
+    @abc.abstractmethod
+    def element(self) -> BearingElement[Any]:
+        """The bearing in it."""
+
     @abc.abstractmethod
     def check(self, cases: Cases) -> None:
         """Raise if it has no use for such cases.
@@ -77,6 +82,15 @@ def solved_case(design: Design, case: Cases, options: SolveOptions) -> Any:
     if isinstance(design, AbstractSystem):
         return design.solve_case(case, options)
     return solve_case(design, case, options)
+
+
+def element_of(design: Design) -> BearingElement[Any]:
+    """The bearing of a design.
+
+    Args:
+        design: An element or a system.
+    """
+    return design.element if isinstance(design, AbstractSystem) else design
 
 
 def loads_of(solved: Any) -> Any:

@@ -1,5 +1,6 @@
 """A design before and after it was optimised."""
 
+import dataclasses
 from typing import TYPE_CHECKING, Any
 
 import jax
@@ -9,6 +10,7 @@ import numpy as np
 from ..design import AbstractRollerBearing, rows_of
 from ..optimise.measure import label_of
 from ..optimise.optimise import Optimised
+from ..optimise.system import element_of, loads_of
 from .style import (
     COLOURS,
     GREY,
@@ -43,6 +45,7 @@ def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
     Returns:
         The figure, 12 by 8.4 inches; of balls 12 by 4.6.
     """
+    found = _of_bearings(found)
     rollers = isinstance(
         rows_of(found.element.bearing)[0].bearing, AbstractRollerBearing
     )
@@ -62,6 +65,18 @@ def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
         ax.set_axisbelow(True)
     head(figure, title or "Optimised design")
     return figure
+
+
+def _of_bearings(found):
+    """The same with bearings and their loads in place of systems."""
+    before, after = (
+        outcome._replace(solution=loads_of(outcome.solution))
+        for outcome in (found.before, found.after)
+    )
+    pair = element_of(found.initial), element_of(found.element)
+    return dataclasses.replace(
+        found, initial=pair[0], element=pair[1], before=before, after=after
+    )
 
 
 def worst(solution: Any) -> tuple[int, int, int]:

@@ -2,6 +2,8 @@
 
 import equinox as eqx
 import jax.numpy as jnp
+import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from han_chu import BEARING, ELEMENT, FREE, MODEL, SPEED
@@ -16,6 +18,8 @@ from bearingjax.dynamics import (
 )
 from bearingjax.optimise.design_problem import Problem
 from bearingjax.statics import SolveOptions
+
+matplotlib.use("Agg")
 
 ANGLE = "model.element.bearing.contact_angle"
 SPEEDS = np.array([1.0, 0.5]) * float(SPEED.inner)
@@ -120,6 +124,11 @@ def test_least_torque_has_as_much_slip_as_is_allowed():
     assert found.after.exact < found.before.exact
     assert float(found.element.preload) == found.values[0]
     assert found.element.model.bearing.n_balls == BEARING.n_balls
+    figure = bj.plot.optimised(found)
+    peaks, history = figure.axes[:2]
+    assert len(peaks.patches) == 4
+    assert np.asarray(history.get_lines()[0].get_ydata())[-1] < 1.0
+    plt.close(figure)
 
 
 def test_what_cannot_be_kept_is_named():
