@@ -37,16 +37,16 @@ def tabulated(
     if places > 1:
         even = 2.0 * np.pi * np.arange(places) / places
         azimuth = jnp.asarray(even, solution.azimuth.dtype)
-    q, nodes = solution.displacement, model.traction.by_nodes
+    q = solution.displacement
     if not isinstance(solution, BallSolution):
-        return load_table(loaded_rollers(model, q, speed, azimuth), nodes)
+        return load_table(loaded_rollers(model, q, speed, azimuth))
     bearing, law = model.bearing, model.point_law
     oil = model.lubricant, model.temperature, model.least_film
     at = solution.contact_load[:1], solution.contact_angle[:1]
     if places > 1:
         at = contact_loads(model.element.model(speed), bearing, law, q, azimuth)
     balls = jax.vmap(partial(loaded_ball, bearing, law, *oil))(*at)
-    return load_table(balls, nodes)
+    return load_table(balls)
 
 
 @eqx.filter_jit

@@ -28,11 +28,7 @@ class _Row(NamedTuple):
 
     load: Array
     angle: Array | None
-    x: Array
-    y: Array
-    area: Array
-    pressure: Array
-    log_viscosity: Array
+    patch: tuple[Array, ...]
     extent: Array
     log_mean: Array
     log_film: Array
@@ -101,48 +97,33 @@ class LoadTable(eqx.Module):
         return _ball(row, self.like)
 
 
-def load_table(balls: LoadedBall | LoadedRoller, nodes: bool = True) -> LoadTable:
+def load_table(balls: LoadedBall | LoadedRoller) -> LoadTable:
     """A table.
 
     Args:
         balls: At one place, or at places spread evenly around the bearing from azimuth
             zero on, at least 6; leading axis place.
-        nodes: Whether the nodes of the patches are wanted, or their moments alone.
-            Static.
     """
     rows = jax.vmap(_row)(balls)
-    if not nodes:
-        patch = balls.patch.without_nodes()
-        balls = eqx.tree_at(lambda b: b.patch, balls, patch)
-        rows = rows._replace(**{name: patch.x for name in _OF_NODES})
     if rows.load.shape[0] > 1:
         rows = jax.tree.map(_coefficients, rows)
     return LoadTable(rows, jax.tree.map(lambda b: b[0], balls))
 
 
-_OF_NODES = ("x", "y", "area", "pressure", "log_viscosity")
-
-
 def _row(ball):
     patch, film = ball.patch, ball.film
-    polar = jnp.sum(patch.area * (patch.x**2 + patch.y**2), axis=-1)
-    extent = jnp.stack([jnp.sum(patch.area, axis=-1), polar], axis=-1)
+    extent = patch.extent
     loaded = extent > 0
-    least = jnp.min(patch.viscosity, axis=-1)[:, None]
     # Mean viscosities, of force and of spin moment: they are finite without load.
     mean = patch.moments[:, ::2] / jnp.where(loaded, extent, 1.0)
-    mean = jnp.where(loaded, mean, least)
+    mean = jnp.where(loaded, mean, patch.thinnest[:, None])
     films = jnp.concatenate(
         [film.unit_speed[:, None], film.central_factor[:, None], film.factors], axis=1
     )
     return _Row(
         ball.load,
         getattr(ball, "angle", None),
-        patch.x,
-        patch.y,
-        patch.area,
-        patch.pressure,
-        jnp.log(patch.viscosity),
+        patch.numbers(),
         extent,
         jnp.log(mean),
         jnp.log(films),
@@ -155,20 +136,10 @@ def _ball(row, like):
         jnp.maximum(row.extent, 0.0) * jnp.exp(row.log_mean), -1, 0
     )
     films = jnp.exp(row.log_film)
-    patch = eqx.tree_at(
-        lambda p: (p.x, p.y, p.area, p.pressure, p.viscosity, p.moments),
-        like.patch,
-        (
-            row.x,
-            row.y,
-            jnp.maximum(row.area, 0.0),
-            jnp.maximum(row.pressure, 0.0),
-            jnp.exp(row.log_viscosity),
-            # ∫μ y dA: of an ellipse it vanishes; on a roller without spin about the
-            # contact normal it has no effect.
-            jnp.stack([total, jnp.zeros_like(total), polar], axis=-1),
-        ),
-    )
+    # ∫μ y dA: of an ellipse it vanishes; on a roller without spin about the contact
+    # normal it has no effect.
+    moments = jnp.stack([total, jnp.zeros_like(total), polar], axis=-1)
+    patch = like.patch.with_numbers(row.patch, moments)
     film = eqx.tree_at(
         lambda f: (f.unit_speed, f.central_factor, f.factors),
         like.film,

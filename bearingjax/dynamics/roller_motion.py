@@ -18,7 +18,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..element.inertia import Speed
-from ..lubrication import AbstractTraction, Film, Patch, at_least
+from ..lubrication import AbstractTraction, Film, LinePatch, at_least
 from ..numerics.types import Scalar
 
 
@@ -55,7 +55,7 @@ class LoadedRoller(eqx.Module):
     length: Scalar
     pitch_radius: Scalar
     load: Float[Array, "2"]
-    patch: Patch
+    patch: LinePatch
     film: Film
     least_film: Scalar
 

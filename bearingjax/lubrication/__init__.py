@@ -18,7 +18,9 @@ from .oils import OILS as OILS
 from .oils import free_volume_23699 as free_volume_23699
 from .oils import iso_vg as iso_vg
 from .oils import mil_l_23699 as mil_l_23699
-from .patch import Patch as Patch
+from .patch import AbstractPatch as AbstractPatch
+from .patch import EllipsePatch as EllipsePatch
+from .patch import LinePatch as LinePatch
 from .patch import ellipse_patch as ellipse_patch
 from .patch import line_patch as line_patch
 from .traction import AbstractTraction as AbstractTraction

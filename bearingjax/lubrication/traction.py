@@ -7,7 +7,7 @@ never does work on the slip, and it is smooth where there is none.
 """
 
 import abc
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -16,7 +16,7 @@ from jaxtyping import Array, Float
 from ..design.checks import non_negative, positive
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .patch import Patch
+from .patch import AbstractPatch
 
 # Slip speed below which the empirical curve is linear [m/s].
 _NO_SLIP = 1e-6
@@ -39,13 +39,7 @@ class Resultants(NamedTuple):
 
 
 class AbstractTraction(eqx.Module):
-    """A law of traction.
-
-    Attributes:
-        by_nodes: Whether `resultants` needs the nodes of a patch, or its moments alone.
-    """
-
-    by_nodes: ClassVar[bool] = True
+    """A law of traction."""
 
     @abc.abstractmethod
     def resistance(
@@ -82,7 +76,7 @@ class AbstractTraction(eqx.Module):
 
     def resultants(
         self,
-        patch: Patch,
+        patch: AbstractPatch,
         film: Scalar | float,
         slip: Float[Array, "2"],
         spin: Scalar | float,
@@ -96,14 +90,15 @@ class AbstractTraction(eqx.Module):
             spin: Spin w of the slip (u_x + y w, u_y - x w) [rad/s].
         """
         spin = as_real(spin)
-        ux, uy = slip[0] + patch.y * spin, slip[1] - patch.x * spin
+        at = patch.nodes(slip, spin)
+        ux, uy = slip[0] + at.y * spin, slip[1] - at.x * spin
         squared = ux * ux + uy * uy
-        resistance = patch.area * self.resistance(
-            squared, as_real(film), patch.pressure, patch.viscosity
+        resistance = at.area * self.resistance(
+            squared, as_real(film), at.pressure, at.viscosity
         )
         return Resultants(
             force=-jnp.stack([jnp.dot(resistance, ux), jnp.dot(resistance, uy)]),
-            moment=jnp.dot(resistance, patch.y * ux - patch.x * uy),
+            moment=jnp.dot(resistance, at.y * ux - at.x * uy),
             heat=jnp.dot(resistance, squared),
         )
 
@@ -114,8 +109,6 @@ class Newtonian(AbstractTraction):
     Linear in slip and spin, so that the moments of the viscosity are enough. Unphysical
     above some 1 GPa, where no oil bears μ u/h.
     """
-
-    by_nodes = False
 
     def resistance(self, slip_squared, film, pressure, viscosity):
         return viscosity / film
@@ -152,11 +145,16 @@ class Eyring(AbstractTraction):
 
 
 class LimitingStress(AbstractTraction):
-    """Oil that yields: τ = τ_N/sqrt(1 + (τ_N/τ_L)²), τ_N = μ u/h, τ_L = τ_0 + Λ p.
+    """Oil that yields: τ = (μ u/h)/sqrt(1 + (u² + u_c²) [μ/(h τ_L)]²), τ_L = τ_0 + Λ p.
+
+    Without u_c the slip at which it yields, h τ_L/μ, vanishes where pressure makes a
+    glass of the oil, and a bearing at rest sticks. In truth its surfaces then creep
+    elastically, by some thousandths of their speed.
 
     Attributes:
         slope: Λ, the traction coefficient of a plastic film [1].
         ambient: Limiting stress without pressure, τ_0 [Pa].
+        creep: Least slip at which the stress has reached 0.71 τ_L, u_c [m/s].
 
     Traced: all fields.
     Source: limiting stress proportional to pressure: Bair & Winer, J. Lubrication
@@ -166,15 +164,18 @@ class LimitingStress(AbstractTraction):
 
     slope: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.05)
     ambient: Scalar = eqx.field(converter=as_real, metadata=unit("Pa"), default=1e5)
+    creep: Scalar = eqx.field(converter=as_real, metadata=unit("m/s"), default=1e-5)
 
     def __check_init__(self):
         non_negative(self, "slope")
         positive(self, "ambient")
+        non_negative(self, "creep")
 
     def resistance(self, slip_squared, film, pressure, viscosity):
         newtonian = viscosity / film
         strain = newtonian / (self.ambient + self.slope * pressure)
-        return newtonian / jnp.sqrt(1.0 + strain * strain * slip_squared)
+        least = slip_squared + self.creep * self.creep
+        return newtonian / jnp.sqrt(1.0 + strain * strain * least)
 
 
 class SlipCurve(AbstractTraction):
