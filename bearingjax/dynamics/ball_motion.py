@@ -23,7 +23,7 @@ from jaxtyping import Array, Float
 
 from ..element.ball_speed import ball_kinematics
 from ..element.inertia import Speed
-from ..lubrication import AbstractTraction, EllipsePatch, Film, Resultants, at_least
+from ..lubrication import AbstractPatch, AbstractTraction, Film, Resultants, at_least
 from ..numerics.types import Scalar
 
 
@@ -63,7 +63,7 @@ class LoadedBall(eqx.Module):
     pitch_radius: Scalar
     load: Float[Array, " contact"]
     angle: Float[Array, " contact"]
-    patch: EllipsePatch
+    patch: AbstractPatch
     film: Film
     least_film: Scalar
     outwards: tuple[float, ...] = eqx.field(static=True)

@@ -252,7 +252,7 @@ def ellipse_patch(
         moments, at 30 °C 1e-13 at 1 GPa, 2e-6 at 1.5 GPa, 7e-3 up to 4 GPa. Oil that
         thins or yields, at 30 and 100 °C, with the pole anywhere, relative to the
         largest values over all places: 4e-5 at 0.5 GPa, 5e-4 up to 2 GPa, 1e-3 at
-        4 GPa; slopes by the slip 2e-4, 3e-3, 1e-2. Dry friction 4e-5, slopes 6e-4.
+        4 GPa; slopes by the slip 2e-4, 3e-3, 1e-2. Dry friction 4e-5, slopes 1e-3.
     """
     count("ellipse_patch", "radial", radial)
     count("ellipse_patch", "angular", angular)
@@ -267,8 +267,16 @@ def ellipse_patch(
     polar = 0.5 * rolling * transverse * jnp.dot(stiff, lever)
     polar = polar * (rolling**2 + transverse**2)
     moments = jnp.stack([total, jnp.zeros_like(total), polar])
-    numbers = as_real(rolling), as_real(transverse), like
-    return EllipsePatch(lubricant, warm, *numbers, moments, radial, angular)
+    return EllipsePatch(
+        lubricant=lubricant,
+        temperature=warm,
+        rolling=as_real(rolling),
+        transverse=as_real(transverse),
+        peak_pressure=like,
+        moments=moments,
+        radial=radial,
+        angular=angular,
+    )
 
 
 def line_patch(
@@ -313,7 +321,7 @@ def line_patch(
     x, y = jnp.outer(half_width, sine).ravel(), jnp.repeat(position, sine.size)
     lever = jnp.stack([jnp.ones_like(x), y, x * x + y * y])
     nodes = Nodes(x, y, area, pressure, viscosity)
-    return LinePatch(nodes, lever @ (area * viscosity))
+    return LinePatch(fixed=nodes, moments=lever @ (area * viscosity))
 
 
 def _centre(x, y, spin):

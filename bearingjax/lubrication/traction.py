@@ -89,9 +89,9 @@ class AbstractTraction(eqx.Module):
             slip: Slip in the middle, u_x and u_y (2,) [m/s].
             spin: Spin w of the slip (u_x + y w, u_y - x w) [rad/s].
         """
-        spin = as_real(spin)
-        at = patch.nodes(slip, spin)
-        ux, uy = slip[0] + at.y * spin, slip[1] - at.x * spin
+        turning = as_real(spin)
+        at = patch.nodes(slip, turning)
+        ux, uy = slip[0] + at.y * turning, slip[1] - at.x * turning
         squared = ux * ux + uy * uy
         resistance = at.area * self.resistance(
             squared, as_real(film), at.pressure, at.viscosity

