@@ -26,7 +26,8 @@ class SkidMotion(eqx.Module):
         heat: Of each contact (time, ball, contact) [W].
         cage_force: Of the cage on the balls, in the sense in which angles are counted
             (time, ball) [N].
-        friction_torque: That turns the inner ring (time,) [N m].
+        friction_torque: That turns the inner ring, of the losses that `SkidModel` knows
+            (time,) [N m].
         power: Momentary powers (time,).
         work: Their integrals since the beginning (time,).
         kinetic_energy: Of balls and cage (time,) [J].

@@ -23,6 +23,11 @@ _KINDS = AbstractBallBearing, CylindricalRollerBearing, NeedleRollerBearing
 class SkidModel(eqx.Module):
     """A ball or cylindrical roller bearing whose balls or rollers may slip.
 
+    Its friction is that of sliding and spinning in the films, of drag and of the cage.
+    It has no resistance to rolling (of the inlets of the films, of the curvature across
+    a groove, of hysteresis) and no seals, which often make most of the torque of a real
+    bearing: see `benchmarks/skid_friction.py`.
+
     Attributes:
         element: The bearing, of one row of like balls, or of cylindrical or needle
             rollers, evenly spaced. The raceway control of balls says what holds the

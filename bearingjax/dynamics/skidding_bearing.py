@@ -82,6 +82,8 @@ class SkiddingBearing(AbstractSystem):
 class FrictionTorque(AbstractMeasure):
     """Mean, over the hours of the cases, of the size of the friction torque [N m].
 
+    Of sliding, drag and cage; see `SkidModel` for what is left out.
+
     Without hours all cases count alike. Of a `SkiddingBearing`.
     """
 

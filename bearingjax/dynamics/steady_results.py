@@ -40,7 +40,8 @@ class SteadyMotion(eqx.Module):
         film: Central films (place, contact) [m].
         heat: Of each contact (place, contact) [W].
         cage_speed: Mean orbital speed [rad/s].
-        friction_torque: That turns the inner ring, the mean over the orbit [N m].
+        friction_torque: That turns the inner ring, the mean over the orbit, of the
+            losses that `SkidModel` knows [N m].
         power: Mean powers.
         residual: Force out of balance relative to the tractions [1].
         steps: Steps of the search.

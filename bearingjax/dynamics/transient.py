@@ -186,9 +186,15 @@ def _message(found):
     time, speed = stop((found.time, found.cage_speed))  # being differentiated
     reached = time[np.isfinite(speed)]
     last = f"{float(reached[-1]):.3g} s" if len(reached) else "the first time"
+    cause = ""
+    if int(found.result) == Result.NON_FINITE:
+        cause = (
+            " No step was small enough, or numbers are not finite: a Newtonian film of"
+            " an oil that pressure makes a glass does so."
+        )
     return (
         f"skid: {label} after {int(found.steps)} steps, behind {last} of"
-        f" {float(time[-1]):.3g} s."
+        f" {float(time[-1]):.3g} s.{cause}"
     )
 
 

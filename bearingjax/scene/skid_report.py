@@ -60,7 +60,8 @@ def _cage(speed, rolling):
 
 
 def _torque(torque):
-    return f"friction torque {1e3 * _clean(torque):.5g} N mm on the inner ring"
+    value = f"{1e3 * _clean(torque):.5g} N mm"
+    return f"friction torque {value} on the inner ring (of sliding and drag alone)"
 
 
 def _end(run):
