@@ -1,0 +1,318 @@
+"""What do radial and sinusoidal loads do to the slip of a ball, and to its spectrum?
+
+The bearing of Han & Chu, 600 N axial, still outer ring, inner ring at 2000 rpm, radial
+load along +Y, angles from +X. The published words on its slip, turned into numbers.
+
+Over an orbit: `steady_skid`, one ball in its periodic orbit, radial loads of 100 to
+500 N. Zones B and D are where it bears more than under axial load alone, A and C lie
+between; A is the one in which the load rises towards B.
+
+In time: `skid` with the ring balanced at every time, radial load 400 N
+[1 + e sin(w_i t)] with e = 0, 0.2, 0.4, from rolling on; the last 2.5 s, over 30
+orbits. The balls run ahead of even motion and fall behind it by about a millimetre, so
+that the cage, whose pockets leave 0.2 mm, takes part; beside it one that leaves 8 mm.
+"apart": root mean square of how far the sliding speed of a ball differs from that one
+orbit before, over that of the speed itself. "floor": largest amplitude away from all
+lines named.
+
+Run: python benchmarks/skid_spectrum.py [--smoke] [--json] [--plot OUT.png]
+
+Last run:
+
+@@
+"""
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+import equinox as eqx
+import jax
+
+jax.config.update("jax_enable_x64", True)
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+from han_chu import FREE, MODEL, SPEED  # noqa: E402
+from timing import machine  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+from bearingjax.dynamics import SinusoidalLoad, skid, steady_skid  # noqa: E402
+
+AXIAL, RADIAL = 600.0, 400.0
+DRIVE = float(SPEED.inner)
+INNER = 1
+"""Of the raceways."""
+HARMONICS = range(1, 7)
+SIDES = (-5, -4, -3, -2, -1, 0, 1, 2, 3, 4)
+"""Multiples of the cage's frequency by which lines lie off that of the inner ring."""
+WINDOW = 2
+"""Lines of a spectrum to either side that Hann's window fills."""
+ZONES = "ABCD"
+
+
+def load(radial):
+    return jnp.asarray([0.0, radial, AXIAL, 0.0, 0.0, 0.0])
+
+
+def over_orbit(radials, places):
+    """The periodic orbit under radial loads, the first of them none."""
+
+    @jax.jit
+    @jax.vmap
+    def solve(radial):
+        given = {"speed": SPEED, "free": FREE, "places": places}
+        found = steady_skid(MODEL, load(radial), **given)
+        sliding, borne = found.sliding_speed, found.contact_load
+        return (
+            sliding,
+            borne[:, INNER],
+            found.orbit_speed,
+            found.cage_speed,
+            found.wander,
+        )
+
+    sliding, borne, orbit, cage, wander = map(np.asarray, solve(jnp.asarray(radials)))
+    share = np.arange(places) / places
+    even = borne[0].mean()
+    rows = []
+    for k, radial in enumerate(radials[1:], 1):
+        zones = split(share, borne[k] > even)
+        inner = 1e3 * sliding[k, :, INNER]
+        rows.append(
+            {
+                "radial": radial,
+                "centres": [middle(share, zones[z]) for z in "BD"],
+                "load": [float(borne[k, zones[z]].max()) for z in "BD"],
+                "most": {z: float(inner[zones[z]].max()) for z in ZONES},
+                "least": {z: float(inner[zones[z]].min()) for z in ZONES},
+                "outer_middle": [
+                    float(1e3 * sliding[k, nearest(share, zones[z]), 0]) for z in "BD"
+                ],
+                "inner_middle": [float(inner[nearest(share, zones[z])]) for z in "BD"],
+                "ripple": float(np.ptp(orbit[k]) / 2 / cage[k]),
+                "cage": float(cage[k] / cage[0] - 1.0),
+                "wander": float(1e3 * wander[k]),
+            }
+        )
+    return rows, share, borne, 1e3 * sliding
+
+
+def split(share, above):
+    """Places of the four zones: B about a quarter of the orbit, D opposite."""
+    near = np.abs(share - 0.25) < 0.25
+    ahead = np.where(share > 0.75, share - 1.0, share) < 0.25
+    found = {"B": above & near, "D": above & ~near}
+    return found | {"A": ~above & ahead, "C": ~above & ~ahead}
+
+
+def middle(share, zone):
+    return float(share[zone].mean())
+
+
+def nearest(share, zone):
+    return int(np.argmin(np.abs(share - share[zone].mean())))
+
+
+def in_time(model, varying, begin, duration, rate):
+    """Sliding speed of ball 0 at the inner raceway at even times, its angle, the cage's
+    frequency, cage forces."""
+    change = jnp.zeros(6).at[1].set(RADIAL * varying)
+    found = skid(
+        model,
+        SinusoidalLoad(load(RADIAL), change, DRIVE),
+        speed=SPEED,
+        duration=duration,
+        n_times=round(duration * rate) + 1,
+        free=FREE,
+        tolerance=1e-5,
+        max_steps=2_000_000,
+        derivatives="forward",
+    )
+    late = np.asarray(found.time) >= begin
+    lines = bj.plot.spectrum(found, begin=begin)
+    angle = np.unwrap(np.asarray(found.azimuth)[:, 0])[late]
+    sliding = 1e3 * np.asarray(found.sliding_speed)[late, 0, INNER]
+    force = float(np.abs(np.asarray(found.cage_force)[late]).max())
+    return angle, sliding, lines, force, int(found.steps)
+
+
+def measures(angle, sliding, lines):
+    """Largest sliding speed, what differs between orbits, amplitudes of lines."""
+    at = np.arange(angle[0], angle[-1] - 2.0 * np.pi, 0.01)
+    now = np.interp(at, angle, sliding)
+    then = np.interp(at + 2.0 * np.pi, angle, sliding)
+    frequency, amplitude = lines.frequency, 1e3 * lines.amplitude
+    ring, step = DRIVE / (2.0 * np.pi), lines.frequency[1]
+    multiples = [k * lines.cage for k in HARMONICS]
+    sides = [abs(ring + k * lines.cage) for k in SIDES]
+
+    def height(f):
+        return float(amplitude[np.abs(frequency - f) < WINDOW * step].max())
+
+    every = [k * lines.cage for k in range(40)]
+    every += [abs(m * ring + k * lines.cage) for k in range(-40, 40) for m in (1, 2, 3)]
+    apart = np.min(np.abs(frequency[:, None] - np.array(every)), axis=1)
+    away = (apart > 2.5 * step) & (frequency < multiples[-1])
+    return {
+        "most": float(sliding.max()),
+        "apart": float(np.sqrt(np.mean((now - then) ** 2) / np.mean(now**2))),
+        "cage": float(lines.cage),
+        "orbits": float((angle[-1] - angle[0]) / (2.0 * np.pi)),
+        "multiples": [height(f) for f in multiples],
+        "sides": [height(f) for f in sides],
+        "floor": float(amplitude[away].max()) if away.any() else float("nan"),
+    }
+
+
+def measure(radials, places, shares, pockets, begin, duration, rate):
+    rows, *curves = over_orbit(radials, places)
+    runs, spectra = [], []
+    for pocket in pockets:
+        model = eqx.tree_at(
+            lambda m: m.cage.pocket_clearance, MODEL, jnp.asarray(1e-3 * pocket)
+        )
+        for varying in shares:
+            begun = time.perf_counter()
+            *found, force, steps = in_time(model, varying, begin, duration, rate)
+            seconds = time.perf_counter() - begun
+            run = {"pocket": pocket, "share": varying, "force": force, "steps": steps}
+            runs.append(run | measures(*found) | {"seconds": seconds})
+            spectra.append(found)
+    return {"orbit": rows, "runs": runs}, curves, spectra
+
+
+def show(r):
+    print("over an orbit, by steady_skid; sliding speeds at the inner raceway in mm/s")
+    print(
+        " radial   centres B, D   load B, D [N]  most in A     C    C/A"
+        "  middle of B     D  outer B     D  ripple    cage  wander"
+    )
+    for o in r["orbit"]:
+        most = o["most"]
+        print(
+            f"{o['radial']:5.0f} N  {o['centres'][0]:6.3f} {o['centres'][1]:6.3f} "
+            f"{o['load'][0]:7.1f} {o['load'][1]:7.1f} {most['A']:9.1f} {most['C']:5.1f}"
+            f" {most['C'] / most['A']:6.2f} {o['inner_middle'][0]:11.2f}"
+            f" {o['inner_middle'][1]:6.2f} {o['outer_middle'][0]:8.2f}"
+            f" {o['outer_middle'][1]:5.2f} {100 * o['ripple']:5.2f} %"
+            f" {100 * o['cage']:6.2f} % {o['wander']:5.2f} mm"
+        )
+    print("\nin time, radial load 400 N [1 + e sin(w_i t)]")
+    print(
+        "pockets    e  largest mm/s  apart   cage Hz  orbits  cage force N  steps     s"
+    )
+    for run in r["runs"]:
+        print(
+            f"{run['pocket']:4.1f} mm  {run['share']:3.1f} {run['most']:10.1f}"
+            f" {run['apart']:9.4f} {run['cage']:8.3f} {run['orbits']:7.1f}"
+            f" {run['force']:11.1f} {run['steps']:9d} {run['seconds']:5.0f}"
+        )
+    print("\namplitudes [mm/s] at multiples k of the cage's frequency")
+    print("pockets    e" + "".join(f"{k:8d}" for k in HARMONICS) + "   floor")
+    for run in r["runs"]:
+        cells = "".join(f"{a:8.2f}" for a in run["multiples"])
+        print(f"{run['pocket']:4.1f} mm  {run['share']:3.1f}{cells}{run['floor']:8.2f}")
+    print(
+        "\namplitudes [mm/s] at the inner ring's frequency and k times the cage's off"
+    )
+    print("pockets    e" + "".join(f"{k:+8d}" for k in SIDES))
+    for run in r["runs"]:
+        cells = "".join(f"{a:8.2f}" for a in run["sides"])
+        print(f"{run['pocket']:4.1f} mm  {run['share']:3.1f}{cells}")
+    print(machine())
+
+
+def plot(r, curves, spectra, target):
+    """Sliding over an orbit with the zones; over angle in time; spectra."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    share, borne, sliding = curves
+    figure, axes = pyplot.subplots(1, 3, figsize=(15.0, 4.5), layout="constrained")
+    ax, last = axes[0], len(r["orbit"])
+    colours = pyplot.get_cmap("viridis")(np.linspace(0.85, 0.0, last))
+    for k, o in enumerate(r["orbit"], 1):
+        label = f"{o['radial']:.0f} N"
+        ax.semilogy(share, sliding[k, :, INNER], color=colours[k - 1], label=label)
+    zones = split(share, borne[last] > borne[0].mean())
+    for name in "BD":
+        inside = share[zones[name]]
+        ax.axvspan(inside[0], inside[-1], color="0.92", zorder=0)
+    for name, x in zip("ABCDA", (0.05, 0.25, 0.5, 0.75, 0.95), strict=True):
+        ax.text(
+            x, 0.97, name, transform=ax.get_xaxis_transform(), ha="center", va="top"
+        )
+    ax.set_title("Sliding over an orbit, 600 N axial", loc="left")
+    ax.set_xlabel("share of the orbit; radial load at 0.25")
+    ax.legend(
+        frameon=False,
+        fontsize=9,
+        title="radial load",
+        loc="upper center",
+        bbox_to_anchor=(0.5, 0.93),
+        ncols=5,
+        columnspacing=0.8,
+        handlelength=1.0,
+    )
+    ax.set_ylim(1e-3, 1e5)
+    ax.margins(x=0)
+    widest = r["runs"][-1]["pocket"]
+    rows = [k for k, run in enumerate(r["runs"]) if run["pocket"] == widest]
+    looks = dict(zip(rows, ("#009E73", "#0072B2", "#D55E00"), strict=False))
+    for k in reversed(rows):
+        angle, slip, lines = spectra[k]
+        turns = (angle - angle[0]) / (2.0 * np.pi)
+        shown = turns < 5.0
+        label = f"e = {r['runs'][k]['share']:.1f}"
+        axes[1].plot(turns[shown], slip[shown], color=looks[k], lw=1.0, label=label)
+        low = lines.frequency < 90.0
+        amplitude = 1e3 * lines.amplitude[low]
+        axes[2].semilogy(
+            lines.frequency[low], amplitude, color=looks[k], lw=1.0, label=label
+        )
+    cage = r["runs"][-1]["cage"]
+    for k in HARMONICS:
+        axes[2].axvline(k * cage, color="0.6", ls=":", lw=0.9)
+    axes[2].axvline(DRIVE / (2.0 * np.pi), color="0.3", ls="--", lw=0.9)
+    axes[2].text(DRIVE / (2.0 * np.pi) - 0.5, 150, "inner ring", ha="right", fontsize=9)
+    axes[2].set_ylim(0.05, 300.0)
+    axes[1].set_title(f"Sliding in time, pockets {widest:g} mm", loc="left")
+    axes[1].set_xlabel("orbits of the ball")
+    axes[2].set_title("Spectrum of it; dotted: multiples of the cage's", loc="left")
+    axes[2].set_xlabel("frequency [Hz]")
+    for ax in axes[1:]:
+        ax.legend(frameon=False, fontsize=9)
+    for ax in axes:
+        ax.set_ylabel("sliding speed at the inner raceway [mm/s]")
+        ax.grid(alpha=0.3)
+        ax.spines[["top", "right"]].set_visible(False)
+    axes[2].set_ylabel("amplitude [mm/s]")
+    figure.savefig(target, dpi=140)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="one line")
+    parser.add_argument("--smoke", action="store_true", help="short and few")
+    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
+    args = parser.parse_args()
+    if args.smoke:
+        given = (0.0, RADIAL), 48, (0.4,), (8.0,), 0.02, 0.12, 1000.0
+    else:
+        loads = 0.0, 100.0, 200.0, 300.0, 400.0, 500.0
+        given = loads, 240, (0.0, 0.2, 0.4), (0.2, 8.0), 0.5, 3.0, 2000.0
+    result, *shown = measure(*given)
+    print(json.dumps(result)) if args.json else show(result)
+    if args.plot:
+        plot(result, *shown, args.plot)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
