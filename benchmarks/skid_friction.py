@@ -51,7 +51,7 @@ torque in N mm at 19.9 mm²/s; of all: limiting over SKF's
 AMD EPYC, 2 cores, load average 2.0; devices: 1 cpu; jax 0.10.1
 
 Sliding in the films is next to nothing under a radial load, 1 to 5 % of the measured
-torque at a twentieth of C0, and 11 to 17 % at a sixth; it is 25 to 37 % of SKF's
+torque at a twentieth of C0, and 11 to 17 % at a sixth; it is 13 to 37 % of SKF's
 sliding part there. What is missing: resistance to rolling (inlets of the films, most at
 light loads), sliding by the curvature across the grooves, hysteresis, asperities. So
 `friction_torque` is no catalogue value; slip of balls and cage, which balance tractions
