@@ -13,7 +13,7 @@ README = (Path(__file__).parent.parent / "README.md").read_text()
 @pytest.mark.usefixtures("untyped")
 def test_python_examples(capsys):
     blocks = re.findall(r"```python\n(.*?)```", README, re.S)
-    assert len(blocks) == 10
+    assert len(blocks) == 11
     names: dict = {}
     for block in blocks[:2]:
         exec(block, names)
@@ -42,6 +42,8 @@ def test_python_examples(capsys):
     whole, pair = names["k6"], names["k2"]
     assert 0 < pair[1, 1] < whole[1, 1]
     exec(blocks[9], names)
+    assert (names["critical"].speed > 0).all() and (names["shaken"].amplitude > 0).any()
+    exec(blocks[10], names)
     best = names["best"]
     assert best.converged and best.after.exact < best.before.exact
     assert best.before.exact_constraints[0] > 10e3 >= best.after.exact_constraints[0]

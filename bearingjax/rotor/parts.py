@@ -1,0 +1,290 @@
+"""What sits on a shaft: discs, point masses, supports and their housings."""
+
+from abc import abstractmethod
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design.checks import check, instance, is_traced, non_negative, positive
+from ..design.material import Material
+from ..numerics.types import Scalar, as_count, as_real
+from ..numerics.units import unit
+
+_STIFFNESS = (
+    *3 * (("N/m", "N/m", "N/m", "N", "N"),),
+    *2 * (("N", "N", "N", "N m", "N m"),),
+)
+_DAMPING = (
+    *3 * (("N s/m", "N s/m", "N s/m", "N s", "N s"),),
+    *2 * (("N s", "N s", "N s", "N m s", "N m s"),),
+)
+
+
+def check_station(owner, station) -> None:
+    """A station is named by a whole number from 0."""
+    whole = isinstance(station, int) and not isinstance(station, bool)
+    if not whole or station < 0:
+        raise ValueError(
+            f"{type(owner).__name__}: `station` is {station!r}; it must be the number"
+            " of a station of the shaft, from 0."
+        )
+
+
+class AbstractPart(eqx.Module):
+    """A rigid body on a station.
+
+    Attributes:
+        station: Number of the station that it sits on.
+        mass: Mass [kg].
+    """
+
+    station: eqx.AbstractVar[int]
+    mass: eqx.AbstractVar[Scalar]
+
+    @abstractmethod
+    def inertia(self) -> tuple[Float[Array, "5 5"], Float[Array, "5 5"]]:
+        """Mass matrix, and gyroscopic matrix at 1 rad/s, of (ux uy uz gx gy)."""
+
+
+class Disc(AbstractPart):
+    """A rigid disc whose centre of mass lies on its station.
+
+    Attributes:
+        station: Number of the station that it sits on.
+        mass: Mass [kg].
+        polar_inertia: Moment of inertia about the shaft axis [kg m²].
+        diametral_inertia: Moment of inertia about a diameter [kg m²].
+
+    Traced: all fields but `station`.
+    """
+
+    station: int = eqx.field(static=True, converter=as_count)
+    mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
+    polar_inertia: Scalar = eqx.field(converter=as_real, metadata=unit("kg m²"))
+    diametral_inertia: Scalar = eqx.field(converter=as_real, metadata=unit("kg m²"))
+
+    def __check_init__(self):
+        check_station(self, self.station)
+        for name in ("mass", "polar_inertia", "diametral_inertia"):
+            non_negative(self, name)
+
+    @classmethod
+    def of_size(
+        cls,
+        station: int,
+        outer_diameter: Any,
+        width: Any,
+        bore: Any = 0.0,
+        material: Material | None = None,
+    ) -> "Disc":
+        """A cylindrical disc.
+
+        Args:
+            station: Number of the station that it sits on.
+            outer_diameter, width, bore: Sizes [m].
+            material: Of the disc; steel unless given.
+        """
+        outer, wide, hole = (as_real(v) for v in (outer_diameter, width, bore))
+        positive(cls, "outer_diameter", outer, "m")
+        positive(cls, "width", wide, "m")
+        non_negative(cls, "bore", hole, "m")
+        if not is_traced(outer) and not is_traced(hole):
+            check(cls, "bore", hole < outer, "below the outer diameter", hole, "m")
+        material = Material() if material is None else material
+        mass = material.density * 0.25 * jnp.pi * (outer**2 - hole**2) * wide
+        squares = outer**2 + hole**2
+        diametral = mass * (squares / 16.0 + wide**2 / 12.0)
+        return cls(station, mass, mass * squares / 8.0, diametral)
+
+    def inertia(self) -> tuple[Float[Array, "5 5"], Float[Array, "5 5"]]:
+        """Mass matrix, and gyroscopic matrix at 1 rad/s, of (ux uy uz gx gy).
+
+        The angular momentum is that of a spin about the disc's own axis
+        (gy, -gx, 1): its rate is the moment.
+        """
+        m, diametral = self.mass, self.diametral_inertia
+        gyroscopic = jnp.zeros((5, 5), dtype=m.dtype).at[3, 4].set(self.polar_inertia)
+        mass = jnp.diag(jnp.stack([m, m, m, diametral, diametral]))
+        return mass, gyroscopic - gyroscopic.T
+
+
+class PointMass(AbstractPart):
+    """A mass without moments of inertia.
+
+    Attributes:
+        station: Number of the station that it sits on.
+        mass: Mass [kg].
+
+    Traced: mass.
+    """
+
+    station: int = eqx.field(static=True, converter=as_count)
+    mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
+
+    def __check_init__(self):
+        check_station(self, self.station)
+        non_negative(self, "mass")
+
+    def inertia(self) -> tuple[Float[Array, "5 5"], Float[Array, "5 5"]]:
+        """Mass matrix, and gyroscopic matrix (zero), of (ux uy uz gx gy)."""
+        nothing = jnp.zeros_like(self.mass)
+        return Disc(self.station, self.mass, nothing, nothing).inertia()
+
+
+def _matrix(value):
+    """Converter: one number or one for each freedom stands on the diagonal."""
+    value = as_real(value)
+    return jnp.diag(value) if getattr(value, "ndim", 0) == 1 else value
+
+
+def _check_matrix(owner, name, size):
+    value = getattr(owner, name)
+    if getattr(value, "shape", None) != (size, size):
+        raise ValueError(
+            f"{type(owner).__name__}: `{name}` has shape"
+            f" {getattr(value, 'shape', type(value).__name__)}; it must be"
+            f" {(size, size)}, or {size} numbers, those of the diagonal."
+        )
+    if not is_traced(value):
+        fine = np.isfinite(value).all() and (np.diagonal(value) >= 0).all()
+        check(owner, name, fine, "finite, and at least 0 on its diagonal")
+
+
+class Housing(eqx.Module):
+    """What a support stands on: a mass on springs and dampers that stand on ground.
+
+    It moves in x, y and z and does not tilt.
+
+    Attributes:
+        mass: Mass [kg].
+        stiffness: Against ground, in x, y and z (3, 3), or its diagonal (3,) [N/m].
+        damping: Likewise (3, 3), or its diagonal (3,) [N s/m].
+
+    Traced: all fields.
+    """
+
+    mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
+    stiffness: Float[Array, "3 3"] = eqx.field(
+        converter=_matrix, metadata=unit((("N/m",) * 3,) * 3)
+    )
+    damping: Float[Array, "3 3"] = eqx.field(
+        converter=_matrix,
+        metadata=unit((("N s/m",) * 3,) * 3),
+        default=(0.0, 0.0, 0.0),
+    )
+
+    def __check_init__(self):
+        positive(self, "mass")
+        _check_matrix(self, "stiffness", 3)
+        _check_matrix(self, "damping", 3)
+
+
+class AbstractSupport(eqx.Module):
+    """What holds a station of the shaft against ground or against a housing.
+
+    A support is a force over motion and velocity; linear analyses take its slopes.
+
+    Attributes:
+        station: Number of the station that it holds.
+        housing: What it stands on; `None`: ground.
+    """
+
+    station: eqx.AbstractVar[int]
+    housing: eqx.AbstractVar[Housing | None]
+
+    @abstractmethod
+    def force(
+        self, motion: Float[Array, "5"], velocity: Float[Array, "5"], speed: Scalar
+    ) -> Float[Array, "5"]:
+        """Force that moves the station against the support (5,) [N, N m].
+
+        Args:
+            motion: (ux uy uz gx gy) of the station less those of the housing [m, rad].
+            velocity: Its rate [m/s, rad/s].
+            speed: Of the rotor [rad/s].
+        """
+
+    def linearised(
+        self, motion: Float[Array, "5"], speed: Scalar
+    ) -> tuple[Float[Array, "5 5"], Float[Array, "5 5"]]:
+        """Stiffness and damping (5, 5) at a motion and a speed, at rest there.
+
+        Args:
+            motion, speed: As `force`.
+        """
+        rest = jnp.zeros_like(motion)
+        return jax.jacfwd(self.force, argnums=(0, 1))(motion, rest, speed)
+
+
+class LinearSupport(AbstractSupport):
+    """Springs and dampers of constant stiffness.
+
+    Attributes:
+        station: Number of the station that it holds.
+        stiffness: d(Fx, Fy, Fz, Mx, My)/d(ux, uy, uz, gx, gy) (5, 5), or its diagonal
+            (5,) [N/m, N, N m].
+        damping: Likewise, over the rates [N s/m, N s, N m s].
+        housing: What it stands on; `None`: ground.
+
+    Traced: stiffness, damping, housing.
+    """
+
+    station: int = eqx.field(static=True, converter=as_count)
+    stiffness: Float[Array, "5 5"] = eqx.field(
+        converter=_matrix, metadata=unit(_STIFFNESS)
+    )
+    damping: Float[Array, "5 5"] = eqx.field(
+        converter=_matrix, metadata=unit(_DAMPING), default=(0.0,) * 5
+    )
+    housing: Housing | None = eqx.field(default=None, kw_only=True)
+
+    def __check_init__(self):
+        check_station(self, self.station)
+        _check_matrix(self, "stiffness", 5)
+        _check_matrix(self, "damping", 5)
+        instance(self, "housing", Housing, None)
+
+    @classmethod
+    def isotropic(
+        cls,
+        station: int,
+        radial: Any,
+        axial: Any = 0.0,
+        tilt: Any = 0.0,
+        *,
+        radial_damping: Any = 0.0,
+        axial_damping: Any = 0.0,
+        tilt_damping: Any = 0.0,
+        housing: Housing | None = None,
+    ) -> "LinearSupport":
+        """A support that is the same in all radial directions, nothing coupled.
+
+        Args:
+            station: Number of the station that it holds.
+            radial, axial: Stiffness in x and y, and in z [N/m].
+            tilt: Stiffness against tilting about x and y [N m].
+            radial_damping, axial_damping: Damping [N s/m].
+            tilt_damping: Damping of tilting [N m s].
+            housing: What it stands on; `None`: ground.
+        """
+
+        def diagonal(radial, axial, tilt):
+            r, a, t = (as_real(value) for value in (radial, axial, tilt))
+            return jnp.stack([r, r, a, t, t])
+
+        return cls(
+            station,
+            diagonal(radial, axial, tilt),
+            diagonal(radial_damping, axial_damping, tilt_damping),
+            housing=housing,
+        )
+
+    def force(
+        self, motion: Float[Array, "5"], velocity: Float[Array, "5"], speed: Scalar
+    ) -> Float[Array, "5"]:
+        """Force that moves the station against the support (5,) [N, N m]."""
+        return self.stiffness @ motion + self.damping @ velocity

@@ -1,0 +1,118 @@
+"""Vibration of a linear rotor under unbalance."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Complex, Float
+
+from ..design.checks import non_negative, number
+from ..numerics.types import Scalar, as_count, as_real
+from ..numerics.units import unit
+from .modes import speed_list, to_complex
+from .parts import check_station
+from .rotor import Rotor
+
+_BATCH = 16
+"""Speeds that are solved at once."""
+
+
+class Unbalance(eqx.Module):
+    """A mass off the axis.
+
+    Attributes:
+        station: Number of the station that it sits on.
+        moment: Mass times distance from the axis [kg m].
+        phase: Azimuth at time 0, from +x towards +y [rad].
+
+    Traced: moment, phase.
+    """
+
+    station: int = eqx.field(static=True, converter=as_count)
+    moment: Scalar = eqx.field(converter=as_real, metadata=unit("kg m"))
+    phase: Scalar = eqx.field(converter=as_real, metadata=unit("rad"), default=0.0)
+
+    def __check_init__(self):
+        check_station(self, self.station)
+        non_negative(self, "moment")
+        number(self, "phase")
+
+
+class UnbalanceResponse(eqx.Module):
+    """Steady vibration at the frequency of the speed, Re(motion · exp(iΩt)).
+
+    Attributes:
+        speed: Ω (speed,) [rad/s].
+        motion: Complex amplitudes of (ux uy uz gx gy) of every node
+            (speed, node, 5) [m, rad].
+        housing: Of (ux uy uz) of every housing (speed, housing, 3) [m].
+    """
+
+    speed: Float[Array, " speed"]
+    motion: Complex[Array, "speed node 5"]
+    housing: Complex[Array, "speed housing 3"]
+
+    @property
+    def amplitude(self) -> Float[Array, "speed node 5"]:
+        """Half of peak to peak of every freedom [m, rad]."""
+        return jnp.abs(self.motion)
+
+    @property
+    def major_axis(self) -> Float[Array, "speed node"]:
+        """Longer half axis of the orbit of every node in x and y [m]."""
+        x, y = self.motion[..., 0], self.motion[..., 1]
+        return 0.5 * (jnp.abs(x + 1j * y) + jnp.abs(x - 1j * y))
+
+
+def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceResponse:
+    """Vibration under unbalance, speed by speed.
+
+    The force of an unbalance U at azimuth φ is U Ω² (cos(Ωt + φ), sin(Ωt + φ)).
+
+    Args:
+        rotor: The rotor, or what has a `linearised(speed)` as it has.
+        unbalances: `Unbalance`, or several.
+        speeds: (speed,) [rad/s].
+
+    Returns:
+        UnbalanceResponse, differentiable with respect to every number.
+    """
+    many = isinstance(unbalances, Iterable)
+    unbalances = tuple(unbalances) if many else (unbalances,)
+    for one in unbalances:
+        if not isinstance(one, Unbalance):
+            raise TypeError(
+                f"unbalance_response: `unbalances` holds a {type(one).__name__}; it"
+                " must hold Unbalances."
+            )
+        if one.station > rotor.shaft.n_segments:
+            raise ValueError(
+                f"unbalance_response: `unbalances` holds one on station {one.station};"
+                f" the last station of the shaft is {rotor.shaft.n_segments}."
+            )
+    return _response(rotor, unbalances, speed_list("unbalance_response", speeds))
+
+
+@eqx.filter_jit
+def _response(rotor, unbalances, speeds):
+    motions = rotor.motions()
+    force = to_complex(jnp.zeros_like(motions[:, 0]))
+    for one in unbalances:
+        x, y = one.moment * jnp.cos(one.phase), one.moment * jnp.sin(one.phase)
+        at = rotor.at(one.station).start
+        force = force.at[at].add(lax.complex(x, y))
+        force = force.at[at + 1].add(lax.complex(y, -x))
+    force = to_complex(motions).T @ force
+
+    def at_speed(speed):
+        # At rest there is no force, whether or not anything holds the rotor.
+        turning = jnp.where(speed == 0, 1.0, speed)
+        matrices = rotor.linearised(turning)
+        stiffness = matrices.dynamic_stiffness(lax.complex(0.0 * turning, turning))
+        motion = jnp.linalg.solve(stiffness, to_complex(speed**2) * force)
+        return matrices.split(to_complex(motions) @ motion)
+
+    motion, housing = lax.map(at_speed, speeds, batch_size=_BATCH)
+    return UnbalanceResponse(speeds, motion, housing)

@@ -1,0 +1,244 @@
+"""A rotor: shaft, discs and supports, put together as matrices."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Complex, Float
+
+from ..design.checks import instance
+from ..numerics.types import Scalar, as_real
+from .damping import AbstractDamping
+from .parts import AbstractPart, AbstractSupport
+from .shaft import STATION_FREEDOMS, Shaft
+
+Matrix = Float[Array, "freedom freedom"]
+N_STATION = len(STATION_FREEDOMS)
+N_HOUSING = 3
+
+
+def _listed(parts):
+    return tuple(parts) if isinstance(parts, Iterable) else (parts,)
+
+
+class RotorMatrices(eqx.Module):
+    """A linear rotor at one speed Ω: M q'' + (C + Ω G) q' + K q = F.
+
+    Attributes:
+        mass: M (freedom, freedom) [kg, kg m, kg m²].
+        damping: C (freedom, freedom) [N s/m, N s, N m s].
+        gyroscopic: G (freedom, freedom), skew [kg, kg m, kg m²].
+        stiffness: K (freedom, freedom) [N/m, N, N m].
+        motions: What the freedoms q move (motion, freedom): (ux uy uz gx gy) of every
+            node, then (ux uy uz) of every housing [m, rad].
+        speed: Ω, positive from x towards y [rad/s].
+        length: Of the shaft, by which tilts are compared with displacements [m].
+        n_nodes: Number of nodes of the shaft.
+    """
+
+    mass: Matrix
+    damping: Matrix
+    gyroscopic: Matrix
+    stiffness: Matrix
+    motions: Float[Array, "motion freedom"]
+    speed: Scalar
+    length: Scalar
+    n_nodes: int = eqx.field(static=True)
+
+    @property
+    def rates(self) -> Matrix:
+        """C + Ω G, what multiplies the velocity."""
+        return self.damping + self.speed * self.gyroscopic
+
+    def dynamic_stiffness(
+        self, eigenvalue: Complex[Array, ""]
+    ) -> Complex[Array, "freedom freedom"]:
+        """λ² M + λ (C + Ω G) + K: the force over a motion that grows like exp(λ t).
+
+        Args:
+            eigenvalue: λ [rad/s].
+        """
+        mass, rates, stiffness = (
+            lax.complex(part, jnp.zeros_like(part))
+            for part in (self.mass, self.rates, self.stiffness)
+        )
+        return eigenvalue**2 * mass + eigenvalue * rates + stiffness
+
+    def projected(self, basis: Float[Array, "freedom fewer"]) -> "RotorMatrices":
+        """The rotor held to motions q = basis · p, with p as its freedoms."""
+
+        def within(matrix):
+            return basis.T @ matrix @ basis
+
+        return RotorMatrices(
+            within(self.mass),
+            within(self.damping),
+            within(self.gyroscopic),
+            within(self.stiffness),
+            self.motions @ basis,
+            self.speed,
+            self.length,
+            self.n_nodes,
+        )
+
+    def split(self, motion: Any) -> tuple[Any, Any]:
+        """Motions (..., motion) as those of nodes (..., node, 5) and housings."""
+        n, lead = N_STATION * self.n_nodes, motion.shape[:-1]
+        nodes = motion[..., :n].reshape(*lead, self.n_nodes, N_STATION)
+        return nodes, motion[..., n:].reshape(*lead, -1, N_HOUSING)
+
+
+class Rotor(eqx.Module):
+    """A shaft with what sits on it and what holds it.
+
+    Attributes:
+        shaft: The shaft.
+        discs: Discs and point masses.
+        supports: Supports; with a housing each has three freedoms more.
+        damping: Damping besides that of the supports; `None`: none.
+        rigid: Whether the shaft cannot bend or stretch. It then has five freedoms,
+            its rigid motion (ux uy uz gx gy) at z = 0.
+
+    Traced: all but `rigid` and the station numbers.
+    """
+
+    shaft: Shaft
+    discs: tuple[AbstractPart, ...] = eqx.field(converter=_listed, default=())
+    supports: tuple[AbstractSupport, ...] = eqx.field(converter=_listed, default=())
+    damping: AbstractDamping | None = None
+    rigid: bool = eqx.field(static=True, default=False)
+
+    def __check_init__(self):
+        instance(self, "shaft", Shaft)
+        instance(self, "damping", AbstractDamping, None)
+        if not isinstance(self.rigid, bool):
+            raise TypeError(f"Rotor: `rigid` is {self.rigid!r}; True or False.")
+        last = self.shaft.n_segments
+        kinds = (("discs", AbstractPart), ("supports", AbstractSupport))
+        for name, kind in kinds:
+            for part in getattr(self, name):
+                if not isinstance(part, kind):
+                    raise TypeError(
+                        f"Rotor: `{name}` holds a {type(part).__name__}; it must hold"
+                        f" {'discs or point masses' if name == 'discs' else name}."
+                    )
+                if part.station > last:
+                    raise ValueError(
+                        f"Rotor: `{name}` holds a {type(part).__name__} on station"
+                        f" {part.station}; the last station of the shaft is {last}."
+                    )
+
+    @property
+    def mass(self) -> Scalar:
+        """Mass of shaft, discs and point masses, without housings [kg]."""
+        return sum((part.mass for part in self.discs), start=self.shaft.mass)
+
+    def at(self, station: int) -> slice:
+        """Where the five motions of a station stand among all motions.
+
+        Args:
+            station: Number of the station.
+        """
+        first = N_STATION * self.shaft.node(station)
+        return slice(first, first + N_STATION)
+
+    def motions(self) -> Float[Array, "motion freedom"]:
+        """What the freedoms move: every node, then every housing [m, rad]."""
+        if not self.rigid:
+            return jnp.eye(self._n_motions, dtype=self.shaft.stations.dtype)
+        z = self.shaft.nodes
+        n = z.shape[0]
+        bodies = jnp.tile(jnp.eye(N_STATION, dtype=z.dtype), (n, 1, 1))
+        # Displacement of the point (0, 0, z): u + g x r.
+        bodies = bodies.at[:, 0, 4].set(z).at[:, 1, 3].set(-z)
+        turned = bodies.reshape(N_STATION * n, N_STATION)
+        n_more = self._n_motions - N_STATION * n
+        full = jnp.zeros((self._n_motions, N_STATION + n_more), dtype=z.dtype)
+        full = full.at[: N_STATION * n, :N_STATION].set(turned)
+        return full.at[N_STATION * n :, N_STATION:].set(jnp.eye(n_more, dtype=z.dtype))
+
+    def at_supports(self) -> Float[Array, "support 5 motion"]:
+        """Motion of each supported station less that of its housing, from all motions.
+
+        The force of a support acts on the rotor through the transpose.
+        """
+        rows = np.zeros((len(self.supports), N_STATION, self._n_motions))
+        for row, support, housing in zip(
+            rows, self.supports, self._housings(), strict=True
+        ):
+            row[:, self.at(support.station)] = np.eye(N_STATION)
+            if housing is not None:
+                row[:N_HOUSING, housing] = -np.eye(N_HOUSING)
+        return as_real(rows).astype(self.shaft.stations.dtype)
+
+    @property
+    def _n_motions(self) -> int:
+        housings = sum(support.housing is not None for support in self.supports)
+        return N_STATION * self.shaft.n_nodes + N_HOUSING * housings
+
+    def _housings(self):
+        """Where each support's housing stands among all motions; `None`: nowhere."""
+        first = N_STATION * self.shaft.n_nodes
+        for support in self.supports:
+            if support.housing is None:
+                yield None
+            else:
+                yield slice(first, first + N_HOUSING)
+                first += N_HOUSING
+
+    def linearised(
+        self, speed: Any = 0.0, motion: Float[Array, " motion"] | None = None
+    ) -> RotorMatrices:
+        """The rotor as matrices.
+
+        Args:
+            speed: Of the rotor, positive from x towards y [rad/s].
+            motion: Of nodes and housings, about which supports are linearised [m,
+                rad]; zero unless given.
+
+        Returns:
+            RotorMatrices, differentiable with respect to every number.
+        """
+        speed = as_real(speed)
+        n_shaft, n = N_STATION * self.shaft.n_nodes, self._n_motions
+        nothing = jnp.zeros((n, n), dtype=self.shaft.stations.dtype)
+        if motion is None:
+            motion = nothing[0]
+
+        def of_all(matrix):
+            return nothing.at[:n_shaft, :n_shaft].set(matrix)
+
+        shaft_mass, gyroscopic, shaft_stiffness = map(of_all, self.shaft.matrices())
+        if self.rigid:
+            shaft_stiffness = nothing
+        mass, stiffness, damping = shaft_mass, shaft_stiffness, nothing
+        for disc in self.discs:
+            at = self.at(disc.station)
+            inertia, turning = disc.inertia()
+            mass = mass.at[at, at].add(inertia)
+            gyroscopic = gyroscopic.at[at, at].add(turning)
+        seen = zip(self.supports, self.at_supports(), self._housings(), strict=True)
+        for support, rows, at in seen:
+            k, c = support.linearised(rows @ motion, speed)
+            stiffness = stiffness + rows.T @ k @ rows
+            damping = damping + rows.T @ c @ rows
+            base = support.housing
+            if base is not None:
+                mass = mass.at[at, at].add(base.mass * jnp.eye(N_HOUSING))
+                stiffness = stiffness.at[at, at].add(base.stiffness)
+                damping = damping.at[at, at].add(base.damping)
+        basis = self.motions()
+        parts = (mass, damping, gyroscopic, stiffness, shaft_mass, shaft_stiffness)
+        if self.rigid:
+            parts = tuple(basis.T @ part @ basis for part in parts)
+        mass, damping, gyroscopic, stiffness, *own = parts
+        if self.damping is not None:
+            damping = damping + self.damping.matrix((own[0], own[1]), (mass, stiffness))
+        shaft = self.shaft
+        length = shaft.stations[-1] - shaft.stations[0]
+        return RotorMatrices(
+            mass, damping, gyroscopic, stiffness, basis, speed, length, shaft.n_nodes
+        )

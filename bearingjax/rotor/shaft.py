@@ -1,0 +1,314 @@
+"""The shaft of a rotor: stations, segments, and Timoshenko beam elements between them.
+
+The bearing axis z is the shaft axis. A cross-section has five freedoms in the order of
+the rings, (ux uy uz gx gy); it does not twist. A straight shaft that tilts by gy moves
+along x, dux/dz = gy; one that tilts by gx moves against y, duy/dz = -gx.
+"""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design.checks import check, is_traced, real_numbers
+from ..design.checks import count as whole
+from ..design.material import Material
+from ..element.frame import FREEDOMS
+from ..numerics.types import Scalar, as_count, as_real
+from ..numerics.units import unit
+
+STATION_FREEDOMS = FREEDOMS[:5]
+"""Freedoms of a cross-section, and of every station."""
+
+Matrices = tuple[
+    Float[Array, "*element 10 10"],
+    Float[Array, "*element 10 10"],
+    Float[Array, "*element 10 10"],
+]
+"""Mass, gyroscopic and stiffness matrix."""
+
+
+class Shaft(eqx.Module):
+    """A shaft of cylindrical segments, solid or hollow.
+
+    A segment lies between two neighbouring stations and is divided into elements. A
+    disc, a support or an unbalance sits on a station, named by its number from 0; the
+    numbers stay the same whatever the division.
+
+    Attributes:
+        stations: Axial positions, rising (station,) [m].
+        outer_diameter: Of each segment (segment,) [m]; one number serves all.
+        bore: Diameter of the hole of each segment (segment,) [m]; zero: solid.
+        material: Of all segments, or a tuple with one for each.
+        divisions: Elements of each segment (segment,); one number serves all.
+
+    Traced: all fields but `divisions`.
+
+    Left out: torsion, the stiffness that an axial load or a torque adds or takes, and
+    the damping of the shaft (`Rotor` has it).
+    """
+
+    stations: Float[Array, " station"] = eqx.field(metadata=unit("m"))
+    outer_diameter: Float[Array, " segment"] = eqx.field(metadata=unit("m"))
+    bore: Float[Array, " segment"] = eqx.field(metadata=unit("m"))
+    material: Material | tuple[Material, ...]
+    divisions: tuple[int, ...] = eqx.field(static=True)
+
+    def __init__(
+        self,
+        stations: Any,
+        outer_diameter: Any,
+        bore: Any = 0.0,
+        material: Material | tuple[Material, ...] | None = None,
+        divisions: Any = 1,
+    ):
+        for name, value in (
+            ("stations", stations),
+            ("outer_diameter", outer_diameter),
+            ("bore", bore),
+        ):
+            real_numbers("Shaft", name, value, "numbers in m")
+        self.stations = as_real(stations)
+        if self.stations.ndim != 1 or self.stations.shape[0] < 2:
+            raise ValueError(
+                f"Shaft: `stations` has shape {self.stations.shape}; it must be a list"
+                " of two or more positions in m."
+            )
+        self.outer_diameter = self._of_segments("outer_diameter", outer_diameter)
+        self.bore = self._of_segments("bore", bore)
+        self.material = Material() if material is None else material
+        many = isinstance(divisions, tuple | list | np.ndarray)
+        counts = divisions if many else (divisions,) * self.n_segments
+        self.divisions = tuple(as_count(n) for n in counts)
+
+    def _of_segments(self, name, value):
+        value = as_real(value)
+        if value.shape not in ((), (self.n_segments,)):
+            raise ValueError(
+                f"Shaft: `{name}` has shape {value.shape}; it must be one number or"
+                f" {self.n_segments}, one for each segment between two stations, in m."
+            )
+        return jnp.broadcast_to(value, (self.n_segments,))
+
+    def __check_init__(self):
+        n = self.n_segments
+        for name in ("stations", "outer_diameter", "bore"):
+            value = getattr(self, name)
+            if not is_traced(value):
+                check(self, name, np.isfinite(value), "finite")
+        if not is_traced(self.stations):
+            rising = np.diff(self.stations) > 0
+            check(self, "stations", rising, "rising from each to the next")
+        if not is_traced(self.outer_diameter):
+            check(
+                self, "outer_diameter", np.asarray(self.outer_diameter) > 0, "above 0 m"
+            )
+        if not is_traced(self.bore):
+            check(self, "bore", np.asarray(self.bore) >= 0, "at least 0 m")
+            if not is_traced(self.outer_diameter):
+                inside = np.asarray(self.bore) < np.asarray(self.outer_diameter)
+                check(self, "bore", inside, "below the outer diameter of its segment")
+        materials = self.material
+        listed = materials if isinstance(materials, tuple) else (materials,) * n
+        if len(listed) != n or not all(isinstance(m, Material) for m in listed):
+            raise TypeError(
+                f"Shaft: `material` is {materials!r}; it must be a Material, or a tuple"
+                f" of {n}, one for each segment."
+            )
+        if len(self.divisions) != n:
+            raise ValueError(
+                f"Shaft: `divisions` has {len(self.divisions)} numbers; it must be one,"
+                f" or {n}, one for each segment."
+            )
+        for number in self.divisions:
+            whole(self, "divisions", number)
+
+    @property
+    def n_segments(self) -> int:
+        """Number of segments."""
+        return self.stations.shape[0] - 1
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes: ends of elements, the stations among them."""
+        return sum(self.divisions) + 1
+
+    def node(self, station: int) -> int:
+        """Number of the node at a station."""
+        return sum(self.divisions[:station])
+
+    @property
+    def nodes(self) -> Float[Array, " node"]:
+        """Axial positions of all nodes [m]."""
+        shares = np.concatenate([np.arange(n) / n for n in self.divisions] + [[1.0]])
+        segment = np.append(self._segment, self.n_segments - 1)
+        share = as_real(shares)
+        first, last = self.stations[segment], self.stations[segment + 1]
+        return (1.0 - share) * first + share * last
+
+    @property
+    def mass(self) -> Scalar:
+        """Mass [kg]."""
+        _, _, density = self._material_numbers()
+        area = 0.25 * jnp.pi * (self.outer_diameter**2 - self.bore**2)
+        return jnp.sum(density * area * jnp.diff(self.stations))
+
+    @property
+    def _segment(self) -> np.ndarray:
+        """Segment of each element."""
+        return np.repeat(np.arange(self.n_segments), self.divisions)
+
+    def _material_numbers(self):
+        """Modulus, Poisson's ratio and density of each segment."""
+        given = self.material
+        listed = given if isinstance(given, tuple) else (given,) * self.n_segments
+        return tuple(
+            jnp.stack([getattr(material, name) for material in listed])
+            for name in ("elastic_modulus", "poisson_ratio", "density")
+        )
+
+    def matrices(self):
+        """Mass, gyroscopic and stiffness matrix of the free shaft.
+
+        Returns:
+            Three matrices (5 node, 5 node), node after node; the gyroscopic one is
+            that of a speed of 1 rad/s.
+        """
+        segment = self._segment
+        length = jnp.diff(self.stations)[segment] / as_real(self.divisions)[segment]
+        section = (self.outer_diameter, self.bore, *self._material_numbers())
+        elements = jax.vmap(element_matrices)(
+            length, *(part[segment] for part in section)
+        )
+        place = 5 * np.arange(len(segment))[:, None] + np.arange(10)
+        nothing = jnp.zeros((5 * self.n_nodes,) * 2, dtype=length.dtype)
+        rows, columns = place[:, :, None], place[:, None, :]
+        return tuple(nothing.at[rows, columns].add(part) for part in elements)
+
+
+def shear_coefficient(bore_ratio: Scalar, poisson_ratio: Scalar) -> Scalar:
+    """Timoshenko's shear coefficient of a circular section, solid or hollow [1].
+
+    Args:
+        bore_ratio: Bore over outer diameter [1].
+        poisson_ratio: Poisson's ratio [1].
+
+    Source: Cowper, The shear coefficient in Timoshenko's beam theory, J. Appl. Mech.
+        33 (1966) 335-340, table 1.
+    """
+    square = bore_ratio**2
+    full = (7.0 + 6.0 * poisson_ratio) * (1.0 + square) ** 2
+    hole = (20.0 + 12.0 * poisson_ratio) * square
+    return 6.0 * (1.0 + poisson_ratio) * (1.0 + square) ** 2 / (full + hole)
+
+
+def element_matrices(
+    length: Scalar,
+    outer_diameter: Scalar,
+    bore: Scalar,
+    elastic_modulus: Scalar,
+    poisson_ratio: Scalar,
+    density: Scalar,
+) -> Matrices:
+    """Mass, gyroscopic and stiffness matrix of one cylindrical element.
+
+    Bending with shear, rotary inertia and gyroscopic moments in both planes, and
+    stretching, from the energies of the motion that the ends impose on an element
+    without load between them: exact under end loads, and mass matrices that go with
+    it.
+
+    Args:
+        length, outer_diameter, bore: Sizes [m].
+        elastic_modulus: Young's modulus [Pa].
+        poisson_ratio: Poisson's ratio [1].
+        density: Density [kg/m³].
+
+    Returns:
+        Three matrices (10, 10), freedoms (ux uy uz gx gy) of the end at smaller z,
+        then of the other; the gyroscopic one at 1 rad/s, positive from x towards y.
+
+    Source: shapes of Przemieniecki, Theory of Matrix Structural Analysis (1968), and
+        Friswell et al., Dynamics of Rotating Machines (2010), sec. 5.4, here with the
+        tilts of the library.
+    """
+    area = 0.25 * jnp.pi * (outer_diameter**2 - bore**2)
+    inertia = jnp.pi / 64.0 * (outer_diameter**4 - bore**4)
+    shear_modulus = 0.5 * elastic_modulus / (1.0 + poisson_ratio)
+    kappa = shear_coefficient(bore / outer_diameter, poisson_ratio)
+    bending, shearing = elastic_modulus * inertia, kappa * shear_modulus * area
+    deflection, slope, curvature, shear, weight = _shapes(
+        length, 12.0 * bending / (shearing * length**2)
+    )
+
+    def integral(a, b):
+        return length * jnp.einsum("p,pi,pj->ij", weight, a, b)
+
+    turning = density * inertia * integral(slope, slope)
+    moving = density * area * integral(deflection, deflection)
+    bent = bending * integral(curvature, curvature) + shearing * integral(shear, shear)
+    dtype = length.dtype
+    stretched = elastic_modulus * area / length * jnp.array([[1, -1], [-1, 1]], dtype)
+    axial = density * area * length / 6.0 * jnp.array([[2, 1], [1, 2]], dtype)
+    x, y, z = (jnp.asarray(plane, dtype) for plane in _PLANES)
+    mass = x.T @ (moving + turning) @ x + y.T @ (moving + turning) @ y + z.T @ axial @ z
+    # Moments 2 ρ I Ω (d gy/dt, -d gx/dt) per length; the slope in y is -gx.
+    gyroscopic = 2.0 * (x.T @ turning @ y - y.T @ turning @ x)
+    stiffness = x.T @ bent @ x + y.T @ bent @ y + z.T @ stretched @ z
+    return mass, gyroscopic, stiffness
+
+
+def _planes():
+    """Freedoms of an element that bend it in x and in y, and that stretch it."""
+    x, y, z = np.zeros((4, 10)), np.zeros((4, 10)), np.zeros((2, 10))
+    x[range(4), [0, 4, 5, 9]] = 1.0
+    y[range(4), [1, 3, 6, 8]] = [1.0, -1.0, 1.0, -1.0]
+    z[range(2), [2, 7]] = 1.0
+    return x, y, z
+
+
+_PLANES = _planes()
+
+
+def _shapes(length, phi):
+    """Deflection, slope, curvature and shear strain of a bent element, and weights.
+
+    Each (point, 4), for deflection and slope at either end, at the nodes of a Gauss
+    rule that integrates their products exactly.
+
+    Args:
+        length: Of the element [m].
+        phi: 12 E I/(κ G A L²), its softness in shear over that in bending [1].
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    s = jnp.asarray(0.5 * (1.0 + nodes), dtype=length.dtype)
+    weight = jnp.asarray(0.5 * weights, dtype=length.dtype)
+    one, rest = jnp.ones_like(s), s * (1.0 - s)
+
+    def rows(*columns):
+        return jnp.stack(columns, axis=-1) / (1.0 + phi)
+
+    deflection = rows(
+        (1.0 - s) * (1.0 + s - 2.0 * s**2 + phi),
+        length * rest * (1.0 - s + 0.5 * phi),
+        s * (s * (3.0 - 2.0 * s) + phi),
+        -length * rest * (s + 0.5 * phi),
+    )
+    slope = rows(
+        -6.0 * rest / length,
+        (1.0 - s) * (1.0 - 3.0 * s + phi),
+        6.0 * rest / length,
+        s * (3.0 * s - 2.0 + phi),
+    )
+    curvature = rows(
+        -6.0 * (1.0 - 2.0 * s) / length**2,
+        (6.0 * s - 4.0 - phi) / length,
+        6.0 * (1.0 - 2.0 * s) / length**2,
+        (6.0 * s - 2.0 + phi) / length,
+    )
+    shear = rows(
+        -phi / length * one, -0.5 * phi * one, phi / length * one, -0.5 * phi * one
+    )
+    return deflection, slope, curvature, shear, weight

@@ -1,0 +1,119 @@
+"""Critical speeds and unbalance response: the paper's table, ROSS, closed forms."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from machines import friswell, paper
+from tolerances import DIFFERENCE, PUBLISHED, SOLVER
+
+import bearingjax as bj
+from bearingjax.rotor import AbstractSupport
+
+# Method 002, section 002.4: angle, c_r [1e8 N/m], c_a [1e7 N/m], radial f, axial f,
+# forward critical [Hz].
+TABLE = np.array(
+    [
+        [12, 1.4322, 1.2941, 707.6, 1824.8, 234.5, 721.4],
+        [15, 1.4161, 2.0335, 703.6, 1814.6, 293.9, 717.3],
+        [26, 1.3074, 6.2201, 676.1, 1743.5, 514.0, 689.2],
+        [36, 1.1592, 12.238, 636.6, 1641.7, 721.0, 649.0],
+        [40, 1.0809, 15.221, 614.7, 1585.4, 804.1, 626.7],
+    ]
+)
+
+
+def test_the_table_of_the_paper():
+    """AF002-2: frequencies at rest and critical speeds for the five angles."""
+
+    @jax.vmap
+    def found(radial, axial):
+        rotor = paper(radial, axial)
+        critical = bj.critical_speeds(rotor, count=5)
+        return bj.modes(rotor).frequency, critical.speed, critical.whirl
+
+    frequency, speed, whirl = map(
+        np.asarray,
+        found(jnp.asarray(TABLE[:, 1] * 1e8), jnp.asarray(TABLE[:, 2] * 1e7)),
+    )
+    at_rest = np.sort(np.concatenate([TABLE[:, 3:6], TABLE[:, 3:5]], axis=1))
+    np.testing.assert_allclose(frequency, at_rest, rtol=PUBLISHED)
+    # Polar above diametral inertia: one forward critical speed, two backward ones.
+    forward, backward, axial = (whirl == sense for sense in (1, -1, 0))
+    assert (forward.sum(axis=1) == 1).all() and (backward.sum(axis=1) == 2).all()
+    hertz = speed / (2 * np.pi)
+    np.testing.assert_allclose(hertz[forward], TABLE[:, 6], rtol=PUBLISHED)
+    np.testing.assert_allclose(hertz[0][backward[0]], [688, 1262], rtol=PUBLISHED)
+    found_axial = hertz[axial & np.isfinite(hertz)]
+    np.testing.assert_allclose(found_axial, TABLE[:, 5], rtol=PUBLISHED)
+    assert np.isnan(hertz[:, 4]).all()  # there is no fifth
+
+
+def test_they_lie_on_the_campbell_diagram():
+    """With damping: modes at the speed found vibrate once per revolution."""
+    rotor = friswell(1e6, 0.8e6, 5e2)
+    critical = bj.critical_speeds(rotor, count=4)
+    assert (np.asarray(critical.whirl) == [-1, 1, -1, 1]).all()
+    for speed, ratio in zip(critical.speed, critical.damping_ratio, strict=True):
+        at = bj.modes(rotor, speed, count=6)
+        k = np.argmin(abs(2 * np.pi * at.frequency - speed))
+        np.testing.assert_allclose(2 * np.pi * at.frequency[k], speed, rtol=SOLVER)
+        np.testing.assert_allclose(at.damping_ratio[k], ratio, rtol=DIFFERENCE)
+    assert critical.damping_ratio.min() > 1e-3
+
+
+class Stiffening(AbstractSupport):
+    """Its stiffness rises with the square of the speed."""
+
+    station: int = eqx.field(static=True)
+    housing: None = None
+
+    def force(self, motion, velocity, speed):
+        return (1e6 + 2.0 * speed**2) * motion + 40.0 * velocity
+
+
+def test_supports_may_follow_the_speed():
+    """Of a mass m on k + aΩ², with damping c: Ω² = (k - (c/2)²/m)/(m - a)."""
+    shaft = bj.Shaft([-0.1, 0.0, 0.1], 0.04)
+    rotor = bj.Rotor(shaft, [bj.PointMass(1, 5.0)], [Stiffening(1)], rigid=True)
+    critical = bj.critical_speeds(rotor, count=3)
+    m = float(rotor.mass)
+    exact = np.sqrt((1e6 - 20.0**2 / m) / (m - 2.0))
+    np.testing.assert_allclose(critical.speed, exact, rtol=SOLVER)
+    natural = np.sqrt((1e6 + 2.0 * exact**2) / m)
+    ratio = 20.0 / m / natural
+    np.testing.assert_allclose(critical.damping_ratio, ratio, rtol=SOLVER)
+
+
+def test_the_unbalance_response_of_ross():
+    """ROSS, `test_freq_response_w_force`: 1e-3 kg m on node 2, amplitudes of node 0."""
+    found = bj.unbalance_response(
+        friswell(), bj.Unbalance(2, 1e-3), np.linspace(0.0, 450.0, 4)
+    )
+    ross = [
+        [0.00000000e00, 1.14259057e-06, 1.88932819e-04, 4.50376020e-05],
+        [0.00000000e00, 3.02252319e-06, 1.50551126e-04, 4.98323245e-05],
+        [0.00000000e00, 1.97842812e-05, 5.19405022e-05, 2.80824236e-05],
+        [0.00000000e00, 2.02593969e-05, 1.64498124e-05, 1.06100461e-05],
+    ]
+    got = found.amplitude[:, 0, np.array([0, 1, 3, 4])].T
+    # Nine digits are printed; the system is some hundred times as sensitive.
+    np.testing.assert_allclose(got, ross, rtol=1e-7)
+    assert not found.motion[:, :, 2].any()
+
+
+def test_a_jeffcott_rotor_through_its_critical_speed():
+    """x + iy = m e Ω²/(k - mΩ² + icΩ) exp(i(Ωt + φ)): a circle, turning forward."""
+    k, c, moment, phase = 4e6, 800.0, 1e-3, 0.7
+    shaft = bj.Shaft([-0.1, 0.0, 0.1], 0.04)
+    support = bj.LinearSupport(1, [k, k, 0, k, k], [c, c, 0, 0, 0])
+    rotor = bj.Rotor(shaft, [bj.Disc(1, 9.0, 0.04, 0.03)], [support], rigid=True)
+    m = float(rotor.mass)
+    speeds = np.array([0.0, 100.0, np.sqrt(k / m), 5000.0])
+    found = bj.unbalance_response(rotor, [bj.Unbalance(1, moment, phase)], speeds)
+    x = moment * speeds**2 * np.exp(1j * phase) / (k - m * speeds**2 + 1j * c * speeds)
+    np.testing.assert_allclose(found.motion[:, 1, 0], x, rtol=SOLVER, atol=1e-20)
+    np.testing.assert_allclose(found.motion[:, 1, 1], -1j * x, rtol=SOLVER, atol=1e-20)
+    np.testing.assert_allclose(found.major_axis[:, 1], abs(x), rtol=SOLVER, atol=1e-20)
+    # At rest nothing moves, though nothing holds it along z.
+    assert not found.motion[0].any() and np.isfinite(found.motion).all()

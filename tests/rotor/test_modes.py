@@ -1,0 +1,222 @@
+"""Whirl modes and Campbell diagrams.
+
+Sources: M. I. Friswell, J. E. T. Penny, S. D. Garvey, A. W. Lees, Dynamics of Rotating
+Machines (2010), examples 5.9.2 and 5.9.5, as the tests of ROSS quote them
+(ross/tests/test_examples.py); and ROSS's own results for the rotor of 5.9.2
+(ross/tests/test_rotor_assembly.py, `test_campbell`, `test_freq_response_w_force`),
+with six elements and Cowper's shear coefficient, whose frame and freedoms are ours
+(tests/rotor/test_ross.py). Torsion, which ROSS has and we have not, is left out.
+"""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from machines import friswell, paper, stepped
+from tolerances import DIFFERENCE, PUBLISHED, SOLVER
+
+import bearingjax as bj
+
+TURN = 2 * np.pi
+
+
+def test_the_campbell_diagram_of_ross():
+    found = bj.campbell(friswell(), [0.0, 150.0, 300.0], count=6)
+    ross = [
+        [82.65303734, 86.65811435, 254.52047828, 274.31285391, 679.48903239],
+        [82.60929602, 86.68625235, 251.70037114, 276.87787937, 652.85679897],
+        [82.48132723, 86.76734307, 245.49092844, 282.33294699, 614.05536277],
+    ]
+    # Ten digits are printed.
+    np.testing.assert_allclose(TURN * found.frequency[:, :5], ross, rtol=SOLVER)
+    assert (found.whirl[0] == 0).all()  # at rest each mode is in a plane
+    np.testing.assert_array_equal(found.whirl[1:, :5], [[-1, 1, -1, 1, -1]] * 2)
+    assert abs(found.damping_ratio).max() < SOLVER
+    # Largest motion 1 m, and real.
+    sizes = abs(np.asarray(found.shape) * [1, 1, 1, 1.5, 1.5])
+    np.testing.assert_allclose(sizes.max(axis=(2, 3)), 1.0, rtol=SOLVER)
+
+
+def test_the_tables_of_friswell():
+    speed = 4000 * TURN / 60
+    turning = bj.modes(friswell(), speed, count=6)
+    table = [82.33, 86.86, 239.64, 287.25, 583.49, 806.89]
+    np.testing.assert_allclose(TURN * turning.frequency, table, rtol=PUBLISHED)
+    # Isotropic bearings with damping, at rest: pairs of equal modes.
+    damped = bj.modes(friswell(1e6, 1e6, 3e3), count=6)
+    table = np.repeat([13.89, 46.54, 103.22], 2)
+    np.testing.assert_allclose(damped.frequency, table, rtol=2 * PUBLISHED)
+    natural = np.abs(damped.eigenvalue) / TURN
+    table = np.repeat([13.91, 48.18, 137.06], 2)
+    np.testing.assert_allclose(natural, table, rtol=2 * PUBLISHED)
+    ratio = damped.damping_ratio
+    exact = np.sqrt(1 - (damped.frequency / natural) ** 2)
+    np.testing.assert_allclose(ratio, exact, rtol=DIFFERENCE)
+    decrement = TURN * ratio / np.sqrt(1 - ratio**2)
+    np.testing.assert_allclose(damped.log_decrement, decrement, rtol=SOLVER)
+    assert (damped.whirl == 0).all()
+
+
+def test_a_disc_on_a_massless_shaft():
+    """Stodola's rotor: a disc at the end of a cantilever, with gyroscopic moments.
+
+    With z = ux + i uy and the slope s = gy - i gx: (K - ω² diag(m, Id) + ωΩ
+    diag(0, Ip)) (z, s) = 0, forward whirl for ω > 0.
+    """
+    length, outer, m, polar, diametral, speed = 0.4, 0.03, 8.0, 0.09, 0.05, 900.0
+    radial, tilt = 2e8, 5e6
+    light = bj.Material(211e9, 0.3, 0.1)
+    shaft = bj.Shaft([0.0, length], outer, material=light, divisions=2)
+    support = bj.LinearSupport.isotropic(0, radial, 1e8, tilt)
+    rotor = bj.Rotor(shaft, [bj.Disc(1, m, polar, diametral)], [support])
+    ei = 211e9 * np.pi / 64 * outer**4
+    kga = 6 * 1.3 / (7 + 6 * 0.3) * 211e9 / 2.6 * np.pi / 4 * outer**2
+    softness = np.array(
+        [
+            [
+                length**3 / 3 / ei + length / kga + 1 / radial + length**2 / tilt,
+                length**2 / 2 / ei + length / tilt,
+            ],
+            [length**2 / 2 / ei + length / tilt, length / ei + 1 / tilt],
+        ]
+    )
+    k = np.linalg.inv(softness)
+    inertia, turning = np.diag([m, diametral]), np.diag([0.0, polar])
+    zero, one = np.zeros((2, 2)), np.eye(2)
+    state = np.block(
+        [
+            [zero, one],
+            [np.linalg.solve(inertia, k), speed * np.linalg.solve(inertia, turning)],
+        ]
+    )
+    exact = np.linalg.eigvals(state).real
+    exact = exact[np.argsort(abs(exact))]
+    found = bj.modes(rotor, speed, count=6)
+    got = TURN * np.asarray(found.frequency) * np.asarray(found.whirl)
+    got = got[got != 0][:4]
+    # The shaft has some millionths of the disc's mass.
+    np.testing.assert_allclose(got, exact, rtol=DIFFERENCE)
+    # Forward critical speed: the disc's inertia is Id - Ip < 0, there is only one.
+    squares = np.linalg.eigvals(np.linalg.solve(np.diag([m, diametral - polar]), k))
+    critical = bj.critical_speeds(rotor, count=4)
+    forward = np.asarray(critical.speed)[np.asarray(critical.whirl) == 1]
+    np.testing.assert_allclose(forward, np.sqrt(max(squares)), rtol=DIFFERENCE)
+    assert min(squares) < 0
+
+
+def test_modes_are_followed_through_crossings():
+    """Isotropic supports: forward, backward and axial modes never mix."""
+    speeds = np.linspace(0.0, 8000.0, 25)
+    rotor = paper(1.1592e8, 1.2238e8)
+    found = bj.campbell(rotor, speeds, count=5)
+    whirl = np.asarray(found.whirl)
+    assert (whirl[1:] == whirl[-1]).all()
+    assert sorted(whirl[-1]) == [-1, -1, 0, 1, 1]
+    change = np.diff(np.asarray(found.frequency), axis=0)
+    assert (change[:, whirl[-1] == 1] > 0).all()
+    assert (change[:, whirl[-1] == -1] < 0).all()
+    assert abs(change[:, whirl[-1] == 0]).max() < SOLVER * 721.0
+    # They do cross: sorted by frequency the whirl would not stay.
+    order = np.argsort(found.frequency, axis=1)
+    assert (order != order[0]).any()
+    # The paper's rotor at rest, table of method 002 for 36 degrees [Hz].
+    at_rest = np.sort(found.frequency[0])
+    np.testing.assert_allclose(
+        at_rest, [636.6, 636.6, 721.0, 1641.7, 1641.7], rtol=PUBLISHED
+    )
+
+
+# Numbers of `stepped`, and what they are counted in.
+NUMBERS = jnp.array([0.01, 0.17, 2e7, 300.0, 0.02, 5e7])
+
+
+@jax.jit
+def measured(numbers):
+    """Frequencies, damping ratios, critical speeds and their damping, amplitudes."""
+    rotor = stepped(*numbers)
+    modes = bj.modes(rotor, 700.0, count=5)
+    critical = bj.critical_speeds(rotor, count=4)
+    response = bj.unbalance_response(
+        rotor, bj.Unbalance(1, 1e-3), jnp.array([300.0, 900.0])
+    )
+    return jnp.concatenate(
+        [
+            modes.frequency,
+            modes.damping_ratio,
+            critical.speed,
+            critical.damping_ratio,
+            response.amplitude[:, 3, :2].reshape(-1),
+            response.major_axis[:, 3],
+        ]
+    )
+
+
+def test_derivatives_of_everything():
+    slope = jax.jit(jax.jacrev(measured))(NUMBERS)
+    forward = jax.jit(jax.jacfwd(measured))(NUMBERS)
+    values = measured(NUMBERS)
+    assert np.isfinite(slope).all()
+    scale = NUMBERS[None, :] / values[:, None]
+    np.testing.assert_allclose(slope * scale, forward * scale, atol=1e-8)
+    for k, number in enumerate(NUMBERS):
+        step = 2e-4 * number * np.eye(len(NUMBERS))[k]
+        # Of fourth order: steps that are large against the round-off of eigenvalues.
+        near = measured(NUMBERS + step) - measured(NUMBERS - step)
+        far = measured(NUMBERS + 2 * step) - measured(NUMBERS - 2 * step)
+        change = (8 * near - far) / 12 / (2e-4 * values)
+        np.testing.assert_allclose(slope[:, k] * scale[:, k], change, atol=DIFFERENCE)
+
+
+def test_derivatives_where_modes_coincide():
+    """Isotropic and at rest: pairs that stay pairs as the supports stiffen."""
+
+    def frequencies(stiffness, kind=bj.modes):
+        rotor = paper(stiffness, 1e8, bj.ModalDamping(0.01))
+        return kind(rotor).frequency
+
+    slope = jax.jit(jax.jacrev(frequencies))(jnp.array(1.2e8))
+    value = frequencies(jnp.array(1.2e8))
+    # Radial frequencies of the rigid rotor go with the root of the stiffness.
+    axial = np.argsort(abs(slope))[0]
+    expected = np.array(0.5 * value / 1.2e8)
+    expected[axial] = 0.0
+    np.testing.assert_allclose(slope, expected, rtol=DIFFERENCE, atol=1e-20)
+
+
+def test_a_rotor_that_nothing_holds():
+    rotor = friswell(0.0, 0.0)
+    found = bj.modes(rotor, 100.0)
+    n = len(found.frequency)
+    assert n == 35 and np.isfinite(found.shape).all()
+    assert np.isfinite(found.damping_ratio).all()
+    # Free in x, y and z; its tilts precess: backward at 0, forward with Ip/Id.
+    frequency = np.asarray(found.frequency)
+    assert ((frequency == 0).sum(), (frequency > 0).sum()) == (4, 31)
+    slope = jax.grad(lambda k: bj.modes(friswell(k, k), 100.0).frequency.sum())(0.0)
+    assert np.isfinite(slope)
+
+
+@pytest.mark.parametrize(
+    "call, error, shown",
+    [
+        (lambda r: bj.modes(r, np.nan), ValueError, "modes: `speed`.*finite"),
+        (lambda r: bj.modes(r, count=0), ValueError, "modes: `count` is 0"),
+        (
+            lambda r: bj.campbell(r, 3.0),
+            ValueError,
+            r"campbell: `speeds` has shape \(\)",
+        ),
+        (lambda r: bj.campbell(r, [0.0, np.inf]), ValueError, "`speeds`.*finite"),
+        (lambda r: bj.critical_speeds(r, count=1.5), TypeError, "`count` is 1.5"),
+        (
+            lambda r: bj.unbalance_response(r, [bj.Unbalance(9, 1.0)], [1.0]),
+            ValueError,
+            "station 9; the last station of the shaft is 2",
+        ),
+        (lambda r: bj.unbalance_response(r, [3.0], [1.0]), TypeError, "holds a float"),
+        (lambda r: bj.Unbalance(0, -1.0), ValueError, "`moment` is -1 kg m"),
+    ],
+)
+def test_bad_input_is_named(call, error, shown):
+    with pytest.raises(error, match=shown):
+        call(paper(1e8, 1e8))
