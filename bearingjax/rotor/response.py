@@ -112,7 +112,7 @@ def _response(rotor, unbalances, speeds):
         matrices = rotor.linearised(turning)
         stiffness = matrices.dynamic_stiffness(lax.complex(0.0 * turning, turning))
         motion = jnp.linalg.solve(stiffness, to_complex(speed**2) * force)
-        return matrices.split(to_complex(motions) @ motion)
+        return to_complex(motions) @ motion
 
-    motion, housing = lax.map(at_speed, speeds, batch_size=_BATCH)
-    return UnbalanceResponse(speeds, motion, housing)
+    motion = lax.map(at_speed, speeds, batch_size=_BATCH)
+    return UnbalanceResponse(speeds, *rotor.linearised(0.0).split(motion))

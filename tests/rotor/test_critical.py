@@ -115,5 +115,10 @@ def test_a_jeffcott_rotor_through_its_critical_speed():
     np.testing.assert_allclose(found.motion[:, 1, 0], x, rtol=SOLVER, atol=1e-20)
     np.testing.assert_allclose(found.motion[:, 1, 1], -1j * x, rtol=SOLVER, atol=1e-20)
     np.testing.assert_allclose(found.major_axis[:, 1], abs(x), rtol=SOLVER, atol=1e-20)
+    # Many speeds, which are solved in batches.
+    many = bj.unbalance_response(
+        rotor, [bj.Unbalance(1, moment, phase)], np.tile(speeds, 10)
+    )
+    np.testing.assert_allclose(many.motion[8:12], found.motion, rtol=SOLVER)
     # At rest nothing moves, though nothing holds it along z.
     assert not found.motion[0].any() and np.isfinite(found.motion).all()
