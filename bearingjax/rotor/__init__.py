@@ -1,5 +1,6 @@
-"""The bearing in a rotor: linear rotors, coefficients over speed, adapters."""
+"""The bearing in a rotor: linear, nonlinear vibration, coefficients, adapters."""
 
+from . import vibration as vibration
 from .coefficients import stiffness_table as stiffness_table
 from .critical import CriticalSpeeds as CriticalSpeeds
 from .critical import critical_speeds as critical_speeds

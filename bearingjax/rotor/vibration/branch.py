@@ -1,0 +1,241 @@
+"""A branch of periodic orbits with its stability and its marked points."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ...numerics.result import Result
+from ...numerics.types import Scalar, as_real
+from .continuation import (
+    Arclength,
+    ChangeOfParameter,
+    Ending,
+    Place,
+    Steps,
+    Traced,
+    place,
+    trace,
+)
+from .method import AbstractMethod
+from .orbit import STABLE, PeriodicOrbit, amplitudes, beginning
+from .system import AbstractVibration
+
+_LOCATED = 1e-7
+"""Length along the branch within which an event is located, of its frequency [1]."""
+
+
+class Event(NamedTuple):
+    """A point of a branch at which something changes.
+
+    Attributes:
+        kind: "fold" (a multiplier passes +1 and the branch turns back in frequency),
+            "flip" (-1), "neimark_sacker" (a pair leaves the unit circle), or
+            "branch_point" (another branch crosses here).
+        frequency: [rad/s].
+        amplitude: Half of peak to peak (n,) [m, rad].
+        multipliers: (2n,) [1].
+        after: Index of the last point of the branch before it.
+        located: Whether an orbit was found there; if not, numbers are those of the
+            last attempt.
+    """
+
+    kind: str
+    frequency: float
+    amplitude: np.ndarray
+    multipliers: np.ndarray
+    after: int
+    located: bool
+
+
+class Branch(NamedTuple):
+    """Periodic orbits over the frequency of their excitation, in order.
+
+    Attributes:
+        frequency: (point,) [rad/s].
+        amplitude: Half of peak to peak over the period (point, n) [m, rad].
+        displacement: At even phases from 0 on (point, sample, n) [m, rad].
+        multipliers: Floquet multipliers (point, 2n) [1].
+        stable: Whether none is beyond the unit circle (point,).
+        unknowns: What the method solved for (point, m) [1].
+        residual: Of its equations, largest (point,) [1].
+        newton: Newton steps (point,).
+        events: Marked points, in order.
+        refused: Steps that were tried in vain.
+        ending: Why the branch ends.
+    """
+
+    frequency: np.ndarray
+    amplitude: np.ndarray
+    displacement: np.ndarray
+    multipliers: np.ndarray
+    stable: np.ndarray
+    unknowns: np.ndarray
+    residual: np.ndarray
+    newton: np.ndarray
+    events: tuple[Event, ...]
+    refused: int
+    ending: Ending
+
+
+def follow(
+    system: AbstractVibration,
+    begin: Scalar | float,
+    end: Scalar | float,
+    method: AbstractMethod,
+    start: PeriodicOrbit | None = None,
+    *,
+    parameter: Arclength | ChangeOfParameter | None = None,
+    steps: Steps | None = None,
+    points: int = 500,
+    locate: bool = True,
+) -> Branch:
+    """Follow a branch of periodic orbits from one frequency towards another.
+
+    Args:
+        system: The system.
+        begin, end: Frequencies [rad/s]; `end` may be below.
+        method: `Shooting` or `HarmonicBalance`.
+        start: An orbit at `begin`, of any method; `None`: sought from rest.
+        parameter: What is held from point to point; `None`: `Arclength()`.
+        steps: Lengths of steps; `None`: `Steps()`.
+        points: Most points.
+        locate: Whether folds, flips, Neimark-Sacker and branch points are located, to
+            1e-6 in frequency.
+
+    Returns:
+        The branch. It always comes back; `ending` says why it ends.
+    """
+    parameter, steps = parameter or Arclength(), steps or Steps()
+    motion, begin, end = beginning(system, start), as_real(begin), as_real(end)
+    found = _traced(system, method, motion, begin, end, parameter, steps, points)
+    *every, count, refused, ending = jax.tree.map(np.asarray, found)
+    at = Place(*(x[:count] for x in every))
+    scale, unit = np.asarray(system.scale), float(system.reference_frequency)
+    multipliers = np.linalg.eigvals(at.monodromy)
+    return Branch(
+        frequency=np.asarray(at.x[:, -1]) * unit,
+        amplitude=np.stack([_amplitude(system, u) for u in at.motion])
+        if count
+        else np.zeros((0, len(scale))),
+        displacement=np.asarray(at.motion) * scale,
+        multipliers=multipliers,
+        stable=np.abs(multipliers).max(axis=1, initial=0.0) <= 1.0 + STABLE,
+        unknowns=np.asarray(at.x[:, :-1]),
+        residual=np.asarray(at.residual),
+        newton=np.asarray(at.newton),
+        events=_events(system, method, at) if locate else (),
+        refused=int(refused),
+        ending=Ending(int(ending)),
+    )
+
+
+@eqx.filter_jit
+def _traced(system, method, motion, begin, end, parameter, steps, points) -> Traced:
+    z, unit = method.unknowns(motion), system.reference_frequency
+    return trace(
+        system,
+        method,
+        jnp.append(z, begin / unit),
+        end / unit,
+        parameter,
+        steps,
+        points,
+    )
+
+
+@eqx.filter_jit
+def _along(system, method, x, tangent, length):
+    """Point of the branch at some length along its tangent from `x`."""
+    return place(system, method, x + length * tangent, tangent, tangent)
+
+
+def _fold(point: Place) -> float:
+    return float(point.tangent[-1])
+
+
+def _flip(point: Place) -> float:
+    return float(np.prod(np.linalg.eigvals(point.monodromy) + 1.0).real)
+
+
+def _pairs(point: Place) -> float:
+    """Π (κ_i κ_j - 1) over all pairs: zero where a pair has the product one."""
+    k = np.linalg.eigvals(point.monodromy)
+    i, j = np.triu_indices(len(k), 1)
+    return float(np.prod(k[i] * k[j] - 1.0).real)
+
+
+def _side(point: Place) -> float:
+    return float(point.side)
+
+
+_TESTS: dict[str, Callable[[Place], float]] = {
+    "fold": _fold,
+    "flip": _flip,
+    "neimark_sacker": _pairs,
+    "branch_point": _side,
+}
+"""Numbers that change sign where something happens."""
+
+
+def _events(system, method, points: Place) -> tuple[Event, ...]:
+    every = [Place(*(x[k] for x in points)) for k in range(len(points.x))]
+    events = []
+    for kind, test in _TESTS.items():
+        signs = np.sign([test(point) for point in every])
+        for k in np.nonzero(signs[1:] * signs[:-1] < 0)[0]:
+            event = _located(system, method, every, int(k), kind, test)
+            if event is not None:
+                events.append(event)
+    return tuple(sorted(events, key=lambda event: event[0]))
+
+
+def _located(system, method, every, k, kind, test):
+    # Late, so that the package is imported as fast without it.
+    from scipy.optimize import brentq
+
+    here, there = every[k], every[k + 1]
+    if kind == "neimark_sacker" and _beyond(here) == _beyond(there):
+        # Two real multipliers with the product one, or a system without damping.
+        return None
+
+    def at(length):
+        found, result = _along(
+            system, method, here.x, here.tangent, jnp.asarray(length, here.x.dtype)
+        )
+        return jax.tree.map(np.asarray, found), int(result) == Result.CONVERGED
+
+    span = float(here.tangent @ (there.x - here.x))
+    ends = {0.0: here, span: there}
+    length = brentq(
+        lambda length: test(ends[length] if length in ends else at(length)[0]),
+        0.0,
+        span,
+        xtol=_LOCATED * abs(float(here.x[-1])),
+    )
+    point, solved = at(length)
+    return Event(
+        kind,
+        float(point.x[-1]) * float(system.reference_frequency),
+        _amplitude(system, point.motion),
+        np.linalg.eigvals(point.monodromy),
+        k,
+        solved,
+    )
+
+
+@jax.jit
+def _half_range(u):
+    return amplitudes(u)
+
+
+def _amplitude(system, u):
+    return np.asarray(_half_range(u)) * np.asarray(system.scale)
+
+
+def _beyond(point: Place) -> int:
+    """How many multipliers are beyond the unit circle."""
+    return int(np.sum(np.abs(np.linalg.eigvals(point.monodromy)) > 1.0 + STABLE))

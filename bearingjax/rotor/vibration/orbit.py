@@ -1,0 +1,249 @@
+"""One periodic orbit: Newton's method, its result, its derivatives, its stability."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Complex, Float, Int
+
+from ...numerics.implicit import attach_by, stop, unless_failed
+from ...numerics.result import Result, raise_unless_converged
+from ...numerics.types import Flag, Scalar, as_real
+from .method import AbstractMethod, Motion
+from .system import AbstractVibration
+
+TOLERANCE = {"float64": 1e-10, "float32": 1e-4}
+"""Of the residual of a method, pure numbers [1]."""
+STABLE = 1e-6
+"""By how much a multiplier of a stable orbit may exceed one: round-off [1]."""
+_FINE = 8
+"""Places between two samples at which a peak is sought."""
+
+
+class PeriodicOrbit(eqx.Module):
+    """A motion that repeats with its excitation.
+
+    Attributes:
+        frequency: Of the excitation [rad/s].
+        displacement: At even phases from 0 on (sample, n) [m, rad].
+        velocity: Likewise (sample, n) [m/s, rad/s].
+        amplitude: Half of peak to peak over the period (n,) [m, rad].
+        multipliers: Floquet multipliers (2n,) [1].
+        stable: Whether none is beyond the unit circle.
+        unknowns: What the method solved for (m,) [1].
+        residual: Of its equations, largest [1].
+        steps: Newton steps.
+        result: `Result` code.
+    """
+
+    frequency: Scalar
+    displacement: Float[Array, "sample n"]
+    velocity: Float[Array, "sample n"]
+    amplitude: Float[Array, " n"]
+    multipliers: Complex[Array, " state"]
+    stable: Flag
+    unknowns: Float[Array, " m"]
+    residual: Scalar
+    steps: Int[Array, ""]
+    result: Int[Array, ""]
+
+
+class Corrected(NamedTuple):
+    """What Newton's method ended with.
+
+    Attributes:
+        x: Unknowns and frequency ratio (m + 1,) [1].
+        left: Residual (m,) [1].
+        jacobian: Of it, in x (m, m + 1) [1].
+        steps: Newton steps.
+        result: `Result` code.
+    """
+
+    x: Float[Array, " x"]
+    left: Float[Array, " m"]
+    jacobian: Float[Array, "m x"]
+    steps: Int[Array, ""]
+    result: Int[Array, ""]
+
+
+def correct(
+    system: AbstractVibration,
+    method: AbstractMethod,
+    x: Float[Array, " x"],
+    direction: Float[Array, " x"],
+    limit: int | Int[Array, ""],
+) -> Corrected:
+    """Solve for an orbit in the plane through `x` across `direction`.
+
+    The frequency is an unknown like the others; `direction` says what is held: with
+    its last component alone the frequency, with another one alone that component, with
+    the tangent of a branch the length along it.
+
+    Args:
+        system: The system.
+        method: How the orbit is sought.
+        x: Unknowns and frequency ratio to begin with (m + 1,) [1].
+        direction: Normal of the plane (m + 1,) [1].
+        limit: Most Newton steps.
+
+    Returns:
+        `Corrected`, without derivatives.
+
+    Fails: `STEP_LIMIT`, `NON_FINITE`.
+    """
+    tolerance = TOLERANCE[str(x.dtype)]
+
+    def evaluated(x):
+        left, jacobian = method.linearised(system, x[:-1], x[-1])
+        return left, jacobian, jnp.max(jnp.abs(left))
+
+    def newton(x, left, jacobian):
+        whole = jnp.concatenate([jacobian, direction[None]])
+        return -jnp.linalg.solve(whole, jnp.append(left, jnp.zeros_like(left[0])))
+
+    def going(state):
+        _, _, _, size, _, steps = state
+        return (size > tolerance) & jnp.isfinite(size) & (steps < limit)
+
+    def step(state):
+        x, left, jacobian, size, move, steps = state
+        new = x + move
+        new_left, new_jacobian, new_size = evaluated(new)
+        # Half a step where a whole one leads away; a number that is none does.
+        better = new_size <= 2.0 * size
+        kept = jax.tree.map(
+            lambda a, b: jnp.where(better, a, b),
+            (new, new_left, new_jacobian, new_size),
+            (x, left, jacobian, size),
+        )
+        move = jnp.where(better, newton(*kept[:3]), 0.5 * move)
+        return *kept, move, steps + 1
+
+    left, jacobian, size = evaluated(x)
+    state = x, left, jacobian, size, newton(x, left, jacobian), jnp.int32(0)
+    x, left, jacobian, size, _, steps = lax.while_loop(going, step, state)
+    result = jnp.where(size <= tolerance, int(Result.CONVERGED), int(Result.STEP_LIMIT))
+    result = jnp.where(jnp.isfinite(size), result, int(Result.NON_FINITE))
+    return Corrected(x, left, jacobian, steps, result.astype(jnp.int32))
+
+
+def along_frequency(size: int, dtype) -> Float[Array, " x"]:
+    """Direction that holds the frequency."""
+    return jnp.zeros(size + 1, dtype).at[-1].set(1.0)
+
+
+def solve_orbit(
+    system: AbstractVibration,
+    frequency: Scalar | float,
+    method: AbstractMethod,
+    start: PeriodicOrbit | None = None,
+    *,
+    max_steps: int = 50,
+    throw: bool = True,
+) -> PeriodicOrbit:
+    """The periodic orbit at one frequency.
+
+    Args:
+        system: The system.
+        frequency: Of the excitation [rad/s].
+        method: `Shooting` or `HarmonicBalance`.
+        start: An orbit to begin with, of any method; `None`: rest.
+        max_steps: Most Newton steps. Static.
+        throw: Raise if there is none. Static.
+
+    Returns:
+        The orbit, differentiable with respect to every number of the system and the
+        frequency; also its multipliers and whether it is stable.
+
+    Fails: `STEP_LIMIT`, `NON_FINITE`.
+
+    Raises:
+        SolveError: If it was not found and `throw`.
+    """
+    frequency, motion = as_real(frequency), beginning(system, start)
+    orbit = _solved(system, frequency, method, motion, max_steps)
+    if not throw:
+        return orbit
+    return raise_unless_converged(
+        orbit,
+        orbit.result,
+        lambda: (
+            f"No periodic orbit found at {float(frequency):.6g} rad/s: residual"
+            f" {float(orbit.residual):.3g} after {int(orbit.steps)} steps"
+            f" ({Result(int(orbit.result)).label}). Begin with an orbit nearby"
+            " (`start`), or follow a branch to this frequency."
+        ),
+    )
+
+
+def beginning(system: AbstractVibration, start: PeriodicOrbit | None) -> Motion:
+    """Motion to begin with: that of an orbit, or rest."""
+    if start is None:
+        none = jnp.zeros((1, system.scale.shape[0]), system.scale.dtype)
+        return none, none
+    return (
+        start.displacement / system.scale[None],
+        start.velocity / (system.scale * start.frequency)[None],
+    )
+
+
+@eqx.filter_jit
+def _solved(system, frequency, method, motion, max_steps):
+    fixed, ratio = stop(system), frequency / system.reference_frequency
+    begin = jnp.append(method.unknowns(stop(motion)), stop(ratio))
+    hold = along_frequency(begin.shape[0] - 1, begin.dtype)
+    found = correct(fixed, method, begin, hold, max_steps)
+
+    def residual(z, given):
+        return method.residual(given[0], z, given[1])
+
+    def correction(of_z, z, change, given):
+        _, jacobian = method.linearised(given[0], z, given[1])
+        return -jnp.linalg.solve(jacobian[:, :-1], change)
+
+    z = attach_by(residual, found.x[:-1], (system, ratio), correction)
+    solved = found.result == int(Result.CONVERGED)
+    z = unless_failed(z, solved)
+    _, jacobian = method.linearised(system, z, ratio)
+    monodromy = method.monodromy(system, z, ratio, jacobian)
+    u, rate = method.motion(system, z, ratio)
+    multipliers = jnp.linalg.eigvals(monodromy)
+    return PeriodicOrbit(
+        frequency=frequency,
+        displacement=u * system.scale[None],
+        velocity=rate * (frequency * system.scale)[None],
+        amplitude=amplitudes(u) * system.scale,
+        multipliers=multipliers,
+        stable=solved & (jnp.max(jnp.abs(multipliers)) <= 1.0 + STABLE),
+        unknowns=z,
+        residual=jnp.max(jnp.abs(found.left)),
+        steps=found.steps,
+        result=found.result,
+    )
+
+
+def amplitudes(samples: Float[Array, "sample n"]) -> Float[Array, " n"]:
+    """Half of peak to peak over the period, of the trigonometric interpolant.
+
+    Args:
+        samples: At even phases (sample, n) [any unit].
+    """
+    fine = _FINE * samples.shape[0]
+    spectrum = jnp.fft.rfft(samples, axis=0)
+    every = jnp.fft.irfft(spectrum, n=fine, axis=0) * _FINE
+    return 0.5 * (_highest(every) + _highest(-every))
+
+
+def _highest(samples):
+    """Vertex of the parabola through the largest sample and its neighbours."""
+    count, columns = samples.shape[0], jnp.arange(samples.shape[1])
+    at = jnp.argmax(samples, axis=0)
+    before, here, after = (
+        samples[(at + shift) % count, columns] for shift in (-1, 0, 1)
+    )
+    bend = before - 2.0 * here + after
+    flat = bend == 0
+    rise = 0.125 * (after - before) ** 2
+    return here - jnp.where(flat, 0.0, rise / jnp.where(flat, 1.0, bend))

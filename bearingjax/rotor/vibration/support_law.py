@@ -1,0 +1,235 @@
+"""Forces of a preloaded angular contact ball bearing, from one potential.
+
+The outer ring is held, the inner one moves by x, y and z from the preloaded position.
+A law is a strain energy; its gradient is the force. It falls short of a
+`BearingElement` (no tilts, no inertia of balls), and costs a fraction of it.
+
+Source: Filipkovskii & Belomyttsev (2014), eqs. (1), (2).
+"""
+
+import abc
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ...contact.hertz import ellipse
+from ...design.checks import positive
+from ...design.material import Material, contact_modulus
+from ...numerics.power import positive_power
+from ...numerics.types import Scalar, as_count, as_real
+from ...numerics.units import unit
+
+
+class AbstractSupportLaw(eqx.Module):
+    """Strain energy of a bearing in the motion of its inner ring."""
+
+    @abc.abstractmethod
+    def potential(self, motion: Float[Array, "3"]) -> Scalar:
+        """Strain energy [J].
+
+        Args:
+            motion: x, y, z from the preloaded position [m]; +z adds to the preload.
+        """
+
+    def force(self, motion: Float[Array, "3"]) -> Float[Array, "3"]:
+        """Gradient of the energy: P_x, P_y, P_z [N]."""
+        return jax.grad(self.potential)(motion)
+
+    def stiffness(self) -> Float[Array, "3 3"]:
+        """Stiffness in the preloaded position [N/m]."""
+        return jax.hessian(self.potential)(jnp.zeros(3))
+
+
+def _around(count: int):
+    """Cosines and sines of the azimuths of the balls."""
+    azimuth = 2.0 * np.pi * np.arange(count) / count
+    return np.cos(azimuth), np.sin(azimuth)
+
+
+def _stored(constant, approach):
+    """Energy of Hertz contacts [J]."""
+    return 0.4 * constant * jnp.sum(positive_power(approach, 5, 2))
+
+
+class FixedAngle(AbstractSupportLaw):
+    """Every ball bears along a line of fixed contact angle.
+
+    Attributes:
+        constant: K of both raceways in series [N/m^(3/2)].
+        contact_angle: α [rad].
+        preload_displacement: z0; the approach under preload is z0·sin α [m].
+        n_balls: Number of balls.
+
+    Traced: all but `n_balls`.
+    """
+
+    constant: Scalar = eqx.field(converter=as_real, metadata=unit("N/m^(3/2)"))
+    contact_angle: Scalar = eqx.field(converter=as_real, metadata=unit("rad"))
+    preload_displacement: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    n_balls: int = eqx.field(static=True, converter=as_count)
+
+    def __check_init__(self):
+        positive(self, "constant")
+        positive(self, "contact_angle")
+
+    def potential(self, motion):
+        x, y, z = motion
+        cosine, sine = jnp.cos(self.contact_angle), jnp.sin(self.contact_angle)
+        radial = sum(
+            a * jnp.asarray(b)
+            for a, b in zip((x, y), _around(self.n_balls), strict=True)
+        )
+        axial = z + self.preload_displacement
+        return _stored(self.constant, radial * cosine + axial * sine)
+
+    def preload(self) -> Scalar:
+        """Axial preload P0 [N]."""
+        return self.force(jnp.zeros(3))[2]
+
+
+class MovingAngle(AbstractSupportLaw):
+    """Every ball bears along the line of its groove centres, wherever they move.
+
+    Attributes:
+        constant: K of both raceways in series [N/m^(3/2)].
+        contact_angle: Under preload [rad].
+        preload_approach: Approach of a ball under preload, both raceways [m].
+        centre_distance: Distance of the groove centres without load [m].
+        n_balls: Number of balls.
+
+    Traced: all but `n_balls`.
+    """
+
+    constant: Scalar = eqx.field(converter=as_real, metadata=unit("N/m^(3/2)"))
+    contact_angle: Scalar = eqx.field(converter=as_real, metadata=unit("rad"))
+    preload_approach: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    centre_distance: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    n_balls: int = eqx.field(static=True, converter=as_count)
+
+    def potential(self, motion):
+        x, y, z = motion
+        apart = self.centre_distance + self.preload_approach
+        radial = sum(
+            a * jnp.asarray(b)
+            for a, b in zip((x, y), _around(self.n_balls), strict=True)
+        )
+        radial = radial + apart * jnp.cos(self.contact_angle)
+        axial = z + apart * jnp.sin(self.contact_angle)
+        length = jnp.sqrt(radial**2 + axial**2)
+        return _stored(self.constant, length - self.centre_distance)
+
+
+class CubicExpansion(AbstractSupportLaw):
+    """`FixedAngle` to the third power of the motion, five balls or more.
+
+    Within 1e-2 of it up to the motion at which the first ball lifts off.
+
+    Attributes:
+        radial_stiffness: c_r [N/m].
+        contact_angle: α [rad].
+        preload_displacement: z0 [m].
+
+    Traced: all fields.
+    """
+
+    radial_stiffness: Scalar = eqx.field(converter=as_real, metadata=unit("N/m"))
+    contact_angle: Scalar = eqx.field(converter=as_real, metadata=unit("rad"))
+    preload_displacement: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+
+    @classmethod
+    def of(cls, law: FixedAngle) -> "CubicExpansion":
+        """Of a law with five balls or more."""
+        if law.n_balls < 5:
+            raise ValueError(
+                f"`n_balls` is {law.n_balls}; the expansion needs 5 or more, with fewer"
+                " its terms depend on where the balls stand"
+            )
+        angle, z0 = law.contact_angle, law.preload_displacement
+        root = positive_power(z0 * jnp.sin(angle), 1, 2)
+        radial = 0.75 * law.n_balls * law.constant * root * jnp.cos(angle) ** 2
+        return cls(radial, angle, z0)
+
+    def potential(self, motion):
+        x, y, z = motion
+        square, z0 = x**2 + y**2, self.preload_displacement
+        tangent2 = jnp.tan(self.contact_angle) ** 2
+        axial = 2.0 * tangent2
+        # P0 = (2/3) c_a z0.
+        terms = (
+            axial * (2.0 / 3.0 * z0 * z + z**2 / 2.0)
+            + axial * (z**3 / (12.0 * z0) - z**4 / (96.0 * z0**2))
+            + square * (0.5 + z / (4.0 * z0) - z**2 / (16.0 * z0**2))
+            - square**2 / (128.0 * z0**2 * tangent2)
+        )
+        return self.radial_stiffness * terms
+
+
+class Grooves(eqx.Module):
+    """Drawing of an angular contact ball bearing, and its preloaded contact angle.
+
+    Attributes:
+        inner_radius: Of the bottom of the inner groove, R1 [m].
+        outer_radius: Of the bottom of the outer groove, R2 [m].
+        groove_radius: Radius of curvature of both grooves, R_K [m].
+        ball_diameter: d_B [m].
+        contact_angle: α under preload [rad].
+        n_balls: Number of balls.
+        material: Of balls and rings.
+
+    Traced: all but `n_balls`.
+    """
+
+    inner_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    outer_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    groove_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    ball_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    contact_angle: Scalar = eqx.field(converter=as_real, metadata=unit("rad"))
+    n_balls: int = eqx.field(static=True, converter=as_count)
+    material: Material
+
+    def raceway_constants(self) -> Float[Array, "2"]:
+        """K_i of the inner and outer contact of a ball [N/m^(3/2)]."""
+        cosine = jnp.cos(self.contact_angle)
+        drop = self.groove_radius * (1.0 - cosine)
+        of_ball = 2.0 / self.ball_diameter
+        inner = of_ball + cosine / (self.inner_radius + drop)
+        outer = of_ball - cosine / (self.outer_radius - drop)
+        rolling = jnp.stack([inner, outer])
+        across = jnp.broadcast_to(of_ball - 1.0 / self.groove_radius, rolling.shape)
+        modulus = contact_modulus(self.material, self.material)
+        return ellipse(rolling, across, modulus).constant
+
+    @property
+    def constant(self) -> Scalar:
+        """K of both contacts in series [N/m^(3/2)]."""
+        softness = jnp.sum(positive_power(self.raceway_constants(), -2, 3))
+        return positive_power(softness, -3, 2)
+
+    @property
+    def centre_distance(self) -> Scalar:
+        """Of the groove centres without load [m]."""
+        return 2.0 * self.groove_radius - self.ball_diameter
+
+    @property
+    def approach(self) -> Scalar:
+        """Approach of a ball under the preload that its angle tells, w [m]."""
+        radial = self.inner_radius + 2.0 * self.groove_radius - self.outer_radius
+        return radial / jnp.cos(self.contact_angle) - self.centre_distance
+
+    def fixed_angle(self) -> FixedAngle:
+        """The law of fixed contact angle."""
+        z0 = self.approach / jnp.sin(self.contact_angle)
+        return FixedAngle(self.constant, self.contact_angle, z0, self.n_balls)
+
+    def moving_angle(self) -> MovingAngle:
+        """The law of groove centres."""
+        return MovingAngle(
+            self.constant,
+            self.contact_angle,
+            self.approach,
+            self.centre_distance,
+            self.n_balls,
+        )

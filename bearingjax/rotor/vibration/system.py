@@ -1,0 +1,166 @@
+"""Equations of motion of what vibrates: all that the solvers of orbits know of it.
+
+    M q'' + D(ω) q' + f(q, q', φ) = e(φ, ω),    φ = ω t
+
+with f and e periodic in the phase φ. Freedoms q are measured in `scale` and the phase
+takes the place of time, so that the unknowns of the solvers are pure numbers near one.
+"""
+
+import abc
+from collections.abc import Callable
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ...numerics.types import Scalar, as_real
+from ...numerics.units import unit
+
+
+class AbstractVibration(eqx.Module):
+    """A system of n freedoms under forces that are periodic in time.
+
+    Attributes:
+        mass: Mass matrix M, positive definite [kg, kg m²].
+        scale: Size of each freedom that is called one [m, rad].
+        reference_frequency: Frequency that is called one, best a natural one [rad/s].
+    """
+
+    mass: eqx.AbstractVar[Float[Array, "n n"]]
+    scale: eqx.AbstractVar[Float[Array, " n"]]
+    reference_frequency: eqx.AbstractVar[Scalar]
+
+    @abc.abstractmethod
+    def damping_matrix(self, frequency: Scalar) -> Float[Array, "n n"]:
+        """Damping and gyroscopic matrix D [N s/m, N m s/rad].
+
+        Args:
+            frequency: ω [rad/s].
+        """
+
+    @abc.abstractmethod
+    def force(
+        self, q: Float[Array, " n"], velocity: Float[Array, " n"], phase: Scalar
+    ) -> Float[Array, " n"]:
+        """Restoring forces f, positive against the displacement [N, N m].
+
+        Args:
+            q: Freedoms [m, rad].
+            velocity: Their rates [m/s, rad/s].
+            phase: φ [rad]; f repeats after 2π.
+        """
+
+    @abc.abstractmethod
+    def excitation(self, phase: Scalar, frequency: Scalar) -> Float[Array, " n"]:
+        """Forces e that act from outside [N, N m].
+
+        Args:
+            phase: φ [rad]; e repeats after 2π.
+            frequency: ω [rad/s].
+        """
+
+
+class Vibration(AbstractVibration):
+    """A system put together from matrices and functions.
+
+    Attributes:
+        mass, scale, reference_frequency: As of `AbstractVibration`.
+        damping: Damping matrix [N s/m, N m s/rad].
+        gyroscopic: Gyroscopic matrix over the speed, skew [kg, kg m²].
+        restoring: (q, velocity, phase) -> forces (n,) [N, N m]; a Module, so that its
+            numbers are traced.
+        load: (phase, frequency) -> forces (n,) [N, N m]; likewise.
+        speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
+
+    Traced: all numbers.
+    """
+
+    mass: Float[Array, "n n"] = eqx.field(converter=as_real)
+    damping: Float[Array, "n n"] = eqx.field(converter=as_real)
+    gyroscopic: Float[Array, "n n"] = eqx.field(converter=as_real)
+    restoring: Callable
+    load: Callable
+    scale: Float[Array, " n"] = eqx.field(converter=as_real)
+    reference_frequency: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"))
+    speed: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad/s"), default=None
+    )
+
+    def __check_init__(self):
+        n = self.scale.shape[0]
+        for name in ("mass", "damping", "gyroscopic"):
+            shape = getattr(self, name).shape
+            if shape != (n, n):
+                raise ValueError(
+                    f"`{name}` has the shape {shape}, but `scale` has {n} freedoms:"
+                    f" a matrix ({n}, {n}) is wanted"
+                )
+
+    def damping_matrix(self, frequency):
+        speed = frequency if self.speed is None else self.speed
+        return self.damping + speed * self.gyroscopic
+
+    def force(self, q, velocity, phase):
+        return self.restoring(q, velocity, phase)
+
+    def excitation(self, phase, frequency):
+        return self.load(phase, frequency)
+
+
+def frequency_of(system: AbstractVibration, ratio: Scalar) -> Scalar:
+    """Frequency ω [rad/s] of its ratio ν to the reference frequency [1]."""
+    return ratio * system.reference_frequency
+
+
+def out_of_balance(
+    system: AbstractVibration,
+    phase: Scalar,
+    ratio: Scalar,
+    u: Float[Array, " n"],
+    rate: Float[Array, " n"],
+    second: Float[Array, " n"],
+) -> Float[Array, " n"]:
+    """What the equations of motion leave, over M_ii·scale·(reference frequency)² [1].
+
+    Args:
+        system: The system.
+        phase: φ [rad].
+        ratio: ν [1].
+        u: Freedoms over `scale` [1].
+        rate, second: Their derivatives with respect to φ [1].
+    """
+    frequency = frequency_of(system, ratio)
+    scale = system.scale
+    q, velocity = scale * u, frequency * scale * rate
+    inertia = system.mass @ (frequency**2 * scale * second)
+    forces = system.damping_matrix(frequency) @ velocity
+    forces = forces + system.force(q, velocity, phase)
+    left = inertia + forces - system.excitation(phase, frequency)
+    unit_force = jnp.diagonal(system.mass) * scale * system.reference_frequency**2
+    return left / unit_force
+
+
+def rates(
+    system: AbstractVibration, ratio: Scalar
+) -> Callable[[Scalar, Float[Array, " state"]], Float[Array, " state"]]:
+    """Derivative of the state with respect to the phase, at one frequency.
+
+    Args:
+        system: The system.
+        ratio: ν [1].
+
+    Returns:
+        Function (phase [rad], state) -> derivative; the state holds the freedoms over
+        `scale`, then their derivatives with respect to φ [1].
+    """
+    # The mass matrix in the units of `out_of_balance`.
+    weight = jnp.diagonal(system.mass) * system.scale
+    mass = ratio**2 * system.mass * system.scale[None, :] / weight[:, None]
+    inverse = jnp.linalg.inv(mass)
+
+    def rate(phase, y):
+        u, rate = jnp.split(y, 2)
+        left = out_of_balance(system, phase, ratio, u, rate, jnp.zeros_like(u))
+        return jnp.concatenate([rate, -inverse @ left])
+
+    return rate

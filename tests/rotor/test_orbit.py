@@ -1,0 +1,235 @@
+"""Periodic orbits by shooting and by harmonic balance: each other, exact answers."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+from scipy.special import mathieu_a, mathieu_b
+from tolerances import DIFFERENCE, ROUNDING, SOLVER
+from vibrations import Contact, Spring, duffing, oscillator, rotor
+
+import bearingjax as bj
+from bearingjax.rotor.vibration import (
+    HarmonicBalance,
+    Shooting,
+    Vibration,
+    hill_multipliers,
+    solve_orbit,
+)
+
+BALANCE, SHOOTING = HarmonicBalance(9, 48, steps=32), Shooting(48)
+METHODS = {"balance": BALANCE, "shooting": SHOOTING}
+
+
+def test_both_methods_find_the_same_orbit():
+    system = duffing()
+    one, two = (solve_orbit(system, 0.9, method) for method in (BALANCE, SHOOTING))
+    assert np.allclose(one.displacement, two.displacement, atol=1e-6)
+    assert np.allclose(one.velocity, two.velocity, atol=1e-6)
+    assert np.isclose(one.amplitude[0], two.amplitude[0], rtol=1e-7)
+    assert max(one.residual, two.residual) < 1e-10
+    # Independently: nothing changes after a period.
+    rest = solve_ivp(
+        lambda t, y: [
+            y[1],
+            0.2 * np.cos(0.9 * t) - 0.1 * y[1] - y[0] - 0.05 * y[0] ** 3,
+        ],
+        (0.0, 2.0 * np.pi / 0.9),
+        [two.displacement[0, 0], two.velocity[0, 0]],
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-12,
+    )
+    assert np.allclose(rest.y[:, -1], rest.y[:, 0], atol=SOLVER)
+    # Where one ends the other may begin.
+    assert solve_orbit(system, 0.9, BALANCE, two).steps <= 1
+
+
+@pytest.mark.parametrize("frequency", (0.5, 1.1))
+def test_multipliers_by_three_ways(frequency):
+    system = duffing()
+    orbits = [solve_orbit(system, frequency, method) for method in METHODS.values()]
+    hill = hill_multipliers(BALANCE, system, orbits[0].unknowns, jnp.asarray(frequency))
+    first, second, third = (
+        np.sort_complex(np.asarray(x))
+        for x in (orbits[0].multipliers, orbits[1].multipliers, hill)
+    )
+    assert np.allclose(first, second, atol=DIFFERENCE)
+    assert np.allclose(first, third, atol=DIFFERENCE)
+    # Liouville: the product is exp(-trace of the damping over a period).
+    assert np.isclose(np.prod(first), np.exp(-0.1 * 2 * np.pi / frequency), rtol=1e-8)
+
+
+def test_without_damping_the_flow_keeps_volume():
+    """Of the rotor: gyroscopic, five freedoms, off its resonance."""
+    system = rotor(36, damping_ratio=0.0, base_acceleration=2.0)
+    ratio = jnp.asarray(0.8)
+    orbit = solve_orbit(system, ratio * system.reference_frequency, SHOOTING)
+    multipliers = np.asarray(orbit.multipliers)
+    assert np.isclose(np.prod(multipliers), 1.0, rtol=DIFFERENCE)
+    inverse = np.sort_complex(np.round(1.0 / multipliers, 6))
+    assert np.allclose(np.sort_complex(np.round(multipliers, 6)), inverse, atol=1e-5)
+    assert orbit.stable
+    # The Jacobian of the flow is that of small changes along the orbit, and Hill's.
+    balance = HarmonicBalance(5, 24, steps=48)
+    other = solve_orbit(system, orbit.frequency, balance, orbit)
+    flow = SHOOTING.linearised(system, orbit.unknowns, ratio)[1][:, :-1] + np.eye(10)
+    none = jnp.zeros((other.unknowns.size, other.unknowns.size + 1))
+    along = balance.monodromy(system, other.unknowns, ratio, none)
+    assert np.abs(flow - along).max() < DIFFERENCE * np.abs(flow).max()
+    hill = np.asarray(hill_multipliers(balance, system, other.unknowns, ratio))
+    apart = np.abs(hill[:, None] - multipliers[None]).min(axis=0)
+    assert apart.max() < DIFFERENCE
+
+
+def test_mathieu():
+    """Boundaries of stability: multipliers ±1 at the characteristic numbers."""
+
+    @jax.jit
+    def trace(stiffness, varying):
+        system = oscillator(Spring(jnp.asarray(0.0), varying / stiffness))
+        # y'' + (a - 2 q cos 2τ) y = 0 with φ = 2τ: frequency² 4/a.
+        ratio = 2.0 / jnp.sqrt(stiffness)
+        none = jnp.zeros(2)
+        _, jacobian = SHOOTING.linearised(system, none, ratio)
+        return jnp.trace(SHOOTING.monodromy(system, none, ratio, jacobian))
+
+    for q in (0.5, 2.0):
+        for order, goal in ((0, 2.0), (1, -2.0), (2, 2.0)):
+            numbers = [mathieu_a(order, q)] + [mathieu_b(order, q)] * (order > 0)
+            for number in numbers:
+                if number > 0:
+                    found = trace(jnp.asarray(number), jnp.asarray(-2.0 * q))
+                    assert np.isclose(found, goal, atol=DIFFERENCE)
+
+
+# Free Hertz contact, unit frequency of small vibration: largest motion, frequency.
+HERTZ = {0.1: 0.99957526, 0.8: 0.96026938, 1.0: 0.91153748, 3.0: 0.46791516}
+
+
+def free_frequency(method, start, held, largest):
+    """Newton's method with the largest displacement held, free and undamped."""
+    system = oscillator(Contact())
+    run = eqx.filter_jit(lambda z, ratio: method.linearised(system, z, ratio))
+    z, ratio = np.array(start), 1.0 - largest**2 / 24.0
+    if largest > 1.0:
+        ratio = 0.5 * (ratio + 0.3)
+    for _ in range(12):
+        left, jacobian = map(np.asarray, run(jnp.asarray(z), jnp.asarray(ratio)))
+        whole = np.concatenate([jacobian, held])
+        goal = np.concatenate([left, held[:, :-1] @ (z - start)])
+        step = np.linalg.lstsq(whole, -goal)[0]
+        z, ratio = z + step[:-1], ratio + step[-1]
+    return ratio
+
+
+def test_free_hertz_oscillator():
+    def quadrature(largest):
+        def energy(u):
+            return (0.4 * max(1.0 + u, 0.0) ** 2.5 - u) / 1.5
+
+        least = {0.1: -0.1016968, 0.8: -0.93838959, 1.0: -1.2627417, 3.0: -9.8}
+        from scipy.optimize import brentq
+
+        low = brentq(lambda u: energy(u) - energy(largest), 1.1 * least[largest], -1e-3)
+        middle, half = 0.5 * (largest + low), 0.5 * (largest - low)
+
+        def time(angle):
+            u = middle + half * np.sin(angle)
+            return half * np.cos(angle) / np.sqrt(2 * (energy(largest) - energy(u)))
+
+        spans = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 9)
+        return np.pi / sum(
+            quad(time, a, b, epsabs=1e-10)[0]
+            for a, b in zip(spans[:-1], spans[1:], strict=True)
+        )
+
+    fine = Shooting(400)
+    for largest, printed in HERTZ.items():
+        held = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        found = free_frequency(fine, [largest, 0.0], held, largest)
+        assert np.isclose(found, printed, rtol=DIFFERENCE)
+        assert np.isclose(quadrature(largest), printed, rtol=DIFFERENCE)
+    balance = HarmonicBalance(7, 64)
+    for largest in (0.1, 0.8):
+        start = np.zeros(15)
+        start[1] = largest
+        # The series at phase 0, and no sines.
+        held = np.zeros((8, 16))
+        held[0, :8] = 1.0
+        held[1:, 8:15] = np.eye(7)
+        found = free_frequency(balance, start, held, largest)
+        assert np.isclose(found, HERTZ[largest], rtol=1e-3)
+
+
+@pytest.mark.parametrize("order", ("closed", "open"))
+def test_order_of_the_flow(order):
+    system = oscillator(Contact(), 0.3, 0.02)
+    start = jnp.array([0.3 if order == "closed" else 1.5, 0.0])
+    numbers = (12, 24) if order == "closed" else (24, 192)
+    coarse, fine = (
+        float(Shooting(n).flow_error(system, start, jnp.asarray(1.0))) for n in numbers
+    )
+    found = np.log(coarse / fine) / np.log(numbers[1] / numbers[0])
+    # 8; with a kink 2.5, but for where in a step it falls.
+    assert found > 7.0 if order == "closed" else found > 1.5
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_gradients_against_differences(name):
+    method, goal = METHODS[name], {"balance": 1e-6, "shooting": 1e-5}[name]
+    system = duffing()
+
+    def measures(numbers):
+        cubic, force, ratio, frequency = numbers
+        spring = Spring(cubic, jnp.zeros_like(cubic))
+        system = oscillator(spring, force, ratio)
+        orbit = solve_orbit(system, frequency, method, throw=False)
+        size = jnp.abs(orbit.multipliers)
+        return jnp.stack([orbit.amplitude[0], orbit.multipliers[0].real, size[0]])
+
+    point = jnp.array([0.05, 0.2, 0.05, 0.85])
+    run = jax.jit(measures)
+    forward = np.asarray(jax.jit(jax.jacfwd(measures))(point))
+    backward = np.asarray(jax.jit(jax.jacrev(measures))(point))
+    assert np.allclose(forward, backward, rtol=1e-8, atol=1e-9)
+    best = np.full((3, 4), np.inf)
+    for size in (1e-3, 1e-4, 1e-5):
+        steps = size * np.diag(np.asarray(point))
+        for k, step in enumerate(steps):
+            points = [run(point + j * step) for j in (-2, -1, 1, 2)]
+            a, b, c, d = map(np.asarray, points)
+            slope = (a - 8 * b + 8 * c - d) / (12 * step[k])
+            best[:, k] = np.minimum(best[:, k], np.abs(slope - forward[:, k]))
+    assert (best < goal * np.abs(forward).max(axis=1, keepdims=True)).all()
+    assert system.scale.shape == (1,)
+
+
+def test_the_balance_has_its_own_jacobian():
+    system, z = rotor(36, base_acceleration=5.0), 0.3 * jnp.sin(jnp.arange(25.0))
+    balance, ratio = HarmonicBalance(2, 12), jnp.asarray(0.9)
+    left, jacobian = eqx.filter_jit(balance.linearised)(system, z, ratio)
+
+    @jax.jit
+    def change(step):
+        return balance.residual(system, z + step[:-1], ratio + step[-1])
+
+    exact = jax.jacfwd(change)(jnp.zeros(26))
+    assert np.abs(jacobian - exact).max() < ROUNDING * np.abs(exact).max()
+    assert np.allclose(left, change(jnp.zeros(26)), rtol=ROUNDING)
+
+
+def test_what_has_no_orbit_says_so():
+    system = duffing(force=jnp.nan)
+    with pytest.raises(bj.SolveError, match="0.9 rad/s.*non_finite"):
+        solve_orbit(system, 0.9, BALANCE)
+    orbit = solve_orbit(system, 0.9, BALANCE, throw=False)
+    assert orbit.result == bj.Result.NON_FINITE and not orbit.stable
+    with pytest.raises(ValueError, match="`mass` has the shape"):
+        Vibration(
+            np.eye(2), np.eye(1), np.eye(1), Contact(), Contact(), np.ones(1), 1.0
+        )
+    with pytest.raises(ValueError, match="7 harmonics need more than 14"):
+        HarmonicBalance(7, 14)

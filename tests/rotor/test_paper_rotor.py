@@ -1,0 +1,203 @@
+"""The rotor of method 002: law of its bearings, expansion, natural frequencies."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
+from tolerances import DIFFERENCE, PUBLISHED, ROUNDING
+from vibrations import ROTOR, grooves, rotor
+
+from bearingjax.rotor.vibration import (
+    CubicExpansion,
+    FixedAngle,
+    HarmonicBalance,
+    OpposedPair,
+    modal_damping,
+    natural_frequencies,
+    solve_orbit,
+)
+from bearingjax.rotor.vibration.damping import matrix_root
+
+# Contact angle: w [um], K [1e10], P0 [N], z0 [um], c_r [1e8 N/m], c_a [1e7 N/m],
+# radial frequencies, axial one, forward critical one [Hz], c_a by groove centres.
+TABLE = {
+    12: (5.263, 1.2428, 218.4, 25.32, 1.4322, 1.2941, 707.6, 1824.8, 234.5, 721.4),
+    15: (5.410, 1.2429, 283.4, 20.90, 1.4161, 2.0335, 703.6, 1814.6, 293.9, 717.3),
+    26: (6.144, 1.2437, 581.2, 14.02, 1.3074, 6.2201, 676.1, 1743.5, 514.0, 689.2),
+    36: (7.347, 1.2445, 1019.8, 12.50, 1.1592, 12.238, 636.6, 1641.7, 721.0, 649.0),
+    40: (7.943, 1.2449, 1253.9, 12.36, 1.0809, 15.221, 614.7, 1585.4, 804.1, 626.7),
+}
+LAWS = {angle: grooves(angle).fixed_angle() for angle in TABLE}
+
+
+@jax.jit
+def described(law, mass, gyroscopic):
+    stiffness = jax.hessian(OpposedPair(law, law).potential)(jnp.zeros(5))
+    plane = np.array([0, 2])
+    m, k = (x[plane][:, plane] for x in (mass, stiffness))
+    skew = gyroscopic[plane][:, plane + 1]
+    one = law.stiffness()
+    return one, stiffness, natural_frequencies(mass, stiffness), (m, k, skew)
+
+
+@pytest.mark.parametrize("angle", TABLE)
+def test_the_published_table(angle):
+    w, constant, preload, z0, radial, axial, *hertz = TABLE[angle]
+    bearing, law = grooves(angle), LAWS[angle]
+    one, both, natural, (m, k, skew) = described(law, ROTOR.mass(), ROTOR.gyroscopic())
+    # K (M - G)⁻¹: unbalance turns with the rotor, and gyroscopic moments stiffen.
+    critical = np.linalg.eigvals(np.linalg.solve(np.asarray(m - skew), np.asarray(k)))
+    forward = np.sqrt(critical[critical > 0])
+    found = [
+        1e6 * bearing.approach,
+        1e-10 * law.constant,
+        law.preload(),
+        1e6 * law.preload_displacement,
+        1e-8 * one[0, 0],
+        1e-7 * one[2, 2],
+        *(np.array([*natural.radial, natural.axial, *forward]) / (2.0 * np.pi)),
+    ]
+    assert np.allclose(
+        found, [w, constant, preload, z0, radial, axial, *hertz], rtol=PUBLISHED
+    )
+    # The pair: nothing of even order is left, and twice the axial stiffness.
+    assert np.isclose(both[4, 4], 2.0 * one[2, 2], rtol=ROUNDING)
+    assert np.allclose(np.diag(both)[:4], one[0, 0], rtol=ROUNDING)
+    assert np.abs(both - np.diag(np.diag(both))).max() < ROUNDING * one[0, 0]
+
+
+def test_hertz_constant_is_the_printed_one():
+    bearing = grooves(26)
+    cosine, ball, groove = np.cos(np.radians(26)), 11.51e-3, 5.93e-3
+    for k, (sign, radius) in enumerate(((1.0, 16e-3), (-1.0, 27.5399e-3))):
+        along = 2 / ball + sign * cosine / (radius + sign * groove * (1 - cosine))
+        across = 2 / ball - 1 / groove
+        total, difference = along + across, (along - across) / (along + across)
+
+        def apart(ratio, difference=difference):
+            first, second = ellipk(1 - ratio**-2), ellipe(1 - ratio**-2)
+            share = (ratio**2 + 1) * second - 2 * first
+            return share / ((ratio**2 - 1) * second) - difference
+
+        ratio: Any = brentq(apart, 1.5, 50.0, xtol=1e-14, rtol=1e-15)
+        square = 1 - ratio**-2
+        first, second = ellipk(square), ellipe(square)
+        eta = (1 - 0.3**2) / (np.pi * 2.1e11)
+        inner = 9 / 8 * (2 * eta) ** 2 * (1 - square) * total / second
+        printed = first * inner ** (1 / 3)
+        ours = float(bearing.raceway_constants()[k]) ** (-2 / 3)
+        assert np.isclose(printed, ours, rtol=ROUNDING)
+
+
+def test_the_cubic_expansion():
+    law = LAWS[12]
+    cubic, z0 = CubicExpansion.of(law), law.preload_displacement
+
+    @jax.jit
+    def orders(law):
+        function = law.potential
+        found = []
+        for _ in range(4):
+            function = jax.jacfwd(function)
+            found.append(function(jnp.zeros(3)))
+        return found
+
+    for true, ours in zip(orders(law), orders(cubic), strict=True):
+        assert np.abs(true - ours).max() < 1e-10 * np.abs(true).max()
+    # As printed.
+    x, y, z = 3e-6, -2e-6, 4e-6
+    radial, tangent2 = cubic.radial_stiffness, np.tan(np.radians(12)) ** 2
+    axial, square = 2 * radial * tangent2, x**2 + y**2
+    common = (
+        1 + z / (2 * z0) - square / (32 * z0**2 * tangent2) - z**2 / (8 * z0**2)
+    ) * radial
+    along = (
+        law.preload() + axial * (z + z**2 / (4 * z0) - z**3 / (24 * z0**2))
+        + radial * square * (1 / (4 * z0) - z / (8 * z0**2))
+    )  # fmt: skip
+    printed = [x * common, y * common, along]
+    assert np.allclose(cubic.force(jnp.array([x, y, z])), printed, rtol=ROUNDING)
+
+
+@pytest.mark.parametrize("angle", (12, 40))
+def test_how_far_the_expansion_reaches(angle):
+    law = LAWS[angle]
+    cubic, z0 = CubicExpansion.of(law), float(law.preload_displacement)
+    reach = z0 * np.tan(np.radians(angle))
+    assert np.isclose(1e6 * reach, {12: 5.38, 40: 10.37}[angle], rtol=PUBLISHED)
+
+    @jax.jit
+    @jax.vmap
+    def off(motion):
+        # Of the forces beyond the preload.
+        preload = jnp.array([0.0, 0.0, 1.0]) * law.preload()
+        true = law.force(motion) - preload
+        return (cubic.force(motion) - preload) / true - 1.0
+
+    sideways = [[s * reach, 0.0, 0.0] for s in (0.3, 0.5, 0.8, 1.0)]
+    along = [[0.0, 0.0, s * z0] for s in (-0.9, -0.5, 0.5, 1.0)]
+    errors = np.asarray(off(jnp.asarray(sideways + along)))
+    # Two printed digits, of which the first of a row has one.
+    printed = [4e-5, 3.3e-4, 2.6e-3, 7.8e-3]
+    assert np.allclose(errors[:4, 0], printed, rtol=0.1)
+    assert np.allclose(errors[4:, 2], [3.3e-2, 3.1e-3, -1.4e-3, -8.7e-3], rtol=0.05)
+
+
+def test_a_fixed_contact_angle_is_wrong_where_it_is_small():
+    printed = {12: 1.22, 15: 1.14, 26: 1.048, 36: 1.026, 40: 1.021}
+    for angle, ratio in printed.items():
+        moving = grooves(angle).moving_angle().stiffness()
+        fixed = LAWS[angle].stiffness()
+        assert np.isclose(moving[2, 2] / fixed[2, 2], ratio, atol=5e-3)
+        assert 1.0 < moving[0, 0] / fixed[0, 0] < 1.011
+
+
+def test_balls_that_lift_off_leave_finite_derivatives():
+    law, touching = LAWS[36], jnp.array([0.0, 0.0, -LAWS[36].preload_displacement])
+    for motion in (touching, jnp.array([3e-5, 0.0, 0.0]), -jnp.ones(3)):
+        slope = jax.hessian(law.potential)(motion)
+        assert np.isfinite(law.force(motion)).all() and np.isfinite(slope).all()
+    with pytest.raises(ValueError, match="n_balls"):
+        CubicExpansion.of(FixedAngle(1e10, 0.4, 1e-5, 4))
+
+
+def test_modal_damping_of_coinciding_frequencies():
+    # Both planes vibrate alike, so eigenvectors have no derivative; the damping has.
+    mass = np.asarray(ROTOR.mass())
+    stiffness = np.diag([1.0, 1.0, 1.2, 1.2, 0.4]) * 1e8
+
+    def share(factor):
+        matrix = jnp.asarray(mass), jnp.asarray(stiffness) * factor
+        return modal_damping(*matrix, jnp.asarray(0.01))
+
+    slope = jax.jacfwd(share)(jnp.asarray(1.0))
+    assert np.allclose(slope, 0.5 * share(jnp.asarray(1.0)), rtol=1e-9, atol=1e-9)
+    squares, modes = np.linalg.eig(np.linalg.solve(mass, stiffness))
+    values = modes.T @ np.asarray(share(jnp.asarray(1.0))) @ modes
+    ratios = np.diag(values) / np.diag(modes.T @ mass @ modes) / np.sqrt(squares)
+    assert np.allclose(ratios, 0.02, rtol=1e-9)
+    symmetric = jnp.asarray(mass + np.diag([1.0, 1.0, 2.0, 2.0, 3.0]))
+    assert np.allclose(matrix_root(symmetric) @ matrix_root(symmetric), symmetric)
+
+
+def test_small_vibration_is_linear_and_axial_motion_of_second_order():
+    method = HarmonicBalance(2, 8, steps=16)
+    system = rotor(36, base_acceleration=1e-3)
+    twice = rotor(36, base_acceleration=2e-3)
+    near = float(system.reference_frequency) * np.array([0.996, 1.0, 1.004])
+    one, two = solve_orbit(system, near[1], method), solve_orbit(twice, near[1], method)
+    growth = np.asarray(two.amplitude / one.amplitude)
+    # Cubic terms are a millionth of the linear ones here.
+    assert np.allclose(growth[:4], 2.0, rtol=1e-5)
+    assert np.isclose(growth[4], 4.0, rtol=1e-5)
+    # Linear answer from the matrices; gyroscopic moments couple both planes.
+    mass, w = np.asarray(system.mass), near[1]
+    stiffness = np.asarray(jax.jacfwd(lambda q: system.force(q, q, 0.0))(jnp.zeros(5)))
+    damping = np.asarray(system.damping_matrix(jnp.asarray(w)))
+    load = -1e-3 * mass @ np.array([0.0, 1.0, 0.0, 1.0, 0.0])
+    linear = np.linalg.solve(stiffness - w**2 * mass + 1j * w * damping, load)
+    assert np.allclose(one.amplitude[:4], np.abs(linear)[:4], rtol=DIFFERENCE)

@@ -1,0 +1,87 @@
+"""Small vibrating systems of the tests."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from bearingjax.design import Material
+from bearingjax.numerics.power import positive_power
+from bearingjax.rotor.vibration import Grooves, RigidRotor, Vibration, rigid_rotor
+
+
+class Spring(eqx.Module):
+    """Force of one freedom: linear, cubic, and with a stiffness that varies."""
+
+    cubic: jax.Array
+    varying: jax.Array
+
+    def __call__(self, q, velocity, phase):
+        return (1.0 + self.varying * jnp.cos(phase)) * q + self.cubic * q**3
+
+
+class Contact(eqx.Module):
+    """Hertz contact under a load that it opens without."""
+
+    def __call__(self, q, velocity, phase):
+        return (positive_power(1.0 + q, 3, 2) - 1.0) / 1.5
+
+
+class Cosine(eqx.Module):
+    """Harmonic load of one freedom."""
+
+    force: jax.Array
+
+    def __call__(self, phase, frequency):
+        return (self.force * jnp.cos(phase))[None]
+
+
+def oscillator(restoring, force=0.0, damping_ratio=0.0):
+    """One freedom of mass one."""
+    return Vibration(
+        mass=np.eye(1),
+        damping=2.0 * damping_ratio * np.eye(1),
+        gyroscopic=np.zeros((1, 1)),
+        restoring=restoring,
+        load=Cosine(jnp.asarray(force)),
+        scale=np.ones(1),
+        reference_frequency=1.0,
+    )
+
+
+def duffing(cubic=0.05, force=0.2, damping_ratio=0.05):
+    """Hardening; two folds."""
+    spring = Spring(jnp.asarray(cubic), jnp.asarray(0.0))
+    return oscillator(spring, force, damping_ratio)
+
+
+ROTOR = RigidRotor(
+    length=0.5,
+    shaft_diameter=0.025,
+    density=7850.0,
+    disc_mass=10.0,
+    disc_polar_inertia=0.2,
+    disc_diametral_inertia=0.1,
+    disc_position=0.125,
+)
+OUTER = {12: 27.5125, 15: 27.5167, 26: 27.5399, 36: 27.5709, 40: 27.5858}
+"""Radius of the outer groove [mm] for each contact angle [deg]."""
+
+
+def grooves(angle):
+    """The bearing of method 002 with a contact angle in degrees."""
+    return Grooves(
+        inner_radius=16e-3,
+        outer_radius=1e-3 * OUTER[angle],
+        groove_radius=5.93e-3,
+        ball_diameter=11.51e-3,
+        contact_angle=np.radians(angle),
+        n_balls=7,
+        material=Material(2.1e11, 0.3),
+    )
+
+
+def rotor(angle=36, **given):
+    """The rotor of method 002 on two such bearings."""
+    law = grooves(angle).fixed_angle()
+    return rigid_rotor(ROTOR, law, law, scale=law.preload_displacement, **given)
