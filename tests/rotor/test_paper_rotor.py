@@ -16,11 +16,9 @@ from bearingjax.rotor.vibration import (
     FixedAngle,
     HarmonicBalance,
     OpposedPair,
-    modal_damping,
     natural_frequencies,
     solve_orbit,
 )
-from bearingjax.rotor.vibration.damping import matrix_root
 
 # Contact angle: w [um], K [1e10], P0 [N], z0 [um], c_r [1e8 N/m], c_a [1e7 N/m],
 # radial frequencies, axial one, forward critical one [Hz], c_a by groove centres.
@@ -163,25 +161,6 @@ def test_balls_that_lift_off_leave_finite_derivatives():
         assert np.isfinite(law.force(motion)).all() and np.isfinite(slope).all()
     with pytest.raises(ValueError, match="n_balls"):
         CubicExpansion.of(FixedAngle(1e10, 0.4, 1e-5, 4))
-
-
-def test_modal_damping_of_coinciding_frequencies():
-    # Both planes vibrate alike, so eigenvectors have no derivative; the damping has.
-    mass = np.asarray(ROTOR.mass())
-    stiffness = np.diag([1.0, 1.0, 1.2, 1.2, 0.4]) * 1e8
-
-    def share(factor):
-        matrix = jnp.asarray(mass), jnp.asarray(stiffness) * factor
-        return modal_damping(*matrix, jnp.asarray(0.01))
-
-    slope = jax.jacfwd(share)(jnp.asarray(1.0))
-    assert np.allclose(slope, 0.5 * share(jnp.asarray(1.0)), rtol=1e-9, atol=1e-9)
-    squares, modes = np.linalg.eig(np.linalg.solve(mass, stiffness))
-    values = modes.T @ np.asarray(share(jnp.asarray(1.0))) @ modes
-    ratios = np.diag(values) / np.diag(modes.T @ mass @ modes) / np.sqrt(squares)
-    assert np.allclose(ratios, 0.02, rtol=1e-9)
-    symmetric = jnp.asarray(mass + np.diag([1.0, 1.0, 2.0, 2.0, 3.0]))
-    assert np.allclose(matrix_root(symmetric) @ matrix_root(symmetric), symmetric)
 
 
 def test_small_vibration_is_linear_and_axial_motion_of_second_order():

@@ -8,7 +8,6 @@ from .continuation import ChangeOfParameter as ChangeOfParameter
 from .continuation import Ending as Ending
 from .continuation import Steps as Steps
 from .continuation import trace as trace
-from .damping import modal_damping as modal_damping
 from .harmonic_balance import HarmonicBalance as HarmonicBalance
 from .harmonic_balance import hill_multipliers as hill_multipliers
 from .method import AbstractMethod as AbstractMethod

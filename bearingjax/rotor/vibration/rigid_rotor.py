@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 from ...design.checks import positive
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
-from .damping import modal_damping
+from ..damping import ModalDamping
 from .support_law import AbstractSupportLaw
 from .system import Vibration
 
@@ -182,9 +182,10 @@ def rigid_rotor(
     mass, pair = rotor.mass(), OpposedPair(a, b)
     stiffness = jax.hessian(pair.potential)(jnp.zeros(5))
     natural = natural_frequencies(mass, stiffness)
+    undamped = mass, stiffness
     return Vibration(
         mass=mass,
-        damping=modal_damping(mass, stiffness, as_real(damping_ratio)),
+        damping=ModalDamping(damping_ratio).matrix(undamped, undamped),
         gyroscopic=rotor.gyroscopic(),
         restoring=pair,
         load=Shaking(
