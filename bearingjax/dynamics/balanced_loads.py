@@ -88,9 +88,8 @@ class BalancedLoads(eqx.Module):
         outwards = jnp.asarray(ball.grooves.outwards, moved.dtype)
         angle = angles(outwards[:, None] * ball.grooves.touch(moved).normal)
         load = ball.respond(moved).beside
-        oil = skid.lubricant, skid.temperature, skid.least_film
         law, contacts = skid.point_law, (load, angle, self.ellipses)
-        loaded = loaded_ball(skid.bearing, law, *oil, *contacts)
+        loaded = loaded_ball(skid.bearing, law, skid.oil, *contacts)
         on_rings = unpacked(ball, forces[:-2])
         moving = on_rings.outer if self.balance.outer_moves else on_rings.inner
         if ball.sees_difference and self.balance.outer_moves:

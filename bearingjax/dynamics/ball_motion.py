@@ -23,7 +23,14 @@ from jaxtyping import Array, Float
 
 from ..element.ball_speed import ball_kinematics
 from ..element.inertia import Speed
-from ..lubrication import AbstractPatch, AbstractTraction, Film, Resultants, at_least
+from ..lubrication import (
+    AbstractPatch,
+    AbstractTraction,
+    Film,
+    Resultants,
+    WarmInlet,
+    at_least,
+)
 from ..numerics.types import Scalar
 
 
@@ -52,6 +59,7 @@ class LoadedBall(eqx.Module):
         patch: Contact areas.
         film: Films.
         least_film: What remains of every film at rest [m].
+        inlet: What thins the films at speed, or `None`.
         outwards: 1 for contacts of the outer ring, else -1.
 
     Static: outwards.
@@ -66,6 +74,7 @@ class LoadedBall(eqx.Module):
     patch: AbstractPatch
     film: Film
     least_film: Scalar
+    inlet: WarmInlet | None
     outwards: tuple[float, ...] = eqx.field(static=True)
 
     n_spins: ClassVar[int] = 3
@@ -174,7 +183,10 @@ def tractions(ball: LoadedBall, law: AbstractTraction, moving: Sliding) -> Tract
     """
 
     def one(patch, film, slip, spin, speed):
-        thickness = at_least(film.central(speed), ball.least_film)
+        thickness = film.central(speed)
+        if ball.inlet is not None:
+            thickness *= ball.inlet.factor(patch, slip[0], speed)
+        thickness = at_least(thickness, ball.least_film)
         return thickness, law.resultants(patch, thickness, slip, spin)
 
     film, found = jax.vmap(one)(ball.patch, ball.film, *moving)

@@ -170,8 +170,8 @@ def ball_orbit(
     """
     bearing, law = model.bearing, model.point_law
     at = model.element.model(load_speed), bearing, law, solution.displacement, azimuth
-    oil = model.lubricant, model.temperature, model.least_film
-    ball = jax.vmap(partial(loaded_ball, bearing, law, *oil))(*contact_loads(*at))
+    make = partial(loaded_ball, bearing, law, model.oil)
+    ball = jax.vmap(make)(*contact_loads(*at))
     start = jax.vmap(partial(rolling, speed=speed))(ball)
     start = jnp.concatenate([start.spin, start.orbit[:, None]], axis=1).reshape(-1)
     density = model.lubricant.density.at(model.temperature)

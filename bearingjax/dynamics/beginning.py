@@ -41,11 +41,10 @@ def tabulated(
     if not isinstance(solution, BallSolution):
         return load_table(loaded_rollers(model, q, speed, azimuth))
     bearing, law = model.bearing, model.point_law
-    oil = model.lubricant, model.temperature, model.least_film
     at = solution.contact_load[:1], solution.contact_angle[:1]
     if places > 1:
         at = contact_loads(model.element.model(speed), bearing, law, q, azimuth)
-    balls = jax.vmap(partial(loaded_ball, bearing, law, *oil))(*at)
+    balls = jax.vmap(partial(loaded_ball, bearing, law, model.oil))(*at)
     return load_table(balls)
 
 

@@ -23,7 +23,8 @@ class Conditions(NamedTuple):
     Attributes:
         peak_pressure: Hertz peak pressure [Pa].
         semi_axes: Of the ellipse, in rolling direction and across (…, 2) [m].
-        least_film: Least film, by the formula of elastohydrodynamic contacts [m].
+        least_film: Least film, by the formula of elastohydrodynamic contacts, with the
+            heating of the inlets if the model has it [m].
         regime: Codes of `Regime`.
         outside_fluid_range: Whether the oil is a glass at the peak pressure.
     """
@@ -87,19 +88,26 @@ def by_raceway(values: ArrayLike, load: ArrayLike) -> np.ndarray:
 @eqx.filter_jit
 def _conditions(model, load, angle, spin, orbit, inner, outer):
     bearing, law = model.bearing, model.element.point_law
-    oil = model.lubricant, model.temperature
 
     def one(load, angle, spin, orbit, inner, outer):
-        ball = loaded_ball(bearing, law, *oil, model.least_film, load, angle)
+        ball = loaded_ball(bearing, law, model.oil, load, angle)
         turning = Speed(inner=inner, outer=outer)
-        entrained = sliding(ball, BallState(spin, orbit), turning).entrainment
+        moving = sliding(ball, BallState(spin, orbit), turning)
+        entrained = moving.entrainment
+
+        def least(film, patch, slip, speed):
+            cool = film.minimum(speed)
+            if ball.inlet is None:
+                return cool
+            return cool * ball.inlet.factor(patch, slip, speed)
+
         cosine = law.cosine(bearing.free_cosine, jnp.cos(angle))
         ellipses = ball_ellipses(balls_of(bearing), bearing.grooves, cosine)
         pressure = ellipses.peak_pressure(load)
         return Conditions(
             pressure,
             jnp.stack(ellipses.semi_axes(load), axis=-1),
-            jax.vmap(lambda film, u: film.minimum(u))(ball.film, entrained),
+            jax.vmap(least)(ball.film, ball.patch, moving.slip[:, 0], entrained),
             jax.vmap(lambda film, u: film.regime(u))(ball.film, entrained),
             model.lubricant.outside_fluid_range(pressure, model.temperature),
         )

@@ -16,17 +16,16 @@ from ..element.bearing_model import BearingModel
 from ..element.constants import ContactConstants, relative_radii
 from ..element.inertia import Speed, mass_and_inertia
 from ..lubrication import (
-    Lubricant,
     ellipse_patch,
     line_film,
     line_patch,
     point_film,
 )
-from ..numerics.types import Ring, Scalar
+from ..numerics.types import Ring
 from ..statics import rollers
 from ..statics.balls import ball_results
 from .ball_motion import LoadedBall
-from .model import SkidModel
+from .model import Oil, SkidModel
 from .roller_motion import LoadedRoller
 
 _SLICES = 16
@@ -74,9 +73,7 @@ def contact_ellipses(
 def loaded_ball(
     bearing: AbstractBallBearing,
     law: AbstractPointLaw,
-    lubricant: Lubricant,
-    temperature: Scalar,
-    least_film: Scalar,
+    oil: Oil,
     load: Float[Array, " contact"],
     angle: Float[Array, " contact"],
     ellipses: Ellipse | None = None,
@@ -86,9 +83,7 @@ def loaded_ball(
     Args:
         bearing: The design.
         law: Law of its contact constants, which says where curvatures are taken.
-        lubricant: Oil.
-        temperature: Of the oil [K].
-        least_film: What remains of every film at rest [m].
+        oil: Oil in its contacts.
         load: Contact loads (contact,) [N].
         angle: Contact angles (contact,) [rad].
         ellipses: From `contact_ellipses`, if they are at hand.
@@ -100,6 +95,7 @@ def loaded_ball(
     outwards = tuple(1.0 if groove.on_outer else -1.0 for groove in grooves)
     turn = jnp.asarray(outwards) * balls.diameter / balls.pitch_diameter
     radius = 0.5 * balls.diameter * (1.0 + turn * jnp.cos(angle))
+    lubricant, temperature = oil.lubricant, oil.temperature
     viscosity = lubricant.viscosity(0.0, temperature)
     coefficient = lubricant.pressure_coefficient(temperature)
 
@@ -119,7 +115,8 @@ def loaded_ball(
         angle=angle,
         patch=jax.vmap(patch)(*axes, ellipses.peak_pressure(load)),
         film=jax.vmap(film)(load, 1.0 / ellipses.ratio, radius),
-        least_film=least_film,
+        least_film=oil.least_film,
+        inlet=oil.inlet(balls.modulus),
         outwards=outwards,
     )
 
@@ -156,16 +153,13 @@ def loaded_rollers(
     """
     bearing = model.element.model(speed)
     constants = bearing.rows[0].element.constants
-    oil = model.lubricant, model.temperature, model.least_film
-    make = partial(loaded_roller, constants, *oil)
+    make = partial(loaded_roller, constants, model.oil)
     return jax.vmap(make)(*roller_loads(bearing, q, azimuth))
 
 
 def loaded_roller(
     constants: ContactConstants,
-    lubricant: Lubricant,
-    temperature: Scalar,
-    least_film: Scalar,
+    oil: Oil,
     load: Float[Array, "2"],
     line_load: Float[Array, "2 slice"],
 ) -> LoadedRoller:
@@ -176,9 +170,7 @@ def loaded_roller(
 
     Args:
         constants: Contact constants of the roller.
-        lubricant: Oil.
-        temperature: Of the oil [K].
-        least_film: What remains of every film at rest [m].
+        oil: Oil in its contacts.
         load: Contact loads (outer, inner) (2,) [N].
         line_load: Loads per length of its slices, from `roller_loads` [N/m].
     """
@@ -186,6 +178,7 @@ def loaded_roller(
     node, weight = (jnp.asarray(v, dtype) for v in _slices())
     position, width = c.half_length * node, c.half_length * weight
     radius = relative_radii(c, position)
+    lubricant, temperature = oil.lubricant, oil.temperature
     viscosity = lubricant.viscosity(0.0, temperature)
     coefficient = lubricant.pressure_coefficient(temperature)
 
@@ -212,7 +205,8 @@ def loaded_roller(
         load=load,
         patch=patch,
         film=film,
-        least_film=least_film,
+        least_film=oil.least_film,
+        inlet=oil.inlet(c.modulus),
     )
 
 

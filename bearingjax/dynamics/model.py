@@ -1,6 +1,6 @@
 """What a bearing needs in order to skid: oil, traction, cage, drag."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import equinox as eqx
 
@@ -12,12 +12,37 @@ from ..design import (
 )
 from ..design.checks import instance, positive
 from ..element.bearing_element import BearingElement
-from ..lubrication import AbstractTraction, Lubricant, Newtonian
+from ..lubrication import AbstractTraction, Lubricant, Newtonian, WarmInlet
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .surroundings import Cage, Drag
 
 _KINDS = AbstractBallBearing, CylindricalRollerBearing, NeedleRollerBearing
+
+
+class Oil(NamedTuple):
+    """Oil in the contacts.
+
+    Attributes:
+        lubricant: Its properties.
+        temperature: Its temperature [K].
+        least_film: What remains of every film at rest [m].
+        loading: Thermal loading parameter of the inlets at 1 m/s [s²/m²], or `None` if
+            they stay cool.
+    """
+
+    lubricant: Lubricant
+    temperature: Scalar
+    least_film: Scalar
+    loading: Scalar | None = None
+
+    def inlet(self, modulus: Scalar) -> WarmInlet | None:
+        """What thins films at speed.
+
+        Args:
+            modulus: Contact modulus [Pa].
+        """
+        return None if self.loading is None else WarmInlet(self.loading, modulus)
 
 
 class SkidModel(eqx.Module):
@@ -40,8 +65,10 @@ class SkidModel(eqx.Module):
         cage: Cage.
         least_film: Thickness that remains of a film at rest, such as the composite
             roughness [m].
+        inlet_heating: Whether films are thinner for the oil that is sheared warm in
+            their inlets (see `lubrication.inlet_heating`).
 
-    Traced: all numbers. Static: the classes.
+    Traced: all numbers. Static: the classes, inlet_heating.
     """
 
     element: BearingElement
@@ -51,6 +78,7 @@ class SkidModel(eqx.Module):
     drag: Drag = eqx.field(default_factory=Drag)
     cage: Cage = eqx.field(default_factory=Cage)
     least_film: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=1e-8)
+    inlet_heating: bool = eqx.field(static=True, default=False)
 
     def __check_init__(self):
         instance(self, "element", BearingElement)
@@ -73,6 +101,15 @@ class SkidModel(eqx.Module):
         instance(self, "drag", Drag)
         instance(self, "cage", Cage)
         positive(self, "least_film")
+        instance(self, "inlet_heating", bool)
+
+    @property
+    def oil(self) -> Oil:
+        """What the contacts need to know of the oil."""
+        loading = None
+        if self.inlet_heating:
+            loading = self.lubricant.thermal_loading(self.temperature, 1.0)
+        return Oil(self.lubricant, self.temperature, self.least_film, loading)
 
     @property
     def bearing(self) -> Any:

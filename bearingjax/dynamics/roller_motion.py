@@ -18,7 +18,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..element.inertia import Speed
-from ..lubrication import AbstractTraction, Film, LinePatch, at_least
+from ..lubrication import AbstractTraction, Film, LinePatch, WarmInlet, at_least
 from ..numerics.types import Scalar
 
 
@@ -47,6 +47,7 @@ class LoadedRoller(eqx.Module):
         patch: Contact areas.
         film: Films.
         least_film: What remains of every film at rest [m].
+        inlet: What thins the films at speed, or `None`.
     """
 
     mass: Scalar
@@ -58,6 +59,7 @@ class LoadedRoller(eqx.Module):
     patch: LinePatch
     film: Film
     least_film: Scalar
+    inlet: WarmInlet | None
 
     n_spins: ClassVar[int] = 1
 
@@ -149,7 +151,10 @@ def tractions(
     """
 
     def one(patch, film, slip, speed):
-        thickness = at_least(film.central(speed), roller.least_film)
+        thickness = film.central(speed)
+        if roller.inlet is not None:
+            thickness *= roller.inlet.factor(patch, slip, speed)
+        thickness = at_least(thickness, roller.least_film)
         none = jnp.zeros_like(slip)
         found = law.resultants(patch, thickness, jnp.stack([slip, none]), none)
         return thickness, found.force[0], found.heat

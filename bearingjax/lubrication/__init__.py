@@ -8,6 +8,7 @@ from .film import Film as Film
 from .film import Regime as Regime
 from .film import line_film as line_film
 from .film import point_film as point_film
+from .film_factors import WarmInlet as WarmInlet
 from .film_factors import at_least as at_least
 from .film_factors import inlet_heating as inlet_heating
 from .film_factors import lambda_ratio as lambda_ratio

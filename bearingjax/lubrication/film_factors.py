@@ -1,10 +1,16 @@
 """What becomes of a film: heated or starved inlet, rest, rough surfaces."""
 
+import equinox as eqx
 import jax.numpy as jnp
 
 from ..design.checks import check, is_traced, non_negative, number, positive
 from ..numerics.power import smooth_power
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from .patch import AbstractPatch
+
+# Entrainment speed below which the slide-to-roll ratio falls to zero [m/s].
+_SLOW = 1e-6
 
 
 def inlet_heating(
@@ -33,6 +39,30 @@ def inlet_heating(
     pressed = jnp.where(x < 0.5, 1.0 - x, 0.25 / jnp.maximum(x, 0.5))
     sheared = 1.0 + 2.23 * smooth_power(as_real(slide_to_roll), 0.83, 1e-6)
     return pressed / (1.0 + 0.213 * sheared * smooth_power(heat, 0.64, 1e-8))
+
+
+class WarmInlet(eqx.Module):
+    """Oil that shearing warms in the inlets of contacts, at any speed.
+
+    Attributes:
+        loading: Thermal loading parameter at 1 m/s, L/u² [s²/m²].
+        modulus: Contact modulus E* [Pa].
+    """
+
+    loading: Scalar = eqx.field(metadata=unit("s²/m²"))
+    modulus: Scalar = eqx.field(metadata=unit("Pa"))
+
+    def factor(self, patch: AbstractPatch, slip: Scalar, speed: Scalar) -> Scalar:
+        """`inlet_heating` of a contact [1].
+
+        Args:
+            patch: Contact under its load.
+            slip: Slip in rolling direction [m/s].
+            speed: Entrainment speed [m/s].
+        """
+        ratio = slip * speed / (speed * speed + _SLOW * _SLOW)
+        heat = self.loading * speed * speed
+        return inlet_heating(heat, patch.peak, self.modulus, ratio)
 
 
 def starvation(

@@ -81,6 +81,11 @@ class AbstractPatch(eqx.Module):
     def thinnest(self) -> Float[Array, "*n"]:
         """Viscosity where the pressure is least [Pa s]."""
 
+    @property
+    @abc.abstractmethod
+    def peak(self) -> Float[Array, "*n"]:
+        """Largest pressure [Pa]."""
+
     @abc.abstractmethod
     def numbers(self) -> tuple[Float[Array, "..."], ...]:
         """What changes with the load, but for the moments, so that values between two
@@ -178,6 +183,10 @@ class EllipsePatch(AbstractPatch):
             of = jax.vmap(of)
         return of(self.lubricant, self.temperature)
 
+    @property
+    def peak(self):
+        return self.peak_pressure
+
     def numbers(self):
         return self.rolling, self.transverse, self.peak_pressure
 
@@ -214,6 +223,10 @@ class LinePatch(AbstractPatch):
     @property
     def thinnest(self):
         return jnp.min(self.fixed.viscosity, axis=-1)
+
+    @property
+    def peak(self):
+        return jnp.max(self.fixed.pressure, axis=-1)
 
     def numbers(self):
         return (*self.fixed[:4], jnp.log(self.fixed.viscosity))

@@ -122,6 +122,7 @@ def read_skid(
     film = dynamics.quantity("least_film", "length", None)
     if film is not None:
         values["least_film"] = film
+    values["inlet_heating"] = dynamics.flag("inlet_heating", False)
     with dynamics.building():
         model = SkidModel(scene.element, oil, temperature, traction, **values)
     found = SkidScene(

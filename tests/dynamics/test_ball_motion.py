@@ -1,10 +1,13 @@
 """One ball: kinematics, tractions and rates against vectors written out."""
 
+import dataclasses
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 from han_chu import BEARING, DIAMETER, OIL_TEMPERATURE, PITCH_DIAMETER
+from tolerances import ROUNDING
 
 from bearingjax.contact.point_law import FreeAngle
 from bearingjax.dynamics.ball_motion import (
@@ -16,9 +19,17 @@ from bearingjax.dynamics.ball_motion import (
     unbalanced,
 )
 from bearingjax.dynamics.loaded import loaded_ball
+from bearingjax.dynamics.model import Oil
 from bearingjax.element.ball_speed import ball_kinematics
 from bearingjax.element.inertia import Speed
-from bearingjax.lubrication import Eyring, Newtonian, mil_l_23699
+from bearingjax.lubrication import (
+    Eyring,
+    Newtonian,
+    WarmInlet,
+    at_least,
+    inlet_heating,
+    mil_l_23699,
+)
 
 GAMMA, ALPHA = 0.238339, np.radians(25.0)
 UP = np.array([0.0, 0.0, 1.0])
@@ -27,8 +38,8 @@ CENTRE = np.array([0.0, 0.5 * PITCH_DIAMETER, 0.0])
 
 
 def under(load, angle):
-    oil = mil_l_23699(), jnp.asarray(OIL_TEMPERATURE), jnp.asarray(1e-8)
-    return loaded_ball(BEARING, FreeAngle(), *oil, load, angle)
+    oil = Oil(mil_l_23699(), jnp.asarray(OIL_TEMPERATURE), jnp.asarray(1e-8))
+    return loaded_ball(BEARING, FreeAngle(), oil, load, angle)
 
 
 @pytest.fixture(scope="module")
@@ -99,6 +110,29 @@ def test_slip_is_the_difference_of_surface_velocities(ball):
                 got = np.asarray(moving.slip[c]) + spun
                 want = [slip[0], slip @ tangents[c]]
                 np.testing.assert_allclose(got, want, rtol=1e-11, atol=1e-12)
+
+
+def test_inlets_that_warm_up(ball):
+    """Films of the formula, and at rest as thick as cool ones."""
+    oil, warm = mil_l_23699(), jnp.asarray(OIL_TEMPERATURE)
+    loading = oil.thermal_loading(warm, 1.0)
+    heated = dataclasses.replace(ball, inlet=WarmInlet(loading, jnp.asarray(1.13e11)))
+    draw = jax.jit(tractions)
+    for state, speed in motions():
+        moving = sliding(ball, state, speed)
+        cool = jax.vmap(lambda film, u: film.central(u))(ball.film, moving.entrainment)
+        for c, film in enumerate(draw(heated, Newtonian(), moving).film):
+            slip, entrained = moving.slip[c, 0], moving.entrainment[c]
+            heat = oil.thermal_loading(warm, entrained)
+            pressure = ball.patch.peak_pressure[c]
+            factor = inlet_heating(heat, pressure, 1.13e11, slip / entrained)
+            assert factor < 0.99
+            want = at_least(factor * cool[c], ball.least_film)
+            np.testing.assert_allclose(film, want, rtol=ROUNDING)
+    still = sliding(ball, BallState(jnp.zeros(3), jnp.zeros(())), Speed())
+    np.testing.assert_array_equal(
+        draw(heated, Newtonian(), still).film, draw(ball, Newtonian(), still).film
+    )
 
 
 @pytest.mark.parametrize("law", [Newtonian(), Eyring(5e6)], ids=["newton", "eyring"])

@@ -10,6 +10,7 @@ from tolerances import DIFFERENCE, ROUNDING, SOLVER
 import bearingjax as bj
 from bearingjax.dynamics import Cage, Drag, SkidModel, ball_motion, skid, steady_skid
 from bearingjax.dynamics.loaded import loaded_roller
+from bearingjax.dynamics.model import Oil
 from bearingjax.dynamics.roller_motion import (
     RollerState,
     kinetic_energy,
@@ -34,8 +35,8 @@ CONSTANTS = contact_constants(BEARING, bj.Palmgren(), bj.ContactMapped(24))
 def loaded(line_load):
     line_load = jnp.asarray(line_load)
     load = 0.01372 * jnp.mean(line_load, axis=1)
-    oil = OIL, jnp.asarray(WARM), jnp.asarray(1e-8)
-    return loaded_roller(CONSTANTS, *oil, load, line_load)
+    oil = Oil(OIL, jnp.asarray(WARM), jnp.asarray(1e-8))
+    return loaded_roller(CONSTANTS, oil, load, line_load)
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +66,7 @@ def test_moves_as_a_ball_without_contact_angle(roller):
         roller.patch,
         roller.film,
         roller.least_film,
+        roller.inlet,
         (1.0, -1.0),
     )
     push = jnp.asarray(2.0)

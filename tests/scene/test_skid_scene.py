@@ -347,13 +347,14 @@ def test_what_stands_in_the_tables_of_surroundings():
             "cage={pocket_clearance='0.1 mm', stiffness='2 N/um', inertia='3 kg mm^2'}",
             "dynamics={duration='250 ms', fill=0.05, drag_coefficient=1.5,"
             " least_film='20 nm', axis='horizontal', start='rest', n_times=11,"
+            " inlet_heating=true,"
             " tolerance=1e-5, max_steps=99, places=24,"
             " speed={time=['0 s', '1 s', '2 s'], outer=['0 rpm', '60 rpm', '30 rpm']}}",
         ],
     )
     assert same(task.model.cage, Cage(1e-4, 2e6, 3e-6))
     assert same(task.model.drag, Drag(1.5, 0.05))
-    assert float(task.model.least_film) == 20e-9
+    assert float(task.model.least_film) == 20e-9 and task.model.inlet_heating
     assert (task.duration, task.axis, task.start) == (0.25, "horizontal", "rest")
     assert (task.n_times, task.tolerance, task.max_steps) == (11, 1e-5, 99)
     assert task.places == 24
