@@ -107,7 +107,7 @@ class EllipsePatch(AbstractPatch):
         rolling: Semi-axis in rolling direction [m].
         transverse: Semi-axis across [m].
         peak_pressure: Largest pressure [Pa].
-        moments: As of `AbstractPatch`.
+        moments: As of `AbstractPatch` (3,) [N s, N m s, N m² s].
         radial, angular: Numbers of nodes along a ray and of rays.
 
     Static: radial, angular.
@@ -204,7 +204,7 @@ class LinePatch(AbstractPatch):
 
     Attributes:
         fixed: Its nodes, the same for every motion.
-        moments: As of `AbstractPatch`.
+        moments: As of `AbstractPatch` (3,) [N s, N m s, N m² s].
     """
 
     fixed: Nodes
