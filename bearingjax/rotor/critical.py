@@ -1,5 +1,6 @@
 """Critical speeds: where a natural frequency is the speed itself."""
 
+import warnings
 from typing import Any
 
 import equinox as eqx
@@ -9,23 +10,27 @@ from jax import lax
 from jaxtyping import Array, Complex, Float, Int
 
 from ..design.checks import count as whole
+from ..design.checks import is_traced
 from ..numerics.implicit import stop
 from ..numerics.types import as_count
 from .damping import mass_normal
-from .modes import direction, largest_real, to_complex
+from .modes import direction, eigenpairs, faster_than, largest_real, to_complex
 from .rotor import Rotor, RotorMatrices
 
-_STEPS = 6
-"""Newton steps; each about triples the number of right digits."""
+_RISING, _FULL = 12, 5
+"""Newton steps while the damping rises from none to all of it, and then."""
+_SPARE = 4
+"""Starts above those asked for: strong dampers let others take the lowest places."""
 _SETTLED = 1e-9
 """Relative size of the last step of a critical speed that is found [1]."""
+_SAME, _PARALLEL = 1e-7, 0.03
+"""Relative distance of two that are one, if their motions differ by less than so."""
 
 
 class CriticalSpeeds(eqx.Module):
     """Critical speeds of a rotor, lowest first.
 
-    Where there are fewer than were asked for, or damping or a change of the supports
-    with the speed leads the search away, the speed is NaN.
+    Where there are fewer than were asked for the speed is NaN.
 
     Attributes:
         speed: Ω = Im λ(Ω) (mode,) [rad/s].
@@ -33,20 +38,25 @@ class CriticalSpeeds(eqx.Module):
             forward and backward at one speed (mode,).
         damping_ratio: -Re λ/|λ| there (mode,) [1].
         shape: (ux uy uz gx gy) of every node (mode, node, 5) [m, rad], as in `Modes`.
+        missed: How many more modes must become slower than the speed below the last
+            one found; 0 unless the search went wrong.
     """
 
     speed: Float[Array, " mode"]
     whirl: Int[Array, " mode"]
     damping_ratio: Float[Array, " mode"]
     shape: Complex[Array, "mode node 5"]
+    missed: Int[Array, ""]
 
 
 def critical_speeds(rotor: Rotor, *, count: Any = 6) -> CriticalSpeeds:
     """Speeds at which a mode vibrates once per revolution.
 
     Without damping and with supports of constant stiffness they are the solutions of
-    K v = Ω² (M - iG) v, a Hermitian problem that has them all. From there Newton's
-    method on λ(Ω) takes damping into account, and supports that follow the speed.
+    K v = Ω² (M - iG) v, a Hermitian problem that has them all. From there, as damping
+    rises to what it is, and from the damped modes at one speed, Newton's method on
+    λ(Ω) leads to those with damping and with supports that follow the speed. A count
+    of the modes that are faster than the speed tells whether one was missed.
 
     Args:
         rotor: The rotor, or what has a `linearised(speed)` as it has.
@@ -55,26 +65,34 @@ def critical_speeds(rotor: Rotor, *, count: Any = 6) -> CriticalSpeeds:
     Returns:
         CriticalSpeeds; speeds and damping ratios have first derivatives with respect
         to all numbers of the rotor.
+
+    Warns:
+        UserWarning: If one was missed. It may be one that dampers all but stop.
     """
     count = as_count(count)
     whole("critical_speeds", "count", count)
-    return _critical(rotor, count)
+    found = _critical(rotor, count)
+    if not is_traced(found.missed) and int(found.missed) != 0:
+        warnings.warn(
+            f"critical_speeds: {abs(int(found.missed))} more below"
+            f" {float(jnp.nanmax(found.speed)):g} rad/s: see a Campbell diagram; strong"
+            " dampers, or supports that follow the speed, led the search away",
+            stacklevel=2,
+        )
+    return found
 
 
 @eqx.filter_jit
 def _critical(rotor, count):
     fixed = stop(rotor)
-    start, shape = _undamped(fixed.linearised(0.0), count)
-    found = start > 0
-    start = jnp.where(found, start, 1.0)
-    point, right, left, change = jax.vmap(lambda *at: _followed(fixed, *at))(
-        start, shape
-    )
-    found &= change <= _SETTLED
-    sort = jnp.argsort(jnp.where(found, point[:, 1], jnp.inf))
+    found, point, right, left = _search(fixed, count + _SPARE)
+    found = _once(found, point, right)
+    sort = jnp.argsort(jnp.where(found, point[:, 1], jnp.inf))[:count]
     found, point, right, left = (part[sort] for part in (found, point, right, left))
     # A mode that was not found must not spoil the derivatives of the others.
-    point = jnp.where(found[:, None], point, 1.0)
+    point, right, left = (
+        jnp.where(found[:, None], part, 1.0) for part in (point, right, left)
+    )
     at = jax.vmap(lambda *at: _newton(rotor, *at))(point, right, left)
     rate, speed = jnp.where(found[:, None], at, jnp.nan).T
     size = jnp.where(found, jnp.hypot(*jnp.where(found[:, None], at, 1.0).T), jnp.nan)
@@ -82,7 +100,62 @@ def _critical(rotor, count):
     nodes, _ = matrices.split(right @ to_complex(matrices.motions).T)
     whirl = jnp.where(found, direction(nodes, matrices.length), 0)
     _, nodes = largest_real(nodes, matrices.length)
-    return CriticalSpeeds(speed, whirl, -rate / size, nodes)
+    nodes = jnp.where(found[:, None, None], nodes, jnp.nan)
+    return CriticalSpeeds(
+        speed, whirl, -rate / size, nodes, _missed(fixed, found, stop(speed))
+    )
+
+
+def _search(rotor, count):
+    """All that Newton's method finds, from two sets of starts."""
+    rest = rotor.linearised(0.0)
+    speed, shape = _undamped(rest, count)
+    there = speed > 0
+    # Damped modes at a speed in the middle of these: forward and backward stand apart.
+    middle = jnp.where(jnp.any(there), jnp.mean(speed, where=there), 1.0)
+    pairs = eigenpairs(rotor.linearised(middle), count)
+    speed = jnp.concatenate([speed, pairs.value.imag])
+    start = jnp.stack([jnp.zeros_like(speed), speed], axis=1)
+    start = start.at[there.shape[0] :, 0].set(pairs.value.real)
+    right = jnp.concatenate([shape, pairs.right])
+    left = jnp.concatenate([shape, pairs.left])
+    full = jnp.where(jnp.arange(len(speed)) < there.shape[0], 0.0, 1.0)
+    start = jnp.where(speed[:, None] > 0, start, 1.0)
+    follow = jax.vmap(lambda *at: _followed(rotor, *at))
+    point, right, left, change = follow(start, right, left, full)
+    found = (speed > 0) & (change <= _SETTLED) & (point[:, 1] > 0)
+    return found, point, right, left
+
+
+def _missed(rotor, found, speed):
+    """Modes that became slower than the speed, less those found."""
+    last = (1.0 - 1e-6) * jnp.max(jnp.where(found, speed, 0.0))
+    first = 1e-3 * jnp.min(jnp.where(found, speed, jnp.maximum(last, 1.0)))
+    counts = [faster_than(rotor.linearised(at), at) for at in (first, last)]
+    below = jnp.sum(found & (speed < last))
+    return jnp.where(jnp.any(found), counts[0] - counts[1] - below, 0)
+
+
+def _once(found, point, right):
+    """Those found, each once: two searches may end at the same one.
+
+    Where several lie at one speed, as many as there are independent motions.
+    """
+    near = jnp.max(jnp.abs(point[:, None] - point[None, :]), axis=-1)
+    near = near <= _SAME * jnp.abs(point[:, 1])[:, None]
+
+    def take(k, state):
+        kept, directions = state
+        own = jnp.where(found[k], right[k], 0.0)
+        shares = jnp.where(near[k] & kept, directions.conj() @ own, 0.0)
+        rest = own - shares @ directions
+        size = jnp.linalg.norm(rest)
+        new = size > _PARALLEL
+        rest = rest / to_complex(jnp.where(new, size, 1.0))
+        return kept.at[k].set(new), directions.at[k].set(rest)
+
+    state = jnp.zeros_like(found), jnp.zeros_like(right)
+    return lax.fori_loop(0, found.shape[0], take, state)[0]
 
 
 def _undamped(matrices: RotorMatrices, count):
@@ -119,30 +192,45 @@ def _undamped(matrices: RotorMatrices, count):
     return speed, motion.T
 
 
-def _followed(rotor, speed, right):
-    """Newton's method with inverse iteration for both vectors.
+def _followed(rotor, point, right, left, least):
+    """Newton's method, with inverse iteration for both vectors, as damping rises.
+
+    It rises with the third power of the steps, because dampers that are strong change
+    the mode while they are still a small share of themselves.
+
+    Args:
+        rotor: The rotor.
+        point: (Re λ, Ω) to start from.
+        right, left: Vectors there.
+        least: Share of the damping to begin with.
 
     Returns:
         (Re λ, Ω), right and left vector, and the relative size of the last step.
     """
 
-    def step(_, state):
+    def step(k, state):
         point, right, left, _ = state
-        new = _newton(rotor, point, right, left)
+        share = jnp.clip(((k + 1.0) / _RISING) ** 3, least, 1.0)
+        new = _newton(rotor, point, right, left, share)
         change = jnp.max(jnp.abs(new - point)) / jnp.abs(new[1])
-        right, left = _vectors(rotor.linearised(new[1]), new, right, left)
+        matrices = _damped(rotor.linearised(new[1]), share)
+        right, left = _vectors(matrices, new, right, left)
         return new, right, left, change
 
-    point = jnp.stack([jnp.zeros_like(speed), speed])
-    right = _unit(right)
-    return lax.fori_loop(0, _STEPS, step, (point, right, right, jnp.inf * speed))
+    state = (point, _unit(right), _unit(left), jnp.inf * point[1])
+    return lax.fori_loop(0, _RISING + _FULL, step, state)
 
 
-def _newton(rotor, point, right, left):
+def _damped(matrices, share):
+    """With a share of the damping."""
+    return eqx.tree_at(lambda m: m.damping, matrices, replace_fn=lambda c: share * c)
+
+
+def _newton(rotor, point, right, left, share: Any = 1.0):
     """One step for (Re λ, Ω) of wᵀP(λ, Ω)v = 0, λ = Re λ + iΩ, with its derivative."""
 
     def residual(point):
-        matrices = rotor.linearised(point[1])
+        matrices = _damped(rotor.linearised(point[1]), share)
         value = left.conj() @ (matrices.dynamic_stiffness(lax.complex(*point)) @ right)
         return jnp.stack([value.real, value.imag])
 

@@ -105,7 +105,7 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
 @eqx.filter_jit
 def _modes(rotor, speed, count):
     matrices = rotor.linearised(speed)
-    return shown(_eigen(matrices, count), matrices)
+    return shown(eigenpairs(matrices, count), matrices)
 
 
 def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
@@ -132,7 +132,7 @@ def _campbell(rotor, speeds, count):
     matrices = rotor.linearised(speeds[0])
     n = matrices.mass.shape[0]
     followed = min(n, n if count is None else count + _SPARE)
-    pairs = lax.map(lambda speed: _eigen(rotor.linearised(speed), followed), speeds)
+    pairs = lax.map(lambda speed: eigenpairs(rotor.linearised(speed), followed), speeds)
     fixed = stop(pairs)
 
     def step(before, now):
@@ -192,15 +192,11 @@ class Pairs(eqx.Module):
     left: Complex[Array, "*speed mode freedom"]
 
 
-def _eigen(matrices: RotorMatrices, count: int | None) -> Pairs:
+def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
     """The first modes; vectors have no derivative."""
     fixed = stop(matrices)
     n = fixed.mass.shape[0]
-    factor = jnp.linalg.cholesky(fixed.mass)
-    stiffness = mass_normal(factor, fixed.stiffness)
-    rates = mass_normal(factor, fixed.rates)
-    eye = jnp.eye(n, dtype=rates.dtype)
-    state = jnp.block([[jnp.zeros_like(eye), eye], [-stiffness, -rates]])
+    factor, stiffness, state = _state(fixed)
     values, left, right = lax.linalg.eig(state)
     floor = _STILL * jnp.sqrt(jnp.linalg.norm(stiffness))
     values = jnp.where(jnp.abs(values) <= floor, 0.0, values)
@@ -223,6 +219,26 @@ def _eigen(matrices: RotorMatrices, count: int | None) -> Pairs:
     right, left = vectors(right[:n, chosen]), vectors(left[n:, chosen])
     value = jax.vmap(lambda *pair: _refined(matrices, *pair))(value, right, left)
     return Pairs(value, coincident, right, left)
+
+
+def _state(matrices):
+    """Factor of the mass matrix, stiffness and state matrix in mass-normal freedoms."""
+    factor = jnp.linalg.cholesky(matrices.mass)
+    stiffness = mass_normal(factor, matrices.stiffness)
+    eye = jnp.eye(factor.shape[0], dtype=factor.dtype)
+    lower = [-stiffness, -mass_normal(factor, matrices.rates)]
+    return factor, stiffness, jnp.block([[jnp.zeros_like(eye), eye], lower])
+
+
+def faster_than(matrices: RotorMatrices, frequency: Any) -> Int[Array, ""]:
+    """How many modes oscillate faster than at a frequency.
+
+    Args:
+        matrices: Of the rotor.
+        frequency: ω [rad/s].
+    """
+    *_, state = _state(matrices)
+    return jnp.sum(jnp.linalg.eigvals(state).imag > frequency)
 
 
 def _refined(matrices, value, right, left):

@@ -60,6 +60,26 @@ def test_they_lie_on_the_campbell_diagram():
         np.testing.assert_allclose(2 * np.pi * at.frequency[k], speed, rtol=SOLVER)
         np.testing.assert_allclose(at.damping_ratio[k], ratio, rtol=DIFFERENCE)
     assert critical.damping_ratio.min() > 1e-3
+    # Dampers that all but lock the supports: still all of them, each once.
+    locked = bj.critical_speeds(friswell(1e6, 0.8e6, 6e4), count=4)
+    rigid = bj.critical_speeds(friswell(1e10, 0.9e10, 5e2), count=4)
+    assert (np.asarray(locked.whirl) == [-1, 1, -1, 1]).all()
+    np.testing.assert_allclose(locked.speed, rigid.speed, rtol=0.01)
+    assert critical.missed == locked.missed == rigid.missed == 0
+
+
+def test_coincident_critical_speeds_are_there_as_often_as_they_are():
+    """A disc without moments of inertia on supports alike in x and y."""
+    shaft = bj.Shaft([-0.1, 0.0, 0.1], 0.04, material=bj.Material(density=1e-3))
+    for damping in (0.0, 300.0):
+        support = bj.LinearSupport.isotropic(1, 4e6, 9e6, 1e5, radial_damping=damping)
+        rotor = bj.Rotor(shaft, [bj.Disc(1, 9.0, 1e-9, 0.03)], [support], rigid=True)
+        found = bj.critical_speeds(rotor, count=4)
+        natural = np.sqrt(4e6 / 9.0)
+        damped = np.sqrt(natural**2 - (damping / 18.0) ** 2)
+        exact = [damped, damped, 1000.0, np.sqrt(1e5 / 0.03)]
+        np.testing.assert_allclose(found.speed, exact, rtol=DIFFERENCE)
+        assert found.missed == 0 and (found.whirl[:3] == 0).all()
 
 
 class Stiffening(AbstractSupport):

@@ -153,11 +153,9 @@ def measured(numbers):
 
 def test_derivatives_of_everything():
     slope = jax.jit(jax.jacrev(measured))(NUMBERS)
-    forward = jax.jit(jax.jacfwd(measured))(NUMBERS)
     values = measured(NUMBERS)
     assert np.isfinite(slope).all()
     scale = NUMBERS[None, :] / values[:, None]
-    np.testing.assert_allclose(slope * scale, forward * scale, atol=1e-8)
     for k, number in enumerate(NUMBERS):
         step = 2e-4 * number * np.eye(len(NUMBERS))[k]
         # Of fourth order: steps that are large against the round-off of eigenvalues.
@@ -168,19 +166,23 @@ def test_derivatives_of_everything():
 
 
 def test_derivatives_where_modes_coincide():
-    """Isotropic and at rest: pairs that stay pairs as the supports stiffen."""
+    """Isotropic and at rest: pairs that stay pairs as the supports stiffen. Nor does a
+    critical speed that is not there spoil the others."""
 
-    def frequencies(stiffness, kind=bj.modes):
+    @jax.jit
+    def speeds(stiffness):
         rotor = paper(stiffness, 1e8, bj.ModalDamping(0.01))
-        return kind(rotor).frequency
+        return bj.modes(rotor).frequency, bj.critical_speeds(rotor, count=5).speed
 
-    slope = jax.jit(jax.jacrev(frequencies))(jnp.array(1.2e8))
-    value = frequencies(jnp.array(1.2e8))
-    # Radial frequencies of the rigid rotor go with the root of the stiffness.
-    axial = np.argsort(abs(slope))[0]
-    expected = np.array(0.5 * value / 1.2e8)
-    expected[axial] = 0.0
-    np.testing.assert_allclose(slope, expected, rtol=DIFFERENCE, atol=1e-20)
+    at = jnp.array(1.2e8)
+    slopes = jax.jit(jax.jacrev(speeds))(at)
+    for value, slope in zip(speeds(at), slopes, strict=True):
+        there = np.isfinite(value)
+        value, slope = np.asarray(value)[there], np.asarray(slope)[there]
+        # Radial ones of the rigid rotor go with the root of the stiffness.
+        expected = np.array(0.5 * value / 1.2e8)
+        expected[np.argmin(abs(slope))] = 0.0
+        np.testing.assert_allclose(slope, expected, rtol=DIFFERENCE, atol=1e-16)
 
 
 def test_a_rotor_that_nothing_holds():
