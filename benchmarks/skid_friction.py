@@ -153,14 +153,14 @@ def measure(loads, speeds, places):
             torque[name] = 1e3 * np.asarray(found.friction_torque)
             if np.any(np.asarray(found.result)):
                 raise RuntimeError(f"{name}: codes {np.asarray(found.result)}")
-        for k, case in enumerate(cases):
-            roll, slide = skf(*case, viscosity)
-            oil, load = palmgren(*case, viscosity)
+        for k, (force, thrust, turning) in enumerate(cases):
+            roll, slide = skf(force, thrust, turning, viscosity)
+            oil, load = palmgren(force, thrust, turning, viscosity)
             rows.append(
                 {
-                    "radial": case[0],
-                    "axial": case[1],
-                    "rpm": case[2],
+                    "radial": force,
+                    "axial": thrust,
+                    "rpm": turning,
                     **{name: float(torque[name][k]) for name in LAWS},
                     "skf_sliding": float(slide),
                     "skf_rolling": float(roll),

@@ -355,14 +355,17 @@ def main():
     parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
     args = parser.parse_args()
     if args.smoke:
-        given = (0.0, RADIAL), 48, (0.4,), (8.0,), 0.02, 0.12, 1000.0
+        result, curves, spectra = measure(
+            (0.0, RADIAL), 48, (0.4,), (8.0,), 0.02, 0.12, 1000.0
+        )
     else:
         loads = 0.0, 100.0, 200.0, 300.0, 400.0, 500.0
-        given = loads, 240, (0.0, 0.2, 0.4), (0.2, 8.0), 0.5, 3.0, 2000.0
-    result, *shown = measure(*given)
+        pockets = 0.2, 8.0
+        given = 0.5, 3.0, 2000.0
+        result, curves, spectra = measure(loads, 240, (0.0, 0.2, 0.4), pockets, *given)
     print(json.dumps(result)) if args.json else show(result)
     if args.plot:
-        plot(result, *shown, args.plot)
+        plot(result, curves, spectra, args.plot)
     return 0
 
 
