@@ -16,14 +16,14 @@ class Spring(eqx.Module):
     cubic: jax.Array
     varying: jax.Array
 
-    def __call__(self, q, velocity, phase):
+    def __call__(self, q, velocity, phase, frequency):
         return (1.0 + self.varying * jnp.cos(phase)) * q + self.cubic * q**3
 
 
 class Contact(eqx.Module):
     """Hertz contact under a load that it opens without."""
 
-    def __call__(self, q, velocity, phase):
+    def __call__(self, q, velocity, phase, frequency):
         return (positive_power(1.0 + q, 3, 2) - 1.0) / 1.5
 
 

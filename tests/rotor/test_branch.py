@@ -79,9 +79,9 @@ def test_nothing_is_compiled_anew(branches):
     class Counted(eqx.Module):
         spring: Spring
 
-        def __call__(self, q, velocity, phase):
+        def __call__(self, q, velocity, phase, frequency):
             traces.append(1)
-            return self.spring(q, velocity, phase)
+            return self.spring(q, velocity, phase, frequency)
 
     def run(cubic, begin, step):
         spring = Counted(Spring(jnp.asarray(cubic), jnp.asarray(0.0)))
@@ -150,7 +150,7 @@ def test_the_rotor_softens_and_becomes_almost_periodic():
 class Wall(eqx.Module):
     """A spring that there is no more of beyond some motion."""
 
-    def __call__(self, q, velocity, phase):
+    def __call__(self, q, velocity, phase, frequency):
         return jnp.where(jnp.abs(q) > 1.0, jnp.nan, q)
 
 

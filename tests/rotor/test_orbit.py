@@ -44,7 +44,7 @@ def test_both_methods_find_the_same_orbit():
     )
     assert np.allclose(rest.y[:, -1], rest.y[:, 0], atol=SOLVER)
     # Where one ends the other may begin.
-    assert solve_orbit(system, 0.9, BALANCE, two).steps <= 1
+    assert solve_orbit(system, 0.9, BALANCE, two.displacement).steps <= 1
 
 
 @pytest.mark.parametrize("frequency", (0.5, 1.1))
@@ -72,16 +72,11 @@ def test_without_damping_the_flow_keeps_volume():
     inverse = np.sort_complex(np.round(1.0 / multipliers, 6))
     assert np.allclose(np.sort_complex(np.round(multipliers, 6)), inverse, atol=1e-5)
     assert orbit.stable
-    # The Jacobian of the flow is that of small changes along the orbit, and Hill's.
+    # The Jacobian of the flow is that of small changes along the orbit.
     balance = HarmonicBalance(5, 24, steps=48)
-    other = solve_orbit(system, orbit.frequency, balance, orbit)
-    flow = SHOOTING.linearised(system, orbit.unknowns, ratio)[1][:, :-1] + np.eye(10)
-    none = jnp.zeros((other.unknowns.size, other.unknowns.size + 1))
-    along = balance.monodromy(system, other.unknowns, ratio, none)
-    assert np.abs(flow - along).max() < DIFFERENCE * np.abs(flow).max()
-    hill = np.asarray(hill_multipliers(balance, system, other.unknowns, ratio))
-    apart = np.abs(hill[:, None] - multipliers[None]).min(axis=0)
-    assert apart.max() < DIFFERENCE
+    other = solve_orbit(system, orbit.frequency, balance, orbit.displacement)
+    apart = np.abs(np.asarray(other.multipliers)[:, None] - multipliers[None])
+    assert apart.min(axis=0).max() < DIFFERENCE and apart.min(axis=1).max() < DIFFERENCE
 
 
 def test_mathieu():
@@ -180,7 +175,6 @@ def test_order_of_the_flow(order):
 @pytest.mark.parametrize("name", METHODS)
 def test_gradients_against_differences(name):
     method, goal = METHODS[name], {"balance": 1e-6, "shooting": 1e-5}[name]
-    system = duffing()
 
     def measures(numbers):
         cubic, force, ratio, frequency = numbers
@@ -192,9 +186,9 @@ def test_gradients_against_differences(name):
 
     point = jnp.array([0.05, 0.2, 0.05, 0.85])
     run = jax.jit(measures)
-    forward = np.asarray(jax.jit(jax.jacfwd(measures))(point))
-    backward = np.asarray(jax.jit(jax.jacrev(measures))(point))
-    assert np.allclose(forward, backward, rtol=1e-8, atol=1e-9)
+    # Backward through the flow, forward through the balance.
+    way = jax.jacfwd if name == "balance" else jax.jacrev
+    exact = np.asarray(jax.jit(way(measures))(point))
     best = np.full((3, 4), np.inf)
     for size in (1e-3, 1e-4, 1e-5):
         steps = size * np.diag(np.asarray(point))
@@ -202,9 +196,8 @@ def test_gradients_against_differences(name):
             points = [run(point + j * step) for j in (-2, -1, 1, 2)]
             a, b, c, d = map(np.asarray, points)
             slope = (a - 8 * b + 8 * c - d) / (12 * step[k])
-            best[:, k] = np.minimum(best[:, k], np.abs(slope - forward[:, k]))
-    assert (best < goal * np.abs(forward).max(axis=1, keepdims=True)).all()
-    assert system.scale.shape == (1,)
+            best[:, k] = np.minimum(best[:, k], np.abs(slope - exact[:, k]))
+    assert (best < goal * np.abs(exact).max(axis=1, keepdims=True)).all()
 
 
 def test_the_balance_has_its_own_jacobian():

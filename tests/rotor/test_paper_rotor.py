@@ -175,7 +175,7 @@ def test_small_vibration_is_linear_and_axial_motion_of_second_order():
     assert np.isclose(growth[4], 4.0, rtol=1e-5)
     # Linear answer from the matrices; gyroscopic moments couple both planes.
     mass, w = np.asarray(system.mass), near[1]
-    stiffness = np.asarray(jax.jacfwd(lambda q: system.force(q, q, 0.0))(jnp.zeros(5)))
+    stiffness = np.asarray(jax.jacfwd(lambda q: system.force(q, q, w, w))(jnp.zeros(5)))
     damping = np.asarray(system.damping_matrix(jnp.asarray(w)))
     load = -1e-3 * mass @ np.array([0.0, 1.0, 0.0, 1.0, 0.0])
     linear = np.linalg.solve(stiffness - w**2 * mass + 1j * w * damping, load)

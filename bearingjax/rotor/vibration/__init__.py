@@ -17,6 +17,8 @@ from .rigid_rotor import OpposedPair as OpposedPair
 from .rigid_rotor import RigidRotor as RigidRotor
 from .rigid_rotor import natural_frequencies as natural_frequencies
 from .rigid_rotor import rigid_rotor as rigid_rotor
+from .rotor_vibration import RotorVibration as RotorVibration
+from .rotor_vibration import rotor_vibration as rotor_vibration
 from .shooting import Shooting as Shooting
 from .support_law import AbstractSupportLaw as AbstractSupportLaw
 from .support_law import CubicExpansion as CubicExpansion
@@ -24,4 +26,5 @@ from .support_law import FixedAngle as FixedAngle
 from .support_law import Grooves as Grooves
 from .support_law import MovingAngle as MovingAngle
 from .system import AbstractVibration as AbstractVibration
+from .system import HarmonicLoad as HarmonicLoad
 from .system import Vibration as Vibration

@@ -7,6 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, Float
 
 from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
@@ -21,7 +22,7 @@ from .continuation import (
     trace,
 )
 from .method import AbstractMethod
-from .orbit import STABLE, PeriodicOrbit, amplitudes, beginning
+from .orbit import STABLE, amplitudes, beginning
 from .system import AbstractVibration
 
 _LOCATED = 1e-7
@@ -86,7 +87,7 @@ def follow(
     begin: Scalar | float,
     end: Scalar | float,
     method: AbstractMethod,
-    start: PeriodicOrbit | None = None,
+    start: Float[Array, "sample n"] | None = None,
     *,
     parameter: Arclength | ChangeOfParameter | None = None,
     steps: Steps | None = None,
@@ -99,7 +100,8 @@ def follow(
         system: The system.
         begin, end: Frequencies [rad/s]; `end` may be below.
         method: `Shooting` or `HarmonicBalance`.
-        start: An orbit at `begin`, of any method; `None`: sought from rest.
+        start: Displacements at `begin` to start with, at even phases from 0 on, such
+            as an orbit's by any method (sample, n) [m, rad]; `None`: rest.
         parameter: What is held from point to point; `None`: `Arclength()`.
         steps: Lengths of steps; `None`: `Steps()`.
         points: Most points.

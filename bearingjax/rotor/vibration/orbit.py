@@ -138,7 +138,7 @@ def solve_orbit(
     system: AbstractVibration,
     frequency: Scalar | float,
     method: AbstractMethod,
-    start: PeriodicOrbit | None = None,
+    start: Float[Array, "sample n"] | None = None,
     *,
     max_steps: int = 50,
     throw: bool = True,
@@ -149,7 +149,8 @@ def solve_orbit(
         system: The system.
         frequency: Of the excitation [rad/s].
         method: `Shooting` or `HarmonicBalance`.
-        start: An orbit to begin with, of any method; `None`: rest.
+        start: Displacements to begin with, at even phases from 0 on, such as an
+            orbit's by any method (sample, n) [m, rad]; `None`: rest.
         max_steps: Most Newton steps. Static.
         throw: Raise if there is none. Static.
 
@@ -178,15 +179,17 @@ def solve_orbit(
     )
 
 
-def beginning(system: AbstractVibration, start: PeriodicOrbit | None) -> Motion:
-    """Motion to begin with: that of an orbit, or rest."""
+def beginning(
+    system: AbstractVibration, start: Float[Array, "sample n"] | None
+) -> Motion:
+    """Motion to begin with, from displacements at even phases [m, rad]; or rest."""
     if start is None:
         none = jnp.zeros((1, system.scale.shape[0]), system.scale.dtype)
         return none, none
-    return (
-        start.displacement / system.scale[None],
-        start.velocity / (system.scale * start.frequency)[None],
-    )
+    u = jnp.asarray(start) / system.scale[None]
+    order = jnp.arange(u.shape[0] // 2 + 1, dtype=u.dtype)[:, None]
+    turned = lax.complex(jnp.zeros_like(order), order) * jnp.fft.rfft(u, axis=0)
+    return u, jnp.fft.irfft(turned, n=u.shape[0], axis=0)
 
 
 @eqx.filter_jit

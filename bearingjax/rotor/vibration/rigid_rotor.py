@@ -19,7 +19,7 @@ from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 from ..damping import ModalDamping
 from .support_law import AbstractSupportLaw
-from .system import Vibration
+from .system import HarmonicLoad, Vibration
 
 
 class RigidRotor(eqx.Module):
@@ -102,31 +102,8 @@ class OpposedPair(eqx.Module):
         at_a, at_b = jnp.stack([x1, y1, z]), jnp.stack([x2, y2, -z])
         return self.a.potential(at_a) + self.b.potential(at_b)
 
-    def __call__(self, q, velocity, phase):
+    def __call__(self, q, velocity, phase, frequency):
         return jax.grad(self.potential)(q)
-
-
-class Shaking(eqx.Module):
-    """Unbalance of the disc, and a base that shakes along y.
-
-    Attributes:
-        mass: Mass matrix (5, 5) [kg].
-        unbalance: m0·e at the disc [kg m].
-        shares: Of the disc's motion, N1 and N2 [1].
-        base_acceleration: Amplitude [m/s²].
-    """
-
-    mass: Float[Array, "5 5"]
-    unbalance: Scalar
-    shares: Float[Array, "2"]
-    base_acceleration: Scalar
-
-    def __call__(self, phase, frequency):
-        turning = jnp.stack([jnp.cos(phase), jnp.sin(phase)])
-        centrifugal = self.unbalance * frequency**2 * jnp.outer(self.shares, turning)
-        along_y = jnp.asarray(np.array([0.0, 1.0, 0.0, 1.0, 0.0]))
-        shaken = -self.base_acceleration * jnp.cos(phase) * (self.mass @ along_y)
-        return jnp.append(centrifugal.reshape(-1), jnp.zeros_like(phase)) + shaken
 
 
 class Natural(NamedTuple):
@@ -188,10 +165,20 @@ def rigid_rotor(
         damping=ModalDamping(damping_ratio).matrix(undamped, undamped),
         gyroscopic=rotor.gyroscopic(),
         restoring=pair,
-        load=Shaking(
-            mass, as_real(unbalance), rotor.shares(), as_real(base_acceleration)
-        ),
+        load=_load(rotor, mass, as_real(unbalance), as_real(base_acceleration)),
         scale=jnp.broadcast_to(as_real(scale), (5,)),
         reference_frequency=natural.radial[0],
         speed=speed,
     )
+
+
+def _load(rotor, mass, unbalance, base_acceleration):
+    """Unbalance of the disc that turns from x to y, and a base that shakes along y."""
+    along_y = jnp.asarray(np.array([0.0, 1.0, 0.0, 1.0, 0.0]))
+    planes = [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
+    moments = [
+        jnp.append(jnp.outer(unbalance * rotor.shares(), plane).reshape(-1), 0.0)
+        for plane in map(jnp.asarray, planes)
+    ]
+    none = jnp.zeros(5)
+    return HarmonicLoad(none, -base_acceleration * (mass @ along_y), none, *moments)

@@ -1,6 +1,6 @@
 """Equations of motion of what vibrates: all that the solvers of orbits know of it.
 
-    M q'' + D(ω) q' + f(q, q', φ) = e(φ, ω),    φ = ω t
+    M q'' + D(ω) q' + f(q, q', φ, ω) = e(φ, ω),    φ = ω t
 
 with f and e periodic in the phase φ. Freedoms q are measured in `scale` and the phase
 takes the place of time, so that the unknowns of the solvers are pure numbers near one.
@@ -40,7 +40,11 @@ class AbstractVibration(eqx.Module):
 
     @abc.abstractmethod
     def force(
-        self, q: Float[Array, " n"], velocity: Float[Array, " n"], phase: Scalar
+        self,
+        q: Float[Array, " n"],
+        velocity: Float[Array, " n"],
+        phase: Scalar,
+        frequency: Scalar,
     ) -> Float[Array, " n"]:
         """Restoring forces f, positive against the displacement [N, N m].
 
@@ -48,6 +52,7 @@ class AbstractVibration(eqx.Module):
             q: Freedoms [m, rad].
             velocity: Their rates [m/s, rad/s].
             phase: φ [rad]; f repeats after 2π.
+            frequency: ω [rad/s].
         """
 
     @abc.abstractmethod
@@ -67,8 +72,8 @@ class Vibration(AbstractVibration):
         mass, scale, reference_frequency: As of `AbstractVibration`.
         damping: Damping matrix [N s/m, N m s/rad].
         gyroscopic: Gyroscopic matrix over the speed, skew [kg, kg m²].
-        restoring: (q, velocity, phase) -> forces (n,) [N, N m]; a Module, so that its
-            numbers are traced.
+        restoring: (q, velocity, phase, frequency) -> forces (n,) [N, N m]; a Module,
+            so that its numbers are traced.
         load: (phase, frequency) -> forces (n,) [N, N m]; likewise.
         speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
 
@@ -100,11 +105,39 @@ class Vibration(AbstractVibration):
         speed = frequency if self.speed is None else self.speed
         return self.damping + speed * self.gyroscopic
 
-    def force(self, q, velocity, phase):
-        return self.restoring(q, velocity, phase)
+    def force(self, q, velocity, phase, frequency):
+        return self.restoring(q, velocity, phase, frequency)
 
     def excitation(self, phase, frequency):
         return self.load(phase, frequency)
+
+
+class HarmonicLoad(eqx.Module):
+    """A constant load, a harmonic one, and one that grows with the frequency squared.
+
+    Attributes:
+        constant: Such as weight (n,) [N, N m].
+        cosine, sine: Amplitudes of cos φ and sin φ (n,) [N, N m].
+        unbalance_cosine, unbalance_sine: Likewise, over ω² (n,) [kg m, kg m²].
+
+    Traced: all fields.
+    """
+
+    constant: Float[Array, " n"]
+    cosine: Float[Array, " n"]
+    sine: Float[Array, " n"]
+    unbalance_cosine: Float[Array, " n"]
+    unbalance_sine: Float[Array, " n"]
+
+    @classmethod
+    def none(cls, size: int) -> "HarmonicLoad":
+        """No load on `size` freedoms."""
+        return cls(*(5 * (jnp.zeros(size),)))
+
+    def __call__(self, phase, frequency):
+        cosine = self.cosine + frequency**2 * self.unbalance_cosine
+        sine = self.sine + frequency**2 * self.unbalance_sine
+        return self.constant + jnp.cos(phase) * cosine + jnp.sin(phase) * sine
 
 
 def frequency_of(system: AbstractVibration, ratio: Scalar) -> Scalar:
@@ -134,7 +167,7 @@ def out_of_balance(
     q, velocity = scale * u, frequency * scale * rate
     inertia = system.mass @ (frequency**2 * scale * second)
     forces = system.damping_matrix(frequency) @ velocity
-    forces = forces + system.force(q, velocity, phase)
+    forces = forces + system.force(q, velocity, phase, frequency)
     left = inertia + forces - system.excitation(phase, frequency)
     unit_force = jnp.diagonal(system.mass) * scale * system.reference_frequency**2
     return left / unit_force

@@ -1,0 +1,97 @@
+"""Rotors of shaft, discs and supports in the nonlinear solvers."""
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from tolerances import SOLVER
+from vibrations import ROTOR, grooves, rotor
+
+import bearingjax as bj
+from bearingjax.numerics.types import Scalar, as_real
+from bearingjax.rotor import AbstractSupport, Housing, Rotor, Shaft, Unbalance
+from bearingjax.rotor.vibration import (
+    AbstractSupportLaw,
+    HarmonicBalance,
+    rotor_vibration,
+    solve_orbit,
+)
+
+BALANCE = HarmonicBalance(3, 16, steps=16)
+
+
+class Cubic(AbstractSupport):
+    """Springs that stiffen, and dampers."""
+
+    station: int = eqx.field(static=True)
+    cubic: Scalar = eqx.field(converter=as_real)
+    housing: Housing | None = eqx.field(default=None, kw_only=True)
+
+    def force(self, motion, velocity, speed):
+        square = motion[0] ** 2 + motion[1] ** 2
+        hard = self.cubic * square * jnp.array([1.0, 1.0, 0.0, 0.0, 0.0]) * motion
+        return 2e7 * motion + hard + 200.0 * velocity
+
+
+class Bearing(AbstractSupport):
+    """A law of the paper as a support; `sense` is -1 for the opposed one."""
+
+    station: int = eqx.field(static=True)
+    law: AbstractSupportLaw
+    sense: int = eqx.field(static=True)
+    housing: Housing | None = eqx.field(default=None, kw_only=True)
+
+    def force(self, motion, velocity, speed):
+        side = jnp.array([1.0, 1.0, float(self.sense)])
+        return jnp.append(side * self.law.force(side * motion[:3]), jnp.zeros(2))
+
+
+def test_it_is_the_linear_rotor_where_supports_are_linear():
+    housing = Housing(4.0, [3e8, 3e8, 3e8], [100.0, 100.0, 100.0])
+    shaft = Shaft([0.0, 0.2, 0.5], [0.03, 0.03])
+    disc = bj.rotor.Disc(1, 6.0, 0.02, 0.01)
+    supports = [
+        Cubic(station=0, cubic=0.0),
+        Cubic(station=2, cubic=0.0, housing=housing),
+    ]
+    whole = Rotor(shaft, [disc], supports, damping=bj.rotor.ModalDamping(0.01))
+    weight = Unbalance(1, 1e-5, 0.3)
+    system = rotor_vibration(whole, weight, scale=1e-5, reference_frequency=1e3)
+    orbit = solve_orbit(system, 900.0, BALANCE)
+    linear = bj.rotor.unbalance_response(whole, weight, [900.0])
+    motions = np.asarray(whole.motions())
+    found = np.asarray(orbit.displacement) @ motions.T
+    phase = 2.0 * np.pi * np.arange(16) / 16
+    complex_motion = np.concatenate(
+        [np.ravel(linear.motion[0]), np.ravel(linear.housing[0])]
+    )
+    wanted = np.real(complex_motion[None, :] * np.exp(1j * phase)[:, None])
+    assert np.abs(found - wanted).max() < SOLVER * np.abs(wanted).max()
+    assert orbit.steps == 1
+
+
+def test_the_rigid_rotor_is_that_of_the_paper():
+    angle, law = 36, grooves(36).fixed_angle()
+    own = rotor(angle, damping_ratio=0.01, unbalance=3e-6)
+    shaft = Shaft([0.0, 0.125, 0.5], [0.025, 0.025], material=bj.Material(2.1e11, 0.3))
+    disc = bj.rotor.Disc(1, 10.0, 0.2, 0.1)
+    bearings = [
+        Bearing(station=0, law=law, sense=1),
+        Bearing(station=2, law=law, sense=-1),
+    ]
+    damping = bj.rotor.ModalDamping(0.01)
+    whole = Rotor(shaft, [disc], bearings, damping=damping, rigid=True)
+    system = rotor_vibration(
+        whole,
+        Unbalance(1, 3e-6),
+        scale=law.preload_displacement,
+        reference_frequency=own.reference_frequency,
+    )
+    w = 0.9 * float(own.reference_frequency)
+    one, two = (solve_orbit(s, w, BALANCE) for s in (own, system))
+    motion = np.asarray(two.displacement)
+    # (ux uy uz gx gy) at A; x at B is ux + l gy, y is uy - l gx.
+    x, y, z, gx, gy = motion.T
+    seen = np.stack([x, y, x + 0.5 * gy, y - 0.5 * gx, z], axis=1)
+    assert np.abs(seen - one.displacement).max() < 1e-6 * one.amplitude.max()
+    assert float(one.amplitude.max()) > 0.05 * float(law.preload_displacement)
+    assert np.isclose(ROTOR.mass()[4, 4], whole.mass, rtol=1e-12)
