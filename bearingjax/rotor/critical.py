@@ -14,7 +14,14 @@ from ..design.checks import is_traced
 from ..numerics.implicit import stop
 from ..numerics.types import as_count
 from .damping import mass_normal
-from .modes import direction, eigenpairs, faster_than, largest_real, to_complex
+from .modes import (
+    direction,
+    eigenpairs,
+    largest_real,
+    resonances_above,
+    resonates,
+    to_complex,
+)
 from .rotor import Rotor, RotorMatrices
 
 _RISING, _FULL = 12, 5
@@ -38,8 +45,8 @@ class CriticalSpeeds(eqx.Module):
             forward and backward at one speed (mode,).
         damping_ratio: -Re λ/|λ| there (mode,) [1].
         shape: (ux uy uz gx gy) of every node (mode, node, 5) [m, rad], as in `Modes`.
-        missed: How many more modes must become slower than the speed below the last
-            one found; 0 unless the search went wrong.
+        missed: How many more there may be below the last one found, of a damping
+            ratio below √½; 0 unless the search went wrong.
     """
 
     speed: Float[Array, " mode"]
@@ -56,7 +63,8 @@ def critical_speeds(rotor: Rotor, *, count: Any = 6) -> CriticalSpeeds:
     K v = Ω² (M - iG) v, a Hermitian problem that has them all. From there, as damping
     rises to what it is, and from the damped modes at one speed, Newton's method on
     λ(Ω) leads to those with damping and with supports that follow the speed. A count
-    of the modes that are faster than the speed tells whether one was missed.
+    of the modes that are faster than the speed tells whether one was missed; those
+    with a damping ratio above √½, which cannot resonate, are not counted.
 
     Args:
         rotor: The rotor, or what has a `linearised(speed)` as it has.
@@ -67,14 +75,14 @@ def critical_speeds(rotor: Rotor, *, count: Any = 6) -> CriticalSpeeds:
         to all numbers of the rotor.
 
     Warns:
-        UserWarning: If one was missed. It may be one that dampers all but stop.
+        UserWarning: If one may be missing.
     """
     count = as_count(count)
     whole("critical_speeds", "count", count)
     found = _critical(rotor, count)
-    if not is_traced(found.missed) and int(found.missed) != 0:
+    if not is_traced(found.missed) and int(found.missed) > 0:
         warnings.warn(
-            f"critical_speeds: {abs(int(found.missed))} more below"
+            f"critical_speeds: {int(found.missed)} may be missing below"
             f" {float(jnp.nanmax(found.speed)):g} rad/s: see a Campbell diagram; strong"
             " dampers, or supports that follow the speed, led the search away",
             stacklevel=2,
@@ -102,7 +110,7 @@ def _critical(rotor, count):
     _, nodes = largest_real(nodes, matrices.length)
     nodes = jnp.where(found[:, None, None], nodes, jnp.nan)
     return CriticalSpeeds(
-        speed, whirl, -rate / size, nodes, _missed(fixed, found, stop(speed))
+        speed, whirl, -rate / size, nodes, _missed(fixed, found, stop(at))
     )
 
 
@@ -127,13 +135,15 @@ def _search(rotor, count):
     return found, point, right, left
 
 
-def _missed(rotor, found, speed):
-    """Modes that became slower than the speed, less those found."""
+def _missed(rotor, found, point):
+    """Modes that can resonate and become slower than the speed, less those found."""
+    rate, speed = point.T
     last = (1.0 - 1e-6) * jnp.max(jnp.where(found, speed, 0.0))
     first = 1e-3 * jnp.min(jnp.where(found, speed, jnp.maximum(last, 1.0)))
-    counts = [faster_than(rotor.linearised(at), at) for at in (first, last)]
-    below = jnp.sum(found & (speed < last))
-    return jnp.where(jnp.any(found), counts[0] - counts[1] - below, 0)
+    counts = [resonances_above(rotor.linearised(at), at) for at in (first, last)]
+    below = jnp.sum(found & (speed < last) & resonates(lax.complex(rate, speed)))
+    missed = jnp.maximum(counts[0] - counts[1] - below, 0)
+    return jnp.where(jnp.any(found), missed, 0)
 
 
 def _once(found, point, right):

@@ -29,9 +29,9 @@ _COINCIDENT = 1e-7
 """Relative distance below which two eigenvalues are one, of several modes [1]."""
 _PLANAR = 1e-6
 """Share of whirl below which a mode has no direction [1]."""
-_STILL = 1e-7
-"""Share of the largest frequency of the model below which round-off hides whether a
-mode oscillates: it counts as still [1]."""
+_STILL = 7.0
+"""In roots of the round-off: the share of the largest frequency of the model below
+which a mode counts as still, since round-off hides whether it oscillates [1]."""
 _SPARE = 8
 """Modes above those asked for that a Campbell diagram follows as well."""
 
@@ -198,7 +198,8 @@ def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
     n = fixed.mass.shape[0]
     factor, stiffness, state = _state(fixed)
     values, left, right = lax.linalg.eig(state)
-    floor = _STILL * jnp.sqrt(jnp.linalg.norm(stiffness))
+    eps = jnp.finfo(stiffness.dtype).eps
+    floor = _STILL * jnp.sqrt(eps * jnp.linalg.norm(stiffness))
     values = jnp.where(jnp.abs(values) <= floor, 0.0, values)
     real = to_complex(values.real)
     values = jnp.where(jnp.abs(values.imag) <= floor, real, values)
@@ -230,15 +231,25 @@ def _state(matrices):
     return factor, stiffness, jnp.block([[jnp.zeros_like(eye), eye], lower])
 
 
-def faster_than(matrices: RotorMatrices, frequency: Any) -> Int[Array, ""]:
-    """How many modes oscillate faster than at a frequency.
+def resonances_above(matrices: RotorMatrices, frequency: Any) -> Int[Array, ""]:
+    """How many modes that can resonate oscillate faster than at a frequency.
 
     Args:
         matrices: Of the rotor.
         frequency: ω [rad/s].
     """
     *_, state = _state(matrices)
-    return jnp.sum(jnp.linalg.eigvals(state).imag > frequency)
+    values = jnp.linalg.eigvals(state)
+    return jnp.sum((values.imag > frequency) & resonates(values))
+
+
+def resonates(value: Complex[Array, "*mode"]) -> Bool[Array, "*mode"]:
+    """Whether the damping ratio is below √½: a response with a peak.
+
+    Args:
+        value: Eigenvalues [rad/s].
+    """
+    return jnp.abs(value.real) < value.imag
 
 
 def _refined(matrices, value, right, left):

@@ -72,7 +72,7 @@ def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceR
     The force of an unbalance U at azimuth φ is U Ω² (cos(Ωt + φ), sin(Ωt + φ)).
 
     Args:
-        rotor: The rotor, or what has a `linearised(speed)` as it has.
+        rotor: The rotor.
         unbalances: `Unbalance`, or several.
         speeds: (speed,) [rad/s].
 

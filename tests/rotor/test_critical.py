@@ -9,6 +9,7 @@ from tolerances import DIFFERENCE, PUBLISHED, SOLVER
 
 import bearingjax as bj
 from bearingjax.rotor import AbstractSupport
+from bearingjax.rotor.critical import _missed
 
 # Method 002, section 002.4: angle, c_r [1e8 N/m], c_a [1e7 N/m], radial f, axial f,
 # forward critical [Hz].
@@ -60,6 +61,12 @@ def test_they_lie_on_the_campbell_diagram():
         np.testing.assert_allclose(2 * np.pi * at.frequency[k], speed, rtol=SOLVER)
         np.testing.assert_allclose(at.damping_ratio[k], ratio, rtol=DIFFERENCE)
     assert critical.damping_ratio.min() > 1e-3
+    # Had the search not found the second one, the count would have told.
+    rate = -critical.damping_ratio * critical.speed
+    point = jnp.stack([rate, critical.speed], axis=1)
+    for found, missed in (([1, 1, 1, 1], 0), ([1, 0, 1, 1], 1)):
+        found = jnp.array(found, dtype=bool)
+        assert eqx.filter_jit(_missed)(rotor, found, point) == missed
     # Dampers that all but lock the supports: still all of them, each once.
     locked = bj.critical_speeds(friswell(1e6, 0.8e6, 6e4), count=4)
     rigid = bj.critical_speeds(friswell(1e10, 0.9e10, 5e2), count=4)
