@@ -7,18 +7,28 @@ design, oil, drag and cage. All in one pass backwards; forwards too, one way. Be
 them central differences with steps from 1e-2 to 1e-6 of the number: the least of
 the errors over the steps, which form a V. Errors are relative to the derivative, or to
 a thousandth of what is differentiated over the number where that is more (numbers that
-do not matter).
+do not matter). In time the clearance of the pockets is left out: it is zero, at its
+bound, and a ball that first has to cross it moves otherwise.
 
 Run: python benchmarks/skid_gradients.py [--smoke]
 
-Last run (the way in time, which needs some ten minutes, not yet):
+Last run:
 
-end state: 38 numbers; forwards and backwards agree to 7e-14
-  slip: largest errors contact_angle 4e-07, inner 7e-09, least_film 5e-09
+end state: 38 numbers; forwards and backwards agree to 6e-14
+  slip: largest errors contact_angle 6e-07, inner 7e-09, least_film 5e-09
   torque: largest errors inner_osculation 1e-07, outer_osculation 4e-08,
     reference_viscosity 2e-08
   sliding: largest errors inner_osculation 1e-08, density 3e-09,
     reference_viscosity 3e-09
+in time: 37 numbers; forwards and backwards agree to 3e-09
+  slip: largest errors cage.stiffness 6e-06, cage.inertia 1e-06
+  torque: largest errors cage.stiffness 7e-06, pitch_diameter 3e-08
+  sliding: largest errors cage.stiffness 1e-06, cage.inertia 3e-07
+AMD EPYC, 2 cores, load average 3.3; devices: 1 cpu; jax 0.10.1
+
+Where balls meet the cage on the way the force has a kink inside a step, and derivatives
+are as good as the steps are short: with pockets of 1 µm, slip by the inner speed and by
+the clearance are 1e-2 off at a tolerance of 1e-8, 2e-3 and 3e-4 at 1e-10.
 """
 
 import argparse
@@ -129,14 +139,17 @@ def compared(name, function, load, steps):
     _, forward = jax.jvp(lambda f: value(f, "forward"), (none,), (way,))
     both = np.max(np.abs(forward - slopes @ way) / np.abs(forward))
     here = np.abs(value(none, "reverse"))
+    left_out = [name == "in time" and "pocket_clearance" in n for n in names]
     found = np.full((len(WHAT), vector.size), np.inf)
-    for k in range(vector.size):
+    found[:, left_out] = 0.0
+    for k in np.flatnonzero(np.logical_not(left_out)):
         for step in steps:
             ends = [value(none.at[k].set(s), "reverse") for s in (step, -step)]
             slope = (ends[0] - ends[1]) / (2.0 * step)
             scale = np.maximum(np.abs(slopes[:, k]), 1e-3 * here)
             found[:, k] = np.fmin(found[:, k], np.abs(slope - slopes[:, k]) / scale)
-    print(f"{name}: {vector.size} numbers; forwards and backwards agree to {both:.0e}")
+    count = vector.size - sum(left_out)
+    print(f"{name}: {count} numbers; forwards and backwards agree to {both:.0e}")
     within = both < BOUNDS[name]
     for row, what in zip(found, WHAT, strict=True):
         order = np.argsort(row)[::-1][:3]

@@ -8,9 +8,12 @@ Jacobian by differences, as users would. Error: the largest of all orbital speed
 times, relative to the motion at the finest tolerance of ours. Time: the integration,
 median of the rounds, in shuffled order; load solve and table are at hand.
 
-Then 64 loads in one call of ours, load solves and tables included.
+Then the end state by `steady_skid`, its load solve included; error of the orbital speed
+against the motion in time 2 s later (axial), against five times as many places along
+the orbit (both loads). Then 64 loads in one call of ours, load solves and tables
+included.
 
-Run: python benchmarks/skid_transient.py [--smoke]
+Run: python benchmarks/skid_transient.py [--smoke] [--plot OUT.png]
 
 Last run (the times of ours have halved since, but for 64 loads, which are of after):
 
@@ -56,7 +59,7 @@ from han_chu import ELEMENT, FREE, MODEL, SPEED  # noqa: E402
 from scipy.integrate import solve_ivp  # noqa: E402
 from timing import machine, shuffled, timed  # noqa: E402
 
-from bearingjax.dynamics import skid  # noqa: E402
+from bearingjax.dynamics import skid, steady_skid  # noqa: E402
 from bearingjax.dynamics.beginning import surroundings  # noqa: E402
 from bearingjax.dynamics.integration import Options, integrated  # noqa: E402
 from bearingjax.dynamics.load_table import _pieces  # noqa: E402
@@ -205,7 +208,7 @@ def many(loads, duration, places, tolerance):
 
 
 def one_run(name, tolerances, rounds, smoke):
-    """Rows of the work-precision table."""
+    """Rows of the work-precision table: method, error, time [ms]."""
     load, duration, places = CASES[name]
     duration = 0.002 if smoke else duration
     around, start = prepared(np.asarray(load), places)
@@ -222,13 +225,75 @@ def one_run(name, tolerances, rounds, smoke):
         errors[key], counts[key] = np.max(np.abs(orbit / exact - 1.0)), int(count)
         assert errors[key] < 0.1, (key, errors[key])
     seconds = shuffled(calls, rounds, warm=False)
+    rows = []
     for key in calls:
         median = 1e3 * statistics.median(seconds[key])
+        rows.append((key[0], float(errors[key]), median))
         print(
             f"{name:11} {key[0]:8} {key[1]:10.0e} {errors[key]:9.1e}"
             f" {median:9.1f} {counts[key]:9d}",
             flush=True,
         )
+    return rows
+
+
+@eqx.filter_jit
+def end(load, places):
+    """End state: mean orbital speed [rad/s]."""
+    given = {"speed": SPEED, "free": FREE, "places": places, "throw": False}
+    return steady_skid(MODEL, load, **given).cage_speed
+
+
+def steady_row(name, smoke):
+    """Of the end state: its name, error, time [ms]."""
+    load, _, places = CASES[name]
+    load = jnp.asarray(load)
+    found = float(end(load, places))
+    if places > 1:
+        exact = float(end(load, 5 * places))
+    else:
+        duration = 0.01 if smoke else 2.0
+        around, start = prepared(np.asarray(load), places)
+        at = as_real(np.linspace(0.0, duration, 2))
+        exact = float(ours(around, start, at, 1e-10)[0][-1].mean())
+    calls = (timed(lambda: jax.block_until_ready(end(load, places))) for _ in range(9))
+    median = 1e3 * statistics.median(seconds for seconds, _ in calls)
+    error = abs(found / exact - 1.0)
+    print(
+        f"{name:11} end state, {places} places {error:17.1e} {median:9.1f}", flush=True
+    )
+    return "end state", error, median
+
+
+def plot(tables, target):
+    """Error against time."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(
+        1, len(tables), figsize=(5.5 * len(tables), 4.3), squeeze=False
+    )
+    looks = {
+        "ours": ("#0072B2", "o", "ours"),
+        "BDF": ("#D55E00", "s", "SciPy, BDF"),
+        "Radau": ("#009E73", "^", "SciPy, Radau"),
+        "end state": ("black", "*", "ours, end state without the way"),
+    }
+    for ax, (name, rows) in zip(axes[0], tables.items(), strict=True):
+        for method, (colour, mark, label) in looks.items():
+            points = [(ms, error) for m, error, ms in rows if m == method]
+            style = {"color": colour, "marker": mark, "label": label}
+            ax.loglog(*zip(*points, strict=True), **style, ms=7)
+        ax.set_title(name, loc="left")
+        ax.set_xlabel("time [ms]")
+        ax.set_ylabel("error of the orbital speed [1]")
+        ax.grid(alpha=0.3)
+        ax.spines[["top", "right"]].set_visible(False)
+    axes[0][0].legend(frameon=False, fontsize=9)
+    figure.tight_layout()
+    figure.savefig(target, dpi=150)
 
 
 def batch(name, tolerance, scipy_tolerance, count, rounds, smoke):
@@ -262,13 +327,18 @@ def main():
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--smoke", action="store_true")
-    smoke = parser.parse_args().smoke
+    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
+    args = parser.parse_args()
+    smoke = args.smoke
     names = ["axial"] if smoke else list(CASES)
     tolerances = [1e-5] if smoke else [1e-4, 1e-6, 1e-8]
     rounds = 1 if smoke else 3
     print("case        method    tolerance    error   time, ms   steps or calls")
-    for name in names:
-        one_run(name, tolerances, rounds, smoke)
+    tables = {name: one_run(name, tolerances, rounds, smoke) for name in names}
+    for name, rows in tables.items():
+        rows.append(steady_row(name, smoke))
+    if args.plot:
+        plot(tables, args.plot)
     for name in names:
         batch(name, 1e-5, 1e-8, 2 if smoke else 64, rounds, smoke)
     print(machine())

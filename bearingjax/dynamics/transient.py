@@ -98,7 +98,8 @@ def skid(
             balls strike the cage, 6 to 70 times larger ones were seen.
         max_steps: Step limit. Static.
         derivatives: "reverse" or "forward": the mode in which the result can be
-            differentiated.
+            differentiated. Where balls meet or leave the cage on the way derivatives
+            need a small tolerance: 1e-2 off at 1e-8, 2e-3 at 1e-10 was seen.
         progress: Show a bar.
         prescribed, free, fixed_ring: As of `solve_load`.
         throw: Raise if the end is not reached; otherwise read `result`.
