@@ -14,7 +14,13 @@ Run: python benchmarks/robust_skid.py [--smoke] [--first K] [--runs N]
 
 Last run:
 
-Not yet run.
+300 runs in 5961 s (others used the machine): 260 converged, 34 step_limit, 6
+non_finite; wrong: none
+AMD EPYC, 2 cores, load average 5.9; devices: 1 cpu; jax 0.10.1
+
+The 34 need more than 5000 steps, 26 of them with the ring balanced at every time. The 6
+are Newtonian films of oils that pressure has made a glass, where no step is small
+enough.
 """
 
 import argparse
