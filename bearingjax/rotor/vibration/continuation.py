@@ -21,6 +21,7 @@ from jax import lax
 from jaxtyping import Array, Float, Int
 
 from ...numerics.result import Result
+from ...numerics.units import unit
 from ...numerics.types import Scalar, as_real
 from .method import AbstractMethod
 from .orbit import along_frequency, correct
@@ -81,18 +82,20 @@ class Steps(eqx.Module):
     at least half of it.
 
     Attributes:
-        first, smallest, largest: [1].
+        first: First step [1].
+        smallest: Least step; where even that fails the branch ends [1].
+        largest: Longest step [1].
         newton: N_opt [1].
         turn: Most by which the branch may turn in a step [rad].
 
     Traced: all fields.
     """
 
-    first: Scalar = eqx.field(converter=as_real, default=0.01)
-    smallest: Scalar = eqx.field(converter=as_real, default=1e-7)
-    largest: Scalar = eqx.field(converter=as_real, default=0.1)
-    newton: Scalar = eqx.field(converter=as_real, default=3.0)
-    turn: Scalar = eqx.field(converter=as_real, default=0.5)
+    first: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.01)
+    smallest: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1e-7)
+    largest: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.1)
+    newton: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=3.0)
+    turn: Scalar = eqx.field(converter=as_real, metadata=unit("rad"), default=0.5)
 
 
 class Traced(NamedTuple):

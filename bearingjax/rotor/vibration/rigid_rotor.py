@@ -30,7 +30,8 @@ class RigidRotor(eqx.Module):
         shaft_diameter: d [m].
         density: Of the shaft [kg/m³].
         disc_mass: m0 [kg].
-        disc_polar_inertia, disc_diametral_inertia: I0, I1 [kg m²].
+        disc_polar_inertia: I0 [kg m²].
+        disc_diametral_inertia: I1 [kg m²].
         disc_position: ζ1, from bearing A [m].
 
     Traced: all fields.

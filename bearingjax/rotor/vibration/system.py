@@ -69,23 +69,33 @@ class Vibration(AbstractVibration):
     """A system put together from matrices and functions.
 
     Attributes:
-        mass, scale, reference_frequency: As of `AbstractVibration`.
+        mass: As of `AbstractVibration` [kg, kg m²].
         damping: Damping matrix [N s/m, N m s/rad].
         gyroscopic: Gyroscopic matrix over the speed, skew [kg, kg m²].
         restoring: (q, velocity, phase, frequency) -> forces (n,) [N, N m]; a Module,
             so that its numbers are traced.
         load: (phase, frequency) -> forces (n,) [N, N m]; likewise.
+        scale: As of `AbstractVibration` [m, rad].
+        reference_frequency: As of `AbstractVibration` [rad/s].
         speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
 
     Traced: all numbers.
     """
 
-    mass: Float[Array, "n n"] = eqx.field(converter=as_real)
-    damping: Float[Array, "n n"] = eqx.field(converter=as_real)
-    gyroscopic: Float[Array, "n n"] = eqx.field(converter=as_real)
+    mass: Float[Array, "n n"] = eqx.field(
+        converter=as_real, metadata=unit(("kg", "kg m²"))
+    )
+    damping: Float[Array, "n n"] = eqx.field(
+        converter=as_real, metadata=unit(("N s/m", "N m s/rad"))
+    )
+    gyroscopic: Float[Array, "n n"] = eqx.field(
+        converter=as_real, metadata=unit(("kg", "kg m²"))
+    )
     restoring: Callable
     load: Callable
-    scale: Float[Array, " n"] = eqx.field(converter=as_real)
+    scale: Float[Array, " n"] = eqx.field(
+        converter=as_real, metadata=unit(("m", "rad"))
+    )
     reference_frequency: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"))
     speed: Scalar | None = eqx.field(
         converter=as_real, metadata=unit("rad/s"), default=None
