@@ -21,8 +21,8 @@ from jax import lax
 from jaxtyping import Array, Float, Int
 
 from ...numerics.result import Result
-from ...numerics.units import unit
 from ...numerics.types import Scalar, as_real
+from ...numerics.units import unit
 from .method import AbstractMethod
 from .orbit import along_frequency, correct
 from .system import AbstractVibration
