@@ -15,30 +15,34 @@ included.
 
 Run: python benchmarks/skid_transient.py [--smoke] [--plot OUT.png]
 
-Last run (the times of ours have halved since, but for 64 loads, which are of after):
+Last run (another process on the other core):
 
 case        method    tolerance    error   time, ms   steps or calls
-axial       ours          1e-04   9.5e-06      27.0       169
-axial       BDF           1e-04   1.3e-02     622.3       736
-axial       Radau         1e-04   3.9e-02    1765.7      3266
-axial       ours          1e-06   7.3e-08      53.3       300
-axial       BDF           1e-06   3.9e-03     346.4       604
-axial       Radau         1e-06   1.9e-04     627.4      1373
-axial       ours          1e-08   7.0e-10     122.5       679
-axial       BDF           1e-08   1.6e-06     475.2      1034
-axial       Radau         1e-08   5.4e-08     653.6      2566
-both loads  ours          1e-04   9.6e-05     111.3       556
-both loads  BDF           1e-04   7.7e-03     926.7       693
-both loads  Radau         1e-04   4.8e-03    1512.7      1942
-both loads  ours          1e-06   3.7e-06     335.1      1508
-both loads  BDF           1e-06   1.8e-03    1253.1      1995
-both loads  Radau         1e-06   2.7e-04    2077.3      3877
-both loads  ours          1e-08   3.1e-08     831.2      4077
-both loads  BDF           1e-08   5.4e-05    2383.5      5173
-both loads  Radau         1e-08   5.5e-06    4140.7      9965
-64 loads in one call, load solves included: axial 0.64 s, both loads 5.8 s; SciPy's BDF
-one after the other at 1e-6, without: 28.7 s and 88.7 s
-AMD EPYC, 2 cores, load average 1.8; devices: 1 cpu; jax 0.10.1
+axial       ours          1e-04   1.0e-05      13.2       170
+axial       BDF           1e-04   1.3e-02     603.1       835
+axial       Radau         1e-04   4.8e-03     429.0      1013
+axial       ours          1e-06   3.3e-08      19.8       308
+axial       BDF           1e-06   3.9e-03     290.8       604
+axial       Radau         1e-06   2.7e-04     534.3      1441
+axial       ours          1e-08   1.8e-09      44.4       692
+axial       BDF           1e-08   1.6e-06     343.0      1054
+axial       Radau         1e-08   1.5e-07     589.6      2577
+both loads  ours          1e-04   1.2e-04      58.2       562
+both loads  BDF           1e-04   2.0e-02     739.6       708
+both loads  Radau         1e-04   5.3e-03    1167.4      1737
+both loads  ours          1e-06   3.1e-06     150.1      1522
+both loads  BDF           1e-06   2.4e-03    1065.8      2008
+both loads  Radau         1e-06   3.7e-04    1884.0      3752
+both loads  ours          1e-08   9.5e-08     385.7      4073
+both loads  BDF           1e-08   3.7e-05    2087.6      5227
+both loads  Radau         1e-08   6.5e-06    3811.8      9946
+axial       end state, 1 places           1.1e-14       1.2
+both loads  end state, 96 places           2.8e-08      21.2
+axial: 64 loads in one call 0.76 s, load solves included; SciPy's BDF one after the
+other 30.45 s, without: 40 times; largest difference 8.9e-04
+both loads: 64 loads in one call 4.80 s, load solves included; SciPy's BDF one after the
+other 137.58 s, without: 29 times; largest difference 4.2e-03
+AMD EPYC, 2 cores, load average 2.4; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
