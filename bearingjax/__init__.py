@@ -79,6 +79,7 @@ from .optimise import Stiffness as Stiffness
 from .optimise import StiffnessTarget as StiffnessTarget
 from .optimise import Variable as Variable
 from .optimise import optimise as optimise
+from .rotor import BearingSupport as BearingSupport
 from .rotor import Disc as Disc
 from .rotor import Housing as Housing
 from .rotor import LinearSupport as LinearSupport

@@ -1,6 +1,7 @@
 """The bearing in a rotor: linear, nonlinear vibration, coefficients, adapters."""
 
 from . import vibration as vibration
+from .bearing_support import BearingSupport as BearingSupport
 from .coefficients import stiffness_table as stiffness_table
 from .critical import CriticalSpeeds as CriticalSpeeds
 from .critical import critical_speeds as critical_speeds

@@ -14,11 +14,11 @@ from ..design.material import Material
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 
-_STIFFNESS = (
+STIFFNESS_UNITS = (
     *3 * (("N/m", "N/m", "N/m", "N", "N"),),
     *2 * (("N", "N", "N", "N m", "N m"),),
 )
-_DAMPING = (
+DAMPING_UNITS = (
     *3 * (("N s/m", "N s/m", "N s/m", "N s", "N s"),),
     *2 * (("N s", "N s", "N s", "N m s", "N m s"),),
 )
@@ -135,13 +135,14 @@ class PointMass(AbstractPart):
         return Disc(self.station, self.mass, nothing, nothing).inertia()
 
 
-def _matrix(value):
+def square_matrix(value):
     """Converter: one number or one for each freedom stands on the diagonal."""
     value = as_real(value)
     return jnp.diag(value) if getattr(value, "ndim", 0) == 1 else value
 
 
-def _check_matrix(owner, name, size):
+def check_matrix(owner, name, size):
+    """Raise unless a field is a square matrix of stiffness or damping."""
     value = getattr(owner, name)
     if getattr(value, "shape", None) != (size, size):
         raise ValueError(
@@ -169,18 +170,18 @@ class Housing(eqx.Module):
 
     mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
     stiffness: Float[Array, "3 3"] = eqx.field(
-        converter=_matrix, metadata=unit((("N/m",) * 3,) * 3)
+        converter=square_matrix, metadata=unit((("N/m",) * 3,) * 3)
     )
     damping: Float[Array, "3 3"] = eqx.field(
-        converter=_matrix,
+        converter=square_matrix,
         metadata=unit((("N s/m",) * 3,) * 3),
         default=(0.0, 0.0, 0.0),
     )
 
     def __check_init__(self):
         positive(self, "mass")
-        _check_matrix(self, "stiffness", 3)
-        _check_matrix(self, "damping", 3)
+        check_matrix(self, "stiffness", 3)
+        check_matrix(self, "damping", 3)
 
 
 class AbstractSupport(eqx.Module):
@@ -235,17 +236,17 @@ class LinearSupport(AbstractSupport):
 
     station: int = eqx.field(static=True, converter=as_count)
     stiffness: Float[Array, "5 5"] = eqx.field(
-        converter=_matrix, metadata=unit(_STIFFNESS)
+        converter=square_matrix, metadata=unit(STIFFNESS_UNITS)
     )
     damping: Float[Array, "5 5"] = eqx.field(
-        converter=_matrix, metadata=unit(_DAMPING), default=(0.0,) * 5
+        converter=square_matrix, metadata=unit(DAMPING_UNITS), default=(0.0,) * 5
     )
     housing: Housing | None = eqx.field(default=None, kw_only=True)
 
     def __check_init__(self):
         check_station(self, self.station)
-        _check_matrix(self, "stiffness", 5)
-        _check_matrix(self, "damping", 5)
+        check_matrix(self, "stiffness", 5)
+        check_matrix(self, "damping", 5)
         instance(self, "housing", Housing, None)
 
     @classmethod
