@@ -18,7 +18,7 @@ Last run:
 non_finite; wrong: none
 AMD EPYC, 2 cores, load average 5.9; devices: 1 cpu; jax 0.10.1
 
-The 34 need more than 5000 steps, 26 of them with the ring balanced at every time. The 6
+The 34 need more than 5000 steps, 23 of them with the ring balanced at every time. The 6
 are Newtonian films of oils that pressure has made a glass, where no step is small
 enough.
 """
