@@ -36,6 +36,10 @@ class BearingSupport(AbstractSupport):
     Its rolling elements stand where `first_azimuth` of the bearing has them; loads and
     angles are quasi-static.
 
+    Linear analyses take its slopes where the station has not moved, so at `offset`: a
+    bearing that bears nothing there, such as one with clearance or without preload,
+    has no stiffness and leaves the shaft free, which nothing warns of.
+
     Attributes:
         station: Number of the station that it holds.
         element: The bearing, or a set of bearings.

@@ -286,7 +286,7 @@ def test_gradients(found):
     values = np.asarray(jax.vmap(measured)(found[1])).reshape(len(STEPS), 4)
     wide, narrow = (values[:, 4 - k] - values[:, k - 1] for k in (1, 2))
     want = (8.0 * narrow - wide) / (12.0 * STEPS)
-    np.testing.assert_allclose(slopes, want, rtol=100 * DIFFERENCE)
+    np.testing.assert_allclose(slopes, want, rtol=DIFFERENCE)
 
 
 def test_in_time_they_end_where_the_steady_state_is(found):

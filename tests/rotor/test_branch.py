@@ -141,7 +141,8 @@ def test_the_rotor_softens_and_becomes_almost_periodic():
         if event.kind == "neimark_sacker":
             pair = event.multipliers[np.abs(np.imag(event.multipliers)) > 1e-3]
             assert np.abs(np.abs(pair) - 1.0).min() < 1e-6
-    # The same orbit and multipliers by shooting, where no ball lifts off.
+    # The same orbit and multipliers by shooting, where no ball lifts off: within what
+    # the harmonics that are left out make of the amplitudes.
     free = branch.amplitude[:, 1].argmin()
     orbit = solve_orbit(system, branch.frequency[free], SHOOTING)
     assert np.allclose(orbit.amplitude, branch.amplitude[free], rtol=1e-4)
