@@ -107,7 +107,9 @@ class Newtonian(AbstractTraction):
     """A film that is sheared evenly: τ = -μ(p) u/h.
 
     Linear in slip and spin, so that the moments of the viscosity are enough. Unphysical
-    above some 1 GPa, where no oil bears μ u/h.
+    above some 1 GPa, where no oil bears μ u/h. Where pressure makes the oil a glass
+    (3 GPa in the balls of a bearing beyond d_m n = 3e6 mm/min) torque and its
+    derivatives are lost in round-off; the laws that yield have both right.
     """
 
     def resistance(self, slip_squared, film, pressure, viscosity):
