@@ -1,0 +1,141 @@
+"""What the scene of a rotor asks for."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from ..element import BearingElement
+from ..rotor import AbstractDamping, AbstractPart, Housing, Shaft
+
+
+@dataclasses.dataclass(frozen=True)
+class Mount:
+    """What holds a station of the shaft, as a scene has it, in SI.
+
+    Attributes:
+        station: Number of the station.
+        name: Of the bearing; "linear" of springs.
+        element: The bearing before it is preloaded; `None`: springs.
+        set_force: Force to which the rows of a set are ground [N], or `None`.
+        preload: Axial force that the bearing alone carries in its place [N], or `None`.
+        offset: Axial displacement of the inner ring in its place [m].
+        law: "fixed_angle", "moving_angle", "cubic", or `None` for the bearing itself.
+        turned: Whether it faces the other way.
+        inertia: Whether its rolling elements feel the speed.
+        stiffness: Of springs, in ux uy uz gx gy (5,) [N/m, N m].
+        damping: Likewise (5,) [N s/m, N m s].
+        housing: What it stands on; `None`: ground.
+    """
+
+    station: int
+    name: str
+    element: BearingElement[Any] | None
+    set_force: float | None
+    preload: float | None
+    offset: float
+    law: str | None
+    turned: bool
+    inertia: bool
+    stiffness: tuple[float, ...]
+    damping: tuple[float, ...]
+    housing: Housing | None
+
+
+@dataclasses.dataclass(frozen=True)
+class ResponseTask:
+    """Periodic vibration over a range of frequencies.
+
+    Attributes:
+        begin, end: Frequencies of the excitation [rad/s].
+        method: "linear", "harmonic_balance" or "shooting".
+        harmonics, samples: Of the harmonic balance.
+        steps: Of the integration over a period.
+        points: Most points of the branch.
+        speed: Of the rotor [rad/s]; `None`: that of the excitation.
+        reduction: Craig-Bampton modes; `None`: all freedoms.
+        scale: Displacement that is called one [m], or `None` for a default.
+        station, coordinate: Shown in report and picture.
+    """
+
+    begin: float
+    end: float
+    method: str
+    harmonics: int
+    samples: int
+    steps: int
+    points: int
+    speed: float | None
+    reduction: int | None
+    scale: float | None
+    station: int
+    coordinate: str
+
+
+@dataclasses.dataclass(frozen=True)
+class TransientTask:
+    """Motion in time from rest in the static equilibrium.
+
+    Attributes:
+        duration: [s].
+        speed_to: Speed at the end of an even run-up [rad/s]; `None`: constant.
+        n_times: Number of times that are reported.
+        tolerance: Of the integration.
+        passage: Whether the rolling elements pass, as they orbit with the cage.
+        station, coordinate: Shown in report and picture.
+    """
+
+    duration: float
+    speed_to: float | None
+    n_times: int
+    tolerance: float
+    passage: bool
+    station: int
+    coordinate: str
+
+
+@dataclasses.dataclass(frozen=True)
+class RotorScene:
+    """What the scene of a rotor asks for, in SI.
+
+    Attributes:
+        name: Name of the file without its ending.
+        shaft: The shaft.
+        discs: Discs and point masses.
+        mounts: What holds it.
+        damping: Besides that of the mounts, or `None`.
+        rigid: Whether the shaft does not bend.
+        speed: Of the rotor [rad/s].
+        axis: "horizontal", "vertical" or "none": where gravity pulls.
+        loads: `RotorLoads` on it.
+        n_modes: Number of modes that are reported.
+        campbell: Speeds of the Campbell diagram (speed,) [rad/s], or `None`.
+        response, transient: Or `None`.
+        warnings: What is odd but possible.
+    """
+
+    name: str
+    shaft: Shaft
+    discs: tuple[AbstractPart, ...]
+    mounts: tuple[Mount, ...]
+    damping: AbstractDamping | None
+    rigid: bool
+    speed: float
+    axis: str
+    loads: Any
+    n_modes: int
+    campbell: np.ndarray | None
+    response: ResponseTask | None
+    transient: TransientTask | None
+    warnings: tuple[str, ...]
+
+    @property
+    def station_names(self) -> tuple[str, ...]:
+        """Each station with what sits there, such as "1 disc"."""
+        here: list[list[str]] = [[] for _ in range(self.shaft.n_segments + 1)]
+        for disc in self.discs:
+            kind = type(disc).__name__
+            here[disc.station].append("disc" if kind == "Disc" else "mass")
+        for mount in self.mounts:
+            here[mount.station].append(mount.name)
+        return tuple(" ".join([str(k), *what]) for k, what in enumerate(here))
