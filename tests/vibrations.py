@@ -32,7 +32,7 @@ class Cosine(eqx.Module):
 
     force: jax.Array
 
-    def __call__(self, phase, frequency):
+    def __call__(self, phase, frequency, acceleration):
         return (self.force * jnp.cos(phase))[None]
 
 

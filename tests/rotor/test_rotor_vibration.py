@@ -1,9 +1,10 @@
 """Rotors of shaft, discs and supports in the nonlinear solvers."""
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
-from tolerances import SOLVER
+from tolerances import ROUNDING, SOLVER
 from vibrations import ROTOR, grooves, rotor
 
 import bearingjax as bj
@@ -12,6 +13,7 @@ from bearingjax.rotor import AbstractSupport, Housing, Rotor, Shaft, Unbalance
 from bearingjax.rotor.vibration import (
     AbstractSupportLaw,
     HarmonicBalance,
+    HarmonicLoad,
     rotor_vibration,
     solve_orbit,
 )
@@ -95,3 +97,25 @@ def test_the_rigid_rotor_is_that_of_the_paper():
     assert np.abs(seen - one.displacement).max() < 1e-6 * one.amplitude.max()
     assert float(one.amplitude.max()) > 0.05 * float(law.preload_displacement)
     assert np.isclose(ROTOR.mass()[4, 4], whole.mass, rtol=1e-12)
+
+
+def test_an_unbalance_that_speeds_up_has_a_tangential_force():
+    """The force is less the second derivative of its moment in time."""
+    load = eqx.tree_at(
+        lambda load: (load.unbalance_cosine, load.unbalance_sine),
+        HarmonicLoad.none(2),
+        (jnp.array([2.0, 0.5]), jnp.array([-1.0, 3.0])),
+    )
+
+    def phase(t):
+        return 0.3 + 5.0 * t + 2.0 * t**2
+
+    def moment(t):
+        c, s = jnp.cos(phase(t)), jnp.sin(phase(t))
+        return c * load.unbalance_cosine + s * load.unbalance_sine
+
+    t = jnp.asarray(0.7)
+    wanted = -jax.jacfwd(jax.jacfwd(moment))(t)
+    frequency = jax.grad(phase)
+    found = load(phase(t), frequency(t), jax.grad(frequency)(t))
+    assert np.allclose(found, wanted, rtol=ROUNDING)

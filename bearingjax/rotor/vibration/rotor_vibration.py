@@ -29,7 +29,7 @@ class RotorVibration(AbstractVibration):
         stiffness: Without that of supports (n, n) [N/m, N, N m].
         supports: The supports.
         rows: How each of them moves (support, 5, n).
-        load: (phase, frequency) -> forces (n,) [N, N m].
+        load: (phase, frequency, acceleration) -> forces (n,) [N, N m].
         speed: Of the rotor [rad/s]; `None`: that of the excitation.
 
     Traced: all numbers.
@@ -58,8 +58,8 @@ class RotorVibration(AbstractVibration):
             force = force + rows.T @ support.force(rows @ q, rows @ velocity, speed)
         return force
 
-    def excitation(self, phase, frequency):
-        return self.load(phase, frequency)
+    def excitation(self, phase, frequency, acceleration):
+        return self.load(phase, frequency, acceleration)
 
 
 def rotor_vibration(
@@ -75,8 +75,8 @@ def rotor_vibration(
     Args:
         rotor: Shaft, discs, supports. Modal damping is that of the rotor at rest, its
             supports linearised where they stand.
-        load: `Unbalance`, or several of them, or a function (phase, frequency) ->
-            forces on the freedoms (n,) [N, N m].
+        load: `Unbalance`, or several of them, or a function (phase, frequency,
+            acceleration) -> forces on the freedoms (n,) [N, N m].
         scale: Displacement that is called one, such as a clearance [m]; tilts are
             measured in it over the length of the shaft.
         reference_frequency: Frequency that is called one [rad/s].

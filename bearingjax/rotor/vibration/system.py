@@ -2,8 +2,11 @@
 
     M q'' + D(ω) q' + f(q, q', φ, ω) = e(φ, ω),    φ = ω t
 
-with f and e periodic in the phase φ. Freedoms q are measured in `scale` and the phase
-takes the place of time, so that the unknowns of the solvers are pure numbers near one.
+with f and e periodic in the phase φ. Where ω changes, φ is its integral over time and
+terms of its rate join: α ∂D/∂ω q on the left, as the gyroscopic moment is the rate of
+an angular momentum ω G q, and the α that e is given. Freedoms q are measured in `scale`
+and the phase takes the place of time, so that the unknowns of the solvers are pure
+numbers near one.
 """
 
 import abc
@@ -34,6 +37,8 @@ class AbstractVibration(eqx.Module):
     def damping_matrix(self, frequency: Scalar) -> Float[Array, "n n"]:
         """Damping and gyroscopic matrix D [N s/m, N m s/rad].
 
+        What depends on the frequency must be gyroscopic.
+
         Args:
             frequency: ω [rad/s].
         """
@@ -56,12 +61,15 @@ class AbstractVibration(eqx.Module):
         """
 
     @abc.abstractmethod
-    def excitation(self, phase: Scalar, frequency: Scalar) -> Float[Array, " n"]:
+    def excitation(
+        self, phase: Scalar, frequency: Scalar, acceleration: Scalar
+    ) -> Float[Array, " n"]:
         """Forces e that act from outside [N, N m].
 
         Args:
             phase: φ [rad]; e repeats after 2π.
             frequency: ω [rad/s].
+            acceleration: Rate of ω, zero in all that is periodic [rad/s²].
         """
 
 
@@ -74,7 +82,7 @@ class Vibration(AbstractVibration):
         gyroscopic: Gyroscopic matrix over the speed, skew [kg, kg m²].
         restoring: (q, velocity, phase, frequency) -> forces (n,) [N, N m]; a Module,
             so that its numbers are traced.
-        load: (phase, frequency) -> forces (n,) [N, N m]; likewise.
+        load: (phase, frequency, acceleration) -> forces (n,) [N, N m]; likewise.
         scale: As of `AbstractVibration` [m, rad].
         reference_frequency: As of `AbstractVibration` [rad/s].
         speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
@@ -118,8 +126,8 @@ class Vibration(AbstractVibration):
     def force(self, q, velocity, phase, frequency):
         return self.restoring(q, velocity, phase, frequency)
 
-    def excitation(self, phase, frequency):
-        return self.load(phase, frequency)
+    def excitation(self, phase, frequency, acceleration):
+        return self.load(phase, frequency, acceleration)
 
 
 class HarmonicLoad(eqx.Module):
@@ -128,7 +136,9 @@ class HarmonicLoad(eqx.Module):
     Attributes:
         constant: Such as weight (n,) [N, N m].
         cosine, sine: Amplitudes of cos φ and sin φ (n,) [N, N m].
-        unbalance_cosine, unbalance_sine: Likewise, over ω² (n,) [kg m, kg m²].
+        unbalance_cosine, unbalance_sine: Likewise, over ω²; they turn with the phase,
+            and where the frequency changes their tangential inertia acts too (n,)
+            [kg m, kg m²].
 
     Traced: all fields.
     """
@@ -144,9 +154,11 @@ class HarmonicLoad(eqx.Module):
         """No load on `size` freedoms."""
         return cls(*(5 * (jnp.zeros(size),)))
 
-    def __call__(self, phase, frequency):
-        cosine = self.cosine + frequency**2 * self.unbalance_cosine
-        sine = self.sine + frequency**2 * self.unbalance_sine
+    def __call__(self, phase, frequency, acceleration):
+        # -d²/dt² of (unbalance_cosine cos φ + unbalance_sine sin φ).
+        square, c, s = frequency**2, self.unbalance_cosine, self.unbalance_sine
+        cosine = self.cosine + square * c - acceleration * s
+        sine = self.sine + square * s + acceleration * c
         return self.constant + jnp.cos(phase) * cosine + jnp.sin(phase) * sine
 
 
@@ -178,7 +190,8 @@ def out_of_balance(
     inertia = system.mass @ (frequency**2 * scale * second)
     forces = system.damping_matrix(frequency) @ velocity
     forces = forces + system.force(q, velocity, phase, frequency)
-    left = inertia + forces - system.excitation(phase, frequency)
+    steady = jnp.zeros_like(frequency)
+    left = inertia + forces - system.excitation(phase, frequency, steady)
     unit_force = jnp.diagonal(system.mass) * scale * system.reference_frequency**2
     return left / unit_force
 
