@@ -92,6 +92,7 @@ from .rotor import Unbalance as Unbalance
 from .rotor import campbell as campbell
 from .rotor import critical_speeds as critical_speeds
 from .rotor import modes as modes
+from .rotor import preload_offset as preload_offset
 from .rotor import stiffness_table as stiffness_table
 from .rotor import to_ross as to_ross
 from .rotor import unbalance_response as unbalance_response

@@ -5,6 +5,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+import bearingjax as bj
 from bearingjax.design import Material
 from bearingjax.numerics.power import positive_power
 from bearingjax.rotor.vibration import Grooves, RigidRotor, Vibration, rigid_rotor
@@ -78,6 +79,21 @@ def grooves(angle):
         contact_angle=np.radians(angle),
         n_balls=7,
         material=Material(2.1e11, 0.3),
+    )
+
+
+def of_drawing(angle):
+    """The same bearing as the library has it; its free angle follows from its radii."""
+    conformity = 5.93 / 11.51
+    radial = 16.0 + 2.0 * 5.93 - OUTER[angle]
+    return bj.AngularContactBallBearing(
+        7,
+        1e-3 * (16.0 + OUTER[angle]),
+        11.51e-3,
+        outer_osculation=conformity,
+        inner_osculation=conformity,
+        contact_angle=np.arccos(radial / (2.0 * 5.93 - 11.51)),
+        material=bj.Material(2.1e11, 0.3, 7850.0),
     )
 
 

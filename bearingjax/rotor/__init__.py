@@ -17,6 +17,7 @@ from .parts import Disc as Disc
 from .parts import Housing as Housing
 from .parts import LinearSupport as LinearSupport
 from .parts import PointMass as PointMass
+from .preload_offset import preload_offset as preload_offset
 from .response import Unbalance as Unbalance
 from .response import UnbalanceResponse as UnbalanceResponse
 from .response import unbalance_response as unbalance_response

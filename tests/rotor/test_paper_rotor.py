@@ -8,13 +8,15 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
-from tolerances import DIFFERENCE, PUBLISHED, ROUNDING
-from vibrations import ROTOR, grooves, rotor
+from tolerances import DIFFERENCE, PUBLISHED, ROUNDING, SOLVER
+from vibrations import ROTOR, grooves, of_drawing, rotor
 
+import bearingjax as bj
 from bearingjax.rotor.vibration import (
     CubicExpansion,
     FixedAngle,
     HarmonicBalance,
+    MovingAngle,
     OpposedPair,
     natural_frequencies,
     solve_orbit,
@@ -180,3 +182,32 @@ def test_small_vibration_is_linear_and_axial_motion_of_second_order():
     load = -1e-3 * mass @ np.array([0.0, 1.0, 0.0, 1.0, 0.0])
     linear = np.linalg.solve(stiffness - w**2 * mass + 1j * w * damping, load)
     assert np.allclose(one.amplitude[:4], np.abs(linear)[:4], rtol=DIFFERENCE)
+
+
+@pytest.mark.parametrize("angle", TABLE)
+def test_laws_of_a_bearing_from_its_design_and_preload(angle):
+    """The bearing of the drawing, pushed with P0, gives the laws of the drawing.
+
+    Its free angle follows from the radii, so the preloaded one is a result.
+    """
+    constant, preload, z0 = TABLE[angle][1:4]
+    element = bj.BearingElement(of_drawing(angle))
+    offset = bj.preload_offset(element, preload)
+    law = FixedAngle.of_bearing(element, offset)
+    assert np.isclose(law.preload(), preload, rtol=SOLVER)
+    found = [np.degrees(law.contact_angle), 1e-10 * law.constant]
+    assert np.allclose(found, [angle, constant], rtol=PUBLISHED)
+    assert np.isclose(1e6 * law.preload_displacement, z0, rtol=PUBLISHED)
+    moving = MovingAngle.of_bearing(element, offset)
+    assert np.isclose(moving.force(jnp.zeros(3))[2], preload, rtol=SOLVER)
+    cubic = CubicExpansion.of_bearing(element, offset)
+    assert cubic.radial_stiffness == CubicExpansion.of(law).radial_stiffness
+
+
+def test_a_law_needs_one_row_of_balls_that_bear():
+    element = bj.BearingElement(of_drawing(12))
+    with pytest.raises(ValueError, match="`offset` is -0.001 m; it must be so large"):
+        FixedAngle.of_bearing(element, -1e-3)
+    four = bj.load_bearing("cylindrical_rig")
+    with pytest.raises(TypeError, match="CylindricalRollerBearing; it must hold one"):
+        MovingAngle.of_bearing(bj.BearingElement(four), 1e-5)

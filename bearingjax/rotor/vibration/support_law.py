@@ -8,6 +8,7 @@ Source: Filipkovskii & Belomyttsev (2014), eqs. (1), (2).
 """
 
 import abc
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -16,8 +17,11 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ...contact.hertz import ellipse
-from ...design.checks import positive
+from ...design.ball import AbstractBallBearing
+from ...design.checks import is_traced, positive
 from ...design.material import Material, contact_modulus
+from ...element.bearing_element import BearingElement
+from ...element.frame import FREEDOMS
 from ...numerics.power import positive_power
 from ...numerics.types import Scalar, as_count, as_real
 from ...numerics.units import unit
@@ -54,6 +58,44 @@ def _stored(constant, approach):
     return 0.4 * constant * jnp.sum(positive_power(approach, 5, 2))
 
 
+class _Preloaded(NamedTuple):
+    """Balls of a bearing whose inner ring is pushed along its axis.
+
+    Attributes:
+        constant: Load of a ball over the 3/2 power of its approach [N/m^(3/2)].
+        angle: Contact angle [rad].
+        approach: Of a ball, both raceways together [m].
+    """
+
+    constant: Scalar
+    angle: Scalar
+    approach: Scalar
+
+
+def _preloaded(element: BearingElement, offset: Any) -> _Preloaded:
+    bearing, offset = element.bearing, as_real(offset)
+    if not isinstance(bearing, AbstractBallBearing) or len(bearing.grooves) != 2:
+        raise TypeError(
+            f"`element` holds a {type(bearing).__name__}; it must hold one row of balls"
+            " with one groove in each ring"
+        )
+    outer, inner = bearing.grooves
+    # From the groove centre of the outer ring to that of the inner one.
+    radial = inner.radial - outer.radial
+    axial = inner.axial - outer.axial + offset
+    approach = jnp.hypot(radial, axial) - bearing.centre_distance
+    bears = (approach > 0.0) & (axial > 0.0)
+    if not is_traced(bears) and not bool(bears):
+        raise ValueError(
+            f"`offset` is {float(offset):g} m; it must be so large that the balls bear"
+        )
+    angle = jnp.arctan2(axial, radial)
+    pushed = jnp.zeros(2 * len(FREEDOMS), approach.dtype)
+    held = element.force(pushed.at[len(FREEDOMS) + 2].set(offset))[len(FREEDOMS) + 2]
+    each = held / (bearing.n_balls * jnp.sin(angle))
+    return _Preloaded(each / positive_power(approach, 3, 2), angle, approach)
+
+
 class FixedAngle(AbstractSupportLaw):
     """Every ball bears along a line of fixed contact angle.
 
@@ -74,6 +116,20 @@ class FixedAngle(AbstractSupportLaw):
     def __check_init__(self):
         positive(self, "constant")
         positive(self, "contact_angle")
+
+    @classmethod
+    def of_bearing(cls, element: BearingElement, offset: Any) -> "FixedAngle":
+        """The law of a ball bearing at the angle that its preload gives it.
+
+        Under the preload alone force and contact angle are those of the bearing.
+
+        Args:
+            element: The bearing, one row of balls; ball 0 is taken to stand at +x.
+            offset: Axial displacement of its inner ring under the preload, as of
+                `preload_offset` [m].
+        """
+        constant, angle, approach = _preloaded(element, offset)
+        return cls(constant, angle, approach / jnp.sin(angle), element.bearing.n_balls)
 
     def potential(self, motion):
         x, y, z = motion
@@ -108,6 +164,14 @@ class MovingAngle(AbstractSupportLaw):
     preload_approach: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
     centre_distance: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
     n_balls: int = eqx.field(static=True, converter=as_count)
+
+    @classmethod
+    def of_bearing(cls, element: BearingElement, offset: Any) -> "MovingAngle":
+        """The law of a ball bearing; arguments as of `FixedAngle.of_bearing`."""
+        constant, angle, approach = _preloaded(element, offset)
+        bearing = element.bearing
+        distance = bearing.centre_distance
+        return cls(constant, angle, approach, distance, bearing.n_balls)
 
     def potential(self, motion):
         x, y, z = motion
@@ -151,6 +215,11 @@ class CubicExpansion(AbstractSupportLaw):
         root = positive_power(z0 * jnp.sin(angle), 1, 2)
         radial = 0.75 * law.n_balls * law.constant * root * jnp.cos(angle) ** 2
         return cls(radial, angle, z0)
+
+    @classmethod
+    def of_bearing(cls, element: BearingElement, offset: Any) -> "CubicExpansion":
+        """Of a ball bearing; arguments as of `FixedAngle.of_bearing`."""
+        return cls.of(FixedAngle.of_bearing(element, offset))
 
     def potential(self, motion):
         x, y, z = motion

@@ -1,0 +1,32 @@
+"""Axial preload of a bearing on a shaft, by force."""
+
+import jax.numpy as jnp
+
+from ..design.checks import positive
+from ..element.bearing_element import BearingElement, check_element
+from ..numerics.types import Scalar, as_real
+from ..statics.load import solve_load
+
+
+def preload_offset(element: BearingElement, force: Scalar | float) -> Scalar:
+    """How far an axial force moves the inner ring of a bearing that stands alone [m].
+
+    It is the `offset` along z of a `BearingSupport`: the force is that of the bearing
+    before the shaft gives way and before its other bearings and its loads share in it.
+    The bearing is at rest, and its rings are held coaxial.
+
+    Args:
+        element: The bearing, or a set.
+        force: Along +z on the inner ring [N].
+
+    Returns:
+        Displacement along z, differentiable with respect to design and force.
+
+    Raises:
+        SolveError: If the bearing does not hold the force.
+    """
+    check_element("preload_offset", element)
+    force = as_real(force)
+    positive("preload_offset", "force", force, "N")
+    load = jnp.zeros(6, force.dtype).at[2].set(force)
+    return solve_load(element, load, free=["uz"]).displacement[8]
