@@ -17,9 +17,9 @@ LAYERS = (
     "numerics design contact lubrication element statics optimise dynamics rotor scene"
     " plot cli"
 ).split()
-# What the plots show is what statics and below provide; scene and plot stand side by
-# side, and only the command line and the top level see both.
-NOT_SEEN = {"plot": {"scene", "rotor"}, "scene": {"plot"}}
+# What the plots show is what all layers below the scene provide; scene and plot stand
+# side by side, and only the command line and the top level see both.
+NOT_SEEN = {"plot": {"scene"}, "scene": {"plot"}}
 
 
 def modules():

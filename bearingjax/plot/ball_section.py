@@ -37,20 +37,19 @@ def ball_section(
         The axes: z to the right, radius upwards.
     """
     ax = axes_or_new(ax, (7.0, 6.0))
-    places = np.sort([_position(row) for row in rows_of(bearing)])
+    places = np.sort([row_position(row) for row in rows_of(bearing)])
     # Rings of neighbouring rows meet halfway.
     reach = 0.49 * np.diff(places).min() if len(places) > 1 else np.inf
     for row in rows_of(bearing):
         part = row.bearing
         assert isinstance(part, AbstractBallBearing)
         sign = -1.0 if row.mirrored else 1.0
-        centre = np.array([_position(row), 0.5e3 * float(part.pitch_diameter)])
+        centre = np.array([row_position(row), 0.5e3 * float(part.pitch_diameter)])
 
         def place(points, sign=sign, centre=centre):
             return centre + np.asarray(points) * np.array([sign, 1.0])
 
-        _rings(ax, part, place, reach)
-        _ball(ax, part, place)
+        ball_row(ax, part, place, reach)
     first = rows_of(bearing)[0].bearing
     assert isinstance(first, AbstractBallBearing)
     ax.set_title("Axial section, to scale")
@@ -76,8 +75,25 @@ def ball_section(
     return ax
 
 
-def _position(row):
-    """z of the circle of ball centres [mm]."""
+def ball_row(ax, bearing, place, reach=np.inf) -> None:
+    """One ball, its lines of contact without load, and both rings beside it.
+
+    Args:
+        ax: Axes.
+        bearing: A row of balls.
+        place: Where points (point, 2) about the ball's centre, z and r in mm, stand.
+        reach: Most half width of the rings [mm].
+    """
+    _rings(ax, bearing, place, reach)
+    _ball(ax, bearing, place)
+
+
+def row_position(row) -> float:
+    """z of the circle of ball centres [mm].
+
+    Args:
+        row: A `SetRow` of balls.
+    """
     within = 1e3 * float(row.bearing.axial_place)
     return 1e3 * float(row.position) + (-within if row.mirrored else within)
 

@@ -13,6 +13,8 @@ INNER = "#D55E00"
 """Colour of the inner ring and its raceway."""
 ROLLER = "#009E73"
 """Colour of the rollers."""
+CURVES = OUTER, INNER, ROLLER, "#CC79A7", "#E69F00", "#56B4E9"
+"""Colours of curves of one kind."""
 GREY = "#595959"
 """Colour of lines that are not data."""
 SMALL = 9.0

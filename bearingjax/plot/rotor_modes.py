@@ -1,0 +1,217 @@
+"""Mode shapes of a rotor, and its natural frequencies over the speed."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..rotor import CriticalSpeeds, Modes, Rotor
+from .style import GREY, INNER, OUTER, ROLLER, SMALL, axes_or_new
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+WHIRLS = {1: ("forward", INNER), -1: ("backward", OUTER), 0: ("planar", ROLLER)}
+"""Names and colours of the directions of whirl; 0 is in a plane, axial or a mixture."""
+RPM = 30.0 / np.pi
+"""Revolutions per minute in 1 rad/s."""
+_UNITS = {"um": (1e6, "µm"), "mrad": (1e3, "mrad")}
+"""Units of motions, over m or rad, and their names."""
+_HALF = 0.42
+"""Half height of a mode on its lane [1]."""
+_AXIAL = 0.99
+"""Share of axial motion above which a mode is drawn as axial [1]."""
+
+
+def mode_shapes(
+    rotor: Rotor,
+    found: Modes,
+    ax: "matplotlib.axes.Axes | None" = None,
+    *,
+    count: int = 6,
+) -> "matplotlib.axes.Axes":
+    """Shapes of the lowest modes over the axis [mm], one above the other.
+
+    A line is the shaft at the moment of its largest displacement, seen across the
+    direction of that; the band behind it is what the orbits of all sections sweep.
+    Every mode is drawn to the same height. Colours tell the direction of whirl.
+
+    Args:
+        rotor: The rotor.
+        found: From `modes`, at one speed.
+        ax: Axes; a new figure if `None`.
+        count: Most modes; those that do not oscillate are left out.
+
+    Returns:
+        The axes.
+    """
+    ax = axes_or_new(ax, (8.0, 6.0))
+    z = 1e3 * np.asarray(rotor.shaft.nodes, dtype=float)
+    names = []
+    chosen = np.flatnonzero(np.asarray(found.oscillates))[:count]
+    for lane, k in enumerate(chosen):
+        whirl, colour = WHIRLS[int(found.whirl[k])]
+        shape = np.asarray(found.shape[k])
+        line, band, axial = _drawn(shape)
+        base = len(chosen) - 1.0 - lane
+        ax.axhline(base, color=GREY, lw=0.7, zorder=1, label="_rest")
+        ax.fill_between(
+            z, base - _HALF * band, base + _HALF * band, color=colour, alpha=0.15, lw=0
+        )
+        ax.plot(z, base + _HALF * line, color=colour, lw=1.8, label=f"_mode {k}")
+        kind = "axial" if axial else whirl
+        names.append(
+            f"{float(found.frequency[k]):.4g} Hz, {kind}\n"
+            f"damping {_percent(found.damping_ratio[k])} %"
+        )
+    for support in rotor.supports:
+        at = 1e3 * float(rotor.shaft.stations[support.station])
+        ax.plot(
+            np.full(len(chosen), at), np.arange(len(chosen)), "^", color=GREY, ms=7,
+            zorder=4, label="_support",
+        )  # fmt: skip
+    ax.set_yticks(np.arange(len(chosen))[::-1], names, fontsize=SMALL)
+    ax.set_ylim(-0.6, max(len(chosen), 1) - 0.4)
+    ax.margins(x=0.02)
+    ax.set_xlabel("z [mm]")
+    ax.set_title("Mode shapes")
+    if not len(chosen):
+        ax.text(0.5, 0.5, "no mode oscillates", ha="center", transform=ax.transAxes)
+    return ax
+
+
+def _percent(ratio):
+    """Without what is round-off."""
+    return f"{100.0 * float(np.where(np.abs(ratio) < 1e-9, 0.0, ratio)):.3g}"
+
+
+def _drawn(shape):
+    """Line and half width of the band of a mode, largest one; whether it is axial."""
+    x, y, axial = shape[:, 0], shape[:, 1], shape[:, 2]
+    across, along = np.sum(np.abs(x) ** 2 + np.abs(y) ** 2), np.sum(np.abs(axial) ** 2)
+    if along > _AXIAL * (across + along):
+        line, band = _at_most(axial), np.abs(axial)
+    else:
+        band = major_axis(x, y)
+        largest = int(np.argmax(band))
+        direction = _direction(x[largest], y[largest])
+        moved = x * np.cos(direction) + y * np.sin(direction)
+        line = np.real(moved * np.exp(-1j * np.angle(moved[largest])))
+    size = float(band.max()) or 1.0
+    return line / size, band / size, along > _AXIAL * (across + along)
+
+
+def _at_most(motion):
+    """Real part at the moment at which the largest motion is real."""
+    return np.real(motion * np.exp(-1j * np.angle(motion[np.argmax(np.abs(motion))])))
+
+
+def _direction(x, y):
+    """Angle of the longer axis of the orbit Re (x, y) exp(iωt) from +x [rad]."""
+    forward, backward = x + 1j * y, np.conj(x - 1j * y)
+    return 0.5 * (np.angle(forward) + np.angle(backward))
+
+
+def major_axis(x: Any, y: Any) -> np.ndarray:
+    """Longer half axis of the orbits Re (x, y) exp(iωt).
+
+    Args:
+        x, y: Complex amplitudes [m].
+    """
+    return 0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y))
+
+
+def campbell_diagram(
+    speeds: Any,
+    found: Modes,
+    critical: CriticalSpeeds | None = None,
+    ax: "matplotlib.axes.Axes | None" = None,
+) -> "matplotlib.axes.Axes":
+    """Natural frequencies [Hz] over the speed [rpm], and the line of the speed itself.
+
+    Args:
+        speeds: At which `found` is (speed,) [rad/s].
+        found: From `campbell`.
+        critical: Critical speeds to be marked; those of forward whirl, which unbalance
+            excites, with their number.
+        ax: Axes; a new figure if `None`.
+
+    Returns:
+        The axes.
+    """
+    ax = axes_or_new(ax)
+    rpm = RPM * np.asarray(speeds, dtype=float)
+    frequency = np.where(found.oscillates, found.frequency, np.nan)
+    whirl = np.asarray(found.whirl)
+    # Where modes coincide, as at rest, they have no direction: that of the next speed.
+    sense = np.where(whirl[1:] != 0, whirl[1:], whirl[:-1])
+    for value, (name, colour) in WHIRLS.items():
+        label = name
+        for mode in range(frequency.shape[1]):
+            for first, last in _runs(sense[:, mode] == value):
+                part = slice(first, last + 1)
+                ax.plot(rpm[part], frequency[part, mode], color=colour, label=label)
+                label = f"_{name}"
+    ax.plot(rpm, rpm / 60.0, "--", color="black", lw=1.0, label="speed (1x)")
+    top = float(np.nanmax(frequency, initial=0.0)) or float(rpm.max()) / 60.0
+    if critical is not None:
+        _critical(ax, critical, rpm, top)
+    ax.set_xlim(rpm.min(), rpm.max())
+    ax.set_ylim(0.0, 1.25 * top)  # room for the legend
+    ax.grid(color="0.93")
+    ax.set_axisbelow(True)
+    ax.set_xlabel("speed [rpm]")
+    ax.set_ylabel("natural frequency [Hz]")
+    ax.set_title("Campbell diagram")
+    ax.legend(fontsize=SMALL, loc="upper left", ncols=2)
+    return ax
+
+
+def _runs(chosen):
+    """First and last point of every run of segments that are chosen."""
+    edges = np.diff(np.concatenate([[0], chosen.astype(int), [0]]))
+    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    return zip(starts, ends, strict=True)
+
+
+def _critical(ax, critical, rpm, top):
+    """Dots on the line of the speed, and the numbers of those of forward whirl."""
+    label = "critical speed"
+    for speed, whirl in zip(
+        np.asarray(critical.speed), np.asarray(critical.whirl), strict=True
+    ):
+        at = RPM * speed
+        if not np.isfinite(speed) or not rpm.min() <= at <= rpm.max():
+            continue
+        if at / 60.0 > top:
+            continue
+        colour = WHIRLS[int(whirl)][1]
+        ax.plot(
+            [at], [at / 60.0], "o", color=colour, mec="black", ms=7, label=label,
+            zorder=5, ls="none",
+        )  # fmt: skip
+        label = "_critical speed"
+        if whirl == 1:
+            ax.annotate(
+                f"{at:.4g} rpm", (at, at / 60.0), (6, -12), fontsize=SMALL,
+                textcoords="offset points",
+            )  # fmt: skip
+
+
+def unit_scale(unit: str) -> float:
+    """What a motion in m or rad is multiplied by.
+
+    Args:
+        unit: "um" or "mrad".
+    """
+    if unit not in _UNITS:
+        raise ValueError(f"`unit` is {unit!r}; it must be 'um' or 'mrad'.")
+    return _UNITS[unit][0]
+
+
+def unit_name(unit: str) -> str:
+    """A unit as labels write it.
+
+    Args:
+        unit: "um" or "mrad".
+    """
+    return _UNITS[unit][1]
