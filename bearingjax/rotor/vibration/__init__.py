@@ -19,6 +19,7 @@ from .rigid_rotor import natural_frequencies as natural_frequencies
 from .rigid_rotor import rigid_rotor as rigid_rotor
 from .rotor_vibration import RotorVibration as RotorVibration
 from .rotor_vibration import rotor_vibration as rotor_vibration
+from .run_up import FrequencyTable as FrequencyTable
 from .shooting import Shooting as Shooting
 from .support_law import AbstractSupportLaw as AbstractSupportLaw
 from .support_law import CubicExpansion as CubicExpansion
@@ -28,3 +29,8 @@ from .support_law import MovingAngle as MovingAngle
 from .system import AbstractVibration as AbstractVibration
 from .system import HarmonicLoad as HarmonicLoad
 from .system import Vibration as Vibration
+from .transient import History as History
+from .transient import poincare as poincare
+from .transient import simulate as simulate
+from .waterfall import Waterfall as Waterfall
+from .waterfall import waterfall as waterfall
