@@ -87,12 +87,16 @@ from .rotor import ModalDamping as ModalDamping
 from .rotor import PointMass as PointMass
 from .rotor import ProportionalDamping as ProportionalDamping
 from .rotor import Rotor as Rotor
+from .rotor import RotorLoads as RotorLoads
 from .rotor import Shaft as Shaft
+from .rotor import StationForce as StationForce
 from .rotor import Unbalance as Unbalance
 from .rotor import campbell as campbell
 from .rotor import critical_speeds as critical_speeds
 from .rotor import modes as modes
 from .rotor import preload_offset as preload_offset
+from .rotor import settle as settle
+from .rotor import settle_over as settle_over
 from .rotor import stiffness_table as stiffness_table
 from .rotor import to_ross as to_ross
 from .rotor import unbalance_response as unbalance_response

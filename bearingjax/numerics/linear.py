@@ -1,7 +1,8 @@
 """Linear systems of a few unknowns, written out so that they batch.
 
 LAPACK is called once per matrix; for 3 to 6 unknowns under `vmap` the unrolled
-factorisation is many times faster and has no foreign call in it.
+factorisation is many times faster and has no foreign call in it. More than eight go to
+LAPACK: a program written out grows with their third power.
 """
 
 from typing import Any
@@ -10,6 +11,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .types import namespace
+
+_WRITTEN_OUT = 8
+"""Most unknowns of a system that is written out."""
 
 
 def dot(a: Float[Array, " n"], b: Float[Array, " n"]) -> Float[Array, ""]:
@@ -89,17 +93,18 @@ def solve(
     treated as in `solve_symmetric`.
 
     Args:
-        matrix: n ≤ 6 in this package, with a positive diagonal where it holds
-            anything [any unit].
+        matrix: With a positive diagonal where it holds anything [any unit].
         rhs: One or more right-hand sides.
         symmetric: Whether the matrix is symmetric. Static.
 
     Returns:
         Solution, shape of `rhs`.
     """
+    n = matrix.shape[-1]
+    if n > _WRITTEN_OUT:
+        return _solve_many(matrix, rhs)
     if symmetric:
         return solve_symmetric(matrix, rhs)
-    n = matrix.shape[-1]
     floor = 8 * jnp.finfo(matrix.dtype).eps
     scale = _scale(_diagonal(matrix))
     scaled = matrix * (scale[:, None] * scale[None, :])
@@ -124,6 +129,17 @@ def solve(
             value = value - a[i][j] * x[j]
         x[i] = value / a[i][i]
     return jnp.stack([x[i] * scale[i] for i in range(n)])
+
+
+def _solve_many(matrix, rhs):
+    """With a unit diagonal, lifted by round-off where nothing holds a direction."""
+    diagonal = jnp.diagonal(matrix)
+    scale = _scale(diagonal)
+    held = diagonal > jnp.finfo(matrix.dtype).tiny
+    lift = jnp.where(held, 8 * jnp.finfo(matrix.dtype).eps, 1.0)
+    scaled = matrix * (scale[:, None] * scale[None, :]) + jnp.diag(lift)
+    sizes = scale.reshape(-1, *(1,) * (rhs.ndim - 1))
+    return sizes * jnp.linalg.solve(scaled, sizes * rhs)
 
 
 def smallest_pivot(matrix: Float[Array, "n n"]) -> Float[Array, ""]:

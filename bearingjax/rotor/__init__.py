@@ -8,6 +8,8 @@ from .critical import critical_speeds as critical_speeds
 from .damping import AbstractDamping as AbstractDamping
 from .damping import ModalDamping as ModalDamping
 from .damping import ProportionalDamping as ProportionalDamping
+from .loads import RotorLoads as RotorLoads
+from .loads import StationForce as StationForce
 from .modes import Modes as Modes
 from .modes import campbell as campbell
 from .modes import modes as modes
@@ -18,6 +20,7 @@ from .parts import Housing as Housing
 from .parts import LinearSupport as LinearSupport
 from .parts import PointMass as PointMass
 from .preload_offset import preload_offset as preload_offset
+from .reduction import craig_bampton as craig_bampton
 from .response import Unbalance as Unbalance
 from .response import UnbalanceResponse as UnbalanceResponse
 from .response import unbalance_response as unbalance_response
@@ -26,3 +29,8 @@ from .rotor import Rotor as Rotor
 from .rotor import RotorMatrices as RotorMatrices
 from .shaft import STATION_FREEDOMS as STATION_FREEDOMS
 from .shaft import Shaft as Shaft
+from .speed_support import SpeedSupport as SpeedSupport
+from .statics import Settled as Settled
+from .statics import SettledOver as SettledOver
+from .statics import settle as settle
+from .statics import settle_over as settle_over

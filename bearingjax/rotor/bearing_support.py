@@ -5,12 +5,13 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from ..design.checks import check, instance, is_traced
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
+from ..numerics.result import Result
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 from .parts import (
@@ -26,19 +27,24 @@ from .shaft import STATION_FREEDOMS
 _N_RING = len(FREEDOMS)
 _INNER = slice(_N_RING, _N_RING + len(STATION_FREEDOMS))
 """(ux uy uz gx gy) of the inner ring among the freedoms of both rings."""
+_TURN = 2 * _N_RING - 1
+"""gz of the inner ring."""
 _TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0])
 """What a half turn about x makes of (ux uy uz gx gy), and of forces and moments."""
+
+
+def _flag(value):
+    """Converter of a flag that is traced, so that bearings either way are alike."""
+    return jnp.asarray(value) if isinstance(value, bool) else value
 
 
 class BearingSupport(AbstractSupport):
     """A bearing whose inner ring sits on the shaft, its outer ring on a fixed base.
 
-    Its rolling elements stand where `first_azimuth` of the bearing has them; loads and
-    angles are quasi-static.
-
-    Linear analyses take its slopes where the station has not moved, so at `offset`: a
-    bearing that bears nothing there, such as one with clearance or without preload,
-    has no stiffness and leaves the shaft free, which nothing warns of.
+    Loads and angles are quasi-static. Linear analyses of a `Rotor` take its slopes
+    where the station has not moved, so at `offset`; a bearing that bears nothing there,
+    such as one with clearance or without preload, leaves the shaft free. `settle`
+    finds where weight and preload put it, and warns of one that bears nothing.
 
     Attributes:
         station: Number of the station that it holds.
@@ -51,8 +57,13 @@ class BearingSupport(AbstractSupport):
         turned: Whether the bearing is mounted the other way round, its +z along the
             shaft's -z, by a half turn about x; `offset` is in the bearing's own axes.
         inertia: Whether its rolling elements feel the speed of the rotor.
+        passage: Whether its rolling elements orbit as the rotor turns, rolling without
+            slip, so that its stiffness varies with their passage (variable
+            compliance); else they stand where `first_azimuth` of the bearing has them,
+            as they do in all linear analyses.
 
-    Traced: element, offset, damping, housing. Static: station, turned, inertia.
+    Traced: element, offset, damping, housing, turned. Static: station, inertia,
+    passage.
     """
 
     station: int = eqx.field(static=True, converter=as_count)
@@ -66,8 +77,11 @@ class BearingSupport(AbstractSupport):
         converter=square_matrix, metadata=unit(DAMPING_UNITS), default=(0.0,) * 5
     )
     housing: Housing | None = eqx.field(default=None, kw_only=True)
-    turned: bool = eqx.field(static=True, default=False, kw_only=True)
+    turned: Bool[Array, ""] | bool = eqx.field(
+        converter=_flag, default=False, kw_only=True
+    )
     inertia: bool = eqx.field(static=True, default=False, kw_only=True)
+    passage: bool = eqx.field(static=True, default=False, kw_only=True)
 
     def __check_init__(self):
         check_station(self, self.station)
@@ -82,24 +96,59 @@ class BearingSupport(AbstractSupport):
             check(self, "offset", np.isfinite(self.offset).all(), "finite")
         check_matrix(self, "damping", 5)
         instance(self, "housing", Housing, None)
-        for name in ("turned", "inertia"):
+        for name in ("inertia", "passage"):
             instance(self, name, bool)
+        kind = getattr(self.turned, "dtype", None)
+        if kind is None or kind.kind != "b" or jnp.shape(self.turned):
+            raise TypeError(
+                f"BearingSupport: `turned` is {self.turned!r}; it must be True or"
+                " False."
+            )
 
     def force(
-        self, motion: Float[Array, "5"], velocity: Float[Array, "5"], speed: Scalar
+        self,
+        motion: Float[Array, "5"],
+        velocity: Float[Array, "5"],
+        speed: Scalar,
+        angle: Scalar | float = 0.0,
     ) -> Float[Array, "5"]:
         """Force that moves the station against the bearing (5,) [N, N m].
 
-        With the preload's share: it is not zero where nothing has moved.
+        With the preload's share: it is not zero where nothing has moved. NaN where a
+        rolling element did not converge.
 
         Args:
-            motion, velocity, speed: As of `AbstractSupport.force`.
+            motion, velocity, speed, angle: As of `AbstractSupport.force`.
         """
-        sense = jnp.asarray(_TURNED if self.turned else np.ones(5), motion.dtype)
+        sense, sign = self._sense(motion.dtype)
+        model, rings = self._model(motion, speed)
+        azimuths = None
+        if self.passage:
+            azimuths = model.azimuths(rings.at[_TURN].set(sign * angle))
+        held = model.force_or_nan(rings, model.solve(rings, None, azimuths))
+        return sense * held[_INNER] + self.damping @ velocity
+
+    def pushed(
+        self, motion: Float[Array, "5"], speed: Scalar
+    ) -> tuple[Float[Array, "5"], Float[Array, "5 5"], Float[Array, "5 5"]]:
+        """As of `AbstractSupport.pushed`, from one solve of the rolling elements."""
+        sense, _ = self._sense(motion.dtype)
+        model, rings = self._model(motion, speed)
+        found = model.evaluate(rings, model.solve(rings))
+        solved = jnp.where(found.result == Result.CONVERGED, 1.0, jnp.nan)
+        stiffness = sense[:, None] * found.stiffness[_INNER, _INNER] * sense[None, :]
+        return sense * found.force[_INNER] * solved, stiffness * solved, self.damping
+
+    def _sense(self, dtype):
+        """What turning round makes of a motion (5,) and of the speed."""
+        sense = jnp.where(self.turned, jnp.asarray(_TURNED, dtype), 1.0)
         # Seen from the other side the rotor turns the other way.
-        spin = -speed if self.turned else speed
+        return sense, sense[2]
+
+    def _model(self, motion, speed):
+        """The bearing at the speed, and the freedoms of its rings (12,)."""
+        sense, sign = self._sense(motion.dtype)
         rings = jnp.zeros(2 * _N_RING, motion.dtype)
         rings = rings.at[_INNER].set(self.offset + sense * motion)
-        turning = Speed(inner=spin) if self.inertia else None
-        held = self.element.force(rings, turning)
-        return sense * held[_INNER] + self.damping @ velocity
+        turning = Speed(inner=sign * speed) if self.inertia else None
+        return self.element.model(turning), rings

@@ -67,7 +67,7 @@ def critical_speeds(rotor: Rotor, *, count: Any = 6) -> CriticalSpeeds:
     with a damping ratio above √½, which cannot resonate, are not counted.
 
     Args:
-        rotor: The rotor, or what has a `linearised(speed)` as it has.
+        rotor: The rotor.
         count: How many, the lowest.
 
     Returns:

@@ -88,7 +88,7 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
     """Modes of a rotor that turns at a speed.
 
     Args:
-        rotor: The rotor, or what has a `linearised(speed)` as it has.
+        rotor: The rotor.
         speed: Positive from x towards y [rad/s].
         count: Number of modes; `None`: as many as freedoms.
 

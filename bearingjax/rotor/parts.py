@@ -1,5 +1,6 @@
 """What sits on a shaft: discs, point masses, supports and their housings."""
 
+import dataclasses
 from abc import abstractmethod
 from typing import Any
 
@@ -199,7 +200,11 @@ class AbstractSupport(eqx.Module):
 
     @abstractmethod
     def force(
-        self, motion: Float[Array, "5"], velocity: Float[Array, "5"], speed: Scalar
+        self,
+        motion: Float[Array, "5"],
+        velocity: Float[Array, "5"],
+        speed: Scalar,
+        angle: Scalar | float = 0.0,
     ) -> Float[Array, "5"]:
         """Force that moves the station against the support (5,) [N, N m].
 
@@ -207,7 +212,25 @@ class AbstractSupport(eqx.Module):
             motion: (ux uy uz gx gy) of the station less those of the housing [m, rad].
             velocity: Its rate [m/s, rad/s].
             speed: Of the rotor [rad/s].
+            angle: By which the rotor has turned, from x towards y [rad].
         """
+
+    def pushed(
+        self, motion: Float[Array, "5"], speed: Scalar
+    ) -> tuple[Float[Array, "5"], Float[Array, "5 5"], Float[Array, "5 5"]]:
+        """Force (5,), stiffness and damping (5, 5) at a motion and a speed, at rest.
+
+        Args:
+            motion, speed: As `force`.
+        """
+
+        def held(motion, velocity):
+            force = self.force(motion, velocity, speed)
+            return force, force
+
+        rest = jnp.zeros_like(motion)
+        slopes, force = jax.jacfwd(held, (0, 1), has_aux=True)(motion, rest)
+        return force, *slopes
 
     def linearised(
         self, motion: Float[Array, "5"], speed: Scalar
@@ -217,8 +240,11 @@ class AbstractSupport(eqx.Module):
         Args:
             motion, speed: As `force`.
         """
-        rest = jnp.zeros_like(motion)
-        return jax.jacfwd(self.force, argnums=(0, 1))(motion, rest, speed)
+        return self.pushed(motion, speed)[1:]
+
+    def anywhere(self) -> "AbstractSupport":
+        """The same support on station 0 and on ground: like ones are then alike."""
+        return dataclasses.replace(self, station=0, housing=None)
 
 
 class LinearSupport(AbstractSupport):
@@ -285,7 +311,11 @@ class LinearSupport(AbstractSupport):
         )
 
     def force(
-        self, motion: Float[Array, "5"], velocity: Float[Array, "5"], speed: Scalar
+        self,
+        motion: Float[Array, "5"],
+        velocity: Float[Array, "5"],
+        speed: Scalar,
+        angle: Scalar | float = 0.0,
     ) -> Float[Array, "5"]:
         """Force that moves the station against the support (5,) [N, N m]."""
         return self.stiffness @ motion + self.damping @ velocity

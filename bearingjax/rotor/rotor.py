@@ -1,7 +1,7 @@
 """A rotor: shaft, discs and supports, put together as matrices."""
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -12,6 +12,7 @@ from jaxtyping import Array, Complex, Float
 from ..design.checks import instance
 from ..numerics.types import Scalar, as_real
 from .damping import AbstractDamping
+from .held import of_each
 from .parts import AbstractPart, AbstractSupport
 from .shaft import STATION_FREEDOMS, Shaft
 
@@ -89,6 +90,23 @@ class RotorMatrices(eqx.Module):
         n, lead = N_STATION * self.n_nodes, motion.shape[:-1]
         nodes = motion[..., :n].reshape(*lead, self.n_nodes, N_STATION)
         return nodes, motion[..., n:].reshape(*lead, -1, N_HOUSING)
+
+
+class Unsupported(NamedTuple):
+    """Matrices on all motions (motion, motion) of a rotor without its supports.
+
+    Attributes:
+        mass, damping, gyroscopic, stiffness: Of shaft, discs and housings, as of
+            `RotorMatrices`.
+        shaft_mass, shaft_stiffness: Of the shaft alone.
+    """
+
+    mass: Matrix
+    damping: Matrix
+    gyroscopic: Matrix
+    stiffness: Matrix
+    shaft_mass: Matrix
+    shaft_stiffness: Matrix
 
 
 class Rotor(eqx.Module):
@@ -203,10 +221,38 @@ class Rotor(eqx.Module):
             RotorMatrices, differentiable with respect to every number.
         """
         speed = as_real(speed)
+        own = self.unsupported()
+        if motion is None:
+            motion = jnp.zeros(self._n_motions, dtype=own.mass.dtype)
+        damping, stiffness = own.damping, own.stiffness
+        if self.supports:
+            rows = self.at_supports()
+            k, c = of_each(
+                lambda support, moved: support.linearised(moved, speed),
+                self.supports,
+                rows @ motion,
+            )
+            stiffness = stiffness + jnp.einsum("sim,sij,sjn->mn", rows, k, rows)
+            damping = damping + jnp.einsum("sim,sij,sjn->mn", rows, c, rows)
+        basis, shaft = self.motions(), self.shaft
+        length = shaft.stations[-1] - shaft.stations[0]
+        every = jnp.eye(self._n_motions, dtype=basis.dtype)
+        whole = own.mass, damping, own.gyroscopic, stiffness, every
+        matrices = RotorMatrices(*whole, speed, length, shaft.n_nodes)
+        of_shaft = own.shaft_mass, own.shaft_stiffness
+        if self.rigid:
+            matrices = matrices.projected(basis)
+            mass, stiffness = (basis.T @ part @ basis for part in of_shaft)
+            of_shaft = mass, stiffness
+        if self.damping is None:
+            return matrices
+        more = self.damping.matrix(of_shaft, (matrices.mass, matrices.stiffness))
+        return eqx.tree_at(lambda m: m.damping, matrices, matrices.damping + more)
+
+    def unsupported(self) -> "Unsupported":
+        """Matrices on all motions of what there is without supports and `damping`."""
         n_shaft, n = N_STATION * self.shaft.n_nodes, self._n_motions
         nothing = jnp.zeros((n, n), dtype=self.shaft.stations.dtype)
-        if motion is None:
-            motion = nothing[0]
 
         def of_all(matrix):
             return nothing.at[:n_shaft, :n_shaft].set(matrix)
@@ -220,25 +266,12 @@ class Rotor(eqx.Module):
             inertia, turning = disc.inertia()
             mass = mass.at[at, at].add(inertia)
             gyroscopic = gyroscopic.at[at, at].add(turning)
-        seen = zip(self.supports, self.at_supports(), self._housings(), strict=True)
-        for support, rows, at in seen:
-            k, c = support.linearised(rows @ motion, speed)
-            stiffness = stiffness + rows.T @ k @ rows
-            damping = damping + rows.T @ c @ rows
+        for support, at in zip(self.supports, self._housings(), strict=True):
             base = support.housing
             if base is not None:
                 mass = mass.at[at, at].add(base.mass * jnp.eye(N_HOUSING))
                 stiffness = stiffness.at[at, at].add(base.stiffness)
                 damping = damping.at[at, at].add(base.damping)
-        basis = self.motions()
-        parts = (mass, damping, gyroscopic, stiffness, shaft_mass, shaft_stiffness)
-        if self.rigid:
-            parts = tuple(basis.T @ part @ basis for part in parts)
-        mass, damping, gyroscopic, stiffness, *own = parts
-        if self.damping is not None:
-            damping = damping + self.damping.matrix((own[0], own[1]), (mass, stiffness))
-        shaft = self.shaft
-        length = shaft.stations[-1] - shaft.stations[0]
-        return RotorMatrices(
-            mass, damping, gyroscopic, stiffness, basis, speed, length, shaft.n_nodes
+        return Unsupported(
+            mass, damping, gyroscopic, stiffness, shaft_mass, shaft_stiffness
         )

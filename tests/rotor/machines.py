@@ -47,3 +47,17 @@ def stepped(
         ],
         bj.ProportionalDamping(1.0, 1e-6),
     )
+
+
+def bearing(free, outer):
+    """The bearing of method 002, from its drawing."""
+    conformity = 5.93 / 11.51
+    return bj.AngularContactBallBearing(
+        7,
+        1e-3 * (16.0 + outer),
+        11.51e-3,
+        outer_osculation=conformity,
+        inner_osculation=conformity,
+        contact_angle=np.radians(free),
+        material=bj.Material(2.1e11, 0.3, 7850.0),
+    )

@@ -4,6 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from machines import bearing
 from scipy.optimize import brentq
 from tolerances import DIFFERENCE, ROUNDING
 from vibrations import OUTER
@@ -17,20 +18,6 @@ PAPER = {
     12: (6.852, 218.4, 1.4322e8, 1.2941e7, 0.22),
     26: (23.855, 581.2, 1.3074e8, 6.2201e7, 0.048),
 }
-
-
-def bearing(free, outer):
-    """The bearing of method 002, from its drawing."""
-    conformity = 5.93 / 11.51
-    return bj.AngularContactBallBearing(
-        7,
-        1e-3 * (16.0 + outer),
-        11.51e-3,
-        outer_osculation=conformity,
-        inner_osculation=conformity,
-        contact_angle=np.radians(free),
-        material=bj.Material(2.1e11, 0.3, 7850.0),
-    )
 
 
 @jax.jit

@@ -96,7 +96,7 @@ class Stiffening(AbstractSupport):
     station: int = eqx.field(static=True)
     housing: None = None
 
-    def force(self, motion, velocity, speed):
+    def force(self, motion, velocity, speed, angle=0.0):
         return (1e6 + 2.0 * speed**2) * motion + 40.0 * velocity
 
 

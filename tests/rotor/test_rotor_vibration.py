@@ -11,9 +11,9 @@ import bearingjax as bj
 from bearingjax.numerics.types import Scalar, as_real
 from bearingjax.rotor import AbstractSupport, Housing, Rotor, Shaft, Unbalance
 from bearingjax.rotor.vibration import (
-    AbstractSupportLaw,
     HarmonicBalance,
     HarmonicLoad,
+    LawSupport,
     rotor_vibration,
     solve_orbit,
 )
@@ -28,23 +28,10 @@ class Cubic(AbstractSupport):
     cubic: Scalar = eqx.field(converter=as_real)
     housing: Housing | None = eqx.field(default=None, kw_only=True)
 
-    def force(self, motion, velocity, speed):
+    def force(self, motion, velocity, speed, angle=0.0):
         square = motion[0] ** 2 + motion[1] ** 2
         hard = self.cubic * square * jnp.array([1.0, 1.0, 0.0, 0.0, 0.0]) * motion
         return 2e7 * motion + hard + 200.0 * velocity
-
-
-class Bearing(AbstractSupport):
-    """A law of the paper as a support; `sense` is -1 for the opposed one."""
-
-    station: int = eqx.field(static=True)
-    law: AbstractSupportLaw
-    sense: int = eqx.field(static=True)
-    housing: Housing | None = eqx.field(default=None, kw_only=True)
-
-    def force(self, motion, velocity, speed):
-        side = jnp.array([1.0, 1.0, float(self.sense)])
-        return jnp.append(side * self.law.force(side * motion[:3]), jnp.zeros(2))
 
 
 def test_it_is_the_linear_rotor_where_supports_are_linear():
@@ -77,8 +64,8 @@ def test_the_rigid_rotor_is_that_of_the_paper():
     shaft = Shaft([0.0, 0.125, 0.5], [0.025, 0.025], material=bj.Material(2.1e11, 0.3))
     disc = bj.rotor.Disc(1, 10.0, 0.2, 0.1)
     bearings = [
-        Bearing(station=0, law=law, sense=1),
-        Bearing(station=2, law=law, sense=-1),
+        LawSupport(0, law),
+        LawSupport(2, law, turned=True),
     ]
     damping = bj.rotor.ModalDamping(0.01)
     whole = Rotor(shaft, [disc], bearings, damping=damping, rigid=True)

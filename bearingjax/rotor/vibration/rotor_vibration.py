@@ -4,7 +4,7 @@ What is linear (shaft, discs, housings, damping) becomes matrices once; supports
 back as they truly do, not as their slopes.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 import equinox as eqx
@@ -13,8 +13,10 @@ from jaxtyping import Array, Float
 
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
+from ..held import of_each
+from ..loads import RotorLoads
 from ..parts import AbstractSupport
-from ..response import Unbalance
+from ..reduction import craig_bampton, held_motions
 from ..rotor import N_HOUSING, Rotor
 from .system import AbstractVibration, HarmonicLoad
 
@@ -29,8 +31,10 @@ class RotorVibration(AbstractVibration):
         stiffness: Without that of supports (n, n) [N/m, N, N m].
         supports: The supports.
         rows: How each of them moves (support, 5, n).
+        motions: How all nodes and housings move (motion, n).
         load: (phase, frequency, acceleration) -> forces (n,) [N, N m].
-        speed: Of the rotor [rad/s]; `None`: that of the excitation.
+        speed: Of the rotor [rad/s]; `None`: `rotation` times that of the excitation.
+        rotation: Turns of the rotor in one period of the excitation [1].
 
     Traced: all numbers.
     """
@@ -43,91 +47,178 @@ class RotorVibration(AbstractVibration):
     stiffness: Float[Array, "n n"]
     supports: tuple[AbstractSupport, ...]
     rows: Float[Array, "support 5 n"]
+    motions: Float[Array, "motion n"]
     load: Callable
     speed: Scalar | None
+    rotation: Scalar
 
     def _speed(self, frequency):
-        return frequency if self.speed is None else self.speed
+        return self.rotation * frequency if self.speed is None else self.speed
 
     def damping_matrix(self, frequency):
         return self.damping + self._speed(frequency) * self.gyroscopic
 
     def force(self, q, velocity, phase, frequency):
         force, speed = self.stiffness @ q, self._speed(frequency)
-        for support, rows in zip(self.supports, self.rows, strict=True):
-            force = force + rows.T @ support.force(rows @ q, rows @ velocity, speed)
-        return force
+        if not self.supports:
+            return force
+        angle = self.rotation * phase
+        each = of_each(
+            lambda support, moved, rate: support.force(moved, rate, speed, angle),
+            self.supports,
+            self.rows @ q,
+            self.rows @ velocity,
+        )
+        return force + jnp.einsum("sim,si->m", self.rows, each)
 
     def excitation(self, phase, frequency, acceleration):
         return self.load(phase, frequency, acceleration)
 
+    def freedoms(self, motion: Float[Array, " motion"]) -> Float[Array, " n"]:
+        """Freedoms that come nearest to given motions, in the mean of their squares.
+
+        Args:
+            motion: Of all nodes and housings, such as `Settled.motion` (motion,)
+                [m, rad].
+        """
+        return jnp.linalg.lstsq(self.motions, motion)[0]
+
 
 def rotor_vibration(
     rotor: Rotor,
-    load: Callable | Any,
+    loads: RotorLoads | Callable | Any,
     *,
     scale: Scalar | float,
     reference_frequency: Scalar | float,
     speed: Scalar | float | None = None,
+    rotation: Scalar | float | None = None,
+    modes: int | None = None,
+    about: Float[Array, " motion"] | None = None,
 ) -> RotorVibration:
-    """A rotor, ready for `solve_orbit` and `follow`.
+    """A rotor, ready for `solve_orbit`, `follow` and `simulate`.
 
     Args:
-        rotor: Shaft, discs, supports. Modal damping is that of the rotor at rest, its
-            supports linearised where they stand.
-        load: `Unbalance`, or several of them, or a function (phase, frequency,
-            acceleration) -> forces on the freedoms (n,) [N, N m].
+        rotor: Shaft, discs, supports.
+        loads: `RotorLoads`; or `Unbalance`, or several of them; or a function (phase,
+            frequency, acceleration) -> forces on all motions (motion,) [N, N m]; of a
+            rigid shaft on its five freedoms and those of housings.
         scale: Displacement that is called one, such as a clearance [m]; tilts are
             measured in it over the length of the shaft.
         reference_frequency: Frequency that is called one [rad/s].
         speed: Of the rotor [rad/s]; `None`: that of the excitation.
+        rotation: Turns of the rotor in one period of the excitation [1]; `None`: one.
+            With 2/(Z(1 - G)) the excitation is the passage of Z rolling elements, G as
+            in `BearingElement.as_function`; there is no unbalance then.
+        modes: Hold the rotor to `craig_bampton` motions with so many modes; `None`:
+            all freedoms stay.
+        about: Motions about which supports are linearised for modal damping, such as
+            `Settled.motion` (motion,) [m, rad]; `None`: where they stand.
+
+    Raises:
+        ValueError: As `craig_bampton`; for unbalance with a `rotation` of its own, or
+            with both `speed` and `rotation`.
     """
-    matrices = rotor.linearised(0.0)
+    loads = _as_loads(loads)
+    _check_rotation(loads, speed, rotation)
+    matrices = rotor.linearised(0.0, about)
+    supported = bool(rotor.supports)
     rows = rotor.at_supports() @ matrices.motions
     stiffness, damping = matrices.stiffness, matrices.damping
-    nothing = jnp.zeros(rows.shape[1], rows.dtype)
-    for support, row in zip(rotor.supports, rows, strict=True):
-        k, c = support.linearised(nothing, matrices.speed)
-        stiffness = stiffness - row.T @ k @ row
-        damping = damping - row.T @ c @ row
-    size = as_real(scale)
+    if supported:
+        there = jnp.zeros_like(matrices.motions[:, 0]) if about is None else about
+        k, c = of_each(
+            lambda support, moved: support.linearised(moved, matrices.speed),
+            rotor.supports,
+            rotor.at_supports() @ there,
+        )
+        stiffness = stiffness - jnp.einsum("sim,sij,sjn->mn", rows, k, rows)
+        damping = damping - jnp.einsum("sim,sij,sjn->mn", rows, c, rows)
+    own = eqx.tree_at(
+        lambda m: (m.stiffness, m.damping), matrices, (stiffness, damping)
+    )
+    sizes = _sizes(rotor, matrices, as_real(scale))
+    if modes is not None:
+        basis = craig_bampton(rotor, modes)
+        kept, _ = held_motions(rotor)
+        own, rows = own.projected(basis), rows @ basis
+        more = jnp.broadcast_to(as_real(scale), (basis.shape[1] - len(kept),))
+        sizes = jnp.concatenate([sizes[kept], more])
+    return RotorVibration(
+        mass=own.mass,
+        scale=sizes,
+        reference_frequency=as_real(reference_frequency),
+        damping=own.damping,
+        gyroscopic=own.gyroscopic,
+        stiffness=own.stiffness,
+        supports=rotor.supports,
+        rows=rows,
+        motions=own.motions,
+        load=_load(rotor, loads, matrices.motions, own.motions),
+        speed=None if speed is None else as_real(speed),
+        rotation=as_real(1.0 if rotation is None else rotation),
+    )
+
+
+def _sizes(rotor, matrices, size):
+    """What is called one, of every freedom."""
     tilt = size / matrices.length
     body = jnp.stack([size, size, size, tilt, tilt])
     bodies = 1 if rotor.rigid else matrices.n_nodes
     housings = (matrices.mass.shape[0] - 5 * bodies) // N_HOUSING
-    sizes = [body] * bodies + [body[:N_HOUSING]] * housings
-    return RotorVibration(
-        mass=matrices.mass,
-        scale=jnp.concatenate(sizes),
-        reference_frequency=as_real(reference_frequency),
-        damping=damping,
-        gyroscopic=matrices.gyroscopic,
-        stiffness=stiffness,
-        supports=rotor.supports,
-        rows=rows,
-        load=load if _is_function(load) else _unbalanced(rotor, load, matrices),
-        speed=None if speed is None else as_real(speed),
-    )
+    return jnp.concatenate([body] * bodies + [body[:N_HOUSING]] * housings)
 
 
-def _is_function(load):
-    return callable(load) and not isinstance(load, Unbalance)
+def _as_loads(loads):
+    if isinstance(loads, RotorLoads) or callable(loads):
+        return loads
+    return RotorLoads(unbalances=loads)
 
 
-def _unbalanced(rotor, unbalances, matrices):
-    """U ω² (cos(φ + β), sin(φ + β)) at the station of every unbalance."""
-    many = isinstance(unbalances, Iterable)
-    cosine = jnp.zeros_like(matrices.motions[:, 0])
-    sine = cosine
-    for one in unbalances if many else (unbalances,):
-        x, y = one.moment * jnp.cos(one.phase), one.moment * jnp.sin(one.phase)
-        at = rotor.at(one.station).start
-        cosine = cosine.at[at].add(x).at[at + 1].add(y)
-        sine = sine.at[at].add(-y).at[at + 1].add(x)
-    turned = matrices.motions.T
-    load = HarmonicLoad.none(turned.shape[0])
-    return eqx.tree_at(
-        lambda load: (load.unbalance_cosine, load.unbalance_sine),
-        load,
-        (turned @ cosine, turned @ sine),
+def _check_rotation(loads, speed, rotation):
+    if rotation is None:
+        return
+    if speed is not None:
+        raise ValueError(
+            "rotor_vibration: give `speed` or `rotation`: with both, rolling elements"
+            " would not come back after a period of the excitation."
+        )
+    if getattr(loads, "unbalances", ()):
+        raise ValueError(
+            "rotor_vibration: with a `rotation` unbalance does not repeat with the"
+            " excitation; leave one of them out, or integrate over time."
+        )
+
+
+class _Reduced(eqx.Module):
+    """A load on all freedoms, as it acts on fewer."""
+
+    load: Callable
+    basis: Float[Array, "freedom n"]
+
+    def __call__(self, phase, frequency, acceleration):
+        return self.basis.T @ self.load(phase, frequency, acceleration)
+
+
+def _load(rotor, loads, every, motions):
+    """As a function of phase, frequency and its rate, on the freedoms.
+
+    Args:
+        rotor: The rotor.
+        loads: `RotorLoads`, or a function.
+        every: How motions follow the freedoms before the reduction (motion, freedom).
+        motions: And after it (motion, n).
+    """
+    if not isinstance(loads, RotorLoads):
+        if motions.shape == every.shape:
+            return loads
+        return _Reduced(loads, motions)
+    loads.check(rotor)
+    turned = motions.T
+    cosine, sine = loads.unbalanced(rotor)
+    return HarmonicLoad(
+        constant=turned @ loads.constant(rotor),
+        cosine=turned @ loads.shaken(rotor),
+        sine=jnp.zeros_like(turned[:, 0]),
+        unbalance_cosine=turned @ cosine,
+        unbalance_sine=turned @ sine,
     )

@@ -1,0 +1,69 @@
+"""All supports of a rotor at once: like ones share one program.
+
+The program of a bearing is by far the largest part of a rotor's; two bearings of one
+structure, whatever their numbers, are traced and compiled once.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+
+from .parts import AbstractSupport
+
+
+def of_each(
+    function: Callable, supports: tuple[AbstractSupport, ...], *arrays: Any
+) -> Any:
+    """function(support, *its arrays) of every support.
+
+    Args:
+        function: It must not read station or housing of the support.
+        supports: One or more.
+        *arrays: With `support` as first axis.
+
+    Returns:
+        What it returns, with `support` as first axis.
+    """
+    kinds: list[tuple[list[int], list[AbstractSupport]]] = []
+    for k, support in enumerate(supports):
+        one = support.anywhere()
+        same = (kind for kind in kinds if _alike(kind[1][0], one))
+        members, alike = next(same, ([], []))
+        if not members:
+            kinds.append((members, alike))
+        members.append(k)
+        alike.append(one)
+    found = {}
+    for members, alike in kinds:
+        given = [array[jnp.asarray(members)] for array in arrays]
+        found |= zip(members, _of_kind(function, alike, given), strict=True)
+    return jax.tree.map(lambda *one: jnp.stack(one), *(found[k] for k in sorted(found)))
+
+
+def _of_kind(function, alike, given):
+    if len(alike) == 1:
+        return [function(alike[0], *(array[0] for array in given))]
+    parts = [eqx.partition(support, eqx.is_array) for support in alike]
+    rest = parts[0][1]
+    stacked = jax.tree.map(lambda *leaf: jnp.stack(leaf), *(part[0] for part in parts))
+
+    def one(numbers, *arrays):
+        return function(eqx.combine(numbers, rest), *arrays)
+
+    every = jax.vmap(one)(stacked, *given)
+    leaves, tree = jax.tree.flatten(every)
+    return [tree.unflatten([leaf[k] for leaf in leaves]) for k in range(len(alike))]
+
+
+def _alike(one, other):
+    """Whether two supports differ in numbers only."""
+    if jax.tree.structure(one) != jax.tree.structure(other):
+        return False
+    (a, rest), (b, others) = (eqx.partition(s, eqx.is_array) for s in (one, other))
+    pairs = zip(jax.tree.leaves(a), jax.tree.leaves(b), strict=True)
+    return jax.tree.leaves(rest) == jax.tree.leaves(others) and all(
+        x.shape == y.shape and x.dtype == y.dtype for x, y in pairs
+    )

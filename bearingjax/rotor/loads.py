@@ -1,0 +1,160 @@
+"""What acts on a rotor from outside: weight, forces, unbalance, a base that shakes."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design.checks import check, is_traced
+from ..numerics.types import as_count, as_real
+from ..numerics.units import unit
+from .parts import check_station
+from .response import Unbalance
+from .rotor import N_HOUSING, N_STATION, Rotor
+
+Motions = Float[Array, " motion"]
+STANDARD_GRAVITY = 9.80665
+"""Acceleration of free fall [m/s²]."""
+
+
+def _vector(owner, name, size):
+    value = getattr(owner, name)
+    if getattr(value, "shape", None) != (size,):
+        raise ValueError(
+            f"{type(owner).__name__}: `{name}` has shape"
+            f" {getattr(value, 'shape', type(value).__name__)}; it must be ({size},)."
+        )
+    if not is_traced(value):
+        check(owner, name, np.isfinite(value).all(), "finite")
+
+
+def _listed(parts):
+    return tuple(parts) if isinstance(parts, Iterable) else (parts,)
+
+
+class StationForce(eqx.Module):
+    """A constant force and moment on a station.
+
+    Attributes:
+        station: Number of the station.
+        force: (Fx, Fy, Fz, Mx, My) [N, N m].
+
+    Traced: force.
+    """
+
+    station: int = eqx.field(static=True, converter=as_count)
+    force: Float[Array, "5"] = eqx.field(
+        converter=as_real, metadata=unit(("N", "N", "N", "N m", "N m"))
+    )
+
+    def __check_init__(self):
+        check_station(self, self.station)
+        _vector(self, "force", N_STATION)
+
+
+class RotorLoads(eqx.Module):
+    """Loads of a rotor.
+
+    Attributes:
+        unbalances: One or several.
+        forces: Constant forces on stations, one or several.
+        gravity: Acceleration of free fall along x, y and z, such as
+            (0, -9.80665, 0) for a horizontal shaft (3,) [m/s²].
+        base_acceleration: Amplitude of the base's acceleration a·cos φ, with φ the
+            phase of the excitation (3,) [m/s²]. The rotor's motion is then that
+            against the base.
+
+    Traced: all but the numbers of stations.
+    """
+
+    unbalances: tuple[Unbalance, ...] = eqx.field(converter=_listed, default=())
+    forces: tuple[StationForce, ...] = eqx.field(converter=_listed, default=())
+    gravity: Float[Array, "3"] = eqx.field(
+        converter=as_real, metadata=unit(3 * ("m/s²",)), default=(0.0, 0.0, 0.0)
+    )
+    base_acceleration: Float[Array, "3"] = eqx.field(
+        converter=as_real, metadata=unit(3 * ("m/s²",)), default=(0.0, 0.0, 0.0)
+    )
+
+    def __check_init__(self):
+        for name, kind in (("unbalances", Unbalance), ("forces", StationForce)):
+            for one in getattr(self, name):
+                if not isinstance(one, kind):
+                    raise TypeError(
+                        f"RotorLoads: `{name}` holds a {type(one).__name__}; it must"
+                        f" hold {kind.__name__}s."
+                    )
+        _vector(self, "gravity", 3)
+        _vector(self, "base_acceleration", 3)
+
+    def check(self, rotor: Rotor) -> None:
+        """Raise unless the rotor has all stations that are loaded.
+
+        Args:
+            rotor: The rotor.
+
+        Raises:
+            ValueError: If a station is not there.
+        """
+        last = rotor.shaft.n_segments
+        for name in ("unbalances", "forces"):
+            for one in getattr(self, name):
+                if one.station > last:
+                    raise ValueError(
+                        f"RotorLoads: `{name}` holds one on station {one.station}; the"
+                        f" last station of the shaft is {last}."
+                    )
+
+    def constant(self, rotor: Rotor) -> Motions:
+        """Weight and constant forces on all motions (motion,) [N, N m].
+
+        Args:
+            rotor: The rotor.
+        """
+        force = accelerated(rotor, self.gravity)
+        for one in self.forces:
+            force = force.at[rotor.at(one.station)].add(one.force)
+        return force
+
+    def unbalanced(self, rotor: Rotor) -> tuple[Motions, Motions]:
+        """Amplitudes of cos φ and sin φ of the unbalance forces, over Ω² [kg m].
+
+        U (cos(φ + β), sin(φ + β)) at the station of every unbalance.
+
+        Args:
+            rotor: The rotor.
+        """
+        cosine = jnp.zeros_like(accelerated(rotor, self.gravity))
+        sine = cosine
+        for one in self.unbalances:
+            x, y = one.moment * jnp.cos(one.phase), one.moment * jnp.sin(one.phase)
+            at = rotor.at(one.station).start
+            cosine = cosine.at[at].add(x).at[at + 1].add(y)
+            sine = sine.at[at].add(-y).at[at + 1].add(x)
+        return cosine, sine
+
+    def shaken(self, rotor: Rotor) -> Motions:
+        """Amplitude of cos φ of the inertia forces of a shaking base [N, N m].
+
+        Args:
+            rotor: The rotor.
+        """
+        return -accelerated(rotor, self.base_acceleration)
+
+
+def accelerated(rotor: Rotor, acceleration: Any) -> Motions:
+    """Mass times one acceleration of all that the rotor is (motion,) [N, N m].
+
+    Args:
+        rotor: The rotor.
+        acceleration: Along x, y and z (3,) [m/s²].
+    """
+    mass = rotor.unsupported().mass
+    n_nodes = rotor.shaft.n_nodes
+    n_housings = (mass.shape[0] - N_STATION * n_nodes) // N_HOUSING
+    still = jnp.append(acceleration, jnp.zeros(2, mass.dtype))
+    every = [jnp.tile(still, n_nodes), jnp.tile(acceleration, n_housings)]
+    return mass @ jnp.concatenate(every)

@@ -1,0 +1,85 @@
+"""A support whose stiffness follows the speed of the rotor, as a polynomial."""
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design.checks import instance, positive
+from ..numerics.types import Scalar, as_count, as_real
+from ..numerics.units import unit
+from .parts import (
+    DAMPING_UNITS,
+    STIFFNESS_UNITS,
+    AbstractSupport,
+    Housing,
+    check_matrix,
+    check_station,
+    square_matrix,
+)
+
+
+class SpeedSupport(AbstractSupport):
+    """Springs whose stiffness follows the speed, and dampers.
+
+    Attributes:
+        station: Number of the station that it holds.
+        stiffness: Coefficients of Chebyshev's polynomials between rest and `top_speed`
+            (order, 5, 5) [N/m, N, N m]. Outside it stays what it is at the end.
+        damping: As of `LinearSupport` [N s/m, N s, N m s].
+        top_speed: Speed up to which it is known [rad/s].
+        housing: What it stands on; `None`: ground.
+
+    Traced: all but `station`.
+    """
+
+    station: int = eqx.field(static=True, converter=as_count)
+    stiffness: Float[Array, "order 5 5"] = eqx.field(
+        converter=as_real, metadata=unit(STIFFNESS_UNITS)
+    )
+    damping: Float[Array, "5 5"] = eqx.field(
+        converter=square_matrix, metadata=unit(DAMPING_UNITS)
+    )
+    top_speed: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"))
+    housing: Housing | None = eqx.field(default=None, kw_only=True)
+
+    def __check_init__(self):
+        check_station(self, self.station)
+        check_matrix(self, "damping", 5)
+        positive(self, "top_speed")
+        instance(self, "housing", Housing, None)
+        shape = getattr(self.stiffness, "shape", ())
+        if len(shape) != 3 or shape[1:] != (5, 5) or not shape[0]:
+            raise ValueError(
+                f"SpeedSupport: `stiffness` has shape {shape}; it must be"
+                " (order, 5, 5)."
+            )
+
+    def force(
+        self,
+        motion: Float[Array, "5"],
+        velocity: Float[Array, "5"],
+        speed: Scalar,
+        angle: Scalar | float = 0.0,
+    ) -> Float[Array, "5"]:
+        """As of `AbstractSupport.force`: without the load at rest [N, N m]."""
+        share = jnp.clip(2.0 * speed / self.top_speed - 1.0, -1.0, 1.0)
+        terms = [jnp.ones_like(share), share]
+        for _ in range(self.stiffness.shape[0] - 2):
+            terms.append(2.0 * share * terms[-1] - terms[-2])
+        at = jnp.stack(terms[: self.stiffness.shape[0]])
+        return jnp.tensordot(at, self.stiffness, 1) @ motion + self.damping @ velocity
+
+
+def chebyshev_analysis(places: int) -> np.ndarray:
+    """Coefficients of Chebyshev's polynomials from values at roots (order, place).
+
+    The roots are those of the first polynomial left out, rising.
+
+    Args:
+        places: Number of roots.
+    """
+    angle = np.pi * (np.arange(places)[::-1] + 0.5) / places
+    weight = np.full(places, 2.0 / places)
+    weight[0] = 1.0 / places
+    return weight[:, None] * np.cos(np.arange(places)[:, None] * angle)

@@ -1,0 +1,61 @@
+"""A law of a preloaded ball bearing as what holds a station of a shaft."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ...design.checks import instance
+from ...numerics.types import Scalar, as_count, as_real
+from ...numerics.units import unit
+from ..parts import (
+    DAMPING_UNITS,
+    AbstractSupport,
+    Housing,
+    check_matrix,
+    check_station,
+    square_matrix,
+)
+from .support_law import AbstractSupportLaw
+
+
+class LawSupport(AbstractSupport):
+    """A support that pushes back as a law does; it does not resist tilting.
+
+    Attributes:
+        station: Number of the station that it holds.
+        law: `FixedAngle`, `CubicExpansion` or `MovingAngle`.
+        damping: Against ground or housing (5, 5), or its diagonal (5,) [N s/m, N s,
+            N m s].
+        housing: What it stands on; `None`: ground.
+        turned: Whether +z relieves it instead of adding to its preload, as of the
+            other bearing of an opposed pair. Its balls stay where they are.
+
+    Traced: law, damping, housing. Static: station, turned.
+    """
+
+    station: int = eqx.field(static=True, converter=as_count)
+    law: AbstractSupportLaw
+    damping: Float[Array, "5 5"] = eqx.field(
+        converter=square_matrix, metadata=unit(DAMPING_UNITS), default=(0.0,) * 5
+    )
+    housing: Housing | None = eqx.field(default=None, kw_only=True)
+    turned: bool = eqx.field(static=True, default=False, kw_only=True)
+
+    def __check_init__(self):
+        check_station(self, self.station)
+        instance(self, "law", AbstractSupportLaw)
+        check_matrix(self, "damping", 5)
+        instance(self, "housing", Housing, None)
+        instance(self, "turned", bool)
+
+    def force(
+        self,
+        motion: Float[Array, "5"],
+        velocity: Float[Array, "5"],
+        speed: Scalar,
+        angle: Scalar | float = 0.0,
+    ) -> Float[Array, "5"]:
+        """As of `AbstractSupport.force` [N, N m]; the balls stand still."""
+        side = as_real((1.0, 1.0, -1.0 if self.turned else 1.0)).astype(motion.dtype)
+        held = side * self.law.force(side * motion[:3])
+        return jnp.append(held, jnp.zeros_like(held[:2])) + self.damping @ velocity

@@ -1,0 +1,165 @@
+"""Static equilibrium of rotors in their bearings, and linear analyses about it."""
+
+import warnings
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from machines import bearing, stepped
+from tolerances import DIFFERENCE, SOLVER
+from vibrations import OUTER
+
+import bearingjax as bj
+
+STEEL = bj.Material(2.1e11, 0.3, 7850.0)
+WEIGHT = bj.RotorLoads(gravity=(0.0, -9.80665, 0.0))
+ELEMENT = bj.BearingElement(bearing(23.855, OUTER[26]))
+
+
+def opposed(offset=14e-6, diameter=0.025, load=WEIGHT, inertia=False):
+    """The rotor of method 002 on two true bearings of 26°, pressed together."""
+    shaft = bj.Shaft([0.0, 0.125, 0.5], diameter, material=STEEL, divisions=2)
+    at = jnp.zeros(5).at[2].set(offset)
+    supports = [
+        bj.BearingSupport(k, ELEMENT, at, turned=k > 0, inertia=inertia) for k in (0, 2)
+    ]
+    return bj.Rotor(shaft, bj.Disc(1, 10.0, 0.2, 0.1), supports), load
+
+
+def test_springs():
+    """On springs it is what the whole stiffness matrix says."""
+    rotor = stepped()
+    loads = bj.RotorLoads(
+        gravity=(1.0, -9.8, 2.0), forces=bj.StationForce(1, [10, 20, 5, 0.1, 0.2])
+    )
+    found = bj.settle(rotor, loads)
+    wanted = np.linalg.solve(rotor.linearised().stiffness, loads.constant(rotor))
+    np.testing.assert_allclose(found.motion, wanted, atol=1e-11 * np.abs(wanted).max())
+    assert not np.asarray(found.free).any()
+    total = 9.8 * (rotor.mass + 4.0) - 20.0
+    housing = 0.7 * 5e7 * found.housing[0, 1]
+    np.testing.assert_allclose(found.support_load[0, 1] + housing, -total, rtol=SOLVER)
+
+
+def test_weight_and_preload():
+    """Loads balance weight and each other; the place is one of no left-over force."""
+    rotor, loads = opposed()
+    found = bj.settle(rotor, loads)
+    load, weight = np.asarray(found.support_load), 9.80665 * float(rotor.mass)
+    np.testing.assert_allclose(load.sum(axis=0)[[1, 2]], [-weight, 0], atol=1e-8)
+    # Moments about x at z = 0: -y-force times arm, and what the bearings hold.
+    arm = 9.80665 * (10.0 * 0.125 + float(rotor.shaft.mass) * 0.25)
+    moments = load[:, 3].sum() - 0.5 * load[1, 1]
+    np.testing.assert_allclose(moments, arm, rtol=1e-9)
+    assert 400.0 < load[0, 2] < 600.0
+    # The linear rotor stands for the true one there.
+    matrices = found.rotor.linearised()
+    wanted = rotor.linearised(0.0, found.motion)
+    scale = np.abs(wanted.stiffness).max()
+    np.testing.assert_allclose(matrices.stiffness, wanted.stiffness, atol=1e-12 * scale)
+
+
+def test_derivatives():
+    """Of place, load and stiffness, by preload and by diameter."""
+
+    def numbers(x):
+        rotor, loads = opposed(1e-6 * x[0], 1e-3 * x[1])
+        found = bj.settle(rotor, loads, throw=False)
+        return jnp.stack(
+            [
+                1e6 * found.displacement[1, 1],
+                1e-2 * found.support_load[0, 2],
+                1e-8 * found.stiffness[1, 0, 0],
+            ]
+        )
+
+    x = jnp.array([14.0, 25.0])
+    slopes = jax.jacrev(numbers)(x)
+    best = np.full(slopes.shape, np.inf)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for step in (1e-3, 1e-4):
+            ends = [
+                np.stack([numbers(x + s * step * e) for e in np.eye(2)], axis=1)
+                for s in (1.0, -1.0)
+            ]
+            error = np.abs((ends[0] - ends[1]) / (2.0 * step) - slopes)
+            best = np.minimum(best, error)
+    assert (best < DIFFERENCE * np.abs(slopes).max(axis=1)[:, None]).all()
+
+
+def test_follows_the_speed():
+    """Where balls feel the speed, the rotor over speeds is the one settled at each."""
+    rotor, loads = opposed(inertia=True)
+    over = bj.settle_over(rotor, loads, 1000.0)
+    assert float(over.error) < 1e-7
+    there, rest = (bj.settle(rotor, loads, speed) for speed in (800.0, 0.0))
+    wanted = there.rotor.linearised().stiffness
+    scale = np.abs(wanted).max()
+    found = over.rotor.linearised(800.0).stiffness
+    np.testing.assert_allclose(found, wanted, atol=1e-8 * scale)
+    other = rest.rotor.linearised().stiffness
+    assert np.abs(other - wanted).max() > 1e-5 * scale
+    # Outside, the ends hold.
+    ends = [over.rotor.linearised(speed).stiffness for speed in (1000.0, 2000.0)]
+    np.testing.assert_array_equal(*ends)
+
+
+def test_nothing_holds_it():
+    """A load that nothing takes up, and a bearing that bears nothing, are said."""
+    rotor, _ = opposed()
+    rollers = bj.Rotor(
+        rotor.shaft, rotor.discs, [bj.LinearSupport.isotropic(k, 1e8) for k in (0, 2)]
+    )
+    upright = bj.RotorLoads(gravity=(0.0, 0.0, -9.80665))
+    with pytest.raises(bj.SolveError, match="no_load_path.*along uz of station"):
+        bj.settle(rollers, upright)
+    failed = bj.settle(rollers, upright, throw=False)
+    assert int(failed.result) == bj.Result.NO_LOAD_PATH
+    assert np.isnan(failed.motion).all() and np.isnan(failed.stiffness).all()
+    idle, _ = opposed(-5e-6)
+    with pytest.warns(UserWarning) as said:
+        bj.settle(idle)
+    texts = [str(one.message) for one in said]
+    assert any("station 0, 2 bears nothing" in text for text in texts)
+    assert any("nothing holds" in text for text in texts)
+
+
+def test_clearance():
+    """Bearings with clearance take up the weight where they meet it."""
+    rotor, loads = opposed(-5e-6, 0.05)
+    found = bj.settle(rotor, loads)
+    load, weight = np.asarray(found.support_load), 9.80665 * float(rotor.mass)
+    np.testing.assert_allclose(load[:, 1].sum(), -weight, rtol=1e-10)
+    assert float(found.displacement[0, 1]) < -5e-6
+
+
+@pytest.mark.parametrize(
+    "make, error, message",
+    [
+        (lambda r: bj.settle(r.shaft), TypeError, "`rotor` is a Shaft"),
+        (lambda r: bj.settle(r, bj.Unbalance(1, 1e-5)), TypeError, "`loads` is a Unba"),
+        (lambda r: bj.settle(bj.Rotor(r.shaft)), ValueError, "no supports"),
+        (
+            lambda r: bj.settle(r, bj.RotorLoads(forces=bj.StationForce(7, [0.0] * 5))),
+            ValueError,
+            "on station 7; the last station of the shaft is 2",
+        ),
+        (lambda r: bj.settle(r, speed=np.nan), ValueError, "`speed`"),
+        (
+            lambda r: bj.RotorLoads(gravity=9.81),
+            ValueError,
+            r"`gravity` has shape \(\)",
+        ),
+        (lambda r: bj.RotorLoads(unbalances=[3.0]), TypeError, "hold Unbalances"),
+        (lambda r: bj.StationForce(1, [1.0, 2.0]), ValueError, "`force` has shape"),
+        (lambda r: bj.StationForce(1, [np.inf] * 5), ValueError, "finite"),
+        (lambda r: bj.settle_over(r, None, 0.0), ValueError, "`top_speed`"),
+        (lambda r: bj.settle_over(r, None, 1.0, places=2), ValueError, "`places`"),
+    ],
+)
+def test_bad_input(make, error, message):
+    rotor, _ = opposed()
+    with pytest.raises(error, match=message):
+        make(rotor)
