@@ -22,6 +22,7 @@ from .rotor_modes import mode_shapes as mode_shapes
 from .rotor_motion import Spectra as Spectra
 from .rotor_motion import orbits as orbits
 from .rotor_motion import spectra_over_time as spectra_over_time
+from .rotor_motion import steady_spectra as steady_spectra
 from .rotor_motion import waterfall as waterfall
 from .rotor_motion import waveforms as waveforms
 from .rotor_page import rotor_overview as rotor_overview

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..rotor.vibration import Waterfall
 from .rotor_modes import RPM, unit_name, unit_scale
 from .style import CURVES, GREY, OUTER, SMALL, axes_or_new
 
@@ -112,7 +113,7 @@ class Spectra(NamedTuple):
 
     Attributes:
         speed: (line,) [rad/s].
-        frequency: (bin,) [Hz].
+        frequency: Of the bins, of all spectra (bin,) or of each (line, bin) [Hz].
         amplitude: (line, bin) [m, rad].
     """
 
@@ -157,6 +158,18 @@ def spectra_over_time(time: Any, speed: Any, motion: Any, count: int = 24) -> Sp
     )
 
 
+def steady_spectra(found: Waterfall, freedom: int) -> Spectra:
+    """Spectra of steady vibration of a rotor that turns with its excitation.
+
+    Args:
+        found: From `rotor.vibration.waterfall`.
+        freedom: Which; its mean is left out.
+    """
+    speed = np.asarray(found.frequency)
+    hertz = speed[:, None] * np.asarray(found.order)[1:] / (2.0 * np.pi)
+    return Spectra(speed, hertz, np.asarray(found.amplitude)[:, 1:, freedom])
+
+
 def waterfall(
     spectra: Spectra,
     ax: "matplotlib.axes.Axes | None" = None,
@@ -170,7 +183,7 @@ def waterfall(
     said. Dashed lines are the speed and twice the speed.
 
     Args:
-        spectra: Such as from `spectra_over_time`.
+        spectra: From `spectra_over_time` or `steady_spectra`.
         ax: Axes; a new figure if `None`.
         highest: Frequency up to which it is drawn [Hz]; default: three times the
             highest speed.
@@ -181,17 +194,18 @@ def waterfall(
     """
     ax = axes_or_new(ax, (8.0, 6.0))
     rpm = RPM * spectra.speed
-    highest = highest or 3.0 * float(np.abs(rpm).max()) / 60.0 or spectra.frequency[-1]
-    shown = spectra.frequency <= highest
-    amplitude = unit_scale(unit) * spectra.amplitude[:, shown]
-    largest = float(amplitude.max(initial=0.0)) or 1.0
+    amplitude = unit_scale(unit) * spectra.amplitude
+    hertz = np.broadcast_to(spectra.frequency, amplitude.shape)
+    highest = highest or 3.0 * float(np.abs(rpm).max()) / 60.0 or float(hertz.max())
+    largest = float(np.nanmax(amplitude, initial=0.0)) or 1.0
     step = np.ptp(rpm) / max(len(rpm) - 1, 1) or 1.0
     order = np.argsort(rpm)[::-1]
     for depth, k in enumerate(order):
         line = rpm[k] + 4.0 * step * amplitude[k] / largest
-        hertz = spectra.frequency[shown]
-        ax.fill_between(hertz, rpm[k], line, color="white", zorder=depth + 2, lw=0)
-        ax.plot(hertz, line, color=OUTER, lw=0.9, zorder=depth + 2, label="_spectrum")
+        shown = hertz[k] <= highest
+        at, line = hertz[k, shown], line[shown]
+        ax.fill_between(at, rpm[k], line, color="white", zorder=depth + 2, lw=0)
+        ax.plot(at, line, color=OUTER, lw=0.9, zorder=depth + 2, label="_spectrum")
     ends = np.array([rpm.min() - 0.5 * step, rpm.max() + 4.6 * step])
     for times in (1, 2):
         ax.plot(

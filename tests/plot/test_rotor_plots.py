@@ -13,7 +13,7 @@ import bearingjax as bj
 from bearingjax import plot
 from bearingjax.plot.rotor_parts import disc_size
 from bearingjax.rotor import CriticalSpeeds, Modes
-from bearingjax.rotor.vibration import Branch, Ending, Event
+from bearingjax.rotor.vibration import Branch, Ending, Event, Waterfall
 
 matplotlib.use("Agg")
 
@@ -272,6 +272,12 @@ def test_spectra_of_a_run_up():
     assert len(lines) == 30 and ax.get_ylabel() == "speed [rpm]"
     (once,) = named(ax, "_1x")
     assert np.allclose(once[:, 0], once[:, 1] / 60.0)
+    steady = Waterfall(
+        *map(jnp.asarray, ([100.0, 200.0], [0.0, 1.0], np.ones((2, 2, 1)), [0, 0]))
+    )
+    lines = named(plot.waterfall(plot.steady_spectra(steady, 0)), "_spectrum")
+    # A line at the speed itself, without the mean.
+    assert np.allclose(lines[1][:, 0], [100.0 / (2.0 * np.pi)])
     with pytest.raises(ValueError, match="not even"):
         plot.spectra_over_time(time**2, speed, angle)
     with pytest.raises(ValueError, match="too few"):
