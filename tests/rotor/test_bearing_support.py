@@ -1,5 +1,6 @@
 """A bearing of the library as a support, against the published rotor's bearings."""
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -81,6 +82,29 @@ def test_slopes_and_damping():
     found = (ends[0] - ends[1]) / (2.0 * np.diagonal(steps))[None, :]
     size = np.sqrt(np.outer(np.diagonal(stiffness), np.diagonal(stiffness)))
     np.testing.assert_allclose(found / size, stiffness / size, atol=DIFFERENCE)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_passage(turned):
+    """Balls orbit with the shaft; after a pitch they stand as at first."""
+    support = preloaded(12, turned=turned, passage=True)
+    motion = jnp.array([2e-5, -1e-5, 1e-6, 2e-5, -1e-5])
+    pitch = 2.0 * np.pi / 7
+
+    @jax.jit
+    def forced(support, angle):
+        return support.force(motion, jnp.zeros(5), jnp.asarray(0.0), angle)
+
+    ratio = 0.5 * (1.0 - 11.51e-3 * np.cos(np.radians(6.852)) / 43.5125e-3)
+    first, half, whole = (forced(support, k * pitch / ratio) for k in (0, 0.5, 1))
+    np.testing.assert_allclose(whole, first, rtol=1e-8)
+    assert np.abs(half - first).max() > 1e-3 * np.abs(first).max()
+    # The same with the balls put there: seen from behind they go round the other way.
+    sense = -1.0 if turned else 1.0
+    put = eqx.tree_at(
+        lambda s: s.element.bearing.first_azimuth, support, sense * 0.5 * pitch
+    )
+    np.testing.assert_allclose(forced(put, 0.0), half, rtol=1e-8)
 
 
 def test_in_a_rotor():

@@ -1,0 +1,95 @@
+"""Craig-Bampton reduction: frequencies, and nonlinear orbits of fewer freedoms."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from machines import stepped
+from scipy.linalg import eigh
+from tolerances import SOLVER
+from vibrations import grooves
+
+import bearingjax as bj
+from bearingjax.rotor import craig_bampton
+from bearingjax.rotor.vibration import (
+    HarmonicBalance,
+    LawSupport,
+    rotor_vibration,
+    solve_orbit,
+)
+
+
+def frequencies(matrices, count=6):
+    """Lowest natural frequencies at rest without damping [rad/s]."""
+    stiffness = 0.5 * (matrices.stiffness + matrices.stiffness.T)
+    return np.sqrt(eigh(stiffness, matrices.mass, eigvals_only=True)[:count])
+
+
+def test_frequencies():
+    """From above, nearer with each mode, exact with all; housings are kept."""
+    rotor = stepped()
+    whole = rotor.linearised()
+    wanted, last = frequencies(whole), np.inf
+    for modes in (0, 2, 6, 1000):
+        basis = craig_bampton(rotor, modes)
+        found = frequencies(whole.projected(basis))
+        error = (found / wanted - 1.0).max()
+        assert (found >= wanted * (1.0 - 1e-9)).all() and error < last + 1e-9
+        last = error
+    assert basis.shape == (whole.mass.shape[0],) * 2
+    np.testing.assert_allclose(found, wanted, rtol=SOLVER)
+
+
+def test_orbit():
+    """An orbit on nonlinear bearings, with a fifth of the freedoms."""
+    law = grooves(26).fixed_angle()
+    shaft = bj.Shaft([0.0, 0.2, 0.5], 0.03, divisions=(2, 3))
+    rotor = bj.Rotor(
+        shaft,
+        bj.Disc(1, 6.0, 0.02, 0.012),
+        [LawSupport(0, law), LawSupport(2, law, turned=True)],
+        bj.ModalDamping(0.01),
+    )
+    loads = bj.RotorLoads(bj.Unbalance(1, 2e-3), gravity=(0.0, -9.81, 0.0))
+    method = HarmonicBalance(3, 16, steps=16)
+    orbits = []
+    for modes in (None, 4):
+        system = rotor_vibration(
+            rotor, loads, scale=1e-5, reference_frequency=1e3, modes=modes
+        )
+        orbit = solve_orbit(system, 500.0, method)
+        orbits.append(np.asarray(orbit.displacement @ system.motions.T))
+    full, reduced = orbits
+    size = np.abs(full[:, :3]).max()
+    assert size > 5e-6
+    for rows in (slice(0, 3), slice(-5, -2)):
+        assert np.abs(reduced[:, rows] - full[:, rows]).max() < 1e-4 * size
+    # Freedoms that move all nodes as a motion does, and back.
+    q = jnp.arange(1.0, 1.0 + system.mass.shape[0])
+    np.testing.assert_allclose(system.freedoms(system.motions @ q), q, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        (lambda r: craig_bampton(r, -1), "`modes` is -1"),
+        (lambda r: craig_bampton(r, True), "`modes` is True"),
+        (lambda r: craig_bampton(bj.Rotor(r.shaft), 2), "no supports"),
+        (
+            lambda r: craig_bampton(bj.Rotor(r.shaft, (), r.supports, rigid=True), 2),
+            "is rigid",
+        ),
+        (
+            lambda r: rotor_vibration(
+                r,
+                bj.Unbalance(1, 1e-5),
+                scale=1e-5,
+                reference_frequency=1e3,
+                rotation=0.3,
+            ),
+            "with a `rotation` unbalance",
+        ),
+    ],
+)
+def test_bad_input(change, message):
+    with pytest.raises(ValueError, match=message):
+        change(stepped())
