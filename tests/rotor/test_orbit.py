@@ -18,6 +18,7 @@ from bearingjax.rotor.vibration import (
     hill_multipliers,
     solve_orbit,
 )
+from bearingjax.rotor.vibration.flow import transition
 
 BALANCE, SHOOTING = HarmonicBalance(9, 48, steps=32), Shooting(48)
 METHODS = {"balance": BALANCE, "shooting": SHOOTING}
@@ -226,3 +227,22 @@ def test_what_has_no_orbit_says_so():
         )
     with pytest.raises(ValueError, match="7 harmonics need more than 14"):
         HarmonicBalance(7, 14)
+
+
+def test_a_fast_mode_does_not_spoil_the_multipliers():
+    """Small changes beside a vibration of 50 per period, with 24 steps: exact."""
+    fast = 50.25
+    turn = jnp.asarray(np.array([[0.0, fast], [-fast, 0.0]]))
+    found = transition(lambda phase: turn, jnp.eye(2), 24)
+    assert np.allclose(found, [[0.0, 1.0], [-1.0, 0.0]], atol=SOLVER)
+
+    # Of one that varies the error falls with the sixth power of the step.
+    def varying(phase):
+        return jnp.stack(
+            [jnp.stack([0.0 * phase, 1.0 + 0.0 * phase]),
+             jnp.stack([-1.2 - 0.6 * jnp.cos(phase), -0.1 + 0.0 * phase])]
+        )  # fmt: skip
+
+    coarse, fine, finest = (transition(varying, jnp.eye(2), n) for n in (12, 24, 96))
+    before, after = (np.abs(one - finest).max() for one in (coarse, fine))
+    assert 40.0 < before / after < 90.0

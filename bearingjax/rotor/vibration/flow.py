@@ -84,16 +84,36 @@ def transition(
     unit: Float[Array, "m m"],
     steps: int,
 ) -> Float[Array, "m m"]:
-    """Fundamental matrix over one period of y' = A(φ) y, by the same scheme.
+    """Fundamental matrix over one period of y' = A(φ) y, by Magnus series of order 6.
 
-    The steps are independent of each other here: all are taken at once.
+    A step is the exponential of a mean of A: one that is constant is met exactly,
+    however fast it vibrates, so the stiff modes of a shaft ask for no short steps. The
+    steps are independent of each other: all are taken at once.
 
     Args:
         matrix_at: φ [rad] -> A.
         unit: Unit matrix.
         steps: Even steps. Static.
+
+    Source: Blanes, Casas & Ros, BIT 40 (2000) 434, Gauss-Legendre points.
     """
-    step = _stepper(lambda phase, y: matrix_at(phase) @ y, steps, unit.dtype)
-    each = jax.vmap(lambda phase: step(unit, phase))(_begins(steps, unit.dtype))
+    size = 2.0 * np.pi / steps
+    points = jnp.asarray(0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0]), unit.dtype)
+
+    def step(begin):
+        first, middle, last = size * jax.vmap(matrix_at)(begin + size * points)
+        slope = np.sqrt(15.0) / 3.0 * (last - first)
+        bend = 10.0 / 3.0 * (last - 2.0 * middle + first)
+        turned = _bracket(middle, slope)
+        more = slope - _bracket(middle, 2.0 * bend + turned) / 60.0
+        mean = _bracket(-20.0 * middle - bend + turned, more) / 240.0
+        return jax.scipy.linalg.expm(middle + bend / 12.0 + mean)
+
+    each = jax.vmap(step)(_begins(steps, unit.dtype))
     whole, _ = lax.scan(lambda y, one: (one @ y, None), unit, each)
     return whole
+
+
+def _bracket(a, b):
+    """Commutator of two matrices."""
+    return a @ b - b @ a

@@ -1,0 +1,237 @@
+"""Vibration of the rotor of a scene: over frequency, and in time."""
+
+import dataclasses
+
+import jax
+import numpy as np
+
+from ..numerics.result import Result
+from ..numerics.types import as_array
+from ..rotor import (
+    Modes,
+    Rotor,
+    Settled,
+    harmonic_response,
+)
+from ..rotor.vibration import (
+    Branch,
+    Ending,
+    HarmonicBalance,
+    RotorVibration,
+    Shooting,
+    follow,
+    rotor_vibration,
+    simulate,
+)
+from .rotor_scene import RotorScene
+from .rotor_supports import unit_of_length, with_passage
+
+_SAMPLES = 32
+"""Phases at which a linear vibration is told."""
+_ENDINGS = {
+    Ending.POINTS: (
+        "the branch did not reach the end of the range within the allowed points;"
+        " raise `rotor.response.points`"
+    ),
+    Ending.SMALL_STEP: (
+        "the branch could not be followed further: no step, however small, led on;"
+        " take more `harmonics`, `samples` or `steps`"
+    ),
+    Ending.NO_START: (
+        "no periodic vibration was found at the first frequency; begin at another one"
+    ),
+}
+Stopped = tuple[Result, str]
+
+
+@dataclasses.dataclass(frozen=True)
+class RotorResponse:
+    """Periodic vibration over the frequency of the excitation.
+
+    Attributes:
+        method: "linear", "harmonic_balance" or "shooting".
+        frequency: (point,) [rad/s].
+        amplitude: Half of peak to peak of (ux uy uz gx gy) of every station
+            (point, station, 5) [m, rad].
+        displacement: At even phases of the excitation, from 0 on, of every station
+            (point, sample, station, 5) [m, rad]; a linear vibration is that about the
+            static equilibrium.
+        branch: As of `follow`, with stability, multipliers and events; `None`: linear.
+        stopped: Code and words, if it ends before the end of the range.
+    """
+
+    method: str
+    frequency: np.ndarray
+    amplitude: np.ndarray
+    displacement: np.ndarray
+    branch: Branch | None
+    stopped: Stopped | None
+
+
+@dataclasses.dataclass(frozen=True)
+class RotorTransient:
+    """Motion in time.
+
+    Attributes:
+        time: (time,) [s].
+        speed: Of the rotor (time,) [rad/s].
+        displacement: (ux uy uz gx gy) of every station (time, station, 5) [m, rad];
+            NaN at times that were not reached.
+        velocity: Its rate (time, station, 5) [m/s, rad/s].
+        steps: Steps of the integration.
+        stopped: Code and words, if it ends before its time.
+    """
+
+    time: np.ndarray
+    speed: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    steps: int
+    stopped: Stopped | None
+
+    @property
+    def reached(self) -> int:
+        """How many of the times were reached."""
+        return int(np.isfinite(self.displacement).all(axis=(1, 2)).sum())
+
+
+def respond(
+    task: RotorScene,
+    rotor: Rotor,
+    linear: Rotor | None,
+    settled: Settled,
+    modes: Modes,
+) -> RotorResponse:
+    """The periodic vibration that a scene asks for.
+
+    Args:
+        task: With a response.
+        rotor: On its true bearings.
+        linear: On their slopes, for a linear response.
+        settled: Its static equilibrium, where the branch begins.
+        modes: Its modes, of which the slowest is the unit of frequency.
+    """
+    asked = task.response
+    assert asked is not None  # asked for by the caller
+    if asked.method == "linear":
+        assert linear is not None  # asked for by the caller
+        return _linear(task, linear)
+    system = _system(
+        task, rotor, settled, modes, asked.scale, asked.speed, asked.reduction
+    )
+    method = (
+        Shooting(asked.steps)
+        if asked.method == "shooting"
+        else HarmonicBalance(asked.harmonics, asked.samples, asked.steps)
+    )
+    samples = asked.steps if asked.method == "shooting" else asked.samples
+    rest = np.asarray(system.freedoms(settled.motion))
+    branch = follow(
+        system,
+        as_array(asked.begin, float),
+        as_array(asked.end, float),
+        method,
+        as_array(np.tile(rest, (samples, 1)), float),
+        points=asked.points,
+    )
+    moved = _at_stations(task, system, branch.displacement)
+    stopped = None
+    if branch.ending in _ENDINGS:
+        last = branch.frequency[-1] if len(branch.frequency) else asked.begin
+        where = f"at {last / (2.0 * np.pi):.5g} Hz: {_ENDINGS[branch.ending]}"
+        stopped = Result.STEP_LIMIT, where
+    amplitude = 0.5 * (moved.max(axis=1) - moved.min(axis=1))
+    return RotorResponse(
+        asked.method, branch.frequency, amplitude, moved, branch, stopped
+    )
+
+
+def _linear(task: RotorScene, linear: Rotor) -> RotorResponse:
+    asked = task.response
+    assert asked is not None  # asked for by the caller
+    frequency = np.linspace(asked.begin, asked.end, asked.points)
+    found = harmonic_response(linear, task.loads, frequency, asked.speed)
+    motion = np.asarray(found.motion)[:, _stations(task)]
+    phase = np.exp(2j * np.pi * np.arange(_SAMPLES) / _SAMPLES)
+    moved = np.real(motion[:, None] * phase[None, :, None, None])
+    stopped = None
+    if not np.isfinite(motion).all():
+        stopped = Result.NON_FINITE, "no equilibrium was found at some frequencies"
+    return RotorResponse("linear", frequency, np.abs(motion), moved, None, stopped)
+
+
+def run_in_time(
+    task: RotorScene, rotor: Rotor, settled: Settled, modes: Modes
+) -> RotorTransient:
+    """The motion in time that a scene asks for, from rest in the equilibrium.
+
+    Args:
+        task, rotor, settled, modes: As of `respond`.
+    """
+    asked = task.transient
+    assert asked is not None  # asked for by the caller
+    if asked.passage:
+        turning = tuple(with_passage(support) for support in rotor.supports)
+        rotor = dataclasses.replace(rotor, supports=turning)
+    system = _system(task, rotor, settled, modes, None, None, asked.reduction)
+    rest = system.freedoms(settled.motion)
+    found = simulate(
+        system,
+        as_array(asked.duration, float),
+        as_array(task.speed, float),
+        start=(rest, 0.0 * rest),
+        end_frequency=(
+            None if asked.speed_to is None else as_array(asked.speed_to, float)
+        ),
+        n_times=asked.n_times,
+        tolerance=as_array(asked.tolerance, float),
+        max_steps=asked.max_steps,
+        derivatives="forward",
+        throw=False,
+    )
+    found = jax.device_get(found)
+    moved, rate = (
+        _at_stations(task, system, part)
+        for part in (found.displacement, found.velocity)
+    )
+    result, stopped = Result(int(found.result)), None
+    if result is not Result.CONVERGED:
+        seen = found.time[np.isfinite(found.displacement).all(axis=1)]
+        last = f"{seen[-1]:.4g} s" if len(seen) else "the first time"
+        cure = (
+            "raise `rotor.transient.max_steps`, or give it a `reduction`"
+            if result is Result.STEP_LIMIT
+            else "there forces are no numbers, or no step is small enough"
+        )
+        where = f"behind {last} of {asked.duration:.4g} s, {int(found.steps)} steps"
+        stopped = result, f"ends {where}; {cure}"
+    return RotorTransient(
+        found.time, found.frequency, moved, rate, int(found.steps), stopped
+    )
+
+
+def _system(task, rotor, settled, modes, scale, speed, reduction) -> RotorVibration:
+    angular = np.imag(np.asarray(modes.eigenvalue))
+    slowest = angular[angular > 0].min(initial=np.inf)
+    return rotor_vibration(
+        rotor,
+        task.loads,
+        scale=unit_of_length(rotor.supports) if scale is None else scale,
+        reference_frequency=slowest if np.isfinite(slowest) else 2.0 * np.pi,
+        speed=speed,
+        modes=reduction,
+        about=settled.motion,
+    )
+
+
+def _stations(task: RotorScene) -> list[int]:
+    """Node of every station."""
+    return [task.shaft.node(k) for k in range(task.shaft.n_segments + 1)]
+
+
+def _at_stations(task, system, q) -> np.ndarray:
+    """Motion of the stations (…, station, 5) from the freedoms (…, n)."""
+    motions = q @ np.asarray(system.motions).T
+    n = 5 * task.shaft.n_nodes
+    nodes = motions[..., :n].reshape(*q.shape[:-1], task.shaft.n_nodes, 5)
+    return nodes[..., _stations(task), :]

@@ -1,0 +1,201 @@
+"""What other programs read of a rotor: JSON and tables, in SI."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..numerics.result import Result
+from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes
+from .files import write_numbers
+from .rotor_motion import RotorResponse, RotorTransient
+from .rotor_run import RotorRun
+
+UNITS: dict[str, str] = dict(
+    zip(STATION_FREEDOMS, ("m", "m", "m", "rad", "rad"), strict=True)
+)
+"""Of the motions of a station."""
+_TURN = 2.0 * np.pi
+
+
+def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
+    """A run as plain numbers and lists, in SI but for frequencies in Hz.
+
+    Args:
+        run: From `run_rotor`.
+
+    Returns:
+        `frequency` [Hz], `damping_ratio` and `whirl` of the modes that oscillate;
+        `critical_speed` [rad/s] with `critical_whirl` and `critical_damping_ratio`;
+        `static`: `station` [m], `displacement` (station, 5), `bearing`,
+        `bearing_station`, `load` (bearing, 5), `stiffness` (bearing, 5, 5);
+        `campbell`: `speed`, and `frequency`, `damping_ratio`, `whirl` (speed, mode);
+        `response`: `method`, `frequency` [Hz], `coordinate` ("uy_1": uy of station 1),
+        `amplitude` (point, coordinate), and unless it is linear `stable`,
+        `multipliers` (point, multiplier, real and imaginary part), `events`, `ending`;
+        `transient`: `time`, `speed`, `coordinate`, `displacement` and `velocity`
+        (time, coordinate). Parts that were not asked for or not solved are left out.
+        And result, message, warnings and version.
+    """
+    from .. import __version__
+
+    parts: dict[str, Any] = {}
+    if run.modes is not None:
+        parts |= _modes(run.modes)
+    if run.critical is not None:
+        parts |= _critical(run.critical)
+    if run.settled is not None:
+        parts["static"] = _static(run)
+    if run.campbell is not None and run.task.campbell is not None:
+        parts["campbell"] = _campbell(run.campbell, run.task.campbell)
+    if run.response is not None:
+        parts["response"] = _response(run.response)
+    if run.transient is not None:
+        parts["transient"] = _transient(run.transient)
+    worst = max((one.result for one in run.failures), default=Result.CONVERGED)
+    return {
+        **parts,
+        "result": worst.label,
+        "message": rotor_message(run),
+        "warnings": list(run.warnings),
+        "version": __version__,
+    }
+
+
+def rotor_message(run: RotorRun) -> str:
+    """What was not solved, in words.
+
+    Args:
+        run: From `run_rotor`.
+    """
+    if run.converged:
+        return "converged"
+    return "; ".join(f"{one.part}: {one.message}" for one in run.failures)
+
+
+def write_rotor_json(path: str | Path, run: RotorRun) -> None:
+    """Write `rotor_as_dict` to a file.
+
+    Raises:
+        OSError: If the file cannot be written.
+    """
+    write_numbers(path, rotor_as_dict(run))
+
+
+def rotor_columns(run: RotorRun) -> dict[str, np.ndarray]:
+    """A run as columns by header, "name [unit]".
+
+    Args:
+        run: From `run_rotor`.
+
+    Returns:
+        Of the response a row for each point: frequency, whether it is stable, half of
+        peak to peak of every motion ("uy_1 [m]": of uy of station 1). Without response
+        a row for each time that was reached: time, speed, motions. Empty without both.
+    """
+    if run.response is not None:
+        first = {"frequency [Hz]": run.response.frequency / _TURN}
+        if run.response.branch is not None:
+            first["stable"] = run.response.branch.stable
+        return first | _of_motions(run.response.amplitude)
+    if run.transient is not None:
+        motion, seen = run.transient, slice(run.transient.reached)
+        first = {"time [s]": motion.time[seen], "speed [rad/s]": motion.speed[seen]}
+        return first | _of_motions(motion.displacement[seen])
+    return {}
+
+
+def coordinates(count: int) -> list[str]:
+    """Names of the motions of so many stations, such as "uy_1"."""
+    return [f"{name}_{k}" for k in range(count) for name in STATION_FREEDOMS]
+
+
+def _of_motions(values):
+    """Columns of (row, station, 5)."""
+    names = coordinates(values.shape[1])
+    headers = [f"{name} [{UNITS[name.partition('_')[0]]}]" for name in names]
+    flat = values.reshape(len(values), -1).T
+    return dict(zip(headers, flat, strict=True))
+
+
+def _modes(found: Modes) -> dict[str, Any]:
+    there = np.imag(found.eigenvalue) > 0
+    return {name: values[there].tolist() for name, values in mode_numbers(found)}
+
+
+def mode_numbers(found: Modes) -> list[tuple[str, np.ndarray]]:
+    """Frequency [Hz], damping ratio and whirl of modes, over speeds too.
+
+    Args:
+        found: As NumPy holds it.
+    """
+    value = np.asarray(found.eigenvalue)
+    size = np.abs(value)
+    ratio = -np.real(value) / np.where(size == 0, 1.0, size)
+    return [
+        ("frequency", np.imag(value) / _TURN),
+        ("damping_ratio", np.where(size == 0, 0.0, ratio)),
+        ("whirl", np.asarray(found.whirl)),
+    ]
+
+
+def _critical(found: CriticalSpeeds) -> dict[str, Any]:
+    there = np.isfinite(found.speed)
+    return {
+        "critical_speed": found.speed[there].tolist(),
+        "critical_whirl": found.whirl[there].tolist(),
+        "critical_damping_ratio": found.damping_ratio[there].tolist(),
+    }
+
+
+def _static(run: RotorRun) -> dict[str, Any]:
+    task, settled = run.task, run.settled
+    assert settled is not None  # checked by the caller
+    nodes = [task.shaft.node(k) for k in range(task.shaft.n_segments + 1)]
+    return {
+        "station": np.asarray(task.shaft.stations).tolist(),
+        "displacement": np.asarray(settled.displacement)[nodes].tolist(),
+        "bearing": [mount.name for mount in task.mounts],
+        "bearing_station": [mount.station for mount in task.mounts],
+        "load": np.asarray(settled.support_load).tolist(),
+        "stiffness": np.asarray(settled.stiffness).tolist(),
+    }
+
+
+def _campbell(found: Modes, speeds: np.ndarray) -> dict[str, Any]:
+    numbers = {name: values.tolist() for name, values in mode_numbers(found)}
+    return {"speed": speeds.tolist(), **numbers}
+
+
+def _response(found: RotorResponse) -> dict[str, Any]:
+    points, branch = len(found.frequency), found.branch
+    whole = {
+        "method": found.method,
+        "frequency": (found.frequency / _TURN).tolist(),
+        "coordinate": coordinates(found.amplitude.shape[1]),
+        "amplitude": found.amplitude.reshape(points, -1).tolist(),
+    }
+    if branch is None:
+        return whole
+    both = np.stack([np.real(branch.multipliers), np.imag(branch.multipliers)], -1)
+    events = [
+        {"kind": event.kind, "frequency": event.frequency / _TURN}
+        for event in branch.events
+    ]
+    return whole | {
+        "stable": branch.stable.tolist(),
+        "multipliers": both.tolist(),
+        "events": events,
+        "ending": branch.ending.label,
+    }
+
+
+def _transient(found: RotorTransient) -> dict[str, Any]:
+    times = len(found.time)
+    return {
+        "time": found.time.tolist(),
+        "speed": found.speed.tolist(),
+        "coordinate": coordinates(found.displacement.shape[1]),
+        "displacement": found.displacement.reshape(times, -1).tolist(),
+        "velocity": found.velocity.reshape(times, -1).tolist(),
+    }

@@ -1,0 +1,241 @@
+"""A rotor as text for people: µm, mrad, N, N/µm, Hz, rpm."""
+
+import numpy as np
+
+from ..rotor import STATION_FREEDOMS
+from .rotor_motion import RotorResponse, RotorTransient
+from .rotor_output import mode_numbers
+from .rotor_run import RotorRun
+
+_RULE = "-" * 78
+_RPM = 30.0 / np.pi
+_HZ = 0.5 / np.pi
+_WHIRL = {1: "forward", -1: "backward", 0: "-"}
+_NEAR = 0.1
+"""Share of a critical speed within which running is worth a word [1]."""
+_UNSTABLE = -1e-9
+"""Damping ratio below which a mode grows, not by round-off [1]."""
+
+
+def rotor_report(run: RotorRun) -> str:
+    """Readable report of a rotor; parts that were not solved are left out.
+
+    Args:
+        run: From `run_rotor`.
+    """
+    parts = [_head(run)]
+    if run.settled is not None:
+        parts += [_stations(run), _bearings(run)]
+    if run.modes is not None:
+        parts.append(_modes(run))
+    if run.critical is not None:
+        parts.append(_critical(run))
+    if run.campbell is not None:
+        parts.append(_campbell(run))
+    if run.response is not None:
+        parts.append(_response(run, run.response))
+    if run.transient is not None:
+        parts.append(_transient(run, run.transient))
+    notes = [f"warning: {text}" for text in (*run.warnings, *rotor_warnings(run))]
+    return f"\n{_RULE}\n".join(parts) + "".join(f"\n{note}" for note in notes)
+
+
+def rotor_warnings(run: RotorRun) -> list[str]:
+    """What is doubtful in the results of a run.
+
+    Args:
+        run: From `run_rotor`.
+    """
+    told = []
+    if run.modes is not None:
+        (_, frequency), (_, ratio), _ = mode_numbers(run.modes)
+        grows = (ratio < _UNSTABLE) & (frequency > 0)
+        if grows.any():
+            told.append(
+                f"unstable at {_rpm(run.task.speed)}: the mode of"
+                f" {frequency[grows][0]:.5g} Hz grows"
+            )
+    if run.critical is not None and run.task.speed:
+        speed, whirl = run.critical.speed, run.critical.whirl
+        near = np.abs(run.task.speed / speed - 1.0) < _NEAR
+        if (near & (whirl > 0)).any():
+            told.append(
+                f"{_rpm(run.task.speed)} lies within 10 % of the forward critical speed"
+                f" of {_rpm(speed[near & (whirl > 0)][0])}"
+            )
+    branch = None if run.response is None else run.response.branch
+    if branch is not None and not branch.stable.all():
+        told.append(
+            f"{int((~branch.stable).sum())} of {len(branch.stable)} periodic vibrations"
+            " are unstable: the rotor does not stay there"
+        )
+    return told
+
+
+def _rpm(speed):
+    return f"{float(speed) * _RPM:.5g} rpm"
+
+
+def _head(run):
+    task = run.task
+    z = np.asarray(task.shaft.stations)
+    mass = float(task.shaft.mass) + sum(float(part.mass) for part in task.discs)
+    kind = "rigid shaft" if task.rigid else "shaft"
+    gravity = {"none": "no gravity"}.get(task.axis, task.axis)
+    return (
+        f"{task.name}: {kind} of {1e3 * (z[-1] - z[0]):.5g} mm, {task.shaft.n_segments}"
+        f" segments, {task.shaft.n_nodes - 1} elements; {mass:.4g} kg; {gravity};"
+        f" {_rpm(task.speed)}"
+    )
+
+
+def _stations(run):
+    """Where every station goes."""
+    task = run.task
+    nodes = [task.shaft.node(k) for k in range(task.shaft.n_segments + 1)]
+    moved = np.asarray(run.settled.displacement)[nodes]
+    z = 1e3 * np.asarray(task.shaft.stations)
+    lines = [
+        "at rest under weight, constant forces and preload:",
+        f"{'station':<26}{'z, mm':>8}{'ux, µm':>9}{'uy, µm':>9}{'uz, µm':>9}"
+        f"{'gx, mrad':>9}{'gy, mrad':>9}",
+    ]
+    for name, place, motion in zip(task.station_names, z, moved, strict=True):
+        values = [*(1e6 * motion[:3]), *(1e3 * motion[3:])]
+        numbers = "".join(f"{_clean(value, 3):9.3f}" for value in values)
+        lines.append(f"{name[:25]:<26}{place:8.1f}{numbers}")
+    return "\n".join(lines)
+
+
+def _bearings(run):
+    """Load and stiffness of every bearing."""
+    loads, stiffness = (
+        np.asarray(part) for part in (run.settled.support_load, run.settled.stiffness)
+    )
+    lines = [
+        f"{'bearing':<26}{'load, N':>9}{'':>18}{'stiffness, N/µm':>25}",
+        f"{'':<26}{'Fx':>9}{'Fy':>9}{'Fz':>9}{'x':>9}{'y':>9}{'z':>8}",
+    ]
+    for mount, load, k in zip(run.task.mounts, loads, stiffness, strict=True):
+        name = f"{mount.station} {mount.name}{', turned' if mount.turned else ''}"
+        forces = "".join(f"{_clean(f, 1):9.1f}" for f in load[:3])
+        springs = "".join(f"{_clean(1e-6 * s):9.4g}" for s in np.diagonal(k)[:2])
+        axial = f"{_clean(1e-6 * k[2, 2]):8.4g}"
+        lines.append(f"{name[:25]:<26}{forces}{springs}{axial}")
+    return "\n".join(lines)
+
+
+def _modes(run):
+    (_, frequency), (_, ratio), (_, whirl) = mode_numbers(run.modes)
+    lines = [
+        f"modes at {_rpm(run.task.speed)}:",
+        f"{'':>4}{'Hz':>12}{'rpm':>12}{'damping':>12}  whirl",
+    ]
+    there = frequency > 0
+    rows = zip(frequency[there], ratio[there], whirl[there], strict=True)
+    for k, (hertz, damped, sense) in enumerate(rows):
+        lines.append(
+            f"{k + 1:4d}{hertz:12.5g}{60.0 * hertz:12.5g}{_clean(damped):12.4g}"
+            f"  {_WHIRL[int(sense)]}"
+        )
+    if not there.all():
+        lines.append(f"and {int((~there).sum())} that do not oscillate")
+    return "\n".join(lines)
+
+
+def _critical(run):
+    found = run.critical
+    there = np.isfinite(found.speed)
+    if not there.any():
+        return "critical speeds: none"
+    lines = [
+        "critical speeds:",
+        f"{'':>4}{'rpm':>12}{'rad/s':>12}{'damping':>12}  whirl",
+    ]
+    rows = zip(found.speed, found.damping_ratio, found.whirl, strict=True)
+    for k, (speed, ratio, whirl) in enumerate(row for row in rows if row[0] == row[0]):
+        lines.append(
+            f"{k + 1:4d}{speed * _RPM:12.5g}{speed:12.5g}{_clean(ratio):12.4g}"
+            f"  {_WHIRL[int(whirl)]}"
+        )
+    return "\n".join(lines)
+
+
+def _campbell(run):
+    (_, frequency), _, (_, whirl) = mode_numbers(run.campbell)
+    first, last = run.task.campbell[0], run.task.campbell[-1]
+    lines = [
+        f"Campbell diagram at {len(run.task.campbell)} speeds, natural frequencies:",
+        f"{'':>4}{_rpm(first):>14}{_rpm(last):>14}",
+    ]
+    for k in np.flatnonzero(frequency.max(axis=0) > 0):
+        lines.append(
+            f"{k + 1:4d}{frequency[0, k]:11.5g} Hz{frequency[-1, k]:11.5g} Hz"
+            f"  {_WHIRL[int(whirl[-1, k])]}"
+        )
+    return "\n".join(lines)
+
+
+def _response(run, found: RotorResponse):
+    asked = run.task.response
+    span = _HZ * found.frequency
+    method = found.method.replace("_", " ")
+    if not len(span):
+        return f"response by {method}: no point"
+    lines = [
+        f"response by {method}: {len(span)} points, {span.min():.5g} to"
+        f" {span.max():.5g} Hz; half of peak to peak:",
+    ]
+    for k, name in enumerate(run.task.station_names):
+        across = np.hypot(*found.amplitude[:, k, :2].T)
+        point = int(np.argmax(across))
+        x, y = 1e6 * found.amplitude[point, k, :2]
+        mark = " *" if k == asked.station else ""
+        lines.append(
+            f"{name[:25]:<26}largest at {span[point]:.5g} Hz: ux {x:.4g} µm,"
+            f" uy {y:.4g} µm{mark}"
+        )
+    branch = found.branch
+    if branch is None:
+        return "\n".join(lines)
+    coordinate = STATION_FREEDOMS.index(asked.coordinate)
+    shown = found.amplitude[:, asked.station, coordinate]
+    factor, unit = (1e6, "µm") if coordinate < 3 else (1e3, "mrad")
+    for event in branch.events:
+        kind = event.kind.replace("_", "-")
+        lines.append(
+            f"{kind} at {_HZ * event.frequency:.6g} Hz ({asked.coordinate} of station"
+            f" {asked.station}: {factor * shown[event.after]:.4g} {unit})"
+        )
+    stable = int(branch.stable.sum())
+    lines.append(
+        f"{stable} of {len(span)} points are stable; the branch ends:"
+        f" {branch.ending.label.replace('_', ' ')}"
+    )
+    return "\n".join(lines)
+
+
+def _transient(run, found: RotorTransient):
+    n, time = found.reached, found.time
+    if not n:
+        return "motion in time: none"
+    lines = [
+        f"motion in time to {time[n - 1]:.4g} s, {found.steps} steps;"
+        f" {_rpm(found.speed[0])} to {_rpm(found.speed[n - 1])}:"
+    ]
+    for k, name in enumerate(run.task.station_names):
+        moved = 1e6 * found.displacement[:n, k, :2]
+        half = 0.5 * (moved.max(axis=0) - moved.min(axis=0))
+        radius = np.hypot(*(moved - moved[0]).T)
+        when = int(np.argmax(radius))
+        lines.append(
+            f"{name[:25]:<26}half of peak to peak ux {half[0]:.4g} µm, uy"
+            f" {half[1]:.4g} µm; farthest {radius[when]:.4g} µm at {time[when]:.4g} s"
+            f" ({_rpm(found.speed[when])})"
+        )
+    return "\n".join(lines)
+
+
+def _clean(value, digits=12):
+    """Rounded, without a minus before a zero."""
+    return round(float(value), digits) + 0.0

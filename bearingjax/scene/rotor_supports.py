@@ -1,0 +1,83 @@
+"""The supports of a rotor as its scene has them, preloaded."""
+
+import dataclasses
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..numerics.types import as_array
+from ..rotor import (
+    AbstractSupport,
+    BearingSupport,
+    LinearSupport,
+    preload_offset,
+)
+from ..rotor.vibration import LawSupport
+from ..statics.preload import preload
+from .rotor_mounts import LAWS
+from .rotor_scene import Mount
+
+_AT_LEAST = 1e-5
+"""Where no bearing is preloaded [m]."""
+
+
+def support_of(mount: Mount) -> AbstractSupport:
+    """What holds a station; the rolling elements of a bearing stand still.
+
+    Args:
+        mount: As the scene has it.
+
+    Raises:
+        SolveError: If a bearing does not bear its preload.
+    """
+    housing = mount.housing
+    if mount.element is None:
+        return LinearSupport(
+            mount.station, mount.stiffness, mount.damping, housing=housing
+        )
+    element, offset = mount.element, as_array(mount.offset, float)
+    if mount.set_force is not None:
+        element = preload(element, as_array(mount.set_force, float))
+    if mount.preload is not None:
+        offset = preload_offset(element, as_array(mount.preload, float))
+    if mount.law is not None:
+        law = LAWS[mount.law].of_bearing(element, offset)
+        return LawSupport(
+            mount.station, law, mount.damping, housing=housing, turned=mount.turned
+        )
+    return BearingSupport(
+        mount.station,
+        element,
+        as_array([0.0, 0.0, 0.0, 0.0, 0.0], float).at[2].set(offset),
+        mount.damping,
+        housing=housing,
+        turned=mount.turned,
+        inertia=mount.inertia,
+    )
+
+
+def with_passage(support: AbstractSupport) -> AbstractSupport:
+    """A support whose rolling elements orbit as the rotor turns.
+
+    Args:
+        support: Of any kind; those without rolling elements stay as they are.
+    """
+    if not isinstance(support, BearingSupport):
+        return support
+    return dataclasses.replace(support, passage=True)
+
+
+def unit_of_length(supports: Iterable[AbstractSupport]) -> float:
+    """Displacement that is called one: that of the most preloaded bearing [m].
+
+    Args:
+        supports: All supports of a rotor.
+    """
+    sizes = [_AT_LEAST]
+    for support in supports:
+        if isinstance(support, BearingSupport):
+            sizes.append(float(np.max(np.abs(support.offset[:3]))))
+        law = getattr(support, "law", None)
+        sizes.append(float(getattr(law, "preload_displacement", 0.0)))
+        sizes.append(float(getattr(law, "preload_approach", 0.0)))
+    return max(sizes)

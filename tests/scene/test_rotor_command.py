@@ -1,0 +1,225 @@
+"""`bearingjax rotor`: exit status, files, and that they hold what the library says."""
+
+import csv
+import json
+
+import jax.numpy as jnp
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from tolerances import PUBLISHED, SOLVER
+
+import bearingjax as bj
+from bearingjax.rotor import harmonic_response
+from bearingjax.rotor.vibration import Ending
+from bearingjax.scene import read_rotor, rotor_report, run_rotor
+
+TURN = 2.0 * np.pi
+RPM = np.pi / 30.0
+BASE = 1e-3  # acceleration of the base [m/s²]: linear, within a millionth
+FEW = {  # of the published rotor: little to solve, away from its resonance
+    "rotor.modes": "5",
+    "rotor.campbell.count": "3",
+    "rotor.excitation.base_acceleration.y": f"{BASE} m/s^2",
+    "rotor.response.from": "500 Hz",
+    "rotor.response.to": "505 Hz",
+    "rotor.response.harmonics": "1",
+    "rotor.response.samples": "8",
+    "rotor.response.steps": "12",
+}
+ON_SPRINGS = {  # as stiff as its bearings
+    "bearings": "{}",
+    "rotor.bearings.0": "{station=0, stiffness={radial='143.22 N/um',"
+    " axial='12.941 N/um'}}",
+    "rotor.bearings.1": "{station=2, stiffness={radial='143.22 N/um',"
+    " axial='12.941 N/um'}}",
+}
+LINEAR = {
+    "rotor.response": "{from='500 Hz', to='505 Hz', method='linear', points=4,"
+    " speed='6000 rpm'}"
+}
+PARTS = {
+    "frequency",
+    "damping_ratio",
+    "whirl",
+    "critical_speed",
+    "critical_whirl",
+    "critical_damping_ratio",
+    "static",
+    "campbell",
+    "response",
+}
+WORDS = {"result", "message", "warnings", "version"}
+
+
+def settings(*given):
+    """The last of several settings of a key counts."""
+    whole = {}
+    for one in given:
+        whole |= one
+    return [f"{key}={value}" for key, value in whole.items()]
+
+
+def command(*given, scene="rotor_paper_12"):
+    words = (word for one in settings(*given) for word in ("--set", one))
+    return ("rotor", scene, *words)
+
+
+@pytest.fixture(autouse=True)
+def close_figures():
+    yield
+    for number in plt.get_fignums():
+        plt.figure(number).canvas.draw()  # nothing may fail or warn while drawing
+    plt.close("all")
+
+
+def read(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def test_the_published_rotor_by_command(run, tmp_path):
+    """Report, JSON and table of the rotor of method 002, against its table."""
+    out, table, picture = (tmp_path / name for name in ("a.json", "a.csv", "a.png"))
+    files = ("--json", out, "--table", table, "--plot", picture)
+    done = run(*command(FEW), *files)
+    assert done.status == 0, done.err
+    assert done.err == ""
+    found = read(out)
+    assert set(found) == PARTS | WORDS
+    assert (found["result"], found["warnings"]) == ("converged", [])
+    # At rest: 234.5, 707.6, 1824.8 Hz.
+    line = found["campbell"]
+    assert np.allclose(line["speed"], [0.0, 30000.0 * RPM, 60000.0 * RPM])
+    rest = [234.5, 707.6, 707.6, 1824.8, 1824.8]
+    assert np.allclose(line["frequency"][0], rest, rtol=PUBLISHED)
+    # Axial; backward 688 Hz, forward 721.4 Hz, backward 1262 Hz.
+    critical = np.array(found["critical_speed"]) / TURN
+    assert np.allclose(critical, [234.5, 688.0, 721.4, 1262.0], rtol=PUBLISHED)
+    assert found["critical_whirl"] == [0, -1, 1, -1]
+    static = found["static"]
+    assert static["bearing"] == ["gost_831", "gost_831"]
+    assert np.allclose(np.array(static["load"])[:, 2], [218.4, -218.4], rtol=SOLVER)
+    assert np.allclose(static["displacement"], 0.0, atol=1e-15)
+    k = np.diagonal(static["stiffness"], axis1=1, axis2=2)
+    assert np.allclose(k[:, :3], [143.22e6, 143.22e6, 12.941e6], rtol=PUBLISHED)
+    _same_as_the_library(found)
+    response = found["response"]
+    assert (response["method"], response["ending"]) == ("harmonic_balance", "limit")
+    assert all(response["stable"]) and response["events"] == []
+    assert response["coordinate"][:7] == [
+        "ux_0", "uy_0", "uz_0", "gx_0", "gy_0", "ux_1", "uy_1",
+    ]  # fmt: skip
+    assert np.shape(response["multipliers"])[1:] == (10, 2)
+    with open(table, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    column = rows[0].index("uy_2 [m]")
+    assert rows[0][:2] == ["frequency [Hz]", "stable"]
+    written = np.array([float(row[column]) for row in rows[1:]])
+    amplitude = np.array(response["amplitude"])
+    assert np.array_equal(written, amplitude[:, column - 2])
+    assert picture.stat().st_size > 10_000
+    assert "critical speeds:" in done.out and "gost_831, turned" in done.out
+    assert "response by harmonic balance" in done.out
+
+
+def _same_as_the_library(found):
+    """The rotor on springs of that stiffness, put together by hand."""
+    k = np.array(found["static"]["stiffness"])
+    rotor = bj.Rotor(
+        bj.Shaft([0.0, 0.125, 0.5], 0.025, material=bj.Material(210e9, 0.3, 7850.0)),
+        [bj.Disc(1, 10.0, 0.2, 0.1)],
+        [bj.LinearSupport(0, k[0]), bj.LinearSupport(2, k[1])],
+        damping=bj.ModalDamping(0.01),
+        rigid=True,
+    )
+    speed = 6000.0 * RPM
+    modes = bj.modes(rotor, speed, count=5)
+    assert np.allclose(found["frequency"], modes.frequency, rtol=SOLVER)
+    assert np.allclose(found["damping_ratio"], modes.damping_ratio, rtol=SOLVER)
+    assert found["whirl"] == modes.whirl.tolist()
+    response = found["response"]
+    frequency = TURN * jnp.asarray(response["frequency"])
+    loads = bj.RotorLoads(base_acceleration=(0.0, BASE, 0.0))
+    linear = harmonic_response(rotor, loads, frequency, speed)
+    amplitude = np.reshape(response["amplitude"], (len(frequency), 3, 5))
+    assert np.allclose(
+        amplitude[:, :, :2], linear.amplitude[:, :, :2], rtol=PUBLISHED, atol=1e-13
+    )
+
+
+def test_what_is_not_asked_for_is_not_there(run, tmp_path):
+    out = tmp_path / "a.json"
+    text = _without("campbell", "response")
+    path = tmp_path / "plain.toml"
+    path.write_text(text, encoding="utf-8")
+    done = run(*command(ON_SPRINGS, scene=str(path)), "--json", out)
+    assert done.status == 0
+    assert set(read(out)) == (PARTS | WORDS) - {"campbell", "response"}
+    assert "Campbell" not in done.out and "response" not in done.out
+    done = run(*command(ON_SPRINGS, scene=str(path)), "--table", tmp_path / "a.csv")
+    assert done.status == 2
+    assert "there is nothing to write; the scene has no [rotor.response]" in done.err
+
+
+def _without(*names):
+    from bearingjax.scene import shipped_scenes
+
+    text = shipped_scenes()["rotor_paper_12"].read_text(encoding="utf-8")
+    for name in names:
+        before, _, after = text.partition(f"[rotor.{name}]")
+        text = before + ("[" + after.partition("\n[")[2] if "\n[" in after else "")
+    return text
+
+
+def test_a_linear_response_and_a_critical_speed_nearby():
+    task = read_rotor(
+        "rotor_paper_12",
+        settings(FEW, ON_SPRINGS, LINEAR, {"rotor.speed": "43000 rpm"}),
+    )
+    told = []
+    found = run_rotor(task, told.append)
+    assert found.converged and found.response is not None
+    assert told[0] == "bearings" and told[-1] == "response"
+    assert found.response.branch is None
+    assert np.allclose(found.response.frequency[[0, -1]] / TURN, [500.0, 505.0])
+    # Half of peak to peak, of a circle of phases.
+    moved = found.response.displacement
+    half = 0.5 * (moved.max(axis=1) - moved.min(axis=1))
+    largest = found.response.amplitude[:, 2, 1]
+    assert np.allclose(half[:, 2, 1], largest, rtol=0.01)
+    text = rotor_report(found)
+    assert "43000 rpm lies within 10 % of the forward critical speed of 432" in text
+
+
+@pytest.mark.parametrize("part", ["static", "response"])
+def test_what_is_not_solved_is_no_result(run, tmp_path, part):
+    out, table = tmp_path / "a.json", tmp_path / "a.csv"
+    if part == "static":
+        # Nothing holds it across the shaft, and its weight pulls.
+        loose = {
+            "rotor.bearings.0.stiffness": "{axial='1 N/um'}",
+            "rotor.axis": "horizontal",
+        }
+        given = (FEW, ON_SPRINGS, loose, LINEAR)
+    else:
+        given = (FEW, {"rotor.response.points": "2"})
+    done = run(*command(*given), "--json", out, "--table", table)
+    assert done.status == 3
+    found = read(out)
+    if part == "static":
+        assert found["result"] == "no_load_path"
+        assert "no_load_path: static: settle: " in done.err
+        assert done.out == "" and set(found) == WORDS and not table.exists()
+    else:
+        assert found["result"] == "step_limit"
+        assert "step_limit: response: at 50" in done.err
+        assert "raise `rotor.response.points`" in done.err
+        assert found["response"]["ending"] == Ending.POINTS.label
+        assert len(found["response"]["frequency"]) == 2
+        assert "the branch ends: points" in done.out
+
+
+def test_a_wrong_scene_is_exit_status_two(run):
+    done = run(*command({"rotor.speed": "fast"}))
+    assert done.status == 2 and done.out == ""
+    assert done.err.startswith("bearingjax: rotor_paper_12.toml: `rotor.speed`: 'fast'")
