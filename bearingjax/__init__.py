@@ -93,6 +93,7 @@ from .rotor import StationForce as StationForce
 from .rotor import Unbalance as Unbalance
 from .rotor import campbell as campbell
 from .rotor import critical_speeds as critical_speeds
+from .rotor import harmonic_response as harmonic_response
 from .rotor import modes as modes
 from .rotor import preload_offset as preload_offset
 from .rotor import settle as settle

@@ -8,6 +8,7 @@ from .critical import critical_speeds as critical_speeds
 from .damping import AbstractDamping as AbstractDamping
 from .damping import ModalDamping as ModalDamping
 from .damping import ProportionalDamping as ProportionalDamping
+from .harmonic import harmonic_response as harmonic_response
 from .loads import RotorLoads as RotorLoads
 from .loads import StationForce as StationForce
 from .modes import Modes as Modes

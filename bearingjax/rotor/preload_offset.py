@@ -26,7 +26,7 @@ def preload_offset(element: BearingElement, force: Scalar | float) -> Scalar:
         SolveError: If the bearing does not hold the force.
     """
     check_element("preload_offset", element)
-    force = as_real(force)
-    positive("preload_offset", "force", force, "N")
-    load = jnp.zeros(6, force.dtype).at[2].set(force)
+    pushing = as_real(force)
+    positive("preload_offset", "force", pushing, "N")
+    load = jnp.zeros(6, pushing.dtype).at[2].set(pushing)
     return solve_load(element, load, free=["uz"]).displacement[8]

@@ -92,27 +92,54 @@ def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceR
                 f"unbalance_response: `unbalances` holds one on station {one.station};"
                 f" the last station of the shaft is {rotor.shaft.n_segments}."
             )
-    return _response(rotor, unbalances, speed_list("unbalance_response", speeds))
+    speeds = speed_list("unbalance_response", speeds)
+    moments = _moments(rotor, unbalances)
+    return steady(rotor, moments, jnp.zeros_like(moments), speeds, speeds)
 
 
-@eqx.filter_jit
-def _response(rotor, unbalances, speeds):
-    motions = rotor.motions()
-    force = to_complex(jnp.zeros_like(motions[:, 0]))
+def _moments(rotor, unbalances) -> Complex[Array, " motion"]:
+    """Amplitude of the forces of unbalance on all motions, over Ω² [kg m]."""
+    moments = to_complex(jnp.zeros_like(rotor.motions()[:, 0]))
     for one in unbalances:
         x, y = one.moment * jnp.cos(one.phase), one.moment * jnp.sin(one.phase)
         at = rotor.at(one.station).start
-        force = force.at[at].add(lax.complex(x, y))
-        force = force.at[at + 1].add(lax.complex(y, -x))
-    force = to_complex(motions).T @ force
+        moments = moments.at[at].add(lax.complex(x, y))
+        moments = moments.at[at + 1].add(lax.complex(y, -x))
+    return moments
 
-    def at_speed(speed):
+
+@eqx.filter_jit
+def steady(
+    rotor: Any,
+    moments: Complex[Array, " motion"],
+    forces: Complex[Array, " motion"],
+    frequencies: Float[Array, " speed"],
+    speeds: Float[Array, " speed"],
+) -> UnbalanceResponse:
+    """Vibration of a linear rotor under Re((moments ω² + forces) exp(iωt)).
+
+    Args:
+        rotor: The rotor.
+        moments, forces: On all motions [kg m], [N, N m].
+        frequencies: ω of the excitation [rad/s].
+        speeds: Of the rotor at each of them [rad/s].
+
+    Returns:
+        UnbalanceResponse; its `speed` is that of the excitation.
+    """
+    motions = to_complex(rotor.motions())
+    moments, forces = motions.T @ moments, motions.T @ forces
+
+    def at_frequency(given):
+        frequency, speed = given
         # At rest there is no force, whether or not anything holds the rotor.
-        turning = jnp.where(speed == 0, 1.0, speed)
-        matrices = rotor.linearised(turning)
+        still = frequency == 0
+        matrices = rotor.linearised(jnp.where(still, 1.0, speed))
+        turning = jnp.where(still, 1.0, frequency)
         stiffness = matrices.dynamic_stiffness(lax.complex(0.0 * turning, turning))
-        motion = jnp.linalg.solve(stiffness, to_complex(speed**2) * force)
-        return to_complex(motions) @ motion
+        force = to_complex(frequency**2) * moments + forces
+        return motions @ jnp.linalg.solve(stiffness, force)
 
-    motion = lax.map(at_speed, speeds, batch_size=_BATCH)
-    return UnbalanceResponse(speeds, *rotor.linearised(0.0).split(motion))
+    motion = lax.map(at_frequency, (frequencies, speeds), batch_size=_BATCH)
+    nodes, housing = rotor.linearised(0.0).split(motion)
+    return UnbalanceResponse(frequencies, nodes, housing)

@@ -150,3 +150,11 @@ def test_a_jeffcott_rotor_through_its_critical_speed():
     np.testing.assert_allclose(many.motion[8:12], found.motion, rtol=SOLVER)
     # At rest nothing moves, though nothing holds it along z.
     assert not found.motion[0].any() and np.isfinite(found.motion).all()
+    # The base that shakes along x, while the rotor turns at a speed of its own.
+    shaken = bj.RotorLoads(
+        bj.Unbalance(1, moment, phase), base_acceleration=(2.0, 0, 0)
+    )
+    both = bj.harmonic_response(rotor, shaken, speeds[1:], 300.0)
+    base = -2.0 * m / (k - m * speeds**2 + 1j * c * speeds)
+    np.testing.assert_allclose(both.motion[:, 1, 0], (x + base)[1:], rtol=SOLVER)
+    np.testing.assert_allclose(both.motion[:, 1, 1], -1j * x[1:], rtol=SOLVER)
