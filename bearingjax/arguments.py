@@ -107,6 +107,27 @@ def parser() -> argparse.ArgumentParser:
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
     )
     skid.add_argument("--quiet", action="store_true", help="no progress bar")
+    rotor = commands.add_parser(
+        "rotor",
+        help="a shaft on its bearings: modes, critical speeds, vibration",
+        description="Static equilibrium of the [rotor] of a scene on its bearings,"
+        " modes at its speed, critical speeds; and if the scene has these tables, the"
+        " [rotor.campbell] diagram, the [rotor.response] to unbalance or a shaking"
+        " base, and the motion in time of [rotor.transient].",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved, or only in part.",
+    )
+    _add_common(rotor)
+    rotor.add_argument(
+        "--table",
+        metavar="OUT",
+        type=Path,
+        help="write a row per point of the response, or if the scene has none, per"
+        " time (.csv, .parquet)",
+    )
+    rotor.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
+    rotor.add_argument("--quiet", action="store_true", help="no progress")
     return top
 
 

@@ -1,4 +1,5 @@
-"""The command line: `bearingjax solve`, `sweep`, `optimise`, `contact`, `skid`."""
+"""The command line: `bearingjax solve`, `sweep`, `optimise`, `contact`, `skid`,
+`rotor`."""
 
 import contextlib
 import gc
@@ -386,6 +387,56 @@ def _skid(options) -> int:
     return SOLVED
 
 
+def _rotor(options) -> int:
+    from .scene import (
+        SceneError,
+        read_rotor,
+        rotor_columns,
+        rotor_report,
+        run_rotor,
+        write_rotor_json,
+    )
+    from .statics.sweep_table import write_columns
+
+    _check_table(options)
+    _check_outputs(options)
+    task = read_rotor(options.scene, options.set)
+    if options.table is not None and task.response is task.transient is None:
+        cure = "the scene has no [rotor.response] nor [rotor.transient]"
+        raise SceneError(f"--table {options.table}: there is nothing to write; {cure}")
+    shown = not options.quiet and sys.stderr.isatty()
+    run = run_rotor(task, _show_stage if shown else None)
+    if shown:
+        _show_stage("")
+
+    def draw(path):
+        from .plot import rotor_overview
+
+        figure = rotor_overview(run, title=task.name)
+        figure.savefig(path, dpi=150)
+
+    columns = rotor_columns(run)
+    _write(
+        (options.json, lambda path: write_rotor_json(path, run)),
+        (
+            options.table,
+            (lambda path: write_columns(columns, path)) if columns else None,
+        ),
+        (options.plot, None if run.settled is None else draw),
+    )
+    if run.settled is not None:
+        print(rotor_report(run), flush=True)
+    for failure in run.failures:
+        text = f"{failure.result.label}: {failure.part}: {failure.message}"
+        print(f"bearingjax: {text}", file=sys.stderr)
+    return SOLVED if run.converged else NOT_SOLVED
+
+
+def _show_stage(name: str) -> None:
+    """The stage that a long run is in, on one line of standard error."""
+    print(f"\r\x1b[K{name}{'…' if name else ''}", end="", file=sys.stderr, flush=True)
+
+
 def _check_table(options) -> None:
     """Fail before anything is solved if a table cannot be written."""
     from .scene import SceneError
@@ -437,4 +488,5 @@ _COMMANDS = {
     "optimise": _optimise,
     "contact": _contact,
     "skid": _skid,
+    "rotor": _rotor,
 }

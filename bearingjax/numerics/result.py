@@ -29,7 +29,15 @@ class Result(enum.IntEnum):
 
 
 class SolveError(RuntimeError):
-    """A solve did not converge; the message names cause and cure."""
+    """A solve did not converge; the message names cause and cure.
+
+    Attributes:
+        result: Its code, of many the worst; `None`: not of a single solve.
+    """
+
+    def __init__(self, message: str, result: Result | None = None):
+        super().__init__(message)
+        self.result = result
 
 
 def code(result: Result) -> Int[Array, ""]:
@@ -65,5 +73,5 @@ def raise_unless_converged(tree, result: Int[Array, "..."], message):
             " `result`.",
         )
     if bool(jnp.any(result != Result.CONVERGED)):
-        raise SolveError(message())
+        raise SolveError(message(), Result(int(jnp.max(result))))
     return tree

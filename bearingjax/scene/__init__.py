@@ -29,6 +29,15 @@ from .read import load_bearing as load_bearing
 from .read import read_scene as read_scene
 from .report import report as report
 from .resume import resume_cases as resume_cases
+from .rotor_output import rotor_as_dict as rotor_as_dict
+from .rotor_output import rotor_columns as rotor_columns
+from .rotor_output import rotor_message as rotor_message
+from .rotor_output import write_rotor_json as write_rotor_json
+from .rotor_report import rotor_report as rotor_report
+from .rotor_run import RotorRun as RotorRun
+from .rotor_run import run_rotor as run_rotor
+from .rotor_scene import RotorScene as RotorScene
+from .rotor_table import read_rotor as read_rotor
 from .run import run_optimisation as run_optimisation
 from .run import run_scene as run_scene
 from .scene_file import shipped_scenes as shipped_scenes

@@ -60,11 +60,14 @@ PROFILES = {
 }
 
 
-def read_bearing(top: Table) -> tuple[Bearing | BearingSet, float | None]:
-    """The bearing of a scene, or the set of such bearings, and its preload.
+def read_bearing(
+    table: Table, beside: Table
+) -> tuple[Bearing | BearingSet, float | None]:
+    """A bearing, or the set of such bearings, and its preload.
 
     Args:
-        top: The whole scene.
+        table: Of the bearing.
+        beside: The table in which its `set` stands, if there is one.
 
     Returns:
         Bearing or set, and the force to which it is preloaded [N] or `None`.
@@ -72,15 +75,18 @@ def read_bearing(top: Table) -> tuple[Bearing | BearingSet, float | None]:
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    table = top.table("bearing", required=True)
     kind = table.choice("type", (*ROLLERS, *BALLS))
     bearing = _balls(table, kind) if kind in BALLS else _rollers(table, kind)
     if isinstance(bearing, SelfAligningBallRow):
-        if "set" in top:
-            raise top.error("set", "a self-aligning bearing has both its rows already")
+        if "set" in beside:
+            raise beside.error(
+                "set", "a self-aligning bearing has both its rows already"
+            )
         with table.building():
             return BearingSet.self_aligning(bearing), None
-    return _set(top.table("set"), bearing) if "set" in top else (bearing, None)
+    if "set" not in beside:
+        return bearing, None
+    return _set(beside.table("set"), bearing)
 
 
 def _set(table: Table, bearing: Bearing) -> tuple[BearingSet, float | None]:

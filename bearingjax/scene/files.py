@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from .quantity import SceneError
-from .scene_file import find_scene, parse_scene
+from .scene_file import bearing_files, find_scene, parse_scene
 
 Writer = Callable[[Path], None]
 """Writes a file at a path."""
@@ -121,7 +121,7 @@ def _naming(path: Path):
 
 
 def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
-    """Files that a scene is read from: itself, and the list of its cases.
+    """Files that a scene is read from: itself, its list of cases, bearings of a rotor.
 
     Args:
         source, settings: As in `read_scene`.
@@ -130,9 +130,11 @@ def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
         SceneError: If there is no such scene, or it cannot be read.
     """
     path = find_scene(source)
-    cases = parse_scene(path, settings).get("cases")
+    data = parse_scene(path, settings)
+    cases = data.get("cases")
     name = cases.get("file") if isinstance(cases, dict) else None
-    return [path, path.parent / name] if isinstance(name, str) else [path]
+    listed = [path.parent / name] if isinstance(name, str) else []
+    return [path, *listed, *bearing_files(data, path)]
 
 
 def write_numbers(path: str | Path, numbers: Mapping[str, Any]) -> None:

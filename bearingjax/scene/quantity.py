@@ -9,10 +9,12 @@ _UNIT = re.compile(r"(?:1\s*/|[A-Za-zµμ°])[A-Za-zµμ°·²³\d\s*/^().+-]*")
 _TURNS = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade")
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
+_REVOLUTIONS = dict.fromkeys(
+    "1/min min^-1 min^(-1) min**-1 min⁻¹ r/min rev/min U/min RPM".split(), "rpm"
+)
 _WRITTEN = {
-    "speed": dict.fromkeys(
-        "1/min min^-1 min^(-1) min**-1 min⁻¹ r/min rev/min U/min RPM".split(), "rpm"
-    ),
+    "speed": _REVOLUTIONS,
+    "frequency": _REVOLUTIONS,
     "moment": {
         "Nm": "N m",
         "Nmm": "N mm",
@@ -52,6 +54,13 @@ KINDS = {
     "moment of inertia": ("kg m²", "kg mm^2"),
     "sliding speed": ("m/s", "mm/s"),
     "reciprocal speed": ("s/m", "s/m"),
+    "mass": ("kg", "kg"),
+    "unbalance": ("kg m", "g mm"),
+    "acceleration": ("m/s²", "m/s^2"),
+    "frequency": ("rad/s", "Hz"),
+    "damping": ("N s/m", "N s/mm"),
+    "tilting damping": ("N m s/rad", "N m s/rad"),
+    "rate": ("1/s", "1/s"),
 }
 """Kind of quantity to its unit and a unit that a message may suggest. Of kinds with
 one and the same unit, the first is meant where a unit is all that is known."""
@@ -123,7 +132,7 @@ def to_si(text: object, kind: str) -> float:
             not name the key, which the caller knows.
     """
     unit, example = KINDS[kind]
-    article = "an" if kind == "angle" else "a"
+    article = _article(kind)
     wanted = f'{article} {kind} with its unit is wanted, such as "5 {example}"'
     if isinstance(text, bool) or not isinstance(text, str | int | float):
         raise SceneError(f"{text!r} is not a quantity; {wanted}")
@@ -148,7 +157,7 @@ def to_si(text: object, kind: str) -> float:
 
 def _converted(number, text, name, unit, kind, wanted):
     """The number in another unit, if it is one of this kind."""
-    article = "an" if kind == "angle" else "a"
+    article = _article(kind)
     registry = _units()
     try:
         given = registry.parse_units(name)
@@ -167,7 +176,13 @@ def _converted(number, text, name, unit, kind, wanted):
         raise SceneError(f"{text!r} is not an angle; {wanted}")
     if kind == "temperature":
         return float(registry.Quantity(number, given).to(target).magnitude)
-    return number * float(one.to(target).magnitude)
+    # A frequency in Hz counts vibrations, one in rpm or rad/s is that of a shaft.
+    per_turn = 2.0 * math.pi if kind == "frequency" and not _turns(str(given)) else 1.0
+    return number * per_turn * float(one.to(target).magnitude)
+
+
+def _article(kind: str) -> str:
+    return "an" if kind[0] in "aeiou" else "a"
 
 
 def _turns(unit: str) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from ..design import is_ball, n_elements, rows_of
+from ..design import Bearing, BearingSet, is_ball, n_elements, rows_of
 from ..element import (
     FREEDOMS,
     LOADS,
@@ -108,7 +108,7 @@ def scene_of(data: dict[str, Any], path: Path) -> Scene:
     top.skip("cases", "optimise", "lubricant", "cage", "dynamics")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        bearing, preload = read_bearing(top)
+        bearing, preload = read_bearing(top.table("bearing", required=True), top)
     scene = _scene(
         top, path.stem, bearing, preload, tuple(str(w.message) for w in caught)
     )
@@ -116,12 +116,23 @@ def scene_of(data: dict[str, Any], path: Path) -> Scene:
     return scene
 
 
-def _scene(top, name, bearing, preload, odd) -> Scene:
-    contact = top.table("contact")
-    operating, numerics = top.table("operating"), top.table("numerics")
+def read_element(
+    bearing: Bearing | BearingSet, contact: Table, operating: Table, numerics: Table
+) -> BearingElement[Any]:
+    """A bearing with the laws and numerics that a scene chooses.
+
+    Args:
+        bearing: The design.
+        contact, operating, numerics: As of `read_choices`.
+    """
     choices = read_choices(contact, operating, numerics, bearing)
     with numerics.building():
-        element = BearingElement(bearing, **choices)
+        return BearingElement(bearing, **choices)
+
+
+def _scene(top, name, bearing, preload, odd) -> Scene:
+    operating, numerics = top.table("operating"), top.table("numerics")
+    element = read_element(bearing, top.table("contact"), operating, numerics)
     tolerance = numerics.number("tolerance", None)
     if tolerance is not None and not 1e-14 <= tolerance < 1e-2:
         problem = f"{tolerance:g} is not allowed; from 1e-14 to below 0.01"

@@ -1,13 +1,31 @@
-"""What came of the scene of a rotor."""
+"""Running what the scene of a rotor asks for."""
 
+import contextlib
 import dataclasses
+import warnings
+from collections.abc import Callable, Iterator
+from typing import Any
 
+import jax
 import numpy as np
 
-from ..numerics.result import Result
-from ..rotor import CriticalSpeeds, Modes, Rotor
-from ..rotor.vibration import Branch
+from ..numerics.result import Result, SolveError
+from ..numerics.types import as_array
+from ..rotor import (
+    CriticalSpeeds,
+    Modes,
+    Rotor,
+    Settled,
+    campbell,
+    critical_speeds,
+    modes,
+    settle,
+    settle_over,
+)
+from .quantity import SceneError
+from .rotor_motion import RotorResponse, RotorTransient, respond, run_in_time
 from .rotor_scene import RotorScene
+from .rotor_supports import support_of
 
 
 @dataclasses.dataclass(frozen=True)
@@ -26,48 +44,6 @@ class Failure:
 
 
 @dataclasses.dataclass(frozen=True)
-class RotorResponse:
-    """Periodic vibration over the frequency of the excitation.
-
-    Attributes:
-        method: "linear", "harmonic_balance" or "shooting".
-        frequency: (point,) [rad/s].
-        amplitude: Half of peak to peak of (ux uy uz gx gy) of every station
-            (point, station, 5) [m, rad].
-        displacement: At even phases of the excitation, from 0 on, of every station
-            (point, sample, station, 5) [m, rad].
-        branch: As of `follow`, with stability, multipliers and events; `None`: linear.
-    """
-
-    method: str
-    frequency: np.ndarray
-    amplitude: np.ndarray
-    displacement: np.ndarray
-    branch: Branch | None
-
-
-@dataclasses.dataclass(frozen=True)
-class RotorTransient:
-    """Motion in time.
-
-    Attributes:
-        time: (time,) [s].
-        speed: Of the rotor (time,) [rad/s].
-        displacement: (ux uy uz gx gy) of every station (time, station, 5) [m, rad].
-        velocity: Its rate (time, station, 5) [m/s, rad/s].
-        reached: How many of the times were reached; NaN stands at the others.
-        steps: Steps of the integration.
-    """
-
-    time: np.ndarray
-    speed: np.ndarray
-    displacement: np.ndarray
-    velocity: np.ndarray
-    reached: int
-    steps: int
-
-
-@dataclasses.dataclass(frozen=True)
 class RotorRun:
     """What came of the scene of a rotor.
 
@@ -76,7 +52,7 @@ class RotorRun:
     Attributes:
         task: What was asked.
         rotor: The rotor on its bearings, preloaded, before it settles.
-        settled: Static equilibrium at the speed of the scene, `Settled`.
+        settled: Static equilibrium at the speed of the scene; read its `result`.
         modes: At that speed.
         critical: Critical speeds.
         campbell: Modes over `task.campbell`, the speeds [rad/s].
@@ -88,7 +64,7 @@ class RotorRun:
 
     task: RotorScene
     rotor: Rotor | None
-    settled: object | None = None
+    settled: Settled | None = None
     modes: Modes | None = None
     critical: CriticalSpeeds | None = None
     campbell: Modes | None = None
@@ -101,3 +77,166 @@ class RotorRun:
     def converged(self) -> bool:
         """Whether all parts were solved."""
         return not self.failures
+
+
+_COARSE = 1e-3
+"""Error of the stiffness over the speed that is worth a word [1]."""
+_STAGES = {
+    "preload": "bearings",
+    "static": "static equilibrium",
+    "modes": "modes",
+    "critical speeds": "critical speeds",
+    "campbell": "Campbell diagram",
+    "response": "response",
+    "transient": "motion in time",
+}
+
+
+class _Parts:
+    """Results of the parts of a run as they come, their failures and warnings."""
+
+    def __init__(self, told: Callable[[str], None] | None):
+        self.found: dict[str, Any] = {}
+        self.failures: list[Failure] = []
+        self.warnings: list[str] = []
+        self._told = told
+
+    @contextlib.contextmanager
+    def part(self, name: str) -> Iterator[None]:
+        """What fails within is kept as the failure of this part."""
+        if self._told is not None:
+            self._told(_STAGES[name])
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UserWarning)
+            try:
+                yield
+            except SolveError as error:
+                self.failed(name, error.result or Result.STEP_LIMIT, str(error))
+        self.warnings += dict.fromkeys(str(w.message) for w in caught)
+
+    def failed(self, part: str, result: Result, message: str) -> None:
+        """Keep a failure."""
+        self.failures.append(Failure(part, result, message))
+
+
+def run_rotor(task: RotorScene, told: Callable[[str], None] | None = None) -> RotorRun:
+    """What a scene of a rotor asks for.
+
+    Args:
+        task: From `read_rotor`.
+        told: Called with the name of each stage as it begins.
+
+    Returns:
+        The run; nothing is raised for a part that was not solved.
+
+    Raises:
+        SceneError: For what only shows when the rotor is put together.
+    """
+    parts = _Parts(told)
+    with _naming(task):
+        rotor = _rotor(task, parts)
+        if rotor is not None:
+            _static(task, rotor, parts)
+            if "settled" in parts.found:
+                linear = _linear(task, rotor, parts)
+                _nonlinear(task, rotor, linear, parts)
+    return RotorRun(
+        task=task,
+        rotor=rotor,
+        failures=tuple(parts.failures),
+        warnings=(*task.warnings, *parts.warnings),
+        **parts.found,
+    )
+
+
+@contextlib.contextmanager
+def _naming(task: RotorScene) -> Iterator[None]:
+    """Names the scene in what a constructor complains of."""
+    try:
+        yield
+    except ValueError as error:
+        raise SceneError(f"{task.name}: {error}") from error
+
+
+def _rotor(task: RotorScene, parts: _Parts) -> Rotor | None:
+    with parts.part("preload"):
+        supports = [support_of(mount) for mount in task.mounts]
+        return Rotor(task.shaft, task.discs, supports, task.damping, task.rigid)
+    return None
+
+
+def _static(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
+    with parts.part("static"):
+        parts.found["settled"] = settle(rotor, task.loads, as_array(task.speed, float))
+
+
+def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
+    """Modes, critical speeds, Campbell diagram; the linear rotor at any speed."""
+    found, count = parts.found, task.n_modes
+    settled = found["settled"]
+    with parts.part("modes"):
+        found["modes"] = _held(modes(settled.rotor, task.speed, count=count))
+    follows = _following(task, rotor, settled, parts)
+    if follows is None:
+        return None
+    with parts.part("critical speeds"):
+        found["critical"] = _held(critical_speeds(follows, count=count))
+    if task.campbell is not None:
+        with parts.part("campbell"):
+            lines = campbell(follows, task.campbell, count=count)
+            found["campbell"] = _held(lines)
+    return follows
+
+
+def _following(task, rotor, settled, parts) -> Rotor | None:
+    """The linear rotor at any speed; it settles anew if its bearings feel the speed."""
+    if not any(mount.inertia for mount in task.mounts):
+        return settled.rotor
+    with parts.part("static"):
+        over = settle_over(rotor, task.loads, _highest(task))
+        if float(over.error) > _COARSE:
+            parts.warnings.append(
+                f"the stiffness of the bearings over the speed is known to"
+                f" {100.0 * float(over.error):.2g} % between rest and"
+                f" {_highest(task) * 30.0 / np.pi:.5g} rpm, in critical speeds and"
+                " Campbell diagram"
+            )
+        return over.rotor
+    return None
+
+
+def _highest(task: RotorScene) -> float:
+    """Speed up to which bearings follow it [rad/s]."""
+    speeds = [2.0 * abs(task.speed)]
+    if task.campbell is not None:
+        speeds.append(float(task.campbell[-1]))
+    if task.response is not None and task.response.speed is None:
+        speeds += [task.response.begin, task.response.end]
+    return max(*speeds, 1.0)
+
+
+def _nonlinear(task: RotorScene, rotor: Rotor, linear: Any, parts: _Parts) -> None:
+    """Response and motion in time."""
+    found = parts.found
+    there = linear is not None or getattr(task.response, "method", "") != "linear"
+    if task.response is not None and there:
+        with parts.part("response"):
+            response = respond(task, rotor, linear, found["settled"], found["modes"])
+            if len(response.frequency):
+                found["response"] = response
+            if response.stopped is not None:
+                parts.failed("response", *response.stopped)
+    if task.transient is not None:
+        with parts.part("transient"):
+            motion = run_in_time(task, rotor, found["settled"], found["modes"])
+            if motion.reached:
+                found["transient"] = motion
+            if motion.stopped is not None:
+                parts.failed("transient", *motion.stopped)
+
+
+def _held(tree: Any) -> Any:
+    """As NumPy holds it: JAX would compile every small operation on the way."""
+    return jax.tree.map(
+        lambda leaf: np.asarray(leaf) if isinstance(leaf, jax.Array) else leaf, tree
+    )

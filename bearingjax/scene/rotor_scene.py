@@ -80,7 +80,8 @@ class TransientTask:
         duration: [s].
         speed_to: Speed at the end of an even run-up [rad/s]; `None`: constant.
         n_times: Number of times that are reported.
-        tolerance: Of the integration.
+        tolerance, max_steps: Of the integration.
+        reduction: Craig-Bampton modes; `None`: all freedoms.
         passage: Whether the rolling elements pass, as they orbit with the cage.
         station, coordinate: Shown in report and picture.
     """
@@ -89,6 +90,8 @@ class TransientTask:
     speed_to: float | None
     n_times: int
     tolerance: float
+    max_steps: int
+    reduction: int | None
     passage: bool
     station: int
     coordinate: str

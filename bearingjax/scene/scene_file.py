@@ -2,7 +2,7 @@
 
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -48,18 +48,48 @@ def is_contact(data: dict[str, Any]) -> bool:
     return "bearing" not in data and not {"roller", "raceway"}.isdisjoint(data)
 
 
+def is_rotor(data: dict[str, Any]) -> bool:
+    """Whether parsed data are of a rotor, not of a bearing."""
+    return "bearing" not in data and "rotor" in data
+
+
 def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
     """As `parse_scene`, of a bearing.
 
     Raises:
-        SceneError: As `parse_scene`; if it is the scene of one contact.
+        SceneError: As `parse_scene`; if it is the scene of one contact or of a rotor.
     """
     data = parse_scene(path, settings)
     if is_contact(data):
         problem = "is the scene of one contact, a [roller] on a [raceway], not of a"
         cure = f"`bearingjax contact {path.stem}` solves it"
         raise SceneError(f"{path.name}: {problem} [bearing]; {cure}")
+    if is_rotor(data):
+        problem = "is the scene of a [rotor], not of a [bearing]"
+        cure = f"`bearingjax rotor {path.stem}` solves it"
+        raise SceneError(f"{path.name}: {problem}; {cure}")
     return data
+
+
+def bearing_files(data: Mapping[str, Any], path: Path) -> list[Path]:
+    """Other scenes from which a rotor takes its bearings.
+
+    Args:
+        data: The scene as parsed; what is wrong with it is no matter here.
+        path: Where from.
+    """
+    own, rotor = data.get("bearings"), data.get("rotor")
+    listed = rotor.get("bearings") if isinstance(rotor, Mapping) else None
+    mounts = listed if isinstance(listed, list) else []
+    given = [one.get("bearing") for one in mounts if isinstance(one, Mapping)]
+    names = {name for name in given if isinstance(name, str)}
+    here = own if isinstance(own, Mapping) else {}
+    return [bearing_place(name, path) for name in sorted(names - set(here))]
+
+
+def bearing_place(name: str, path: Path) -> Path:
+    """Where a scene is that another one names: beside it, or among those shipped."""
+    return shipped_scenes().get(name, path.parent / name)
 
 
 def parse_scene(path: Path, settings: Iterable[str]) -> dict[str, Any]:
@@ -115,7 +145,7 @@ def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
 
     Args:
         data: Changed in place.
-        key: Dotted key.
+        key: Dotted key; numbers from 0 name entries of lists.
         value: As parsed.
         file: For the message.
 
@@ -123,9 +153,25 @@ def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
         SceneError: If the key leads through what is no table.
     """
     parts = key.split(".")
+    inner: Any = data
     for depth, part in enumerate(parts[:-1]):
-        data = data.setdefault(part, {})
-        if not isinstance(data, dict):
-            inner = ".".join(parts[: depth + 1])
-            raise SceneError(f"{file}: `{inner}` is not a table, so {key!r} fails")
-    data[parts[-1]] = value
+        if isinstance(inner, list):
+            inner = _listed(inner, part, ".".join(parts[:depth]), file)
+        else:
+            inner = inner.setdefault(part, {})
+        if not isinstance(inner, dict | list):
+            place = ".".join(parts[: depth + 1])
+            raise SceneError(f"{file}: `{place}` is not a table, so {key!r} fails")
+    if isinstance(inner, list):
+        _listed(inner, parts[-1], ".".join(parts[:-1]), file)
+        inner[int(parts[-1])] = value
+    else:
+        inner[parts[-1]] = value
+
+
+def _listed(values: list[Any], part: str, key: str, file: str) -> Any:
+    """What stands in a list at a place given by its number."""
+    if not part.isdecimal() or int(part) >= len(values):
+        allowed = f"a number from 0 to {len(values) - 1} names one of its entries"
+        raise SceneError(f"{file}: `{key}` is a list; {allowed}, {part!r} does not")
+    return values[int(part)]

@@ -12,7 +12,7 @@ from tolerances import PUBLISHED, SOLVER
 import bearingjax as bj
 from bearingjax.rotor import harmonic_response
 from bearingjax.rotor.vibration import Ending
-from bearingjax.scene import read_rotor, rotor_report, run_rotor
+from bearingjax.scene import read_rotor, rotor_report, run_rotor, shipped_scenes
 
 TURN = 2.0 * np.pi
 RPM = np.pi / 30.0
@@ -161,9 +161,40 @@ def test_what_is_not_asked_for_is_not_there(run, tmp_path):
     assert "there is nothing to write; the scene has no [rotor.response]" in done.err
 
 
-def _without(*names):
-    from bearingjax.scene import shipped_scenes
+def test_a_motion_in_time_settles_into_the_linear_response(run, tmp_path):
+    out, table = tmp_path / "a.json", tmp_path / "a.csv"
+    path = tmp_path / "plain.toml"
+    path.write_text(_without("campbell", "response"), encoding="utf-8")
+    # 20 turns of 2 ms, 20 times in each; 1 e-folding takes 1.1 turns.
+    turning = {
+        "rotor.speed": "30000 rpm",
+        "rotor.damping_ratio": "0.1",
+        "rotor.excitation": "{unbalance=[{station=1, moment='9 g mm'}]}",
+        "rotor.transient": "{duration='40 ms', n_times=401}",
+    }
+    given = command(ON_SPRINGS, turning, scene=str(path))
+    done = run(*given, "--json", out, "--table", table)
+    assert done.status == 0, done.err
+    assert "motion in time to 0.04 s" in done.out
+    found = read(out)["transient"]
+    assert np.allclose(found["speed"], 30000.0 * RPM)
+    time = np.array(found["time"])
+    assert (len(time), time[-1]) == (401, pytest.approx(0.04))
+    moved = np.array(found["displacement"])
+    assert np.abs(moved[0]).max() < 1e-15
+    y = found["coordinate"].index("uy_2")
+    turns = np.exp(-1j * 30000.0 * RPM * time[-200:])
+    amplitude = 2.0 * np.mean(moved[-200:, y] * turns)
+    task = read_rotor(path, settings(ON_SPRINGS, turning))
+    linear = harmonic_response(run_rotor(task).settled.rotor, task.loads, [task.speed])
+    assert abs(amplitude / linear.motion[0, 2, 1] - 1.0) < 1e-4  # of the tolerance
+    with open(table, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    assert rows[0][:3] == ["time [s]", "speed [rad/s]", "ux_0 [m]"]
+    assert np.array_equal([float(row[2 + y]) for row in rows[1:]], moved[:, y])
 
+
+def _without(*names):
     text = shipped_scenes()["rotor_paper_12"].read_text(encoding="utf-8")
     for name in names:
         before, _, after = text.partition(f"[rotor.{name}]")

@@ -33,6 +33,13 @@ SHIPPED = (
     "tapered",
 )
 CONTACT = "taper_contact"  # of one roller, for `read_contact`
+ROTORS = {  # for `read_rotor`
+    "rotor_flexible",
+    "rotor_paper_12",
+    "rotor_paper_26",
+    "rotor_paper_36",
+    "rotor_spindle",
+}
 
 
 def near(value):
@@ -55,7 +62,7 @@ def read_text(folder, text, settings=()):
 
 
 def test_shipped_scenes_are_these():
-    assert set(shipped_scenes()) == {*SHIPPED, CONTACT}
+    assert set(shipped_scenes()) == {*SHIPPED, CONTACT, *ROTORS}
 
 
 @pytest.mark.parametrize("name", SHIPPED)
