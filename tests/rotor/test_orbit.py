@@ -5,7 +5,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import solve_ivp
 from scipy.special import mathieu_a, mathieu_b
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 from vibrations import Contact, Spring, duffing, oscillator, rotor
@@ -99,65 +99,6 @@ def test_mathieu():
                 if number > 0:
                     found = trace(jnp.asarray(number), jnp.asarray(-2.0 * q))
                     assert np.isclose(found, goal, atol=DIFFERENCE)
-
-
-# Free Hertz contact, unit frequency of small vibration: largest motion, frequency.
-HERTZ = {0.1: 0.99957526, 0.8: 0.96026938, 1.0: 0.91153748, 3.0: 0.46791516}
-
-
-def free_frequency(method, start, held, largest):
-    """Newton's method with the largest displacement held, free and undamped."""
-    system = oscillator(Contact())
-    run = eqx.filter_jit(lambda z, ratio: method.linearised(system, z, ratio))
-    z, ratio = np.array(start), 1.0 - largest**2 / 24.0
-    if largest > 1.0:
-        ratio = 0.5 * (ratio + 0.3)
-    for _ in range(12):
-        left, jacobian = map(np.asarray, run(jnp.asarray(z), jnp.asarray(ratio)))
-        whole = np.concatenate([jacobian, held])
-        goal = np.concatenate([left, held[:, :-1] @ (z - start)])
-        step = np.linalg.lstsq(whole, -goal)[0]
-        z, ratio = z + step[:-1], ratio + step[-1]
-    return ratio
-
-
-def test_free_hertz_oscillator():
-    def quadrature(largest):
-        def energy(u):
-            return (0.4 * max(1.0 + u, 0.0) ** 2.5 - u) / 1.5
-
-        least = {0.1: -0.1016968, 0.8: -0.93838959, 1.0: -1.2627417, 3.0: -9.8}
-        from scipy.optimize import brentq
-
-        low = brentq(lambda u: energy(u) - energy(largest), 1.1 * least[largest], -1e-3)
-        middle, half = 0.5 * (largest + low), 0.5 * (largest - low)
-
-        def time(angle):
-            u = middle + half * np.sin(angle)
-            return half * np.cos(angle) / np.sqrt(2 * (energy(largest) - energy(u)))
-
-        spans = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 9)
-        return np.pi / sum(
-            quad(time, a, b, epsabs=1e-10)[0]
-            for a, b in zip(spans[:-1], spans[1:], strict=True)
-        )
-
-    fine = Shooting(400)
-    for largest, printed in HERTZ.items():
-        held = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-        found = free_frequency(fine, [largest, 0.0], held, largest)
-        assert np.isclose(found, printed, rtol=DIFFERENCE)
-        assert np.isclose(quadrature(largest), printed, rtol=DIFFERENCE)
-    balance = HarmonicBalance(7, 64)
-    for largest in (0.1, 0.8):
-        start = np.zeros(15)
-        start[1] = largest
-        # The series at phase 0, and no sines.
-        held = np.zeros((8, 16))
-        held[0, :8] = 1.0
-        held[1:, 8:15] = np.eye(7)
-        found = free_frequency(balance, start, held, largest)
-        assert np.isclose(found, HERTZ[largest], rtol=1e-3)
 
 
 @pytest.mark.parametrize("order", ("closed", "open"))

@@ -1,5 +1,7 @@
 """Nonlinear periodic vibration: orbits, their stability, branches over frequency."""
 
+from .backbone import Backbone as Backbone
+from .backbone import backbone as backbone
 from .branch import Branch as Branch
 from .branch import Event as Event
 from .branch import follow as follow
@@ -14,6 +16,7 @@ from .law_support import LawSupport as LawSupport
 from .method import AbstractMethod as AbstractMethod
 from .orbit import PeriodicOrbit as PeriodicOrbit
 from .orbit import solve_orbit as solve_orbit
+from .peak import peak as peak
 from .rigid_rotor import OpposedPair as OpposedPair
 from .rigid_rotor import RigidRotor as RigidRotor
 from .rigid_rotor import natural_frequencies as natural_frequencies

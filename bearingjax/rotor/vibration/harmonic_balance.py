@@ -97,6 +97,10 @@ class HarmonicBalance(AbstractMethod):
         short = jnp.zeros((self.harmonics - cosine.shape[0], u.shape[1]), u.dtype)
         return jnp.concatenate([mean, cosine, short, sine, short]).reshape(-1)
 
+    def state(self, z):
+        at, series = self._basis(z.dtype), self._series(z)
+        return at.value[0] @ series, at.rate[0] @ series
+
     def residual(self, system, z, ratio):
         at, series = self._basis(z.dtype), self._series(z)
         motion = at.value @ series, at.rate @ series, at.second @ series

@@ -26,6 +26,12 @@ class AbstractMethod(eqx.Module):
         """Unknowns z of a motion given by its samples [1]."""
 
     @abc.abstractmethod
+    def state(
+        self, z: Float[Array, " m"]
+    ) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
+        """Freedoms over `scale` and their derivatives by the phase, at phase 0 [1]."""
+
+    @abc.abstractmethod
     def residual(
         self, system: AbstractVibration, z: Float[Array, " m"], ratio: Scalar
     ) -> Float[Array, " m"]:

@@ -28,6 +28,10 @@ class Shooting(AbstractMethod):
     def unknowns(self, motion):
         return jnp.concatenate([motion[0][0], motion[1][0]])
 
+    def state(self, z):
+        u, rate = jnp.split(z, 2)
+        return u, rate
+
     def _flow(self, system, z, ratio):
         return integrate(rates(system, ratio), z, self.steps)
 

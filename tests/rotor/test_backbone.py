@@ -1,0 +1,110 @@
+"""Free vibration: frequency over amplitude, published and in closed form."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from tolerances import DIFFERENCE, PUBLISHED
+from vibrations import Contact, duffing, oscillator, rotor
+
+import bearingjax as bj
+from bearingjax.rotor.vibration import HarmonicBalance, Shooting, backbone
+
+# Free Hertz contact, unit frequency of small vibration: largest and least motion,
+# frequency. The contact opens from a largest motion of 0.842 on.
+HERTZ = np.array(
+    [
+        [0.01, -0.01001669, 0.99999583],
+        [0.1, -0.1016968, 0.99957526],
+        [0.2, -0.2069285, 0.99825871],
+        [0.5, -0.54703423, 0.98778458],
+        [0.8, -0.93838959, 0.96026938],
+        [0.9, -1.09041664, 0.93950547],
+        [1.0, -1.2627417, 0.91153748],
+        [1.5, -2.45284708, 0.76192916],
+        [2.0, -4.23538291, 0.63780373],
+        [3.0, -9.8, 0.46791516],
+    ]
+)
+
+
+def test_free_hertz_oscillator():
+    system = oscillator(Contact())
+    found = backbone(system, HERTZ[:, 0], 0, Shooting(400))
+    assert np.allclose(found.frequency, HERTZ[:, 2], rtol=DIFFERENCE)
+    # No sample need lie at the least motion.
+    half = 0.5 * (HERTZ[:, 0] - HERTZ[:, 1])
+    assert np.allclose(found.amplitude[:, 0], half, rtol=1e-5)
+    assert np.abs(found.damping_ratio).max() < DIFFERENCE
+    closed = HERTZ[HERTZ[:, 0] < 0.842]
+    found = backbone(system, closed[:, 0], 0, HarmonicBalance(7, 64))
+    assert np.allclose(found.frequency, closed[:, 2], rtol=1e-3)
+
+
+def test_the_published_frequencies():
+    """By quadrature."""
+
+    def energy(u):
+        return (0.4 * max(1.0 + u, 0.0) ** 2.5 - u) / 1.5
+
+    for largest, least, frequency in HERTZ[[1, 6, 9]]:
+        top = energy(largest)
+        low = brentq(lambda u, top=top: energy(u) - top, 1.1 * least, -1e-3)
+        assert abs(low - least) < DIFFERENCE * abs(least)
+        middle, half = 0.5 * (largest + low), 0.5 * (largest - low)
+
+        def time(angle, middle=middle, half=half, top=top):
+            u = middle + half * np.sin(angle)
+            return half * np.cos(angle) / np.sqrt(2 * (top - energy(u)))
+
+        spans = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 9)
+        parts = zip(spans[:-1], spans[1:], strict=True)
+        whole = sum(quad(time, a, b, epsabs=1e-10)[0] for a, b in parts)
+        assert abs(np.pi / whole / frequency - 1.0) < DIFFERENCE
+
+
+def test_duffing_with_one_harmonic():
+    """ω² = 1 + 3/4 c a², and a damping c = 2 ζ ω; derivatives too."""
+    a, cubic, ratio = np.array([0.5, 1.5]), 0.05, 0.02
+
+    @eqx.filter_jit
+    def run(numbers, peaks):
+        system = duffing(numbers[0], 0.2, numbers[1])
+        found = backbone(system, peaks, 0, HarmonicBalance(1, 8), throw=False)
+        return jnp.stack([found.frequency, found.damping_ratio])
+
+    numbers, peaks = jnp.array([cubic, ratio]), jnp.asarray(a)
+    frequency = np.sqrt(1.0 + 0.75 * cubic * a**2)
+    found = run(numbers, peaks)
+    assert np.allclose(found, [frequency, ratio / frequency], rtol=1e-9)
+    slopes, by_peaks = jax.jacfwd(run, (0, 1))(numbers, peaks)
+    slope = 0.375 * a**2 / frequency
+    assert np.allclose(slopes[0, :, 0], slope, rtol=1e-9)
+    assert np.allclose(slopes[1, :, 1], 1.0 / frequency, rtol=1e-9)
+    slope = 0.75 * cubic * a / frequency
+    assert np.allclose(np.diagonal(by_peaks[0]), slope, rtol=1e-9)
+
+
+def test_a_critical_speed_falls_with_the_amplitude():
+    """Forward whirl of the paper's rotor, 649.0 Hz when small; it softens."""
+    z0 = float(rotor(36).scale[0])
+    peaks = z0 * np.array([0.01, 0.15, 0.25])
+    # Of the ten modes at the reference speed the backward one lies below.
+    found = backbone(rotor(36), peaks, 3, HarmonicBalance(3, 16), mode=1)
+    hertz = np.asarray(found.frequency) / (2.0 * np.pi)
+    assert np.isclose(hertz[0], 649.0, rtol=PUBLISHED)
+    assert hertz[2] < 0.99 * hertz[1] < 0.99 * 0.995 * hertz[0]
+    # A circle.
+    assert np.allclose(found.amplitude[:, 0], found.amplitude[:, 1], rtol=1e-5)
+    assert np.isclose(found.damping_ratio[0], 0.01, rtol=0.05)
+
+
+def test_what_is_not_found_says_so():
+    system = duffing(jnp.nan)
+    with pytest.raises(bj.SolveError, match="point 0, peak 0.5 .non_finite.*smaller"):
+        backbone(system, [0.5, 1.5], 0, HarmonicBalance(1, 8))
+    with pytest.raises(ValueError, match="`freedom` is 1; the system has 1 freedoms"):
+        backbone(system, [0.1], 1, HarmonicBalance(1, 8))
