@@ -10,7 +10,7 @@ from .style import GREY, INNER, OUTER, ROLLER, SMALL, axes_or_new
 if TYPE_CHECKING:
     import matplotlib.axes
 
-WHIRLS = {1: ("forward", INNER), -1: ("backward", OUTER), 0: ("planar", ROLLER)}
+WHIRLS = {1: ("forward", INNER), -1: ("backward", OUTER), 0: ("planar, axial", ROLLER)}
 """Names and colours of the directions of whirl; 0 is in a plane, axial or a mixture."""
 RPM = 30.0 / np.pi
 """Revolutions per minute in 1 rad/s."""
@@ -48,17 +48,17 @@ def mode_shapes(
     z = 1e3 * np.asarray(rotor.shaft.nodes, dtype=float)
     names = []
     chosen = np.flatnonzero(np.asarray(found.oscillates))[:count]
+    axial = _axial(found.shape)
     for lane, k in enumerate(chosen):
-        whirl, colour = WHIRLS[int(found.whirl[k])]
-        shape = np.asarray(found.shape[k])
-        line, band, axial = _drawn(shape)
+        whirl, colour = WHIRLS[0 if axial[k] else int(found.whirl[k])]
+        line, band = _drawn(np.asarray(found.shape[k]), axial[k])
         base = len(chosen) - 1.0 - lane
         ax.axhline(base, color=GREY, lw=0.7, zorder=1, label="_rest")
         ax.fill_between(
             z, base - _HALF * band, base + _HALF * band, color=colour, alpha=0.15, lw=0
         )
         ax.plot(z, base + _HALF * line, color=colour, lw=1.8, label=f"_mode {k}")
-        kind = "axial" if axial else whirl
+        kind = "axial" if axial[k] else whirl.split(",")[0]
         names.append(
             f"{float(found.frequency[k]):.4g} Hz, {kind}\n"
             f"damping {_percent(found.damping_ratio[k])} %"
@@ -84,12 +84,17 @@ def _percent(ratio):
     return f"{100.0 * float(np.where(np.abs(ratio) < 1e-9, 0.0, ratio)):.3g}"
 
 
-def _drawn(shape):
-    """Line and half width of the band of a mode, largest one; whether it is axial."""
-    x, y, axial = shape[:, 0], shape[:, 1], shape[:, 2]
-    across, along = np.sum(np.abs(x) ** 2 + np.abs(y) ** 2), np.sum(np.abs(axial) ** 2)
-    if along > _AXIAL * (across + along):
-        line, band = _at_most(axial), np.abs(axial)
+def _axial(shape):
+    """Whether modes (..., node, 5) are motions along the axis but for a trace."""
+    squares = np.sum(np.abs(np.asarray(shape)) ** 2, axis=-2)
+    return squares[..., 2] > _AXIAL * squares[..., :3].sum(axis=-1)
+
+
+def _drawn(shape, axial):
+    """Line and half width of the band of a mode, largest one."""
+    x, y, z = shape[:, 0], shape[:, 1], shape[:, 2]
+    if axial:
+        line, band = _at_most(z), np.abs(z)
     else:
         band = major_axis(x, y)
         largest = int(np.argmax(band))
@@ -97,7 +102,7 @@ def _drawn(shape):
         moved = x * np.cos(direction) + y * np.sin(direction)
         line = np.real(moved * np.exp(-1j * np.angle(moved[largest])))
     size = float(band.max()) or 1.0
-    return line / size, band / size, along > _AXIAL * (across + along)
+    return line / size, band / size
 
 
 def _at_most(motion):
@@ -141,7 +146,7 @@ def campbell_diagram(
     ax = axes_or_new(ax)
     rpm = RPM * np.asarray(speeds, dtype=float)
     frequency = np.where(found.oscillates, found.frequency, np.nan)
-    whirl = np.asarray(found.whirl)
+    whirl = np.where(_axial(found.shape), 0, found.whirl)
     # Where modes coincide, as at rest, they have no direction: that of the next speed.
     sense = np.where(whirl[1:] != 0, whirl[1:], whirl[:-1])
     for value, (name, colour) in WHIRLS.items():
@@ -176,9 +181,8 @@ def _runs(chosen):
 def _critical(ax, critical, rpm, top):
     """Dots on the line of the speed, and the numbers of those of forward whirl."""
     label = "critical speed"
-    for speed, whirl in zip(
-        np.asarray(critical.speed), np.asarray(critical.whirl), strict=True
-    ):
+    sense = np.where(_axial(critical.shape), 0, critical.whirl)
+    for speed, whirl in zip(np.asarray(critical.speed), sense, strict=True):
         at = RPM * speed
         if not np.isfinite(speed) or not rpm.min() <= at <= rpm.max():
             continue

@@ -67,7 +67,9 @@ def craig_bampton(rotor: Rotor, modes: Any) -> Basis:
     places = rest[rest < N_STATION * rotor.shaft.n_nodes] % N_STATION
     largest = jnp.max(jnp.abs(clamped) / body[places][:, None], axis=0)
     more = jnp.zeros((shapes.shape[0], count), shapes.dtype)
-    return jnp.concatenate([shapes, more.at[rest].set(clamped / largest[None, :])], axis=1)
+    return jnp.concatenate(
+        [shapes, more.at[rest].set(clamped / largest[None, :])], axis=1
+    )
 
 
 def _sizes(stations):

@@ -174,7 +174,13 @@ def test_campbell_diagram_tells_directions_and_critical_speeds():
     marked = np.concatenate(named(ax, "critical speed") + named(ax, "_critical speed"))
     assert np.allclose(marked[:, 0], RPM * np.array([90.9, 111.1]))
     assert [t.get_text() for t in ax.texts] == ["1061 rpm"]
-    assert "planar" not in legend(ax)
+    assert "planar, axial" not in legend(ax)
+    # A mode along the axis has no direction, whatever its trace of whirl.
+    axial = all_modes(
+        1j * values, whirl, np.eye(5)[[2]] * np.ones((4, 2, 1, 1), complex)
+    )
+    ax = plot.campbell_diagram(speeds, axial)
+    assert legend(ax) == ["planar, axial", "speed (1x)"]
 
 
 SIZES = 1e-6 * np.arange(2.0, 10.0)
