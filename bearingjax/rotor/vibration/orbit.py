@@ -16,7 +16,8 @@ from .method import AbstractMethod, Motion
 from .system import AbstractVibration, frequency_of
 
 TOLERANCE = {"float64": 1e-10, "float32": 1e-4}
-"""Of the residual of a method, pure numbers [1]."""
+"""Of the residual of a method, or of Newton's step towards the orbit, pure numbers
+[1]."""
 STABLE = 1e-6
 """By how much a multiplier of a stable orbit may exceed one: round-off [1]."""
 _FINE = 8
@@ -129,33 +130,32 @@ def newton(
 
     def evaluated(x):
         left, jacobian = linearised(x)
-        return left, jacobian, jnp.max(jnp.abs(left))
+        step = -jnp.linalg.solve(jacobian, left)
+        return x, left, jacobian, jnp.max(jnp.abs(left)), step
 
-    def full(x, left, jacobian):
-        return -jnp.linalg.solve(jacobian, left)
+    def solved(here):
+        # Of a stiff shaft the forces that cancel leave more than the tolerance in
+        # round-off; how far that is from the orbit the step tells.
+        *_, size, step = here
+        return (size <= tolerance) | (jnp.max(jnp.abs(step)) <= tolerance)
 
     def going(state):
-        _, _, _, size, _, steps = state
-        return (size > tolerance) & jnp.isfinite(size) & (steps < limit)
+        here, _, steps = state
+        return ~solved(here) & jnp.isfinite(here[3]) & (steps < limit)
 
     def step(state):
-        x, left, jacobian, size, move, steps = state
-        new = x + move
-        new_left, new_jacobian, new_size = evaluated(new)
+        here, move, steps = state
+        there = evaluated(here[0] + move)
         # Half a step where a whole one leads away; a number that is none does.
-        better = new_size <= 2.0 * size
-        kept = jax.tree.map(
-            lambda a, b: jnp.where(better, a, b),
-            (new, new_left, new_jacobian, new_size),
-            (x, left, jacobian, size),
-        )
-        move = jnp.where(better, full(*kept[:3]), 0.5 * move)
-        return *kept, move, steps + 1
+        better = there[3] <= 2.0 * here[3]
+        kept = jax.tree.map(lambda a, b: jnp.where(better, a, b), there, here)
+        return kept, jnp.where(better, there[4], 0.5 * move), steps + 1
 
-    left, jacobian, size = evaluated(x)
-    state = x, left, jacobian, size, full(x, left, jacobian), jnp.int32(0)
-    x, left, jacobian, size, _, steps = lax.while_loop(going, step, state)
-    result = jnp.where(size <= tolerance, int(Result.CONVERGED), int(Result.STEP_LIMIT))
+    here = evaluated(x)
+    here, _, steps = lax.while_loop(going, step, (here, here[4], jnp.int32(0)))
+    x, left, jacobian, size, _ = here
+    codes = int(Result.CONVERGED), int(Result.STEP_LIMIT)
+    result = jnp.where(solved(here), *codes)
     result = jnp.where(jnp.isfinite(size), result, int(Result.NON_FINITE))
     return Corrected(x, left, jacobian, steps, result.astype(jnp.int32))
 
