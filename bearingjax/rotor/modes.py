@@ -302,6 +302,8 @@ def largest_real(
 def direction(shape: Complex[Array, "*mode node 5"], length) -> Int[Array, "*mode"]:
     """+1 forward, -1 backward, 0 neither: the sense in which most of a mode whirls.
 
+    Neither is a mode in a plane, and one of which half or more goes along the shaft.
+
     A motion (x, y) = Re (a, b) exp(iωt) is the sum of a circle from x towards y of
     radius |a + ib|/2 and of one the other way of radius |a - ib|/2.
 
@@ -316,8 +318,8 @@ def direction(shape: Complex[Array, "*mode node 5"], length) -> Int[Array, "*mod
     turning = 2.0 * jnp.sum(jnp.imag(x * y.conj()), axis=-1)
     axial = jnp.sum(jnp.abs(shape[..., 2]) ** 2, axis=-1)
     size = jnp.sum(jnp.abs(x) ** 2 + jnp.abs(y) ** 2, axis=-1) + axial
-    sense = jnp.sign(turning).astype(int)
-    return jnp.where(jnp.abs(turning) > _PLANAR * size, sense, 0)
+    whirls = (jnp.abs(turning) > _PLANAR * size) & (axial <= 0.5 * size)
+    return jnp.where(whirls, jnp.sign(turning).astype(int), 0)
 
 
 def speed_list(owner: str, speeds: Any) -> Float[Array, " speed"]:

@@ -171,7 +171,10 @@ def settle_over(
     positive("settle_over", "top_speed", top_speed, "rad/s")
     whole("settle_over", "places", places)
     check("settle_over", "places", places >= 3, "at least 3", places, "")
-    found = _settle_over(rotor, loads, top_speed, places)
+    share = 0.5 * (1.0 - np.cos(np.pi * (np.arange(places) + 0.5) / places))
+    speeds = top_speed * jnp.asarray(share, top_speed.dtype)
+    every = _settled_at(rotor, loads, speeds)
+    found = _settled_over(rotor, top_speed, speeds, every)
 
     def message():
         label = Result(int(found.result)).label
@@ -180,18 +183,22 @@ def settle_over(
     return raise_unless_converged(found, found.result, message) if throw else found
 
 
-@eqx.filter_jit
-def _settle_over(rotor, loads, top_speed, places) -> SettledOver:
-    share = 0.5 * (1.0 - np.cos(np.pi * (np.arange(places) + 0.5) / places))
-    speeds = top_speed * jnp.asarray(share, top_speed.dtype)
+def _settled_at(rotor, loads, speeds) -> Settled:
+    """The rotor settled at every speed, without `rotor`; with `place` as first axis."""
 
     def one(speed):
         found = _settle(rotor, loads, speed)[0]
-        # What the springs at a speed are made of says its stiffness.
         return eqx.tree_at(lambda f: f.rotor, found, None)
 
-    found = lax.map(one, speeds)
-    series = jnp.asarray(chebyshev_analysis(places), top_speed.dtype)
+    if any(is_traced(leaf) for leaf in jax.tree.leaves((rotor, loads, speeds))):
+        return lax.map(one, speeds)
+    # One after the other by the program of `settle`, which is often there already.
+    return jax.tree.map(lambda *leaf: jnp.stack(leaf), *map(one, speeds))
+
+
+@eqx.filter_jit
+def _settled_over(rotor, top_speed, speeds, found) -> SettledOver:
+    series = jnp.asarray(chebyshev_analysis(speeds.shape[0]), top_speed.dtype)
     stiffness = jnp.tensordot(series, found.stiffness, 1)
     springs = [
         SpeedSupport(s.station, stiffness[:, k], d, top_speed, housing=s.housing)

@@ -101,6 +101,9 @@ def test_follows_the_speed():
     np.testing.assert_allclose(found, wanted, atol=1e-8 * scale)
     other = rest.rotor.linearised().stiffness
     assert np.abs(other - wanted).max() > 1e-5 * scale
+    # The same number under trace, where all places go through one program.
+    error = jax.jit(lambda top: bj.settle_over(rotor, loads, top, throw=False).error)
+    np.testing.assert_allclose(error(1000.0), over.error, rtol=1e-3)
     # Outside, the ends hold.
     ends = [over.rotor.linearised(speed).stiffness for speed in (1000.0, 2000.0)]
     np.testing.assert_array_equal(*ends)
