@@ -26,7 +26,7 @@ from ..rotor.vibration import (
 from .rotor_scene import RotorScene
 from .rotor_supports import unit_of_length, with_passage
 
-_SAMPLES = 32
+_SAMPLES = 64
 """Phases at which a linear vibration is told."""
 _ENDINGS = {
     Ending.POINTS: (
@@ -216,7 +216,7 @@ def _system(task, rotor, settled, modes, scale, speed, reduction) -> RotorVibrat
     return rotor_vibration(
         rotor,
         task.loads,
-        scale=unit_of_length(rotor.supports) if scale is None else scale,
+        scale=unit_of_length(rotor, settled) if scale is None else scale,
         reference_frequency=slowest if np.isfinite(slowest) else 2.0 * np.pi,
         speed=speed,
         modes=reduction,

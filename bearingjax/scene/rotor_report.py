@@ -11,6 +11,8 @@ _RULE = "-" * 78
 _RPM = 30.0 / np.pi
 _HZ = 0.5 / np.pi
 _WHIRL = {1: "forward", -1: "backward", 0: "-"}
+_AXIAL = 0.9
+"""Share of the largest motion above which a motion along the shaft is the mode [1]."""
 _NEAR = 0.1
 """Share of a critical speed within which running is worth a word [1]."""
 _UNSTABLE = -1e-9
@@ -72,6 +74,11 @@ def rotor_warnings(run: RotorRun) -> list[str]:
     return told
 
 
+def _length(run):
+    """Of the shaft [m]."""
+    return float(np.ptp(np.asarray(run.task.shaft.stations)))
+
+
 def _rpm(speed):
     return f"{float(speed) * _RPM:.5g} rpm"
 
@@ -125,18 +132,34 @@ def _bearings(run):
     return "\n".join(lines)
 
 
+def _whirl(whirl, shape, length):
+    """In which sense a mode whirls, in a word.
+
+    Args:
+        whirl: Of the mode.
+        shape: Of its nodes (node, 5).
+        length: Of the shaft [m].
+    """
+    size = np.abs(shape) * np.array([1.0, 1.0, 1.0, length, length])
+    if size[:, 2].max() > _AXIAL * size.max():
+        return "axial"
+    return _WHIRL[int(whirl)]
+
+
 def _modes(run):
     (_, frequency), (_, ratio), (_, whirl) = mode_numbers(run.modes)
+    length = _length(run)
     lines = [
         f"modes at {_rpm(run.task.speed)}:",
         f"{'':>4}{'Hz':>12}{'rpm':>12}{'damping':>12}  whirl",
     ]
     there = frequency > 0
-    rows = zip(frequency[there], ratio[there], whirl[there], strict=True)
-    for k, (hertz, damped, sense) in enumerate(rows):
+    shape = np.asarray(run.modes.shape)[there]
+    rows = zip(frequency[there], ratio[there], whirl[there], shape, strict=True)
+    for k, (hertz, damped, sense, moved) in enumerate(rows):
         lines.append(
             f"{k + 1:4d}{hertz:12.5g}{60.0 * hertz:12.5g}{_clean(damped):12.4g}"
-            f"  {_WHIRL[int(sense)]}"
+            f"  {_whirl(sense, moved, length)}"
         )
     if not there.all():
         lines.append(f"and {int((~there).sum())} that do not oscillate")
@@ -152,17 +175,19 @@ def _critical(run):
         "critical speeds:",
         f"{'':>4}{'rpm':>12}{'rad/s':>12}{'damping':>12}  whirl",
     ]
-    rows = zip(found.speed, found.damping_ratio, found.whirl, strict=True)
-    for k, (speed, ratio, whirl) in enumerate(row for row in rows if row[0] == row[0]):
+    parts = (found.speed, found.damping_ratio, found.whirl, found.shape)
+    rows = zip(*(np.asarray(part)[there] for part in parts), strict=True)
+    for k, (speed, ratio, whirl, shape) in enumerate(rows):
         lines.append(
             f"{k + 1:4d}{speed * _RPM:12.5g}{speed:12.5g}{_clean(ratio):12.4g}"
-            f"  {_WHIRL[int(whirl)]}"
+            f"  {_whirl(whirl, shape, _length(run))}"
         )
     return "\n".join(lines)
 
 
 def _campbell(run):
     (_, frequency), _, (_, whirl) = mode_numbers(run.campbell)
+    shape = np.asarray(run.campbell.shape)[-1]
     first, last = run.task.campbell[0], run.task.campbell[-1]
     lines = [
         f"Campbell diagram at {len(run.task.campbell)} speeds, natural frequencies:",
@@ -171,7 +196,7 @@ def _campbell(run):
     for k in np.flatnonzero(frequency.max(axis=0) > 0):
         lines.append(
             f"{k + 1:4d}{frequency[0, k]:11.5g} Hz{frequency[-1, k]:11.5g} Hz"
-            f"  {_WHIRL[int(whirl[-1, k])]}"
+            f"  {_whirl(whirl[-1, k], shape[k], _length(run))}"
         )
     return "\n".join(lines)
 
@@ -180,10 +205,9 @@ def _response(run, found: RotorResponse):
     asked = run.task.response
     span = _HZ * found.frequency
     method = found.method.replace("_", " ")
-    if not len(span):
-        return f"response by {method}: no point"
+    head = "linear response" if method == "linear" else f"response by {method}"
     lines = [
-        f"response by {method}: {len(span)} points, {span.min():.5g} to"
+        f"{head}: {len(span)} points, {span.min():.5g} to"
         f" {span.max():.5g} Hz; half of peak to peak:",
     ]
     for k, name in enumerate(run.task.station_names):

@@ -79,6 +79,7 @@ class RotorRun:
         return not self.failures
 
 
+_RPM = 30.0 / np.pi
 _COARSE = 1e-3
 """Error of the stiffness over the speed that is worth a word [1]."""
 _STAGES = {
@@ -176,11 +177,18 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     settled = found["settled"]
     with parts.part("modes"):
         found["modes"] = _held(modes(settled.rotor, task.speed, count=count))
-    follows = _following(task, rotor, settled, parts)
+    highest = _highest(task)
+    follows = _following(task, rotor, settled, highest, parts)
     if follows is None:
         return None
     with parts.part("critical speeds"):
         found["critical"] = _held(critical_speeds(follows, count=count))
+    if follows is not settled.rotor and (found["critical"].speed > highest).any():
+        parts.warnings.append(
+            f"above {highest * _RPM:.5g} rpm critical speeds are those of the stiffness"
+            " that bearings have there; it is known to the end of [rotor.campbell], or"
+            " twice the speed"
+        )
     if task.campbell is not None:
         with parts.part("campbell"):
             lines = campbell(follows, task.campbell, count=count)
@@ -188,17 +196,17 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     return follows
 
 
-def _following(task, rotor, settled, parts) -> Rotor | None:
+def _following(task, rotor, settled, highest, parts) -> Rotor | None:
     """The linear rotor at any speed; it settles anew if its bearings feel the speed."""
     if not any(mount.inertia for mount in task.mounts):
         return settled.rotor
     with parts.part("static"):
-        over = settle_over(rotor, task.loads, _highest(task))
+        over = settle_over(rotor, task.loads, as_array(highest, float))
         if float(over.error) > _COARSE:
             parts.warnings.append(
                 f"the stiffness of the bearings over the speed is known to"
                 f" {100.0 * float(over.error):.2g} % between rest and"
-                f" {_highest(task) * 30.0 / np.pi:.5g} rpm, in critical speeds and"
+                f" {highest * _RPM:.5g} rpm, in critical speeds and"
                 " Campbell diagram"
             )
         return over.rotor

@@ -1,7 +1,6 @@
 """The supports of a rotor as its scene has them, preloaded."""
 
 import dataclasses
-from collections.abc import Iterable
 
 import numpy as np
 
@@ -10,6 +9,8 @@ from ..rotor import (
     AbstractSupport,
     BearingSupport,
     LinearSupport,
+    Rotor,
+    Settled,
     preload_offset,
 )
 from ..rotor.vibration import LawSupport
@@ -18,7 +19,7 @@ from .rotor_mounts import LAWS
 from .rotor_scene import Mount
 
 _AT_LEAST = 1e-5
-"""Where no bearing is preloaded [m]."""
+"""Where nothing is preloaded or loaded [m]."""
 
 
 def support_of(mount: Mount) -> AbstractSupport:
@@ -67,14 +68,15 @@ def with_passage(support: AbstractSupport) -> AbstractSupport:
     return dataclasses.replace(support, passage=True)
 
 
-def unit_of_length(supports: Iterable[AbstractSupport]) -> float:
-    """Displacement that is called one: that of the most preloaded bearing [m].
+def unit_of_length(rotor: Rotor, settled: Settled) -> float:
+    """Displacement that is called one: the largest of preload and equilibrium [m].
 
     Args:
-        supports: All supports of a rotor.
+        rotor: On its true bearings.
+        settled: Its static equilibrium.
     """
-    sizes = [_AT_LEAST]
-    for support in supports:
+    sizes = [_AT_LEAST, float(np.max(np.abs(settled.displacement[:, :3])))]
+    for support in rotor.supports:
         if isinstance(support, BearingSupport):
             sizes.append(float(np.max(np.abs(support.offset[:3]))))
         law = getattr(support, "law", None)

@@ -1,5 +1,7 @@
 """What the scene of a rotor asks for beyond modes: Campbell, response, transient."""
 
+import warnings
+
 import numpy as np
 
 from ..element.frame import FREEDOMS
@@ -80,7 +82,13 @@ def read_response(
     scale = table.quantity("scale", "length", None)
     if scale is not None and not scale > 0.0:
         raise table.error("scale", f"{scale:g} m is not allowed; above 0 m")
-    linear = method == "linear"
+    linear, speed = method == "linear", table.quantity("speed", "speed", None)
+    if speed is not None and loads.unbalances:
+        warnings.warn(
+            "`rotor.response.speed` is fixed, so that its unbalance turns at another"
+            " speed, that of the excitation",
+            stacklevel=2,
+        )
     return ResponseTask(
         begin=begin,
         end=end,
@@ -89,7 +97,7 @@ def read_response(
         samples=samples,
         steps=_at_most(table, "steps", 48, 8, MOST_SAMPLES),
         points=_at_most(table, "points", 201 if linear else 500, 2, MOST_POINTS),
-        speed=table.quantity("speed", "speed", None),
+        speed=speed,
         reduction=_reduction(rotor, table),
         scale=scale,
         station=read_station(table, shaft, shown),

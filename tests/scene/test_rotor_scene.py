@@ -335,6 +335,12 @@ def test_frequencies_count_vibrations_or_turns():
         assert task.response.end == pytest.approx(value)
 
 
+def test_unbalance_at_a_speed_of_its_own_is_odd():
+    task = read_rotor("rotor_flexible", ["rotor.response.speed=3000 rpm"])
+    (warning,) = task.warnings
+    assert "unbalance turns at another speed" in warning
+
+
 def test_a_bearing_from_another_file(tmp_path):
     other = tmp_path / "mine.toml"
     text = shipped_scenes()["deep_groove"].read_text(encoding="utf-8")
