@@ -1,5 +1,7 @@
 """Scenes of rotors: what they say, and one line for what is wrong."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from tolerances import ROUNDING
@@ -7,6 +9,7 @@ from tolerances import ROUNDING
 import bearingjax as bj
 from bearingjax import SceneError
 from bearingjax.scene import read_rotor, scene_files, shipped_scenes
+from bearingjax.scene.rotor_supports import with_passage
 
 RPM = np.pi / 30.0
 TURN = 2.0 * np.pi
@@ -339,6 +342,21 @@ def test_unbalance_at_a_speed_of_its_own_is_odd():
     task = read_rotor("rotor_flexible", ["rotor.response.speed=3000 rpm"])
     (warning,) = task.warnings
     assert "unbalance turns at another speed" in warning
+
+
+def test_rolling_elements_pass_where_there_are_some():
+    element = bj.BearingElement(bj.load_bearing("deep_groove"))
+    rotor = bj.Rotor(
+        bj.Shaft([0.0, 1.0], 0.05),
+        (),
+        [bj.BearingSupport(0, element, turned=True), bj.LinearSupport(1, [1.0] * 5)],
+    )
+    passing = dataclasses.replace(
+        rotor, supports=tuple(map(with_passage, rotor.supports))
+    )
+    one, other = passing.supports
+    assert isinstance(one, bj.BearingSupport) and one.passage and bool(one.turned)
+    assert other is rotor.supports[1]
 
 
 def test_a_bearing_from_another_file(tmp_path):
