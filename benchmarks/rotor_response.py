@@ -349,6 +349,23 @@ def show(r):
     print(machine())
 
 
+def draw(ax, branch, freedom, color, label):
+    """A branch with its stable parts and marked points."""
+    hertz, size = branch.frequency / (2 * np.pi), 1e6 * branch.amplitude[:, freedom]
+    ax.plot(hertz, size, ":", color=color, lw=1.2)
+    ax.plot(
+        hertz,
+        np.where(branch.stable, size, np.nan),
+        color=color,
+        lw=1.8,
+        label=label,
+    )
+    for event in branch.events:
+        mark = {"fold": "o", "neimark_sacker": "s"}.get(event.kind, "^")
+        at = event.frequency / (2 * np.pi), 1e6 * event.amplitude[freedom]
+        ax.plot(*at, mark, color=color, ms=5, mfc="white")
+
+
 def plot(curves, more, target):
     import matplotlib
 
@@ -356,21 +373,6 @@ def plot(curves, more, target):
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(1, 2, figsize=(13, 5.2), layout="constrained")
-
-    def draw(ax, branch, freedom, color, label):
-        hertz, size = branch.frequency / (2 * np.pi), 1e6 * branch.amplitude[:, freedom]
-        ax.plot(hertz, size, ":", color=color, lw=1.2)
-        ax.plot(
-            hertz,
-            np.where(branch.stable, size, np.nan),
-            color=color,
-            lw=1.8,
-            label=label,
-        )
-        for event in branch.events:
-            mark = {"fold": "o", "neimark_sacker": "s"}.get(event.kind, "^")
-            at = event.frequency / (2 * np.pi), 1e6 * event.amplitude[freedom]
-            ax.plot(*at, mark, color=color, ms=5, mfc="white")
 
     colors = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, len(curves)))
     for color, (angle, branch) in zip(colors, curves.items(), strict=True):
