@@ -196,7 +196,7 @@ def _critical(ax, critical, rpm, top):
         label = "_critical speed"
         if whirl == 1:
             ax.annotate(
-                f"{at:.4g} rpm", (at, at / 60.0), (6, -12), fontsize=SMALL,
+                f"{at:.0f} rpm", (at, at / 60.0), (6, -12), fontsize=SMALL,
                 textcoords="offset points",
             )  # fmt: skip
 
