@@ -3,6 +3,7 @@
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
+from jax import lax
 from jaxtyping import Array, Float
 
 from ..design.checks import instance, positive
@@ -64,11 +65,19 @@ class SpeedSupport(AbstractSupport):
     ) -> Float[Array, "5"]:
         """As of `AbstractSupport.force`: without the load at rest [N, N m]."""
         share = jnp.clip(2.0 * speed / self.top_speed - 1.0, -1.0, 1.0)
-        terms = [jnp.ones_like(share), share]
-        for _ in range(self.stiffness.shape[0] - 2):
-            terms.append(2.0 * share * terms[-1] - terms[-2])
-        at = jnp.stack(terms[: self.stiffness.shape[0]])
-        return jnp.tensordot(at, self.stiffness, 1) @ motion + self.damping @ velocity
+
+        # Clenshaw's rule. As a loop, for XLA's compiler for CPUs (jaxlib 0.10.1) makes
+        # wrong slopes of the recurrence written out, when it is mapped over speeds.
+        def add(sums, coefficients):
+            last, before = sums
+            return (coefficients + 2.0 * share * last - before, last), None
+
+        nothing = jnp.zeros_like(self.stiffness[0])
+        (last, before), _ = lax.scan(
+            add, (nothing, nothing), self.stiffness[1:], reverse=True
+        )
+        stiffness = self.stiffness[0] + share * last - before
+        return stiffness @ motion + self.damping @ velocity
 
 
 def chebyshev_analysis(places: int) -> np.ndarray:

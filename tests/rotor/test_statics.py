@@ -166,3 +166,28 @@ def test_bad_input(make, error, message):
     rotor, _ = opposed()
     with pytest.raises(error, match=message):
         make(rotor)
+
+
+def test_polynomials_of_the_speed():
+    """Stiffness over speed and its slope, mapped over speeds in one program."""
+    rng = np.random.default_rng(0)
+    series = rng.standard_normal((13, 5, 5))
+    support = bj.rotor.SpeedSupport(0, series, np.zeros(5), 100.0)
+    known = jnp.array([True, True, True])
+
+    def stiffness(speed):
+        return support.linearised(jnp.zeros(5), speed)[0]
+
+    @jax.jit
+    def both(speeds, known):
+        speeds = jnp.where(known, speeds, 1.0)
+        return jax.vmap(stiffness)(speeds), jax.vmap(jax.jacfwd(stiffness))(speeds)
+
+    speeds = np.array([10.0, 52.0, 98.0])
+    value, slope = both(jnp.asarray(speeds), known)
+    share = 2.0 * speeds / 100.0 - 1.0
+    chebyshev = np.polynomial.chebyshev
+    wanted = np.moveaxis(chebyshev.chebval(share, series), -1, 0)
+    np.testing.assert_allclose(value, wanted, atol=1e-11)
+    wanted = np.moveaxis(chebyshev.chebval(share, chebyshev.chebder(series)), -1, 0)
+    np.testing.assert_allclose(slope, 0.02 * wanted, atol=1e-10)
