@@ -12,7 +12,8 @@ Every point that was accepted is put into the equations anew (at most 1e-8). Bet
 any two neighbours a third point is sought half way, in the plane across: it must be
 found, and lie nearer to the line between them than a fifth of their distance. If it is
 not found, or lies further off, the branch is followed between them once more with steps
-of a sixteenth: it must arrive at the second one. Else it was a jump.
+of a sixteenth of their distance, and if that fails of a 64th: it must arrive at the
+second one. Else it was a jump.
 
 Run: python benchmarks/robust_rotor.py [--count N] [--seed S] [--smoke] [--json]
 
@@ -63,7 +64,7 @@ from bearingjax.rotor.vibration import (  # noqa: E402
 from bearingjax.rotor.vibration.continuation import place  # noqa: E402
 
 RANGE = 1.3, 0.5
-SOLVED, ASIDE, FINER = 1e-8, 0.2, 16
+SOLVED, ASIDE, FINER = 1e-8, 0.2, (16, 64)
 SETTLE, SAMPLES = 150, 64
 CONSTANT = float(grooves(36).fixed_angle().constant)
 
@@ -108,22 +109,22 @@ def checked(system, method, x):
 
 
 @eqx.filter_jit
-def arrives(system, method, here, there):
+def arrives(system, method, here, there, finer):
     """Whether short steps lead from one point to the other."""
-    step = (there - here) / FINER
-    size = jnp.linalg.norm(step)
+    chord = there - here
+    size = jnp.linalg.norm(chord) / finer
+    begin, _ = place(system, method, here, chord, chord)
 
     def one(carry, _):
         x, along, good = carry
         found, result = place(system, method, x + size * along, along, along)
         near = jnp.linalg.norm(found.x - x - size * along) < 0.5 * size
-        return (found.x, found.tangent, good & (result == 0) & near), found.x
+        return (found.x, found.tangent, good & (result == 0) & near), (found.x, good)
 
-    (_, _, good), path = jax.lax.scan(
-        one, (here, step / size, jnp.asarray(True)), length=2 * FINER
-    )
-    apart = jnp.min(jnp.linalg.norm(path - there[None], axis=1))
-    return good & (apart < size)
+    start = here, begin.tangent, jnp.asarray(True)
+    _, (path, good) = jax.lax.scan(one, start, length=2 * finer)
+    apart = jnp.where(good, jnp.linalg.norm(path - there[None], axis=1), jnp.inf)
+    return jnp.min(apart) < size
 
 
 def settled(system, frequency):
@@ -176,7 +177,10 @@ def one(rng, method, points):
     row["residual"] = float(left.max())
     row["bends"] = len(doubtful)
     row["jumps"] = sum(
-        not bool(arrives(system, method, jnp.asarray(x[k]), jnp.asarray(x[k + 1])))
+        not any(
+            bool(arrives(system, method, *map(jnp.asarray, x[k : k + 2]), finer))
+            for finer in FINER
+        )
         for k in doubtful
     )
     row["largest"] = float((branch.amplitude / np.asarray(system.scale)).max())

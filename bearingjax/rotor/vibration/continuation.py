@@ -6,9 +6,10 @@ every frequency and step; it batches over systems with `vmap`.
 
 A point is taken only if the equations are solved there, the branch has turned by no
 more than `turn` since the last point, and the correction is no more than half of the
-step: a neighbouring branch cannot be slipped onto by a long step. Points at which the
-determinant of the bordered system changes sign, which a smooth branch never does, are
-marked as `branch_point`.
+step: a neighbouring branch cannot be slipped onto by a long step. A smooth branch never
+changes the sign of the determinant of the bordered system: a step that does is halved
+until it is short, and what then still changes it is a crossing of branches, marked as
+`branch_point`.
 """
 
 import enum
@@ -149,6 +150,8 @@ class _State(NamedTuple):
 
 
 _GOING = -1
+_SHORT = 1e-3
+"""Step at which a change of the determinant's sign is no jump [1]."""
 _NEWTON = 10
 """Most Newton steps of a point."""
 _FIRST_NEWTON = 50
@@ -247,7 +250,9 @@ def trace(
             jnp.isfinite(new.tangent)
         )
         solved = (result == int(Result.CONVERGED)) & finite
-        good = solved & ((near & straight) | first)
+        short = state.step <= jnp.maximum(_SHORT, 2.0 * steps.smallest)
+        smooth = near & straight & ((new.side == state.last.side) | short)
+        good = solved & (smooth | first)
 
         taken = jax.tree.map(
             lambda every, one: jnp.where(good, every.at[state.count].set(one), every),
