@@ -1,0 +1,223 @@
+"""Which contact angles and preloads keep a spindle clear of resonance at least load?
+
+A spindle of 45 to 50 mm on two angular contact bearings mounted in opposition (19 balls
+of 8.7 mm, pitch diameter 65 mm), with a tool head and a pulley, under its weight and a
+cutting force of 300 N across and 200 N along. It works from 15 000 to 22 000 rpm; no
+critical speed, forward or backward, may lie within 20 % of that range. Chosen are the
+contact angle of each bearing and how far each is pressed at assembly, so that the
+larger of both bearing loads at the top speed is least: four variables and one more for
+the largest load, by SLSQP of SciPy with gradients by automatic differentiation through
+static equilibrium (balls with inertia, at speeds from rest on) and critical speeds.
+
+Run: python benchmarks/rotor_design.py [--smoke] [--json]
+
+Last run:
+
+"""
+
+import argparse
+import json
+import time
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+from scipy.optimize import brentq, minimize  # noqa: E402
+from timing import machine, verdict  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+from bearingjax.rotor.speed_support import chebyshev_analysis  # noqa: E402
+
+RPM = np.pi / 30.0
+WORKING = 15_000.0 * RPM, 22_000.0 * RPM
+CLEAR = 1.2
+TOP, PLACES = 30_000.0 * RPM, 21
+BOUNDS = [(12.0, 35.0), (12.0, 35.0), (2.0, 25.0), (2.0, 25.0)]
+NAMES = ("angle A [deg]", "angle B [deg]", "pressed A [um]", "pressed B [um]")
+LOADS = bj.RotorLoads(
+    gravity=(0.0, -9.80665, 0.0), forces=bj.StationForce(0, [300.0, 0, 200.0, 0, 0])
+)
+
+
+def spindle(x):
+    """Rotor of contact angles [deg] and axial offsets [um] of both bearings (4,)."""
+
+    def bearing(station, angle, pressed, turned):
+        design = bj.AngularContactBallBearing(
+            19,
+            0.065,
+            8.7e-3,
+            outer_osculation=0.52,
+            inner_osculation=0.52,
+            contact_angle=jnp.radians(angle),
+        )
+        offset = jnp.zeros(5).at[2].set(1e-6 * pressed)
+        element = bj.BearingElement(design)
+        return bj.BearingSupport(station, element, offset, turned=turned, inertia=True)
+
+    shaft = bj.Shaft(
+        [0.0, 0.06, 0.16, 0.30, 0.36],
+        [0.045, 0.05, 0.05, 0.045],
+        divisions=(1, 2, 2, 1),
+    )
+    discs = [bj.Disc(0, 4.0, 0.012, 0.008), bj.Disc(4, 2.0, 0.004, 0.003)]
+    supports = [bearing(1, x[0], x[2], False), bearing(3, x[1], x[3], True)]
+    return bj.Rotor(shaft, discs, supports, bj.ModalDamping(0.02))
+
+
+def at_top(places):
+    """Weights of the values at the places for that at the highest working speed."""
+    share = 2.0 * WORKING[1] / TOP - 1.0
+    terms = np.polynomial.chebyshev.chebvander([share], places - 1)[0]
+    return terms @ chebyshev_analysis(places)
+
+
+@eqx.filter_jit
+def numbers(x):
+    """Bearing loads at the highest working speed [N], then critical speeds [rad/s]."""
+    over = bj.settle_over(spindle(x), LOADS, TOP, places=PLACES, throw=False)
+    critical = bj.critical_speeds(over.rotor, count=3)
+    load = jnp.tensordot(jnp.asarray(at_top(PLACES)), over.support_load, 1)
+    size = jnp.linalg.norm(load[:, :3], axis=1)
+    values = jnp.concatenate([size, critical.speed])
+    return values, (over.error, critical.whirl)
+
+
+@eqx.filter_jit
+def slopes(x):
+    """Derivatives of `numbers` (5, 4)."""
+    return jax.jacfwd(lambda x: numbers(x)[0])(x)
+
+
+def optimised(start, most):
+    """Variables at which the larger load is least and the range is clear.
+
+    Unknowns are the variables over their bounds' widths, and the largest load in kN.
+    """
+    low, high = np.array(BOUNDS).T
+    wide = high - low
+    kept = {}
+
+    def known(z):
+        key = tuple(z)
+        if key not in kept:
+            x = jnp.asarray(low + wide * z[:4])
+            value, slope = np.asarray(numbers(x)[0]), np.asarray(slopes(x)) * wide
+            kept[key] = value, slope
+        return kept[key]
+
+    def below(z):
+        value, _ = known(z)
+        clear = value[2] / (CLEAR * WORKING[1]) - 1.0
+        return np.append(z[4] - 1e-3 * value[:2], clear)
+
+    def slope_below(z):
+        _, slope = known(z)
+        rows = np.zeros((3, 5))
+        rows[:2, :4], rows[:2, 4] = -1e-3 * slope[:2], 1.0
+        rows[2, :4] = slope[2] / (CLEAR * WORKING[1])
+        return rows
+
+    z = np.append((start - low) / wide, 1e-3 * known((start - low) / wide)[0][:2].max())
+    found = minimize(
+        lambda z: z[4],
+        z,
+        jac=lambda z: np.eye(5)[4],
+        method="SLSQP",
+        bounds=[(0.0, 1.0)] * 4 + [(0.0, None)],
+        constraints={"type": "ineq", "fun": below, "jac": slope_below},
+        options={"maxiter": most, "ftol": 1e-7},
+    )
+    return low + wide * found.x[:4], found, len(kept)
+
+
+def difference(x):
+    """Error of `slopes` against central differences at the best of three steps."""
+    slope, errors = np.asarray(slopes(jnp.asarray(x))), []
+    for step in (1e-2, 1e-3, 1e-4):
+        ends = [
+            np.stack([np.asarray(numbers(jnp.asarray(x + d))[0]) for d in moves])
+            for moves in (step * np.eye(4), -step * np.eye(4))
+        ]
+        wanted = (ends[0] - ends[1]).T / (2.0 * step)
+        size = np.abs(wanted).max(axis=1, keepdims=True)
+        errors.append(np.abs(slope - wanted) / size)
+    return np.min(errors, axis=0).max()
+
+
+def pressed_by(x, um):
+    """The design with both bearings pressed by so much [um]."""
+    return np.append(x[:2], [um, um])
+
+
+def clear_by(x):
+    """How far the first critical speed is above the range widened by 20 % [1]."""
+    return float(numbers(jnp.asarray(x))[0][2]) / (CLEAR * WORKING[1]) - 1.0
+
+
+def shown(title, x):
+    """Print one design: its variables and what comes of it."""
+    value, (error, whirl) = numbers(jnp.asarray(x))
+    value = np.asarray(value)
+    rpm = value[2:] / RPM
+    sense = {1: "forward", -1: "backward", 0: "planar"}
+    speeds = ", ".join(
+        f"{v:.0f} ({sense[int(w)]})" for v, w in zip(rpm, whirl, strict=True)
+    )
+    print(
+        f"{title}: " + ", ".join(f"{n} {v:.2f}" for n, v in zip(NAMES, x, strict=True))
+    )
+    top = WORKING[1] / RPM
+    print(f"  bearing loads at {top:.0f} rpm: {value[0]:.0f} and {value[1]:.0f} N")
+    print(f"  critical speeds [rpm]: {speeds}; polynomials to {float(error):.0e}")
+    return value
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--smoke", action="store_true")
+    parser.add_argument("--json", action="store_true")
+    options = parser.parse_args()
+    start = np.array([15.0, 15.0, 8.0, 8.0])
+    begin = time.perf_counter()
+    x, found, evaluations = optimised(start, 2 if options.smoke else 100)
+    seconds = time.perf_counter() - begin
+    if options.json:
+        print(json.dumps({"x": list(x), "load": 1e3 * found.x[4], "seconds": seconds}))
+        return
+    shown("before", start)
+    after = shown("after", x)
+    pressed = brentq(lambda um: clear_by(pressed_by(start, um)), 8.0, 25.0, xtol=1e-3)
+    plain = shown("first angles, pressed until clear", pressed_by(start, pressed))
+    print(
+        f"{found.message}; {evaluations} designs with their gradients in"
+        f" {seconds:.0f} s, compiling included"
+    )
+    settled = bj.settle(spindle(jnp.asarray(x)), LOADS, after[2])
+    again = float(bj.critical_speeds(settled.rotor, count=1).speed[0])
+    print(f"first critical speed, settled there: {again / after[2] - 1.0:+.1e} of it")
+    print(
+        verdict(
+            "first critical speed over the range's top",
+            after[2] / WORKING[1],
+            CLEAR * (1 - 1e-6),
+            False,
+        )
+    )
+    print(
+        verdict(
+            "largest load over that of the first angles, pressed until clear",
+            after[:2].max() / plain[:2].max(),
+            1.0,
+        )
+    )
+    print(verdict("gradients against differences", difference(x), 1e-6))
+    print(machine())
+
+
+if __name__ == "__main__":
+    main()
