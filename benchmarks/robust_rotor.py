@@ -178,8 +178,8 @@ def one(rng, method, points):
     row["bends"] = len(doubtful)
     row["jumps"] = sum(
         not any(
-            bool(arrives(system, method, *map(jnp.asarray, x[k : k + 2]), finer))
-            for finer in FINER
+            bool(arrives(system, method, jnp.asarray(x[k]), jnp.asarray(x[k + 1]), n))
+            for n in FINER
         )
         for k in doubtful
     )
