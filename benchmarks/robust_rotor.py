@@ -17,7 +17,10 @@ second one. Else it was a jump.
 
 Run: python benchmarks/robust_rotor.py [--count N] [--seed S] [--smoke] [--json]
 
-Last run (--count 36):
+Last run (--count 36), of a program that still took steps onto a branch of the other
+orientation and marked them; the check then followed with steps of a sixteenth only. Of
+the two jumps that it tells of, one was the check's own (steps of a 64th arrive), the
+other is now refused: that rotor's branch has 320 points to its limit and no jump.
 
 endings: 30 limit, 6 points
    limit: interference -0.956 to 1.99, points 30 to 676, largest amplitude 0.0558 to
