@@ -3,7 +3,7 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from machines import stepped
+from machines import bearing, stepped
 from scipy.linalg import eigh
 from tolerances import SOLVER
 from vibrations import grooves
@@ -16,6 +16,8 @@ from bearingjax.rotor.vibration import (
     rotor_vibration,
     solve_orbit,
 )
+
+BALLS = bj.BearingElement(bearing(6.852, 27.5125))
 
 
 def frequencies(matrices, count=6):
@@ -87,6 +89,16 @@ def test_orbit():
                 rotation=0.3,
             ),
             "with a `rotation` unbalance",
+        ),
+        (
+            lambda r: rotor_vibration(
+                bj.Rotor(r.shaft, (), bj.BearingSupport(0, BALLS, passage=True)),
+                bj.RotorLoads(),
+                scale=1e-5,
+                reference_frequency=1e3,
+                speed=100.0,
+            ),
+            "rolling elements that orbit",
         ),
     ],
 )

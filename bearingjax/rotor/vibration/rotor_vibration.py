@@ -115,11 +115,11 @@ def rotor_vibration(
             `Settled.motion` (motion,) [m, rad]; `None`: where they stand.
 
     Raises:
-        ValueError: As `craig_bampton`; for unbalance with a `rotation` of its own, or
-            with both `speed` and `rotation`.
+        ValueError: As `craig_bampton`; for unbalance with a `rotation` of its own, with
+            both `speed` and `rotation`, or with a `speed` and orbiting elements.
     """
     loads = _as_loads(loads)
-    _check_rotation(loads, speed, rotation)
+    _check_rotation(rotor, loads, speed, rotation)
     matrices = rotor.linearised(0.0, about)
     supported = bool(rotor.supports)
     rows = rotor.at_supports() @ matrices.motions
@@ -174,7 +174,14 @@ def _as_loads(loads):
     return RotorLoads(unbalances=loads)
 
 
-def _check_rotation(loads, speed, rotation):
+def _check_rotation(rotor, loads, speed, rotation):
+    orbits = any(getattr(support, "passage", False) for support in rotor.supports)
+    if orbits and speed is not None:
+        raise ValueError(
+            "rotor_vibration: with a `speed` of its own the rotor does not turn with"
+            " the excitation, and rolling elements that orbit (`passage`) would stand"
+            " at wrong places; give `rotation`, or excite at the speed."
+        )
     if rotation is None:
         return
     if speed is not None:
