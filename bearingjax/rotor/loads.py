@@ -1,6 +1,5 @@
 """What acts on a rotor from outside: weight, forces, unbalance, a base that shakes."""
 
-from collections.abc import Iterable
 from typing import Any
 
 import equinox as eqx
@@ -13,7 +12,7 @@ from ..numerics.types import as_count, as_real
 from ..numerics.units import unit
 from .parts import check_station
 from .response import Unbalance
-from .rotor import N_HOUSING, N_STATION, Rotor
+from .rotor import N_HOUSING, N_STATION, Rotor, listed
 
 Motions = Float[Array, " motion"]
 STANDARD_GRAVITY = 9.80665
@@ -29,10 +28,6 @@ def _vector(owner, name, size):
         )
     if not is_traced(value):
         check(owner, name, np.isfinite(value).all(), "finite")
-
-
-def _listed(parts):
-    return tuple(parts) if isinstance(parts, Iterable) else (parts,)
 
 
 class StationForce(eqx.Module):
@@ -70,8 +65,8 @@ class RotorLoads(eqx.Module):
     Traced: all but the numbers of stations.
     """
 
-    unbalances: tuple[Unbalance, ...] = eqx.field(converter=_listed, default=())
-    forces: tuple[StationForce, ...] = eqx.field(converter=_listed, default=())
+    unbalances: tuple[Unbalance, ...] = eqx.field(converter=listed, default=())
+    forces: tuple[StationForce, ...] = eqx.field(converter=listed, default=())
     gravity: Float[Array, "3"] = eqx.field(
         converter=as_real, metadata=unit(3 * ("m/s²",)), default=(0.0, 0.0, 0.0)
     )

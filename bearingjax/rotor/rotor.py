@@ -21,7 +21,8 @@ N_STATION = len(STATION_FREEDOMS)
 N_HOUSING = 3
 
 
-def _listed(parts):
+def listed(parts: Any) -> tuple:
+    """Converter: one part, or several, as a tuple."""
     return tuple(parts) if isinstance(parts, Iterable) else (parts,)
 
 
@@ -124,8 +125,8 @@ class Rotor(eqx.Module):
     """
 
     shaft: Shaft
-    discs: tuple[AbstractPart, ...] = eqx.field(converter=_listed, default=())
-    supports: tuple[AbstractSupport, ...] = eqx.field(converter=_listed, default=())
+    discs: tuple[AbstractPart, ...] = eqx.field(converter=listed, default=())
+    supports: tuple[AbstractSupport, ...] = eqx.field(converter=listed, default=())
     damping: AbstractDamping | None = None
     rigid: bool = eqx.field(static=True, default=False)
 
