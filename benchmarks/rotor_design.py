@@ -16,17 +16,17 @@ Last run (on one core: on two it once waited forever for the threads of XLA):
 before: angle A [deg] 15.00, angle B [deg] 15.00, pressed A [um] 8.00, pressed B
   [um] 8.00
   bearing loads at 22000 rpm: 781 and 497 N
-  critical speeds [rpm]: 23694 (planar), 28867 (backward), 35831 (forward);
+  critical speeds [rpm]: 23694 (axial), 28867 (backward), 35831 (forward);
   polynomials to 3e-04
 after: angle A [deg] 12.83, angle B [deg] 16.60, pressed A [um] 11.94, pressed B
   [um] 11.94
   bearing loads at 22000 rpm: 880 and 605 N
-  critical speeds [rpm]: 26400 (planar), 29742 (backward), 38848 (forward);
+  critical speeds [rpm]: 26400 (axial), 29742 (backward), 38848 (forward);
   polynomials to 6e-05
 first angles, pressed until clear: angle A [deg] 15.00, angle B [deg] 15.00,
   pressed A [um] 11.28, pressed B [um] 11.28
   bearing loads at 22000 rpm: 886 and 613 N
-  critical speeds [rpm]: 26400 (planar), 29598 (backward), 37449 (forward);
+  critical speeds [rpm]: 26400 (axial), 29598 (backward), 37449 (forward);
   polynomials to 7e-05
 Optimization terminated successfully; 10 designs with their gradients in 106 s,
   compiling included
@@ -187,7 +187,7 @@ def shown(title, x):
     value, (error, whirl) = numbers(jnp.asarray(x))
     value = np.asarray(value)
     rpm = value[2:] / RPM
-    sense = {1: "forward", -1: "backward", 0: "planar"}
+    sense = {1: "forward", -1: "backward", 0: "planar or axial"}
     speeds = ", ".join(
         f"{v:.0f} ({sense[int(w)]})" for v, w in zip(rpm, whirl, strict=True)
     )

@@ -15,8 +15,6 @@ from .response import Unbalance
 from .rotor import N_HOUSING, N_STATION, Rotor, listed
 
 Motions = Float[Array, " motion"]
-STANDARD_GRAVITY = 9.80665
-"""Acceleration of free fall [m/s²]."""
 
 
 def _vector(owner, name, size):
