@@ -9,6 +9,7 @@ on before the first array is made:
 
 from importlib.metadata import version as _version
 
+from . import acoustics as acoustics
 from . import contact as contact
 from . import design as design
 from . import dynamics as dynamics

@@ -14,8 +14,8 @@ import bearingjax as bj
 
 PACKAGE = Path(bj.__file__).parent
 LAYERS = (
-    "numerics design contact lubrication element statics optimise dynamics rotor scene"
-    " plot cli"
+    "numerics design contact lubrication element statics optimise dynamics rotor"
+    " acoustics scene plot cli"
 ).split()
 # What the plots show is what all layers below the scene provide; scene and plot stand
 # side by side, and only the command line and the top level see both.

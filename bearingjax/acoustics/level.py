@@ -1,0 +1,82 @@
+"""Levels in dB of accelerations, and sums of levels."""
+
+import math
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..design.checks import positive
+from ..numerics.types import as_real
+
+REFERENCE_ACCELERATION = 0.31e-4
+"""Acceleration of 0 dB on the rigs for bearing noise of the source [m/s²].
+
+Source: Kurushin, Kurushin, Zhilnikov, Murashkin, Vestnik SGAU (2011), which prints it
+    in m/s. The reference of ISO 1683 is 1e-6 m/s², 29.8 dB lower.
+"""
+
+LOWEST_LEVEL = -300.0
+"""Level of an acceleration of zero, and of any below 1e-15 of the reference [dB]."""
+
+
+def level(
+    acceleration: Any, reference: Any = REFERENCE_ACCELERATION
+) -> Float[Array, "..."]:
+    """Level L = 20 lg(a/a₀) of an acceleration [dB].
+
+    Args:
+        acceleration: Root mean square of an acceleration, or its amplitude; the level
+            is of the same kind (...) [m/s²].
+        reference: Acceleration a₀ of 0 dB, above zero [m/s²].
+
+    Returns:
+        Levels (...). At and near zero, where the logarithm has no bound, the level
+        stays at `LOWEST_LEVEL` and its derivative is zero. A negative acceleration has
+        the level NaN.
+
+    Raises:
+        ValueError: If the reference is not above zero.
+
+    Source: Kurushin et al. (2011); ISO 1683.
+    """
+    positive("level", "reference", reference, "m/s²")
+    ratio = as_real(acceleration) / reference
+    ratio = jnp.where(ratio < 0, jnp.nan, ratio)
+    lowest = 10.0 ** (LOWEST_LEVEL / 20.0)
+    # In two steps: the branch that is not taken must not divide by zero.
+    held = ratio < lowest
+    return jnp.where(held, LOWEST_LEVEL, 20.0 * jnp.log10(jnp.where(held, 1.0, ratio)))
+
+
+def acceleration_of(
+    level: Any, reference: Any = REFERENCE_ACCELERATION
+) -> Float[Array, "..."]:
+    """Acceleration a = a₀ 10^(L/20) of a level [m/s²].
+
+    Args:
+        level: Level (...) [dB].
+        reference: Acceleration a₀ of 0 dB, above zero [m/s²].
+
+    Raises:
+        ValueError: If the reference is not above zero.
+    """
+    positive("acceleration_of", "reference", reference, "m/s²")
+    return reference * 10.0 ** (as_real(level) / 20.0)
+
+
+def combined(levels: Any) -> Float[Array, "..."]:
+    """Level of parts that are heard together, 10 lg Σ 10^(L/10) [dB].
+
+    The parts are of different frequencies, or without relation to each other: their
+    mean squares add.
+
+    Args:
+        levels: Level of each part (..., part) [dB]; one that is NaN makes NaN.
+
+    Returns:
+        Level of the sum (...).
+    """
+    scale = 10.0 / math.log(10.0)
+    return scale * jax.nn.logsumexp(as_real(levels) / scale, axis=-1)
