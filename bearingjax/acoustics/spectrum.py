@@ -1,0 +1,229 @@
+"""Spectrum of a record in time: lines, their amplitudes and their share of the power.
+
+Of n samples y_k, evenly spaced over the record, the first at its begin and none at its
+end, the lines are
+
+    a_m = (2/n) Σ y_k cos(2π k m/n),   b_m = (2/n) Σ y_k sin(2π k m/n)
+
+with k from 0 to n - 1 and m up to n/2; a_0 and a_{n/2} count half. As a_m - i b_m they
+are what a fast Fourier transform gives. The source lets k begin with 1, which leaves
+out a sample, and m go on to n - 1, which counts every line twice, as a_{n-m} = a_m.
+
+Source: Bessel's formulas, as Kurushin, Kurushin, Zhilnikov, Murashkin, Vestnik SGAU
+(2011) print them; windows: Harris, Proc. IEEE 66 (1978).
+"""
+
+import abc
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Complex, Float
+
+from ..design.checks import check, concrete, positive
+from ..numerics.types import Scalar, as_real
+
+WHOLE_TURNS = 1e-3
+"""Most that a record may differ from a whole number of turns, without a window [1].
+
+A line next to that of the shaft then has this share of its amplitude, or less.
+"""
+
+_LEAST = 4  # samples
+
+
+class AbstractWindow(eqx.Module):
+    """Weights by which the samples of a record are multiplied, of mean 1.
+
+    With this mean a line on a bin has its own amplitude. Of the power of all bins it
+    has `noise_bandwidth` times its share, because the window spreads it.
+    """
+
+    @property
+    @abc.abstractmethod
+    def noise_bandwidth(self) -> float:
+        """Mean square of the weights: width in bins of the noise in one line [1]."""
+
+    @abc.abstractmethod
+    def weights(self, count: int) -> np.ndarray:
+        """The weights (count,) [1]."""
+
+    @abc.abstractmethod
+    def peak(
+        self, left: np.ndarray, middle: np.ndarray, right: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Where a lone line lies that is largest in the middle one of three bins.
+
+        Args:
+            left, middle, right: Amplitudes of the bins [any unit].
+
+        Returns:
+            Its distance from the middle bin, from -1/2 to 1/2 [bins], and its
+            amplitude over that of the middle bin [1].
+        """
+
+
+class Rectangular(AbstractWindow):
+    """No window: for records that repeat themselves, of which every line is on a bin.
+
+    A line between two bins leaks into all others.
+    """
+
+    @property
+    def noise_bandwidth(self):
+        return 1.0
+
+    def weights(self, count):
+        return np.ones(count)
+
+    def peak(self, left, middle, right):
+        return np.zeros_like(middle), np.ones_like(middle)
+
+
+class Hann(AbstractWindow):
+    """Hann's window 1 - cos(2π k/n): for records whose lines do not fall on bins.
+
+    Lines of the cage and of whatever turns with it are no whole multiples of the bins
+    of a record of a few turns. A line fills three bins or four; half-way between two,
+    the larger has 85 % of its amplitude.
+    """
+
+    @property
+    def noise_bandwidth(self):
+        return 1.5
+
+    def weights(self, count):
+        return 1.0 - np.cos(2.0 * np.pi * np.arange(count) / count)
+
+    def peak(self, left, middle, right):
+        # A line at the distance s has sinc(s)/(1 - s²) of its amplitude in the bin:
+        # the next one has (1 + s)/(2 - s) of that.
+        above = right > left
+        some = np.where(middle > 0, middle, 1.0)
+        ratio = np.where(above, right, left) / some
+        away = np.clip((2.0 * ratio - 1.0) / (1.0 + ratio), 0.0, 0.5)
+        return np.where(above, away, -away), (1.0 - away**2) / np.sinc(away)
+
+
+class Spectrum(eqx.Module):
+    """Lines of a record: it is Re Σ amplitude · exp(2πi · frequency · time).
+
+    Amplitudes are peak values: a sine of amplitude 1 on a bin has the size 1, a cosine
+    the amplitude 1, a sine -i. Line 0 is the mean, the last one that of half of the
+    sampling rate; both are real.
+
+    Attributes:
+        frequency: (line,) [Hz].
+        order: Frequency over that of the shaft (line,) [1].
+        amplitude: Complex amplitudes (line, ...) [unit of the record].
+        window: The window that the record was weighted with. Static.
+
+    Traced: all fields but the window.
+    """
+
+    frequency: Float[Array, " line"]
+    order: Float[Array, " line"]
+    amplitude: Complex[Array, "line ..."]
+    window: AbstractWindow
+
+    @property
+    def resolution(self) -> Scalar:
+        """Distance of two lines, the reciprocal of the duration [Hz]."""
+        return self.frequency[1]
+
+    @property
+    def noise_bandwidth(self) -> Scalar:
+        """Width in which a line collects broad-band power [Hz]."""
+        return self.window.noise_bandwidth * self.resolution
+
+    @property
+    def power(self) -> Float[Array, "line ..."]:
+        """Share of every line in the mean square of the record [its unit, squared].
+
+        Line 0 is the mean squared. The others sum to the mean square of the record
+        about its mean; with a window, to an estimate of it that leans on the middle of
+        the record.
+        """
+        square = jnp.real(self.amplitude) ** 2 + jnp.imag(self.amplitude) ** 2
+        share = np.full(len(square), 0.5)
+        share[-1] = 1.0  # a cosine at its peaks in every sample
+        share /= self.window.noise_bandwidth
+        share[0] = 1.0
+        axes = [1] * (square.ndim - 1)
+        return square * jnp.asarray(share.reshape(-1, *axes), square.dtype)
+
+
+def spectrum(
+    signal: Any,
+    duration: Any,
+    shaft_frequency: Any,
+    *,
+    window: AbstractWindow | None = None,
+) -> Spectrum:
+    """Spectrum of a record in time.
+
+    It is a small program of its own, compiled once per shape of the record. Call it
+    outside of other compiled programs.
+
+    Args:
+        signal: Samples, evenly spaced, an even number of them: the first at the begin
+            of the record, the last one step before its end (time, ...) [any unit].
+        duration: Of the record, the end included: samples times step [s].
+        shaft_frequency: Speed of the shaft, above zero [Hz].
+        window: `None` or `Rectangular()`: none, for a record that repeats itself; it
+            must then cover a whole number of turns of the shaft. `Hann()` for others.
+
+    Returns:
+        Spectrum, differentiable with respect to signal, duration and shaft frequency.
+
+    Raises:
+        TypeError: If the window is none, such as a text.
+        ValueError: For an odd number of samples, or fewer than four; a duration or
+            shaft frequency not above zero; a record without a window that does not
+            cover a whole number of turns (to `WHOLE_TURNS`).
+    """
+    window = Rectangular() if window is None else window
+    if not isinstance(window, AbstractWindow):
+        raise TypeError(
+            f"spectrum: `window` is {window!r}; it must be Rectangular() or Hann()."
+        )
+    signal = as_real(signal)
+    shape = np.shape(signal)
+    if not shape or shape[0] < _LEAST or shape[0] % 2:
+        raise ValueError(
+            f"spectrum: `signal` has the shape {shape}; its first axis, time, must have"
+            f" an even number of samples, {_LEAST} or more, without the end point."
+        )
+    positive("spectrum", "duration", duration, "s")
+    positive("spectrum", "shaft_frequency", shaft_frequency, "Hz")
+    numbers = concrete(duration, shaft_frequency)
+    if numbers is not None and isinstance(window, Rectangular):
+        turns = numbers[0] * numbers[1]
+        whole = turns > 0.5 and abs(turns - round(turns)) <= WHOLE_TURNS
+        allowed = (
+            f"a whole number of turns of the shaft (it is {turns:.6g} turns), or give"
+            " window=Hann()"
+        )
+        check("spectrum", "duration", whole, allowed, numbers[0], "s")
+    duration, shaft_frequency = (
+        as_real(value).astype(signal.dtype) for value in (duration, shaft_frequency)
+    )
+    return _spectrum(signal, duration, shaft_frequency, window)
+
+
+@eqx.filter_jit
+def _spectrum(signal, duration, shaft_frequency, window) -> Spectrum:
+    count = signal.shape[0]
+    axes = [1] * (signal.ndim - 1)
+    weights = jnp.asarray(window.weights(count).reshape(-1, *axes), signal.dtype)
+    # About the weighted mean the window leaves nothing in line 0, and the mean does not
+    # leak into line 1.
+    mean = jnp.mean(weights * signal, axis=0)
+    lines = jnp.fft.rfft(weights * (signal - mean[None]), axis=0)
+    share = np.full(count // 2 + 1, 2.0 / count)
+    share[[0, -1]] = 1.0 / count
+    amplitude = lines * jnp.asarray(share.reshape(-1, *axes), lines.dtype)
+    amplitude = amplitude.at[0].set(mean.astype(amplitude.dtype))
+    frequency = jnp.arange(count // 2 + 1, dtype=signal.dtype) / duration
+    return Spectrum(frequency, frequency / shaft_frequency, amplitude, window)
