@@ -11,6 +11,10 @@ from .level import REFERENCE_ACCELERATION as REFERENCE_ACCELERATION
 from .level import acceleration_of as acceleration_of
 from .level import combined as combined
 from .level import level as level
+from .orders import KinematicFrequencies as KinematicFrequencies
+from .orders import WavinessForce as WavinessForce
+from .orders import kinematic_frequencies as kinematic_frequencies
+from .orders import waviness_force as waviness_force
 from .spectrum import AbstractWindow as AbstractWindow
 from .spectrum import Hann as Hann
 from .spectrum import Rectangular as Rectangular

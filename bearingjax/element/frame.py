@@ -137,6 +137,28 @@ def orbit(ratio: Scalar, outer: Scalar | float, inner: Scalar | float) -> Scalar
     return 0.5 * ((1.0 - ratio) * inner + (1.0 + ratio) * outer)
 
 
+def rotation(
+    ratio: Scalar,
+    diameter: Scalar,
+    pitch_diameter: Scalar,
+    outer: Scalar | float,
+    inner: Scalar | float,
+) -> Scalar:
+    """Speed of a rolling element about its own axis, seen from the set [rad/s].
+
+    Args:
+        ratio: G of `roll_ratio` [1].
+        diameter, pitch_diameter: D and d_m [m].
+        outer, inner: Speeds of the rings [rad/s].
+
+    Returns:
+        Opposite in sense to the inner ring where the outer one stands.
+
+    Source: rolling without slip, -d_m/(2D) (1 - G²) (inner - outer).
+    """
+    return -0.5 * pitch_diameter / diameter * (1.0 - ratio**2) * (inner - outer)
+
+
 def even_azimuths(first: Scalar, count: int) -> Float[Array, " element"]:
     """Azimuths of evenly spaced rolling elements [rad].
 

@@ -8,7 +8,7 @@ from ..design.checks import number
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .constants import ContactConstants
-from .frame import orbit, roll_ratio
+from .frame import orbit, roll_ratio, rotation
 
 
 class Speed(eqx.Module):
@@ -43,10 +43,10 @@ def roller_speeds(constants: ContactConstants, speed: Speed) -> tuple[Scalar, Sc
     Source: rolling without slip at both raceways; Harris, Rolling Bearing Analysis.
     """
     c = constants
-    ratio = roll_ratio(c.diameter, 2.0 * c.pitch_radius, jnp.cos(c.axis_angle))
-    difference = speed.inner - speed.outer
-    spin = -c.pitch_radius / c.diameter * (1.0 - ratio**2) * difference
-    return orbit(ratio, speed.outer, speed.inner), spin
+    pitch_diameter, rings = 2.0 * c.pitch_radius, (speed.outer, speed.inner)
+    ratio = roll_ratio(c.diameter, pitch_diameter, jnp.cos(c.axis_angle))
+    spin = rotation(ratio, c.diameter, pitch_diameter, *rings)
+    return orbit(ratio, *rings), spin
 
 
 def mass_and_inertia(constants: ContactConstants) -> tuple[Scalar, Scalar, Scalar]:

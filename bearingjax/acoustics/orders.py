@@ -1,0 +1,205 @@
+"""Frequencies that follow from how a bearing rolls: where lines of a spectrum lie.
+
+All rolling elements roll without slip, at one contact angle on both raceways. A wave
+of order n on a part has n periods around it.
+"""
+
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design import (
+    AbstractBallBearing,
+    AbstractRollerBearing,
+    Bearing,
+    BearingSet,
+    n_elements,
+)
+from ..design.checks import count, number
+from ..element.azimuth import orbit_ratio
+from ..element.frame import orbit, roll_ratio, rotation
+from ..element.inertia import Speed
+from ..numerics.types import Scalar, as_real
+
+PARTS = ("outer", "inner", "element")
+"""Parts that have waves: the raceways, and one rolling element."""
+
+
+class KinematicFrequencies(NamedTuple):
+    """Frequencies of a rolling bearing, without their signs [Hz].
+
+    Attributes:
+        inner, outer: Of the rings.
+        cage: Of the cage and the set of rolling elements, FTF.
+        outer_passage: Of rolling elements over one place on the outer raceway, BPFO.
+        inner_passage: Over one place on the inner raceway, BPFI.
+        rotation: Of a rolling element about its axis, seen from the cage, BSF. A
+            defect on it meets a raceway at `twice_rotation`.
+    """
+
+    inner: Scalar
+    outer: Scalar
+    cage: Scalar
+    outer_passage: Scalar
+    inner_passage: Scalar
+    rotation: Scalar
+
+    @property
+    def twice_rotation(self) -> Scalar:
+        """Of a place on a rolling element over both raceways, 2 BSF [Hz]."""
+        return 2.0 * self.rotation
+
+    @property
+    def shaft(self) -> Scalar:
+        """Of the inner ring, or of the outer one if the inner ring stands [Hz]."""
+        return jnp.where(self.inner == 0, self.outer, self.inner)
+
+    @property
+    def orders(self) -> "KinematicFrequencies":
+        """The same per turn of the shaft [1]."""
+        return KinematicFrequencies(*(one / self.shaft for one in self))
+
+
+class WavinessForce(NamedTuple):
+    """Frequencies of the forces on the rings that a wave makes [Hz].
+
+    Attributes:
+        axial: Of axial forces (line,).
+        radial: Of radial forces of constant size that turn, from +x towards +y where
+            positive (line,).
+    """
+
+    axial: Float[Array, " line"]
+    radial: Float[Array, " line"]
+
+
+def kinematic_frequencies(
+    bearing: Bearing, speed: Speed, contact_angle: Any = None
+) -> KinematicFrequencies:
+    """Frequencies of cage, passages and rolling elements.
+
+    Args:
+        bearing: Design of a single row.
+        speed: Ring speeds.
+        contact_angle: Of the balls in operation [rad]; `None`: the free one. Rollers
+            have none: theirs is the angle of their axis.
+
+    Returns:
+        KinematicFrequencies [Hz], differentiable with respect to the design, speeds
+        and contact angle.
+
+    Raises:
+        TypeError: If the bearing is a set, or the speed no `Speed`.
+        ValueError: If a contact angle is given for rollers.
+
+    Source: rolling without slip; Harris, Rolling Bearing Analysis (2001), chapter 8.
+    """
+    turning = _turning("kinematic_frequencies", bearing, speed, contact_angle)
+    z = n_elements(bearing)
+    passages = z * (turning.cage - turning.outer), z * (turning.inner - turning.cage)
+    found = turning.inner, turning.outer, turning.cage, *passages, turning.element
+    return KinematicFrequencies(*(jnp.abs(one) / (2.0 * jnp.pi) for one in found))
+
+
+def waviness_force(
+    bearing: Bearing, speed: Speed, part: str, order: int, contact_angle: Any = None
+) -> WavinessForce:
+    """Frequencies at which a wave of one order shakes the rings.
+
+    For rigid rings, evenly spaced rolling elements that bear alike, and to first order
+    in the height of the wave. Of z rolling elements the forces then add up for few
+    orders: on a raceway kz axially and kz ± 1 radially; all other orders balance. On
+    one rolling element even orders squeeze it and shake both ways; of odd ones the
+    contacts opposite to each other cancel.
+
+    Args:
+        bearing, speed, contact_angle: As in `kinematic_frequencies`.
+        part: "outer", "inner" (raceway) or "element" (one rolling element).
+        order: Number of waves around the part, n ≥ 1.
+
+    Returns:
+        WavinessForce [Hz]; without lines if the order makes no force.
+
+    Raises:
+        TypeError: As `kinematic_frequencies`; if the order is no whole number.
+        ValueError: As `kinematic_frequencies`; for another part; an order below 1.
+
+    Source: Wardle, Proc. IMechE 202 (1988) C5, for a fixed outer ring; here for both
+        rings turning. At ball j, azimuth θ_j = ω_c t + 2π j/z, the wave has the height
+        Re exp(i n (θ_j - ω t)) on a ring of the speed ω. Σ exp(i n θ_j) is not zero for
+        n = kz; Σ exp(i (n ± 1) θ_j) for n = kz ∓ 1.
+    """
+    turning = _turning("waviness_force", bearing, speed, contact_angle)
+    if part not in PARTS:
+        raise ValueError(
+            f"waviness_force: `part` is {part!r}; it must be {', '.join(PARTS)}."
+        )
+    count("waviness_force", "order", order)
+    cage, axial, radial = turning.cage, [], []
+    if part == "element":
+        if order % 2 == 0:
+            axial = [order * turning.element]
+            radial = [cage + order * turning.element, cage - order * turning.element]
+    else:
+        z = n_elements(bearing)
+        ring = turning.inner if part == "inner" else turning.outer
+        passed = order * (cage - ring)
+        if order % z == 0:
+            axial = [passed]
+        if (order + 1) % z == 0:
+            radial.append(cage + passed)
+        if (order - 1) % z == 0:
+            radial.append(cage - passed)
+    in_hertz = 1.0 / (2.0 * np.pi)
+    return WavinessForce(
+        in_hertz * jnp.abs(_stacked(axial, cage)), in_hertz * _stacked(radial, cage)
+    )
+
+
+class _Turning(NamedTuple):
+    """Speeds of the parts [rad/s]."""
+
+    inner: Scalar
+    outer: Scalar
+    cage: Scalar
+    element: Scalar
+
+
+def _turning(owner, bearing, speed, contact_angle) -> _Turning:
+    if isinstance(bearing, BearingSet):
+        raise TypeError(
+            f"{owner}: `bearing` is a BearingSet; give one of its rows,"
+            " `bearing.rows[0].bearing`."
+        )
+    if not isinstance(bearing, AbstractRollerBearing | AbstractBallBearing):
+        raise TypeError(
+            f"{owner}: `bearing` is a {type(bearing).__name__}; it must be the design"
+            " of a bearing."
+        )
+    if not isinstance(speed, Speed):
+        raise TypeError(
+            f"{owner}: `speed` is a {type(speed).__name__}; it must be"
+            " Speed(inner, outer) in rad/s."
+        )
+    if isinstance(bearing, AbstractRollerBearing):
+        if contact_angle is not None:
+            raise ValueError(
+                f"{owner}: `contact_angle` is given for rollers, which roll at the"
+                " angle of their axis; leave it out."
+            )
+        diameter, ratio = bearing.roller_diameter, orbit_ratio(bearing)
+    else:
+        diameter, ratio = bearing.ball_diameter, orbit_ratio(bearing)
+        if contact_angle is not None:
+            number(owner, "contact_angle", contact_angle, "rad")
+            cosine = jnp.cos(as_real(contact_angle))
+            ratio = roll_ratio(diameter, bearing.pitch_diameter, cosine)
+    rings = speed.outer, speed.inner
+    turned = rotation(ratio, diameter, bearing.pitch_diameter, *rings)
+    return _Turning(speed.inner, speed.outer, orbit(ratio, *rings), turned)
+
+
+def _stacked(lines, like):
+    return jnp.stack(lines) if lines else jnp.zeros((0,), like.dtype)
