@@ -11,6 +11,9 @@ from .level import REFERENCE_ACCELERATION as REFERENCE_ACCELERATION
 from .level import acceleration_of as acceleration_of
 from .level import combined as combined
 from .level import level as level
+from .lines import UNNAMED as UNNAMED
+from .lines import Line as Line
+from .lines import name_lines as name_lines
 from .orders import KinematicFrequencies as KinematicFrequencies
 from .orders import WavinessForce as WavinessForce
 from .orders import kinematic_frequencies as kinematic_frequencies
