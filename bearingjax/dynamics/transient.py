@@ -18,6 +18,7 @@ from jaxtyping import Array, Float
 from ..design import is_ball, pitch_radius
 from ..design.checks import count, is_traced, positive
 from ..element.inertia import Speed
+from ..numerics.gravity import GRAVITY
 from ..numerics.implicit import stop
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
@@ -35,7 +36,6 @@ from .ring_speed import SpeedTable, as_table
 
 _PLACES = 96
 """Places of the table."""
-_GRAVITY = 9.80665
 
 
 def skid(
@@ -136,7 +136,7 @@ def skid(
     given = prescribed, free, fixed_ring
     first = load(zero) if callable(load) else load
     solution = _solved(model, first, at, given, throw)
-    gravity = as_real(_GRAVITY if axis == "horizontal" else 0.0)
+    gravity = as_real(GRAVITY if axis == "horizontal" else 0.0)
     if balanced:
         over_time = load if callable(load) else _Constant(as_real(load))
         balance = _balance(model, solution, given)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..design import Material
 from ..element.frame import LOAD_UNITS, LOADS
+from ..numerics.gravity import GRAVITY
 from ..rotor import (
     AbstractDamping,
     AbstractPart,
@@ -31,8 +32,6 @@ from .scene_file import find_scene, is_rotor, parse_scene
 from .stations import read_station
 from .table import Table
 
-GRAVITY = 9.80665
-"""Acceleration of free fall [m/s²]."""
 AXES = {
     "horizontal": (0.0, -GRAVITY, 0.0),
     "vertical": (0.0, 0.0, -GRAVITY),
