@@ -32,6 +32,6 @@ from .shaft import STATION_FREEDOMS as STATION_FREEDOMS
 from .shaft import Shaft as Shaft
 from .speed_support import SpeedSupport as SpeedSupport
 from .statics import Settled as Settled
-from .statics import SettledOver as SettledOver
 from .statics import settle as settle
-from .statics import settle_over as settle_over
+from .statics_over_speed import SettledOver as SettledOver
+from .statics_over_speed import settle_over as settle_over

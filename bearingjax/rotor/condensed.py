@@ -1,0 +1,117 @@
+"""A linear rotor as seen from the motions of its supported stations.
+
+Without speed a linear shaft between its supports is a stiffness between the supported
+stations alone: the rest is condensed exactly.
+"""
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..numerics.types import Scalar
+from .held import of_each
+from .loads import RotorLoads
+from .parts import AbstractSupport
+from .reduction import held_motions
+from .rotor import N_HOUSING, N_STATION, Rotor
+
+Supported = tuple[
+    Float[Array, "support 5"],
+    Float[Array, "support 5 5"],
+    Float[Array, "support 5 5"],
+]
+"""Force, stiffness and damping of every support."""
+
+
+class Condensed(eqx.Module):
+    """A linear rotor as seen from the motions of its supported stations.
+
+    Attributes:
+        stiffness, force: On them, per unit of `scale` (m, m), (m,) [N].
+        rows: Motion of every support (support, 5, m) [1, 1/m].
+        back, there: All motions (motion, m) and what the forces between supports add
+            (motion,) [m, rad].
+        supports, speed: As of the rotor.
+    """
+
+    stiffness: Float[Array, "m m"]
+    force: Float[Array, " m"]
+    rows: Float[Array, "support 5 m"]
+    back: Float[Array, "motion m"]
+    there: Float[Array, " motion"]
+    supports: tuple[AbstractSupport, ...]
+    speed: Scalar
+
+    def motion(self, y):
+        """All motions [m, rad]."""
+        return self.back @ y + self.there
+
+    def of_supports(self, y) -> Supported:
+        """Force, stiffness and damping of every support."""
+        return of_each(
+            lambda support, moved: support.pushed(moved, self.speed),
+            self.supports,
+            self.rows @ y,
+        )
+
+    def nothing(self) -> Supported:
+        """Of the shapes of `of_supports`."""
+        n, none = len(self.supports), jnp.zeros_like(self.force[0])
+        matrices = jnp.tile(none, (n, N_STATION, N_STATION))
+        return matrices[:, 0], matrices, matrices
+
+    def out_of_balance(self, y, force):
+        """Force that springs and supports take up less that which acts (m,) [N]."""
+        along = jnp.einsum("sim,si->m", self.rows, force)
+        return along + self.stiffness @ y - self.force
+
+    def slope(self, stiffness):
+        """Stiffness against all motions, from that of the supports (m, m) [N/m]."""
+        rows = self.rows
+        return jnp.einsum("sim,sij,sjn->mn", rows, stiffness, rows) + self.stiffness
+
+
+def condensed(rotor: Rotor, loads: RotorLoads, speed: Scalar) -> Condensed:
+    """A rotor as seen from there.
+
+    Shifts of supported stations are in m, tilts in m at the end of half the shaft.
+
+    Args:
+        rotor: With supports.
+        loads: The constant ones count.
+        speed: Of the rotor [rad/s].
+    """
+    own, force = rotor.unsupported().stiffness, loads.constant(rotor)
+    rows, every = rotor.at_supports(), rotor.motions()
+    n, shaft = own.shape[0], rotor.shaft
+    arm = 0.5 * (shaft.stations[-1] - shaft.stations[0])
+    body = jnp.stack([arm / arm] * N_HOUSING + [1.0 / arm] * (N_STATION - N_HOUSING))
+    n_housings = (n - N_STATION * shaft.n_nodes) // N_HOUSING
+    ends = jnp.ones(N_HOUSING * n_housings, body.dtype)
+    if rotor.rigid:
+        # The tilts of a rigid shaft count about its own station of z = 0.
+        back = every * jnp.concatenate([body, ends])[None, :]
+        there = jnp.zeros_like(force)
+    else:
+        scale = jnp.concatenate([jnp.tile(body, shaft.n_nodes), ends])
+        kept, rest = held_motions(rotor)
+        back = jnp.eye(n, dtype=own.dtype)[:, kept] * scale[None, kept]
+        there = jnp.zeros_like(force)
+        if len(rest):
+            inner = own[np.ix_(rest, rest)]
+            across = own[np.ix_(rest, kept)] * scale[None, kept]
+            known = jnp.concatenate([-across, force[rest, None]], axis=1)
+            follow = jnp.linalg.solve(inner, known)
+            back = back.at[rest].set(follow[:, :-1])
+            there = there.at[rest].set(follow[:, -1])
+    stiffness = back.T @ own @ back
+    return Condensed(
+        stiffness=0.5 * (stiffness + stiffness.T),
+        force=back.T @ force,
+        rows=rows @ back,
+        back=back,
+        there=there,
+        supports=rotor.supports,
+        speed=speed,
+    )

@@ -1,0 +1,120 @@
+"""Where weight, constant forces and preload put a rotor, over its speed.
+
+For supports that follow the speed: a rotor settles at some speeds, and springs whose
+stiffness is a polynomial between stand for its supports at all others.
+"""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Float, Int
+
+from ..design.checks import check, is_traced, positive
+from ..design.checks import count as whole
+from ..numerics.result import Result, raise_unless_converged, worst
+from ..numerics.types import Scalar, as_count, as_real
+from .rotor import Rotor
+from .speed_support import SpeedSupport, chebyshev_analysis
+from .statics import Settled, checked_loads, settled_at
+
+
+class SettledOver(eqx.Module):
+    """A rotor at rest in its supports, at speeds from rest to a top speed.
+
+    Attributes:
+        rotor: The rotor on springs that follow the speed (`SpeedSupport`), for all
+            linear analyses up to the top speed.
+        speed: Where it was settled (place,) [rad/s].
+        displacement, support_load, stiffness: There, as of `Settled`, with `place` as
+            first axis.
+        error: What the polynomials may miss, over the largest stiffness [1].
+        result: Worst `Result` code; the numbers are NaN unless it is `CONVERGED`.
+    """
+
+    rotor: Rotor
+    speed: Float[Array, " place"]
+    displacement: Float[Array, "place node 5"]
+    support_load: Float[Array, "place support 5"]
+    stiffness: Float[Array, "place support 5 5"]
+    error: Scalar
+    result: Int[Array, ""]
+
+
+def settle_over(
+    rotor: Any,
+    loads: Any,
+    top_speed: Any,
+    *,
+    places: Any = 13,
+    throw: bool = True,
+) -> SettledOver:
+    """Equilibrium from rest to a top speed, for supports that follow the speed.
+
+    The rotor is settled at Chebyshev's points between, and the stiffness of every
+    support there made a polynomial of the speed: linear analyses then cost no more than
+    on springs. `error` is the size of the last two coefficients; where it is not small
+    more places help, unless rolling elements lose contact with the speed, which makes
+    a kink. If no support follows the speed, `settle` tells the same.
+
+    Args:
+        rotor, loads: As of `settle`.
+        top_speed: Highest speed, above 0 [rad/s].
+        places: Number of points, 3 or more. Static.
+        throw: Raise if one is not settled. Static.
+
+    Returns:
+        SettledOver, with first derivatives with respect to all numbers.
+
+    Fails, raises: as `settle`.
+    """
+    loads = checked_loads("settle_over", rotor, loads)
+    top_speed, places = as_real(top_speed), as_count(places)
+    positive("settle_over", "top_speed", top_speed, "rad/s")
+    whole("settle_over", "places", places)
+    check("settle_over", "places", places >= 3, "at least 3", places, "")
+    share = 0.5 * (1.0 - np.cos(np.pi * (np.arange(places) + 0.5) / places))
+    speeds = top_speed * jnp.asarray(share, top_speed.dtype)
+    every = _at_each(rotor, loads, speeds)
+    found = _settled_over(rotor, top_speed, speeds, every)
+
+    def message():
+        label = Result(int(found.result)).label
+        return f"settle_over: {label} at one of the speeds; `settle` there says more."
+
+    return raise_unless_converged(found, found.result, message) if throw else found
+
+
+def _at_each(rotor, loads, speeds) -> Settled:
+    """The rotor settled at every speed, without `rotor`; with `place` as first axis."""
+
+    def one(speed):
+        found = settled_at(rotor, loads, speed)[0]
+        return eqx.tree_at(lambda f: f.rotor, found, None)
+
+    if any(is_traced(leaf) for leaf in jax.tree.leaves((rotor, loads, speeds))):
+        return lax.map(one, speeds)
+    # One after the other by the program of `settle`, which is often there already.
+    return jax.tree.map(lambda *leaf: jnp.stack(leaf), *map(one, speeds))
+
+
+@eqx.filter_jit
+def _settled_over(rotor, top_speed, speeds, found) -> SettledOver:
+    series = jnp.asarray(chebyshev_analysis(speeds.shape[0]), top_speed.dtype)
+    stiffness = jnp.tensordot(series, found.stiffness, 1)
+    springs = [
+        SpeedSupport(s.station, stiffness[:, k], d, top_speed, housing=s.housing)
+        for k, (s, d) in enumerate(zip(rotor.supports, found.damping[0], strict=True))
+    ]
+    return SettledOver(
+        rotor=eqx.tree_at(lambda r: r.supports, rotor, tuple(springs)),
+        speed=speeds,
+        displacement=found.displacement,
+        support_load=found.support_load,
+        stiffness=found.stiffness,
+        error=jnp.max(jnp.abs(stiffness[-2:])) / jnp.max(jnp.abs(stiffness)),
+        result=worst(found.result),
+    )

@@ -1,0 +1,80 @@
+"""In words: why a rotor did not settle, and what is doubtful where it did."""
+
+import warnings
+from typing import Any
+
+import numpy as np
+
+from ..design.checks import is_traced
+from ..numerics.result import Result
+from .parts import LinearSupport
+from .rotor import N_STATION
+from .shaft import STATION_FREEDOMS
+
+
+def _named(rotor, motion) -> str:
+    """The freedom of a station or housing that a motion moves most."""
+    n = N_STATION * rotor.shaft.n_nodes
+    length = float(rotor.shaft.stations[-1] - rotor.shaft.stations[0])
+    nodes = np.abs(motion[:n].reshape(-1, N_STATION)) * ([1.0] * 3 + [length] * 2)
+    stations = [rotor.shaft.node(k) for k in range(rotor.shaft.n_segments + 1)]
+    nodes = nodes[stations]
+    station, freedom = np.unravel_index(int(np.argmax(nodes)), nodes.shape)
+    if n < len(motion) and np.abs(motion[n:]).max() > nodes.max():
+        return (
+            f"{STATION_FREEDOMS[int(np.argmax(np.abs(motion[n:]))) % 3]} of a housing"
+        )
+    return f"{STATION_FREEDOMS[freedom]} of station {station}"
+
+
+def unsettled(rotor: Any, found: Any, place: Any) -> str:
+    """Why a rotor did not settle.
+
+    Args:
+        rotor: The rotor.
+        found: What `settle` found.
+        place: Where its search ended (motion,).
+    """
+    result = Result(int(found.result))
+    start = f"settle: {result.label} at {float(found.speed):g} rad/s:"
+    if result is Result.NO_LOAD_PATH and not is_traced(place):
+        return (
+            f"{start} nothing takes up the load along"
+            f" {_named(rotor, np.asarray(place))}; give the rotor a"
+            " support that holds it, or less load."
+        )
+    if result is Result.NON_FINITE:
+        return f"{start} a force of a support is no number."
+    return (
+        f"{start} {float(found.residual):.3g} of the load is left after"
+        f" {int(found.steps)} steps."
+    )
+
+
+def warn_of(rotor: Any, found: Any) -> None:
+    """Warn of bearings that bear nothing, and of a motion that nothing holds.
+
+    Args:
+        rotor: The rotor.
+        found: What `settle` found.
+    """
+    loads = np.asarray(found.support_load)
+    idle = [
+        str(support.station)
+        for support, load in zip(rotor.supports, loads, strict=True)
+        if not load.any() and not isinstance(support, LinearSupport)
+    ]
+    if idle:
+        warnings.warn(
+            f"settle: the bearing on station {', '.join(idle)} bears nothing: it has"
+            " no stiffness here; give it a preload or a load",
+            stacklevel=3,
+        )
+    free = np.asarray(found.free)
+    springs = all(isinstance(support, LinearSupport) for support in rotor.supports)
+    if free.any() and not springs:
+        warnings.warn(
+            f"settle: nothing holds {_named(rotor, free)}: it stays where it is, and"
+            " a mode of frequency zero goes with it",
+            stacklevel=3,
+        )
