@@ -18,8 +18,7 @@ from .parts import (
     DAMPING_UNITS,
     AbstractSupport,
     Housing,
-    check_matrix,
-    check_station,
+    check_support,
     square_matrix,
 )
 from .shaft import STATION_FREEDOMS
@@ -84,7 +83,7 @@ class BearingSupport(AbstractSupport):
     passage: bool = eqx.field(static=True, default=False, kw_only=True)
 
     def __check_init__(self):
-        check_station(self, self.station)
+        check_support(self)
         check_element("BearingSupport", self.element)
         shape: Any = getattr(self.offset, "shape", None)
         if shape != (5,):
@@ -94,8 +93,6 @@ class BearingSupport(AbstractSupport):
             )
         if not is_traced(self.offset):
             check(self, "offset", np.isfinite(self.offset).all(), "finite")
-        check_matrix(self, "damping", 5)
-        instance(self, "housing", Housing, None)
         for name in ("inertia", "passage"):
             instance(self, name, bool)
         kind = getattr(self.turned, "dtype", None)

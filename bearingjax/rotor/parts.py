@@ -185,6 +185,13 @@ class Housing(eqx.Module):
         check_matrix(self, "damping", 3)
 
 
+def check_support(owner) -> None:
+    """What every support has: a station, damping (5, 5), and a housing or `None`."""
+    check_station(owner, owner.station)
+    check_matrix(owner, "damping", 5)
+    instance(owner, "housing", Housing, None)
+
+
 class AbstractSupport(eqx.Module):
     """What holds a station of the shaft against ground or against a housing.
 
@@ -270,10 +277,8 @@ class LinearSupport(AbstractSupport):
     housing: Housing | None = eqx.field(default=None, kw_only=True)
 
     def __check_init__(self):
-        check_station(self, self.station)
+        check_support(self)
         check_matrix(self, "stiffness", 5)
-        check_matrix(self, "damping", 5)
-        instance(self, "housing", Housing, None)
 
     @classmethod
     def isotropic(

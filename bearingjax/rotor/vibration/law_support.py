@@ -11,8 +11,7 @@ from ..parts import (
     DAMPING_UNITS,
     AbstractSupport,
     Housing,
-    check_matrix,
-    check_station,
+    check_support,
     square_matrix,
 )
 from .support_law import AbstractSupportLaw
@@ -42,10 +41,8 @@ class LawSupport(AbstractSupport):
     turned: bool = eqx.field(static=True, default=False, kw_only=True)
 
     def __check_init__(self):
-        check_station(self, self.station)
+        check_support(self)
         instance(self, "law", AbstractSupportLaw)
-        check_matrix(self, "damping", 5)
-        instance(self, "housing", Housing, None)
         instance(self, "turned", bool)
 
     def force(
