@@ -44,8 +44,9 @@ class Modes(eqx.Module):
 
     Attributes:
         eigenvalue: λ; the motion goes as exp(λ t) (mode,) [rad/s].
-        whirl: +1 forward (with the speed), -1 backward, 0 in a plane or axial; 0 too
-            where modes coincide, since any mixture of them is a mode (mode,).
+        whirl: +1 forward (with the speed; at rest from x towards y), -1 backward, 0 in
+            a plane or axial; 0 too where modes coincide, since any mixture of them is
+            a mode (mode,).
         shape: (ux uy uz gx gy) of every node (mode, node, 5) [m, rad]; the largest
             motion is real and 1 m, tilts counted as those of the shaft's length.
         housing: (ux uy uz) of every housing (mode, housing, 3) [m].
@@ -105,7 +106,7 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
 @eqx.filter_jit
 def _modes(rotor, speed, count):
     matrices = rotor.linearised(speed)
-    return shown(eigenpairs(matrices, count), matrices)
+    return shown(eigenpairs(matrices, count), matrices, speed)
 
 
 def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
@@ -145,10 +146,11 @@ def _campbell(rotor, speeds, count):
     _, orders = lax.scan(step, first, (stop(speeds[1:]), later))
     orders = jnp.concatenate([jnp.arange(followed)[None], orders])[:, :count]
 
-    def show(order, pairs):
-        return shown(jax.tree.map(lambda leaf: leaf[order], pairs), matrices)
+    def show(order, pairs, speed):
+        pairs = jax.tree.map(lambda leaf: leaf[order], pairs)
+        return shown(pairs, matrices, speed)
 
-    return jax.vmap(show)(orders, pairs)
+    return jax.vmap(show)(orders, pairs, speeds)
 
 
 def _likeness(before, now, matrices):
@@ -266,19 +268,20 @@ def _refined(matrices, value, right, left):
     return jnp.where(value.imag > 0, refined, to_complex(refined.real))
 
 
-def shown(pairs: Pairs, matrices: RotorMatrices) -> Modes:
+def shown(pairs: Pairs, matrices: RotorMatrices, speed: Any) -> Modes:
     """Modes as they are reported.
 
     Args:
         pairs: Eigenvalues and vectors.
         matrices: Of the rotor; only what its freedoms move is read.
+        speed: Of the rotor, whose sense is called forward [rad/s].
     """
     matrices = stop(matrices)
     moved = pairs.right @ to_complex(matrices.motions).T
     nodes, housing = matrices.split(moved)
     largest, nodes = largest_real(nodes, matrices.length)
     housing = housing / largest
-    whirl = direction(nodes, matrices.length)
+    whirl = direction(nodes, matrices.length) * jnp.where(speed < 0, -1, 1)
     whirl = jnp.where(pairs.coincident | (pairs.value.imag == 0), 0, whirl)
     return Modes(pairs.value, whirl, nodes, housing)
 
@@ -300,7 +303,7 @@ def largest_real(
 
 
 def direction(shape: Complex[Array, "*mode node 5"], length) -> Int[Array, "*mode"]:
-    """+1 forward, -1 backward, 0 neither: the sense in which most of a mode whirls.
+    """+1 from x towards y, -1 the other way, 0 neither: how most of a mode whirls.
 
     Neither is a mode in a plane, and one of which half or more goes along the shaft.
 

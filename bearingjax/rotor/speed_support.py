@@ -6,7 +6,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
-from ..design.checks import instance, positive
+from ..design.checks import positive
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 from .parts import (
@@ -14,8 +14,7 @@ from .parts import (
     STIFFNESS_UNITS,
     AbstractSupport,
     Housing,
-    check_matrix,
-    check_station,
+    check_support,
     square_matrix,
 )
 
@@ -26,7 +25,8 @@ class SpeedSupport(AbstractSupport):
     Attributes:
         station: Number of the station that it holds.
         stiffness: Coefficients of Chebyshev's polynomials between rest and `top_speed`
-            (order, 5, 5) [N/m, N, N m]. Outside it stays what it is at the end.
+            (order, 5, 5) [N/m, N, N m]. Above it stays what it is there; it is the same
+            for both senses of turning.
         damping: As of `LinearSupport` [N s/m, N s, N m s].
         top_speed: Speed up to which it is known [rad/s].
         housing: What it stands on; `None`: ground.
@@ -45,10 +45,8 @@ class SpeedSupport(AbstractSupport):
     housing: Housing | None = eqx.field(default=None, kw_only=True)
 
     def __check_init__(self):
-        check_station(self, self.station)
-        check_matrix(self, "damping", 5)
+        check_support(self)
         positive(self, "top_speed")
-        instance(self, "housing", Housing, None)
         shape = getattr(self.stiffness, "shape", ())
         if len(shape) != 3 or shape[1:] != (5, 5) or not shape[0]:
             raise ValueError(
@@ -64,7 +62,7 @@ class SpeedSupport(AbstractSupport):
         angle: Scalar | float = 0.0,
     ) -> Float[Array, "5"]:
         """As of `AbstractSupport.force`: without the load at rest [N, N m]."""
-        share = jnp.clip(2.0 * speed / self.top_speed - 1.0, -1.0, 1.0)
+        share = jnp.minimum(2.0 * jnp.abs(speed) / self.top_speed - 1.0, 1.0)
 
         # Clenshaw's rule. As a loop, for XLA's compiler for CPUs (jaxlib 0.10.1) makes
         # wrong slopes of the recurrence written out, when it is mapped over speeds.

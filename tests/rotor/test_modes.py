@@ -32,6 +32,10 @@ def test_the_campbell_diagram_of_ross():
     assert (found.whirl[0] == 0).all()  # at rest each mode is in a plane
     np.testing.assert_array_equal(found.whirl[1:, :5], [[-1, 1, -1, 1, -1]] * 2)
     assert abs(found.damping_ratio).max() < SOLVER
+    # Turning the other way it is its mirror image: forward is with the speed.
+    other = bj.campbell(friswell(), [0.0, -150.0, -300.0], count=6)
+    np.testing.assert_allclose(other.frequency, found.frequency, rtol=SOLVER)
+    np.testing.assert_array_equal(other.whirl, found.whirl)
     # Largest motion 1 m, and real.
     sizes = abs(np.asarray(found.shape) * [1, 1, 1, 1.5, 1.5])
     np.testing.assert_allclose(sizes.max(axis=(2, 3)), 1.0, rtol=SOLVER)
