@@ -15,6 +15,8 @@ from .modes import speed_list, to_complex
 from .parts import check_station
 from .rotor import Rotor
 
+_HELD = 1e-6
+"""Stiffness over mass that everything has at frequency zero [1/s²]."""
 _BATCH = 16
 """Speeds that are solved at once."""
 
@@ -132,12 +134,12 @@ def steady(
 
     def at_frequency(given):
         frequency, speed = given
-        # At rest there is no force, whether or not anything holds the rotor.
-        still = frequency == 0
-        matrices = rotor.linearised(jnp.where(still, 1.0, speed))
-        turning = jnp.where(still, 1.0, frequency)
-        stiffness = matrices.dynamic_stiffness(lax.complex(0.0 * turning, turning))
         force = to_complex(frequency**2) * moments + forces
+        matrices = rotor.linearised(speed)
+        stiffness = matrices.dynamic_stiffness(lax.complex(0.0 * frequency, frequency))
+        # What nothing holds would make it singular at rest.
+        little = jnp.where(frequency == 0, _HELD, 0.0) * matrices.mass
+        stiffness = stiffness + to_complex(little)
         return motions @ jnp.linalg.solve(stiffness, force)
 
     motion = lax.map(at_frequency, (frequencies, speeds), batch_size=_BATCH)

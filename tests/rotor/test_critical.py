@@ -154,7 +154,7 @@ def test_a_jeffcott_rotor_through_its_critical_speed():
     shaken = bj.RotorLoads(
         bj.Unbalance(1, moment, phase), base_acceleration=(2.0, 0, 0)
     )
-    both = bj.harmonic_response(rotor, shaken, speeds[1:], 300.0)
+    both = bj.harmonic_response(rotor, shaken, speeds, 300.0)
     base = -2.0 * m / (k - m * speeds**2 + 1j * c * speeds)
-    np.testing.assert_allclose(both.motion[:, 1, 0], (x + base)[1:], rtol=SOLVER)
-    np.testing.assert_allclose(both.motion[:, 1, 1], -1j * x[1:], rtol=SOLVER)
+    np.testing.assert_allclose(both.motion[:, 1, 0], x + base, rtol=SOLVER)
+    np.testing.assert_allclose(both.motion[:, 1, 1], -1j * x, rtol=SOLVER, atol=1e-20)
