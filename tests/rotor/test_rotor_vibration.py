@@ -58,6 +58,27 @@ def test_it_is_the_linear_rotor_where_supports_are_linear():
     assert orbit.steps == 1
 
 
+def test_damping_of_modes_counts_supports_as_they_are_at_the_speed():
+    series = np.zeros((2, 5, 5))
+    series[0] = np.diag([2e7, 2e7, 1e7, 1e3, 1e3])
+    series[1] = -0.5 * series[0]
+    supports = [bj.rotor.SpeedSupport(k, series, np.zeros(5), 1000.0) for k in (0, 2)]
+    whole = Rotor(
+        Shaft([0.0, 0.2, 0.5], [0.03, 0.03]),
+        [bj.rotor.Disc(1, 6.0, 0.02, 0.01)],
+        supports,
+        damping=bj.rotor.ModalDamping(0.01),
+    )
+    unbalance = Unbalance(1, 1e-5)
+    for speed in (None, 800.0):
+        system = rotor_vibration(
+            whole, unbalance, scale=1e-5, reference_frequency=1e3, speed=speed
+        )
+        wanted = whole.linearised(speed or 0.0).damping
+        largest = float(np.abs(wanted).max())
+        assert np.allclose(system.damping, wanted, rtol=0, atol=ROUNDING * largest)
+
+
 def test_the_rigid_rotor_is_that_of_the_paper():
     angle, law = 36, grooves(36).fixed_angle()
     own = rotor(angle, damping_ratio=0.01, unbalance=3e-6)

@@ -112,7 +112,8 @@ def rotor_vibration(
         modes: Hold the rotor to `craig_bampton` motions with so many modes; `None`:
             all freedoms stay.
         about: Motions about which supports are linearised for modal damping, such as
-            `Settled.motion` (motion,) [m, rad]; `None`: where they stand.
+            `Settled.motion` (motion,) [m, rad]; `None`: where they stand. They count
+            as they are at `speed`, without one as at rest.
 
     Raises:
         ValueError: As `craig_bampton`; for unbalance with a `rotation` of its own, with
@@ -120,7 +121,7 @@ def rotor_vibration(
     """
     loads = _as_loads(loads)
     _check_rotation(rotor, loads, speed, rotation)
-    matrices = rotor.linearised(0.0, about)
+    matrices = rotor.linearised(0.0 if speed is None else speed, about)
     supported = bool(rotor.supports)
     rows = rotor.at_supports() @ matrices.motions
     stiffness, damping = matrices.stiffness, matrices.damping
