@@ -199,7 +199,9 @@ def branch(events=()):
 def test_a_response_tells_stable_from_unstable_and_marks_events():
     events = ("fold", 13.1, 4.3e-6), ("fold", 11.9, 4.5e-6), ("flip", 12.0, 5e-6)
     marks = [
-        Event(kind, 2.0 * np.pi * f, np.array([a]), np.zeros(2), 3, True)
+        Event(
+            kind, 2.0 * np.pi * f, np.array([a]), np.zeros((2, 1)), np.zeros(2), 3, True
+        )
         for kind, f, a in events
     ]
     linear = 2.0 * np.pi * np.array([10.0, 14.0]), np.array([1e-6, 2e-6])

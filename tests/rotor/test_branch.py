@@ -61,16 +61,15 @@ def test_duffing(branches):
         theirs = sorted(event.frequency for event in branches["shooting"].events)
         assert np.allclose(folds, theirs, rtol=DIFFERENCE)
         # Unstable between the folds, and nowhere else.
-        first, last = (event.after for event in sorted(branch.events, key=_after))
+        first, last = (event.after for event in branch.events)
+        assert first < last
         assert branch.stable[: first + 1].all() and branch.stable[last + 1 :].all()
         assert not branch.stable[first + 1 : last + 1].any()
         for event in branch.events:
             assert event.located
             assert np.abs(event.multipliers - 1.0).min() < 1e-4
-
-
-def _after(event):
-    return event.after
+            half = 0.5 * np.ptp(event.displacement, axis=0)
+            assert np.allclose(half, event.amplitude, rtol=0.01)  # between the samples
 
 
 def test_nothing_is_compiled_anew(branches):
@@ -116,6 +115,8 @@ def test_flips_and_branch_points_of_mathieu():
         goal = sorted(boundary(*number) for number in numbers)
         assert np.allclose(found, goal, rtol=DIFFERENCE)
     assert len(branch.events) == 4
+    along = [event.frequency for event in branch.events]  # which only rises here
+    assert along == sorted(along)
     between = (branch.frequency > found[0] + 1e-3) & (
         branch.frequency < found[1] - 1e-3
     )
@@ -136,7 +137,7 @@ def test_the_rotor_softens_and_becomes_almost_periodic():
     assert branch.amplitude[:, 4].max() > 0.01 * branch.amplitude[:, 1].max()
     # Stability changes at marked points, and only there.
     changes = np.nonzero(np.diff(branch.stable.astype(int)))[0]
-    assert sorted(event.after for event in branch.events) == list(changes)
+    assert [event.after for event in branch.events] == list(changes)
     for event in branch.events:
         if event.kind == "neimark_sacker":
             pair = event.multipliers[np.abs(np.imag(event.multipliers)) > 1e-3]

@@ -38,6 +38,7 @@ class Event(NamedTuple):
             "branch_point" (another branch crosses here).
         frequency: [rad/s].
         amplitude: Half of peak to peak (n,) [m, rad].
+        displacement: At even phases from 0 on (sample, n) [m, rad].
         multipliers: (2n,) [1].
         after: Index of the last point of the branch before it.
         located: Whether an orbit was found there; if not, numbers are those of the
@@ -47,6 +48,7 @@ class Event(NamedTuple):
     kind: str
     frequency: float
     amplitude: np.ndarray
+    displacement: np.ndarray
     multipliers: np.ndarray
     after: int
     located: bool
@@ -189,13 +191,14 @@ def _events(system, method, points: Place) -> tuple[Event, ...]:
     for kind, test in _TESTS.items():
         signs = np.sign([test(point) for point in every])
         for k in np.nonzero(signs[1:] * signs[:-1] < 0)[0]:
-            event = _located(system, method, every, int(k), kind, test)
-            if event is not None:
-                events.append(event)
-    return tuple(sorted(events, key=lambda event: event[0]))
+            found = _located(system, method, every, int(k), kind, test)
+            if found is not None:
+                events.append(found)
+    return tuple(event for _, event in sorted(events, key=lambda found: found[0]))
 
 
 def _located(system, method, every, k, kind, test):
+    """How far along the branch something happens, counted in points, and what."""
     # Late, so that the package is imported as fast without it.
     from scipy.optimize import brentq
 
@@ -219,14 +222,16 @@ def _located(system, method, every, k, kind, test):
         xtol=_LOCATED * abs(float(here.x[-1])),
     )
     point, solved = at(length)
-    return Event(
+    event = Event(
         kind,
         float(point.x[-1]) * float(system.reference_frequency),
         _amplitude(system, point.motion),
+        np.asarray(point.motion) * np.asarray(system.scale),
         np.linalg.eigvals(point.monodromy),
         k,
         solved,
     )
+    return k + float(here.tangent @ (point.x - here.x)) / span, event
 
 
 @jax.jit
