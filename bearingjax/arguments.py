@@ -121,8 +121,13 @@ def parser() -> argparse.ArgumentParser:
         "--table",
         metavar="OUT",
         type=Path,
-        help="write a row per point of the response, or if the scene has none, per"
-        " time (.csv, .parquet)",
+        help="write a row per point of the response, or per time of the motion in time"
+        " (.csv, .parquet)",
+    )
+    rotor.add_argument(
+        "--series",
+        choices=("response", "transient"),
+        help="which of them --table has, if the scene has both",
     )
     rotor.add_argument(
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"

@@ -393,6 +393,7 @@ def _rotor(options) -> int:
         read_rotor,
         rotor_columns,
         rotor_report,
+        rotor_series,
         run_rotor,
         write_rotor_json,
     )
@@ -401,9 +402,9 @@ def _rotor(options) -> int:
     _check_table(options)
     _check_outputs(options)
     task = read_rotor(options.scene, options.set)
-    if options.table is not None and task.response is task.transient is None:
-        cure = "the scene has no [rotor.response] nor [rotor.transient]"
-        raise SceneError(f"--table {options.table}: there is nothing to write; {cure}")
+    if options.table is None and options.series is not None:
+        raise SceneError("--series is for a table; name it with --table")
+    series = None if options.table is None else rotor_series(task, options.series)
     shown = not options.quiet and sys.stderr.isatty()
     run = run_rotor(task, _show_stage if shown else None)
     if shown:
@@ -415,7 +416,7 @@ def _rotor(options) -> int:
         figure = rotor_overview(run, title=task.name)
         figure.savefig(path, dpi=150)
 
-    columns = rotor_columns(run)
+    columns = {} if series is None else rotor_columns(run, series)
     _write(
         (options.json, lambda path: write_rotor_json(path, run)),
         (

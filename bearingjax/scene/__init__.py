@@ -32,6 +32,7 @@ from .resume import resume_cases as resume_cases
 from .rotor_output import rotor_as_dict as rotor_as_dict
 from .rotor_output import rotor_columns as rotor_columns
 from .rotor_output import rotor_message as rotor_message
+from .rotor_output import rotor_series as rotor_series
 from .rotor_output import write_rotor_json as write_rotor_json
 from .rotor_report import rotor_report as rotor_report
 from .rotor_run import RotorRun as RotorRun

@@ -19,6 +19,7 @@ from ..rotor.vibration import (
     HarmonicBalance,
     RotorVibration,
     Shooting,
+    Steps,
     follow,
     rotor_vibration,
     simulate,
@@ -26,6 +27,8 @@ from ..rotor.vibration import (
 from .rotor_scene import RotorScene
 from .rotor_supports import unit_of_length, with_passage
 
+_PARTS = 40
+"""Parts of the range of frequencies, of which a step along a branch is one at most."""
 _SAMPLES = 64
 """Phases at which a linear vibration is told."""
 _ENDINGS = {
@@ -57,6 +60,8 @@ class RotorResponse:
             (point, sample, station, 5) [m, rad]; a linear vibration is that about the
             static equilibrium.
         branch: As of `follow`, with stability, multipliers and events; `None`: linear.
+        event_amplitude: As `amplitude`, at each of its events (event, station, 5) [m,
+            rad].
         stopped: Code and words, if it ends before the end of the range.
     """
 
@@ -65,6 +70,7 @@ class RotorResponse:
     amplitude: np.ndarray
     displacement: np.ndarray
     branch: Branch | None
+    event_amplitude: np.ndarray
     stopped: Stopped | None
 
 
@@ -132,6 +138,7 @@ def respond(
         as_array(asked.end, float),
         method,
         as_array(np.tile(rest, (samples, 1)), float),
+        steps=_steps(asked, system),
         points=asked.points,
     )
     moved = _at_stations(task, system, branch.displacement)
@@ -140,10 +147,29 @@ def respond(
         last = branch.frequency[-1] if len(branch.frequency) else asked.begin
         where = f"at {last / (2.0 * np.pi):.5g} Hz: {_ENDINGS[branch.ending]}"
         stopped = Result.STEP_LIMIT, where
-    amplitude = 0.5 * (moved.max(axis=1) - moved.min(axis=1))
+    marked = [_at_stations(task, system, one.displacement) for one in branch.events]
     return RotorResponse(
-        asked.method, branch.frequency, amplitude, moved, branch, stopped
+        asked.method,
+        branch.frequency,
+        _half_range(moved),
+        moved,
+        branch,
+        np.array([_half_range(one[None])[0] for one in marked]),
+        stopped,
     )
+
+
+def _half_range(moved):
+    """Half of peak to peak (point, …) of what moves (point, sample, …)."""
+    return 0.5 * (moved.max(axis=1) - moved.min(axis=1))
+
+
+def _steps(asked, system) -> Steps:
+    """Steps short enough to draw the branch, however wide the range."""
+    default = Steps()
+    span = abs(asked.end - asked.begin) / float(system.reference_frequency)
+    largest = min(float(default.largest), span / _PARTS)
+    return Steps(first=min(float(default.first), largest), largest=largest)
 
 
 def _linear(task: RotorScene, linear: Rotor) -> RotorResponse:
@@ -157,7 +183,8 @@ def _linear(task: RotorScene, linear: Rotor) -> RotorResponse:
     stopped = None
     if not np.isfinite(motion).all():
         stopped = Result.NON_FINITE, "no equilibrium was found at some frequencies"
-    return RotorResponse("linear", frequency, np.abs(motion), moved, None, stopped)
+    none, size = np.zeros((0, *motion.shape[1:])), np.abs(motion)
+    return RotorResponse("linear", frequency, size, moved, None, none, stopped)
 
 
 def run_in_time(

@@ -8,13 +8,18 @@ import numpy as np
 from ..numerics.result import Result
 from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes
 from .files import write_numbers
+from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient
 from .rotor_run import RotorRun
+from .rotor_scene import RotorScene
+from .rotor_warnings import mode_numbers, rotor_warnings
 
 UNITS: dict[str, str] = dict(
     zip(STATION_FREEDOMS, ("m", "m", "m", "rad", "rad"), strict=True)
 )
 """Of the motions of a station."""
+SERIES = "response", "transient"
+"""What has a row per point, and one per time."""
 _TURN = 2.0 * np.pi
 
 
@@ -32,7 +37,8 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         `campbell`: `speed`, and `frequency`, `damping_ratio`, `whirl` (speed, mode);
         `response`: `method`, `frequency` [Hz], `coordinate` ("uy_1": uy of station 1),
         `amplitude` (point, coordinate), and unless it is linear `stable`,
-        `multipliers` (point, multiplier, real and imaginary part), `events`, `ending`;
+        `multipliers` (point, multiplier, real and imaginary part), `events` (`kind`,
+        `frequency` [Hz], `amplitude` (coordinate,)), `ending`;
         `transient`: `time`, `speed`, `coordinate`, `displacement` and `velocity`
         (time, coordinate). Parts that were not asked for or not solved are left out.
         And result, message, warnings and version.
@@ -57,7 +63,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         **parts,
         "result": worst.label,
         "message": rotor_message(run),
-        "warnings": list(run.warnings),
+        "warnings": rotor_warnings(run),
         "version": __version__,
     }
 
@@ -82,23 +88,51 @@ def write_rotor_json(path: str | Path, run: RotorRun) -> None:
     write_numbers(path, rotor_as_dict(run))
 
 
-def rotor_columns(run: RotorRun) -> dict[str, np.ndarray]:
+def rotor_series(task: RotorScene, wanted: str | None) -> str:
+    """Which series of a scene its table has, "response" or "transient".
+
+    Args:
+        task: From `read_rotor`.
+        wanted: One of them, or `None`: the one that the scene asks for.
+
+    Raises:
+        SceneError: If the scene does not ask for it, or asks for both and none is
+            wanted.
+    """
+    asked = [name for name in SERIES if getattr(task, name) is not None]
+    if wanted is None and len(asked) == 1:
+        return asked[0]
+    if wanted in asked:
+        return wanted
+    if wanted is None and asked:
+        raise SceneError(
+            f"{task.name}: has a [rotor.response] and a [rotor.transient]; say which of"
+            " them the table is to have, by --series response or --series transient"
+        )
+    tables = [wanted] if wanted is not None else SERIES
+    missing = " nor ".join(f"[rotor.{name}]" for name in tables)
+    raise SceneError(f"{task.name}: has no {missing}; a table has nothing to hold")
+
+
+def rotor_columns(run: RotorRun, series: str) -> dict[str, np.ndarray]:
     """A run as columns by header, "name [unit]".
 
     Args:
         run: From `run_rotor`.
+        series: "response" or "transient".
 
     Returns:
         Of the response a row for each point: frequency, whether it is stable, half of
-        peak to peak of every motion ("uy_1 [m]": of uy of station 1). Without response
-        a row for each time that was reached: time, speed, motions. Empty without both.
+        peak to peak of every motion ("uy_1 [m]": of uy of station 1). Of the motion in
+        time a row for each time that was reached: time, speed, motions. Empty if it
+        was not solved.
     """
-    if run.response is not None:
+    if series == "response" and run.response is not None:
         first = {"frequency [Hz]": run.response.frequency / _TURN}
         if run.response.branch is not None:
             first["stable"] = run.response.branch.stable
         return first | _of_motions(run.response.amplitude)
-    if run.transient is not None:
+    if series == "transient" and run.transient is not None:
         motion, seen = run.transient, slice(run.transient.reached)
         first = {"time [s]": motion.time[seen], "speed [rad/s]": motion.speed[seen]}
         return first | _of_motions(motion.displacement[seen])
@@ -121,22 +155,6 @@ def _of_motions(values):
 def _modes(found: Modes) -> dict[str, Any]:
     there = np.imag(found.eigenvalue) > 0
     return {name: values[there].tolist() for name, values in mode_numbers(found)}
-
-
-def mode_numbers(found: Modes) -> list[tuple[str, np.ndarray]]:
-    """Frequency [Hz], damping ratio and whirl of modes, over speeds too.
-
-    Args:
-        found: As NumPy holds it.
-    """
-    value = np.asarray(found.eigenvalue)
-    size = np.abs(value)
-    ratio = -np.real(value) / np.where(size == 0, 1.0, size)
-    return [
-        ("frequency", np.imag(value) / _TURN),
-        ("damping_ratio", np.where(size == 0, 0.0, ratio)),
-        ("whirl", np.asarray(found.whirl)),
-    ]
 
 
 def _critical(found: CriticalSpeeds) -> dict[str, Any]:
@@ -179,8 +197,12 @@ def _response(found: RotorResponse) -> dict[str, Any]:
         return whole
     both = np.stack([np.real(branch.multipliers), np.imag(branch.multipliers)], -1)
     events = [
-        {"kind": event.kind, "frequency": event.frequency / _TURN}
-        for event in branch.events
+        {
+            "kind": event.kind,
+            "frequency": event.frequency / _TURN,
+            "amplitude": amplitude.ravel().tolist(),
+        }
+        for event, amplitude in zip(branch.events, found.event_amplitude, strict=True)
     ]
     return whole | {
         "stable": branch.stable.tolist(),

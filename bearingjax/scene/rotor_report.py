@@ -4,19 +4,14 @@ import numpy as np
 
 from ..rotor import STATION_FREEDOMS
 from .rotor_motion import RotorResponse, RotorTransient
-from .rotor_output import mode_numbers
 from .rotor_run import RotorRun
+from .rotor_warnings import RPM, mode_numbers, rotor_warnings, rpm
 
 _RULE = "-" * 78
-_RPM = 30.0 / np.pi
 _HZ = 0.5 / np.pi
 _WHIRL = {1: "forward", -1: "backward", 0: "-"}
 _AXIAL = 0.9
 """Share of the largest motion above which a motion along the shaft is the mode [1]."""
-_NEAR = 0.1
-"""Share of a critical speed within which running is worth a word [1]."""
-_UNSTABLE = -1e-9
-"""Damping ratio below which a mode grows, not by round-off [1]."""
 
 
 def rotor_report(run: RotorRun) -> str:
@@ -38,49 +33,13 @@ def rotor_report(run: RotorRun) -> str:
         parts.append(_response(run, run.response))
     if run.transient is not None:
         parts.append(_transient(run, run.transient))
-    notes = [f"warning: {text}" for text in (*run.warnings, *rotor_warnings(run))]
+    notes = [f"warning: {text}" for text in rotor_warnings(run)]
     return f"\n{_RULE}\n".join(parts) + "".join(f"\n{note}" for note in notes)
-
-
-def rotor_warnings(run: RotorRun) -> list[str]:
-    """What is doubtful in the results of a run.
-
-    Args:
-        run: From `run_rotor`.
-    """
-    told = []
-    if run.modes is not None:
-        (_, frequency), (_, ratio), _ = mode_numbers(run.modes)
-        grows = (ratio < _UNSTABLE) & (frequency > 0)
-        if grows.any():
-            told.append(
-                f"unstable at {_rpm(run.task.speed)}: the mode of"
-                f" {frequency[grows][0]:.5g} Hz grows"
-            )
-    if run.critical is not None and run.task.speed:
-        speed, whirl = run.critical.speed, run.critical.whirl
-        near = np.abs(run.task.speed / speed - 1.0) < _NEAR
-        if (near & (whirl > 0)).any():
-            told.append(
-                f"{_rpm(run.task.speed)} lies within 10 % of the forward critical speed"
-                f" of {_rpm(speed[near & (whirl > 0)][0])}"
-            )
-    branch = None if run.response is None else run.response.branch
-    if branch is not None and not branch.stable.all():
-        told.append(
-            f"{int((~branch.stable).sum())} of {len(branch.stable)} periodic vibrations"
-            " are unstable: the rotor does not stay there"
-        )
-    return told
 
 
 def _length(run):
     """Of the shaft [m]."""
     return float(np.ptp(np.asarray(run.task.shaft.stations)))
-
-
-def _rpm(speed):
-    return f"{float(speed) * _RPM:.5g} rpm"
 
 
 def _head(run):
@@ -92,7 +51,7 @@ def _head(run):
     return (
         f"{task.name}: {kind} of {1e3 * (z[-1] - z[0]):.5g} mm, {task.shaft.n_segments}"
         f" segments, {task.shaft.n_nodes - 1} elements; {mass:.4g} kg; {gravity};"
-        f" {_rpm(task.speed)}"
+        f" {rpm(task.speed)}"
     )
 
 
@@ -150,7 +109,7 @@ def _modes(run):
     (_, frequency), (_, ratio), (_, whirl) = mode_numbers(run.modes)
     length = _length(run)
     lines = [
-        f"modes at {_rpm(run.task.speed)}:",
+        f"modes at {rpm(run.task.speed)}:",
         f"{'':>4}{'Hz':>12}{'rpm':>12}{'damping':>12}  whirl",
     ]
     there = frequency > 0
@@ -179,7 +138,7 @@ def _critical(run):
     rows = zip(*(np.asarray(part)[there] for part in parts), strict=True)
     for k, (speed, ratio, whirl, shape) in enumerate(rows):
         lines.append(
-            f"{k + 1:4d}{speed * _RPM:12.5g}{speed:12.5g}{_clean(ratio):12.4g}"
+            f"{k + 1:4d}{speed * RPM:12.5g}{speed:12.5g}{_clean(ratio):12.4g}"
             f"  {_whirl(whirl, shape, _length(run))}"
         )
     return "\n".join(lines)
@@ -191,7 +150,7 @@ def _campbell(run):
     first, last = run.task.campbell[0], run.task.campbell[-1]
     lines = [
         f"Campbell diagram at {len(run.task.campbell)} speeds, natural frequencies:",
-        f"{'':>4}{_rpm(first):>14}{_rpm(last):>14}",
+        f"{'':>4}{rpm(first):>14}{rpm(last):>14}",
     ]
     for k in np.flatnonzero(frequency.max(axis=0) > 0):
         lines.append(
@@ -223,13 +182,12 @@ def _response(run, found: RotorResponse):
     if branch is None:
         return "\n".join(lines)
     coordinate = STATION_FREEDOMS.index(asked.coordinate)
-    shown = found.amplitude[:, asked.station, coordinate]
     factor, unit = (1e6, "µm") if coordinate < 3 else (1e3, "mrad")
-    for event in branch.events:
+    for event, moved in zip(branch.events, found.event_amplitude, strict=True):
         kind = event.kind.replace("_", "-")
         lines.append(
             f"{kind} at {_HZ * event.frequency:.6g} Hz ({asked.coordinate} of station"
-            f" {asked.station}: {factor * shown[event.after]:.4g} {unit})"
+            f" {asked.station}: {factor * moved[asked.station, coordinate]:.4g} {unit})"
         )
     stable = int(branch.stable.sum())
     lines.append(
@@ -245,7 +203,7 @@ def _transient(run, found: RotorTransient):
         return "motion in time: none"
     lines = [
         f"motion in time to {time[n - 1]:.4g} s, {found.steps} steps;"
-        f" {_rpm(found.speed[0])} to {_rpm(found.speed[n - 1])}:"
+        f" {rpm(found.speed[0])} to {rpm(found.speed[n - 1])}:"
     ]
     for k, name in enumerate(run.task.station_names):
         moved = 1e6 * found.displacement[:n, k, :2]
@@ -255,7 +213,7 @@ def _transient(run, found: RotorTransient):
         lines.append(
             f"{name[:25]:<26}half of peak to peak ux {half[0]:.4g} µm, uy"
             f" {half[1]:.4g} µm; farthest {radius[when]:.4g} µm at {time[when]:.4g} s"
-            f" ({_rpm(found.speed[when])})"
+            f" ({rpm(found.speed[when])})"
         )
     return "\n".join(lines)
 

@@ -177,7 +177,7 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     settled = found["settled"]
     with parts.part("modes"):
         found["modes"] = _held(modes(settled.rotor, task.speed, count=count))
-    highest = _highest(task)
+    highest = top_speed(task)
     follows = _following(task, rotor, settled, highest, parts)
     if follows is None:
         return None
@@ -186,8 +186,8 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     if follows is not settled.rotor and (found["critical"].speed > highest).any():
         parts.warnings.append(
             f"above {highest * _RPM:.5g} rpm critical speeds are those of the stiffness"
-            " that bearings have there; it is known to the end of [rotor.campbell], or"
-            " twice the speed"
+            " that bearings have there; it is known to the highest speed of"
+            " [rotor.campbell] and [rotor.response], or to twice the speed"
         )
     if task.campbell is not None:
         with parts.part("campbell"):
@@ -213,13 +213,19 @@ def _following(task, rotor, settled, highest, parts) -> Rotor | None:
     return None
 
 
-def _highest(task: RotorScene) -> float:
-    """Speed up to which bearings follow it [rad/s]."""
+def top_speed(task: RotorScene) -> float:
+    """Speed up to which bearings follow it, the highest asked for or more [rad/s].
+
+    Args:
+        task: From `read_rotor`.
+    """
     speeds = [2.0 * abs(task.speed)]
     if task.campbell is not None:
-        speeds.append(float(task.campbell[-1]))
-    if task.response is not None and task.response.speed is None:
-        speeds += [task.response.begin, task.response.end]
+        speeds.append(float(np.abs(task.campbell).max()))
+    asked = task.response
+    if asked is not None:
+        ends = asked.begin, asked.end
+        speeds += ends if asked.speed is None else [abs(asked.speed)]
     return max(*speeds, 1.0)
 
 

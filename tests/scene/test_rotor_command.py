@@ -1,6 +1,7 @@
 """`bearingjax rotor`: exit status, files, and that they hold what the library says."""
 
 import csv
+import dataclasses
 import json
 import warnings
 
@@ -14,12 +15,16 @@ import bearingjax as bj
 from bearingjax.rotor import harmonic_response
 from bearingjax.rotor.vibration import Ending
 from bearingjax.scene import (
+    SceneError,
     read_rotor,
+    rotor_as_dict,
     rotor_report,
     rotor_run,
+    rotor_series,
     run_rotor,
     shipped_scenes,
 )
+from bearingjax.scene.rotor_warnings import rotor_warnings
 
 TURN = 2.0 * np.pi
 RPM = np.pi / 30.0
@@ -164,9 +169,44 @@ def test_what_is_not_asked_for_is_not_there(run, tmp_path):
     assert done.status == 0
     assert set(read(out)) == (PARTS | WORDS) - {"campbell", "response"}
     assert "Campbell" not in done.out and "response" not in done.out
-    done = run(*command(ON_SPRINGS, scene=str(path)), "--table", tmp_path / "a.csv")
-    assert done.status == 2
-    assert "there is nothing to write; the scene has no [rotor.response]" in done.err
+    for more, words in (
+        (["--table", tmp_path / "a.csv"], "no [rotor.response] nor [rotor.transient]"),
+        (["--series", "response"], "name it with --table"),
+    ):
+        done = run(*command(ON_SPRINGS, scene=str(path)), *more)
+        assert done.status == 2 and words in done.err
+
+
+IN_TIME = {"rotor.transient": "{duration='1 ms', n_times=3}"}
+
+
+def test_a_table_has_the_series_that_is_asked_for(run, tmp_path):
+    table = tmp_path / "a.csv"
+    given = command(FEW, ON_SPRINGS, LINEAR, IN_TIME)
+    done = run(*given, "--table", table)
+    assert done.status == 2 and "say which" in done.err and not table.exists()
+    done = run(*given, "--table", table, "--series", "transient")
+    assert done.status == 0, done.err
+    lines = table.read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith('"time [s]"') and len(lines) == 4
+    task = read_rotor("rotor_paper_12", settings(FEW, ON_SPRINGS, LINEAR, IN_TIME))
+    assert rotor_series(task, "response") == "response"
+    only = dataclasses.replace(task, response=None)
+    assert rotor_series(only, None) == "transient"
+    with pytest.raises(SceneError, match=r"has no \[rotor.response\]; a table"):
+        rotor_series(only, "response")
+
+
+def test_stiffness_over_the_speed_reaches_as_far_as_it_is_asked():
+    """Beyond the last speed a bearing's stiffness would silently stay what it is."""
+    for more, top in (
+        ({}, 16000.0),
+        ({"rotor.speed": "-9000 rpm"}, 18000.0),
+        ({"rotor.campbell.from": "-20000 rpm"}, 20000.0),
+        ({"rotor.response.speed": "30000 rpm"}, 30000.0),
+    ):
+        task = read_rotor("rotor_spindle", settings(more))
+        assert np.isclose(rotor_run.top_speed(task), top * RPM)
 
 
 def test_a_motion_in_time_settles_into_the_linear_response(run, tmp_path):
@@ -234,6 +274,11 @@ def test_a_linear_response_and_what_is_doubtful(monkeypatch):
     text = rotor_report(found)
     assert "warning: settle: the bearing on station 0 bears nothing" in text
     assert "43000 rpm lies within 10 % of the forward critical speed of 432" in text
+    assert all(words in text for words in rotor_as_dict(found)["warnings"])
+    assert len(rotor_as_dict(found)["warnings"]) == 2
+    backward = dataclasses.replace(task, speed=-task.speed)
+    other = rotor_warnings(dataclasses.replace(found, task=backward))
+    assert any("-43000 rpm lies within 10 %" in words for words in other)
 
 
 @pytest.mark.parametrize("part", ["static", "response"])

@@ -1,0 +1,73 @@
+"""What is doubtful in the run of a rotor, in words; and modes as plain numbers."""
+
+from typing import Any
+
+import numpy as np
+
+from ..rotor import Modes
+from .rotor_run import RotorRun
+
+RPM = 30.0 / np.pi
+"""Revolutions per minute of a speed [rpm s/rad]."""
+_TURN = 2.0 * np.pi
+_NEAR = 0.1
+"""Share of a critical speed within which running is worth a word [1]."""
+_UNSTABLE = -1e-9
+"""Damping ratio below which a mode grows, not by round-off [1]."""
+
+
+def rotor_warnings(run: RotorRun) -> list[str]:
+    """What is doubtful in the scene, in the solving and in the results of a run.
+
+    Args:
+        run: From `run_rotor`.
+    """
+    told = list(run.warnings)
+    if run.modes is not None:
+        (_, frequency), (_, ratio), _ = mode_numbers(run.modes)
+        grows = (ratio < _UNSTABLE) & (frequency > 0)
+        if grows.any():
+            told.append(
+                f"unstable at {rpm(run.task.speed)}: the mode of"
+                f" {frequency[grows][0]:.5g} Hz grows"
+            )
+    if run.critical is not None and run.task.speed:
+        speed, whirl = run.critical.speed, run.critical.whirl
+        near = np.abs(np.abs(run.task.speed) / speed - 1.0) < _NEAR
+        if (near & (whirl > 0)).any():
+            told.append(
+                f"{rpm(run.task.speed)} lies within 10 % of the forward critical speed"
+                f" of {rpm(speed[near & (whirl > 0)][0])}"
+            )
+    branch = None if run.response is None else run.response.branch
+    if branch is not None and not branch.stable.all():
+        told.append(
+            f"{int((~branch.stable).sum())} of {len(branch.stable)} periodic vibrations"
+            " are unstable: the rotor does not stay there"
+        )
+    return told
+
+
+def mode_numbers(found: Modes) -> list[tuple[str, np.ndarray]]:
+    """Frequency [Hz], damping ratio and whirl of modes, over speeds too.
+
+    Args:
+        found: As NumPy holds it.
+    """
+    value = np.asarray(found.eigenvalue)
+    size = np.abs(value)
+    ratio = -np.real(value) / np.where(size == 0, 1.0, size)
+    return [
+        ("frequency", np.imag(value) / _TURN),
+        ("damping_ratio", np.where(size == 0, 0.0, ratio)),
+        ("whirl", np.asarray(found.whirl)),
+    ]
+
+
+def rpm(speed: Any) -> str:
+    """A speed for people.
+
+    Args:
+        speed: [rad/s].
+    """
+    return f"{float(speed) * RPM:.5g} rpm"
