@@ -125,13 +125,19 @@ def read_transient(rotor: Table, shaft: Shaft, shown: int) -> TransientTask | No
     if not 0.0 < duration <= 1e4:
         problem = f"{duration:g} s is not allowed; above 0 and at most 10000 s"
         raise table.error("duration", problem)
+    speed_to = table.quantity("speed_to", "speed", None)
+    speed = rotor.quantity("speed", "speed", 0.0)
+    for place, key, value in ((rotor, "speed", speed), (table, "speed_to", speed_to)):
+        if value is not None and value < 0.0:
+            problem = f"{value:g} rad/s is not allowed with a motion in time; 0 or more"
+            raise place.error(key, problem)
     tolerance = table.number("tolerance", 1e-6)
     if not 1e-12 <= tolerance <= 1e-2:
         problem = f"{tolerance:g} is not allowed; from 1e-12 to 0.01"
         raise table.error("tolerance", problem)
     return TransientTask(
         duration=duration,
-        speed_to=table.quantity("speed_to", "speed", None),
+        speed_to=speed_to,
         n_times=_at_most(table, "n_times", 1001, 2, MOST_TIMES),
         tolerance=tolerance,
         max_steps=table.integer("max_steps", 200_000),

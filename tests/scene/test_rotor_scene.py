@@ -228,6 +228,10 @@ WRONG = {
         "rotor.transient={duration='1 s', tolerance=1}",
         "`rotor.transient.tolerance`: 1 is not allowed; from 1e-12 to 0.01",
     ),
+    "motion in time that turns back": (
+        "rotor.transient={duration='1 s', speed_to='-60 rpm'}",
+        "`rotor.transient.speed_to`: -6.28319 rad/s is not allowed with a motion in",
+    ),
     "times": (
         "rotor.transient={duration='1 s', n_times=100000}",
         "`rotor.transient.n_times`: 100000 is too many; at most 20000",
