@@ -39,3 +39,12 @@ from .rib import RIB_NAMES as RIB_NAMES
 from .rib import Rib as Rib
 from .rib import Ribs as Ribs
 from .tabulated import Tabulated as Tabulated
+from .tolerance import BALL_GRADES as BALL_GRADES
+from .tolerance import ROLLER_GRADES as ROLLER_GRADES
+from .tolerance import TOLERANCE_CLASSES as TOLERANCE_CLASSES
+from .tolerance import BallGrade as BallGrade
+from .tolerance import RollerGrade as RollerGrade
+from .tolerance import RunningAccuracy as RunningAccuracy
+from .tolerance import ball_grade as ball_grade
+from .tolerance import roller_grade as roller_grade
+from .tolerance import running_accuracy as running_accuracy
