@@ -19,7 +19,6 @@ from ..rotor.vibration import (
     HarmonicBalance,
     RotorVibration,
     Shooting,
-    Steps,
     follow,
     rotor_vibration,
     simulate,
@@ -27,8 +26,6 @@ from ..rotor.vibration import (
 from .rotor_scene import RotorScene
 from .rotor_supports import unit_of_length, with_passage
 
-_PARTS = 40
-"""Parts of the range of frequencies, of which a step along a branch is one at most."""
 _SAMPLES = 64
 """Phases at which a linear vibration is told."""
 _ENDINGS = {
@@ -138,7 +135,6 @@ def respond(
         as_array(asked.end, float),
         method,
         as_array(np.tile(rest, (samples, 1)), float),
-        steps=_steps(asked, system),
         points=asked.points,
     )
     moved = _at_stations(task, system, branch.displacement)
@@ -162,14 +158,6 @@ def respond(
 def _half_range(moved):
     """Half of peak to peak (point, …) of what moves (point, sample, …)."""
     return 0.5 * (moved.max(axis=1) - moved.min(axis=1))
-
-
-def _steps(asked, system) -> Steps:
-    """Steps short enough to draw the branch, however wide the range."""
-    default = Steps()
-    span = abs(asked.end - asked.begin) / float(system.reference_frequency)
-    largest = min(float(default.largest), span / _PARTS)
-    return Steps(first=min(float(default.first), largest), largest=largest)
 
 
 def _linear(task: RotorScene, linear: Rotor) -> RotorResponse:
