@@ -20,9 +20,10 @@ FLAGS = "--xla_backend_optimization_level=0"
 if jax.__version__ == "0.10.1":
     FLAGS += " --xla_cpu_use_fusion_emitters=false"
     FLAGS += " --xla_cpu_parallel_codegen_split_count=1"
-    # A program may wait forever for its own threads: two workers have no use for them.
-    FLAGS += " --xla_cpu_multi_thread_eigen=false"
 os.environ.setdefault("XLA_FLAGS", FLAGS)
+# One thread within a program. Two may wait for each other for ever: jaxlib 0.10 divides
+# a batch of matrices among the threads by one of them, which waits for the others.
+os.environ.setdefault("PJRT_NPROC", "1")
 
 jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_numpy_rank_promotion", "raise")

@@ -11,6 +11,7 @@ from jaxtyping import Array, Complex, Float, Int
 
 from ..design.checks import count as whole
 from ..design.checks import is_traced
+from ..numerics.eigen import eigh
 from ..numerics.implicit import stop
 from ..numerics.types import as_count
 from .damping import mass_normal
@@ -177,7 +178,7 @@ def _undamped(matrices: RotorMatrices, count):
     """
     factor = jnp.linalg.cholesky(matrices.mass)
     stiffness = mass_normal(factor, matrices.stiffness)
-    squares, basis = jnp.linalg.eigh(0.5 * (stiffness + stiffness.T))
+    squares, basis = eigh(stiffness)
     gyroscopic = basis.T @ mass_normal(factor, matrices.gyroscopic) @ basis
     n = squares.shape[0]
     eye = jnp.eye(n, dtype=squares.dtype)
@@ -192,7 +193,7 @@ def _undamped(matrices: RotorMatrices, count):
         jnp.where(free, 0.0, 1.0 / jnp.sqrt(jnp.where(free, 1.0, squares)))
     )
     small = softness[:, None] * (s + s @ follow) * softness[None, :]
-    values, vectors = jnp.linalg.eigh(small)
+    values, vectors = eigh(small)
     values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
     there = values > 0
     speed = jnp.where(there, 1.0 / jnp.sqrt(jnp.where(there, values, 1.0)), 0.0)

@@ -8,6 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..design.checks import non_negative
+from ..numerics.eigen import eigh
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 
@@ -126,7 +127,7 @@ def _square_root_rule(primals, tangents):
 
 def _roots(matrix):
     """Roots of the eigenvalues, and eigenvectors; round-off about zero is zero."""
-    values, vectors = jnp.linalg.eigh(matrix)
+    values, vectors = eigh(matrix)
     size = values.shape[0]
     floor = 10.0 * size * jnp.finfo(matrix.dtype).eps * values[-1]
     zero = values <= floor

@@ -8,6 +8,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from ..numerics.eigen import eigh
 from ..numerics.types import as_count
 from .damping import mass_normal
 from .rotor import N_HOUSING, N_STATION, Rotor
@@ -61,7 +62,7 @@ def craig_bampton(rotor: Rotor, modes: Any) -> Basis:
         return shapes
     mass, stiffness = (lax.stop_gradient(m[inner]) for m in (own.mass, own.stiffness))
     factor = jnp.linalg.cholesky(mass)
-    _, vectors = jnp.linalg.eigh(mass_normal(factor, stiffness))
+    _, vectors = eigh(mass_normal(factor, stiffness))
     clamped = jax.scipy.linalg.solve_triangular(factor.T, vectors[:, :count])
     body = jnp.stack(_sizes(lax.stop_gradient(rotor.shaft.stations)))
     places = rest[rest < N_STATION * rotor.shaft.n_nodes] % N_STATION

@@ -13,6 +13,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..design.checks import is_traced, number
+from ..numerics.eigen import eigh
 from ..numerics.implicit import attach_by, recall, stop, unless_failed
 from ..numerics.linear import solve
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
@@ -226,7 +227,7 @@ def settled_at(rotor, loads, speed) -> tuple[Settled, Float[Array, " motion"]]:
 def _free(parts, slope):
     """The softest motion, if it is free."""
     known = jnp.where(jnp.isfinite(slope), slope, 0.0)
-    values, vectors = jnp.linalg.eigh(0.5 * (known + known.T))
+    values, vectors = eigh(known)
     moved = parts.back @ vectors[:, 0]
     loose = values[0] <= _FREE * jnp.max(jnp.diagonal(known))
     return jnp.where(loose, moved, 0.0)
