@@ -110,6 +110,8 @@ def test_the_simplest_name_wins():
     assert only(near - 0.3, tolerance=10.0) == "cage"
     assert only(near + 0.3, tolerance=10.0) == "shaft"
     assert only(near, tolerance=1.0) == "unnamed"
+    # A sideband counts as a harmonic does.
+    assert only(INNER - 2 * SHAFT, tolerance=20.0) == "BPFO"
     # A natural frequency gives way to what the rolling makes.
     own = {"low mode": OUTER + 0.01, "high mode": 900.0}
     assert only(OUTER, natural=own) == "BPFO"
