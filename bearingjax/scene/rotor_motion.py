@@ -19,6 +19,7 @@ from ..rotor.vibration import (
     HarmonicBalance,
     RotorVibration,
     Shooting,
+    Steps,
     follow,
     rotor_vibration,
     simulate,
@@ -26,6 +27,8 @@ from ..rotor.vibration import (
 from .rotor_scene import RotorScene
 from .rotor_supports import unit_of_length, with_passage
 
+_PARTS = 40
+"""Parts of the range of frequencies; a step of a branch spans one at most."""
 _SAMPLES = 64
 """Phases at which a linear vibration is told."""
 _ENDINGS = {
@@ -129,12 +132,14 @@ def respond(
     )
     samples = asked.steps if asked.method == "shooting" else asked.samples
     rest = np.asarray(system.freedoms(settled.motion))
+    unit = float(system.reference_frequency)
     branch = follow(
         system,
         as_array(asked.begin, float),
         as_array(asked.end, float),
         method,
         as_array(np.tile(rest, (samples, 1)), float),
+        steps=Steps(frequency=abs(asked.end - asked.begin) / (_PARTS * unit)),
         points=asked.points,
     )
     moved = _at_stations(task, system, branch.displacement)

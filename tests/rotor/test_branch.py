@@ -97,8 +97,11 @@ def test_nothing_is_compiled_anew(branches):
 def test_flips_and_branch_points_of_mathieu():
     """On the branch at rest of a stiffness that varies by 0.4."""
     system = oscillator(Spring(jnp.asarray(0.1), jnp.asarray(0.4)))
-    steps = Steps(first=0.02, largest=0.02)
+    steps = Steps(first=0.01, largest=0.02, frequency=0.01)
     branch = follow(system, 0.9, 2.4, SHOOTING, steps=steps)
+    assert np.diff(branch.frequency).max() < 0.01 * float(
+        system.reference_frequency
+    ) * (1.0 + DIFFERENCE)
 
     def boundary(characteristic, order, low, high):
         def apart(w):

@@ -88,6 +88,7 @@ class Steps(eqx.Module):
         largest: Longest step [1].
         newton: N_opt [1].
         turn: Most by which the branch may turn in a step [rad].
+        frequency: Longest step in the frequency ratio alone, as along the tangent [1].
 
     Traced: all fields.
     """
@@ -97,6 +98,9 @@ class Steps(eqx.Module):
     largest: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.1)
     newton: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=3.0)
     turn: Scalar = eqx.field(converter=as_real, metadata=unit("rad"), default=0.5)
+    frequency: Scalar = eqx.field(
+        converter=as_real, metadata=unit("1"), default=float("inf")
+    )
 
 
 class Traced(NamedTuple):
@@ -267,7 +271,9 @@ def trace(
         )
         needed = jnp.maximum(new.newton, 1).astype(x.dtype)
         factor = jnp.clip(steps.newton / needed, 0.5, 2.0)
-        longer = jnp.minimum(state.step * factor, steps.largest)
+        share = jnp.maximum(jnp.abs(new.tangent[-1]), jnp.finfo(x.dtype).tiny)
+        largest = jnp.minimum(steps.largest, steps.frequency / share)
+        longer = jnp.minimum(state.step * factor, largest)
         step = jnp.where(good, jnp.where(first, state.step, longer), 0.5 * state.step)
         count = state.count + good.astype(jnp.int32)
         outside = (new.x[-1] <= low) | (new.x[-1] >= high)
