@@ -67,6 +67,7 @@ def ball_elements():
         shim_angle=20 * _DEG,
         radial_internal_clearance=-3e-6,
         ball_deviation=[0.0, 2e-6, -1e-6, 0.0, 1e-6, 0.0],
+        raceway_deviation=1e-6 * np.sin(np.arange(36.0)).reshape(6, 2, 3),
     )
     unlike = bj.BearingSet(
         (

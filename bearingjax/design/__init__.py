@@ -23,6 +23,7 @@ from .bearing_set import pitch_radius as pitch_radius
 from .bearing_set import rows_of as rows_of
 from .deviation import Deviation as Deviation
 from .deviation import deviation_of as deviation_of
+from .deviation import with_raceways as with_raceways
 from .logarithmic import FujiwaraKawase as FujiwaraKawase
 from .logarithmic import JohnsGohar as JohnsGohar
 from .logarithmic import Logarithmic as Logarithmic

@@ -26,7 +26,7 @@ from .checks import (
     number,
     positive,
 )
-from .deviation import check_deviation, check_spacing
+from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
 
 
@@ -67,6 +67,9 @@ class AbstractBallBearing(eqx.Module):
             `None`: all equal.
         azimuth_deviation: Azimuth of each ball less that of even spacing (ball,)
             [rad]; `None`: evenly spaced.
+        raceway_deviation: How each ball finds the outer and the inner raceway
+            (ball, 2, 3) [m]: the groove so much further along z and from the axis, the
+            contact so much raised along its normal; `None`: as on the drawing.
         outer_shoulder: Height of the outer shoulders above the groove bottom [m];
             `None`: unknown, and truncation is not checked.
         inner_shoulder: Height of the inner shoulders above the groove bottom [m].
@@ -91,6 +94,9 @@ class AbstractBallBearing(eqx.Module):
     )
     azimuth_deviation: Float[Array, " ball"] | None = eqx.field(
         converter=as_real, metadata=unit("rad"), default=None, kw_only=True
+    )
+    raceway_deviation: Float[Array, "ball 2 3"] | None = eqx.field(
+        converter=as_real, metadata=unit("m"), default=None, kw_only=True
     )
     outer_shoulder: Scalar | None = eqx.field(
         converter=as_real, metadata=unit("m"), default=None, kw_only=True
@@ -235,6 +241,7 @@ class AbstractBallBearing(eqx.Module):
             return
         ball, *distances = numbers
         check_spacing(self, self.n_balls, ball)
+        check_raceways(self, self.n_balls, min(distances))
         if value is None:
             return
         # A ball with the radius of its groove has no point contact.

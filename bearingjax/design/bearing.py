@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 from .checks import check, concrete, count, in_range, instance, number, positive
-from .deviation import check_deviation, check_spacing
+from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
 from .profile import AbstractProfile, Straight
 from .rib import Ribs
@@ -33,6 +33,9 @@ class AbstractRollerBearing(eqx.Module):
             (roller,) [m]; `None`: all equal.
         azimuth_deviation: Azimuth of each roller less that of even spacing (roller,)
             [rad]; `None`: evenly spaced.
+        raceway_deviation: How each roller finds the outer and the inner raceway
+            (roller, 2, 3) [m]: the raceway so much further along z and from the axis,
+            the contact so much raised along its normal; `None`: as on the drawing.
         roller_profile: Profile of the rollers.
         outer_raceway_profile: Profile of the outer raceway.
         inner_raceway_profile: Profile of the inner raceway.
@@ -56,6 +59,9 @@ class AbstractRollerBearing(eqx.Module):
     )
     azimuth_deviation: Float[Array, " roller"] | None = eqx.field(
         converter=as_real, metadata=unit("rad"), default=None, kw_only=True
+    )
+    raceway_deviation: Float[Array, "roller 2 3"] | None = eqx.field(
+        converter=as_real, metadata=unit("m"), default=None, kw_only=True
     )
     roller_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
     outer_raceway_profile: AbstractProfile = eqx.field(
@@ -130,6 +136,7 @@ class AbstractRollerBearing(eqx.Module):
             return
         diameter = numbers[0]
         check_spacing(self, self.n_rollers, diameter)
+        check_raceways(self, self.n_rollers, 0.5 * diameter)
         if value is not None:
             allowed = f"smaller in size than the roller diameter, {diameter:.6g} m"
             check(self, "roller_deviation", abs(value) < diameter, allowed)

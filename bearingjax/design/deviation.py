@@ -2,11 +2,15 @@
 
 from typing import Any, NamedTuple
 
+import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.units import unit_of
 from .checks import check, concrete, is_real, is_traced
+
+RAISED = 2
+"""Place of the third number of `Deviation.raceway`."""
 
 
 class Deviation(NamedTuple):
@@ -18,10 +22,23 @@ class Deviation(NamedTuple):
     Attributes:
         diameter: Its diameter less the common one (element,) [m].
         azimuth: Its azimuth less that of even spacing (element,) [rad].
+        raceway: How it finds the outer and the inner raceway (element, 2, 3) [m]: so
+            much further along z, so much further from the axis, and the contact so
+            much raised along its normal, by material on the raceway or on the element.
     """
 
-    diameter: Float[Array, "..."] | None
-    azimuth: Float[Array, "..."] | None
+    diameter: Float[Array, "..."] | None = None
+    azimuth: Float[Array, "..."] | None = None
+    raceway: Float[Array, "..."] | None = None
+
+    @property
+    def makes_unlike(self) -> bool:
+        """Whether the elements themselves differ. Static."""
+        return self.diameter is not None or self.raceway is not None
+
+
+AS_DRAWN = Deviation()
+"""No deviation."""
 
 
 def deviation_of(bearing: Any) -> Deviation:
@@ -29,7 +46,19 @@ def deviation_of(bearing: Any) -> Deviation:
     diameter = getattr(bearing, "ball_deviation", None)
     if diameter is None:
         diameter = getattr(bearing, "roller_deviation", None)
-    return Deviation(diameter, bearing.azimuth_deviation)
+    return Deviation(diameter, bearing.azimuth_deviation, bearing.raceway_deviation)
+
+
+def with_raceways(bearing: Any, deviation: Float[Array, "element 2 3"]) -> Any:
+    """A single row whose elements find its raceways elsewhere, also under `jit`.
+
+    Args:
+        bearing: The design.
+        deviation: `Deviation.raceway` [m].
+    """
+    return eqx.tree_at(
+        lambda b: b.raceway_deviation, bearing, deviation, is_leaf=lambda x: x is None
+    )
 
 
 def check_deviation(owner: Any, name: str, count: int, what: str) -> np.ndarray | None:
@@ -64,6 +93,32 @@ def check_deviation(owner: Any, name: str, count: int, what: str) -> np.ndarray 
         )
     check(owner, name, np.isfinite(value), "finite")
     return np.asarray(value)
+
+
+def check_raceways(owner: Any, count: int, most: float) -> None:
+    """Raise unless `raceway_deviation` is as `Deviation.raceway` says.
+
+    Args:
+        owner: The bearing.
+        count: Number of rolling elements.
+        most: What each number must stay below in size [m].
+    """
+    name, kind = "raceway_deviation", type(owner).__name__
+    value = getattr(owner, name)
+    if value is None:
+        return
+    if not is_real(value):
+        raise TypeError(f"{kind}: `{name}` is {value!r}; it must be numbers in m.")
+    if np.shape(value) != (count, 2, 3):
+        raise ValueError(
+            f"{kind}: `{name}` has shape {np.shape(value)}; it must be"
+            f" ({count}, 2, 3): of each rolling element, at the outer and the inner"
+            " raceway, how far that stands along z and outwards, and how far the"
+            " contact is raised, in m."
+        )
+    if not is_traced(value):
+        check(owner, name, np.isfinite(value), "finite")
+        check(owner, name, np.abs(value) < most, f"below {most:.6g} m in size")
 
 
 def check_spacing(owner: Any, count: int, diameter: float) -> None:

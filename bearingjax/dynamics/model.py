@@ -89,7 +89,8 @@ class SkidModel(eqx.Module):
                 f"SkidModel: `element` is of a {kind}; it must be of one ball bearing,"
                 " or of one bearing of cylindrical or needle rollers."
             )
-        for name in ("ball_deviation", "roller_deviation", "azimuth_deviation"):
+        names = "ball_deviation", "roller_deviation", "azimuth_deviation"
+        for name in (*names, "raceway_deviation"):
             if getattr(bearing, name, None) is not None:
                 raise ValueError(
                     f"SkidModel: `element` has a `{name}`; all balls or rollers must"

@@ -403,11 +403,13 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
     def _row(self, part: SetRow, speed, alone) -> Row:
         bearing, deviation = part.bearing, deviation_of(part.bearing)
 
-        def one(diameter):
-            return self.choices.rolling_element(part, speed, diameter)
+        def one(deviation):
+            return self.choices.rolling_element(part, speed, deviation)
 
-        unlike = deviation.diameter is not None
-        element = jax.vmap(one)(deviation.diameter) if unlike else one(None)
+        unlike = deviation.makes_unlike
+        element = jax.vmap(one)(deviation) if unlike else one(deviation)
+        raceway = deviation.raceway
+        shift = None if raceway is None else raceway[:, :, :2]
         place = None
         if not alone:
             none = jnp.zeros_like(part.position)
@@ -417,4 +419,4 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             place = Place(*((none, sign, none) if itself else (position, sign, offset)))
         radius = 0.5 * bearing.pitch_diameter
         azimuth, ratio = azimuths(bearing), orbit_ratio(bearing)
-        return Row(element, azimuth, ratio, radius, place, part.spring, unlike)
+        return Row(element, azimuth, shift, ratio, radius, place, part.spring, unlike)

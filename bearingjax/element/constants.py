@@ -14,6 +14,7 @@ from ..contact.hertz import sphere_constant
 from ..contact.line import AbstractLineLaw, relative_radius
 from ..contact.line_contact import AbstractLineContact, LineContact
 from ..design.bearing import AbstractRollerBearing
+from ..design.deviation import AS_DRAWN, RAISED, Deviation
 from ..design.material import contact_modulus
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Scalar
@@ -64,7 +65,7 @@ class ContactConstants(eqx.Module):
         pitch_radius: Radius of the circle of roller centres [m].
         diameter: Mean roller diameter [m].
         half_length: Half the roller length [m].
-        gap: Gap at each raceway, unloaded and centred [m].
+        gap: Gap at the outer and the inner raceway, unloaded and centred (2,) [m].
         tether: Tether spring constant [N/m].
         density: Density of the roller [kg/m³].
         modulus: Contact modulus E* of roller and ring [Pa].
@@ -78,7 +79,7 @@ class ContactConstants(eqx.Module):
     pitch_radius: Scalar
     diameter: Scalar
     half_length: Scalar
-    gap: Scalar
+    gap: Float[Array, "2"]
     tether: Scalar
     density: Scalar
     modulus: Scalar
@@ -98,7 +99,7 @@ def contact_constants(
     bearing: AbstractRollerBearing,
     line_law: AbstractLineLaw,
     quadrature: AbstractQuadrature,
-    deviation: Scalar | None = None,
+    deviation: Deviation = AS_DRAWN,
 ) -> ContactConstants:
     """Constants of every contact of a roller.
 
@@ -106,17 +107,19 @@ def contact_constants(
         bearing: The design.
         line_law: Law that gives the line constant.
         quadrature: Rule whose tables are wanted.
-        deviation: Mean diameter of this roller less the common one [m]; the raceways
-            stay where they are.
+        deviation: How this roller differs from the design; the raceways stay where
+            they are.
 
     Returns:
         Constants, differentiable with respect to every real number of the design.
     """
     length, diameter = bearing.roller_length, bearing.roller_diameter
-    gap = 0.25 * bearing.radial_internal_clearance
-    if deviation is not None:
-        diameter = diameter + deviation
-        gap = gap - 0.5 * deviation * jnp.cos(bearing.half_angle)
+    gap = jnp.repeat(0.25 * bearing.radial_internal_clearance, 2)
+    if deviation.diameter is not None:
+        diameter = diameter + deviation.diameter
+        gap = gap - 0.5 * deviation.diameter * jnp.cos(bearing.half_angle)
+    if deviation.raceway is not None:
+        gap = gap - deviation.raceway[:, RAISED]
     constant = line_law.constant(bearing.material, bearing.rings, length)
 
     def line(raceway_profile):

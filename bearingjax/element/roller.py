@@ -104,7 +104,7 @@ class RollerSeeking(Seeking):
 
     @property
     def gap(self):
-        return jnp.abs(self.element.constants.gap)
+        return jnp.max(jnp.abs(self.element.constants.gap))
 
     def reach(self, rings):
         t, m, tilt = jnp.abs(rings.between)

@@ -75,8 +75,7 @@ class LinearisedRoller(AbstractRollerGeometry):
         half = jnp.asarray([-0.5 if outer else 0.5 for outer in on_outer], rows.dtype)
         one = jnp.ones_like(constants.half_length)
         scale = jnp.stack([one, one, 1.0 / constants.half_length])
-        none = jnp.zeros_like(constants.gap)
-        start = jnp.stack([-constants.gap, none, -constants.gap, none])
+        start = jnp.ravel(jnp.stack([-constants.gap, 0.0 * constants.gap], axis=1))
         if ribs is not None:
             start = jnp.concatenate([start, -ribs.gap])
         return cls(start, half[:, None] * rows, -scale[None] * rows)
@@ -111,13 +110,13 @@ class FiniteRoller(AbstractRollerGeometry):
         place = jnp.stack([jnp.zeros_like(c.pitch_radius), c.pitch_radius])
         out = []
         sin, cos = jnp.sin(c.half_angle), jnp.cos(c.half_angle)
-        for ring, sign in ((outer, 1.0), (inner, -1.0)):
+        for k, (ring, sign) in enumerate(((outer, 1.0), (inner, -1.0))):
             normal = axes @ jnp.stack([sin, sign * cos])
             direction = axes @ jnp.stack([cos, -sign * sin])
             middle = place + axes @ jnp.stack([0.0 * cos, sign * 0.5 * c.diameter])
             moved = _displacement(ring, middle) - _displacement(roller, middle)
             turned = _turn(ring[2], direction) - _turn(roller[2], direction)
-            out += [-c.gap - normal @ moved, -c.half_length * (normal @ turned)]
+            out += [-c.gap[k] - normal @ moved, -c.half_length * (normal @ turned)]
         ribs = c.ribs
         for k, on_outer in enumerate(() if ribs is None else ribs.on_outer):
             assert ribs is not None

@@ -46,6 +46,8 @@ class Row(eqx.Module):
         element: One rolling element, common to all; of unlike elements, with a leading
             axis.
         azimuth: Of every element for rings that have not turned [rad].
+        shift: How far outer and inner raceway stand along z and from the axis where
+            each element is [m]; `None`: as on the drawing.
         ratio: G = D cos α/d_m, with which the elements orbit [1].
         pitch_radius: Of the circle of their centres [m].
         place: Its place in a set; `None`: the row is the bearing.
@@ -55,6 +57,7 @@ class Row(eqx.Module):
 
     element: Any
     azimuth: Azimuth
+    shift: Float[Array, "element 2 2"] | None
     ratio: Scalar
     pitch_radius: Scalar
     place: Place | None
@@ -245,13 +248,14 @@ class Row(eqx.Module):
             azimuth: Where its elements are.
         """
 
-        def one(element, azimuth):
+        def one(element, azimuth, *shift):
             axes = element.axes(azimuth)
+            rings = _shifted(local, azimuth, shift[0]) if shift else local
             if element.sees_difference:
-                return axes @ local.between
-            return jnp.concatenate([axes @ local.outer, axes @ local.inner])
+                return axes @ rings.between
+            return jnp.concatenate([axes @ rings.outer, axes @ rings.inner])
 
-        return self.each(one, azimuth)
+        return self.each(one, azimuth, *(() if self.shift is None else (self.shift,)))
 
     def unsolved(self) -> SolvedRow:
         """A row of which nothing is known yet, in the shape of a solved one."""
@@ -268,6 +272,16 @@ class Row(eqx.Module):
         travel = () if self.spring is None else zero
         balance = () if self.spring is None else jnp.zeros((), jnp.int32)
         return SolvedRow(rings, magnitude, state, energies, travel, balance)
+
+
+def _shifted(local, azimuth, shift) -> RingMotion:
+    """The rings as an element sees them: a raceway that stands elsewhere has moved."""
+    axial, outwards = shift[:, 0], shift[:, 1]
+    x, y = outwards * jnp.cos(azimuth), outwards * jnp.sin(azimuth)
+    moved = jnp.stack([x, y, axial], axis=1)
+    return RingMotion(
+        *(ring.at[:3].add(m) for ring, m in zip(local, moved, strict=True))
+    )
 
 
 _CLOSING = len(FREEDOMS) + _UZ
