@@ -24,6 +24,10 @@ from .bearing_set import rows_of as rows_of
 from .deviation import Deviation as Deviation
 from .deviation import deviation_of as deviation_of
 from .deviation import with_raceways as with_raceways
+from .form_error import FormErrors as FormErrors
+from .form_error import Harmonics as Harmonics
+from .form_error import RacewayErrors as RacewayErrors
+from .form_error import Spall as Spall
 from .logarithmic import FujiwaraKawase as FujiwaraKawase
 from .logarithmic import JohnsGohar as JohnsGohar
 from .logarithmic import Logarithmic as Logarithmic

@@ -9,9 +9,6 @@ from jaxtyping import Array, Float
 from ..numerics.units import unit_of
 from .checks import check, concrete, is_real, is_traced
 
-RAISED = 2
-"""Place of the third number of `Deviation.raceway`."""
-
 
 class Deviation(NamedTuple):
     """Differences of every rolling element of a row from the design.
@@ -35,10 +32,6 @@ class Deviation(NamedTuple):
     def makes_unlike(self) -> bool:
         """Whether the elements themselves differ. Static."""
         return self.diameter is not None or self.raceway is not None
-
-
-AS_DRAWN = Deviation()
-"""No deviation."""
 
 
 def deviation_of(bearing: Any) -> Deviation:

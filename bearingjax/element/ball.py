@@ -1,5 +1,6 @@
 """One ball between its rings: its contacts with the grooves, and how it is carried."""
 
+import dataclasses
 from typing import ClassVar
 
 import equinox as eqx
@@ -69,6 +70,12 @@ class Ball(AbstractRollingElement):
 
     def axes(self, azimuth):
         return self.geometry.axes(azimuth)
+
+    def raised(self, heights):
+        of_contacts = jnp.repeat(heights, len(self.grooves.on_outer) // 2)
+        reach = self.grooves.reach - of_contacts
+        grooves = dataclasses.replace(self.grooves, reach=reach)
+        return dataclasses.replace(self, grooves=grooves)
 
     def coordinates(self, rings, x):
         return self.geometry.moved(rings, x)

@@ -404,7 +404,9 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         bearing, deviation = part.bearing, deviation_of(part.bearing)
 
         def one(deviation):
-            return self.choices.rolling_element(part, speed, deviation)
+            found = self.choices.rolling_element(part, speed, deviation.diameter)
+            raceway = deviation.raceway
+            return found if raceway is None else found.raised(raceway[:, 2])
 
         unlike = deviation.makes_unlike
         element = jax.vmap(one)(deviation) if unlike else one(deviation)

@@ -18,9 +18,9 @@ from ..contact.line import AbstractLineLaw, Palmgren
 from ..contact.point_law import AbstractPointLaw, FreeAngle, balls_of
 from ..design import AbstractBallBearing, AbstractRollerBearing, SetRow
 from ..design.ball_types import SelfAligningBallRow, ThrustBallBearing
-from ..design.deviation import RAISED, Deviation
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
+from ..numerics.types import Scalar
 from .ball import Ball
 from .ball_contacts import GrooveGeometry
 from .ball_inertia import turning
@@ -85,14 +85,14 @@ class AbstractChoices(eqx.Module):
 
     @abc.abstractmethod
     def rolling_element(
-        self, part: SetRow, speed: Speed | None, deviation: Deviation
+        self, part: SetRow, speed: Speed | None, deviation: Scalar | None
     ) -> AbstractRollingElement:
         """One rolling element of a row.
 
         Args:
             part: The row and its place.
             speed: Ring speeds or `None`.
-            deviation: How this one differs from the design.
+            deviation: Diameter of this one less the common one [m]; `None`: it is.
         """
 
     def check(self, part: SetRow, speed: Speed | None) -> None:
@@ -216,20 +216,16 @@ class BallChoices(AbstractChoices):
         bearing: Any = part.bearing
         diameter = bearing.ball_diameter
         balls, grooves = balls_of(bearing), bearing.grooves
-        if deviation.diameter is not None:
-            diameter = diameter + deviation.diameter
+        if deviation is not None:
+            diameter = diameter + deviation
             balls = balls._replace(diameter=diameter)
-        reach = jnp.stack([g.radius - 0.5 * diameter for g in grooves])
-        if deviation.raceway is not None:
-            raised = deviation.raceway[:, RAISED]
-            reach = reach - jnp.repeat(raised, len(grooves) // 2)
         control, law = self.raceway_control, self.point_law
         inertia = None if speed is None else turning(bearing, diameter, speed, control)
         centres = jnp.stack([jnp.stack([g.axial, g.radial]) for g in grooves])
         geometry = GrooveGeometry(
             start=-centres,
             free=-centres / jnp.sqrt(jnp.sum(centres**2, axis=1, keepdims=True)),
-            reach=reach,
+            reach=jnp.stack([g.radius - 0.5 * diameter for g in grooves]),
             on_outer=tuple(g.on_outer for g in grooves),
             open_side=tuple(g.open_side for g in grooves),
             washers=isinstance(bearing, ThrustBallBearing),

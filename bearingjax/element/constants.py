@@ -14,7 +14,6 @@ from ..contact.hertz import sphere_constant
 from ..contact.line import AbstractLineLaw, relative_radius
 from ..contact.line_contact import AbstractLineContact, LineContact
 from ..design.bearing import AbstractRollerBearing
-from ..design.deviation import AS_DRAWN, RAISED, Deviation
 from ..design.material import contact_modulus
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Scalar
@@ -99,7 +98,7 @@ def contact_constants(
     bearing: AbstractRollerBearing,
     line_law: AbstractLineLaw,
     quadrature: AbstractQuadrature,
-    deviation: Deviation = AS_DRAWN,
+    deviation: Scalar | None = None,
 ) -> ContactConstants:
     """Constants of every contact of a roller.
 
@@ -107,19 +106,17 @@ def contact_constants(
         bearing: The design.
         line_law: Law that gives the line constant.
         quadrature: Rule whose tables are wanted.
-        deviation: How this roller differs from the design; the raceways stay where
-            they are.
+        deviation: Mean diameter of this roller less the common one [m]; the raceways
+            stay where they are.
 
     Returns:
         Constants, differentiable with respect to every real number of the design.
     """
     length, diameter = bearing.roller_length, bearing.roller_diameter
     gap = jnp.repeat(0.25 * bearing.radial_internal_clearance, 2)
-    if deviation.diameter is not None:
-        diameter = diameter + deviation.diameter
-        gap = gap - 0.5 * deviation.diameter * jnp.cos(bearing.half_angle)
-    if deviation.raceway is not None:
-        gap = gap - deviation.raceway[:, RAISED]
+    if deviation is not None:
+        diameter = diameter + deviation
+        gap = gap - 0.5 * deviation * jnp.cos(bearing.half_angle)
     constant = line_law.constant(bearing.material, bearing.rings, length)
 
     def line(raceway_profile):

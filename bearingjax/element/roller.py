@@ -1,5 +1,6 @@
 """One roller between its rings: its contacts with raceways and ribs."""
 
+import dataclasses
 from typing import Any, ClassVar
 
 import jax
@@ -47,6 +48,12 @@ class Roller(AbstractRollingElement):
     def axes(self, azimuth):
         c = self.constants
         return to_roller_axes(c.axis_angle, c.pitch_radius) @ section_matrix(azimuth)
+
+    def raised(self, heights):
+        constants = self.constants
+        constants = dataclasses.replace(constants, gap=constants.gap - heights)
+        geometry = self.geometry.raised(heights)
+        return dataclasses.replace(self, constants=constants, geometry=geometry)
 
     def coordinates(self, rings, x):
         return self.geometry.approaches(rings, x)

@@ -9,6 +9,7 @@ are counted from the mean of both rings, with the tilt times half the length.
 """
 
 import abc
+import dataclasses
 from typing import NamedTuple
 
 import equinox as eqx
@@ -49,6 +50,14 @@ class AbstractRollerGeometry(eqx.Module):
             x: The roller's own unknowns (3,) [m].
         """
 
+    @abc.abstractmethod
+    def raised(self, heights: Float[Array, "2"]) -> "AbstractRollerGeometry":
+        """The same with material added along the normals of both raceways.
+
+        Args:
+            heights: At the outer and the inner raceway [m].
+        """
+
 
 class LinearisedRoller(AbstractRollerGeometry):
     """Small rotations: the displacement of a point (z, r) is (u - r θ, v + z θ).
@@ -84,6 +93,10 @@ class LinearisedRoller(AbstractRollerGeometry):
     def is_linear(self):
         return True
 
+    def raised(self, heights):
+        more = jnp.ravel(jnp.stack([heights, 0.0 * heights], axis=1))
+        return dataclasses.replace(self, start=self.start.at[:4].add(more))
+
     def approaches(self, rings, x):
         moved = self.of_rings * rings.between[None] + self.of_own * x[None]
         return _named(self.start + jnp.sum(moved, axis=1))
@@ -100,6 +113,10 @@ class FiniteRoller(AbstractRollerGeometry):
     @property
     def is_linear(self):
         return False
+
+    def raised(self, heights):
+        gap = self.constants.gap - heights
+        return FiniteRoller(dataclasses.replace(self.constants, gap=gap))
 
     def approaches(self, rings, x):
         c = self.constants

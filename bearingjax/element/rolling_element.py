@@ -80,6 +80,20 @@ class AbstractRollingElement(eqx.Module):
             azimuth: Of the rolling element [rad].
         """
 
+    def raised(self, heights: Float[Array, "2"]) -> "AbstractRollingElement":
+        """The same with material added in its contacts, along their normals.
+
+        Args:
+            heights: At the outer and the inner raceway [m].
+
+        Raises:
+            TypeError: If the class does not say how.
+        """
+        raise TypeError(
+            f"{type(self).__name__} has no method `raised`, which `raceway_deviation`"
+            " needs."
+        )
+
     @abc.abstractmethod
     def coordinates(self, rings: RingMotion, x: Unknowns) -> Any:
         """Coordinates of the contacts [m], a pytree of arrays (contact, k).

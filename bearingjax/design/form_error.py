@@ -1,0 +1,394 @@
+"""Form errors of raceways and rolling elements, as functions of the angle around them.
+
+Heights are of material that is there beyond the drawing. On a raceway an error either
+shifts the groove at that place, along the axis or outwards from it, or raises the
+surface towards the rolling element. Every error turns with the part that it is on.
+"""
+
+import abc
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from .ball import AbstractBallBearing
+from .bearing import AbstractRollerBearing
+from .checks import check, instance, is_real, is_traced
+
+
+class Surface(NamedTuple):
+    """What a rolling contact around a part is like.
+
+    Attributes:
+        radius: Of the circle of contact around the part's axis [m].
+        relative: Radius of relative curvature along the rolling direction [m].
+    """
+
+    radius: Scalar
+    relative: Scalar
+
+
+class AbstractShape(eqx.Module):
+    """One error of form around a part."""
+
+    @abc.abstractmethod
+    def height(self, angle: Float[Array, "..."], surface: Surface) -> Any:
+        """Height at an angle around the part [m].
+
+        Args:
+            angle: From the part's own mark (...) [rad]; any number of turns.
+            surface: Where the contact runs.
+        """
+
+
+def _orders(given) -> tuple[int, ...]:
+    """Orders as they were given, in a tuple."""
+    given = np.atleast_1d(np.asarray(given))
+    return tuple(k.item() for k in given)
+
+
+class Harmonics(AbstractShape):
+    """Waves: Σ_k a_k cos(k angle + phase_k).
+
+    Order 1 on a raceway is eccentricity (or an axial runout), 2 an oval ring, 3 and
+    more the lobes of a chuck or a seat.
+
+    Attributes:
+        order: Waves per turn (n,), whole numbers from 1.
+        amplitude: Of each, half of peak to valley (n,) [m].
+        phase: Of each at the part's mark (n,) [rad]; default 0.
+
+    Traced: amplitude, phase. Static: order.
+    """
+
+    order: tuple[int, ...] = eqx.field(static=True, converter=_orders)
+    amplitude: Float[Array, "..."] = eqx.field(converter=as_real, metadata=unit("m"))
+    phase: Float[Array, "..."] = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None
+    )
+
+    def __init__(self, order: Any, amplitude: Any, phase: Any = None):
+        """See the class.
+
+        Raises:
+            TypeError: For what are no numbers.
+            ValueError: For orders that are not whole and positive, or another number
+                of amplitudes or phases.
+        """
+        self.order = _orders(order)
+        count = len(self.order)
+        for name, given in (("amplitude", amplitude), ("phase", phase)):
+            if given is not None and not is_real(given):
+                raise TypeError(
+                    f"Harmonics: `{name}` is {given!r}; it must be numbers."
+                )
+        whole = all(isinstance(k, int) and k >= 1 for k in self.order)
+        check("Harmonics", "order", whole, "whole numbers from 1", list(self.order), "")
+        self.amplitude = jnp.atleast_1d(as_real(amplitude))
+        zeros = jnp.zeros_like(self.amplitude)
+        self.phase = zeros if phase is None else jnp.atleast_1d(as_real(phase))
+        for name in ("amplitude", "phase"):
+            value = getattr(self, name)
+            if value.shape[-1] != count:
+                raise ValueError(
+                    f"Harmonics: `{name}` has shape {value.shape}; its last axis must"
+                    f" be that of the {count} orders."
+                )
+            if not is_traced(value):
+                check(self, name, np.isfinite(value), "finite")
+
+    @classmethod
+    def spectrum(
+        cls, low: int, high: int, amplitude: Any, slope: Any, phase: Any
+    ) -> "Harmonics":
+        """Waves of every order from `low` to `high`, smaller the shorter they are.
+
+        Args:
+            low, high: First and last order.
+            amplitude: Of order `low` [m].
+            slope: Exponent p of a_k = amplitude (low/k)^p [1].
+            phase: Of each order (high - low + 1,) [rad].
+        """
+        order = range(low, high + 1)
+        share = (low / np.arange(low, high + 1)) ** slope
+        return cls(tuple(order), amplitude * share, phase)
+
+    @classmethod
+    def measured(cls, points: Any, highest: int | None = None) -> "Harmonics":
+        """Waves of heights that were measured around a part.
+
+        Args:
+            points: Heights at n evenly spaced angles from the part's mark (n,) [m].
+                Their mean counts as size, not as form, and is taken off.
+            highest: Last order kept; default: all below n/2, whose sum runs through
+                the points.
+
+        Raises:
+            TypeError: For what are no numbers.
+            ValueError: For fewer than 4 points, or an order that they do not show.
+        """
+        if not is_real(points):
+            raise TypeError(f"Harmonics: `points` is {points!r}; it must be numbers.")
+        points = as_real(points)
+        n = points.size
+        right = points.ndim == 1 and n >= 4
+        check("Harmonics", "points", right, "at least 4 heights (n,)", points, "m")
+        most = (n - 1) // 2
+        last = most if highest is None else highest
+        allowed = f"from 1 to {most}, which {n} points show"
+        check("Harmonics", "highest", 1 <= last <= most, allowed, last, "")
+        order = np.arange(1, last + 1)
+        turns = 2.0 * np.pi / n * (np.outer(order, np.arange(n)) % n)
+        cosine = jnp.asarray(np.cos(turns)) @ points * (2.0 / n)
+        sine = jnp.asarray(np.sin(turns)) @ points * (2.0 / n)
+        square = cosine**2 + sine**2
+        none = square == 0.0
+        size = jnp.where(none, 0.0, jnp.sqrt(jnp.where(none, 1.0, square)))
+        return cls(order, size, jnp.arctan2(-sine, jnp.where(none, 1.0, cosine)))
+
+    def height(self, angle, surface):
+        turns = jnp.asarray(self.order, angle.dtype) * angle[..., None]
+        return jnp.sum(self.amplitude * jnp.cos(turns + self.phase), axis=-1)
+
+
+class Spall(AbstractShape):
+    """A pit across the raceway, over whose edges the rolling element rolls.
+
+    The element, rigid, falls no deeper than rolling around the edges lets it: x inside
+    the nearer edge by x²/(2ρ), ρ being the radius of relative curvature, nor deeper
+    than the floor.
+
+    Attributes:
+        angle: Of its middle [rad].
+        length: Along the rolling direction [m].
+        depth: Of its floor [m].
+
+    Traced: all fields.
+    """
+
+    angle: Scalar = eqx.field(converter=as_real, metadata=unit("rad"))
+    length: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    depth: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+
+    def __check_init__(self):
+        for name in ("length", "depth"):
+            value = getattr(self, name)
+            if not is_traced(value):
+                right = np.all(np.isfinite(value)) and np.all(np.asarray(value) >= 0)
+                check(self, name, right, "at least 0")
+
+    def height(self, angle, surface):
+        off = jnp.mod(angle - self.angle + jnp.pi, 2.0 * jnp.pi) - jnp.pi
+        inside = 0.5 * self.length - surface.radius * jnp.abs(off)
+        inside = jnp.maximum(inside, 0.0)
+        return -jnp.minimum(self.depth, 0.5 * inside**2 / surface.relative)
+
+
+class Table(AbstractShape):
+    """Heights and slopes at evenly spaced angles, for errors asked for very often.
+
+    Between the points a cubic; for waves of order k it errs by (2πk/n)⁴/384 of their
+    amplitude.
+
+    Attributes:
+        heights: (n,) [m].
+        slopes: (n,) [m/rad].
+    """
+
+    heights: Float[Array, " n"]
+    slopes: Float[Array, " n"]
+
+    @classmethod
+    def of(
+        cls, shapes: tuple[AbstractShape, ...], surface: Surface, points: int
+    ) -> "tuple[Table, ...]":
+        """One table in place of several shapes; of none, none.
+
+        Args:
+            shapes: What is summed.
+            surface: Where the contact runs.
+            points: Number of angles. Static.
+        """
+        if not shapes:
+            return ()
+        angle = 2.0 * jnp.pi / points * jnp.arange(points)
+
+        def one(angle):
+            return total(shapes, angle, surface)
+
+        of_each = jax.value_and_grad(one)
+        return (cls(*jax.lax.map(of_each, angle, batch_size=min(points, 512))),)
+
+    def height(self, angle, surface):
+        n = self.heights.shape[0]
+        step = 2.0 * jnp.pi / n
+        at = angle / step
+        whole = jnp.floor(at)
+        t = at - whole
+        k = jnp.mod(whole, n).astype(jnp.int32)
+        after = jnp.where(k + 1 == n, 0, k + 1)
+        h0, h1 = self.heights[k], self.heights[after]
+        m0, m1 = step * self.slopes[k], step * self.slopes[after]
+        rise = h1 - h0
+        return h0 + t * (m0 + t * (3 * rise - 2 * m0 - m1 + t * (m0 + m1 - 2 * rise)))
+
+
+def total(
+    shapes: tuple[AbstractShape, ...], angle: Float[Array, "..."], surface: Surface
+) -> Float[Array, "..."]:
+    """Sum of the heights of several shapes [m]; arguments as of `height`."""
+    height = jnp.zeros_like(angle)
+    for shape in shapes:
+        height = height + shape.height(angle, surface)
+    return height
+
+
+def _shapes(given: Any) -> tuple:
+    """A tuple of shapes, of a single one too."""
+    return (given,) if isinstance(given, AbstractShape) else tuple(given)
+
+
+class RacewayErrors(eqx.Module):
+    """Errors of one raceway.
+
+    Attributes:
+        axial: How far the raceway stands along the axis.
+        outwards: How far it stands from the axis: waviness as measured radially.
+        raised: How far its surface stands towards the rolling elements, along the
+            contact normal: faults, ripples that a groove's section shares.
+    """
+
+    axial: tuple[AbstractShape, ...] = eqx.field(converter=_shapes, default=())
+    outwards: tuple[AbstractShape, ...] = eqx.field(converter=_shapes, default=())
+    raised: tuple[AbstractShape, ...] = eqx.field(converter=_shapes, default=())
+
+    def __check_init__(self):
+        for name in ("axial", "outwards", "raised"):
+            for shape in getattr(self, name):
+                if not isinstance(shape, AbstractShape):
+                    raise TypeError(
+                        f"RacewayErrors: `{name}` holds a {type(shape).__name__}; it"
+                        " must hold Harmonics or Spall."
+                    )
+
+    def at(self, angle: Float[Array, "..."], surface: Surface) -> Float[Array, "... 3"]:
+        """Axial, outwards and raised at angles around the ring (..., 3) [m]."""
+        all_three = self.axial, self.outwards, self.raised
+        return jnp.stack([total(s, angle, surface) for s in all_three], axis=-1)
+
+    def tabulated(self, surface: Surface, points: int) -> "RacewayErrors":
+        """The same as tables; arguments as of `Table.of`."""
+        all_three = self.axial, self.outwards, self.raised
+        return RacewayErrors(*(Table.of(s, surface, points) for s in all_three))
+
+
+class FormErrors(eqx.Module):
+    """Form errors of a row: of both raceways, and of every rolling element.
+
+    Differences of diameter and spacing stand in the bearing itself
+    (`ball_deviation`, `roller_deviation`, `azimuth_deviation`).
+
+    Attributes:
+        outer: Of the outer raceway.
+        inner: Of the inner raceway.
+        elements: Of the rolling elements around the circle on which they roll: arrays
+            with a leading axis element.
+
+    Traced: all numbers.
+    """
+
+    outer: RacewayErrors = eqx.field(default_factory=RacewayErrors)
+    inner: RacewayErrors = eqx.field(default_factory=RacewayErrors)
+    elements: tuple[AbstractShape, ...] = eqx.field(converter=_shapes, default=())
+
+    def __check_init__(self):
+        instance(self, "outer", RacewayErrors)
+        instance(self, "inner", RacewayErrors)
+
+    def met(
+        self,
+        surfaces: "Surfaces",
+        azimuth: Float[Array, " element"],
+        outer: Scalar,
+        inner: Scalar,
+        rolled: Float[Array, " element"],
+    ) -> Float[Array, "element 2 3"]:
+        """How each rolling element finds both raceways, `Deviation.raceway` [m].
+
+        Args:
+            surfaces: Where the contacts run.
+            azimuth: Of each element [rad].
+            outer: Turn of the outer ring [rad].
+            inner: Turn of the inner ring [rad].
+            rolled: Turn of each element about its own axis against the line from the
+                bearing's axis to it [rad].
+        """
+        found = jnp.stack(
+            [
+                self.outer.at(azimuth - outer, surfaces.outer),
+                self.inner.at(azimuth - inner, surfaces.inner),
+            ],
+            axis=1,
+        )
+        if not self.elements:
+            return found
+
+        def one(shapes, rolled):
+            # It turns against the inner ring; the raceways stand opposite.
+            angles = jnp.stack([-rolled, jnp.pi - rolled])
+            return total(shapes, angles, surfaces.element)
+
+        return found.at[:, :, 2].add(jax.vmap(one)(self.elements, rolled))
+
+    def tabulated(self, surfaces: "Surfaces", points: int = 4096) -> "FormErrors":
+        """The same as tables, for many evaluations.
+
+        Args:
+            surfaces: Where the contacts run.
+            points: Number of angles around each part, of elements an eighth. Static.
+        """
+
+        def one(shapes):
+            return Table.of(shapes, surfaces.element, points // 8)
+
+        elements = jax.vmap(one)(self.elements) if self.elements else ()
+        outer = self.outer.tabulated(surfaces.outer, points)
+        inner = self.inner.tabulated(surfaces.inner, points)
+        return FormErrors(outer, inner, elements)
+
+
+class Surfaces(NamedTuple):
+    """Where the contacts of a row run.
+
+    Attributes:
+        outer: Around the outer raceway.
+        inner: Around the inner raceway.
+        element: Around a rolling element; its `relative` is the smaller of both, at
+            the inner raceway.
+    """
+
+    outer: Surface
+    inner: Surface
+    element: Surface
+
+    @classmethod
+    def of(cls, bearing: AbstractBallBearing | AbstractRollerBearing) -> "Surfaces":
+        """Of a single row, at the free contact angle."""
+        if isinstance(bearing, AbstractRollerBearing):
+            radius, cosine = 0.5 * bearing.roller_diameter, jnp.cos(bearing.axis_angle)
+        else:
+            radius, cosine = 0.5 * bearing.ball_diameter, bearing.free_cosine
+        pitch = 0.5 * bearing.pitch_diameter
+        gamma = radius * cosine / pitch
+        # Along the rolling direction, 1/ρ = (1/r)/(1 ± γ).
+        outer, inner = radius * (1.0 + gamma), radius * (1.0 - gamma)
+        return cls(
+            Surface(pitch + radius * cosine, outer),
+            Surface(pitch - radius * cosine, inner),
+            Surface(radius, inner),
+        )
