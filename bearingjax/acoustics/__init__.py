@@ -1,4 +1,4 @@
-"""Noise and vibration: spectra, bands, levels, and where lines come from."""
+"""Noise and vibration: form errors to vibration, spectra, bands, levels, lines."""
 
 from .bands import Bands as Bands
 from .bands import band_levels as band_levels
@@ -14,6 +14,12 @@ from .level import level as level
 from .lines import UNNAMED as UNNAMED
 from .lines import Line as Line
 from .lines import name_lines as name_lines
+from .model import NoiseModel as NoiseModel
+from .model import NoiseSystem as NoiseSystem
+from .model import Sensor as Sensor
+from .natural import NaturalModes as NaturalModes
+from .natural import natural_modes as natural_modes
+from .natural import stiffness as stiffness
 from .orders import KinematicFrequencies as KinematicFrequencies
 from .orders import WavinessForce as WavinessForce
 from .orders import kinematic_frequencies as kinematic_frequencies
@@ -23,3 +29,7 @@ from .spectrum import Hann as Hann
 from .spectrum import Rectangular as Rectangular
 from .spectrum import Spectrum as Spectrum
 from .spectrum import spectrum as spectrum
+from .standing import standing as standing
+from .vibration import Vibration as Vibration
+from .vibration import needed_steps as needed_steps
+from .vibration import vibration as vibration

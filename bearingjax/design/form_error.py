@@ -46,7 +46,7 @@ class AbstractShape(eqx.Module):
         """
 
 
-def _orders(given) -> tuple[int, ...]:
+def _orders(given) -> tuple:
     """Orders as they were given, in a tuple."""
     given = np.atleast_1d(np.asarray(given))
     return tuple(k.item() for k in given)
@@ -152,8 +152,12 @@ class Harmonics(AbstractShape):
         return cls(order, size, jnp.arctan2(-sine, jnp.where(none, 1.0, cosine)))
 
     def height(self, angle, surface):
-        turns = jnp.asarray(self.order, angle.dtype) * angle[..., None]
-        return jnp.sum(self.amplitude * jnp.cos(turns + self.phase), axis=-1)
+        # Orders last, as far as the angles have axes.
+        shape = (1,) * angle.ndim + (-1,)
+        order = jnp.asarray(self.order, angle.dtype).reshape(shape)
+        amplitude, phase = self.amplitude.reshape(shape), self.phase.reshape(shape)
+        waves = amplitude * jnp.cos(order * angle[..., None] + phase)
+        return jnp.sum(waves, axis=-1)
 
 
 class Spall(AbstractShape):
@@ -216,7 +220,7 @@ class Table(AbstractShape):
         """
         if not shapes:
             return ()
-        angle = 2.0 * jnp.pi / points * jnp.arange(points)
+        angle = 2.0 * jnp.pi / points * jnp.arange(points, dtype=surface.radius.dtype)
 
         def one(angle):
             return total(shapes, angle, surface)

@@ -250,7 +250,7 @@ class Row(eqx.Module):
 
         def one(element, azimuth, *shift):
             axes = element.axes(azimuth)
-            rings = _shifted(local, azimuth, shift[0]) if shift else local
+            rings = shifted(local, azimuth, shift[0]) if shift else local
             if element.sees_difference:
                 return axes @ rings.between
             return jnp.concatenate([axes @ rings.outer, axes @ rings.inner])
@@ -274,8 +274,16 @@ class Row(eqx.Module):
         return SolvedRow(rings, magnitude, state, energies, travel, balance)
 
 
-def _shifted(local, azimuth, shift) -> RingMotion:
-    """The rings as an element sees them: a raceway that stands elsewhere has moved."""
+def shifted(
+    local: RingMotion, azimuth: Scalar, shift: Float[Array, "2 2"]
+) -> RingMotion:
+    """The rings as an element sees them: a raceway that stands elsewhere has moved.
+
+    Args:
+        local: Ring freedoms in the row's own axes [m, rad].
+        azimuth: Of the element [rad].
+        shift: How far outer and inner raceway stand along z and outwards there [m].
+    """
     axial, outwards = shift[:, 0], shift[:, 1]
     x, y = outwards * jnp.cos(azimuth), outwards * jnp.sin(azimuth)
     moved = jnp.stack([x, y, axial], axis=1)

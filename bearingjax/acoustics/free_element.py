@@ -1,0 +1,119 @@
+"""Rolling elements whose places are freedoms of their own, with mass.
+
+The energy of a rolling element stands in terms of the rings and of its place against
+them. Here its place p is counted in space: along z and r for a ball, along and across
+its axis, with its tilt, for a roller. No equilibrium is solved for.
+"""
+
+import functools
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..design.material import Material
+from ..element.ball import Ball
+from ..element.ball_speed import ball_mass
+from ..element.inertia import Speed, inertia_force, mass_and_inertia
+from ..element.roller import Roller
+from ..element.rolling_element import RingMotion
+from ..numerics.types import Scalar
+
+
+class FreeElement(eqx.Module):
+    """One rolling element with a place of its own.
+
+    Attributes:
+        element: The rolling element.
+        mass: Of each coordinate of its place (n,) [kg, kg m²].
+        force: Of inertia, from its orbit, at the drawing's place (n,) [N, N m].
+        scale: What x counts for a unit of p (n,) [1, m].
+
+    Traced: all numbers.
+    """
+
+    element: Any
+    mass: Float[Array, " n"]
+    force: Float[Array, " n"]
+    scale: Float[Array, " n"]
+
+    def unknowns(
+        self, rings: RingMotion, place: Float[Array, " n"]
+    ) -> Float[Array, " n"]:
+        """Own unknowns x of the rolling element [m].
+
+        Args:
+            rings: Motions of the rings in its axes [m, rad].
+            place: p [m, rad].
+        """
+        return (place - rings.mean[: place.shape[0]]) * self.scale
+
+    def place(self, rings: RingMotion, x: Float[Array, " n"]) -> Float[Array, " n"]:
+        """p of own unknowns; the inverse of `unknowns`."""
+        return rings.mean[: x.shape[0]] + x / self.scale
+
+    def raised(self, heights: Float[Array, "2"]) -> "FreeElement":
+        """The same with material added in its contacts [m]."""
+        element = self.element.raised(heights)
+        return FreeElement(element, self.mass, self.force, self.scale)
+
+    def energy(self, rings: RingMotion, place: Float[Array, " n"]) -> Scalar:
+        """Strain energy of its contacts [J]; arguments as of `unknowns`."""
+        return self.element.energy(rings, self.unknowns(rings, place))
+
+    def loads(
+        self, rings: RingMotion, place: Float[Array, " n"]
+    ) -> Float[Array, " contact"]:
+        """Load of each contact [N]; arguments as of `unknowns`."""
+        at = self.element.coordinates(rings, self.unknowns(rings, place))
+        return self.element.respond(at).beside
+
+
+@functools.singledispatch
+def free_element(
+    element: Any, material: Material, pitch_radius: Scalar, speed: Speed, orbit: Scalar
+) -> FreeElement:
+    """A rolling element with its inertia.
+
+    Args:
+        element: The rolling element, made without speed.
+        material: Of the rolling elements.
+        pitch_radius: Of the circle of their centres [m].
+        speed: Of the rings.
+        orbit: Speed of their orbit [rad/s].
+
+    Raises:
+        TypeError: For other rolling elements.
+    """
+    raise TypeError(
+        f"NoiseModel: rolling elements are of class {type(element).__name__}; it must"
+        " be balls or rollers."
+    )
+
+
+@free_element.register
+def _(element: Ball, material, pitch_radius, speed, orbit) -> FreeElement:
+    mass, _ = ball_mass(element.diameter, material.density)
+    both, none = jnp.stack([mass, mass]), jnp.zeros_like(mass)
+    force = jnp.stack([none, mass * pitch_radius * orbit**2])
+    return FreeElement(element, both, force, jnp.ones_like(both))
+
+
+@free_element.register
+def _(element: Roller, material, pitch_radius, speed, orbit) -> FreeElement:
+    c = element.constants
+    mass, _, tilting = mass_and_inertia(c)
+    one = jnp.ones_like(mass)
+    masses = jnp.stack([mass, mass, tilting])
+    scale = jnp.stack([one, one, c.half_length])
+    force = inertia_force(c, speed)
+    return FreeElement(element, masses, force, scale)
+
+
+def forces(
+    free: FreeElement, rings: RingMotion, place: Float[Array, " n"]
+) -> tuple[RingMotion, Float[Array, " n"]]:
+    """Derivatives of its energy by both rings' motions and by its place [N, N m]."""
+    return jax.grad(FreeElement.energy, argnums=(1, 2))(free, rings, place)

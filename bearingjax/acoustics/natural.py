@@ -1,0 +1,84 @@
+"""Natural modes of a bearing on its rig, rolling elements with their own masses.
+
+At the place where the bearing stands under its load, K v = ω² M v with the second
+derivatives K of the energy of all contacts. A rolling element that carries nothing is
+held by nothing: its modes have frequencies of almost zero.
+
+Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011), there with balls
+    that move radially.
+"""
+
+import dataclasses
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float, Int
+
+from ..numerics.implicit import stop
+from .model import NoiseModel, NoiseSystem
+from .standing import standing
+
+
+class NaturalModes(NamedTuple):
+    """Natural modes, with rising frequency.
+
+    Attributes:
+        frequency: (mode,) [Hz].
+        ring: Motion of the moving ring's freedoms, of unit modal mass
+            (mode, k) [m, rad].
+        places: Motion of every rolling element, along z and outwards for balls
+            (mode, element, m) [m, rad].
+        ring_share: Share of the moving ring in the energy of motion (mode,) [1].
+        result: `Result` code of the place at which the modes are.
+    """
+
+    frequency: Float[Array, " mode"]
+    ring: Float[Array, "mode k"]
+    places: Float[Array, "mode element m"]
+    ring_share: Float[Array, " mode"]
+    result: Int[Array, ""]
+
+
+def stiffness(system: NoiseSystem, motion: Float[Array, " n"]) -> Float[Array, "n n"]:
+    """Second derivatives of the energy, sensor included [N/m, N, N m].
+
+    Args:
+        system: The equations of motion; without form errors.
+        motion: Coordinates (n,) [m, rad].
+    """
+    zero = jnp.zeros((), motion.dtype)
+    k = jax.jacfwd(system.contact_forces)(motion, zero)
+    k = 0.5 * (k + k.T)
+    if system.sensor is None:
+        return k
+    s = system.sensor
+    return k.at[:3, :3].add(s.stiffness * s.projector)
+
+
+@eqx.filter_jit
+def natural_modes(model: NoiseModel) -> NaturalModes:
+    """Natural modes of a bearing under its load.
+
+    Args:
+        model: The bearing; its form errors do not count.
+
+    Returns:
+        Modes. First derivatives of frequencies are exact, also where some coincide (of
+        their mixture); those of shapes are not there.
+
+    Fails: as `solve_load`; the frequencies are then those of no balance.
+    """
+    system = dataclasses.replace(model.system(8), errors=None)
+    motion, result = standing(model, system)
+    root = jnp.sqrt(system.masses)
+    k = stiffness(system, motion) / jnp.outer(root, root)
+    _, vectors = jnp.linalg.eigh(stop(k))
+    # Eigenvectors held: the derivative is that of the eigenvalue.
+    square = jnp.einsum("im,ij,jm->m", vectors, k, vectors)
+    positive = square > 0.0
+    angular = jnp.where(positive, jnp.sqrt(jnp.where(positive, square, 1.0)), 0.0)
+    share = jnp.sum(vectors[: system.mass.shape[0]] ** 2, axis=0)
+    ring, places = jax.vmap(system.parted)(vectors.T / stop(root)[None])
+    return NaturalModes(angular / (2.0 * jnp.pi), ring, places, share, result)

@@ -1,0 +1,189 @@
+"""Vibration in time: the moving ring, and every rolling element as a mass.
+
+The method is the classical one of order 4 with even steps: a batch of bearings then
+takes the same steps, and a record of even samples needs no interpolation. A step is
+a half radian or less of the fastest mode of the loaded bearing.
+"""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Float, Int
+
+from ..design.checks import check, count, is_traced
+from ..numerics.result import Result, raise_unless_converged
+from ..numerics.types import Scalar
+from .model import NoiseModel
+from .natural import natural_modes
+from .standing import standing
+
+_SHARES = 0.0, 0.5, 0.5, 1.0
+_WEIGHTS = 1 / 6, 1 / 3, 1 / 3, 1 / 6
+STEP = 0.5
+"""Longest step, of a radian of the fastest mode [rad]."""
+
+
+class Vibration(eqx.Module):
+    """A record of a bearing's vibration; leading axis time.
+
+    Samples are even, over whole turns of the shaft, without the end point.
+
+    Attributes:
+        time: (time,) [s].
+        displacement: Of the moving ring from where it stands without form errors, its
+            freedoms (time, k) [m, rad].
+        acceleration: Likewise (time, k) [m/s², rad/s²].
+        contact_load: Of every contact (time, element, contact) [N].
+        azimuth: Of every rolling element (time, element) [rad].
+        shaft_frequency: Of the ring that turns faster [Hz].
+        result: `Result` code: `NON_FINITE` where the motion ran away.
+
+    Static: turns.
+    """
+
+    time: Float[Array, " time"]
+    displacement: Float[Array, "time k"]
+    acceleration: Float[Array, "time k"]
+    contact_load: Float[Array, "time element contact"]
+    azimuth: Float[Array, "time element"]
+    shaft_frequency: Scalar
+    result: Int[Array, ""]
+    turns: int = eqx.field(static=True)
+
+    @property
+    def duration(self) -> Scalar:
+        """[s]."""
+        return self.turns / self.shaft_frequency
+
+
+def vibration(
+    model: NoiseModel,
+    *,
+    turns: int = 8,
+    settle: int = 2,
+    samples: int = 2048,
+    steps: int | None = None,
+    throw: bool = True,
+) -> Vibration:
+    """The vibration of a bearing over some turns of its shaft.
+
+    It begins where the bearing without form errors stands, at rest.
+
+    Args:
+        model: The bearing.
+        turns: Turns that are recorded. Static.
+        settle: Turns before them, in which the beginning dies away. Static.
+        samples: Per turn. Static.
+        steps: Of the integration, per sample; `None`: such that one is at most half a
+            radian of the fastest mode. Static; under `jit` it must be given.
+        throw: Raise if the record is not finite, or the bearing finds no place under
+            its load; otherwise read `result`. Static.
+
+    Returns:
+        `Vibration`, differentiable with respect to every number of the model.
+
+    Raises:
+        TypeError: For another model, or counts that are none.
+        ValueError: For counts below 1 (`settle`: 0), a shaft that stands still, or no
+            `steps` under `jit`.
+        SolveError: If it failed and `throw` is set.
+
+    Fails: `NON_FINITE`, and as `solve_load`.
+    """
+    if not isinstance(model, NoiseModel):
+        raise TypeError(
+            f"vibration: `model` is a {type(model).__name__}; it must be a NoiseModel."
+        )
+    for name, value in (("turns", turns), ("samples", samples)):
+        count("vibration", name, value)
+    check("vibration", "settle", settle >= 0, "at least 0", settle, "turns")
+    speeds = model.speed.outer, model.speed.inner
+    fastest = jnp.maximum(*(jnp.abs(s) for s in speeds))
+    check("vibration", "speed", fastest > 0, "another than 0", fastest, "rad/s")
+    if steps is None:
+        steps = needed_steps(model, samples)
+    count("vibration", "steps", steps)
+    found = _vibration(model, turns, settle, samples, steps)
+    if not throw:
+        return found
+    return raise_unless_converged(
+        found, found.result, lambda: "vibration: the motion is not finite."
+    )
+
+
+def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
+    """Steps per sample, such that one is at most half a radian of the fastest mode.
+
+    Args:
+        model: The bearing; none of its numbers traced.
+        samples: Per turn of the shaft.
+
+    Raises:
+        ValueError: Under `jit`, where numbers are not known.
+    """
+    if any(is_traced(leaf) for leaf in jax.tree.leaves(model)):
+        raise ValueError(
+            "vibration: `steps` is None, but the model is traced; give the number, such"
+            " as `needed_steps(model)` found before."
+        )
+    fastest = 2.0 * jnp.pi * jnp.max(natural_modes(model).frequency)
+    turning = jnp.maximum(jnp.abs(model.speed.outer), jnp.abs(model.speed.inner))
+    sample = 2.0 * jnp.pi / turning / samples
+    return max(1, int(jnp.ceil(sample * fastest / STEP)))
+
+
+@eqx.filter_jit
+def _vibration(model, turns, settle, samples, steps) -> Vibration:
+    system = model.system()
+    start, result = standing(model, system)
+    speeds = model.speed.outer, model.speed.inner
+    frequency = jnp.maximum(*(jnp.abs(s) for s in speeds)) / (2.0 * jnp.pi)
+    h = 1.0 / (frequency * samples * steps)
+    masses = system.masses
+    k = system.mass.shape[0]
+
+    stages = jnp.asarray(_SHARES, start.dtype), jnp.asarray(_WEIGHTS, start.dtype)
+
+    def stage(carry, given):
+        """One of the four evaluations of Runge's and Kutta's step."""
+        begin, velocity, acceleration, sum_v, sum_a, time = carry
+        share, weight = given
+        motion = begin[0] + share * h * velocity
+        velocity = begin[1] + share * h * acceleration
+        at = time + share * h
+        acceleration = system.forces(motion, velocity, at, start) / masses
+        sum_v, sum_a = sum_v + weight * velocity, sum_a + weight * acceleration
+        return (begin, velocity, acceleration, sum_v, sum_a, time), acceleration[:k]
+
+    def step(state, number):
+        none = jnp.zeros_like(start)
+        begin = state, none, none, none, none, h * number
+        (_, _, _, v, a, _), first = lax.scan(stage, begin, stages)
+        return (state[0] + h * v, state[1] + h * a), first[0]
+
+    @jax.checkpoint
+    def sample(state, number):
+        numbers = steps * number + jnp.arange(steps, dtype=start.dtype)
+        after, first = lax.scan(step, state, numbers)
+        return after, (state[0], first[0])
+
+    numbers = jnp.arange((settle + turns) * samples, dtype=start.dtype)
+    state = start, jnp.zeros_like(start)
+    state, record = lax.scan(sample, state, numbers)
+    motion, acceleration = (r[settle * samples :] for r in record)
+    time = numbers[settle * samples :] * (h * steps)
+    loads = lax.map(lambda given: system.contact_loads(*given), (motion, time))
+    ended = jnp.all(jnp.isfinite(state[0])) & jnp.all(jnp.isfinite(state[1]))
+    lost = jnp.where(ended, int(Result.CONVERGED), int(Result.NON_FINITE))
+    standing_failed = result != int(Result.CONVERGED)
+    return Vibration(
+        time=time - time[0],
+        displacement=motion[:, :k] - start[:k],
+        acceleration=acceleration,
+        contact_load=loads,
+        azimuth=jax.vmap(system.azimuth)(time),
+        shaft_frequency=frequency,
+        result=jnp.where(standing_failed, result, lost).astype(jnp.int32),
+        turns=turns,
+    )
