@@ -155,7 +155,7 @@ def test_an_end_state_that_is_not_found_rejects_the_design(evaluated):
     assert start.message(one).startswith(want)
 
 
-def test_wrong_calls():
+def test_wrong_calls(evaluated):
     still = bj.Cases(np.zeros((2, 6)))
     with pytest.raises(ValueError, match="have no ring speeds"):
         search(cases=still)
@@ -165,6 +165,7 @@ def test_wrong_calls():
         design(np.nan)
     with pytest.raises(TypeError, match="`model` is a BearingElement|'model'"):
         SkiddingBearing(ELEMENT)
-    solved = bj.solve_load(ELEMENT, [0, 0, 100.0, 0, 0, 0], free=FREE)
+    solved = evaluated(design(), spectrum()).solution.solution
+    assert type(solved) is bj.BallSolution
     with pytest.raises(ValueError, match="optimise a `SkiddingBearing`"):
         FrictionTorque()(ELEMENT, still, solved)

@@ -24,7 +24,7 @@ from bearingjax.dynamics.beginning import surroundings
 from bearingjax.dynamics.motion import SkidSystem, each_ball
 from bearingjax.numerics.result import Result, SolveError
 
-BALLS, PLACES = 5, 96
+BALLS, PLACES, STEADY_PLACES = 5, 96, 100
 KNOT = 0.004
 LIGHT = np.array([0.0, 0.0, 16.0, 0.0, 0.0, 0.0])
 BOTH = np.array([160.0, 0.0, 250.0, 0.0, 0.0, 0.0])
@@ -68,8 +68,8 @@ def run(load=LIGHT, *, model=FEW, speed=EVEN, duration=0.02, tolerance=1e-7, **g
     )
 
 
-def steady(load, places):
-    return steady_skid(FEW, load, speed=SPEED, free=FREE, places=places)
+def steady(load):
+    return steady_skid(FEW, load, speed=SPEED, free=FREE, places=STEADY_PLACES)
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +126,7 @@ def test_a_finer_tolerance_changes_less_than_it_says():
 
 def test_it_ends_where_the_steady_state_is():
     """Balls free in wide pockets; the cage starts with their final speed."""
-    end = steady(LIGHT, 1)
+    end = steady(LIGHT)
     model = with_cage(pocket_clearance=8e-3)
     solution = bj.solve_load(model.element, LIGHT, speed=SPEED, free=FREE)
     given = solution, SPEED, EVEN, jnp.zeros(()), PLACES
@@ -147,13 +147,12 @@ def test_it_ends_where_the_steady_state_is():
 
 def test_under_a_radial_load_it_follows_the_periodic_motion():
     """As long as the balls do not touch the cage."""
-    places = 100
-    orbit = steady(BOTH, places)
+    orbit = steady(BOTH)
     wide = with_cage(pocket_clearance=8e-3)
     found = run(BOTH, model=wide, duration=0.1, tolerance=1e-6)
     assert np.max(np.abs(found.cage_force)) == 0.0
-    wave = np.fft.rfft(orbit.orbit_speed) / places
-    wave[1 : places // 2] *= 2.0
+    wave = np.fft.rfft(orbit.orbit_speed) / STEADY_PLACES
+    wave[1 : STEADY_PLACES // 2] *= 2.0
     along = found.azimuth[12:].ravel() - orbit.azimuth[0]
     turns = np.exp(1j * np.outer(along, np.arange(len(wave))))
     want = (turns @ wave).real
