@@ -16,6 +16,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
+from ..numerics.eigen import eigh
 from ..numerics.implicit import stop
 from .model import NoiseModel, NoiseSystem
 from .standing import standing
@@ -74,7 +75,7 @@ def natural_modes(model: NoiseModel) -> NaturalModes:
     motion, result = standing(model, system)
     root = jnp.sqrt(system.masses)
     k = stiffness(system, motion) / jnp.outer(root, root)
-    _, vectors = jnp.linalg.eigh(stop(k))
+    _, vectors = eigh(stop(k))
     # Eigenvectors held: the derivative is that of the eigenvalue.
     square = jnp.einsum("im,ij,jm->m", vectors, k, vectors)
     positive = square > 0.0
