@@ -101,6 +101,7 @@ class RotorLoads(eqx.Module):
                         f" last station of the shaft is {last}."
                     )
 
+    @eqx.filter_jit
     def constant(self, rotor: Rotor) -> Motions:
         """Weight and constant forces on all motions (motion,) [N, N m].
 
@@ -112,6 +113,7 @@ class RotorLoads(eqx.Module):
             force = force.at[rotor.at(one.station)].add(one.force)
         return force
 
+    @eqx.filter_jit
     def unbalanced(self, rotor: Rotor) -> tuple[Motions, Motions]:
         """Amplitudes of cos φ and sin φ of the unbalance forces, over Ω² [kg m].
 
@@ -129,6 +131,7 @@ class RotorLoads(eqx.Module):
             sine = sine.at[at].add(-y).at[at + 1].add(x)
         return cosine, sine
 
+    @eqx.filter_jit
     def shaken(self, rotor: Rotor) -> Motions:
         """Amplitude of cos φ of the inertia forces of a shaking base [N, N m].
 

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -48,6 +49,11 @@ def craig_bampton(rotor: Rotor, modes: Any) -> Basis:
     if rotor.rigid or not rotor.supports:
         why = "is rigid" if rotor.rigid else "has no supports"
         raise ValueError(f"craig_bampton: `rotor` {why}; there is nothing to reduce.")
+    return _basis(rotor, modes)
+
+
+@eqx.filter_jit
+def _basis(rotor, modes):
     own = rotor.unsupported()
     kept, rest = held_motions(rotor)
     inner = np.ix_(rest, rest)

@@ -99,6 +99,7 @@ def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceR
     return steady(rotor, moments, jnp.zeros_like(moments), speeds, speeds)
 
 
+@eqx.filter_jit
 def _moments(rotor, unbalances) -> Complex[Array, " motion"]:
     """Amplitude of the forces of unbalance on all motions, over Ω² [kg m]."""
     moments = to_complex(jnp.zeros_like(rotor.motions()[:, 0]))

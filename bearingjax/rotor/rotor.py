@@ -221,35 +221,9 @@ class Rotor(eqx.Module):
         Returns:
             RotorMatrices, differentiable with respect to every number.
         """
-        speed = as_real(speed)
-        own = self.unsupported()
-        if motion is None:
-            motion = jnp.zeros(self._n_motions, dtype=own.mass.dtype)
-        damping, stiffness = own.damping, own.stiffness
-        if self.supports:
-            rows = self.at_supports()
-            k, c = of_each(
-                lambda support, moved: support.linearised(moved, speed),
-                self.supports,
-                rows @ motion,
-            )
-            stiffness = stiffness + jnp.einsum("sim,sij,sjn->mn", rows, k, rows)
-            damping = damping + jnp.einsum("sim,sij,sjn->mn", rows, c, rows)
-        basis, shaft = self.motions(), self.shaft
-        length = shaft.stations[-1] - shaft.stations[0]
-        every = jnp.eye(self._n_motions, dtype=basis.dtype)
-        whole = own.mass, damping, own.gyroscopic, stiffness, every
-        matrices = RotorMatrices(*whole, speed, length, shaft.n_nodes)
-        of_shaft = own.shaft_mass, own.shaft_stiffness
-        if self.rigid:
-            matrices = matrices.projected(basis)
-            mass, stiffness = (basis.T @ part @ basis for part in of_shaft)
-            of_shaft = mass, stiffness
-        if self.damping is None:
-            return matrices
-        more = self.damping.matrix(of_shaft, (matrices.mass, matrices.stiffness))
-        return eqx.tree_at(lambda m: m.damping, matrices, matrices.damping + more)
+        return _linearised(self, as_real(speed), motion)
 
+    @eqx.filter_jit
     def unsupported(self) -> "Unsupported":
         """Matrices on all motions of what there is without supports and `damping`."""
         n_shaft, n = N_STATION * self.shaft.n_nodes, self._n_motions
@@ -276,3 +250,33 @@ class Rotor(eqx.Module):
         return Unsupported(
             mass, damping, gyroscopic, stiffness, shaft_mass, shaft_stiffness
         )
+
+
+@eqx.filter_jit
+def _linearised(rotor, speed, motion):
+    own, basis, shaft = rotor.unsupported(), rotor.motions(), rotor.shaft
+    every = jnp.eye(basis.shape[0], dtype=basis.dtype)
+    if motion is None:
+        motion = jnp.zeros_like(every[0])
+    damping, stiffness = own.damping, own.stiffness
+    if rotor.supports:
+        rows = rotor.at_supports()
+        k, c = of_each(
+            lambda support, moved: support.linearised(moved, speed),
+            rotor.supports,
+            rows @ motion,
+        )
+        stiffness = stiffness + jnp.einsum("sim,sij,sjn->mn", rows, k, rows)
+        damping = damping + jnp.einsum("sim,sij,sjn->mn", rows, c, rows)
+    length = shaft.stations[-1] - shaft.stations[0]
+    whole = own.mass, damping, own.gyroscopic, stiffness, every
+    matrices = RotorMatrices(*whole, speed, length, shaft.n_nodes)
+    of_shaft = own.shaft_mass, own.shaft_stiffness
+    if rotor.rigid:
+        matrices = matrices.projected(basis)
+        mass, stiffness = (basis.T @ part @ basis for part in of_shaft)
+        of_shaft = mass, stiffness
+    if rotor.damping is None:
+        return matrices
+    more = rotor.damping.matrix(of_shaft, (matrices.mass, matrices.stiffness))
+    return eqx.tree_at(lambda m: m.damping, matrices, matrices.damping + more)

@@ -121,11 +121,31 @@ def rotor_vibration(
     """
     loads = _as_loads(loads)
     _check_rotation(rotor, loads, speed, rotation)
+    speed = None if speed is None else as_real(speed)
+    own, rows, sizes, every = _assembled(rotor, as_real(scale), speed, modes, about)
+    return RotorVibration(
+        mass=own.mass,
+        scale=sizes,
+        reference_frequency=as_real(reference_frequency),
+        damping=own.damping,
+        gyroscopic=own.gyroscopic,
+        stiffness=own.stiffness,
+        supports=rotor.supports,
+        rows=rows,
+        motions=own.motions,
+        load=_load(rotor, loads, every, own.motions),
+        speed=speed,
+        rotation=as_real(1.0 if rotation is None else rotation),
+    )
+
+
+@eqx.filter_jit
+def _assembled(rotor, scale, speed, modes, about):
+    """Matrices without supports, how supports move, sizes, motions unreduced."""
     matrices = rotor.linearised(0.0 if speed is None else speed, about)
-    supported = bool(rotor.supports)
     rows = rotor.at_supports() @ matrices.motions
     stiffness, damping = matrices.stiffness, matrices.damping
-    if supported:
+    if rotor.supports:
         there = jnp.zeros_like(matrices.motions[:, 0]) if about is None else about
         k, c = of_each(
             lambda support, moved: support.linearised(moved, matrices.speed),
@@ -137,27 +157,14 @@ def rotor_vibration(
     own = eqx.tree_at(
         lambda m: (m.stiffness, m.damping), matrices, (stiffness, damping)
     )
-    sizes = _sizes(rotor, matrices, as_real(scale))
+    sizes = _sizes(rotor, matrices, scale)
     if modes is not None:
         basis = craig_bampton(rotor, modes)
         kept, _ = held_motions(rotor)
         own, rows = own.projected(basis), rows @ basis
-        more = jnp.broadcast_to(as_real(scale), (basis.shape[1] - len(kept),))
+        more = jnp.broadcast_to(scale, (basis.shape[1] - len(kept),))
         sizes = jnp.concatenate([sizes[kept], more])
-    return RotorVibration(
-        mass=own.mass,
-        scale=sizes,
-        reference_frequency=as_real(reference_frequency),
-        damping=own.damping,
-        gyroscopic=own.gyroscopic,
-        stiffness=own.stiffness,
-        supports=rotor.supports,
-        rows=rows,
-        motions=own.motions,
-        load=_load(rotor, loads, matrices.motions, own.motions),
-        speed=None if speed is None else as_real(speed),
-        rotation=as_real(1.0 if rotation is None else rotation),
-    )
+    return own, rows, sizes, matrices.motions
 
 
 def _sizes(rotor, matrices, size):

@@ -42,6 +42,7 @@ class AbstractSupportLaw(eqx.Module):
         """Gradient of the energy: P_x, P_y, P_z [N]."""
         return jax.grad(self.potential)(motion)
 
+    @eqx.filter_jit
     def stiffness(self) -> Float[Array, "3 3"]:
         """Stiffness in the preloaded position [N/m]."""
         return jax.hessian(self.potential)(jnp.zeros(3))
@@ -141,6 +142,7 @@ class FixedAngle(AbstractSupportLaw):
         axial = z + self.preload_displacement
         return _stored(self.constant, radial * cosine + axial * sine)
 
+    @eqx.filter_jit
     def preload(self) -> Scalar:
         """Axial preload P0 [N]."""
         return self.force(jnp.zeros(3))[2]
@@ -259,6 +261,7 @@ class Grooves(eqx.Module):
     n_balls: int = eqx.field(static=True, converter=as_count)
     material: Material
 
+    @eqx.filter_jit
     def raceway_constants(self) -> Float[Array, "2"]:
         """K_i of the inner and outer contact of a ball [N/m^(3/2)]."""
         cosine = jnp.cos(self.contact_angle)
