@@ -8,6 +8,7 @@ import numpy as np
 import bearingjax as bj
 from bearingjax.design import Material
 from bearingjax.numerics.power import positive_power
+from bearingjax.numerics.types import as_real
 from bearingjax.rotor.vibration import Grooves, RigidRotor, Vibration, rigid_rotor
 
 
@@ -99,5 +100,10 @@ def of_drawing(angle):
 
 def rotor(angle=36, **given):
     """The rotor of method 002 on two such bearings."""
-    law = grooves(angle).fixed_angle()
+    law, given = grooves(angle).fixed_angle(), jax.tree.map(as_real, given)
+    return _rotor(law, **given)
+
+
+@eqx.filter_jit
+def _rotor(law, **given):
     return rigid_rotor(ROTOR, law, law, scale=law.preload_displacement, **given)

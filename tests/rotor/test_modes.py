@@ -13,6 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from machines import friswell, paper, stepped
+from slopes import with_slopes
 from tolerances import DIFFERENCE, PUBLISHED, SOLVER
 
 import bearingjax as bj
@@ -134,7 +135,6 @@ def test_modes_are_followed_through_crossings():
 NUMBERS = jnp.array([0.01, 0.17, 2e7, 300.0, 0.02, 5e7])
 
 
-@jax.jit
 def measured(numbers):
     """Frequencies, damping ratios, critical speeds and their damping, amplitudes."""
     rotor = stepped(*numbers)
@@ -156,15 +156,16 @@ def measured(numbers):
 
 
 def test_derivatives_of_everything():
-    slope = jax.jit(jax.jacrev(measured))(NUMBERS)
-    values = measured(NUMBERS)
+    run = with_slopes(measured)
+    slope, values = run(NUMBERS)
     assert np.isfinite(slope).all()
     scale = NUMBERS[None, :] / values[:, None]
     for k, number in enumerate(NUMBERS):
         step = 2e-4 * number * np.eye(len(NUMBERS))[k]
         # Of fourth order: steps that are large against the round-off of eigenvalues.
-        near = measured(NUMBERS + step) - measured(NUMBERS - step)
-        far = measured(NUMBERS + 2 * step) - measured(NUMBERS - 2 * step)
+        near, far = (
+            run(NUMBERS + n * step)[1] - run(NUMBERS - n * step)[1] for n in (1, 2)
+        )
         change = (8 * near - far) / 12 / (2e-4 * values)
         np.testing.assert_allclose(slope[:, k] * scale[:, k], change, atol=DIFFERENCE)
 
@@ -173,14 +174,13 @@ def test_derivatives_where_modes_coincide():
     """Isotropic and at rest: pairs that stay pairs as the supports stiffen. Nor does a
     critical speed that is not there spoil the others."""
 
-    @jax.jit
     def speeds(stiffness):
         rotor = paper(stiffness, 1e8, bj.ModalDamping(0.01))
         return bj.modes(rotor).frequency, bj.critical_speeds(rotor, count=5).speed
 
     at = jnp.array(1.2e8)
-    slopes = jax.jit(jax.jacrev(speeds))(at)
-    for value, slope in zip(speeds(at), slopes, strict=True):
+    slopes, values = with_slopes(speeds)(at)
+    for value, slope in zip(values, slopes, strict=True):
         there = np.isfinite(value)
         value, slope = np.asarray(value)[there], np.asarray(slope)[there]
         # Radial ones of the rigid rotor go with the root of the stiffness.

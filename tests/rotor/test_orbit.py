@@ -1,5 +1,7 @@
 """Periodic orbits by shooting and by harmonic balance: each other, exact answers."""
 
+from functools import partial
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -7,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import mathieu_a, mathieu_b
+from slopes import with_slopes
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 from vibrations import Contact, Spring, duffing, oscillator, rotor
 
@@ -22,6 +25,7 @@ from bearingjax.rotor.vibration.flow import transition
 
 BALANCE, SHOOTING = HarmonicBalance(9, 48, steps=32), Shooting(48)
 METHODS = {"balance": BALANCE, "shooting": SHOOTING}
+of_hill = eqx.filter_jit(hill_multipliers)
 
 
 def test_both_methods_find_the_same_orbit():
@@ -52,7 +56,7 @@ def test_both_methods_find_the_same_orbit():
 def test_multipliers_by_three_ways(frequency):
     system = duffing()
     orbits = [solve_orbit(system, frequency, method) for method in METHODS.values()]
-    hill = hill_multipliers(BALANCE, system, orbits[0].unknowns, jnp.asarray(frequency))
+    hill = of_hill(BALANCE, system, orbits[0].unknowns, jnp.asarray(frequency))
     first, second, third = (
         np.sort_complex(np.asarray(x))
         for x in (orbits[0].multipliers, orbits[1].multipliers, hill)
@@ -127,15 +131,14 @@ def test_gradients_against_differences(name):
         return jnp.stack([orbit.amplitude[0], orbit.multipliers[0].real, size[0]])
 
     point = jnp.array([0.05, 0.2, 0.05, 0.85])
-    run = jax.jit(measures)
     # Backward through the flow, forward through the balance.
-    way = jax.jacfwd if name == "balance" else jax.jacrev
-    exact = np.asarray(jax.jit(way(measures))(point))
+    run = with_slopes(measures, jax.jacfwd if name == "balance" else jax.jacrev)
+    exact = np.asarray(run(point)[0])
     best = np.full((3, 4), np.inf)
     for size in (1e-3, 1e-4, 1e-5):
         steps = size * np.diag(np.asarray(point))
         for k, step in enumerate(steps):
-            points = [run(point + j * step) for j in (-2, -1, 1, 2)]
+            points = [run(point + j * step)[1] for j in (-2, -1, 1, 2)]
             a, b, c, d = map(np.asarray, points)
             slope = (a - 8 * b + 8 * c - d) / (12 * step[k])
             best[:, k] = np.minimum(best[:, k], np.abs(slope - exact[:, k]))
@@ -172,9 +175,14 @@ def test_what_has_no_orbit_says_so():
 
 def test_a_fast_mode_does_not_spoil_the_multipliers():
     """Small changes beside a vibration of 50 per period, with 24 steps: exact."""
+
+    @partial(jax.jit, static_argnums=(0, 1))
+    def over_a_period(matrix_at, steps):
+        return transition(matrix_at, jnp.eye(2), steps)
+
     fast = 50.25
     turn = jnp.asarray(np.array([[0.0, fast], [-fast, 0.0]]))
-    found = transition(lambda phase: turn, jnp.eye(2), 24)
+    found = over_a_period(lambda phase: turn, 24)
     assert np.allclose(found, [[0.0, 1.0], [-1.0, 0.0]], atol=SOLVER)
 
     # Of one that varies the error falls with the sixth power of the step.
@@ -184,6 +192,6 @@ def test_a_fast_mode_does_not_spoil_the_multipliers():
              jnp.stack([-1.2 - 0.6 * jnp.cos(phase), -0.1 + 0.0 * phase])]
         )  # fmt: skip
 
-    coarse, fine, finest = (transition(varying, jnp.eye(2), n) for n in (12, 24, 96))
+    coarse, fine, finest = (np.asarray(over_a_period(varying, n)) for n in (12, 24, 96))
     before, after = (np.abs(one - finest).max() for one in (coarse, fine))
     assert 40.0 < before / after < 90.0
