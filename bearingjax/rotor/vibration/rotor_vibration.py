@@ -121,8 +121,8 @@ def rotor_vibration(
     """
     loads = _as_loads(loads)
     _check_rotation(rotor, loads, speed, rotation)
-    speed = None if speed is None else as_real(speed)
-    own, rows, sizes, every = _assembled(rotor, as_real(scale), speed, modes, about)
+    turning = None if speed is None else as_real(speed)
+    own, rows, sizes, every = _assembled(rotor, as_real(scale), turning, modes, about)
     return RotorVibration(
         mass=own.mass,
         scale=sizes,
@@ -134,7 +134,7 @@ def rotor_vibration(
         rows=rows,
         motions=own.motions,
         load=_load(rotor, loads, every, own.motions),
-        speed=speed,
+        speed=turning,
         rotation=as_real(1.0 if rotation is None else rotation),
     )
 
