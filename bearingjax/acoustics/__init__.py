@@ -24,6 +24,8 @@ from .orders import KinematicFrequencies as KinematicFrequencies
 from .orders import WavinessForce as WavinessForce
 from .orders import kinematic_frequencies as kinematic_frequencies
 from .orders import waviness_force as waviness_force
+from .quasi_static import Excitation as Excitation
+from .quasi_static import excitation as excitation
 from .spectrum import AbstractWindow as AbstractWindow
 from .spectrum import Hann as Hann
 from .spectrum import Rectangular as Rectangular

@@ -160,6 +160,11 @@ class NoiseModel(eqx.Module):
         return RINGS[1 - RINGS.index(self.moving_ring)]
 
     @property
+    def shaft_speed(self) -> Scalar:
+        """Of the ring that turns faster, without its sign [rad/s]."""
+        return jnp.maximum(jnp.abs(self.speed.outer), jnp.abs(self.speed.inner))
+
+    @property
     def solve_options(self) -> SolveOptions:
         """Settings of the load solve that finds where the ring stands."""
         return SolveOptions(free=self.freedoms, fixed_ring=self.fixed_ring, points=2)
@@ -226,16 +231,26 @@ class NoiseSystem(eqx.Module):
         """Where the rolling elements are [rad]."""
         return self.row.azimuth + self.turning[2] * time
 
-    def _each(self, function, motion, time):
+    def met(self, time: Scalar) -> Float[Array, "element 2 3"] | None:
+        """How every rolling element finds the raceways, `Deviation.raceway` [m].
+
+        Args:
+            time: [s].
+        """
+        if self.errors is None:
+            return None
+        outer, inner, _, spin = self.turning
+        azimuth = self.azimuth(time)
+        rolled = jnp.full_like(azimuth, 1.0) * spin * time
+        turns = outer * time, inner * time
+        return self.errors.met(self.surfaces, azimuth, *turns, rolled)
+
+    def _each(self, function, motion, time, met=None):
         """Map function(free, axes, rings, place) over the elements, as they are met."""
         ring, places = self.parted(motion)
         local, azimuth = self.rings(ring), self.azimuth(time)
-        outer, inner, _, spin = self.turning
-        met = ()
-        if self.errors is not None:
-            rolled = jnp.full_like(azimuth, 1.0) * spin * time
-            turns = outer * time, inner * time
-            met = (self.errors.met(self.surfaces, azimuth, *turns, rolled),)
+        met = self.met(time) if met is None else met
+        met = () if met is None else (met,)
 
         def one(free, azimuth, place, *met):
             axes, seen = free.element.axes(azimuth), local
@@ -248,20 +263,24 @@ class NoiseSystem(eqx.Module):
         return self.row.each(one, azimuth, places, *met)
 
     def contact_forces(
-        self, motion: Float[Array, " n"], time: Scalar
+        self,
+        motion: Float[Array, " n"],
+        time: Scalar,
+        met: Float[Array, "element 2 3"] | None = None,
     ) -> Float[Array, " n"]:
         """∂E/∂(q, p) at a time [N, N m].
 
         Args:
             motion: Coordinates (n,) [m, rad].
             time: [s].
+            met: How the rolling elements find the raceways [m]; `None`: as `met`.
         """
 
         def one(free, axes, rings, place):
             on_rings, on_place = forces(free, rings, place)
             return axes.T @ on_rings[self.moving], on_place - free.force
 
-        on_ring, on_places = self._each(one, motion, time)
+        on_ring, on_places = self._each(one, motion, time, met)
         k = self.mass.shape[0]
         return jnp.concatenate([jnp.sum(on_ring, axis=0)[:k], on_places.ravel()])
 

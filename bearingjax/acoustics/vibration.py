@@ -98,9 +98,8 @@ def vibration(
     for name, value in (("turns", turns), ("samples", samples)):
         count("vibration", name, value)
     check("vibration", "settle", settle >= 0, "at least 0", settle, "turns")
-    speeds = model.speed.outer, model.speed.inner
-    fastest = jnp.maximum(*(jnp.abs(s) for s in speeds))
-    check("vibration", "speed", fastest > 0, "another than 0", fastest, "rad/s")
+    shaft = model.shaft_speed
+    check("vibration", "speed", shaft > 0, "another than 0", shaft, "rad/s")
     if steps is None:
         steps = needed_steps(model, samples)
     count("vibration", "steps", steps)
@@ -128,8 +127,7 @@ def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
             " as `needed_steps(model)` found before."
         )
     fastest = 2.0 * jnp.pi * jnp.max(natural_modes(model).frequency)
-    turning = jnp.maximum(jnp.abs(model.speed.outer), jnp.abs(model.speed.inner))
-    sample = 2.0 * jnp.pi / turning / samples
+    sample = 2.0 * jnp.pi / model.shaft_speed / samples
     return max(1, int(jnp.ceil(sample * fastest / STEP)))
 
 
@@ -137,8 +135,7 @@ def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
 def _vibration(model, turns, settle, samples, steps) -> Vibration:
     system = model.system()
     start, result = standing(model, system)
-    speeds = model.speed.outer, model.speed.inner
-    frequency = jnp.maximum(*(jnp.abs(s) for s in speeds)) / (2.0 * jnp.pi)
+    frequency = model.shaft_speed / (2.0 * jnp.pi)
     h = 1.0 / (frequency * samples * steps)
     masses = system.masses
     k = system.mass.shape[0]

@@ -1,0 +1,149 @@
+"""What form errors do to the rings of a bearing that turns slowly: no inertia.
+
+Every instant is a static problem, solved exactly: the rolling elements stand where they
+are at that instant, on raceways as they meet them there. Two answers bound what the
+vibration of a real ring may be: the force on a ring that is held, and the displacement
+of one that is free under its load.
+"""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float, Int
+
+from ..design.checks import check, count
+from ..design.deviation import with_raceways
+from ..element.bearing_element import BearingElement
+from ..element.rolling_element import split
+from ..numerics.result import Result, raise_unless_converged
+from ..numerics.types import Scalar
+from ..statics.load import solve
+from .model import NoiseModel, NoiseSystem
+
+_LANES = 64
+"""Instants that are solved side by side."""
+
+
+class Excitation(eqx.Module):
+    """What form errors do to the moving ring, over time; leading axis sample.
+
+    Samples are even, over whole turns of the shaft, without the end point.
+
+    Attributes:
+        time: (sample,) [s].
+        force: Of the contacts on the moving ring, beyond what carries its load
+            (sample, 6) [N, N m]. Of a free ring it is zero in its freedoms.
+        displacement: Of the moving ring from where it stands without form errors
+            (sample, 6) [m, rad]. Of a held ring it is zero.
+        azimuth: Of every rolling element (sample, element) [rad].
+        shaft_frequency: Of the ring that turns faster [Hz].
+        result: `Result` code of each instant (sample,).
+    """
+
+    time: Float[Array, " sample"]
+    force: Float[Array, "sample 6"]
+    displacement: Float[Array, "sample 6"]
+    azimuth: Float[Array, "sample element"]
+    shaft_frequency: Scalar
+    result: Int[Array, " sample"]
+
+
+def excitation(
+    model: NoiseModel,
+    *,
+    turns: int = 1,
+    samples: int = 256,
+    held: bool = True,
+    throw: bool = True,
+) -> Excitation:
+    """Force on a held ring, or displacement of a free one, over some turns.
+
+    A bearing without form errors too shakes its ring where few rolling elements carry
+    the load and move on (variable compliance); both are in the answer. Masses, the
+    retardation and the sensor, soft against the bearing, do not count.
+
+    Args:
+        model: The bearing.
+        turns: Of the shaft. Static.
+        samples: Per turn. Static.
+        held: Whether the ring is held where it stands without form errors at time
+            zero, or may move under its load. Static.
+        throw: Raise if the bearing finds no place under its load or an instant cannot
+            be solved; otherwise read `result`. Static.
+
+    Returns:
+        `Excitation`, differentiable with respect to every number of the model.
+
+    Raises:
+        TypeError: For another model, or counts that are none.
+        ValueError: For counts below 1, or a shaft that stands still.
+        SolveError: If it failed and `throw` is set.
+
+    Fails: as `solve_load`.
+    """
+    if not isinstance(model, NoiseModel):
+        raise TypeError(
+            f"excitation: `model` is a {type(model).__name__}; it must be a NoiseModel."
+        )
+    for name, value in (("turns", turns), ("samples", samples)):
+        count("excitation", name, value)
+    shaft = model.shaft_speed
+    check("excitation", "speed", shaft > 0, "another than 0", shaft, "rad/s")
+    found = _excitation(model, turns, samples, held)
+    if not throw:
+        return found
+
+    def message():
+        bad = int(jnp.sum(found.result != Result.CONVERGED))
+        return f"excitation: {bad} of {found.result.size} instants were not solved."
+
+    return raise_unless_converged(found, found.result, message)
+
+
+def at_instant(
+    element: BearingElement, system: NoiseSystem, time: Scalar
+) -> BearingElement:
+    """The bearing as it is at a time: elements orbited, raceways as they meet them.
+
+    Args:
+        element: Of the model.
+        system: Its equations of motion.
+        time: [s].
+    """
+    bearing: Any = element.bearing
+    azimuth = bearing.first_azimuth + system.turning[2] * time
+    bearing = eqx.tree_at(lambda b: b.first_azimuth, bearing, azimuth)
+    met = system.met(time)
+    if met is not None:
+        bearing = with_raceways(bearing, met)
+    return eqx.tree_at(lambda e: e.bearing, element, bearing)
+
+
+@eqx.filter_jit
+def _excitation(model, turns, samples, held) -> Excitation:
+    system = model.system()
+    options = model.solve_options
+    standing = solve(model.element, model.load, options)
+    start = split(standing.displacement)[system.moving]
+    frequency = model.shaft_speed / (2.0 * jnp.pi)
+    time = jnp.arange(turns * samples, dtype=frequency.dtype) / (frequency * samples)
+
+    def instant(time):
+        element = at_instant(model.element, system, time)
+        if held:
+            found = element.evaluate(standing.displacement)
+            force, moved = found.force, jnp.zeros_like(start)
+        else:
+            found = solve(element, model.load, options, start=start)
+            force = found.force
+            moved = split(found.displacement)[system.moving] - start
+        # The contacts push the ring with what would have to hold it, reversed.
+        pushed = model.load - split(force)[system.moving]
+        result = jnp.maximum(found.result, standing.result)
+        return pushed, moved, system.azimuth(time), result
+
+    lanes = min(turns * samples, _LANES)
+    force, moved, azimuth, result = jax.lax.map(instant, time, batch_size=lanes)
+    return Excitation(time, force, moved, azimuth, frequency, result.astype(jnp.int32))
