@@ -11,6 +11,10 @@ from .level import REFERENCE_ACCELERATION as REFERENCE_ACCELERATION
 from .level import acceleration_of as acceleration_of
 from .level import combined as combined
 from .level import level as level
+from .linear import LinearModel as LinearModel
+from .linear import Transfer as Transfer
+from .linear import linear_model as linear_model
+from .linear import transfer as transfer
 from .lines import UNNAMED as UNNAMED
 from .lines import Line as Line
 from .lines import name_lines as name_lines

@@ -42,8 +42,10 @@ class NaturalModes(NamedTuple):
     result: Int[Array, ""]
 
 
-def stiffness(system: NoiseSystem, motion: Float[Array, " n"]) -> Float[Array, "n n"]:
-    """Second derivatives of the energy, sensor included [N/m, N, N m].
+def contact_stiffness(
+    system: NoiseSystem, motion: Float[Array, " n"]
+) -> Float[Array, "n n"]:
+    """Second derivatives of the energy of all contacts [N/m, N, N m].
 
     Args:
         system: The equations of motion; without form errors.
@@ -51,7 +53,12 @@ def stiffness(system: NoiseSystem, motion: Float[Array, " n"]) -> Float[Array, "
     """
     zero = jnp.zeros((), motion.dtype)
     k = jax.jacfwd(system.contact_forces)(motion, zero)
-    k = 0.5 * (k + k.T)
+    return 0.5 * (k + k.T)
+
+
+def stiffness(system: NoiseSystem, motion: Float[Array, " n"]) -> Float[Array, "n n"]:
+    """As `contact_stiffness`, the sensor's added."""
+    k = contact_stiffness(system, motion)
     if system.sensor is None:
         return k
     s = system.sensor

@@ -1,8 +1,6 @@
 """Vibration in time: the moving ring, and every rolling element as a mass.
 
-The method is the classical one of order 4 with even steps: a batch of bearings then
-takes the same steps, and a record of even samples needs no interpolation. A step is
-a half radian or less of the fastest mode of the loaded bearing.
+A step is a half radian or less of the fastest mode of the loaded bearing.
 """
 
 import equinox as eqx
@@ -17,9 +15,8 @@ from ..numerics.types import Scalar
 from .model import NoiseModel
 from .natural import natural_modes
 from .standing import standing
+from .stepping import stepped
 
-_SHARES = 0.0, 0.5, 0.5, 1.0
-_WEIGHTS = 1 / 6, 1 / 3, 1 / 3, 1 / 6
 STEP = 0.5
 """Longest step, of a radian of the fastest mode [rad]."""
 
@@ -140,44 +137,23 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
     masses = system.masses
     k = system.mass.shape[0]
 
-    stages = jnp.asarray(_SHARES, start.dtype), jnp.asarray(_WEIGHTS, start.dtype)
+    def acceleration(motion, velocity, time):
+        return system.forces(motion, velocity, time, start) / masses
 
-    def stage(carry, given):
-        """One of the four evaluations of Runge's and Kutta's step."""
-        begin, velocity, acceleration, sum_v, sum_a, time = carry
-        share, weight = given
-        motion = begin[0] + share * h * velocity
-        velocity = begin[1] + share * h * acceleration
-        at = time + share * h
-        acceleration = system.forces(motion, velocity, at, start) / masses
-        sum_v, sum_a = sum_v + weight * velocity, sum_a + weight * acceleration
-        return (begin, velocity, acceleration, sum_v, sum_a, time), acceleration[:k]
-
-    def step(state, number):
-        none = jnp.zeros_like(start)
-        begin = state, none, none, none, none, h * number
-        (_, _, _, v, a, _), first = lax.scan(stage, begin, stages)
-        return (state[0] + h * v, state[1] + h * a), first[0]
-
-    @jax.checkpoint
-    def sample(state, number):
-        numbers = steps * number + jnp.arange(steps, dtype=start.dtype)
-        after, first = lax.scan(step, state, numbers)
-        return after, (state[0], first[0])
-
-    numbers = jnp.arange((settle + turns) * samples, dtype=start.dtype)
-    state = start, jnp.zeros_like(start)
-    state, record = lax.scan(sample, state, numbers)
-    motion, acceleration = (r[settle * samples :] for r in record)
-    time = numbers[settle * samples :] * (h * steps)
+    number = (settle + turns) * samples
+    begin = start, jnp.zeros_like(start)
+    moved = stepped(acceleration, begin, h, steps, number, lambda a: a[:k])
+    motion, seen = (r[settle * samples :] for r in moved[:2])
+    numbers = jnp.arange(settle * samples, number, dtype=start.dtype)
+    time = numbers * (h * steps)
     loads = lax.map(lambda given: system.contact_loads(*given), (motion, time))
-    ended = jnp.all(jnp.isfinite(state[0])) & jnp.all(jnp.isfinite(state[1]))
+    ended = jnp.all(jnp.isfinite(moved.end[0])) & jnp.all(jnp.isfinite(moved.end[1]))
     lost = jnp.where(ended, int(Result.CONVERGED), int(Result.NON_FINITE))
     standing_failed = result != int(Result.CONVERGED)
     return Vibration(
         time=time - time[0],
-        displacement=motion[:, :k] - start[:k],
-        acceleration=acceleration,
+        displacement=motion[:, :k] - start[None, :k],
+        acceleration=seen,
         contact_load=loads,
         azimuth=jax.vmap(system.azimuth)(time),
         shaft_frequency=frequency,

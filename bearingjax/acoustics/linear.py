@@ -1,0 +1,166 @@
+"""Small vibration of a bearing: linear, with constant coefficients, over frequency.
+
+Near the place where the bearing stands under its load
+
+    M x'' + (τ K + C) x' + (K + S) x = f - G (e + τ e')
+
+with the stiffness K of all contacts, C and S of the sensor, loads f on the coordinates
+and the deviations e that the rolling elements find on the raceways. G are derivatives
+of the contacts' forces by e.
+
+The rolling elements stay where they are at time zero. Where they orbit, K and G turn
+with them: the answer then holds for frequencies far above that of their passage, or
+where many of them carry alike.
+"""
+
+import dataclasses
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Complex, Float, Int
+
+from ..design.checks import check, real_numbers
+from ..numerics.types import Scalar, as_real
+from .model import NoiseModel
+from .natural import contact_stiffness
+from .standing import standing
+
+
+class LinearModel(NamedTuple):
+    """A bearing on its rig for small motions of its n coordinates.
+
+    Those of the moving ring are first, k of them, then those of every rolling element.
+
+    Attributes:
+        mass: (n,) [kg, kg m²].
+        stiffness: Of contacts and sensor (n, n) [N/m, N, N m].
+        damping: Of both (n, n) [N s/m, N s, N m s].
+        push: Loads on the coordinates for deviations of the raceways as in
+            `Deviation.raceway` (n, element, 2, 3) [N/m, N].
+        retardation: τ, by which the rate of deviations counts too [s].
+        result: `Result` code of the place at which it is.
+    """
+
+    mass: Float[Array, " n"]
+    stiffness: Float[Array, "n n"]
+    damping: Float[Array, "n n"]
+    push: Float[Array, "n element 2 3"]
+    retardation: Scalar
+    result: Int[Array, ""]
+
+
+class Transfer(NamedTuple):
+    """Motion of the moving ring for unit causes that vary as exp(iωt).
+
+    Attributes:
+        frequency: (line,) [Hz].
+        by_force: Displacement for loads on the ring's freedoms, its receptance
+            (line, k, k) [m/N, rad/N, rad/(N m)].
+        by_errors: Displacement for deviations of the raceways as in
+            `Deviation.raceway` (line, k, element, 2, 3) [1, rad/m].
+        result: `Result` code of the place at which the bearing stands.
+    """
+
+    frequency: Float[Array, " line"]
+    by_force: Complex[Array, "line k k"]
+    by_errors: Complex[Array, "line k element 2 3"]
+    result: Int[Array, ""]
+
+    @property
+    def accelerance(self) -> Complex[Array, "line k k"]:
+        """As `by_force`, of the acceleration [1/kg, rad/(kg m), rad/(kg m²)]."""
+        return self._accelerated(self.by_force)
+
+    @property
+    def acceleration_by_errors(self) -> Complex[Array, "line k element 2 3"]:
+        """As `by_errors`, of the acceleration [1/s², rad/(m s²)]."""
+        return self._accelerated(self.by_errors)
+
+    def _accelerated(self, motion):
+        square = -((2.0 * jnp.pi * self.frequency) ** 2)
+        return motion * square.reshape(-1, *(1,) * (motion.ndim - 1)).astype(
+            motion.dtype
+        )
+
+
+def linear_model(model: NoiseModel) -> LinearModel:
+    """The equations of small motions of a bearing under its load.
+
+    Args:
+        model: The bearing; its form errors do not count.
+
+    Fails: as `solve_load`.
+    """
+    system = dataclasses.replace(model.system(8), errors=None)
+    start, result = standing(model, system)
+    zero = jnp.zeros((), start.dtype)
+    none = jnp.zeros((system.row.azimuth.shape[0], 2, 3), start.dtype)
+
+    def contact_forces(met):
+        return system.contact_forces(start, zero, met)
+
+    stiffness = contact_stiffness(system, start)
+    damping = system.retardation * stiffness
+    if (s := system.sensor) is not None:
+        damping = damping.at[:3, :3].add(s.damping * s.projector)
+        stiffness = stiffness.at[:3, :3].add(s.stiffness * s.projector)
+    push = -jax.jacfwd(contact_forces)(none)
+    return LinearModel(
+        system.masses, stiffness, damping, push, system.retardation, result
+    )
+
+
+def transfer(model: NoiseModel, frequencies: Any) -> Transfer:
+    """How far, and by which acceleration, small causes shake the moving ring.
+
+    Args:
+        model: The bearing.
+        frequencies: (line,) [Hz]; above zero where a rolling element carries nothing,
+            which nothing holds then.
+
+    Returns:
+        `Transfer`, differentiable with respect to every number of the model.
+
+    Raises:
+        TypeError: For another model, or frequencies that are no numbers.
+        ValueError: For frequencies that are no list.
+
+    Fails: as `solve_load`; the numbers are then those of no balance.
+
+    Source: (K + S + iω (τ K + C) - ω² M) x = f - (1 + iωτ) G e.
+    """
+    if not isinstance(model, NoiseModel):
+        raise TypeError(
+            f"transfer: `model` is a {type(model).__name__}; it must be a NoiseModel."
+        )
+    real_numbers("transfer", "frequencies", frequencies, "numbers in Hz")
+    frequency = as_real(frequencies)
+    right = frequency.ndim == 1 and frequency.size > 0
+    check("transfer", "frequencies", right, "a list of them", frequencies, "Hz")
+    return _transfer(model, frequency)
+
+
+@eqx.filter_jit
+def _transfer(model, frequency) -> Transfer:
+    linear = linear_model(model)
+    k, n = len(model.freedoms), linear.mass.shape[0]
+    ring = jnp.eye(n, k, dtype=linear.mass.dtype)
+    push = linear.push.reshape(n, -1)
+
+    def at(frequency):
+        omega = 2.0 * jnp.pi * frequency
+        real = linear.stiffness - jnp.diag(omega**2 * linear.mass)
+        dynamic = lax.complex(real, omega * linear.damping)
+        # Symmetric: the ring's rows of the inverse are its columns.
+        rows = jnp.linalg.solve(dynamic, ring.astype(dynamic.dtype)).T
+        one = jnp.ones_like(omega)
+        by_push = rows @ push.astype(rows.dtype)
+        return rows[:, :k], by_push * lax.complex(one, omega * linear.retardation)
+
+    # One after the other: LAPACK for batches of matrices may wait for ever.
+    by_force, by_errors = lax.map(at, frequency)
+    by_errors = by_errors.reshape(*by_errors.shape[:2], *linear.push.shape[1:])
+    return Transfer(frequency, by_force, by_errors, linear.result)
