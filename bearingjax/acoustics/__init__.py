@@ -7,6 +7,7 @@ from .bands import is_held as is_held
 from .bands import octave_bands as octave_bands
 from .bands import third_octave_bands as third_octave_bands
 from .bands import total_root_mean_square as total_root_mean_square
+from .cage_contact import CageContact as CageContact
 from .level import REFERENCE_ACCELERATION as REFERENCE_ACCELERATION
 from .level import acceleration_of as acceleration_of
 from .level import combined as combined
