@@ -22,6 +22,9 @@ from .lines import name_lines as name_lines
 from .model import NoiseModel as NoiseModel
 from .model import NoiseSystem as NoiseSystem
 from .model import Sensor as Sensor
+from .monte_carlo import MonteCarlo as MonteCarlo
+from .monte_carlo import drawn as drawn
+from .monte_carlo import monte_carlo as monte_carlo
 from .natural import NaturalModes as NaturalModes
 from .natural import natural_modes as natural_modes
 from .natural import stiffness as stiffness
@@ -31,6 +34,12 @@ from .orders import kinematic_frequencies as kinematic_frequencies
 from .orders import waviness_force as waviness_force
 from .quasi_static import Excitation as Excitation
 from .quasi_static import excitation as excitation
+from .scatter import Drawn as Drawn
+from .scatter import RandomWaves as RandomWaves
+from .scatter import Tolerances as Tolerances
+from .scatter import draw as draw
+from .shares import Shares as Shares
+from .shares import shares as shares
 from .spectrum import AbstractWindow as AbstractWindow
 from .spectrum import Hann as Hann
 from .spectrum import Rectangular as Rectangular

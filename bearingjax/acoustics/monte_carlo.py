@@ -1,0 +1,234 @@
+"""Noise of many bearings as they leave the line, and which tolerance makes it.
+
+Bearings are drawn and shaken a batch at a time, all by one compiled program. Spectra
+are taken outside of it, and of a record only its levels are kept.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from ..design.checks import check, count, is_traced
+from ..design.form_error import FormErrors, RacewayErrors
+from ..numerics.result import Result
+from .bands import Bands, band_levels, octave_bands, total_root_mean_square
+from .level import REFERENCE_ACCELERATION, level
+from .model import NoiseModel
+from .scatter import Drawn, Tolerances, draw
+from .spectrum import AbstractWindow, Hann, spectrum
+from .vibration import needed_steps, vibration
+
+_DIRECTIONS = 3
+Progress = Callable[[int, int], Any]
+"""Called with how many bearings are done, and of how many."""
+
+
+class MonteCarlo(eqx.Module):
+    """Levels of many bearings; of those that failed they are NaN.
+
+    Attributes:
+        level: Of all frequencies, along x, y, z (bearing, 3) [dB].
+        bands: Of each band (bearing, band, 3) [dB]; NaN too for bands that the record
+            does not hold.
+        centre: Nominal centres of the bands (band,) [Hz].
+        result: `Result` codes (bearing,).
+        keys: With which `drawn` makes each bearing again (bearing,).
+    """
+
+    level: Float[Array, "bearing 3"]
+    bands: Float[Array, "bearing band 3"]
+    centre: Float[Array, " band"]
+    result: Int[Array, " bearing"]
+    keys: Array
+
+    @property
+    def failed(self) -> int:
+        """How many bearings have no levels."""
+        return int(np.sum(np.asarray(self.result) != Result.CONVERGED))
+
+    def percentile(self, share: Any) -> Float[Array, "... 3"]:
+        """Total levels that a share of the bearings does not exceed [dB].
+
+        Args:
+            share: From 0 to 100 (...) [%].
+        """
+        return jnp.nanpercentile(self.level, jnp.asarray(share, float), axis=0)
+
+
+def drawn(model: NoiseModel, tolerances: Tolerances, key: Array) -> NoiseModel:
+    """One bearing off the line: the model with random errors beside its own.
+
+    Args:
+        model: The bearing as on the drawing, or with errors that all have.
+        tolerances: How bearings scatter.
+        key: Of `jax.random`.
+    """
+    return _with(model, draw(tolerances, model.element.bearing, key))
+
+
+def monte_carlo(
+    model: NoiseModel,
+    tolerances: Tolerances,
+    n: int,
+    key: Array,
+    *,
+    turns: int = 8,
+    settle: int = 2,
+    samples: int = 2048,
+    steps: int | None = None,
+    batch: int = 16,
+    bands: Bands | None = None,
+    window: AbstractWindow | None = None,
+    reference: Any = REFERENCE_ACCELERATION,
+    progress: Progress | None = None,
+) -> MonteCarlo:
+    """Noise of many random bearings.
+
+    This is a loop over batches, no function for `jit`.
+
+    Args:
+        model: The bearing as on the drawing, or with errors that all have.
+        tolerances: How bearings scatter.
+        n: How many bearings.
+        key: Of `jax.random`; the same gives the same bearings.
+        turns, settle, samples, steps: As in `vibration`; `steps` of the model as it is.
+        batch: How many bearings at once.
+        bands: `None`: `octave_bands()`.
+        window: Of the spectra; `None`: `Hann()`, since a record does not repeat
+            itself: the cage turns by no whole number.
+        reference: Acceleration of 0 dB [m/s²].
+        progress: Called after each batch.
+
+    Raises:
+        TypeError, ValueError: As `vibration`; for other tolerances, numbers of bearings
+            that are none, or a spacing that lets rolling elements overlap.
+
+    Fails: a bearing as `vibration` does; its levels are NaN.
+    """
+    counts = turns, settle, samples, steps
+    records = Records(model, tolerances, n, *counts, "monte_carlo")
+    keys = jax.random.split(key, n)
+    bands = octave_bands() if bands is None else bands
+    window = Hann() if window is None else window
+    shaft = model.shaft_speed / (2.0 * jnp.pi)
+
+    def levels(acceleration, failed):
+        lines = spectrum(acceleration, turns / shaft, shaft, window=window)
+        total = level(total_root_mean_square(lines), reference)
+        each = jnp.moveaxis(band_levels(lines, bands, reference), 0, 1)
+        return (
+            jnp.where(failed[:, None], jnp.nan, total),
+            jnp.where(failed[:, None, None], jnp.nan, each),
+        )
+
+    found = []
+    for part, acceleration, result in records.batches(keys, batch, progress):
+        failed = result != int(Result.CONVERGED)
+        heard = jnp.where(failed[:, None, None], 0.0, acceleration)
+        one = *levels(jnp.moveaxis(heard, 0, 1), failed), result
+        found.append([np.asarray(a)[:part] for a in one])
+    total, each, result = (
+        jnp.asarray(np.concatenate(a)) for a in zip(*found, strict=True)
+    )
+    return MonteCarlo(total, each, jnp.asarray(bands.centre), result, keys)
+
+
+def _with(model: NoiseModel, found: Drawn) -> NoiseModel:
+    bearing: Any = model.element.bearing
+    balls = hasattr(bearing, "ball_deviation")
+    name = "ball_deviation" if balls else "roller_deviation"
+    more = {name: found.diameter, "azimuth_deviation": found.azimuth}
+    for field, value in more.items():
+        if value is None:
+            continue
+        own = getattr(bearing, field)
+        model = eqx.tree_at(
+            lambda m, field=field: getattr(m.element.bearing, field),
+            model,
+            value if own is None else own + value,
+            is_leaf=lambda x: x is None,
+        )
+    return eqx.tree_at(lambda m: m.errors, model, _together(model.errors, found.errors))
+
+
+def _together(one: FormErrors, other: FormErrors) -> FormErrors:
+    def ring(a, b):
+        return RacewayErrors(
+            a.axial + b.axial, a.outwards + b.outwards, a.raised + b.raised
+        )
+
+    return FormErrors(
+        ring(one.outer, other.outer),
+        ring(one.inner, other.inner),
+        one.elements + other.elements,
+    )
+
+
+class Records:
+    """Random bearings in motion, a batch at a time."""
+
+    def __init__(self, model, tolerances, n, turns, settle, samples, steps, owner):
+        """Check what was given; arguments as of `monte_carlo`."""
+        if not isinstance(model, NoiseModel):
+            raise TypeError(
+                f"{owner}: `model` is a {type(model).__name__}; it must be a"
+                " NoiseModel."
+            )
+        if not isinstance(tolerances, Tolerances):
+            raise TypeError(
+                f"{owner}: `tolerances` is a {type(tolerances).__name__}; it must be"
+                " Tolerances."
+            )
+        if any(is_traced(leaf) for leaf in jax.tree.leaves((model, tolerances))):
+            raise TypeError(f"{owner}: it is a loop over batches, not for `jit`.")
+        tolerances.check(model.element.bearing)
+        count(owner, "n", n)
+        count(owner, "samples", samples)
+        shaft = model.shaft_speed
+        check(owner, "speed", shaft > 0, "another than 0", shaft, "rad/s")
+        steps = needed_steps(model, samples) if steps is None else steps
+        self.given = model, tolerances
+        self.counts = turns, settle, samples, steps
+        self.owner = owner
+
+    def parts(self, n: int, batch: int):
+        """How many of each batch count, and the numbers of its bearings."""
+        count(self.owner, "batch", batch)
+        size = min(batch, n)
+        for begin in range(0, n, size):
+            # The last batch is filled up: one shape, one program.
+            at = np.minimum(np.arange(begin, begin + size), n - 1)
+            yield min(size, n - begin), at
+
+    def batches(self, keys, batch, progress=None, factors=None):
+        """How many of a batch count, their accelerations and result codes."""
+        factors = {} if factors is None else factors
+        for part, at in self.parts(len(keys), batch):
+            yield part, *_records(*self.given, factors, keys[at], self.counts)
+            if progress is not None:
+                progress(int(at[-1]) + 1, len(keys))
+
+
+@eqx.filter_jit
+def _records(model, tolerances, factors, keys, counts):
+    """Accelerations (bearing, time, 3) and result codes of a batch."""
+    turns, settle, samples, steps = counts
+    tolerances = tolerances.scaled(factors)
+
+    def one(key):
+        found = vibration(
+            drawn(model, tolerances, key),
+            turns=turns,
+            settle=settle,
+            samples=samples,
+            steps=steps,
+            throw=False,
+        )
+        return found.acceleration[:, :_DIRECTIONS], found.result
+
+    return jax.vmap(one)(keys)

@@ -1,0 +1,328 @@
+"""What scatters from one bearing to the next as they leave the line.
+
+Sources, each of which may be absent: diameters of the rolling elements, their spacing
+by the cage, eccentricity and waves of both raceways, waves of the elements. A source of
+scale s gives errors in proportion to s; the random numbers behind them do not depend
+on s.
+"""
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design import AbstractBallBearing, AbstractRollerBearing, n_elements
+from ..design.checks import check, concrete, instance, non_negative
+from ..design.form_error import FormErrors, Harmonics, RacewayErrors
+from ..design.tolerance import RunningAccuracy, ball_grade, roller_grade
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+
+PEAKS_IN_RMS = 6.0
+"""Peak to valley of random waves over their root mean square [1]: ±3 of the latter."""
+
+
+_WAVES = "outer_axial", "outer_outwards", "inner_axial", "inner_outwards", "elements"
+
+
+class RandomWaves(eqx.Module):
+    """Waves of one kind of surface: a_k = amplitude (low/k)^slope, times a random size.
+
+    Sizes and phases of all orders are independent: cosine and sine of a wave are each
+    distributed normally, so that its size has Rayleigh's distribution with mean square
+    1, and its phase is even over the turn.
+
+    Attributes:
+        amplitude: Root mean square over bearings of the amplitude of order `low` [m].
+        low: First order.
+        high: Last order.
+        slope: Exponent of the fall over the order [1].
+        varies: Whether sizes are random; otherwise they are 1 and only phases are.
+
+    Traced: amplitude, slope. Static: low, high, varies.
+    """
+
+    amplitude: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    low: int = eqx.field(static=True)
+    high: int = eqx.field(static=True)
+    slope: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1.0)
+    varies: bool = eqx.field(static=True, default=True)
+
+    def __check_init__(self):
+        non_negative(self, "amplitude")
+        for name in ("low", "high"):
+            value = getattr(self, name)
+            whole = isinstance(value, int) and not isinstance(value, bool)
+            check(self, name, whole and value >= 1, "a whole number from 1", value, "")
+        allowed = f"{self.low}, the first order, or more"
+        check(self, "high", self.high >= self.low, allowed, self.high, "")
+
+    @classmethod
+    def of_root_mean_square(
+        cls, height: Any, low: int, high: int, slope: Any = 1.0, varies: bool = True
+    ) -> "RandomWaves":
+        """Waves whose heights have a given root mean square, over turn and bearings.
+
+        Args:
+            height: That root mean square [m]: its square is Σ a_k²/2.
+            low, high, slope, varies: See the class.
+        """
+        one = cls(1.0, low, high, slope, varies)
+        shape = jnp.sqrt(0.5 * jnp.sum(one._shares() ** 2))
+        return cls(as_real(height) / shape, low, high, slope, varies)
+
+    def _shares(self):
+        return (self.low / jnp.arange(self.low, self.high + 1)) ** self.slope
+
+    def draw(self, key: Array, shape: tuple[int, ...] = ()) -> Harmonics:
+        """Random waves.
+
+        Args:
+            key: Of `jax.random`.
+            shape: Of the surfaces that are drawn.
+        """
+        sized, turned = jax.random.split(key)
+        every = *shape, self.high - self.low + 1
+        real = self.amplitude.dtype
+        phase = jax.random.uniform(turned, every, real, 0.0, 2.0 * jnp.pi)
+        amplitude = jnp.broadcast_to(self.amplitude * self._shares(), every)
+        if self.varies:
+            square = jax.random.exponential(sized, every, real)
+            amplitude = amplitude * jnp.sqrt(square)
+        return Harmonics(range(self.low, self.high + 1), amplitude, phase)
+
+    def scaled(self, factor: Any) -> "RandomWaves":
+        """The same with `factor` times the amplitudes [1]."""
+        return eqx.tree_at(lambda w: w.amplitude, self, factor * self.amplitude)
+
+
+class Drawn(NamedTuple):
+    """How one bearing differs from its drawing.
+
+    Attributes:
+        diameter: Of each rolling element (element,) [m]; `None`: not at all.
+        azimuth: Of each rolling element (element,) [rad]; `None`: not at all.
+        errors: Form errors.
+    """
+
+    diameter: Float[Array, " element"] | None
+    azimuth: Float[Array, " element"] | None
+    errors: FormErrors
+
+
+class Tolerances(eqx.Module):
+    """How bearings of one kind scatter; `None`: not at all.
+
+    Attributes:
+        diameter: Largest less smallest diameter of the rolling elements that may be
+            put into one bearing [m]; they are even in between, about the nominal one.
+        spacing: Likewise of the azimuth of a rolling element in its pocket [rad].
+        outer_eccentricity: Root mean square over bearings of the eccentricity of the
+            outer raceway; its cosine and sine are distributed normally [m].
+        inner_eccentricity: Likewise of the inner raceway [m].
+        outer_axial: Waves of the outer raceway along the axis.
+        outer_outwards: Waves of the outer raceway away from the axis.
+        inner_axial: Of the inner raceway.
+        inner_outwards: Of the inner raceway.
+        elements: Waves of every rolling element around its circle of rolling.
+
+    Traced: all real numbers.
+    """
+
+    diameter: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("m"), default=None
+    )
+    spacing: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None
+    )
+    outer_eccentricity: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("m"), default=None
+    )
+    inner_eccentricity: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("m"), default=None
+    )
+    outer_axial: RandomWaves | None = None
+    outer_outwards: RandomWaves | None = None
+    inner_axial: RandomWaves | None = None
+    inner_outwards: RandomWaves | None = None
+    elements: RandomWaves | None = None
+
+    def __check_init__(self):
+        for field in dataclasses.fields(self):
+            if field.name in _WAVES:
+                instance(self, field.name, RandomWaves, None)
+            elif getattr(self, field.name) is not None:
+                non_negative(self, field.name)
+
+    @classmethod
+    def of_grade(
+        cls,
+        grade: str,
+        bearing: AbstractBallBearing | AbstractRollerBearing,
+        *,
+        runout: RunningAccuracy | None = None,
+        waviness: Any = None,
+        axial_waviness: Any = None,
+        spacing: Any = None,
+        highest: int = 100,
+        highest_of_elements: int = 40,
+        slope: Any = 1.0,
+    ) -> "Tolerances":
+        """Tolerances of a grade of rolling elements, read as distributions.
+
+        A standard bounds parts and says nothing of how they scatter. Here:
+
+        * diameters are even over the variation that a lot is allowed, V_DwL;
+        * form errors of an element are waves of orders 2 up whose root mean square is
+          a sixth of the deviation of form allowed (`PEAKS_IN_RMS`);
+        * cosine and sine of a raceway's eccentricity have the standard deviation of a
+          third of the eccentricity allowed, which is half of the runout allowed;
+        * waves of raceways are in no standard and must be given.
+
+        Args:
+            grade: "G10" of balls or "II" of rollers; see `ball_grade`, `roller_grade`.
+            bearing: Of one row.
+            runout: Of the rings, from `running_accuracy`; `None`: no eccentricity.
+            waviness: Root mean square of the heights of both raceways outwards,
+                orders 2 to `highest` [m]; `None`: none.
+            axial_waviness: Likewise along the axis [m]; `None`: none.
+            spacing: See the class [rad].
+            highest: Last order of the raceways.
+            highest_of_elements: Last order of the rolling elements.
+            slope: Of all waves [1].
+
+        Raises:
+            TypeError: For another bearing.
+            ValueError: If there is no such grade.
+        """
+        if isinstance(bearing, AbstractBallBearing):
+            found = ball_grade(grade)
+        elif isinstance(bearing, AbstractRollerBearing):
+            found = roller_grade(grade, bearing.roller_diameter)
+        else:
+            raise TypeError(
+                f"Tolerances.of_grade: `bearing` is a {type(bearing).__name__}; it must"
+                " be of one row of balls or rollers."
+            )
+
+        def waves(height, low, high):
+            if height is None:
+                return None
+            return RandomWaves.of_root_mean_square(height, low, high, slope)
+
+        radial = waves(waviness, 2, highest)
+        axial = waves(axial_waviness, 2, highest)
+        share = 0.5 / 3.0 * np.sqrt(2.0)
+        return cls(
+            diameter=found.lot_variation,
+            spacing=spacing,
+            outer_eccentricity=None if runout is None else share * runout.outer,
+            inner_eccentricity=None if runout is None else share * runout.inner,
+            outer_axial=axial,
+            outer_outwards=radial,
+            inner_axial=axial,
+            inner_outwards=radial,
+            elements=waves(found.form / PEAKS_IN_RMS, 2, highest_of_elements),
+        )
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Names of the sources that are there."""
+        names = (field.name for field in dataclasses.fields(self))
+        return tuple(name for name in names if getattr(self, name) is not None)
+
+    def scaled(self, factors: Mapping[str, Any]) -> "Tolerances":
+        """The same with some sources larger or smaller.
+
+        Args:
+            factors: By the names of sources [1]; 0 switches one off, and leaves the
+                program as it is.
+
+        Raises:
+            ValueError: For a source that is not there.
+        """
+        for name in factors:
+            if name not in self.sources:
+                raise ValueError(
+                    f"Tolerances.scaled: there is no source {name!r}; sources are"
+                    f" {', '.join(self.sources) or 'none'}."
+                )
+        names = tuple(factors)
+
+        def one(name):
+            value, factor = getattr(self, name), factors[name]
+            waves = isinstance(value, RandomWaves)
+            return value.scaled(factor) if waves else factor * value
+
+        return eqx.tree_at(
+            lambda t: [getattr(t, name) for name in names],
+            self,
+            [one(name) for name in names],
+        )
+
+    def check(self, bearing: AbstractBallBearing | AbstractRollerBearing) -> None:
+        """Raise if rolling elements of a bearing could overlap around their circle.
+
+        Raises:
+            ValueError: If neighbours could, with the worst of spacing and diameter.
+        """
+        balls = isinstance(bearing, AbstractBallBearing)
+        nominal = bearing.ball_diameter if balls else bearing.roller_diameter
+        zero = jnp.zeros(())
+        diameter = zero if self.diameter is None else self.diameter
+        spacing = zero if self.spacing is None else self.spacing
+        numbers = concrete(nominal, bearing.pitch_diameter, diameter, spacing)
+        if numbers is None:
+            return
+        nominal, pitch, diameter, spacing = numbers
+        largest = nominal + 0.5 * diameter
+        needed = 2.0 * np.arcsin(min(1.0, largest / pitch))
+        room = 2.0 * np.pi / n_elements(bearing) - needed
+        allowed = f"at most {room:.4g} rad, the room between two neighbours"
+        check(self, "spacing", spacing <= room, allowed, spacing, "rad")
+
+
+def draw(
+    tolerances: Tolerances,
+    bearing: AbstractBallBearing | AbstractRollerBearing,
+    key: Array,
+) -> Drawn:
+    """One bearing off the line.
+
+    Args:
+        tolerances: How bearings scatter.
+        bearing: Of one row.
+        key: Of `jax.random`. Each source draws with a key of its own: what another
+            source is like does not change it.
+
+    Returns:
+        Drawn, differentiable with respect to the tolerances.
+    """
+    count = n_elements(bearing)
+    names = [field.name for field in dataclasses.fields(tolerances)]
+    keys = {name: jax.random.fold_in(key, k) for k, name in enumerate(names)}
+
+    def even(name):
+        width = getattr(tolerances, name)
+        if width is None:
+            return None
+        return width * jax.random.uniform(keys[name], (count,), width.dtype, -0.5, 0.5)
+
+    def waves(name, shape=()):
+        found = getattr(tolerances, name)
+        return () if found is None else (found.draw(keys[name], shape),)
+
+    def raceway(ring):
+        name, outwards = f"{ring}_eccentricity", waves(f"{ring}_outwards")
+        size = getattr(tolerances, name)
+        if size is not None:
+            outwards += (RandomWaves(size, 1, 1).draw(keys[name]),)
+        return RacewayErrors(waves(f"{ring}_axial"), outwards)
+
+    errors = FormErrors(raceway("outer"), raceway("inner"), waves("elements", (count,)))
+    return Drawn(even("diameter"), even("spacing"), errors)
