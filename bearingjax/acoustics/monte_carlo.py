@@ -207,7 +207,9 @@ class Records:
 
     def batches(self, keys, batch, progress=None, factors=None):
         """How many of a batch count, their accelerations and result codes."""
-        factors = {} if factors is None else factors
+        # All sources always: one program.
+        names, given = self.given[1].sources, factors or {}
+        factors = {name: jnp.asarray(given.get(name, 1.0)) for name in names}
         for part, at in self.parts(len(keys), batch):
             yield part, *_records(*self.given, factors, keys[at], self.counts)
             if progress is not None:

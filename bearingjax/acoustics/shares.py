@@ -135,10 +135,9 @@ def shares(
 
     squares, fine = [], np.ones(n, bool)
     for change in runs:
-        factors = {name: jnp.asarray(change.get(name, 1.0)) for name in sources}
         found = [
             (np.asarray(_mean_square(a, direction))[:part], np.asarray(r)[:part])
-            for part, a, r in records.batches(keys, batch, told, factors)
+            for part, a, r in records.batches(keys, batch, told, change)
         ]
         square, result = (np.concatenate(a) for a in zip(*found, strict=True))
         fine &= result == int(Result.CONVERGED)
