@@ -20,6 +20,9 @@ from . import plot as plot
 from . import rotor as rotor
 from . import scene as scene
 from . import statics as statics
+from .acoustics import NoiseModel as NoiseModel
+from .acoustics import natural_modes as natural_modes
+from .acoustics import vibration as vibration
 from .contact import ISO16281 as ISO16281
 from .contact import CoupledSlices as CoupledSlices
 from .contact import FreeAngle as FreeAngle
@@ -50,6 +53,8 @@ from .design import Straight as Straight
 from .design import Tabulated as Tabulated
 from .design import TaperedRollerBearing as TaperedRollerBearing
 from .design import ThrustBallBearing as ThrustBallBearing
+from .design.form_error import FormErrors as FormErrors
+from .design.form_error import Harmonics as Harmonics
 from .element import FREEDOMS as FREEDOMS
 from .element import BearingElement as BearingElement
 from .element import CentrifugalOnly as CentrifugalOnly

@@ -133,6 +133,31 @@ def parser() -> argparse.ArgumentParser:
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
     )
     rotor.add_argument("--quiet", action="store_true", help="no progress")
+    noise = commands.add_parser(
+        "noise",
+        help="vibration and noise from form errors",
+        description="The vibration of a bearing with the form errors of its"
+        " [deviations] on the rig of its [vibration]: levels, bands, lines and what"
+        " makes them.",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
+    )
+    _add_common(noise)
+    noise.add_argument(
+        "--wav",
+        metavar="OUT",
+        type=Path,
+        help="write the acceleration along the sensor as sound (.wav)",
+    )
+    noise.add_argument(
+        "--table",
+        metavar="OUT",
+        type=Path,
+        help="write a row per time (.csv, .parquet)",
+    )
+    noise.add_argument(
+        "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
+    )
+    noise.add_argument("--quiet", action="store_true", help="no progress")
     return top
 
 

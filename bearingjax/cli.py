@@ -1,5 +1,5 @@
 """The command line: `bearingjax solve`, `sweep`, `optimise`, `contact`, `skid`,
-`rotor`."""
+`rotor`, `noise`."""
 
 import contextlib
 import gc
@@ -433,6 +433,63 @@ def _rotor(options) -> int:
     return SOLVED if run.converged else NOT_SOLVED
 
 
+def _noise(options) -> int:
+    from .scene import (
+        noise_columns,
+        noise_report,
+        read_noise,
+        run_noise,
+        write_noise_json,
+        write_noise_sound,
+    )
+    from .statics.sweep_table import write_columns
+
+    _check_table(options)
+    _check_sound(options.wav)
+    _check_outputs(options)
+    task = read_noise(options.scene, options.set)
+    shown = not options.quiet and sys.stderr.isatty()
+    run = run_noise(task, _show_stage if shown else None)
+    if shown:
+        _show_stage("")
+    full = []
+
+    def draw(path):
+        from .plot import noise_overview
+
+        noise_overview(run, title=task.name).savefig(path, dpi=150)
+
+    solved = run.converged
+    _write(
+        (options.json, lambda path: write_noise_json(path, run)),
+        (
+            options.table,
+            (lambda path: write_columns(noise_columns(run), path)) if solved else None,
+        ),
+        (
+            options.wav,
+            (lambda path: full.append(write_noise_sound(path, run)))
+            if solved
+            else None,
+        ),
+        (options.plot, draw if solved else None),
+    )
+    if not solved:
+        print(f"bearingjax: {run.result.label}: {run.message}", file=sys.stderr)
+        return NOT_SOLVED
+    print(noise_report(run), flush=True)
+    if full:
+        print(f"{options.wav}: full scale is {full[0]:.4g} m/s²", flush=True)
+    return SOLVED
+
+
+def _check_sound(path: Path | None) -> None:
+    from .scene import SceneError
+
+    if path is not None and path.suffix.lower() != ".wav":
+        raise SceneError(f"{path}: a sound ends in .wav")
+
+
 def _show_stage(name: str) -> None:
     """The stage that a long run is in, on one line of standard error."""
     print(f"\r\x1b[K{name}{'…' if name else ''}", end="", file=sys.stderr, flush=True)
@@ -455,7 +512,7 @@ def _check_outputs(options) -> None:
     """Fail before anything is solved if outputs cannot be written or hit an input."""
     from .scene import check_outputs, scene_files
 
-    names = ("json", "plot", "table")
+    names = ("json", "plot", "table", "wav")
     outputs = {f"--{name}": getattr(options, name, None) for name in names}
     if outputs["--plot"] is not None:
         _check_plot(outputs["--plot"])
@@ -490,4 +547,5 @@ _COMMANDS = {
     "contact": _contact,
     "skid": _skid,
     "rotor": _rotor,
+    "noise": _noise,
 }

@@ -66,4 +66,4 @@ def test_picture_and_folders_exist():
         r"^(bearingjax/\w+/|tests/|notebooks/|benchmarks/) ", README, re.M
     ):
         assert (root / folder).is_dir(), folder
-    assert len(bj.scene.shipped_scenes()) == 22
+    assert len(bj.scene.shipped_scenes()) == 25

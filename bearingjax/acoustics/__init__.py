@@ -8,6 +8,9 @@ from .bands import octave_bands as octave_bands
 from .bands import third_octave_bands as third_octave_bands
 from .bands import total_root_mean_square as total_root_mean_square
 from .cage_contact import CageContact as CageContact
+from .causes import line_causes as line_causes
+from .contact_states import ContactStates as ContactStates
+from .contact_states import contact_states as contact_states
 from .level import REFERENCE_ACCELERATION as REFERENCE_ACCELERATION
 from .level import acceleration_of as acceleration_of
 from .level import combined as combined
@@ -40,6 +43,8 @@ from .scatter import Tolerances as Tolerances
 from .scatter import draw as draw
 from .shares import Shares as Shares
 from .shares import shares as shares
+from .sound import sound as sound
+from .sound import write_sound as write_sound
 from .spectrum import AbstractWindow as AbstractWindow
 from .spectrum import Hann as Hann
 from .spectrum import Rectangular as Rectangular

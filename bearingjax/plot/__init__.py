@@ -11,6 +11,11 @@ from .contact_stress import contact_stress as contact_stress
 from .load import load_displacement as load_displacement
 from .load import load_zone as load_zone
 from .load import stiffness_over_speed as stiffness_over_speed
+from .noise import acceleration_over_time as acceleration_over_time
+from .noise import band_bars as band_bars
+from .noise import contact_state_map as contact_state_map
+from .noise import noise_spectrum as noise_spectrum
+from .noise_page import noise_overview as noise_overview
 from .optimised import optimised as optimised
 from .page import overview as overview
 from .pressure import pressure_map as pressure_map

@@ -16,6 +16,15 @@ from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers
 from .files import write_outputs as write_outputs
 from .interrupt import Interrupt as Interrupt
+from .noise_output import noise_as_dict as noise_as_dict
+from .noise_output import noise_columns as noise_columns
+from .noise_output import write_noise_json as write_noise_json
+from .noise_output import write_noise_sound as write_noise_sound
+from .noise_report import noise_report as noise_report
+from .noise_run import NoiseRun as NoiseRun
+from .noise_run import run_noise as run_noise
+from .noise_scene import NoiseScene as NoiseScene
+from .noise_table import read_noise as read_noise
 from .optimise_report import optimisation_as_dict as optimisation_as_dict
 from .optimise_report import optimisation_report as optimisation_report
 from .optimise_report import unsolved_start_as_dict as unsolved_start_as_dict

@@ -16,14 +16,17 @@ LARGEST = 10**7
 """Most cases of a scene: 1 kB of memory each, with the usual outputs."""
 
 
-def read_list(table: Table, folder: Path, kinds: Mapping[str, str]) -> dict[str, Any]:
+def read_list(
+    table: Table, folder: Path, kinds: Mapping[str, str], what: str = "cases"
+) -> dict[str, Any]:
     """Values of a list of cases, a column each.
 
     Args:
-        table: `[cases]` with the name of the file.
+        table: `[cases]`, or another table with the name of a `file`.
         folder: Of the scene.
         kinds: Of keys whose columns are SI numbers; others are settings as a scene
             writes them.
+        what: What a row is, in words.
 
     Returns:
         Values by key, in order.
@@ -34,7 +37,7 @@ def read_list(table: Table, folder: Path, kinds: Mapping[str, str]) -> dict[str,
     name = table.raw("file")
     if not isinstance(name, str):
         raise table.error("file", f"{name!r} is not the name of a file")
-    rows = _rows(table, name, folder / name)
+    rows = _rows(table, name, folder / name, what)
     (_, header), *cells = rows
     lines = [line for line, _ in cells]
     columns = zip(*(row for _, row in cells), strict=True)
@@ -59,7 +62,7 @@ def _head(table, name, title) -> tuple[str, str | None]:
     raise table.error("file", problem)
 
 
-def _rows(table, name, path) -> list[tuple[int, list[str]]]:
+def _rows(table, name, path, what) -> list[tuple[int, list[str]]]:
     """Lines of a list that are not empty, each with its number."""
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
@@ -76,9 +79,11 @@ def _rows(table, name, path) -> list[tuple[int, list[str]]]:
     except (ValueError, csv.Error) as error:
         raise table.error("file", f"{name}: cannot be read: {error}") from error
     if len(rows) < 2:
-        raise table.error("file", f"{name}: has no cases; a header and rows are wanted")
+        raise table.error(
+            "file", f"{name}: has no {what}; a header and rows are wanted"
+        )
     if len(rows) > LARGEST:
-        raise table.error("file", f"{name}: has {len(rows)} cases; at most {LARGEST}")
+        raise table.error("file", f"{name}: has {len(rows)} {what}; at most {LARGEST}")
     wanted = len(rows[0][1])
     for line, row in rows:
         if len(row) != wanted:

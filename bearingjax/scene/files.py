@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from .quantity import SceneError
-from .scene_file import bearing_files, find_scene, parse_scene
+from .scene_file import bearing_files, find_scene, parse_scene, profile_files
 
 Writer = Callable[[Path], None]
 """Writes a file at a path."""
@@ -121,7 +121,7 @@ def _naming(path: Path):
 
 
 def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
-    """Files that a scene is read from: itself, its list of cases, bearings of a rotor.
+    """Files that a scene is read from: itself, cases, profiles, bearings of a rotor.
 
     Args:
         source, settings: As in `read_scene`.
@@ -134,7 +134,7 @@ def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
     cases = data.get("cases")
     name = cases.get("file") if isinstance(cases, dict) else None
     listed = [path.parent / name] if isinstance(name, str) else []
-    return [path, *listed, *bearing_files(data, path)]
+    return [path, *listed, *profile_files(data, path), *bearing_files(data, path)]
 
 
 def write_numbers(path: str | Path, numbers: Mapping[str, Any]) -> None:

@@ -106,6 +106,7 @@ def scene_of(data: dict[str, Any], path: Path) -> Scene:
     top = Table(data, path.name)
     # What other commands ask for.
     top.skip("cases", "optimise", "lubricant", "cage", "dynamics")
+    top.skip("deviations", "vibration")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         bearing, preload = read_bearing(top.table("bearing", required=True), top)

@@ -87,6 +87,15 @@ def bearing_files(data: Mapping[str, Any], path: Path) -> list[Path]:
     return [bearing_place(name, path) for name in sorted(names - set(here))]
 
 
+def profile_files(data: Mapping[str, Any], path: Path) -> list[Path]:
+    """Files of measured form errors that a scene names; arguments as above."""
+    table = data.get("deviations")
+    listed = table.get("profile") if isinstance(table, Mapping) else None
+    entries = listed if isinstance(listed, list) else []
+    names = [one.get("file") for one in entries if isinstance(one, Mapping)]
+    return [path.parent / name for name in names if isinstance(name, str)]
+
+
 def bearing_place(name: str, path: Path) -> Path:
     """Where a scene is that another one names: beside it, or among those shipped."""
     return shipped_scenes().get(name, path.parent / name)

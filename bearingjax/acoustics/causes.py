@@ -1,0 +1,147 @@
+"""Which errors of form make a line of a spectrum."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..design import n_elements
+from ..design.form_error import Harmonics, RacewayErrors, Spall
+from .lines import Line
+from .model import NoiseModel
+from .orders import KinematicFrequencies, kinematic_frequencies, waviness_force
+
+_MULTIPLES = 10
+_SIDEBANDS = 2
+_PASSAGES = 6
+"""Multiples of the cage's turning, in passages of the elements."""
+
+
+class _Cause(NamedTuple):
+    """What makes a line.
+
+    Attributes:
+        size: Of the error [m].
+        frequency: Of the line [Hz].
+        words: What it is.
+        order: Of waves; 0: none.
+    """
+
+    size: float
+    frequency: float
+    words: str
+    order: int = 0
+
+
+def line_causes(
+    lines: Iterable[Line], model: NoiseModel, tolerance: Any
+) -> tuple[tuple[str, ...], ...]:
+    """What may make each line, to first order.
+
+    Waves: where `waviness_force` has their lines, of evenly loaded rolling elements
+    (other orders show too, fainter, where elements are loaded unevenly). Spalls:
+    multiples of the passage, with sidebands. Differences of diameter or spacing:
+    multiples of the cage's turning. An uneven load: multiples of the passage of the
+    elements past it. Nonlinear contacts make sums and differences of all these, for
+    which no cause is given.
+
+    Args:
+        lines: From `name_lines`.
+        model: The bearing with its errors; concrete.
+        tolerance: Largest distance from a line [Hz].
+
+    Returns:
+        Causes of each line, that of the largest error first, such as "waves of the
+        outer raceway, order 13, 15"; `()` where none is known.
+    """
+    known = sorted(_known(model), key=lambda one: -one.size)
+    return tuple(
+        _told(
+            [one for one in known if abs(one.frequency - line.frequency) <= tolerance]
+        )
+        for line in lines
+    )
+
+
+def _told(causes: list[_Cause]) -> tuple[str, ...]:
+    """Each cause once, with the orders of its waves."""
+    orders: dict[str, set[int]] = {}
+    for one in causes:
+        orders.setdefault(one.words, set()).add(one.order)
+    return tuple(
+        words
+        if found == {0}
+        else f"{words}, order {', '.join(map(str, sorted(found)))}"
+        for words, found in orders.items()
+    )
+
+
+def _known(model: NoiseModel) -> Iterator[_Cause]:
+    bearing: Any = model.element.bearing
+    turning = kinematic_frequencies(bearing, model.speed)
+    count = n_elements(bearing)
+    for ring in ("outer", "inner"):
+        yield from _of_raceway(model, ring, turning)
+    for shape in model.errors.elements:
+        yield from _of_elements(shape, model, turning)
+    kind = "ball" if hasattr(bearing, "ball_deviation") else "roller"
+    cage = float(turning.cage)
+    pitch = 0.5 * float(bearing.pitch_diameter)
+    for name, words, scale in (
+        (f"{kind}_deviation", f"differences of {kind} diameter", 1.0),
+        ("azimuth_deviation", f"uneven spacing of the {kind}s", pitch),
+    ):
+        value = getattr(bearing, name)
+        size = 0.0 if value is None else scale * float(np.ptp(value))
+        for k in range(1, _PASSAGES * count + 1) if size else ():
+            yield _Cause(size, k * cage, words)
+    load = np.asarray(model.load)
+    if load[[0, 1, 3, 4]].any():
+        for k in range(1, _MULTIPLES + 1):
+            yield _Cause(0.0, k * count * cage, f"{kind}s passing the load")
+
+
+def _of_raceway(model, ring, turning: KinematicFrequencies) -> Iterator[_Cause]:
+    errors: RacewayErrors = getattr(model.errors, ring)
+    count = n_elements(model.element.bearing)
+    passage, beside = (
+        (turning.outer_passage, turning.outer)
+        if ring == "outer"
+        else (turning.inner_passage, turning.inner)
+    )
+    for shape in (*errors.outwards, *errors.axial, *errors.raised):
+        if isinstance(shape, Harmonics):
+            sizes = np.abs(np.asarray(shape.amplitude))
+            for order, size in zip(shape.order, sizes, strict=True):
+                if size and min(order % count, -order % count) <= 1:
+                    words = f"waves of the {ring} raceway"
+                    yield from _of_wave(model, ring, order, size, words)
+        elif isinstance(shape, Spall):
+            words = f"spall of the {ring} raceway"
+            yield from _of_spall(shape, float(passage), float(beside), words)
+
+
+def _of_elements(shape, model, turning: KinematicFrequencies) -> Iterator[_Cause]:
+    if isinstance(shape, Harmonics):
+        sizes = np.abs(np.asarray(shape.amplitude)).max(axis=0)
+        for order, size in zip(shape.order, sizes, strict=True):
+            if size and order % 2 == 0:
+                words = "waves of the rolling elements"
+                yield from _of_wave(model, "element", order, size, words)
+    elif isinstance(shape, Spall):
+        twice, cage = float(turning.twice_rotation), float(turning.cage)
+        yield from _of_spall(shape, twice, cage, "spall of a rolling element")
+
+
+def _of_wave(model, part, order, size, words) -> Iterator[_Cause]:
+    made = waviness_force(model.element.bearing, model.speed, part, order)
+    for frequency in np.concatenate([made.axial, made.radial]):
+        yield _Cause(float(size), abs(float(frequency)), words, order)
+
+
+def _of_spall(shape, passage, beside, words) -> Iterator[_Cause]:
+    depth = float(np.abs(np.asarray(shape.depth)).max())
+    sides = range(-_SIDEBANDS, _SIDEBANDS + 1) if beside else (0,)
+    for k in range(1, _MULTIPLES + 1) if depth else ():
+        for m in sides:
+            yield _Cause(depth, k * passage + m * beside, words)

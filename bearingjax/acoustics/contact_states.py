@@ -1,0 +1,48 @@
+"""How many contacts every rolling element has, and how often that changes."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .vibration import Vibration
+
+OPEN = 1e-9
+"""Load over the largest one up to which a contact counts as open [1]."""
+
+
+class ContactStates(NamedTuple):
+    """Contacts of the rolling elements over a record.
+
+    Attributes:
+        number: Of closed contacts (time, element).
+        samples: How many samples of all elements have 0, 1, 2, … contacts, up to as
+            many as an element can have (number,).
+        switches_per_turn: Contacts that open or close, of all elements, from one
+            sample to the next, per turn of the shaft.
+    """
+
+    number: np.ndarray
+    samples: np.ndarray
+    switches_per_turn: float
+
+    @property
+    def shares(self) -> np.ndarray:
+        """Of all samples (number,) [1]."""
+        return self.samples / self.samples.sum()
+
+
+def contact_states(record: Vibration) -> ContactStates:
+    """Which contacts of a record are closed.
+
+    A four-point ball bears in up to four contacts, other balls and rollers in two. A
+    contact that opens and closes again between two samples is not seen.
+
+    Args:
+        record: From `vibration`; concrete.
+    """
+    load: Any = np.asarray(record.contact_load)
+    closed = load > OPEN * load.max(initial=0.0)
+    number = closed.sum(axis=-1)
+    samples = np.bincount(number.ravel(), minlength=load.shape[-1] + 1)
+    switches = np.count_nonzero(closed[1:] != closed[:-1])
+    return ContactStates(number, samples, switches / record.turns)

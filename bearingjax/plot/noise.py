@@ -1,0 +1,246 @@
+"""Pictures of a bearing's noise: record, spectrum, bands, contact states."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..acoustics import (
+    REFERENCE_ACCELERATION,
+    UNNAMED,
+    Bands,
+    ContactStates,
+    Line,
+    Spectrum,
+    Vibration,
+)
+from ..acoustics.level import LOWEST_LEVEL
+from .style import CURVES, GREY, SMALL, axes_or_new
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+DIRECTIONS = ("x", "y", "z")
+STATES = ("#D55E00", "#E69F00", "#F0F0F0", "#56B4E9", "#0072B2")
+"""Colours of 0, 1, 2, 3, 4 contacts."""
+_NAMED = 8
+"""Lines of a spectrum that have their names."""
+_COLUMNS = 1600
+"""Most columns of a map."""
+
+
+def acceleration_over_time(
+    record: Vibration, ax: "matplotlib.axes.Axes | None" = None
+) -> "matplotlib.axes.Axes":
+    """Acceleration of the moving ring over the turns of the shaft [m/s²].
+
+    Args:
+        record: From `vibration`.
+        ax: Axes; a new figure if `None`.
+
+    Returns:
+        The axes.
+    """
+    ax = axes_or_new(ax)
+    turns = np.asarray(record.time) * float(record.shaft_frequency)
+    values = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
+    # What moves most lies below, so that it hides nothing.
+    above = np.argsort(np.argsort(-values.std(axis=0)))
+    for k, name in enumerate(DIRECTIONS):
+        ax.plot(
+            turns, values[:, k], color=CURVES[k], lw=0.6, zorder=2 + above[k],
+            label=name,
+        )  # fmt: skip
+    ax.set_xlim(0.0, record.turns)
+    ax.set_xlabel("turns of the shaft")
+    ax.set_ylabel("acceleration [m/s²]")
+    ax.set_title("Vibration of the moving ring")
+    legend = ax.legend(fontsize=SMALL, loc="upper right", ncols=len(DIRECTIONS))
+    for line in legend.get_lines():
+        line.set_linewidth(2.0)
+    return ax
+
+
+def noise_spectrum(
+    spectrum: Spectrum,
+    lines: Sequence[Line] = (),
+    ax: "matplotlib.axes.Axes | None" = None,
+    *,
+    reference: float = REFERENCE_ACCELERATION,
+) -> "matplotlib.axes.Axes":
+    """Level of every line of a spectrum, all directions together, over the frequency.
+
+    Args:
+        spectrum: Of the acceleration, amplitudes (line, ...) [m/s²].
+        lines: From `name_lines`; the largest have their names.
+        ax: Axes; a new figure if `None`.
+        reference: Acceleration of 0 dB [m/s²]; levels are of root mean squares.
+
+    Returns:
+        The axes.
+    """
+    ax = axes_or_new(ax)
+    frequency = np.asarray(spectrum.frequency)[1:]
+    amplitude = np.abs(np.asarray(spectrum.amplitude))[1:].reshape(len(frequency), -1)
+    size = np.sqrt((amplitude**2).sum(axis=1))
+
+    def decibel(peak):
+        least = 1e-12 * size.max(initial=reference)
+        return 20.0 * np.log10(np.maximum(peak, least) / np.sqrt(2.0) / reference)
+
+    values = decibel(size)
+    ax.plot(frequency, values, color=CURVES[0], lw=0.6, label="_spectrum")
+    largest = sorted(lines, key=lambda line: -line.amplitude)
+    named = [line for line in largest if line.name != UNNAMED][:_NAMED]
+    ax.plot(
+        [line.frequency for line in named],
+        decibel(np.array([line.amplitude for line in named])),
+        "o", color=CURVES[1], ms=3.5, ls="none", label="_named",
+    )  # fmt: skip
+    top = float(values.max())
+    bottom = max(float(np.percentile(values, 1)), top - 100.0)
+    ax.set_ylim(bottom - 5.0, top + 0.5 * (top - bottom))
+    ax.set_xscale("log")
+    ax.set_xlim(frequency[0], frequency[-1])
+    _names(ax, named, decibel, top)
+    ax.grid(color="0.93")
+    ax.set_axisbelow(True)
+    ax.set_xlabel("frequency [Hz]")
+    ax.set_ylabel(f"level of lines [dB over {reference:.3g} m/s²]")
+    ax.set_title("Spectrum")
+    return ax
+
+
+def _names(ax, lines, decibel, top):
+    """Names above the spectrum, apart from each other."""
+    if not lines:
+        return
+    lines = sorted(lines, key=lambda line: line.frequency)
+    low, high = np.log(ax.get_xlim())
+    place = np.array([(np.log(line.frequency) - low) / (high - low) for line in lines])
+    apart = 0.045
+    shown = place.copy()
+    for k in range(1, len(shown)):
+        shown[k] = max(shown[k], shown[k - 1] + apart)
+    shown -= max(0.0, shown[-1] - 0.97)
+    for k in range(len(shown) - 2, -1, -1):
+        shown[k] = min(shown[k], shown[k + 1] - apart)
+    floor, ceiling = ax.get_ylim()
+    height = floor + 0.72 * (ceiling - floor)
+    for line, x in zip(lines, shown, strict=True):
+        ax.annotate(
+            line.name,
+            (line.frequency, float(decibel(line.amplitude))),
+            (np.exp(low + x * (high - low)), height),
+            rotation=90, fontsize=SMALL - 1.0, ha="center", va="bottom",
+            arrowprops={"arrowstyle": "-", "color": "0.6", "lw": 0.6},
+        )  # fmt: skip
+
+
+def band_bars(
+    bands: Bands,
+    level: Any,
+    ax: "matplotlib.axes.Axes | None" = None,
+    *,
+    norm: Any = None,
+    reference: float = REFERENCE_ACCELERATION,
+) -> "matplotlib.axes.Axes":
+    """Level of every band and direction, beside the norm if there is one.
+
+    Args:
+        bands: The bands.
+        level: (band, direction) [dB]; NaN for bands that are not held.
+        ax: Axes; a new figure if `None`.
+        norm: Largest allowed level of each band (band,) [dB].
+        reference: Acceleration of 0 dB [m/s²].
+
+    Returns:
+        The axes.
+    """
+    ax = axes_or_new(ax)
+    level = np.asarray(level, dtype=float)
+    level = np.where(level > LOWEST_LEVEL, level, np.nan)  # where nothing moves
+    count, directions = level.shape
+    place, width = np.arange(count), 0.8 / directions
+    for k in range(directions):
+        away = (k - 0.5 * (directions - 1)) * width
+        ax.bar(place + away, level[:, k], width, color=CURVES[k], label=DIRECTIONS[k])
+    shown = level[np.isfinite(level)]
+    if norm is not None:
+        norm = np.asarray(norm, dtype=float)
+        edges = np.concatenate([place - 0.5, [count - 0.5]])
+        ax.stairs(norm, edges, color="black", lw=1.6, label="norm", baseline=None)
+        shown = np.concatenate([shown, norm])
+    if len(shown):
+        low = min(0.0, float(shown.min()) - 5.0)
+        ax.set_ylim(low, max(1.18 * float(shown.max()), low + 10.0))
+    every = max(1, -(-count // 14))
+    ax.set_xticks(
+        place[::every], [f"{c:g}" for c in bands.centre[::every]], fontsize=SMALL
+    )
+    ax.set_xlim(-0.6, count - 0.4)
+    ax.grid(axis="y", color="0.93")
+    ax.set_axisbelow(True)
+    ax.set_xlabel("centre of the band [Hz]")
+    ax.set_ylabel(f"level [dB over {reference:.3g} m/s²]")
+    ax.set_title("Bands")
+    ax.legend(fontsize=SMALL, ncols=4, loc="upper left")
+    return ax
+
+
+def contact_state_map(
+    record: Vibration,
+    states: ContactStates,
+    ax: "matplotlib.axes.Axes | None" = None,
+) -> "matplotlib.axes.Axes":
+    """How many contacts every rolling element has, over the turns of the shaft.
+
+    Args:
+        record: From `vibration`.
+        states: From `contact_states`.
+        ax: Axes; a new figure if `None`.
+
+    Returns:
+        The axes.
+    """
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    ax = axes_or_new(ax)
+    number = states.number[:: -(-len(states.number) // _COLUMNS)]
+    most = len(states.samples)
+    ax.imshow(
+        number.T,
+        aspect="auto",
+        interpolation="nearest",
+        origin="lower",
+        cmap=ListedColormap(STATES[:most]),
+        vmin=-0.5,
+        vmax=most - 0.5,
+        extent=(0.0, float(record.turns), -0.5, number.shape[1] - 0.5),
+    )
+    ax.set_yticks(range(number.shape[1]))
+    ax.tick_params(axis="y", labelsize=SMALL)
+    ax.set_xlabel("turns of the shaft")
+    ax.set_ylabel("rolling element")
+    ax.set_title("Contacts of every rolling element", pad=24.0)
+    ax.legend(
+        handles=[
+            Patch(
+                facecolor=STATES[k],
+                edgecolor=GREY,
+                lw=0.5,
+                label=f"{k}: {100.0 * states.shares[k]:.3g} %",
+            )
+            for k in range(most)
+        ],
+        fontsize=SMALL,
+        ncols=most,
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        frameon=False,
+        borderpad=0.2,
+        handlelength=1.2,
+        columnspacing=1.0,
+    )
+    return ax

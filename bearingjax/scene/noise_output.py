@@ -1,0 +1,133 @@
+"""What other programs read of the noise of a bearing: JSON, tables, sound; in SI."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..acoustics import write_sound
+from .files import write_numbers
+from .noise_run import LOOSE, NoiseRun
+from .noise_scene import DIRECTIONS
+
+
+def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
+    """A run as plain numbers and lists, in SI but for frequencies in Hz, levels in dB.
+
+    Args:
+        run: From `run_noise`.
+
+    Returns:
+        `natural_frequency` (mode,) of the modes that contacts or sensor hold, with the
+        `ring_share` in their energy of motion; `direction`, the names of the axis that
+        follows; `time`, `acceleration` (time, direction) and `displacement` of the
+        moving ring; `level` (direction,); `bands`: `centre` [Hz], `level` (band,
+        direction), null where the record does not hold the band; `lines`: each with
+        `order`, `frequency`, `amplitude`, `name`, and `causes`, the form errors that
+        make it to first order; `contact_states`: `contacts` (0, 1, 2, …), `samples`
+        with so many, of all elements together, `switches_per_turn`; `reference`.
+        And result, message, warnings and version. What was not solved is left out.
+    """
+    from .. import __version__
+
+    parts: dict[str, Any] = {}
+    if run.modes is not None and run.converged:
+        there = run.modes.frequency > LOOSE
+        parts["natural_frequency"] = run.modes.frequency[there].tolist()
+        parts["ring_share"] = run.modes.ring_share[there].tolist()
+    if run.heard is not None:
+        parts |= _heard(run)
+    return {
+        **parts,
+        "result": run.result.label,
+        "message": run.message,
+        "warnings": list(run.warnings),
+        "version": __version__,
+    }
+
+
+def _heard(run: NoiseRun) -> dict[str, Any]:
+    heard = run.heard
+    assert heard is not None  # checked by the caller
+    states = heard.states
+    three = len(DIRECTIONS)
+    return {
+        "direction": list(DIRECTIONS),
+        "time": heard.record.time.tolist(),
+        "acceleration": heard.acceleration.tolist(),
+        "displacement": np.asarray(heard.record.displacement)[:, :three].tolist(),
+        "level": heard.level.tolist(),
+        "bands": {
+            "centre": run.task.bands.centre.tolist(),
+            "level": heard.band_level.tolist(),
+        },
+        "lines": [
+            {**line._asdict(), "causes": list(causes)}
+            for line, causes in zip(heard.lines, heard.causes, strict=True)
+        ],
+        "contact_states": {
+            "contacts": list(range(len(states.samples))),
+            "samples": states.samples.tolist(),
+            "switches_per_turn": states.switches_per_turn,
+        },
+        "reference": run.task.reference,
+    }
+
+
+def write_noise_json(path: str | Path, run: NoiseRun) -> None:
+    """Write `noise_as_dict` to a file.
+
+    Raises:
+        OSError: If the file cannot be written.
+    """
+    write_numbers(path, noise_as_dict(run))
+
+
+def noise_columns(run: NoiseRun) -> dict[str, np.ndarray]:
+    """A record as columns by header, "name [unit]": a row for each time.
+
+    Args:
+        run: From `run_noise`, converged.
+    """
+    heard = run.heard
+    assert heard is not None  # asked for of what is solved alone
+    columns = {"time [s]": np.asarray(heard.record.time)}
+    for name, unit, values in (
+        ("acceleration", "m/s²", heard.acceleration),
+        ("displacement", "m", np.asarray(heard.record.displacement)),
+    ):
+        for k, direction in enumerate(DIRECTIONS):
+            columns[f"{name}_{direction} [{unit}]"] = values[:, k]
+    return columns
+
+
+def heard_direction(run: NoiseRun) -> np.ndarray:
+    """Unit vector along which the rig listens: the sensor's, or of the loudest axis.
+
+    Args:
+        run: From `run_noise`, converged.
+    """
+    sensor = run.task.model.sensor
+    if sensor is not None:
+        direction = np.asarray(sensor.direction)
+        return direction / np.linalg.norm(direction)
+    assert run.heard is not None
+    return np.eye(len(DIRECTIONS))[int(np.argmax(run.heard.level))]
+
+
+def write_noise_sound(path: str | Path, run: NoiseRun) -> float:
+    """Write the acceleration along `heard_direction` as sound.
+
+    Args:
+        path: Of the WAV file.
+        run: From `run_noise`, converged.
+
+    Returns:
+        The acceleration that full scale stands for [m/s²].
+
+    Raises:
+        OSError: If the file cannot be written.
+    """
+    assert run.heard is not None
+    along = run.heard.acceleration @ heard_direction(run)
+    return write_sound(path, along, float(run.heard.record.duration))

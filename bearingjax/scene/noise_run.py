@@ -1,0 +1,284 @@
+"""Running what a scene asks for of the noise of a bearing."""
+
+import dataclasses
+from collections.abc import Callable
+
+import jax
+import numpy as np
+
+from ..acoustics import (
+    ContactStates,
+    Line,
+    NaturalModes,
+    NoiseModel,
+    Spectrum,
+    Vibration,
+    band_levels,
+    contact_states,
+    is_held,
+    kinematic_frequencies,
+    level,
+    line_causes,
+    name_lines,
+    natural_modes,
+    needed_steps,
+    spectrum,
+    vibration,
+)
+from ..design import n_elements
+from ..design.form_error import Harmonics
+from ..numerics.result import Result
+from ..statics import solve_load
+from ..statics.solution import message
+from .noise_scene import DIRECTIONS, NoiseScene
+
+LOOSE = 1.0
+"""Frequency below which a mode is that of an element that nothing holds [Hz]."""
+_RING = 0.5
+"""Share of the ring in the motion from which a mode is called its own [1]."""
+_UNEVEN = 3.0
+"""Difference of both halves of a record that is worth a word [dB]."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Heard:
+    """What a record tells.
+
+    Attributes:
+        record: The vibration.
+        spectrum: Of the acceleration, amplitudes (line, direction) [m/s²].
+        level: Of the acceleration about its mean (direction,) [dB].
+        band_level: (band, direction) [dB]; NaN for bands that the record does not hold.
+        held: Bands that it holds (band,).
+        lines: Those that stand out.
+        causes: What may make each of them.
+        states: Contacts of the elements.
+    """
+
+    record: Vibration
+    spectrum: Spectrum
+    level: np.ndarray
+    band_level: np.ndarray
+    held: np.ndarray
+    lines: tuple[Line, ...]
+    causes: tuple[tuple[str, ...], ...]
+    states: ContactStates
+
+    @property
+    def acceleration(self) -> np.ndarray:
+        """Of the moving ring (time, direction) [m/s²]."""
+        return np.asarray(self.record.acceleration)[:, : len(DIRECTIONS)]
+
+
+@dataclasses.dataclass(frozen=True)
+class NoiseRun:
+    """What came of a scene of the noise of a bearing.
+
+    Attributes:
+        task: What was asked.
+        result: The worst result code.
+        message: Cause and cure in words.
+        modes: Natural modes, as NumPy holds them; `None` without a place to stand.
+        steps: Steps of the integration per sample.
+        heard: What the record tells; `None` if it was not solved.
+        warnings: What is doubtful.
+    """
+
+    task: NoiseScene
+    result: Result
+    message: str
+    modes: NaturalModes | None = None
+    steps: int = 0
+    heard: Heard | None = None
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def converged(self) -> bool:
+        """Whether all was solved."""
+        return self.result is Result.CONVERGED
+
+
+def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> NoiseRun:
+    """The vibration of the bearing of a scene, and what it tells.
+
+    Args:
+        task: From `read_noise`.
+        told: Called with the name of each stage as it begins.
+
+    Returns:
+        The run with its result code; nothing is raised for what was not solved.
+    """
+    model = task.model
+    _tell(told, "natural modes")
+    modes = jax.device_get(natural_modes(model))
+    result = Result(int(modes.result))
+    if result is not Result.CONVERGED:
+        words = f"standing under the load: {_why(model)}"
+        return NoiseRun(task, result, words, warnings=task.warnings)
+    least = needed_steps(model, task.samples)
+    steps = task.steps or least
+    _tell(told, "vibration")
+    record = vibration(
+        model,
+        turns=task.turns,
+        settle=task.settle,
+        samples=task.samples,
+        steps=steps,
+        throw=False,
+    )
+    result = Result(int(record.result))
+    told_so_far = (*task.warnings, *_before(task, steps, least))
+    if result is not Result.CONVERGED:
+        words = (
+            "vibration: the motion grew beyond all numbers; leave out"
+            " `vibration.steps`, or give more of them, or another"
+            " `vibration.retardation`"
+        )
+        return NoiseRun(task, result, words, modes, steps, warnings=told_so_far)
+    heard = listen(task, record, modes)
+    told_so_far += tuple(_after(task, heard))
+    return NoiseRun(task, result, "converged", modes, steps, heard, told_so_far)
+
+
+def _tell(told, stage):
+    if told is not None:
+        told(stage)
+
+
+def _why(model: NoiseModel) -> str:
+    """Why a bearing finds no place under its load."""
+    options = model.solve_options
+    solution = solve_load(
+        model.element,
+        model.load,
+        free=options.free,
+        fixed_ring=options.fixed_ring,
+        throw=False,
+    )
+    return message(solution, model.moving_ring)
+
+
+def listen(task: NoiseScene, record: Vibration, modes: NaturalModes) -> Heard:
+    """What a record tells.
+
+    Args:
+        task: What was asked.
+        record: The vibration.
+        modes: As NumPy holds them.
+    """
+    acceleration = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
+    shaft = float(record.shaft_frequency)
+    found = spectrum(acceleration, float(record.duration), shaft, window=task.window)
+    bearing = task.model.element.bearing
+    speed = task.model.speed
+    # Elements that differ make many multiples of the cage's turning.
+    harmonics = max(10, 6 * n_elements(bearing))
+    natural = dict(ring_modes(modes))
+    lines = name_lines(found, bearing, speed, natural=natural, harmonics=harmonics)
+    causes = line_causes(lines, task.model, 0.5 * float(found.resolution))
+    size = acceleration.std(axis=0)
+    return Heard(
+        record=record,
+        spectrum=found,
+        level=np.asarray(level(size, task.reference)),
+        band_level=np.asarray(band_levels(found, task.bands, task.reference)),
+        held=is_held(found, task.bands),
+        lines=lines,
+        causes=causes,
+        states=contact_states(record),
+    )
+
+
+def ring_modes(modes: NaturalModes) -> list[tuple[str, float]]:
+    """Name and frequency [Hz] of the modes in which the moving ring moves most.
+
+    Args:
+        modes: As NumPy holds them.
+    """
+    found: list[tuple[str, float]] = []
+    for frequency, ring, share in zip(
+        modes.frequency, modes.ring, modes.ring_share, strict=True
+    ):
+        if share < _RING or frequency < LOOSE:
+            continue
+        across = np.abs(ring[: len(DIRECTIONS)])
+        where = DIRECTIONS[int(np.argmax(across))]
+        name = f"natural mode along {where}"
+        same = sum(one.startswith(name) for one, _ in found)
+        found.append((f"{name} ({same + 1})" if same else name, float(frequency)))
+    return found
+
+
+def _before(task: NoiseScene, steps: int, least: int):
+    """What is doubtful in what is asked."""
+    if steps < least:
+        yield (
+            f"{steps} steps per sample are less than the {least} that the fastest"
+            " natural mode needs"
+        )
+    model = task.model
+    turning = kinematic_frequencies(model.element.bearing, model.speed)
+    half = 0.5 * task.samples * float(turning.shaft)
+    passing = {
+        "outer raceway": abs(float(turning.cage - turning.outer)),
+        "inner raceway": abs(float(turning.inner - turning.cage)),
+        "elements": float(turning.rotation),
+    }
+    errors = model.errors
+    shapes = {
+        "outer raceway": errors.outer,
+        "inner raceway": errors.inner,
+        "elements": errors.elements,
+    }
+    for part, given in shapes.items():
+        highest = _highest(given)
+        if highest * passing[part] > half:
+            yield (
+                f"waves of order {highest} of the {part} are met at"
+                f" {highest * passing[part]:.5g} Hz, above half of the sampling rate,"
+                f" {half:.5g} Hz, where they look like slower ones; raise"
+                " `vibration.samples`"
+            )
+
+
+def _highest(errors) -> int:
+    """Highest order of waves."""
+    shapes = jax.tree.leaves(errors, is_leaf=lambda x: isinstance(x, Harmonics))
+    orders = [max(one.order) for one in shapes if isinstance(one, Harmonics)]
+    return max(orders, default=0)
+
+
+def _after(task: NoiseScene, heard: Heard):
+    """What is doubtful in the results."""
+    centre, held = task.bands.centre, heard.held
+    duration = f"the record of {float(heard.record.duration):.4g} s"
+    low, high = (~held).cumprod().sum(), (~held)[::-1].cumprod().sum()
+    if low:
+        yield (
+            f"{duration} is too short for the bands up to {centre[low - 1]:g} Hz;"
+            " raise `vibration.turns`"
+        )
+    if high and high < len(held):
+        yield (
+            f"{duration} has too few samples for the bands from {centre[-high]:g} Hz"
+            " on; raise `vibration.samples`"
+        )
+    half = len(heard.acceleration) // 2
+    first, second = (
+        np.sqrt(np.sum(part.var(axis=0)))
+        for part in (heard.acceleration[:half], heard.acceleration[half:])
+    )
+    away = 20.0 * np.log10(first / second) if first > 0 and second > 0 else 0.0
+    if abs(away) > _UNEVEN:
+        yield (
+            f"the first half of the record is {abs(away):.3g} dB"
+            f" {'louder' if away > 0 else 'quieter'} than the second: raise"
+            " `vibration.settle`, or `vibration.turns` until all beats are in it"
+        )
+    lost = heard.states.shares[0]
+    if lost > 0:
+        yield (
+            f"rolling elements are out of contact for {100.0 * lost:.3g} % of the time:"
+            " those that are hit again make noise that depends on the damping of"
+            " contacts, `vibration.retardation`"
+        )

@@ -1,0 +1,45 @@
+"""What a scene asks for of the noise of a bearing."""
+
+import dataclasses
+
+import numpy as np
+
+from ..acoustics import AbstractWindow, Bands, NoiseModel
+from .read import Scene
+
+DIRECTIONS = ("x", "y", "z")
+"""Directions of the acceleration that is told."""
+
+
+@dataclasses.dataclass(frozen=True)
+class NoiseScene:
+    """What a scene asks for of the vibration of a bearing, in SI.
+
+    Attributes:
+        scene: The scene without it.
+        model: The bearing on its rig, with its form errors.
+        turns, settle, samples: As of `vibration`.
+        steps: As of `vibration`; `None`: as many as are needed.
+        reference: Acceleration of 0 dB [m/s²].
+        bands: Bands of the levels.
+        norm: Largest allowed level of each band (band,) [dB], or `None`.
+        window: Of the spectrum.
+        warnings: What is odd but possible.
+    """
+
+    scene: Scene
+    model: NoiseModel
+    turns: int
+    settle: int
+    samples: int
+    steps: int | None
+    reference: float
+    bands: Bands
+    norm: np.ndarray | None
+    window: AbstractWindow
+    warnings: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the file without its ending."""
+        return self.scene.name

@@ -1,0 +1,169 @@
+"""The [vibration] table of a scene: a bearing on its rig, and how it is listened to."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..acoustics import (
+    REFERENCE_ACCELERATION,
+    Hann,
+    NoiseModel,
+    Rectangular,
+    Sensor,
+    octave_bands,
+    third_octave_bands,
+)
+from ..acoustics.reference_levels import NORM
+from ..design import BearingSet, n_elements
+from ..element import RINGS
+from .deviations_table import read_deviations
+from .noise_scene import DIRECTIONS, NoiseScene
+from .read import Scene, scene_of
+from .scene_file import find_scene, parse_bearing
+from .table import Table
+
+BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}
+WINDOWS = {"hann": Hann, "rectangular": Rectangular}
+NORMS = {"85-176211": NORM}
+"""Largest allowed levels, by the bearing that they are for."""
+MOST_SAMPLES = 200_000
+"""Most samples of a record: some 20 MB as JSON."""
+
+
+def read_noise(source: str | Path, settings: Iterable[str] = ()) -> NoiseScene:
+    """Read a scene of a bearing whose noise is wanted.
+
+    Args:
+        source, settings: As in `read_scene`.
+
+    Raises:
+        SceneError: One line that names file, key, fault and what is allowed.
+    """
+    path = find_scene(source)
+    data = parse_bearing(path, settings)
+    top = Table(data, path.name)
+    scene = scene_of(data, path)
+    vibration = top.table("vibration", required=True)
+    operating, deviations = top.table("operating"), top.table("deviations")
+    _check_bearing(top, operating, scene)
+    bearing: Any = scene.element.bearing
+    errors = read_deviations(deviations, n_elements(bearing), path.parent)
+    deviations.finish()
+    values = {
+        "mass": vibration.quantity("mass", "mass"),
+        "load": scene.load,
+        "speed": scene.speed,
+        "errors": errors,
+        "sensor": _sensor(vibration),
+        "moving_ring": _moving_ring(vibration, operating),
+        "tilting_inertia": vibration.quantity(
+            "tilting_inertia", "moment of inertia", None
+        ),
+    }
+    retardation = vibration.quantity("retardation", "time", None)
+    if retardation is not None:
+        values["retardation"] = retardation
+    with vibration.building():
+        model = NoiseModel(scene.element, **values)
+    found = NoiseScene(
+        scene=scene,
+        model=model,
+        **_record(vibration),
+        **_levels(vibration),
+        warnings=scene.warnings,
+    )
+    vibration.finish()
+    return found
+
+
+def _check_bearing(top: Table, operating: Table, scene: Scene) -> None:
+    """One row under rings that turn, whose motions nothing else prescribes."""
+    if isinstance(scene.element.bearing, BearingSet):
+        key = "set" if "set" in top else "bearing"
+        raise top.error(key, "is of several rows; noise is that of one")
+    for key in ("free", "prescribed"):
+        if key in operating:
+            problem = "is not for noise: the moving ring shifts, and with a"
+            cure = "`vibration.tilting_inertia` it tilts"
+            raise operating.error(key, f"{problem} {cure}")
+    if scene.speed is None:
+        problem = "is missing, and so is `outer_speed`; nothing vibrates at rest"
+        raise operating.error("inner_speed", problem)
+
+
+def _moving_ring(vibration: Table, operating: Table) -> str:
+    """The ring that the load acts on; the outer one unless the scene says another."""
+    fixed = operating.word("fixed_ring")
+    moving = vibration.choice("moving_ring", RINGS, None)
+    if fixed is None:
+        return moving or "outer"
+    if moving == fixed:
+        problem = f"{moving!r} is the `fixed_ring` of [operating]; it must be the other"
+        raise vibration.error("moving_ring", problem)
+    return RINGS[1 - RINGS.index(fixed)]
+
+
+def _sensor(table: Table) -> Sensor | None:
+    stiffness = table.quantity("sensor_stiffness", "stiffness", None)
+    damping = table.quantity("sensor_damping", "damping", None)
+    if stiffness is None and damping is None:
+        if "sensor_direction" in table:
+            problem = "goes with `sensor_stiffness` or `sensor_damping`"
+            raise table.error("sensor_direction", problem)
+        return None
+    with table.building():
+        return Sensor(stiffness or 0.0, damping or 0.0, _direction(table))
+
+
+def _direction(table: Table) -> list[float]:
+    given = table.raw("sensor_direction", "y")
+    if isinstance(given, list):
+        numbers = [one for one in given if isinstance(one, int | float)]
+        if len(numbers) == 3 and len(given) == 3 and not any(map(_is_bool, given)):
+            return [float(one) for one in numbers]
+    elif given in DIRECTIONS:
+        return [float(given == name) for name in DIRECTIONS]
+    problem = f"{given!r} is not known; it must be x, y, z or three bare numbers"
+    raise table.error("sensor_direction", problem)
+
+
+def _is_bool(value: object) -> bool:
+    return isinstance(value, bool)
+
+
+def _record(table: Table) -> dict[str, Any]:
+    turns, settle = table.integer("turns", 8), table.integer("settle", 2, least=0)
+    samples = table.integer("samples", 2048, least=16)
+    if samples % 2:
+        raise table.error("samples", f"{samples} is odd; it must be even")
+    if (turns + settle) * samples > MOST_SAMPLES:
+        number = f"{turns + settle} turns of {samples} are too many"
+        raise table.error("samples", f"{number}; at most {MOST_SAMPLES} samples")
+    return {
+        "turns": turns,
+        "settle": settle,
+        "samples": samples,
+        "steps": table.integer("steps", None),
+    }
+
+
+def _levels(table: Table) -> dict[str, Any]:
+    reference = table.quantity("reference", "acceleration", REFERENCE_ACCELERATION)
+    if not reference > 0.0:
+        problem = f"{reference:g} m/s² is not allowed; above 0"
+        raise table.error("reference", problem)
+    kind = table.choice("bands", tuple(BANDS), "octave")
+    norm = table.choice("norm", tuple(NORMS), None)
+    if norm is not None and kind != "octave":
+        raise table.error("norm", "is of octaves; take `bands` = octave")
+    if norm is not None and reference != REFERENCE_ACCELERATION:
+        problem = f"counts from {REFERENCE_ACCELERATION:g} m/s²; leave out `reference`"
+        raise table.error("norm", problem)
+    return {
+        "reference": reference,
+        "bands": BANDS[kind](),
+        "norm": None if norm is None else np.array(NORMS[norm]),
+        "window": WINDOWS[table.choice("window", tuple(WINDOWS), "hann")](),
+    }

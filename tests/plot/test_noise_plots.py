@@ -1,0 +1,121 @@
+"""What plots of noise draw: curves, names and units, not pixels."""
+
+import jax.numpy as jnp
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.patches import Rectangle
+from matplotlib.text import Text
+
+from bearingjax import plot
+from bearingjax.acoustics import (
+    Hann,
+    Line,
+    Vibration,
+    contact_states,
+    octave_bands,
+    spectrum,
+)
+from bearingjax.acoustics.reference_levels import NORM
+
+matplotlib.use("Agg")
+
+
+@pytest.fixture(autouse=True)
+def close_figures():
+    yield
+    for number in plt.get_fignums():
+        plt.figure(number).canvas.draw()  # nothing may fail or warn while drawing
+    plt.close("all")
+
+
+def record(turns=2, samples=256, balls=7):
+    time = np.arange(turns * samples) / (25.0 * samples)
+    waves = [a * np.sin(2.0 * np.pi * 400.0 * time) for a in (1.0, 3.0, 2.0)]
+    load = np.ones((len(time), balls, 4))
+    load[:, 0, 3] = 0.0
+    load[:, 1] = 0.0
+    return Vibration(
+        time=jnp.asarray(time),
+        displacement=jnp.zeros((len(time), 3)),
+        acceleration=jnp.asarray(np.stack(waves, axis=1)),
+        contact_load=jnp.asarray(load),
+        azimuth=jnp.zeros((len(time), balls)),
+        shaft_frequency=jnp.asarray(25.0),
+        result=jnp.asarray(0, jnp.int32),
+        turns=turns,
+    )
+
+
+def test_acceleration_over_turns():
+    ax = plot.acceleration_over_time(record())
+    curves = {line.get_label(): line for line in ax.lines}
+    assert set(curves) == {"x", "y", "z"}
+    assert np.abs(np.asarray(curves["y"].get_ydata())).max() == pytest.approx(
+        3.0, rel=0.01
+    )
+    # The largest lies below the others.
+    order = sorted(curves, key=lambda name: curves[name].get_zorder())
+    assert order == ["y", "z", "x"]
+    assert ax.get_xlim() == (0.0, 2.0) and ax.get_xlabel() == "turns of the shaft"
+    assert ax.get_ylabel() == "acceleration [m/s²]"
+
+
+def test_spectrum_has_the_level_and_the_names_of_its_lines():
+    found = record()
+    lines = spectrum(found.acceleration, found.duration, 25.0, window=Hann())
+    size = np.sqrt(1.0 + 9.0 + 4.0)
+    named = [
+        Line(16.0, 400.0, float(size), "2 BPFO"),
+        Line(8.0, 200.0, 0.1, "unnamed"),
+        Line(8.1, 202.0, 0.1, "cage"),
+    ]
+    ax = plot.noise_spectrum(lines, named, reference=1e-6)
+    (curve,) = (line for line in ax.lines if line.get_label() == "_spectrum")
+    assert np.asarray(curve.get_ydata()).max() == pytest.approx(
+        20.0 * np.log10(size / np.sqrt(2.0) / 1e-6), abs=1e-6
+    )
+    assert [text.get_text() for text in ax.texts] == ["cage", "2 BPFO"]
+    assert ax.get_ylabel() == "level of lines [dB over 1e-06 m/s²]"
+    assert ax.get_xscale() == "log" and ax.get_xlabel() == "frequency [Hz]"
+
+
+def test_names_of_near_lines_do_not_lie_on_each_other():
+    found = record()
+    lines = spectrum(found.acceleration, found.duration, 25.0, window=Hann())
+    near = [Line(1.0, 3000.0 + k, 1.0, f"{k} cage") for k in range(8)]
+    ax = plot.noise_spectrum(lines, near)
+    ax.figure.canvas.draw()
+    boxes = [Text.get_window_extent(text) for text in ax.texts]  # without leaders
+    for one, other in zip(boxes[:-1], boxes[1:], strict=True):
+        assert one.x1 <= other.x0 + 1.0
+    right = ax.get_window_extent().x1
+    assert boxes[-1].x1 <= right + 2.0
+
+
+def test_bands_stand_beside_the_norm():
+    level = np.full((12, 3), 50.0)
+    level[0] = np.nan
+    level[:, 2] = -300.0  # nothing moves along z
+    ax = plot.band_bars(octave_bands(), level, norm=NORM)
+    heights = [bar.get_height() for bar in ax.patches if isinstance(bar, Rectangle)]
+    assert np.isfinite(heights).sum() == 22
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert set(labels) == {"x", "y", "z", "norm"}
+    assert ax.get_ylim()[0] == 0.0 and ax.get_ylim()[1] > max(NORM)
+    assert ax.get_ylabel() == "level [dB over 3.1e-05 m/s²]"
+    assert plot.band_bars(octave_bands(), np.full((12, 3), np.nan)) is not None
+
+
+def test_contact_states_have_a_row_for_each_element():
+    found = record()
+    states = contact_states(found)
+    ax = plot.contact_state_map(found, states)
+    (image,) = ax.get_images()
+    numbers = np.asarray(image.get_array())
+    assert numbers.shape == (7, 512)
+    assert set(numbers[0]) == {3} and set(numbers[1]) == {0} and set(numbers[2]) == {4}
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert labels == ["0: 14.3 %", "1: 0 %", "2: 0 %", "3: 14.3 %", "4: 71.4 %"]
+    assert image.get_extent()[:2] == [0.0, 2.0] or image.get_extent()[:2] == (0.0, 2.0)

@@ -1,0 +1,208 @@
+"""`bearingjax noise`: exit status, files, and that they hold what the record says."""
+
+import csv
+import dataclasses
+import json
+import wave
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tolerances import ROUNDING, SOLVER
+
+import bearingjax as bj
+from bearingjax.acoustics import Vibration, natural_modes
+from bearingjax.numerics import Result
+from bearingjax.scene import noise_as_dict, noise_run, read_noise, run_noise
+
+# Seven balls, one turn: what all tests here share is compiled once.
+SCENE = """
+[bearing]
+type = "deep_groove_ball"
+n_balls = 7
+pitch_diameter = "40 mm"
+ball_diameter = "9 mm"
+outer_osculation = 0.52
+inner_osculation = 0.52
+radial_internal_clearance = "10 um"
+
+[operating]
+fixed_ring = "inner"
+load = { Fz = "100 N" }
+inner_speed = "3000 rpm"
+
+[vibration]
+mass = "0.1 kg"
+turns = 1
+settle = 0
+samples = 64
+sensor_stiffness = "5 N/mm"
+sensor_direction = [0, 3, 4]
+norm = "85-176211"
+
+[[deviations.waves]]
+part = "inner raceway"
+order = 8
+amplitude = "0.2 um"
+"""
+PARTS = {
+    *("natural_frequency", "ring_share", "direction", "time", "acceleration"),
+    *("displacement", "level", "bands", "lines", "contact_states", "reference"),
+}
+WORDS = {"result", "message", "warnings", "version"}
+
+
+@pytest.fixture
+def scene(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(SCENE, encoding="utf-8")
+    return path
+
+
+def read(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def test_every_file_holds_the_same_record(run, scene, tmp_path):
+    names = ("a.json", "a.csv", "a.wav", "a.png")
+    out, table, sound, picture = (tmp_path / name for name in names)
+    files = ("--json", out, "--table", table, "--wav", sound, "--plot", picture)
+    done = run("noise", scene, *files)
+    assert done.status == 0, done.err
+    found = read(out)
+    assert set(found) == PARTS | WORDS and found["result"] == "converged"
+    acceleration = np.array(found["acceleration"])
+    assert acceleration.shape == (64, 3) and found["direction"] == ["x", "y", "z"]
+    assert np.allclose(found["time"], np.arange(64) / 64 / 50.0, rtol=ROUNDING)
+    # Level of the root mean square about the mean, over 0.31e-4 m/s².
+    size = np.sqrt(((acceleration - acceleration.mean(axis=0)) ** 2).mean(axis=0))
+    assert found["reference"] == 0.31e-4
+    level = 20.0 * np.log10(size / 0.31e-4)
+    assert np.allclose(found["level"], level, rtol=SOLVER)
+    bands = found["bands"]
+    assert bands["centre"] == [4, 8, 16, 31.5, 63, 125, 250, 500, 1e3, 2e3, 4e3, 8e3]
+    assert np.shape(bands["level"]) == (12, 3)
+    # One turn of 20 ms in 64 samples: lines 50 Hz apart, up to 1600 Hz.
+    held = [row[1] is not None for row in bands["level"]]
+    assert held == [False] * 5 + [True] * 4 + [False] * 3
+    states = found["contact_states"]
+    assert states["contacts"] == [0, 1, 2] and states["samples"] == [0, 0, 7 * 64]
+    assert states["switches_per_turn"] == 0.0
+    for line in found["lines"]:
+        assert set(line) == {"order", "frequency", "amplitude", "name", "causes"}
+        assert line["frequency"] == pytest.approx(50.0 * line["order"])
+    with open(table, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    assert rows[0][:3] == ["time [s]", "acceleration_x [m/s²]", "acceleration_y [m/s²]"]
+    written = np.array([[float(v) for v in row] for row in rows[1:]])
+    assert np.array_equal(written[:, 1:4], acceleration)
+    assert np.array_equal(written[:, 4:], found["displacement"])
+    assert picture.stat().st_size > 10_000
+    _same_sound(sound, acceleration, done.out)
+    for words in (
+        "the outer ring moves, 0.1 kg, loaded by Fz 100 N; inner ring 3000 rpm",
+        "record of 1 turns, 0.02 s, after 0 to settle; 64 samples",
+        "natural modes of the ring: ",
+        "2: 100 %; 0 open or close per turn of the shaft",
+        "warning: the record of 0.02 s is too short for the bands up to 63 Hz; raise",
+        "warning: the record of 0.02 s has too few samples for the bands from 2000 Hz",
+    ):
+        assert words in done.out, words
+    assert len(found["warnings"]) == done.out.count("\nwarning: ")
+
+
+def _same_sound(path, acceleration, told):
+    """What full scale stands for is the largest acceleration along the sensor."""
+    with wave.open(str(path)) as file:
+        assert file.getnframes() >= 3 * file.getframerate()
+    along = acceleration @ [0.0, 0.6, 0.8]
+    full = float(told.partition("full scale is ")[2].split()[0])
+    assert full == pytest.approx(np.abs(along - along.mean()).max(), rel=0.15)
+
+
+def test_a_model_by_hand_vibrates_alike(scene):
+    task = read_noise(scene)
+    found = run_noise(task)
+    modes = natural_modes(task.model)
+    assert np.array_equal(found.modes.frequency, modes.frequency)
+    assert found.heard is not None and found.steps > 1
+    # Twice the wave, twice the vibration, as long as all balls bear.
+    (waves,) = task.model.errors.inner.outwards
+    assert isinstance(waves, bj.Harmonics)
+    amplitude = waves.amplitude
+    twice = dataclasses.replace(
+        task,
+        model=jax.tree.map(
+            lambda leaf: 2.0 * leaf if leaf is amplitude else leaf, task.model
+        ),
+    )
+    doubled = run_noise(twice).heard.acceleration
+    size = np.abs(doubled).max()
+    assert np.allclose(doubled, 2.0 * found.heard.acceleration, atol=0.05 * size)
+
+
+def test_lines_name_the_wave_that_makes_them(scene):
+    """Order 8 of 7 balls shakes the rings radially, at BPFI + the shaft."""
+    task = read_noise(scene)
+    modes = jax.device_get(natural_modes(task.model))
+    # A record of sixteen turns by hand: the line of the wave alone.
+    kinematic = bj.acoustics.kinematic_frequencies(
+        task.model.element.bearing, task.model.speed
+    )
+    hertz = float(kinematic.inner_passage + kinematic.inner)
+    time = np.arange(16 * 64) / (64 * 50.0)
+    alone = np.cos(2.0 * np.pi * hertz * time)
+    record = Vibration(
+        time=jnp.asarray(time),
+        displacement=jnp.zeros((len(time), 3)),
+        acceleration=jnp.asarray(np.stack([alone, 0 * time, 0 * time], axis=1)),
+        contact_load=jnp.ones((len(time), 7, 2)),
+        azimuth=jnp.zeros((len(time), 7)),
+        shaft_frequency=jnp.asarray(50.0),
+        result=jnp.asarray(0, jnp.int32),
+        turns=16,
+    )
+    heard = noise_run.listen(task, record, modes)
+    (line,), (causes,) = heard.lines, heard.causes
+    assert line.name == "BPFI + shaft"
+    assert line.amplitude == pytest.approx(1.0, rel=0.02)
+    assert causes == ("waves of the inner raceway, order 8",)
+
+
+def test_what_is_not_solved_is_no_result(run, scene, tmp_path):
+    out, table = tmp_path / "a.json", tmp_path / "a.csv"
+    table.write_text("of an earlier run", encoding="utf-8")
+    files = ("--json", out, "--table", table)
+    done = run("noise", scene, *files, "--set", "operating.load.Fz=1e9 N")
+    assert done.status == 3 and done.out == ""
+    assert "bearingjax: non_finite: standing under the load: " in done.err
+    found = read(out)
+    assert set(found) == WORDS and found["result"] == "non_finite"
+    assert not table.exists()
+
+
+def test_a_motion_that_runs_away_is_no_result(scene):
+    task = read_noise(scene, ["vibration.retardation=1 ms"])
+    found = run_noise(task)
+    assert found.result is Result.NON_FINITE and found.heard is None
+    assert "another `vibration.retardation`" in found.message
+    assert set(noise_as_dict(found)) == WORDS
+
+
+def test_what_is_doubtful_is_told(scene):
+    task = read_noise(scene, ["deviations.waves.0.order=60"])
+    (few, fast) = noise_run._before(task, 1, 9)
+    assert few.startswith("1 steps per sample are less than the 9 that the fastest")
+    assert "waves of order 60 of the inner raceway are met at 18" in fast
+    assert "raise `vibration.samples`" in fast
+
+
+def test_bad_input_is_told_before_anything_is_solved(run, scene, tmp_path):
+    done = run("noise", scene, "--wav", tmp_path / "a.mp3")
+    assert done.status == 2 and "a.mp3: a sound ends in .wav" in done.err
+    done = run("noise", scene, "--wav", tmp_path / "none" / "a.wav")
+    assert done.status == 2 and "its folder does not exist" in done.err
+    done = run("noise", scene, "--set", "vibration.mass=heavy")
+    assert done.status == 2 and done.out == ""
+    assert done.err.startswith("bearingjax: mine.toml: `vibration.mass`: 'heavy'")
