@@ -191,6 +191,8 @@ class NoiseSystem(eqx.Module):
             their own axes, against the orbit [rad/s].
         mass: Of the ring's freedoms (k,) [kg, kg m²].
         load: On them (k,) [N, N m].
+        growth: Time in which form errors grow from nothing, so that they excite no
+            vibration of their own by being there; `None`: they are there [s].
         sensor: As of the model.
         retardation: As of the model [s].
         moving: 0 for the outer ring, 1 for the inner one. Static.
@@ -204,6 +206,7 @@ class NoiseSystem(eqx.Module):
     load: Float[Array, " k"]
     sensor: Sensor | None
     retardation: Scalar
+    growth: Scalar | None
     moving: int = eqx.field(static=True)
 
     @property
@@ -243,7 +246,8 @@ class NoiseSystem(eqx.Module):
         azimuth = self.azimuth(time)
         rolled = jnp.full_like(azimuth, 1.0) * spin * time
         turns = outer * time, inner * time
-        return self.errors.met(self.surfaces, azimuth, *turns, rolled)
+        met = self.errors.met(self.surfaces, azimuth, *turns, rolled)
+        return met if self.growth is None else _grown(time / self.growth) * met
 
     def _each(self, function, motion, time, met=None):
         """Map function(free, axes, rings, place) over the elements, as they are met."""
@@ -320,6 +324,12 @@ class NoiseSystem(eqx.Module):
         return force.at[:3].add(-s.projector @ pull)
 
 
+def _grown(share):
+    """From 0 at 0 to 1 at 1 and beyond, with two derivatives."""
+    t = jnp.clip(share, 0.0, 1.0)
+    return t * t * t * (10.0 - t * (15.0 - 6.0 * t))
+
+
 @eqx.filter_jit
 def _system(model, points) -> NoiseSystem:
     bearing: Any = model.element.bearing
@@ -350,5 +360,6 @@ def _system(model, points) -> NoiseSystem:
         load=model.load[: mass.shape[0]],
         sensor=model.sensor,
         retardation=model.retardation,
+        growth=None,
         moving=RINGS.index(model.moving_ring),
     )

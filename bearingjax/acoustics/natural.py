@@ -2,7 +2,8 @@
 
 At the place where the bearing stands under its load, K v = ω² M v with the second
 derivatives K of the energy of all contacts. A rolling element that carries nothing is
-held by nothing: its modes have frequencies of almost zero.
+held by nothing: its modes have frequencies of almost zero. Where the elements orbit,
+their inertia presses them on the outer raceway, and the outer ring carries their mass.
 
 Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011), there with balls
     that move radially.
@@ -16,6 +17,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
+from ..design.checks import concrete
 from ..numerics.eigen import eigh
 from ..numerics.implicit import stop
 from .model import NoiseModel, NoiseSystem
@@ -65,7 +67,6 @@ def stiffness(system: NoiseSystem, motion: Float[Array, " n"]) -> Float[Array, "
     return k.at[:3, :3].add(s.stiffness * s.projector)
 
 
-@eqx.filter_jit
 def natural_modes(model: NoiseModel) -> NaturalModes:
     """Natural modes of a bearing under its load.
 
@@ -78,8 +79,14 @@ def natural_modes(model: NoiseModel) -> NaturalModes:
 
     Fails: as `solve_load`; the frequencies are then those of no balance.
     """
+    still = concrete(model.speed.outer, model.speed.inner) == [0.0, 0.0]
+    return _natural_modes(model, not still)
+
+
+@eqx.filter_jit
+def _natural_modes(model, orbits) -> NaturalModes:
     system = dataclasses.replace(model.system(8), errors=None)
-    motion, result = standing(model, system)
+    motion, result = standing(model, system, orbits)
     root = jnp.sqrt(system.masses)
     k = stiffness(system, motion) / jnp.outer(root, root)
     _, vectors = eigh(stop(k))

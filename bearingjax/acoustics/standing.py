@@ -1,30 +1,46 @@
 """Where a bearing stands on its rig before anything turns."""
 
+import dataclasses
+
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
+from ..element.ball_speed import CentrifugalOnly
+from ..element.choices import BallChoices
 from ..element.rolling_element import RingMotion
 from ..statics.load import solve
 from .model import NoiseModel, NoiseSystem
 
 
 def standing(
-    model: NoiseModel, system: NoiseSystem
+    model: NoiseModel, system: NoiseSystem, orbits: bool = True
 ) -> tuple[Float[Array, " n"], Int[Array, ""]]:
     """Where ring and rolling elements stand under the load, without form errors.
+
+    The inertia of the orbit acts as it does in the equations of motion.
 
     Args:
         model: The bearing.
         system: Its equations of motion.
+        orbits: Whether the rolling elements orbit; without, those that carry nothing
+            are in no contact at all. Static.
 
     Returns:
         Coordinates (n,) [m, rad] and the `Result` code; differentiable.
 
     Fails: as `solve_load`.
     """
-    solution = solve(model.element, model.load, model.solve_options)
+    element = model.element
+    if orbits and isinstance(element.choices, BallChoices):
+        # As here, where balls roll at the free contact angle whatever the load.
+        choices = dataclasses.replace(
+            element.choices, raceway_control=CentrifugalOnly()
+        )
+        element = dataclasses.replace(element, choices=choices)
+    speed = model.speed if orbits else None
+    solution = solve(element, model.load, model.solve_options, speed=speed)
     q = solution.displacement
-    (found,) = model.element.rows(q)
+    (found,) = element.rows(q, speed)
 
     def place(free, azimuth, x):
         axes = free.element.axes(azimuth)

@@ -3,6 +3,8 @@
 A step is a half radian or less of the fastest mode of the loaded bearing.
 """
 
+import dataclasses
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -65,12 +67,13 @@ def vibration(
 ) -> Vibration:
     """The vibration of a bearing over some turns of its shaft.
 
-    It begins where the bearing without form errors stands, at rest.
+    It begins where the bearing without form errors stands, at rest. While it settles
+    they grow from nothing, so slowly that hardly any vibration of its own is left.
 
     Args:
         model: The bearing.
         turns: Turns that are recorded. Static.
-        settle: Turns before them, in which the beginning dies away. Static.
+        settle: Turns before them; with none, form errors are there at once. Static.
         samples: Per turn. Static.
         steps: Of the integration, per sample; `None`: such that one is at most half a
             radian of the fastest mode. Static; under `jit` it must be given.
@@ -123,7 +126,9 @@ def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
             "vibration: `steps` is None, but the model is traced; give the number, such"
             " as `needed_steps(model)` found before."
         )
-    fastest = 2.0 * jnp.pi * jnp.max(natural_modes(model).frequency)
+    angular = 2.0 * jnp.pi * jnp.max(natural_modes(model).frequency)
+    # A mode damped beyond creeping moves with ω² τ.
+    fastest = jnp.maximum(angular, angular**2 * model.retardation)
     sample = 2.0 * jnp.pi / model.shaft_speed / samples
     return max(1, int(jnp.ceil(sample * fastest / STEP)))
 
@@ -134,6 +139,8 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
     start, result = standing(model, system)
     frequency = model.shaft_speed / (2.0 * jnp.pi)
     h = 1.0 / (frequency * samples * steps)
+    if settle:
+        system = dataclasses.replace(system, growth=settle / frequency)
     masses = system.masses
     k = system.mass.shape[0]
 

@@ -200,12 +200,13 @@ class Table(AbstractShape):
     amplitude.
 
     Attributes:
-        heights: (n,) [m].
-        slopes: (n,) [m/rad].
+        rows: Of every interval: height at its begin and its rise [m], slopes there and
+            at its end [m per interval], its number [1] (n, 5). The number stands here
+            because a compiler may work out the place of an angle twice, and round it
+            to two neighbouring intervals: place and heights are then of one.
     """
 
-    heights: Float[Array, " n"]
-    slopes: Float[Array, " n"]
+    rows: Float[Array, "n 5"]
 
     @classmethod
     def of(
@@ -226,20 +227,22 @@ class Table(AbstractShape):
             return total(shapes, angle, surface)
 
         of_each = jax.value_and_grad(one)
-        return (cls(*jax.lax.map(of_each, angle, batch_size=min(points, 512))),)
+        height, slope = jax.lax.map(of_each, angle, batch_size=min(points, 512))
+        slope = 2.0 * jnp.pi / points * slope
+        rise, end = jnp.roll(height, -1) - height, jnp.roll(slope, -1)
+        number = jnp.arange(points, dtype=height.dtype)
+        return (cls(jnp.stack([height, rise, slope, end, number], axis=1)),)
 
     def height(self, angle, surface):
-        n = self.heights.shape[0]
-        step = 2.0 * jnp.pi / n
-        at = angle / step
-        whole = jnp.floor(at)
-        t = at - whole
-        k = jnp.mod(whole, n).astype(jnp.int32)
-        after = jnp.where(k + 1 == n, 0, k + 1)
-        h0, h1 = self.heights[k], self.heights[after]
-        m0, m1 = step * self.slopes[k], step * self.slopes[after]
-        rise = h1 - h0
-        return h0 + t * (m0 + t * (3 * rise - 2 * m0 - m1 + t * (m0 + m1 - 2 * rise)))
+        n = self.rows.shape[0]
+        at = angle * (n / (2.0 * jnp.pi))
+        row = self.rows[jnp.mod(jnp.floor(at), n).astype(jnp.int32)]
+        height, rise, slope, end, number = jnp.moveaxis(row, -1, 0)
+        # Whole turns off, whichever interval was found at their end.
+        t = at - number
+        t = t - n * jnp.round((t - 0.5) / n)
+        bend = 3.0 * rise - 2.0 * slope - end
+        return height + t * (slope + t * (bend + t * (slope + end - 2.0 * rise)))
 
 
 def total(

@@ -1,0 +1,156 @@
+"""Vibration of a bearing in time: decay, lines, steps, derivatives, failures."""
+
+import dataclasses
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tolerances import DIFFERENCE
+
+import bearingjax as bj
+from bearingjax.acoustics import NoiseModel, Sensor, needed_steps
+from bearingjax.acoustics import vibration as in_time
+from bearingjax.design import FormErrors, Harmonics, RacewayErrors
+
+SPEED = bj.Speed(inner=600.0)
+BALLS = bj.BearingElement(
+    bj.DeepGrooveBallBearing(
+        7,
+        0.05,
+        0.01,
+        outer_osculation=0.52,
+        inner_osculation=0.52,
+        ball_deviation=np.zeros(7),
+    )
+)
+WAVES = FormErrors(
+    outer=RacewayErrors(outwards=Harmonics((6, 9), (0.0, 0.0))),
+    inner=RacewayErrors(axial=Harmonics((7,), (0.0,))),
+)
+AXIAL = NoiseModel(BALLS, 0.2, [0.0, 0.0, -100.0, 0, 0, 0], SPEED, WAVES)
+SHORT = {"turns": 1, "settle": 1, "samples": 64, "steps": 60}
+
+
+def with_waves(outer=(0.0, 0.0), inner=0.0):
+    return dataclasses.replace(
+        AXIAL,
+        errors=FormErrors(
+            outer=RacewayErrors(outwards=Harmonics((6, 9), jnp.asarray(outer))),
+            inner=RacewayErrors(axial=Harmonics((7,), jnp.asarray([inner]))),
+        ),
+    )
+
+
+def with_large_ball(deviation):
+    bearing = dataclasses.replace(BALLS.bearing, ball_deviation=deviation)
+    return dataclasses.replace(AXIAL, element=bj.BearingElement(bearing))
+
+
+def rms(model, **change):
+    return np.asarray(in_time(model, **(SHORT | change)).acceleration).std(axis=0)
+
+
+def test_without_errors_nothing_moves():
+    found = in_time(AXIAL, **(SHORT | {"settle": 0}))
+    # What is out of balance by 1e-9 of the load may be there.
+    assert np.max(np.abs(found.acceleration)) < 1e-9 * 100.0 / 0.2
+
+
+def test_lines_of_waves_and_of_a_large_ball():
+    z, carried = 7, float(AXIAL.system(8).turning[2])
+    wavy = in_time(with_waves(outer=(1e-8, 0.0)), **SHORT)
+    # Outer order z - 1: radial, at z times the cage, which no whole turns hold: the
+    # motion of the ring's centre turns, so that z A cos and sin of z ω_c t remain.
+    time = np.asarray(wavy.time) + 2 * np.pi / 600.0
+    a = np.asarray(wavy.acceleration)
+    w = z * carried
+    basis = np.stack([np.cos(w * time), np.sin(w * time)], axis=1)
+    for direction in (0, 1):
+        fit = np.linalg.lstsq(basis, a[:, direction], rcond=None)
+        assert fit[1][0] < 1e-3 * np.sum(a[:, direction] ** 2)
+    assert np.std(a[:, 2]) < 1e-3 * np.std(a[:, 0])
+    # Inner axial order z: along the axis at z times (shaft less cage).
+    a = np.asarray(in_time(with_waves(inner=1e-8), **SHORT).acceleration)
+    w = z * (600.0 - carried)
+    basis = np.stack([np.cos(w * time), np.sin(w * time)], axis=1)
+    fit = np.linalg.lstsq(basis, a[:, 2], rcond=None)
+    assert fit[1][0] < 1e-3 * np.sum(a[:, 2] ** 2)
+    # Order 9 = z + 2 makes no force at first order.
+    quiet = rms(with_waves(outer=(0.0, 1e-8)))
+    assert np.max(quiet[:2]) < 1e-2 * np.std(np.asarray(wavy.acceleration)[:, 0])
+
+
+def test_error_of_a_step():
+    """Order 4: half the step, a sixteenth of the error."""
+    model = with_waves(outer=(2e-8, 0.0), inner=2e-8)
+    motion = [
+        np.asarray(in_time(model, **(SHORT | {"steps": n})).displacement)
+        for n in (30, 60, 120)
+    ]
+    errors = [np.abs(m - motion[2]).max() for m in motion[:2]]
+    assert errors[1] < 1e-4 * np.abs(motion[2]).max()
+    assert 12.0 < errors[0] / errors[1] * 15 / 16 < 20.0
+
+
+def test_derivatives():
+    def level(values):
+        model = with_waves(outer=(values[0], 0.0), inner=values[1])
+        model = dataclasses.replace(
+            model, mass=values[2], load=model.load.at[2].set(values[3])
+        )
+        found = in_time(model, **SHORT)
+        return jnp.mean(jnp.sum(found.acceleration**2, axis=1))
+
+    at = jnp.array([1e-8, 2e-8, 0.2, -100.0])
+    slope = jax.grad(level)(at)
+    for k in range(4):
+        # A V of step sizes: its lowest point counts.
+        errors = []
+        for share in (1e-3, 1e-4):
+            h = share * at[k]
+            away = jnp.zeros(4).at[k].set(h)
+            difference = (level(at + away) - level(at - away)) / (2 * h)
+            errors.append(abs(float(slope[k] / difference) - 1.0))
+        assert min(errors) < 10 * DIFFERENCE
+
+
+def test_a_ball_larger_than_the_others_shakes_with_the_cage():
+    model = with_large_ball(2e-6 * np.eye(7)[0])
+    found = in_time(model, **SHORT)
+    assert np.max(found.contact_load[:, 0]) > 1.2 * np.max(found.contact_load[:, 1:])
+    assert rms(model)[0] > 10.0 * rms(with_waves(outer=(1e-12, 0.0)))[0]
+
+
+def test_a_strongly_damped_contact_needs_shorter_steps():
+    """The fastest motion then creeps with 1/(ω² τ), not with 1/ω."""
+    model = dataclasses.replace(AXIAL, retardation=5e-5)
+    assert needed_steps(model, 64) > 5 * needed_steps(AXIAL, 64)
+
+
+def test_failures():
+    with pytest.raises(bj.SolveError, match="not finite"):
+        in_time(AXIAL, **(SHORT | {"steps": 5}))
+    gone = in_time(AXIAL, **(SHORT | {"steps": 5}), throw=False)
+    assert int(gone.result) == int(bj.Result.NON_FINITE)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: in_time(AXIAL, turns=0), "`turns`"),
+        (lambda: in_time(AXIAL, settle=-1), "`settle`"),
+        (
+            lambda: in_time(dataclasses.replace(AXIAL, speed=bj.Speed())),
+            "another than 0",
+        ),
+        (lambda: dataclasses.replace(AXIAL, mass=-1.0), "`mass`"),
+        (lambda: dataclasses.replace(AXIAL, load=[0, 0, -1, 1.0, 0, 0]), "tilting"),
+        (lambda: dataclasses.replace(AXIAL, load=[0, 0, -1, 0, 0, 1.0]), "axis"),
+        (lambda: dataclasses.replace(AXIAL, moving_ring="cage"), "'outer' or"),
+        (lambda: Sensor(1e4, direction=[0.0, 0.0, 0.0]), "`direction`"),
+    ],
+)
+def test_wrong_input(make, words):
+    with pytest.raises((TypeError, ValueError), match=words):
+        make()
