@@ -29,7 +29,10 @@ def test_roots(film):
     found = force(contact, jnp.asarray(at))
     # An approach to round-off is a force to 40 times that, where the film is thin.
     np.testing.assert_allclose(
-        np.log(found), expected, rtol=0, atol=50 * np.finfo(float).eps * 40
+        np.log(found),
+        np.asarray(expected, float),
+        rtol=0,
+        atol=50 * np.finfo(float).eps * 40,
     )
     back = contact.approach(found)
     np.testing.assert_allclose(back, at, rtol=ROUNDING)

@@ -45,7 +45,8 @@ def closed_form(x):
     table = []
     for k, d in EXPONENTS:
         p = np.longdouble(k) / d
-        factors = np.cumprod([np.longdouble(1), *(p - n for n in range(ORDERS - 1))])
+        falling = [np.longdouble(1), *(p - n for n in range(ORDERS - 1))]
+        factors = np.cumprod(np.array(falling))
         table.append([c * x ** (p - n) for n, c in enumerate(factors)])
     return np.array(table)
 
