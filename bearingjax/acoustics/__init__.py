@@ -7,6 +7,7 @@ from .bands import is_held as is_held
 from .bands import octave_bands as octave_bands
 from .bands import third_octave_bands as third_octave_bands
 from .bands import total_root_mean_square as total_root_mean_square
+from .cage import Cage as Cage
 from .cage_contact import CageContact as CageContact
 from .causes import line_causes as line_causes
 from .contact_states import ContactStates as ContactStates
@@ -51,6 +52,7 @@ from .spectrum import Rectangular as Rectangular
 from .spectrum import Spectrum as Spectrum
 from .spectrum import spectrum as spectrum
 from .standing import standing as standing
+from .vibration import CageMotion as CageMotion
 from .vibration import Vibration as Vibration
 from .vibration import needed_steps as needed_steps
 from .vibration import vibration as vibration

@@ -70,6 +70,22 @@ class FreeElement(eqx.Module):
         at = self.element.coordinates(rings, self.unknowns(rings, place))
         return self.element.respond(at).beside
 
+    def carried(
+        self, rings: RingMotion, place: Float[Array, " n"]
+    ) -> tuple[Scalar, Scalar]:
+        """Sum of a ball's loads [N], and the cosine of its contact angle [1].
+
+        The cosine is the mean of its contacts by their loads; 1 of a loose ball.
+        Arguments as of `unknowns`.
+        """
+        x = self.unknowns(rings, place)
+        load = self.element.respond(self.element.coordinates(rings, x)).beside
+        cosines = jnp.abs(self.element.contacts(rings, x).normal[:, 1])
+        total = jnp.sum(load)
+        loose = total == 0.0
+        mean = jnp.sum(load * cosines) / jnp.where(loose, 1.0, total)
+        return total, jnp.where(loose, 1.0, mean)
+
 
 @functools.singledispatch
 def free_element(

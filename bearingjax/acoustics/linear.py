@@ -13,7 +13,6 @@ with them: the answer then holds for frequencies far above that of their passage
 where many of them carry alike.
 """
 
-import dataclasses
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -94,8 +93,13 @@ def linear_model(model: NoiseModel) -> LinearModel:
 
     Fails: as `solve_load`.
     """
-    system = dataclasses.replace(model.system(8), errors=None)
-    start, result = standing(model, system)
+    return _linear_model(model, model.orbits)
+
+
+@eqx.filter_jit
+def _linear_model(model, orbits) -> LinearModel:
+    system = model.still_system()
+    start, result = standing(model, system, orbits)
     zero = jnp.zeros((), start.dtype)
     none = jnp.zeros((system.row.azimuth.shape[0], 2, 3), start.dtype)
 
@@ -140,12 +144,12 @@ def transfer(model: NoiseModel, frequencies: Any) -> Transfer:
     frequency = as_real(frequencies)
     right = frequency.ndim == 1 and frequency.size > 0
     check("transfer", "frequencies", right, "a list of them", frequencies, "Hz")
-    return _transfer(model, frequency)
+    return _transfer(model, frequency, model.orbits)
 
 
 @eqx.filter_jit
-def _transfer(model, frequency) -> Transfer:
-    linear = linear_model(model)
+def _transfer(model, frequency, orbits) -> Transfer:
+    linear = _linear_model(model, orbits)
     k, n = len(model.freedoms), linear.mass.shape[0]
     ring = jnp.eye(n, k, dtype=linear.mass.dtype)
     push = linear.push.reshape(n, -1)

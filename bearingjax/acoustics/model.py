@@ -8,10 +8,15 @@ cage carries them round evenly, at the speed of rolling without slip.
 A film, and what else damps in a contact, resists the change of the contact's force:
 forces are f + τ df/dt, with a retardation time τ. No force jumps where a contact opens.
 
+With a `Cage` every ball also has a place along the pitch circle: m s'' = its traction
+and what its pocket does. Its contacts with the raceways move along; that they push it
+along too, by slopes of form errors, is left out.
+
 Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011) for balls moving
     radially; here with all freedoms of the section, on the energy of the contacts.
 """
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -20,16 +25,26 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, instance, is_real, is_traced, non_negative, positive
+from ..design import AbstractBallBearing
+from ..design.checks import (
+    check,
+    concrete,
+    instance,
+    is_real,
+    is_traced,
+    non_negative,
+    positive,
+)
 from ..design.form_error import FormErrors, Surfaces
 from ..element.bearing_element import BearingElement
-from ..element.frame import FREEDOMS, RINGS, orbit, rotation
+from ..element.frame import FREEDOMS, RINGS, orbit, roll_ratio, rotation
 from ..element.inertia import Speed
 from ..element.rolling_element import RingMotion
 from ..element.row import Row, shifted
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.options import SolveOptions
+from .cage import Cage, cage_forces
 from .free_element import FreeElement, forces, free_element
 
 
@@ -87,6 +102,7 @@ class NoiseModel(eqx.Module):
         retardation: τ of the contacts' damping [s]. Damping ratio of a mode of ω that
             is held by contacts alone: ω τ/2.
         moving_ring: "outer" or "inner". Static.
+        cage: `None`: the rolling elements go round evenly, each in its place.
 
     Traced: all numbers.
     """
@@ -104,9 +120,11 @@ class NoiseModel(eqx.Module):
     sensor: Sensor | None = None
     retardation: Scalar = eqx.field(converter=as_real, metadata=unit("s"), default=2e-6)
     moving_ring: str = eqx.field(static=True, default="outer")
+    cage: Cage | None = None
 
     def __check_init__(self):
         instance(self, "element", BearingElement)
+        instance(self, "cage", Cage, None)
         bearing = self.element.bearing
         if not hasattr(bearing, "raceway_deviation"):
             raise TypeError(
@@ -123,6 +141,11 @@ class NoiseModel(eqx.Module):
             raise ValueError(
                 "NoiseModel: `element` has a `raceway_deviation`, which stands still;"
                 " form errors that turn are `errors`."
+            )
+        if self.cage is not None and not isinstance(bearing, AbstractBallBearing):
+            raise TypeError(
+                f"NoiseModel: `cage` is given for a {type(bearing).__name__}; it is for"
+                " ball bearings."
             )
         positive(self, "mass")
         instance(self, "speed", Speed)
@@ -160,6 +183,11 @@ class NoiseModel(eqx.Module):
         return RINGS[1 - RINGS.index(self.moving_ring)]
 
     @property
+    def orbits(self) -> bool:
+        """Whether a ring turns; speeds that are traced count as such."""
+        return concrete(self.speed.outer, self.speed.inner) != [0.0, 0.0]
+
+    @property
     def shaft_speed(self) -> Scalar:
         """Of the ring that turns faster, without its sign [rad/s]."""
         return jnp.maximum(jnp.abs(self.speed.outer), jnp.abs(self.speed.inner))
@@ -177,11 +205,17 @@ class NoiseModel(eqx.Module):
         """
         return _system(self, points)
 
+    def still_system(self) -> "NoiseSystem":
+        """The same without form errors, the rolling elements carried evenly."""
+        return dataclasses.replace(self.system(8), errors=None, cage=None)
+
 
 class NoiseSystem(eqx.Module):
     """Equations of motion of a `NoiseModel`.
 
-    Coordinates are those of the ring, then of every rolling element: (n,).
+    Coordinates are those of the ring, then of every rolling element: (n,). With a cage
+    follow how far every rolling element is ahead of the even orbit, along the pitch
+    circle, and the cage's x, y and turn beyond that orbit.
 
     Attributes:
         row: The rolling elements, each a `FreeElement`.
@@ -196,6 +230,7 @@ class NoiseSystem(eqx.Module):
         sensor: As of the model.
         retardation: As of the model [s].
         moving: 0 for the outer ring, 1 for the inner one. Static.
+        cage: As of the model.
     """
 
     row: Row
@@ -208,13 +243,18 @@ class NoiseSystem(eqx.Module):
     retardation: Scalar
     growth: Scalar | None
     moving: int = eqx.field(static=True)
+    cage: Cage | None = None
 
     @property
     def masses(self) -> Float[Array, " n"]:
         """Of all coordinates [kg, kg m²]."""
         at = self.row.azimuth
         each = self.row.each(lambda free, _: free.mass, at)
-        return jnp.concatenate([self.mass, each.ravel()])
+        masses = [self.mass, each.ravel()]
+        if (cage := self.cage) is not None:
+            own = jnp.stack([cage.mass, cage.mass, cage.inertia])
+            masses = [*masses, each[:, 0], own]
+        return jnp.concatenate(masses)
 
     def rings(self, ring: Float[Array, " k"]) -> RingMotion:
         """Motions of both rings [m, rad]."""
@@ -228,22 +268,43 @@ class NoiseSystem(eqx.Module):
         """Ring's and rolling elements' coordinates."""
         k = self.mass.shape[0]
         count = self.row.azimuth.shape[0]
-        return motion[:k], motion[k:].reshape(count, -1)
+        end = k + count * self.row.element.mass.shape[-1]
+        return motion[:k], motion[k:end].reshape(count, -1)
 
-    def azimuth(self, time: Scalar) -> Float[Array, " element"]:
-        """Where the rolling elements are [rad]."""
-        return self.row.azimuth + self.turning[2] * time
+    def caged(
+        self, motion: Float[Array, " n"]
+    ) -> tuple[Float[Array, " element"], Float[Array, "3"]]:
+        """Places along the pitch circle, and the cage's coordinates, where it is."""
+        count = self.row.azimuth.shape[0]
+        return motion[-3 - count : -3], motion[-3:]
 
-    def met(self, time: Scalar) -> Float[Array, "element 2 3"] | None:
+    def azimuth(
+        self, time: Scalar, motion: Float[Array, " n"] | None = None
+    ) -> Float[Array, " element"]:
+        """Where the rolling elements are [rad].
+
+        Args:
+            time: [s].
+            motion: Coordinates (n,) [m, rad], which count where there is a cage;
+                `None`: on the even orbit.
+        """
+        even = self.row.azimuth + self.turning[2] * time
+        if self.cage is None or motion is None:
+            return even
+        return even + self.caged(motion)[0] / self.row.pitch_radius
+
+    def met(
+        self, azimuth: Float[Array, " element"], time: Scalar
+    ) -> Float[Array, "element 2 3"] | None:
         """How every rolling element finds the raceways, `Deviation.raceway` [m].
 
         Args:
+            azimuth: Where they are [rad].
             time: [s].
         """
         if self.errors is None:
             return None
         outer, inner, _, spin = self.turning
-        azimuth = self.azimuth(time)
         rolled = jnp.full_like(azimuth, 1.0) * spin * time
         turns = outer * time, inner * time
         met = self.errors.met(self.surfaces, azimuth, *turns, rolled)
@@ -252,8 +313,8 @@ class NoiseSystem(eqx.Module):
     def _each(self, function, motion, time, met=None):
         """Map function(free, axes, rings, place) over the elements, as they are met."""
         ring, places = self.parted(motion)
-        local, azimuth = self.rings(ring), self.azimuth(time)
-        met = self.met(time) if met is None else met
+        local, azimuth = self.rings(ring), self.azimuth(time, motion)
+        met = self.met(azimuth, time) if met is None else met
         met = () if met is None else (met,)
 
         def one(free, azimuth, place, *met):
@@ -286,7 +347,17 @@ class NoiseSystem(eqx.Module):
 
         on_ring, on_places = self._each(one, motion, time, met)
         k = self.mass.shape[0]
-        return jnp.concatenate([jnp.sum(on_ring, axis=0)[:k], on_places.ravel()])
+        on_ring = jnp.sum(on_ring, axis=0)[:k]
+        if (cage := self.cage) is None:
+            return jnp.concatenate([on_ring, on_places.ravel()])
+        arcs, place = self.caged(motion)
+        guided = RINGS.index(cage.guiding_ring) == self.moving
+        guide = motion[:2] if guided else jnp.zeros((2,), motion.dtype)
+        radius, azimuth = self.row.pitch_radius, self.azimuth(time, motion)
+        found = cage_forces(cage, place, arcs, azimuth, guide, radius)
+        if guided:
+            on_ring = on_ring.at[:2].add(found.ring)
+        return jnp.concatenate([on_ring, on_places.ravel(), found.arcs, found.cage])
 
     def contact_loads(
         self, motion: Float[Array, " n"], time: Scalar
@@ -297,6 +368,38 @@ class NoiseSystem(eqx.Module):
             return free.loads(rings, place)
 
         return self._each(one, motion, time)
+
+    def traction(
+        self,
+        cage: Cage,
+        motion: Float[Array, " n"],
+        velocity: Float[Array, " n"],
+        time: Scalar,
+    ) -> Float[Array, " element"]:
+        """Force of both raceways on every ball along the pitch circle [N].
+
+        It draws the ball to the orbit on which it would roll: that of its own diameter
+        and contact angle, the mean of its contacts by their loads. Between the two it
+        slides, with friction on all its loads. Its turn about its own axis follows
+        without delay.
+
+        Args:
+            cage: Of the bearing.
+            motion, velocity: [m, rad], [m/s, rad/s].
+            time: [s].
+        """
+        outer, inner, even, _ = self.turning
+        radius = self.row.pitch_radius
+
+        def one(free, axes, rings, place):
+            load, cosine = free.carried(rings, place)
+            diameter = free.element.diameter
+            own = roll_ratio(diameter, 2.0 * radius, cosine)
+            return load, radius * (orbit(own, outer, inner) - even)
+
+        load, ahead = self._each(one, motion, time)
+        slip = ahead - self.caged(velocity)[0]
+        return cage.friction * load * jnp.tanh(slip / cage.sliding_speed)
 
     def forces(
         self,
@@ -317,6 +420,12 @@ class NoiseSystem(eqx.Module):
         force = (
             (-found - self.retardation * rate).at[: self.mass.shape[0]].add(self.load)
         )
+        if self.cage is not None:
+            count = self.row.azimuth.shape[0]
+            force = force.at[-3 - count : -3].add(
+                self.traction(self.cage, motion, velocity, time)
+            )
+            force = force.at[-3:-1].add(self.cage.load)
         if self.sensor is None:
             return force
         s = self.sensor
@@ -362,4 +471,5 @@ def _system(model, points) -> NoiseSystem:
         retardation=model.retardation,
         growth=None,
         moving=RINGS.index(model.moving_ring),
+        cage=model.cage,
     )

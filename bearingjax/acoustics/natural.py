@@ -9,7 +9,6 @@ Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011), there wit
     that move radially.
 """
 
-import dataclasses
 from typing import NamedTuple
 
 import equinox as eqx
@@ -17,7 +16,6 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..design.checks import concrete
 from ..numerics.eigen import eigh
 from ..numerics.implicit import stop
 from .model import NoiseModel, NoiseSystem
@@ -79,13 +77,12 @@ def natural_modes(model: NoiseModel) -> NaturalModes:
 
     Fails: as `solve_load`; the frequencies are then those of no balance.
     """
-    still = concrete(model.speed.outer, model.speed.inner) == [0.0, 0.0]
-    return _natural_modes(model, not still)
+    return _natural_modes(model, model.orbits)
 
 
 @eqx.filter_jit
 def _natural_modes(model, orbits) -> NaturalModes:
-    system = dataclasses.replace(model.system(8), errors=None)
+    system = model.still_system()
     motion, result = standing(model, system, orbits)
     root = jnp.sqrt(system.masses)
     k = stiffness(system, motion) / jnp.outer(root, root)

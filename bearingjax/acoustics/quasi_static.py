@@ -6,6 +6,7 @@ vibration of a real ring may be: the force on a ring that is held, and the displ
 of one that is free under its load.
 """
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -61,8 +62,8 @@ def excitation(
     """Force on a held ring, or displacement of a free one, over some turns.
 
     A bearing without form errors too shakes its ring where few rolling elements carry
-    the load and move on (variable compliance); both are in the answer. Masses, the
-    retardation and the sensor, soft against the bearing, do not count.
+    the load and move on (variable compliance); both are in the answer. Masses,
+    the cage, the retardation and the sensor, soft against the bearing, do not count.
 
     Args:
         model: The bearing.
@@ -115,7 +116,7 @@ def at_instant(
     bearing: Any = element.bearing
     azimuth = bearing.first_azimuth + system.turning[2] * time
     bearing = eqx.tree_at(lambda b: b.first_azimuth, bearing, azimuth)
-    met = system.met(time)
+    met = system.met(system.azimuth(time), time)
     if met is not None:
         bearing = with_raceways(bearing, met)
     return eqx.tree_at(lambda e: e.bearing, element, bearing)
@@ -123,7 +124,7 @@ def at_instant(
 
 @eqx.filter_jit
 def _excitation(model, turns, samples, held) -> Excitation:
-    system = model.system()
+    system = dataclasses.replace(model, cage=None).system()
     options = model.solve_options
     standing = solve(model.element, model.load, options)
     start = split(standing.displacement)[system.moving]

@@ -4,6 +4,7 @@ A step is a half radian or less of the fastest mode of the loaded bearing.
 """
 
 import dataclasses
+from typing import NamedTuple
 
 import equinox as eqx
 import jax
@@ -23,6 +24,18 @@ STEP = 0.5
 """Longest step, of a radian of the fastest mode [rad]."""
 
 
+class CageMotion(NamedTuple):
+    """A record of a cage: along x, along y, and along the pitch circle.
+
+    Attributes:
+        displacement: From the bearing's axis and from the even orbit (time, 3) [m].
+        acceleration: (time, 3) [m/s²].
+    """
+
+    displacement: Float[Array, "time 3"]
+    acceleration: Float[Array, "time 3"]
+
+
 class Vibration(eqx.Module):
     """A record of a bearing's vibration; leading axis time.
 
@@ -37,6 +50,7 @@ class Vibration(eqx.Module):
         azimuth: Of every rolling element (time, element) [rad].
         shaft_frequency: Of the ring that turns faster [Hz].
         result: `Result` code: `NON_FINITE` where the motion ran away.
+        cage: Motion of the cage, or `None`.
 
     Static: turns.
     """
@@ -49,6 +63,7 @@ class Vibration(eqx.Module):
     shaft_frequency: Scalar
     result: Int[Array, ""]
     turns: int = eqx.field(static=True)
+    cage: CageMotion | None = None
 
     @property
     def duration(self) -> Scalar:
@@ -76,7 +91,8 @@ def vibration(
         settle: Turns before them; with none, form errors are there at once. Static.
         samples: Per turn. Static.
         steps: Of the integration, per sample; `None`: such that one is at most half a
-            radian of the fastest mode. Static; under `jit` it must be given.
+            radian of the fastest mode, which counts no contact of a cage. Static;
+            under `jit` it must be given.
         throw: Raise if the record is not finite, or the bearing finds no place under
             its load; otherwise read `result`. Static.
 
@@ -142,6 +158,8 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
     if settle:
         system = dataclasses.replace(system, growth=settle / frequency)
     masses = system.masses
+    # A cage begins centred, and every ball in the middle of its pocket.
+    start = jnp.pad(start, (0, masses.shape[0] - start.shape[0]))
     k = system.mass.shape[0]
 
     def acceleration(motion, velocity, time):
@@ -149,10 +167,18 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
 
     number = (settle + turns) * samples
     begin = start, jnp.zeros_like(start)
-    moved = stepped(acceleration, begin, h, steps, number, lambda a: a[:k])
-    motion, seen = (r[settle * samples :] for r in moved[:2])
+
+    def kept(acceleration):
+        return acceleration[:k], None if model.cage is None else acceleration[-3:]
+
+    moved = stepped(acceleration, begin, h, steps, number, kept)
+    motion, (seen, of_cage) = jax.tree.map(lambda r: r[settle * samples :], moved[:2])
     numbers = jnp.arange(settle * samples, number, dtype=start.dtype)
     time = numbers * (h * steps)
+    cage = None
+    if model.cage is not None:
+        along = jnp.stack([jnp.ones_like(h)] * 2 + [system.row.pitch_radius])[None]
+        cage = CageMotion(motion[:, -3:] * along, of_cage * along)
     loads = lax.map(lambda given: system.contact_loads(*given), (motion, time))
     ended = jnp.all(jnp.isfinite(moved.end[0])) & jnp.all(jnp.isfinite(moved.end[1]))
     lost = jnp.where(ended, int(Result.CONVERGED), int(Result.NON_FINITE))
@@ -162,8 +188,9 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
         displacement=motion[:, :k] - start[None, :k],
         acceleration=seen,
         contact_load=loads,
-        azimuth=jax.vmap(system.azimuth)(time),
+        azimuth=jax.vmap(system.azimuth)(time, motion),
         shaft_frequency=frequency,
         result=jnp.where(standing_failed, result, lost).astype(jnp.int32),
         turns=turns,
+        cage=cage,
     )

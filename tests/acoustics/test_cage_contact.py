@@ -25,7 +25,8 @@ def test_roots(film):
         return np.log((2.81e-8 * f**1.29 + film * f ** (1 / 40)) / d)
 
     at = np.asarray(contact.approach(jnp.asarray(FORCES)))
-    expected = [brentq(excess, -80, 80, args=(d,), xtol=1e-14, rtol=1e-15) for d in at]
+    roots = [brentq(excess, -80, 80, args=(d,), xtol=1e-14, rtol=1e-15) for d in at]
+    expected = np.array(roots, dtype=float)
     found = force(contact, jnp.asarray(at))
     # An approach to round-off is a force to 40 times that, where the film is thin.
     np.testing.assert_allclose(

@@ -1,0 +1,125 @@
+"""A cage that rolling elements push round, and that they run against.
+
+The cage is a rigid ring with three freedoms of its own: its centre's x and y, and how
+far it has turned beyond the even orbit. Every rolling element has a place of its own
+along the pitch circle. Pockets and the land on the guiding ring are contacts with
+clearance; the raceways draw every element towards the speed at which it would roll.
+
+Source: Kurushin, Kurushin, Zhilnikov, Murashkin, Vestnik SGAU (2011), in outline; the
+    friction in pockets and on the land, and the weights of the rolling elements, are
+    left out here.
+"""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design.checks import check, instance, is_traced, non_negative, positive
+from ..element.frame import RINGS
+from ..numerics.linear import lengths
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from .cage_contact import CageContact
+
+
+class Cage(eqx.Module):
+    """A cage guided by a ring, for balls.
+
+    Attributes:
+        mass: [kg].
+        inertia: Moment of inertia about the bearing's axis [kg m²].
+        contact: Force law of pockets and land.
+        pocket_clearance: Of a ball in its pocket along the pitch circle, from bar to
+            bar [m].
+        land_clearance: Of the land on the guiding ring, in diameter [m].
+        friction: Of balls on raceways that they slide on [1].
+        sliding_speed: v of friction · tanh(sliding/v), by which it sets in [m/s].
+        load: On the cage along x and y, such as its weight (2,) [N].
+        guiding_ring: "outer" or "inner". Static.
+
+    Traced: all numbers.
+    """
+
+    mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
+    inertia: Scalar = eqx.field(converter=as_real, metadata=unit("kg m²"))
+    contact: CageContact
+    pocket_clearance: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    land_clearance: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    friction: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.05)
+    sliding_speed: Scalar = eqx.field(
+        converter=as_real, metadata=unit("m/s"), default=0.05
+    )
+    load: Float[Array, "2"] = eqx.field(
+        converter=as_real, metadata=unit("N"), default=(0.0, 0.0)
+    )
+    guiding_ring: str = eqx.field(static=True, default="outer")
+
+    def __check_init__(self):
+        instance(self, "contact", CageContact)
+        for name in ("mass", "inertia", "sliding_speed"):
+            positive(self, name)
+        for name in ("pocket_clearance", "land_clearance", "friction"):
+            non_negative(self, name)
+        if np.shape(self.load) != (2,):
+            raise ValueError(
+                f"Cage: `load` has shape {np.shape(self.load)}; it must be (2,): along"
+                " x and y, in N."
+            )
+        if not is_traced(self.load):
+            check(self, "load", np.isfinite(self.load), "finite")
+        if self.guiding_ring not in RINGS:
+            raise ValueError(
+                f"Cage: `guiding_ring` is {self.guiding_ring!r}; it must be 'outer' or"
+                " 'inner'."
+            )
+
+
+class CageForces(NamedTuple):
+    """What the contacts of a cage do, on the side of what holds the parts.
+
+    Attributes:
+        arcs: To every rolling element along the pitch circle (element,) [N].
+        cage: To its x, y and turn (3,) [N, N m].
+        ring: To the guiding ring along x and y (2,) [N].
+    """
+
+    arcs: Float[Array, " element"]
+    cage: Float[Array, "3"]
+    ring: Float[Array, "2"]
+
+
+def cage_forces(
+    cage: Cage,
+    place: Float[Array, "3"],
+    arcs: Float[Array, " element"],
+    azimuth: Float[Array, " element"],
+    ring: Float[Array, "2"],
+    pitch_radius: Scalar,
+) -> CageForces:
+    """Forces of pockets and land, reversed: as derivatives of an energy.
+
+    Args:
+        cage: The cage.
+        place: Its x, y and turn beyond the even orbit (3,) [m, rad].
+        arcs: How far every rolling element is ahead of the even orbit (element,) [m].
+        azimuth: Of the rolling elements [rad].
+        ring: x and y of the guiding ring [m].
+        pitch_radius: Of the circle of the rolling elements [m].
+    """
+    sine, cosine = jnp.sin(azimuth), jnp.cos(azimuth)
+    # How far each pocket moves along the pitch circle, per freedom of the cage.
+    along = jnp.stack([-sine, cosine, jnp.full_like(sine, 1.0) * pitch_radius], axis=1)
+    ahead = arcs - along @ place
+    half = 0.5 * cage.pocket_clearance
+    pushed = cage.contact.force(ahead - half) - cage.contact.force(-ahead - half)
+    off = place[:2] - ring
+    distance = lengths(off)
+    held = cage.contact.force(distance - 0.5 * cage.land_clearance)
+    centred = distance == 0.0
+    towards = jnp.where(centred, 0.0, held / jnp.where(centred, 1.0, distance))
+    on_ring = towards * off
+    on_cage = (-pushed @ along).at[:2].add(on_ring)
+    return CageForces(pushed, on_cage, -on_ring)
