@@ -143,6 +143,12 @@ def parser() -> argparse.ArgumentParser:
     )
     _add_common(noise)
     noise.add_argument(
+        "--monte-carlo",
+        metavar="N",
+        type=int,
+        help="also N random bearings, as [vibration.tolerance] has them scatter",
+    )
+    noise.add_argument(
         "--wav",
         metavar="OUT",
         type=Path,

@@ -435,6 +435,7 @@ def _rotor(options) -> int:
 
 def _noise(options) -> int:
     from .scene import (
+        SceneError,
         noise_columns,
         noise_report,
         read_noise,
@@ -447,7 +448,11 @@ def _noise(options) -> int:
     _check_table(options)
     _check_sound(options.wav)
     _check_outputs(options)
-    task = read_noise(options.scene, options.set)
+    count = options.monte_carlo
+    if count is not None and not 1 <= count <= 100_000:
+        allowed = "it must be at least 1 and at most 100000"
+        raise SceneError(f"--monte-carlo is {count}; {allowed}")
+    task = read_noise(options.scene, options.set, bearings=count or 0)
     shown = not options.quiet and sys.stderr.isatty()
     run = run_noise(task, _show_stage if shown else None)
     if shown:

@@ -14,7 +14,9 @@ from .load import stiffness_over_speed as stiffness_over_speed
 from .noise import acceleration_over_time as acceleration_over_time
 from .noise import band_bars as band_bars
 from .noise import contact_state_map as contact_state_map
+from .noise import level_distribution as level_distribution
 from .noise import noise_spectrum as noise_spectrum
+from .noise import source_bars as source_bars
 from .noise_page import noise_overview as noise_overview
 from .optimised import optimised as optimised
 from .page import overview as overview

@@ -11,6 +11,7 @@ from ..acoustics import (
     Bands,
     ContactStates,
     Line,
+    Shares,
     Spectrum,
     Vibration,
 )
@@ -243,4 +244,61 @@ def contact_state_map(
         handlelength=1.2,
         columnspacing=1.0,
     )
+    return ax
+
+
+def level_distribution(
+    level: Any,
+    ax: "matplotlib.axes.Axes | None" = None,
+    *,
+    reference: float = REFERENCE_ACCELERATION,
+) -> "matplotlib.axes.Axes":
+    """Share of bearings whose level is below each level [%].
+
+    Args:
+        level: Of each bearing (bearing, direction) [dB]; NaN of those that failed.
+        ax: Axes; a new figure if `None`.
+        reference: Acceleration of 0 dB [m/s²].
+
+    Returns:
+        The axes.
+    """
+    ax = axes_or_new(ax)
+    for k, values in enumerate(np.asarray(level, dtype=float).T):
+        values = np.sort(values[values > LOWEST_LEVEL])
+        share = 100.0 * (np.arange(len(values)) + 0.5) / max(len(values), 1)
+        ax.plot(values, share, ".-", color=CURVES[k], lw=1.2, label=DIRECTIONS[k])
+    ax.set_ylim(0.0, 100.0)
+    ax.grid(color="0.93")
+    ax.set_axisbelow(True)
+    ax.set_xlabel(f"level [dB over {reference:.3g} m/s²]")
+    ax.set_ylabel("bearings below [%]")
+    ax.set_title("Random bearings")
+    ax.legend(fontsize=SMALL)
+    return ax
+
+
+def source_bars(
+    shares: Shares, ax: "matplotlib.axes.Axes | None" = None
+) -> "matplotlib.axes.Axes":
+    """Part of the mean square of the acceleration that goes without each source [%].
+
+    Args:
+        shares: From `shares`.
+        ax: Axes; a new figure if `None`.
+
+    Returns:
+        The axes; the largest source is at the top.
+    """
+    ax = axes_or_new(ax)
+    part = 100.0 * np.asarray(shares.share) / float(shares.mean_square)
+    order = np.argsort(part)
+    names = [shares.sources[k].replace("_", " ") for k in order]
+    bars = ax.barh(names, part[order], color=CURVES[0])
+    ax.bar_label(bars, fmt="%.3g", fontsize=SMALL, padding=3)
+    ax.margins(x=0.15)
+    ax.grid(axis="x", color="0.93")
+    ax.set_axisbelow(True)
+    ax.set_xlabel("part of the mean square of the acceleration [%]")
+    ax.set_title("Sources of the noise")
     return ax

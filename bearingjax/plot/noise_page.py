@@ -6,7 +6,9 @@ from .noise import (
     acceleration_over_time,
     band_bars,
     contact_state_map,
+    level_distribution,
     noise_spectrum,
+    source_bars,
 )
 from .style import head, pyplot
 
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
 def noise_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
     """Record, spectrum with named lines, bands and contact states on one page.
 
+    Of random bearings also the distribution of their levels, and what makes it.
+
     Args:
         run: What came of a scene of noise, with a record.
         title: Head of the page; "Noise" if empty.
@@ -25,9 +29,10 @@ def noise_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
         The figure, 15 inches wide.
     """
     task, heard = run.task, run.heard
-    figure = pyplot().figure(figsize=(15.0, 9.6))
+    rows = 2 if run.many is None else 3
+    figure = pyplot().figure(figsize=(15.0, 4.8 * rows))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
-    axes = figure.subplots(2, 2)
+    axes = figure.subplots(rows, 2)
     acceleration_over_time(heard.record, axes[0, 0])
     reference = task.reference
     noise_spectrum(heard.spectrum, heard.lines, axes[0, 1], reference=reference)
@@ -35,5 +40,11 @@ def noise_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
         task.bands, heard.band_level, axes[1, 0], norm=task.norm, reference=reference
     )
     contact_state_map(heard.record, heard.states, axes[1, 1])
+    if run.many is not None:
+        level_distribution(run.many.levels.level, axes[2, 0], reference=reference)
+        if run.many.shares is None:
+            axes[2, 1].set_axis_off()
+        else:
+            source_bars(run.many.shares, axes[2, 1])
     head(figure, title or "Noise")
     return figure

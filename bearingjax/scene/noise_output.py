@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from ..acoustics import write_sound
+from ..acoustics import Shares, write_sound
 from .files import write_numbers
-from .noise_run import LOOSE, NoiseRun
+from .noise_run import LOOSE, Many, NoiseRun
 from .noise_scene import DIRECTIONS
 
 
@@ -26,6 +26,10 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
         `order`, `frequency`, `amplitude`, `name`, and `causes`, the form errors that
         make it to first order; `contact_states`: `contacts` (0, 1, 2, …), `samples`
         with so many, of all elements together, `switches_per_turn`; `reference`.
+        Of random bearings `monte_carlo`: `level` (bearing, direction), `band_level`
+        (bearing, band, direction), null of those that were not solved; `percentile`:
+        `share` [%] and `level` (share, direction); `sources` of the scatter with the
+        `part` of the mean square of the acceleration that goes without each [1].
         And result, message, warnings and version. What was not solved is left out.
     """
     from .. import __version__
@@ -37,6 +41,8 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
         parts["ring_share"] = run.modes.ring_share[there].tolist()
     if run.heard is not None:
         parts |= _heard(run)
+    if run.many is not None:
+        parts["monte_carlo"] = _many(run.many)
     return {
         **parts,
         "result": run.result.label,
@@ -72,6 +78,31 @@ def _heard(run: NoiseRun) -> dict[str, Any]:
         },
         "reference": run.task.reference,
     }
+
+
+PERCENTILES = (5.0, 50.0, 95.0)
+"""Shares of random bearings whose levels are told [%]."""
+
+
+def _many(many: Many) -> dict[str, Any]:
+    levels = many.levels
+    told: dict[str, Any] = {
+        "level": np.asarray(levels.level).tolist(),
+        "band_level": np.asarray(levels.bands).tolist(),
+        "percentile": {
+            "share": list(PERCENTILES),
+            "level": np.asarray(levels.percentile(PERCENTILES)).tolist(),
+        },
+    }
+    if many.shares is not None:
+        told["sources"] = list(many.shares.sources)
+        told["part"] = parts_of(many.shares).tolist()
+    return told
+
+
+def parts_of(found: Shares) -> np.ndarray:
+    """Part of the mean square that goes without each source (source,) [1]."""
+    return np.asarray(found.share) / float(found.mean_square)
 
 
 def write_noise_json(path: str | Path, run: NoiseRun) -> None:

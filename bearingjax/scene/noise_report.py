@@ -5,6 +5,7 @@ import numpy as np
 from ..acoustics.level import LOWEST_LEVEL
 from ..design import is_ball
 from ..element.frame import LOADS
+from .noise_output import PERCENTILES, parts_of
 from .noise_run import NoiseRun, ring_modes
 from .noise_scene import DIRECTIONS
 from .report import ball_row, roller_row
@@ -22,6 +23,8 @@ def noise_report(run: NoiseRun) -> str:
         run: From `run_noise`, converged.
     """
     parts = [_bearing(run), _modes(run), _levels(run), _lines(run), _states(run)]
+    if run.many is not None:
+        parts.append(_many(run))
     notes = "".join(f"\nwarning: {text}" for text in run.warnings)
     return f"\n{_RULE}\n".join(parts) + notes
 
@@ -109,3 +112,25 @@ def _states(run):
         f"contacts of the {kind}, share of the time: {told};"
         f" {states.switches_per_turn:.4g} open or close per turn of the shaft"
     )
+
+
+def _many(run):
+    """Levels of random bearings, and what makes them."""
+    many, task = run.many, run.task
+    levels = np.asarray(many.levels.percentile(PERCENTILES))
+    head = f"{task.bearings} random bearings, dB"
+    lines = [head + "".join(f"{name:>9}" for name in DIRECTIONS)]
+    for share, row in zip(PERCENTILES, levels, strict=True):
+        name = f"{share:g} % are below"
+        lines.append(f"{name:>{len(head)}}" + "".join(map(_level, row)))
+    if many.shares is None:
+        return "\n".join(lines)
+    found = many.shares
+    parts = sorted(zip(-parts_of(found), found.sources, strict=True))
+    gains = dict(zip(found.sources, np.asarray(found.gain()), strict=True))
+    lines.append(f"{'of the mean square':>{len(head)}}  tightened to a half")
+    for part, name in parts:
+        words = name.replace("_", " ")
+        number = f"{-100.0 * part:.3g} %"
+        lines.append(f"{words:<{len(head) - 9}}{number:>9}  {-gains[name]:.2g} dB")
+    return "\n".join(lines)

@@ -1,5 +1,6 @@
 """Running what a scene asks for of the noise of a bearing."""
 
+import contextlib
 import dataclasses
 from collections.abc import Callable
 
@@ -9,8 +10,10 @@ import numpy as np
 from ..acoustics import (
     ContactStates,
     Line,
+    MonteCarlo,
     NaturalModes,
     NoiseModel,
+    Shares,
     Spectrum,
     Vibration,
     band_levels,
@@ -19,9 +22,11 @@ from ..acoustics import (
     kinematic_frequencies,
     level,
     line_causes,
+    monte_carlo,
     name_lines,
     natural_modes,
     needed_steps,
+    shares,
     spectrum,
     vibration,
 )
@@ -71,6 +76,20 @@ class Heard:
 
 
 @dataclasses.dataclass(frozen=True)
+class Many:
+    """What many random bearings tell.
+
+    Attributes:
+        levels: Of each.
+        shares: Which source of scatter makes how much of the mean square, of a part
+            of them; `None` if none of these was solved.
+    """
+
+    levels: MonteCarlo
+    shares: Shares | None
+
+
+@dataclasses.dataclass(frozen=True)
 class NoiseRun:
     """What came of a scene of the noise of a bearing.
 
@@ -81,6 +100,7 @@ class NoiseRun:
         modes: Natural modes, as NumPy holds them; `None` without a place to stand.
         steps: Steps of the integration per sample.
         heard: What the record tells; `None` if it was not solved.
+        many: Random bearings beside it; `None` if none were wanted.
         warnings: What is doubtful.
     """
 
@@ -90,6 +110,7 @@ class NoiseRun:
     modes: NaturalModes | None = None
     steps: int = 0
     heard: Heard | None = None
+    many: Many | None = None
     warnings: tuple[str, ...] = ()
 
     @property
@@ -137,12 +158,60 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
         return NoiseRun(task, result, words, modes, steps, warnings=told_so_far)
     heard = listen(task, record, modes)
     told_so_far += tuple(_after(task, heard))
-    return NoiseRun(task, result, "converged", modes, steps, heard, told_so_far)
+    many = _many(task, steps, told) if task.bearings else None
+    if many is not None and many.levels.failed:
+        told_so_far += (
+            f"{many.levels.failed} of {task.bearings} random bearings were not solved",
+        )
+    return NoiseRun(task, result, "converged", modes, steps, heard, many, told_so_far)
 
 
 def _tell(told, stage):
     if told is not None:
         told(stage)
+
+
+def _many(task: NoiseScene, steps: int, told) -> Many:
+    """Random bearings, and on fewer of them what each source of scatter makes."""
+    tolerances = task.tolerances
+    assert tolerances is not None  # checked when it was read
+    counts = {
+        "turns": task.turns,
+        "settle": task.settle,
+        "samples": task.samples,
+        "steps": steps,
+    }
+    given = task.model, tolerances
+    key = jax.random.key(task.seed)
+
+    def progress(words):
+        return lambda done, whole: _tell(told, f"{words}: {done} of {whole}")
+
+    levels = monte_carlo(
+        *given,
+        task.bearings,
+        key,
+        **counts,
+        bands=task.bands,
+        window=task.window,
+        reference=task.reference,
+        progress=progress("random bearings"),
+    )
+    # Each source is switched off once: about as long as the levels took.
+    fewer = -(-task.bearings // len(tolerances.sources))
+    batch = min(16, task.bearings)
+    with contextlib.suppress(FloatingPointError):
+        made = shares(
+            *given,
+            max(fewer, batch),
+            key,
+            **counts,
+            gradient=False,
+            batch=batch,
+            progress=progress("sources of noise"),
+        )
+        return Many(levels, made)
+    return Many(levels, None)
 
 
 def _why(model: NoiseModel) -> str:

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 
-from ..acoustics import AbstractWindow, Bands, NoiseModel
+from ..acoustics import AbstractWindow, Bands, NoiseModel, Tolerances
 from .read import Scene
 
 DIRECTIONS = ("x", "y", "z")
@@ -24,6 +24,9 @@ class NoiseScene:
         bands: Bands of the levels.
         norm: Largest allowed level of each band (band,) [dB], or `None`.
         window: Of the spectrum.
+        tolerances: How bearings scatter, or `None`.
+        seed: Of the random bearings.
+        bearings: How many random bearings are wanted.
         warnings: What is odd but possible.
     """
 
@@ -37,6 +40,9 @@ class NoiseScene:
     bands: Bands
     norm: np.ndarray | None
     window: AbstractWindow
+    tolerances: Tolerances | None
+    seed: int
+    bearings: int
     warnings: tuple[str, ...]
 
     @property

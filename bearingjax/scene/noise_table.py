@@ -23,6 +23,7 @@ from .noise_scene import DIRECTIONS, NoiseScene
 from .read import Scene, scene_of
 from .scene_file import find_scene, parse_bearing
 from .table import Table
+from .tolerance_table import read_tolerance
 
 BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}
 WINDOWS = {"hann": Hann, "rectangular": Rectangular}
@@ -32,11 +33,14 @@ MOST_SAMPLES = 200_000
 """Most samples of a record: some 20 MB as JSON."""
 
 
-def read_noise(source: str | Path, settings: Iterable[str] = ()) -> NoiseScene:
+def read_noise(
+    source: str | Path, settings: Iterable[str] = (), *, bearings: int = 0
+) -> NoiseScene:
     """Read a scene of a bearing whose noise is wanted.
 
     Args:
         source, settings: As in `read_scene`.
+        bearings: How many random bearings are wanted beside it.
 
     Raises:
         SceneError: One line that names file, key, fault and what is allowed.
@@ -67,11 +71,18 @@ def read_noise(source: str | Path, settings: Iterable[str] = ()) -> NoiseScene:
         values["retardation"] = retardation
     with vibration.building():
         model = NoiseModel(scene.element, **values)
+    tolerances, seed = None, 0
+    if "tolerance" in vibration or bearings:
+        table = vibration.table("tolerance", required=True)
+        tolerances, seed = read_tolerance(table, bearing)
     found = NoiseScene(
         scene=scene,
         model=model,
         **_record(vibration),
         **_levels(vibration),
+        tolerances=tolerances,
+        seed=seed,
+        bearings=bearings,
         warnings=scene.warnings,
     )
     vibration.finish()

@@ -41,6 +41,11 @@ sensor_stiffness = "5 N/mm"
 sensor_direction = [0, 3, 4]
 norm = "85-176211"
 
+[vibration.tolerance]
+diameter = "0.2 um"
+inner_eccentricity = "1 um"
+seed = 3
+
 [[deviations.waves]]
 part = "inner raceway"
 order = 8
@@ -206,3 +211,33 @@ def test_bad_input_is_told_before_anything_is_solved(run, scene, tmp_path):
     done = run("noise", scene, "--set", "vibration.mass=heavy")
     assert done.status == 2 and done.out == ""
     assert done.err.startswith("bearingjax: mine.toml: `vibration.mass`: 'heavy'")
+
+
+def test_random_bearings(run, scene, tmp_path):
+    out, picture = tmp_path / "a.json", tmp_path / "a.png"
+    files = ("--json", out, "--plot", picture)
+    done = run("noise", scene, "--monte-carlo", 3, *files)
+    assert done.status == 0, done.err
+    found = read(out)["monte_carlo"]
+    level = np.array(found["level"])
+    assert level.shape == (3, 3) and np.shape(found["band_level"]) == (3, 12, 3)
+    assert found["percentile"]["share"] == [5.0, 50.0, 95.0]
+    median = found["percentile"]["level"][1]
+    assert np.allclose(median, np.median(level, axis=0), rtol=ROUNDING)
+    assert found["sources"] == ["diameter", "inner_eccentricity"]
+    task = read_noise(scene, bearings=3)
+    again = run_noise(task).many
+    assert np.array_equal(again.levels.level, level)
+    assert np.allclose(
+        found["part"], again.shares.share / again.shares.mean_square, rtol=ROUNDING
+    )
+    assert "3 random bearings, dB" in done.out and "50 % are below" in done.out
+    assert "tightened to a half" in done.out
+    assert picture.stat().st_size > 10_000
+
+
+def test_random_bearings_need_to_know_how_they_scatter(run, scene):
+    done = run("noise", "noise_four_point", "--monte-carlo", 2)
+    assert done.status == 2 and "`vibration.tolerance`: is missing" in done.err
+    done = run("noise", scene, "--monte-carlo", 0)
+    assert done.status == 2 and "--monte-carlo is 0; it must be at least 1" in done.err

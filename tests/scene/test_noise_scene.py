@@ -1,5 +1,7 @@
 """Scenes of noise: what they say, and one line for what is wrong."""
 
+import dataclasses
+
 import jax
 import numpy as np
 import pytest
@@ -7,9 +9,10 @@ from tolerances import ROUNDING
 
 import bearingjax as bj
 from bearingjax import SceneError
-from bearingjax.acoustics import NoiseModel, Rectangular, Sensor
+from bearingjax.acoustics import NoiseModel, Rectangular, Sensor, Tolerances
 from bearingjax.acoustics.reference_levels import NORM
 from bearingjax.design.form_error import FormErrors, Harmonics, RacewayErrors, Spall
+from bearingjax.design.tolerance import running_accuracy
 from bearingjax.scene import read_noise, scene_files, shipped_scenes
 
 SHIPPED = ("noise_cylindrical", "noise_deep_groove", "noise_four_point")
@@ -27,7 +30,7 @@ WRONG = {
         "`vibration.sensor_stifness`: unknown key (did you mean `sensor_stiffness`?);"
         " known in [vibration]: bands, mass, moving_ring, norm, reference,"
         " retardation, samples, sensor_damping, sensor_direction, sensor_stiffness,"
-        " settle, steps, tilting_inertia, turns, window",
+        " settle, steps, tilting_inertia, tolerance, turns, window",
     ),
     "mass as a length": (
         "vibration.mass=3 mm",
@@ -161,6 +164,22 @@ WRONG = {
         "deviations.profile=[{part='inner raceway', file='none.csv'}]",
         "`deviations.profile[0].file`: none.csv: cannot be read: No such file",
     ),
+    "grade of balls": (
+        "vibration.tolerance={grade='G11'}",
+        "`vibration.tolerance.grade`: 'G11' is not known",
+    ),
+    "class without sizes": (
+        "vibration.tolerance={grade='G10', class='P5'}",
+        "`vibration.tolerance.bore`: is missing; it must be a length",
+    ),
+    "nothing scatters": (
+        "vibration.tolerance={slope=2}",
+        "`vibration.tolerance.grade`: is missing, and so is everything that scatters",
+    ),
+    "class without a grade": (
+        "vibration.tolerance={class='P5', bore='55 mm', outside_diameter='100 mm'}",
+        "`vibration.tolerance.class`: goes with a `grade`; or give the eccentricities",
+    ),
     "flat spall": (
         "deviations.spalls=[{part='inner raceway', length='1 mm', depth='0 mm'}]",
         "`deviations.spalls[0].depth`: 0 m is not allowed; above 0 m",
@@ -267,6 +286,25 @@ def test_all_keys():
     assert (task.turns, task.settle, task.samples, task.steps) == (3, 0, 32, 5)
     assert task.reference == 1e-6 and isinstance(task.window, Rectangular)
     assert task.norm is None
+
+
+def test_tolerances_by_grade_and_by_number():
+    table = (
+        "vibration.tolerance={grade='G10', class='P5', bore='25 mm', seed=4,"
+        " outside_diameter='52 mm', waviness='50 nm', slope=1.5, highest=60,"
+        " inner_eccentricity='3 um'}"
+    )
+    task = read_noise("noise_deep_groove", [table], bearings=5)
+    bearing = task.model.element.bearing
+    wanted = Tolerances.of_grade(
+        "G10", bearing, runout=running_accuracy("P5", 0.025, 0.052), waviness=50e-9,
+        slope=1.5, highest=60,
+    )  # fmt: skip
+    wanted = dataclasses.replace(wanted, inner_eccentricity=3e-6)
+    assert jax.tree.structure(task.tolerances) == jax.tree.structure(wanted)
+    pairs = zip(jax.tree.leaves(task.tolerances), jax.tree.leaves(wanted), strict=True)
+    assert all(np.allclose(a, b, rtol=ROUNDING) for a, b in pairs)
+    assert (task.seed, task.bearings) == (4, 5)
 
 
 def test_the_ring_that_moves_is_the_one_that_is_not_fixed():
