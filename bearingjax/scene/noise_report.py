@@ -128,9 +128,12 @@ def _many(run):
     found = many.shares
     parts = sorted(zip(-parts_of(found), found.sources, strict=True))
     gains = dict(zip(found.sources, np.asarray(found.gain()), strict=True))
-    lines.append(f"{'of the mean square':>{len(head)}}  tightened to a half")
     for part, name in parts:
         words = name.replace("_", " ")
         number = f"{-100.0 * part:.3g} %"
-        lines.append(f"{words:<{len(head) - 9}}{number:>9}  {-gains[name]:.2g} dB")
+        lines.append(
+            f"  {words:<19}{number:>8} of the mean square; tightened to a half"
+            f" {-gains[name]:.2g} dB"
+        )
+    lines.append("  the rest is of what all bearings have in common")
     return "\n".join(lines)
