@@ -11,7 +11,7 @@ static equilibrium (balls with inertia, at speeds from rest on) and critical spe
 
 Run: python benchmarks/rotor_design.py [--smoke] [--json]
 
-Last run (on one core):
+Last run:
 
 before: angle A [deg] 15.00, angle B [deg] 15.00, pressed A [um] 8.00, pressed B
   [um] 8.00
