@@ -1,0 +1,240 @@
+"""What does an error cost in the vibration of a bearing, beside SciPy's solvers?
+
+A four-point bearing of 14 balls (method 003: 85 N axial, 25 N radial, 1500 rpm) with a
+few waves on both raceways: 3 freedoms of the outer ring, 2 of every ball. The equations
+for SciPy are NumPy's, written anew from the geometry of grooves and balls, with the
+waves as cosines; ours has them in tables. Both begin where the bearing stands.
+
+Errors are of the acceleration of the ring in its last turn: root mean square of the
+difference from RK4 with eight times the steps needed, over that of the motion. Times
+are of the processor, on one core, without compilation.
+
+Run: python benchmarks/noise_scipy.py [--turns N] [--batch N] [--smoke]
+
+Last run (--turns 1 --batch 16; the time of both grows with the turns):
+
+1 turns, 4 steps a sample needed
+ours,  1 times the steps:     0.27 s, 2.5e-04
+ours,  2 times the steps:     0.53 s, 5.9e-05
+ours,  4 times the steps:     1.00 s, 2.7e-05
+ours, 16 in one call:          0.19 s each
+SciPy RK45   1e-05:     1.53 s, 5.9e-04, 17912 evaluations
+SciPy RK45   1e-07:     3.76 s, 3.0e-05, 45650 evaluations
+SciPy DOP853 1e-06:     2.33 s, 5.7e-05, 28739 evaluations
+SciPy LSODA  1e-06:    10.35 s, 3.0e-05, 134863 evaluations
+SciPy's time over ours, one bearing: 5.64 (at least 20): MISSED
+SciPy's time over ours, 16 at once: 8.22 (at least 20): MISSED
+AMD EPYC, 2 cores, load average 2.8; devices: 1 cpu; jax 0.10.1
+"""
+
+import argparse
+import sys
+import time
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import equinox as eqx  # noqa: E402
+import numpy as np  # noqa: E402
+from scipy.integrate import solve_ivp  # noqa: E402
+from timing import machine, verdict  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+from bearingjax.acoustics import (  # noqa: E402
+    NoiseModel,
+    RandomWaves,
+    Tolerances,
+    drawn,
+    needed_steps,
+    standing,
+    vibration,
+)
+
+SAMPLES = 2048
+MASS, RETARDATION, SPEED = 0.37, 2e-6, 1500 * np.pi / 30
+LOAD = np.array([0.0, -25.0, 85.0])
+WAVES = RandomWaves(2e-7, 11, 17)
+SCATTER = Tolerances(
+    outer_axial=WAVES, outer_outwards=WAVES, inner_axial=WAVES, inner_outwards=WAVES
+)
+
+
+def model(key):
+    """A bearing with random waves."""
+    bearing = bj.FourPointBallBearing(
+        14, 0.0775, 0.014288, outer_osculation=0.52, inner_osculation=0.52,
+        shim_angle=np.deg2rad(24.0), radial_internal_clearance=4e-5,
+        material=bj.Material(density=7850.0),
+    )  # fmt: skip
+    plain = NoiseModel(
+        bj.BearingElement(bearing), MASS, [*LOAD, 0.0, 0.0, 0.0],
+        bj.Speed(inner=SPEED), retardation=RETARDATION,
+    )  # fmt: skip
+    return drawn(plain, SCATTER, key)
+
+
+class Equations:
+    """Equations of motion in NumPy; numbers of the design from the model."""
+
+    def __init__(self, bearing_model):
+        bearing = bearing_model.element.bearing
+        (row,) = bearing_model.element.model().rows
+        grooves = bearing.grooves
+        self.place = np.array([[float(g.axial), float(g.radial)] for g in grooves])
+        self.own = np.array([float(g.radius) for g in grooves])
+        self.own -= 0.5 * float(bearing.ball_diameter)
+        self.on_outer = np.array([g.on_outer for g in grooves])
+        constant = np.asarray(row.element.constant)
+        self.constant = constant if constant.ndim == 1 else constant[0]
+        self.azimuth = 2 * np.pi / 14 * np.arange(14)
+        diameter, pitch = float(bearing.ball_diameter), float(bearing.pitch_diameter)
+        self.mass = np.pi / 6 * diameter**3 * 7850.0
+        gamma = diameter / pitch * float(bearing.free_cosine)
+        self.orbit = 0.5 * SPEED * (1.0 - gamma)
+        self.force = self.mass * 0.5 * pitch * self.orbit**2
+        errors = bearing_model.errors
+        shapes = errors.outer.axial, errors.outer.outwards
+        inner = errors.inner.axial, errors.inner.outwards
+        self.waves = [
+            [np.asarray(a) for a in (one.order, one.amplitude, one.phase)]
+            for (one,) in (*shapes, *inner)
+        ]
+
+    def errors(self, angle, rate, wave):
+        """Height of a wave at angles and its rate."""
+        order, amplitude, phase = wave
+        turned = order * angle[:, None] + phase
+        return np.cos(turned) @ amplitude, -rate * (
+            np.sin(turned) @ (amplitude * order)
+        )
+
+    def __call__(self, t, y):
+        half = len(y) // 2
+        q, v = y[:half], y[half:]
+        at = self.azimuth + self.orbit * t
+        c, s = np.cos(at), np.sin(at)
+        shifts = np.empty((2, 14, 2))
+        rates = np.empty((2, 14, 2))
+        turns = (0.0, SPEED)
+        for k, wave in enumerate(self.waves):
+            ring, axis = divmod(k, 2)
+            angle, rate = at - turns[ring] * t, self.orbit - turns[ring]
+            shifts[ring, :, axis], rates[ring, :, axis] = self.errors(angle, rate, wave)
+        shifts[0, :, 0] += q[2]
+        rates[0, :, 0] += v[2]
+        shifts[0, :, 1] += q[0] * c + q[1] * s
+        across = -q[0] * s + q[1] * c
+        rates[0, :, 1] += v[0] * c + v[1] * s + self.orbit * across
+        ring = np.where(self.on_outer, 0, 1)
+        ball, moving = q[3:].reshape(14, 2), v[3:].reshape(14, 2)
+        away = ball[:, None] - np.swapaxes(shifts[ring], 0, 1) - self.place
+        slip = moving[:, None] - np.swapaxes(rates[ring], 0, 1)
+        length = np.sqrt((away**2).sum(axis=2))
+        normal = away / length[:, :, None]
+        root = np.sqrt(np.maximum(length - self.own, 0.0))
+        load = self.constant * root**3
+        along = (normal * slip).sum(axis=2)
+        change = 1.5 * self.constant * root * along
+        turn = (slip - normal * along[:, :, None]) / length[:, :, None]
+        force = load[:, :, None] * normal
+        later = change[:, :, None] * normal + load[:, :, None] * turn
+        on_ball = -(force + RETARDATION * later).sum(axis=1)
+        on_ball[:, 1] += self.force
+        now, then = force[:, self.on_outer].sum(1), later[:, self.on_outer].sum(1)
+        z = now[:, 0] + RETARDATION * then[:, 0]
+        r, by_turn = now[:, 1] + RETARDATION * then[:, 1], now[:, 1] * self.orbit
+        by_turn *= RETARDATION
+        push = [
+            (r * c - by_turn * s).sum(), (r * s + by_turn * c).sum(), z.sum()
+        ]  # fmt: skip
+        on_ring = (np.array(push) + LOAD) / MASS
+        return np.concatenate([v, on_ring, (on_ball / self.mass).ravel()])
+
+
+def ours(models, turns, steps):
+    """Accelerations of the last turn, and seconds, of a batch in one program."""
+
+    @eqx.filter_jit
+    def run(models):
+        def one(m):
+            given = dict(turns=1, settle=turns - 1, samples=SAMPLES, steps=steps)
+            return vibration(m, throw=False, **given).acceleration
+
+        return eqx.filter_vmap(one)(models)
+
+    jax.block_until_ready(run(models))
+    begin = time.process_time()
+    found = np.asarray(run(models))
+    return found, time.process_time() - begin
+
+
+def main():
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--turns", type=int, default=8)
+    parser.add_argument("--batch", type=int, default=64)
+    parser.add_argument("--smoke", action="store_true")
+    given = parser.parse_args()
+    turns, batch = (1, 2) if given.smoke else (given.turns, given.batch)
+    key = jax.random.key(0)
+    one = model(key)
+    several = jax.vmap(lambda k: eqx.filter(model(k), eqx.is_array))(
+        jax.random.split(key, batch)
+    )
+    several = eqx.combine(several, one)
+    single = eqx.filter_vmap(lambda _: one, axis_size=1)(0)
+    needed = needed_steps(one, SAMPLES)
+    print(f"{turns} turns, {needed} steps a sample needed")
+    finest = 8 if not given.smoke else 2
+    reference = ours(single, turns, finest * needed)[0][0]
+
+    def error(found):
+        return float(np.sqrt(np.mean((found - reference) ** 2) / np.var(reference)))
+
+    for times in (1, 2) if given.smoke else (1, 2, 4):
+        found, spent = ours(single, turns, times * needed)
+        print(
+            f"ours, {times:2d} times the steps: {spent:8.2f} s, {error(found[0]):.1e}"
+        )
+        if times == 1:
+            alone, own_error = spent, error(found[0])
+    _, spent = ours(several, turns, needed)
+    each = spent / batch
+    print(f"ours, {batch} in one call:      {each:8.2f} s each")
+    sys.stdout.flush()
+    equations = Equations(one)
+    start = np.asarray(standing(one, one.system())[0])
+    begin = np.concatenate([start, np.zeros_like(start)])
+    end = turns * 2 * np.pi / SPEED
+    at = end * (1 - 1 / turns) + np.arange(SAMPLES) * 2 * np.pi / SPEED / SAMPLES
+    best = np.inf
+    runs = [("RK45", 1e-5), ("RK45", 1e-7), ("DOP853", 1e-6), ("LSODA", 1e-6)]
+    for method, tolerance in runs[:1] if given.smoke else runs:
+        clock = time.process_time()
+        found = solve_ivp(
+            equations, (0.0, end), begin, method=method, t_eval=at, rtol=tolerance,
+            atol=tolerance * 1e-6,
+        )  # fmt: skip
+        spent = time.process_time() - clock
+        wide = np.stack(
+            [
+                equations(t, y)[len(start) :][:3]
+                for t, y in zip(at, found.y.T, strict=True)
+            ]
+        )
+        wrong = error(wide)
+        print(
+            f"SciPy {method:6s} {tolerance:.0e}: {spent:8.2f} s, {wrong:.1e},"
+            f" {found.nfev} evaluations"
+        )
+        sys.stdout.flush()
+        if wrong <= max(2.0 * own_error, 1e-2):
+            best = min(best, spent)
+    print(verdict("SciPy's time over ours, one bearing", best / alone, 20.0, False))
+    print(verdict(f"SciPy's time over ours, {batch} at once", best / each, 20.0, False))
+    print(machine())
+
+
+if __name__ == "__main__":
+    main()
