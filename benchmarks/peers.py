@@ -63,7 +63,7 @@ def plain(element, slices):
     return Plain(
         azimuth=float(bearing.first_azimuth) + 2 * np.pi * turns,
         half=half,
-        gap=float(constants.gap),
+        gap=float(constants.gap[0]),
         guide=float(constants.tether),
         xi=xi,
         weight=np.full(slices, float(constants.lines[0].constant) * 2 * half / slices),
