@@ -168,7 +168,7 @@ class CLoop:
             "half_length": constants.half_length,
             "diameter": constants.diameter,
             "crown_radius": b.roller_profile.crown_radius,
-            "gap": constants.gap,
+            "gap": constants.gap[0],
             "guide": constants.tether,
             "pitch_radius": constants.pitch_radius,
             "ratio": b.roller_diameter / b.pitch_diameter,
