@@ -41,6 +41,12 @@ ROTORS = {  # for `read_rotor`
     "rotor_spindle",
 }
 
+NOISE = {  # for `read_noise`, in the tests of the command
+    "noise_cylindrical",
+    "noise_deep_groove",
+    "noise_four_point",
+}
+
 
 def near(value):
     return pytest.approx(value, rel=ROUNDING, abs=0.0)
@@ -62,7 +68,7 @@ def read_text(folder, text, settings=()):
 
 
 def test_shipped_scenes_are_these():
-    assert set(shipped_scenes()) == {*SHIPPED, CONTACT, *ROTORS}
+    assert set(shipped_scenes()) == {*SHIPPED, CONTACT, *ROTORS, *NOISE}
 
 
 @pytest.mark.parametrize("name", SHIPPED)
