@@ -13,6 +13,7 @@ from jax import lax
 from jaxtyping import Array, Float, Int
 
 from ..design.checks import check, count, is_traced
+from ..numerics.implicit import stop
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from .model import NoiseModel
@@ -20,6 +21,8 @@ from .natural import natural_modes
 from .standing import standing
 from .stepping import stepped
 
+_STABLE = 2.5
+"""Steps at which the method is stable, of a radian of the fastest mode: 2.78 [rad]."""
 STEP = 0.5
 """Longest step, of a radian of the fastest mode [rad]."""
 
@@ -49,7 +52,8 @@ class Vibration(eqx.Module):
         contact_load: Of every contact (time, element, contact) [N].
         azimuth: Of every rolling element (time, element) [rad].
         shaft_frequency: Of the ring that turns faster [Hz].
-        result: `Result` code: `NON_FINITE` where the motion ran away.
+        result: `Result` code: `NON_FINITE` where it ran away, `STEP_LIMIT` where its
+            steps are too long for the contacts under their largest load.
         cage: Motion of the cage, or `None`.
 
     Static: turns.
@@ -105,7 +109,7 @@ def vibration(
             `steps` under `jit`.
         SolveError: If it failed and `throw` is set.
 
-    Fails: `NON_FINITE`, and as `solve_load`.
+    Fails: `STEP_LIMIT`, `NON_FINITE`, and as `solve_load`.
     """
     if not isinstance(model, NoiseModel):
         raise TypeError(
@@ -123,8 +127,20 @@ def vibration(
     if not throw:
         return found
     return raise_unless_converged(
-        found, found.result, lambda: "vibration: the motion is not finite."
+        found, found.result, lambda: _failure(int(found.result), steps)
     )
+
+
+def _failure(result: int, steps: int) -> str:
+    """Why a run failed, in words."""
+    if result == Result.NON_FINITE:
+        return f"vibration: the motion is not finite; with more `steps` than {steps}?"
+    if result == Result.STEP_LIMIT:
+        return (
+            f"vibration: `steps` is {steps}, too few for the contacts under their"
+            " largest load; the motion cannot be trusted."
+        )
+    return "vibration: the bearing finds no place under its load."
 
 
 def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
@@ -181,7 +197,10 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
         cage = CageMotion(motion[:, -3:] * along, of_cage * along)
     loads = lax.map(lambda given: system.contact_loads(*given), (motion, time))
     ended = jnp.all(jnp.isfinite(moved.end[0])) & jnp.all(jnp.isfinite(moved.end[1]))
-    lost = jnp.where(ended, int(Result.CONVERGED), int(Result.NON_FINITE))
+    peak = jnp.argmax(jnp.max(loads, axis=(1, 2)))
+    rate = _fastest(system, motion[peak], time[peak])
+    short = jnp.where(h * rate < _STABLE, int(Result.CONVERGED), int(Result.STEP_LIMIT))
+    lost = jnp.where(ended, short, int(Result.NON_FINITE))
     standing_failed = result != int(Result.CONVERGED)
     return Vibration(
         time=time - time[0],
@@ -194,3 +213,14 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
         turns=turns,
         cage=cage,
     )
+
+
+def _fastest(system, motion, time) -> Scalar:
+    """Bound of how fast anything moves at a place, by the rows of M^-½ K M^-½ [rad/s].
+
+    Source: Gershgorin.
+    """
+    root = jnp.sqrt(system.masses)
+    stiffness = jax.jacfwd(system.contact_forces)(*stop((motion, time)))
+    angular2 = jnp.max(jnp.sum(jnp.abs(stiffness) / jnp.outer(root, root), axis=1))
+    return jnp.maximum(jnp.sqrt(angular2), angular2 * system.retardation)

@@ -128,6 +128,13 @@ def test_a_strongly_damped_contact_needs_shorter_steps():
     assert needed_steps(model, 64) > 5 * needed_steps(AXIAL, 64)
 
 
+def test_steps_that_are_too_long_are_told():
+    """Beyond what is stable a motion may stay finite, because contacts open."""
+    found = in_time(AXIAL, **(SHORT | {"steps": 12}), throw=False)
+    assert int(found.result) != int(bj.Result.CONVERGED)
+    assert int(in_time(AXIAL, **SHORT).result) == int(bj.Result.CONVERGED)
+
+
 def test_failures():
     with pytest.raises(bj.SolveError, match="not finite"):
         in_time(AXIAL, **(SHORT | {"steps": 5}))
