@@ -1,0 +1,152 @@
+"""What bearings bring into fits: limits of bore, outside, internal clearance."""
+
+from typing import Any
+
+from .iso286 import Limits, size_range
+
+_MICRON = 1e-6
+
+# Largest diameter of each range in mm, itself included, and lower deviation in µm.
+_BORES = (18, 30, 50, 80, 120, 180, 250, 315, 400, 500)
+_BORE_LOWER = (-8, -10, -12, -15, -20, -25, -30, -35, -40, -45)
+_OUTSIDES = (18, 30, 50, 80, 120, 150, 180, 250, 315, 400, 500)
+_OUTSIDE_LOWER = (-8, -9, -11, -13, -15, -18, -25, -30, -35, -40, -45)
+
+
+def bore_limits(bore: Any) -> Limits:
+    """Deviation of the mean bore of radial bearings of normal class, Δ_dmp [m].
+
+    Not of tapered roller bearings.
+
+    Args:
+        bore: Nominal bore diameter, up to 0.5 m [m].
+
+    Raises:
+        ValueError: For other bores.
+
+    Source: ISO 492 (2014), normal class, as catalogues print it (SKF, WD).
+    """
+    return _below("bore_limits", "bore", bore, _BORES, _BORE_LOWER)
+
+
+def outside_limits(outside_diameter: Any) -> Limits:
+    """Deviation of the mean outside diameter, bearings of `bore_limits`, Δ_Dmp [m].
+
+    Args:
+        outside_diameter: Nominal outside diameter, above 6 mm up to 0.5 m [m].
+
+    Raises:
+        ValueError: For other diameters.
+
+    Source: as of `bore_limits`.
+    """
+    return _below(
+        "outside_limits",
+        "outside_diameter",
+        outside_diameter,
+        _OUTSIDES,
+        _OUTSIDE_LOWER,
+        6,
+    )
+
+
+def _below(owner, what, diameter, ends, lower, least=0):
+    return Limits(lower[size_range(owner, what, diameter, ends, least)] * _MICRON, 0.0)
+
+
+CLEARANCE_CLASSES = ("C2", "CN", "C3", "C4", "C5")
+"""Names of the classes of radial internal clearance, the smallest first."""
+
+# Of each bore up to (mm), least and largest clearance of the classes in µm.
+_BALLS = {
+    6: (0, 7, 2, 13, 8, 23),
+    10: (0, 7, 2, 13, 8, 23, 14, 29, 20, 37),
+    18: (0, 9, 3, 18, 11, 25, 18, 33, 25, 45),
+    24: (0, 10, 5, 20, 13, 28, 20, 36, 28, 48),
+    30: (1, 11, 5, 20, 13, 28, 23, 41, 30, 53),
+    40: (1, 11, 6, 20, 15, 33, 28, 46, 40, 64),
+    50: (1, 11, 6, 23, 18, 36, 30, 51, 45, 73),
+    65: (1, 15, 8, 28, 23, 43, 38, 61, 55, 90),
+    80: (1, 15, 10, 30, 25, 51, 46, 71, 65, 105),
+    100: (1, 18, 12, 36, 30, 58, 53, 84, 75, 120),
+    120: (2, 20, 15, 41, 36, 66, 61, 97, 90, 140),
+    140: (2, 23, 18, 48, 41, 81, 71, 114, 105, 160),
+    160: (2, 23, 18, 53, 46, 91, 81, 130, 120, 180),
+    180: (2, 25, 20, 61, 53, 102, 91, 147, 135, 200),
+    200: (2, 30, 25, 71, 63, 117, 107, 163, 150, 230),
+    225: (2, 35, 25, 85, 75, 140, 125, 195, 175, 265),
+    250: (2, 40, 30, 95, 85, 160, 145, 225, 205, 300),
+    280: (2, 45, 35, 105, 90, 170, 155, 245, 225, 340),
+    315: (2, 55, 40, 115, 100, 190, 175, 270, 245, 370),
+    355: (3, 60, 45, 125, 110, 210, 195, 300, 275, 410),
+    400: (3, 70, 55, 145, 130, 240, 225, 340, 315, 460),
+    450: (3, 80, 60, 170, 150, 270, 250, 380, 350, 510),
+    500: (3, 90, 70, 190, 170, 300, 280, 420, 390, 570),
+}
+_CYLINDERS = {
+    24: (0, 25, 20, 45, 35, 60, 50, 75, 65, 90),
+    30: (0, 25, 20, 45, 35, 60, 50, 75, 70, 95),
+    40: (5, 30, 25, 50, 45, 70, 60, 85, 80, 105),
+    50: (5, 35, 30, 60, 50, 80, 70, 100, 95, 125),
+    65: (10, 40, 40, 70, 60, 90, 80, 110, 110, 140),
+    80: (10, 45, 40, 75, 65, 100, 90, 125, 130, 165),
+    100: (15, 50, 50, 85, 75, 110, 105, 140, 155, 190),
+    120: (15, 55, 50, 90, 85, 125, 125, 165, 180, 220),
+    140: (15, 60, 60, 105, 100, 145, 145, 190, 200, 245),
+    160: (20, 70, 70, 120, 115, 165, 165, 215, 225, 275),
+    180: (25, 75, 75, 125, 120, 170, 170, 220, 250, 300),
+    200: (35, 90, 90, 145, 140, 195, 195, 250, 275, 330),
+    225: (45, 105, 105, 165, 160, 220, 220, 280, 305, 365),
+    250: (45, 110, 110, 175, 170, 235, 235, 300, 330, 395),
+    280: (55, 125, 125, 195, 190, 260, 260, 330, 370, 440),
+    315: (55, 130, 130, 205, 200, 275, 275, 350, 410, 485),
+    355: (65, 145, 145, 225, 225, 305, 305, 385, 455, 535),
+    400: (100, 190, 190, 280, 280, 370, 370, 460, 510, 600),
+    450: (110, 210, 210, 310, 310, 410, 410, 510, 565, 665),
+    500: (110, 220, 220, 330, 330, 440, 440, 550, 625, 735),
+}
+
+
+def ball_clearance(name: str, bore: Any) -> Limits:
+    """Radial internal clearance of deep groove ball bearings before mounting [m].
+
+    Args:
+        name: One of `CLEARANCE_CLASSES`; C4 and C5 only above a bore of 6 mm.
+        bore: Nominal bore diameter, above 2.5 mm up to 0.5 m [m].
+
+    Raises:
+        ValueError: If there is no such class, or not of that bore.
+
+    Source: ISO 5753-1 (2009), as the catalogue of NTN prints it.
+    """
+    return _clearance("ball_clearance", name, bore, _BALLS, 2.5)
+
+
+def roller_clearance(name: str, bore: Any) -> Limits:
+    """Radial internal clearance of cylindrical roller bearings before mounting [m].
+
+    With cylindrical bores, and parts that may be interchanged.
+
+    Args:
+        name: One of `CLEARANCE_CLASSES`.
+        bore: Nominal bore diameter, up to 0.5 m [m].
+
+    Raises:
+        ValueError: If there is no such class, or for other bores.
+
+    Source: ISO 5753-1 (2009), as the catalogue of SKF prints it.
+    """
+    return _clearance("roller_clearance", name, bore, _CYLINDERS, 0.0)
+
+
+def _clearance(owner, name, bore, table, least):
+    number = size_range(owner, "bore", bore, tuple(table), least)
+    values = list(table.values())[number]
+    known = CLEARANCE_CLASSES[: len(values) // 2]
+    if name not in known:
+        raise ValueError(
+            f"{owner}: `name` is {name!r}; it must be one of {', '.join(known)} for a"
+            f" bore of {float(bore):g} m."
+        )
+    first = 2 * known.index(name)
+    return Limits(values[first] * _MICRON, values[first + 1] * _MICRON)
