@@ -29,6 +29,14 @@ from .fit_limits import ball_clearance as ball_clearance
 from .fit_limits import bore_limits as bore_limits
 from .fit_limits import outside_limits as outside_limits
 from .fit_limits import roller_clearance as roller_clearance
+from .fits import ClearanceRange as ClearanceRange
+from .fits import FitConditions as FitConditions
+from .fits import FitState as FitState
+from .fits import Mounting as Mounting
+from .fits import WarmMaterial as WarmMaterial
+from .fits import clearance_range as clearance_range
+from .fits import fit_state as fit_state
+from .fits import smoothing as smoothing
 from .form_error import FormErrors as FormErrors
 from .form_error import Harmonics as Harmonics
 from .form_error import RacewayErrors as RacewayErrors
