@@ -168,8 +168,8 @@ class FitState(NamedTuple):
     """What fits, temperatures and speed do to a bearing.
 
     Attributes:
-        shaft_interference: Interference left between shaft and inner ring; negative
-            is a gap [m].
+        shaft_interference: Interference left between shaft and inner ring, less the
+            smoothing; negative is loose [m].
         housing_interference: Likewise between outer ring and housing [m].
         shaft_pressure: Pressure between shaft and inner ring, 0 where loose [Pa].
         housing_pressure: Likewise between outer ring and housing [Pa].

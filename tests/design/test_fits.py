@@ -1,6 +1,7 @@
 """Fits against Lamé's formulas by hand, closed forms for steel, and limits."""
 
 from dataclasses import replace
+from itertools import product
 
 import equinox as eqx
 import jax
@@ -309,6 +310,23 @@ def test_tight_housings_take_clearance():
     assert tight.worst.lower < loose.worst.lower
     assert tight.middle < loose.middle
     assert tight.worst.lower < tight.probable.lower < tight.middle
+
+
+def test_the_worst_cases_are_those_of_all_corners():
+    given = sizes("m6", "P7")
+    found = scatter(mounting(), **given)
+    corners = [
+        state(
+            mounting(
+                radial_clearance=clearance,
+                shaft_interference=shaft - bore,
+                housing_interference=outside - housing,
+            ),
+            FitConditions(),
+        ).radial_clearance
+        for clearance, shaft, bore, housing, outside in product(*given.values())
+    ]
+    np.testing.assert_allclose(found.worst, [min(corners), max(corners)], rtol=1e-9)
 
 
 def test_slopes_of_a_range():
