@@ -1,10 +1,57 @@
 """Rolling-bearing mechanics in JAX: one energy, differentiated.
 
-SI units everywhere (m, N, rad, kg, s, Pa). float64 is the working precision; turn it
-on before the first array is made:
+SI units everywhere (m, N, rad, kg, s, Pa). float64 is the working precision; turn it on
+before the first array is made:
 
     import jax
     jax.config.update("jax_enable_x64", True)
+
+What each part does stands in its own docstring: `help(bearingjax.statics)` (load
+solves, sweeps, what to do when one fails), `element` (choices of numerics, speed),
+`optimise`, `rotor`, `rotor.vibration`, `dynamics`, `acoustics`, `contact.halfspace`.
+
+Conventions
+-----------
+
+- z is the bearing axis; azimuth from +x towards +y. Ring freedoms (ux uy uz gx gy gz),
+  outer ring first: `q` has 12. Loads (Fx Fy Fz Mx My Mz) act on the moving ring at the
+  origin, the centre of the row; in a set the origin is where `position` is zero.
+- `force` = dV/dq, the load that holds the rings there; `stiffness` = its derivative.
+  With gyroscopic moments, or contact constants that follow the operating angle, not all
+  forces have a potential: `stiffness` is then the exact Jacobian, not quite symmetric
+  (`element.has_potential(speed)` tells).
+- Raceway order: outer, inner. Rib order: `outer_minus`, `outer_plus`, `inner_minus`,
+  `inner_plus` (-z, +z).
+- A taper's large roller ends lie at -z: an inner-ring load along +z closes the bearing.
+  So it is for a positive contact angle of balls. `position` along a roller runs from
+  the large end to the small one, also in mirrored rows. In a set mirrored rows carry
+  the other way.
+- Osculation is groove radius over ball diameter (0.52). Contact angles are positive
+  where a row carries along +z. A deep groove bearing's zero has the rings centred, an
+  angular contact bearing's has the balls just touching at their contact angle.
+- With `Finite()` kinematics a ring's gx, gy are its rotation vector; its moments are
+  conjugate to them (for tilts of a degree: moments about x and y within a per cent). A
+  self-aligning bearing's tilts are prescribed: nothing restrains them.
+- A set's `inner_offset` is what was ground off: `preload(element, force)` finds it. A
+  `PreloadSpring` presses its row with force less stiffness times travel, never pulls.
+- `radial_internal_clearance` is diametral; a quarter of it stands at each raceway of a
+  roller. Negative: preload.
+- Oils and films: temperatures in K, pressures above atmosphere, contact modulus E*
+  (films take E' = 2 E* of it), entrainment speed the mean of both surface speeds
+  relative to the contact. Slip and traction are those of the ball or roller.
+- Rolling elements of a row may differ: `ball_deviation`, `roller_deviation` (diameter
+  less the common one; the raceways stay) and `azimuth_deviation` (azimuth less that of
+  even spacing), one number each.
+- gz turns the set of rollers (rolling without slip). It is operating data: no torque
+  comes of it, unless `cage_torque=True`; then moments about z are the virtual work of
+  the contact forces. Derivatives of an answer with respect to a prescribed gz count all
+  the same.
+- A groove has no far side: a ball lifted past the groove centre touches nothing there.
+  A turning ball that has left a raceway goes round as if that contact lay opposite its
+  other one. On the loaded side a groove goes on beyond its shoulder; give the
+  shoulder's height to be told (`solution.shoulder_margin`).
+- The mass of a rolling element is that of its volume: give the `Material` of hollow or
+  coated ones a density to match.
 """
 
 from importlib.metadata import version as _version

@@ -1,4 +1,23 @@
-"""Noise and vibration: form errors to vibration, spectra, bands, levels, lines."""
+"""Noise and vibration: form errors to vibration, spectra, bands, levels, lines.
+
+A bearing on its rig (`NoiseModel`): one ring turns at constant speed, the other one (or
+the shaft) may move and is loaded, every ball or roller is a mass of its own, the cage
+carries them round, a sensor touches the ring. `vibration(model, ...)` follows it in
+time under its form errors (`bearingjax.FormErrors`, `Harmonics`, `design.Spall`;
+differences of diameter and spacing are the bearing's own: `ball_deviation`,
+`azimuth_deviation`). `natural_modes` has frequencies and shapes with the rolling
+elements' own masses; `excitation` the quasi-static displacement and force of the rings
+over the turn; `linear_model` and `transfer` the way from there to the sensor.
+
+Levels and bands of the acceleration (`level`, `band_levels`), lines that stand out with
+their names (`name_lines`: `3 BPFO`, `BPFI + shaft`, `2 cage`), the errors that make
+them to first order (`line_causes`), and how many contacts every element has
+(`contact_states`). `monte_carlo` draws bearings within tolerance classes and gives the
+distribution of their levels, and which tolerance makes how much of it.
+
+Waves and damping are seldom known: levels compare designs and tolerances, they do not
+foretell what a rig reads. Worked: the notebook noise_from_form_errors.
+"""
 
 from .bands import Bands as Bands
 from .bands import band_levels as band_levels

@@ -1,4 +1,69 @@
-"""Dynamics: balls and rollers that skid."""
+"""Dynamics: balls and rollers that skid.
+
+`SkidModel(element, lubricant, temperature, traction=..., drag=..., cage=...,
+least_film=..., inlet_heating=...)` is a bearing with its oil.
+
+The state in the end
+--------------------
+
+`steady_skid(model, load, speed=..., free=...)` says how the balls move in the end,
+without the way there: orbit and spin of the balls against pure rolling (`slip`), film,
+sliding and heat of every contact, friction torque and power balance. The torque is that
+of sliding and of drag: resistance to rolling, hysteresis and seals, most of what a
+catalogue's formula gives, are left out (benchmarks/skid_friction.py). Under an axial
+load one ball stands for all; otherwise the motion repeats from orbit to orbit and is
+found at places along it (`places`). It is differentiable with respect to design, oil,
+load and speeds, and a map over loads is one `jax.vmap` (`places=1, throw=False`; read
+`result`). Contact loads and angles are those of the solved bearing, with its raceway
+control (`EqualShare()` as in the published method). Balls are free in their pockets:
+compare `wander` with the pocket clearance. A Newtonian film is right up to some 1 GPa;
+beyond, give `traction=Eyring()` or `LimitingStress()` of `bearingjax.lubrication`. At
+high speed films are thinner, because the oil is sheared warm before it enters:
+`inlet_heating=True`.
+
+In time
+-------
+
+`skid(model, load, speed=..., duration=...)` follows every ball and the cage from
+rolling, from rest (`speed=SpeedTable(...)`, `ramp(...)`) or from a motion of your own,
+with pocket contact on both sides, drag and gravity (`axis="horizontal"`), by a linearly
+implicit method with the exact Jacobian. Speeds, slip, films, heat, cage forces and
+friction torque come with a balance of all powers (`imbalance`), a result code, and
+derivatives in either mode (`derivatives="reverse"` or `"forward"`). Loads over time
+(`LoadHistory`, `SinusoidalLoad`, or your own function of time) are balanced at every
+time with the balls where they are; a constant load is tabulated around the bearing,
+which is three times faster and does not see balls bunch (`balanced=True` does). Beside
+SciPy's stiff solvers at like errors: benchmarks/skid_transient.py; a map of 1000 end
+states takes a second: benchmarks/skid_map.py. Where others use the processor too, set
+`OPENBLAS_NUM_THREADS=1` for end states under radial loads: LAPACK's threads otherwise
+wait for each other.
+
+Rollers
+-------
+
+Cylindrical and needle rollers skid in the same model: `steady_skid` of a roller bearing
+says how fast its cage turns under light radial load (`cage_speed`, `slip`), how each
+roller spins on its way round, what slides and heats, and with what force the cage
+pushes rollers forwards or holds them back (`cage_force`). All rollers orbit with the
+cage, which those under load drive against the drag of the oil (Harris 1966); inertia of
+the spin is included, friction on ribs and in pockets is not. In time (`skid`, under a
+constant load) rollers meet front and rear of pockets with clearance; with tight and
+stiff ones they end where `steady_skid` says. Loads are those of the centrifugal force
+of pure rolling; where slip is gross, repeat with `load_speed=Speed(w, w)`, w the cage
+speed found. The drag decides: its `fill`, the share of oil between the rings, is seldom
+known (benchmarks/skid_roller.py).
+
+Design
+------
+
+`SkiddingBearing(SkidModel(...), preload=400.0)` is optimised as a bearing is
+(`bearingjax.optimise`), with the measures `FrictionTorque`, `FrictionPower` (weighted
+by hours) and `CageSlip`; variables are then "preload",
+"model.element.bearing.contact_angle", "model.temperature" and the like. Least friction
+torque with at most 1 % slip over a spectrum: benchmarks/skid_design.py. `skid_warnings`
+says what is doubtful: pockets too tight for the end state, a Newtonian film beyond 1
+GPa, an oil that is a glass, films that are not elastohydrodynamic, gross skidding.
+"""
 
 from .conditions import Conditions as Conditions
 from .conditions import by_raceway as by_raceway

@@ -1,7 +1,24 @@
 """Design optimisation: variables, measures, constraints and the searches.
 
-`bearingjax.optimise` is the function of that name. Everything else is imported by
-`from bearingjax.optimise import ...`.
+`bearingjax.optimise` is the function of that name. Everything else is imported by `from
+bearingjax.optimise import ...`.
+
+Any number on the drawing may be free between bounds (`Variable`). One compiled program
+solves all operating cases and pulls the gradient back through them (reverse mode,
+implicit function theorem), for little more than the solves; SciPy's L-BFGS-B (bounds)
+and SLSQP (constraints) or any Optax descent do the rest.
+
+Measures, as objective or in a `Constraint`: `PeakPressure`, `MeanPressure` (weighted by
+hours), `EdgeLoad`, `Displacement`, `Stiffness`, `StiffnessTarget`, or any smooth
+function `(element, cases, solution) -> scalar` of your own. Maxima are p-norms, never
+below the true maximum (`best.after.exact`) and above it by at most (number of
+samples)^(1/exponent). A line contact knows no pressure peak at a roller end: keep load
+off the ends with `EdgeLoad`. Designs that do not solve are rejected and listed in
+`best.rejected`. `best.converged` says that the first-order conditions of a minimum
+hold, with exact gradients (`best.optimality`, at most `tolerance`; of "nelder-mead" at
+most its root), whatever the method says. What is doubtful in the best design is in
+`best.after.warnings`. Balls and rollers that may skid: see `bearingjax.dynamics`.
+Worked: the notebook roller_bearing.
 """
 
 from .constraint import Constraint as Constraint

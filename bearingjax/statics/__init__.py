@@ -1,4 +1,54 @@
-"""Load solves and what they return."""
+"""Load solves, sweeps, preload, linearisation, and what they return.
+
+`solve_load(element, load)` finds the displacement of the rings under a load and returns
+a `Solution`: displacement, stiffness, the load and pressure of every contact.
+`warnings(solution)` lists what is doubtful about it (pressure beyond 4 GPa, a truncated
+ellipse, a direction that nothing holds), as the command line prints it; a sweep counts
+them (`swept.warning_counts()`). A preloaded pair is one of three: `preload_offset` (a
+displacement), `preload(element, force)` (the offsets that give the force,
+differentiable), or `spring=PreloadSpring(force, stiffness)` on the row at +z (then see
+`solution.spring_force` and `spring_travel`).
+
+`sweep` solves loads, displacements, speeds and designs by the thousand, in batches that
+fit the cache, over all devices and processes of JAX; each case has its own result code,
+and a bad one spoils no other. `outputs` are fields of a solution, or `peak_pressure`,
+`largest_load`, `n_loaded`, `iterations`, `residual`; what is not named is not computed.
+`neighbours=True` starts each case from the one before it. Designs:
+`stack_designs([...])`, or an element made under `jax.vmap`.
+`jax.config.update("jax_num_cpu_devices", 2)` before all else uses two cores.
+`sweep(..., stop=...)` is asked between blocks.
+
+A solve that fails
+------------------
+
+- `no_load_path` names the freedom that nothing holds: turn the load round, add preload,
+  or prescribe that freedom.
+- `step_limit` gives the residual: raise `max_steps`, or look at clearance and preload.
+- `non_finite`: look for NaN, or loads, speeds and sizes of another scale.
+- `saddle`: finite kinematics only.
+- `grid_misfit` (half-space contacts): more than a thousandth of the load stands at the
+  sides of the grid, or the contact is fewer than three cells wide or long.
+
+Under `jit` and `vmap` use `throw=False` and read `solution.result`, one code per case.
+
+A freedom that is prescribed, or left out of `free`, is held (`solution.held`): a load
+on it is an error, or under `jit` the result code `no_load_path`, because its support
+would take it. What the support passes to the bearing is in `force`.
+
+A program that waits for ever, without load on the processor
+------------------------------------------------------------
+
+jaxlib 0.10 hands a large batch of matrices (`jax.vmap` of `jnp.linalg.eigh`, `solve`)
+to LAPACK in parts, on XLA's threads, by a thread that waits for the others. As many
+such batches at once as there are cores, and none is left to do the work: on two cores
+two batches that do not depend on each other are enough, as in a `vmap` of critical
+speeds over rotors. `jax.lax.map` instead of `vmap` avoids it; so does, with one device,
+`PJRT_NPROC=1` in the environment (one thread;
+`XLA_FLAGS=--xla_cpu_multi_thread_eigen=false` does not). Several devices at once, as in
+`bearingjax sweep`, meet it with `CoupledSlices`, which have a matrix for every line
+contact: there set `PJRT_NPROC` to twice the number of devices, so that threads are left
+to do the work.
+"""
 
 from .cases import Cases as Cases
 from .cases import solve_case as solve_case
