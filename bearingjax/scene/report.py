@@ -1,4 +1,11 @@
-"""A solution as text for people: µm, mrad, kN, N m, MPa."""
+"""A solution as text for people: µm, mrad, kN, N m, MPa.
+
+A report is a list of sections, each a title and a function of scene and solution that
+gives its text. The terminal shows the texts, `html_report` puts them on a page. What
+is new in a report is one more line of `SECTIONS`.
+"""
+
+from collections.abc import Callable
 
 import jax
 import numpy as np
@@ -7,10 +14,14 @@ from ..design import BearingSet, TaperedRollerBearing, is_ball, rows_of
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..statics.solution import BallSolution, Solution
 from ..statics.warning import warnings
+from .operation_report import operation
 from .quantity import display_unit
 from .read import Scene
 
 _RULE = "-" * 78
+
+Section = Callable[[Scene, Solution], str]
+"""Text of a section, of a scene and its solution in NumPy; "": nothing to tell."""
 
 
 def report(scene: Scene, solution: Solution) -> str:
@@ -20,16 +31,20 @@ def report(scene: Scene, solution: Solution) -> str:
         scene: What was solved.
         solution: Its solution, converged.
     """
+    return f"\n{_RULE}\n".join(sections(scene, solution).values())
+
+
+def sections(scene: Scene, solution: Solution) -> dict[str, str]:
+    """The texts of a report by their titles, those left out that are empty.
+
+    Args:
+        scene: What was solved.
+        solution: Its solution, converged.
+    """
     # As NumPy holds it: JAX would compile every small operation on the way.
     solution = jax.device_get(solution)
-    parts = [
-        _bearing(scene, solution),
-        _motion(scene, solution),
-        _stiffness(scene, solution),
-        _balls(solution) if isinstance(solution, BallSolution) else _rollers(solution),
-        _ending(scene, solution),
-    ]
-    return f"\n{_RULE}\n".join(parts)
+    texts = {title: section(scene, solution) for title, section in SECTIONS.items()}
+    return {title: text for title, text in texts.items() if text}
 
 
 def _bearing(scene, solution):
@@ -162,6 +177,11 @@ def _clean(values):
     return np.where(np.abs(values) < 1e-11 * np.abs(values).max(), 0.0, values)
 
 
+def _elements(scene, solution):
+    of_balls = isinstance(solution, BallSolution)
+    return _balls(solution) if of_balls else _rollers(solution)
+
+
 def _rollers(solution):
     load = np.asarray(solution.roller_load)
     rib = np.asarray(solution.rib_load)
@@ -242,3 +262,14 @@ def _ending(scene, solution):
     ]
     lines += [f"warning: {w}" for w in (*scene.warnings, *warnings(solution))]
     return "\n".join(lines)
+
+
+SECTIONS: dict[str, Section] = {
+    "Bearing": _bearing,
+    "Operation, materials and laws": operation,
+    "Displacement and load": _motion,
+    "Stiffness": _stiffness,
+    "Rolling elements": _elements,
+    "Solution and warnings": _ending,
+}
+"""Sections of a report by their titles, in their order."""

@@ -125,6 +125,14 @@ def _tilt_words(size, where):
     )
 
 
+def _free_tilt_words(size, where):
+    what = where or f"{size:.3g} times what makers allow for"
+    return (
+        f"the ring tilts freely, {what}: if shaft and housing hold it straighter,"
+        " prescribe gx and gy, or leave them out of `free`"
+    )
+
+
 def _speed_words(size, where):
     return (
         f"n·dm of {size:.3g} mm/min: most greases and oil baths end at"
@@ -207,6 +215,7 @@ KINDS: dict[str, Kind] = {
             else "the approach of the contacts, and loads err by about as much"
         ),
     ),
+    "free_tilt": Kind(_always, of.free_tilt, 1.0, _free_tilt_words, of.free_tilt_words),
     "speed": Kind(
         lambda _, speed: speed is not None,
         of.speed_factor,

@@ -16,6 +16,7 @@ from ..design import (
     BearingSet,
     SelfAligningBallRow,
     is_ball,
+    is_self_aligning,
     rows_of,
 )
 from ..design.material import contact_modulus
@@ -40,6 +41,13 @@ _ROUND_OFF = 1e-9
 
 LARGEST_TILT_ERROR = 0.03
 """Largest error of small rotations, over the largest approach [1]."""
+
+USUAL_TILT_OF_ROLLERS, USUAL_TILT_OF_BALLS = math.radians(4 / 60), math.radians(10 / 60)
+"""Largest tilt of ring against ring that makers allow for [rad], 4' and 10'.
+
+Source: catalogues: cylindrical rollers 3' to 4', tapered rollers 2' to 4', deep groove
+    ball bearings 2' to 10'. Upper ends, rough ones.
+"""
 
 LARGEST_SPEED = 1e6
 """n·dm, speed times pitch diameter [mm/min].
@@ -277,6 +285,32 @@ def tilt_error(solution: Solution) -> Any:
         size = xp.maximum(approach, radius * square**0.5)
     share = 0.5 * radius * square / xp.where(pressed, size, 1.0)
     return xp.where(pressed, share, 0.0)
+
+
+def free_tilt(solution: Solution) -> Any:
+    """Tilt that follows from the load alone, over that which makers allow for [1]."""
+    mine = 6 * RINGS.index(solution.moving_ring)
+    free = [FREEDOMS.index(name) for name in ("gx", "gy") if name in solution.free]
+    square = sum(solution.displacement[mine + k] ** 2 for k in free)
+    return _one(solution, True) * square**0.5 / usual_tilt(solution.element.bearing)
+
+
+def usual_tilt(bearing: Bearing | BearingSet) -> float:
+    """Largest tilt of ring against ring that makers allow for [rad]."""
+    if is_self_aligning(bearing):
+        return math.inf
+    return USUAL_TILT_OF_BALLS if is_ball(bearing) else USUAL_TILT_OF_ROLLERS
+
+
+def free_tilt_words(solution: Solution) -> str:
+    """The tilt of `free_tilt` and what makers allow for, in words."""
+    allowed = usual_tilt(solution.element.bearing)
+    tilt = float(free_tilt(solution)) * allowed
+    kind = "ball" if is_ball(solution.element.bearing) else "roller"
+    return (
+        f"{1e3 * tilt:.3g} mrad where makers of {kind} bearings allow for about"
+        f" {1e3 * allowed:.2g}"
+    )
 
 
 def speed_factor(solution: Solution) -> Any:

@@ -119,7 +119,7 @@ def test_numbers_of_the_taper(run, tmp_path):
     ends = np.linspace(-0.5 * 11.5e-3, 0.5 * 11.5e-3, POINTS)
     assert np.allclose(numbers["position"], ends, rtol=0.0, atol=1e-15)
     assert np.all(np.array(numbers["line_load"])[:, :, [0, -1]] == 0.0)
-    assert numbers["warnings"] == []
+    assert len(numbers["warnings"]) == 1
 
 
 def test_setting_changes_the_load(run, tmp_path):

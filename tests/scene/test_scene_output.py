@@ -4,6 +4,7 @@ import dataclasses
 import json
 import re
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -152,7 +153,14 @@ def test_logarithmic_rollers_are_unloaded_at_their_ends(taper):
     load = taper["line_load"]
     assert np.all(load[:, :, [0, -1]] == 0.0)
     assert load[:, :, POINTS // 2].min() > 0.0
-    assert taper.numbers["warnings"] == []
+
+
+def test_a_tilt_that_nothing_holds_is_a_warning(taper):
+    (text,) = taper.numbers["warnings"]
+    tilt = 1e3 * np.hypot(*taper["displacement"][9:11])
+    assert text.startswith(f"the ring tilts freely, {tilt:.3g} mrad where makers of ro")
+    straight = solve("tapered", TAPER, "operating.prescribed={gx='0 deg', gy='0 deg'}")
+    assert straight.numbers["warnings"] == []
 
 
 def test_only_the_rib_that_is_there_is_loaded(rig, taper):
@@ -285,12 +293,37 @@ def test_report_of_the_taper(taper):
     shown = [float(behind) for _, behind in rows(text)]
     ribs = taper["rib_load"].sum(axis=1)
     assert np.allclose(shown, ribs, rtol=0.0, atol=0.051)
-    assert "out of contact" not in text and "warning" not in text
+    assert "out of contact" not in text
+    (warning,) = re.findall("(?m)^warning: (.*)$", text)
+    assert warning == taper.numbers["warnings"][0]
+
+
+def test_report_says_what_was_solved_with_what(rig, taper):
+    """Freedoms, speeds, materials, laws: without them no number can be judged."""
+    text = report(taper.scene, taper.solution)
+    assert "\nfree: ux uy uz gx gy (the default: all that the bearing" in text
+    assert "\nouter ring 0 rpm, inner ring 3000 rpm; n·dm 1.56e+05 mm/min\n" in text
+    material = "E = 206 GPa, Poisson's ratio 0.3, 7850 kg/m³\n"
+    assert f"\nrollers and rings: {material}" in text
+    assert "\nline law: Palmgren\n" in text
+    text = report(rig.scene, rig.solution)
+    assert "\nfree: ux uy gx gy (as the scene says); held at zero: uz\n" in text
+    assert "\nboth rings at rest\n" in text
+    assert "\nquadrature: Midpoint (points 20)\n" in text
+    hybrid = dataclasses.replace(
+        rig.solution.element.bearing,
+        material=bj.Material.silicon_nitride(),
+        ring_material=bj.Material(),
+    )
+    other = eqx.tree_at(lambda s: s.element.bearing, rig.solution, hybrid)
+    text = report(rig.scene, other)
+    assert "\nrollers: E = 310 GPa, Poisson's ratio 0.26, 3200 kg/m³\n" in text
+    assert f"\nrings: {material}" in text
 
 
 def test_a_warning_of_the_drawing_is_told_with_the_solution():
     solved = solve("tapered", TAPER, "bearing.roller_half_angle=1.6 deg")
-    (text,) = solved.numbers["warnings"]
+    text, _ = solved.numbers["warnings"]
     assert text.startswith("TaperedRollerBearing: the apexes of outer raceway")
     assert f"\nwarning: {text}" in report(solved.scene, solved.solution)
 
