@@ -57,6 +57,12 @@ from .linearise import linearise as linearise
 from .load import solve_load as solve_load
 from .options import SolveOptions as SolveOptions
 from .preload import preload as preload
+from .rating import Ratings as Ratings
+from .rating import dynamic_capacity as dynamic_capacity
+from .rating import fatigue_load_limit as fatigue_load_limit
+from .rating import rated_axially as rated_axially
+from .rating import ratings as ratings
+from .rating import static_capacity as static_capacity
 from .refine import Refined as Refined
 from .refine import refine as refine
 from .solution import BallSolution as BallSolution

@@ -1,0 +1,343 @@
+"""Load ratings against the tables of the standards, by hand, and in differences.
+
+Tables: f_c and f_0 of ISO 281:2007 and ISO 76:2006 as printed, one decimal. Formulas
+by hand: NumPy, written apart from the package; Hertz contact by SciPy.
+"""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
+from slopes import with_slopes
+from tolerances import DIFFERENCE, PUBLISHED, ROUNDING, SOLVER
+
+import bearingjax as bj
+from bearingjax.statics import row_rating
+from bearingjax.statics.row_rating import BallRow
+
+_DEG = np.pi / 180
+_LAST_DIGIT = 0.1
+# D cos α/D_pw from 0.01 in steps of 0.01; f_0 from 0.
+F_C = {
+    "radial": "29.1 35.8 40.3 43.8 46.7 49.1 51.1 52.8 54.3 55.5 56.6 57.5 58.2 58.8"
+    " 59.3 59.6 59.8 59.9 60.0 59.9 59.8 59.6 59.3 59.0 58.6 58.2 57.7 57.1 56.6 56.0"
+    " 55.3 54.6 53.9 53.2 52.4 51.7 50.9 50.0 49.2 48.4",
+    "90": "36.7 45.2 51.1 55.7 59.5 62.9 65.8 68.5 71.0 73.3 75.4 77.4 79.3 81.1 82.7"
+    " 84.4 85.9 87.4 88.8 90.2 91.5 92.8 94.1 95.3 96.4 97.6 98.7 99.8 100.8 101.9"
+    " 102.9 103.9 104.8 105.8",
+    "45": "42.1 51.7 58.2 63.3 67.3 70.7 73.5 75.9 78.0 79.7 81.1 82.3 83.3 84.1 84.7"
+    " 85.1 85.4 85.5 85.5 85.4 85.2 84.9 84.5 84.0 83.4 82.8 82.0 81.3 80.4 79.6",
+    "60": "39.2 48.1 54.2 58.9 62.6 65.8 68.4 70.7 72.6 74.2 75.5 76.6 77.5 78.3 78.8"
+    " 79.2 79.5 79.6 79.6 79.5",
+    "75": "37.3 45.9 51.7 56.1 59.7 62.7 65.2 67.3 69.2 70.7",
+}
+F_0 = {
+    "radial": "14.7 14.9 15.1 15.3 15.5 15.7 15.9 16.1 16.3 16.5 16.4 16.1 15.9 15.6"
+    " 15.4 15.2 14.9 14.7 14.4 14.2 14.0 13.7 13.5 13.2 13.0 12.8 12.5 12.3 12.1 11.8"
+    " 11.6 11.4 11.2 10.9 10.7 10.5 10.3 10.0 9.8 9.6 9.4",
+    "thrust": "61.6 60.8 59.9 59.1 58.3 57.5 56.7 55.9 55.1 54.3 53.5 52.7 51.9 51.2"
+    " 50.4 49.6 48.8 48.0 47.3 46.5 45.7 45.0 44.2 43.5 42.7 41.9 41.2 40.5 39.7 39.0"
+    " 38.2 37.5 36.8 36.0 35.3 34.6",
+}
+
+
+def printed(text):
+    return np.array(text.split(), float)
+
+
+@pytest.fixture(scope="module")
+def factors():
+    """f_c and f_0 over D cos α/D_pw, of one row of one ball of 1 mm."""
+
+    def row(gamma, angle, osculation):
+        pitch = 1e-3 * jnp.cos(angle) / gamma
+        return BallRow(1.0, jnp.asarray(1e-3), pitch, angle, osculation)
+
+    def axial(gamma, angle):
+        one = row(gamma, angle, (0.535, 0.535))
+        along = jnp.cos(angle) ** 0.7 * jnp.tan(angle)
+        return row_rating.steep_ball_dynamic(one, row_rating.THRUST, 1) / along / 1.3
+
+    def table(gamma):
+        zero = jnp.zeros_like(gamma)
+        radial = row(gamma, zero, (0.53, 0.52))
+        thrust = row(gamma, zero, (0.535, 0.535))
+        kinds = row_rating.ANGULAR_CONTACT, row_rating.SELF_ALIGNING, row_rating.THRUST
+        dynamic = {
+            "radial": row_rating.radial_ball_dynamic(radial, kinds[0], 1) / 1.3,
+            "90": row_rating.thrust_ball_dynamic(thrust, kinds[2], 1) / 1.3,
+        }
+        dynamic |= {str(a): axial(gamma, zero + a * _DEG) for a in (45, 60, 75)}
+        sphere = row(gamma, zero, (None, 0.53))
+        static = {
+            "radial": row_rating.ball_static(radial, kinds[0]) / 5,
+            "self-aligning": row_rating.ball_static(sphere, kinds[1]) / 5,
+            "thrust": row_rating.ball_static(thrust, kinds[2]),
+        }
+        return dynamic, static
+
+    # The standard's f_0 begins at zero, where the pitch diameter is infinite.
+    gamma = np.append(1e-9, np.arange(1, 41) / 100)
+    return jax.device_get(jax.jit(jax.vmap(table))(gamma))
+
+
+@pytest.mark.parametrize("name", F_C)
+def test_f_c_is_that_of_the_standard(factors, name):
+    table = printed(F_C[name])
+    assert np.abs(factors[0][name][1 : table.size + 1] - table).max() < _LAST_DIGIT
+
+
+@pytest.mark.parametrize("name", F_0)
+def test_f_0_is_that_of_the_standard(factors, name):
+    table = printed(F_0[name])
+    assert np.abs(factors[1][name][: table.size] - table).max() < _LAST_DIGIT
+
+
+def hertz_load(rolling, transverse, pressure):
+    """Load of a peak pressure [Pa], curvatures [1/m], by the textbook's integrals."""
+    modulus = 0.5 * 2.07e11 / 0.91
+    total = rolling + transverse
+
+    def difference(k):
+        e, f = ellipe(1 - 1 / k**2), ellipk(1 - 1 / k**2)
+        return ((k * k + 1) * e - 2 * f) / ((k * k - 1) * e)
+
+    if rolling == transverse:
+        k, e = 1.0, 0.5 * np.pi
+    else:
+        goal = abs(rolling - transverse) / total
+        root: Any = brentq(lambda k: difference(k) - goal, 1.0001, 1e3, xtol=1e-13)
+        k = float(root)
+        e = ellipe(1 - 1 / k**2)
+    cube = 3 * k * k * e / (np.pi * modulus * total)
+    return (pressure * np.pi * cube ** (2 / 3) / (1.5 * k)) ** 3
+
+
+def by_hand(bearing):
+    """C and C0 of the example of each type, in N."""
+    d = 1e3 * float(bearing.pitch_diameter)
+    if isinstance(bearing, bj.CylindricalRollerBearing | bj.TaperedRollerBearing):
+        z, size = bearing.n_rollers, 1e3 * float(bearing.roller_diameter)
+        length = 1e3 * float(bearing.roller_length)
+        a = float(bearing.axis_angle + bearing.half_angle)
+        g = size * np.cos(a) / d
+        inner = ((1 - g) / (1 + g)) ** (143 / 108)
+        f = 551.13373 * 0.377 * 0.83 * g ** (2 / 9) * (1 - g) ** (29 / 27)
+        f = f / (1 + g) ** 0.25 * (1 + (1.04 * inner) ** 4.5) ** (-2 / 9)
+        c = 1.1 * f * (length * np.cos(a)) ** (7 / 9) * z**0.75 * size ** (29 / 27)
+        return c, 44 * (1 - g) * z * length * size * np.cos(a)
+    z, size = bearing.n_balls, 1e3 * float(bearing.ball_diameter)
+    a = 0.0
+    if not isinstance(bearing, bj.DeepGrooveBallBearing):
+        a = float(bearing.free_contact_angle)
+    g = size * np.cos(a) / d
+    if isinstance(bearing, bj.ThrustBallBearing):
+        f = 98.0665 * 0.9 * 2 / 3 * 2**-0.3 * (size / d) ** 0.3 * (1.07 / 0.07) ** 0.41
+        load = hertz_load(2e3 / size, (2 - 1 / 0.54) * 1e3 / size, 4.2e9)
+        return 1.3 * f * z ** (2 / 3) * size**1.8, z * load
+    aligning = isinstance(bearing, bj.design.SelfAligningBallRow)
+    inside = 1.06 / 0.06 if aligning else 1.04 / 0.04
+    outside = 1 + g if aligning else 1.04 / 0.04
+    r = 1.04 * ((1 - g) / (1 + g)) ** 1.72 * (inside / outside) ** 0.41
+    f = 98.0665 * 0.41 * (1.0 if aligning else 0.95) * (1 + r ** (10 / 3)) ** -0.3
+    f *= g**0.3 * (1 - g) ** 1.39 / (1 + g) ** (1 / 3) * inside**0.41
+    grown = size**1.8 if size < 25.4 else 25.4**0.4 * size**1.4
+    c = 1.3 * f * np.cos(a) ** 0.7 * z ** (2 / 3) * grown
+    osculation = (None, 0.53) if aligning else (0.53, 0.52)
+    loads = []
+    for o, side in zip(osculation, (-1, 1), strict=True):
+        along = 2e3 / size * (1 + side * g / (1 - side * g))
+        across = along if o is None else (2 - 1 / o) * 1e3 / size
+        loads.append(hertz_load(along, across, 4.6e9 if aligning else 4.2e9))
+    return c, 0.2 * z * np.cos(a) * min(loads)
+
+
+def balls(kind=bj.DeepGrooveBallBearing, n=9, pitch=0.03904, size=0.007938, **more):
+    osculation = dict(outer_osculation=0.53, inner_osculation=0.52)
+    return kind(n, pitch, size, **(osculation | more))
+
+
+def aligning_row():
+    return bj.design.SelfAligningBallRow(
+        13, 0.0385, 0.0075, inner_osculation=0.53, row_offset=0.004
+    )
+
+
+def taper(angle=15.0):
+    ribs = bj.Ribs(inner_minus=bj.Rib(0.09, 1.2e-3))
+    angles = dict(roller_axis_angle=(angle - 2) * _DEG, roller_half_angle=2 * _DEG)
+    pitch = 0.0082 * np.sin((angle - 2) * _DEG) / np.tan(2 * _DEG)
+    return bj.TaperedRollerBearing(17, pitch, 0.0082, 0.0115, ribs=ribs, **angles)
+
+
+EXAMPLES = {
+    "deep groove": balls(),
+    "deep groove, large balls": balls(size=0.03, pitch=0.15),
+    "angular contact": balls(
+        bj.AngularContactBallBearing,
+        16,
+        0.12526,
+        0.022225,
+        contact_angle=40 * _DEG,
+    ),
+    "four point": balls(
+        bj.FourPointBallBearing, 14, 0.0775, 0.014288, shim_angle=26 * _DEG
+    ),
+    "self-aligning row": aligning_row(),
+    "thrust ball": balls(
+        bj.ThrustBallBearing, 12, outer_osculation=0.54, inner_osculation=0.54
+    ),
+    "cylindrical": bj.CylindricalRollerBearing(18, 0.1035, 0.015, 0.017),
+    "tapered": taper(),
+}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_ratings_are_those_by_hand(name):
+    bearing = EXAMPLES[name]
+    dynamic, static = by_hand(bearing)
+    assert float(bj.dynamic_capacity(bearing)) == pytest.approx(dynamic, rel=ROUNDING)
+    # Hertz contact by another root finder.
+    rel = ROUNDING if name in ("cylindrical", "tapered") else SOLVER
+    assert float(bj.static_capacity(bearing)) == pytest.approx(static, rel=rel)
+
+
+def test_published_examples():
+    cases = (
+        (balls(), 14020.7),
+        (balls(n=7, pitch=0.0435, size=0.0115), 22381.5),
+        (EXAMPLES["four point"], 50189.9),
+    )
+    for bearing, c in cases:
+        assert float(bj.dynamic_capacity(bearing)) == pytest.approx(c, rel=PUBLISHED)
+
+
+def test_closer_grooves_do_not_raise_it_and_opener_ones_reduce_it():
+    c, c0 = (
+        [
+            float(rate(balls(inner_osculation=i, outer_osculation=o)))
+            for i, o in ((0.52, 0.53), (0.51, 0.515), (0.53, 0.53), (0.52, 0.54))
+        ]
+        for rate in (bj.dynamic_capacity, bj.static_capacity)
+    )
+    for values in (c, c0):
+        assert values[1] == values[0]
+        assert values[2] < 0.99 * values[0]
+    assert c[3] < 0.999 * c[0]
+
+
+def test_rows_of_a_set_rate_as_one_bearing():
+    def ratio(made, one, rate=bj.dynamic_capacity):
+        return float(rate(made)) / float(rate(one))
+
+    angular, groove = EXAMPLES["angular contact"], EXAMPLES["deep groove"]
+    for kind in ("back_to_back", "face_to_face", "tandem"):
+        pair = getattr(bj.BearingSet, kind)(angular, 0.04)
+        assert ratio(pair, angular) == pytest.approx(2**0.7, rel=ROUNDING)
+        assert ratio(pair, angular, bj.static_capacity) == pytest.approx(2.0)
+    pair = bj.BearingSet.back_to_back(groove, 0.02)
+    assert ratio(pair, groove) == pytest.approx(2**0.7 * 0.90 / 0.95, rel=ROUNDING)
+    pair = bj.BearingSet.back_to_back(taper(), 0.03)
+    assert ratio(pair, taper()) == pytest.approx(2 ** (7 / 9), rel=ROUNDING)
+    row = aligning_row()
+    both = bj.BearingSet.self_aligning(row)
+    assert ratio(both, row) == pytest.approx(2**0.7, rel=ROUNDING)
+    # Of two thrust bearings face to face one carries at a time.
+    thrust = EXAMPLES["thrust ball"]
+    assert ratio(bj.BearingSet.tandem(thrust, 0.03), thrust) == pytest.approx(2**0.7)
+    assert ratio(bj.BearingSet.back_to_back(thrust, 0.03), thrust) == 1.0
+
+
+def test_steep_bearings_are_rated_by_their_axial_load():
+    angular = EXAMPLES["angular contact"]
+    angle = 60 * _DEG
+    steep = eqx.tree_at(lambda b: b.contact_angle, angular, jnp.asarray(angle))
+    assert not bj.statics.rated_axially(angular) and bj.statics.rated_axially(steep)
+    g = 22.225 * 0.5 / 125.26
+    # f_c of the standard's table at 60 degrees, and f_0 of thrust bearings.
+    f = np.interp(g, np.arange(1, 21) / 100, printed(F_C["60"]))
+    c = 1.3 * f * 0.5**0.7 * np.tan(angle) * 16 ** (2 / 3) * 22.225**1.8
+    assert float(bj.dynamic_capacity(steep)) == pytest.approx(c, rel=2e-3)
+    f = np.interp(g, np.arange(36) / 100, printed(F_0["thrust"]))
+    c0 = f * 16 * 22.225**2 * np.sin(angle)
+    assert float(bj.static_capacity(steep)) == pytest.approx(c0, rel=2e-3)
+
+
+def test_given_ratings_are_kept_and_named():
+    bearing = EXAMPLES["angular contact"]
+    rated = bj.ratings(bearing, static_capacity=104e3)
+    assert float(rated.static_capacity) == 104e3
+    assert rated.dynamic_source == "ISO 281 from geometry"
+    assert rated.static_source == "given"
+    # Pitch diameter above 100 mm.
+    limit = 104e3 / 22 / (0.12526 / 0.1) ** 0.5
+    assert float(rated.fatigue_load_limit) == pytest.approx(limit, rel=ROUNDING)
+    roller = EXAMPLES["cylindrical"]
+    limit = float(bj.static_capacity(roller)) / 8.2 / 1.035**0.3
+    assert float(bj.fatigue_load_limit(roller)) == pytest.approx(limit, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("name", ("angular contact", "tapered"))
+def test_derivatives_are_those_of_differences(name):
+    bearing = EXAMPLES[name]
+    fields = [f for f in SIZES if hasattr(bearing, f)]
+    start = np.array([float(getattr(bearing, f)) for f in fields])
+    start[[f.endswith("osculation") for f in fields]] += 0.015
+
+    def both(sizes):
+        def where(b):
+            return [getattr(b, f) for f in fields]
+
+        other = eqx.tree_at(where, bearing, list(sizes))
+        return jnp.stack((bj.dynamic_capacity(other), bj.static_capacity(other)))
+
+    evaluate = with_slopes(both)
+    slopes, _ = evaluate(start)
+    for k, size in enumerate(start):
+        h = 1e-5 * size * np.eye(start.size)[k]
+        high, low = evaluate(start + h)[1], evaluate(start - h)[1]
+        difference = (np.asarray(high) - np.asarray(low)) / (2e-5 * size)
+        assert np.allclose(np.asarray(slopes)[:, k], difference, rtol=DIFFERENCE)
+
+
+SIZES = ("pitch_diameter", "contact_angle", "outer_osculation", "inner_osculation")
+SIZES += ("ball_diameter", "roller_diameter", "roller_length", "roller_axis_angle")
+
+
+@pytest.mark.parametrize(
+    "call, words",
+    (
+        (
+            lambda: bj.ratings(balls(), dynamic_capacity=-1.0),
+            "`dynamic_capacity` is -1",
+        ),
+        (
+            lambda: bj.fatigue_load_limit(balls(), np.nan),
+            "`static_capacity` is nan N; it must be a finite",
+        ),
+        (
+            lambda: bj.static_capacity(
+                bj.BearingSet(
+                    (bj.SetRow(balls()), bj.SetRow(balls(n=8), position=0.02))
+                )
+            ),
+            "row 1 of the set is another bearing than row 0",
+        ),
+    ),
+)
+def test_nonsense_is_named(call, words):
+    with pytest.raises((TypeError, ValueError), match=words):
+        call()
+
+
+def test_program_is_shared_by_bearings_of_one_kind():
+    """Another number of balls compiles nothing: the count is a number like others."""
+    from bearingjax.statics import rating
+
+    rows = [rating._row(balls(n=n)) for n in (7, 8, 9)]
+    assert len({jax.tree.structure(row) for row in rows}) == 1
