@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design import AbstractBallBearing
+from ..design import AbstractBallBearing, Bearing, BearingSet
 from ..statics.solution import BallSolution
 from .style import (
     COLOURS,
@@ -12,15 +12,24 @@ from .style import (
     RACEWAYS,
     SMALL,
     axes_or_new,
+    degrees,
     raceway_index,
     row_slice,
     row_slices,
+    widened,
 )
 
 if TYPE_CHECKING:
     import matplotlib.axes
 
 _MARKERS = ("o", "s", "^", "D")
+_LEAST_SPAN = 2.0
+"""Of the axis of contact angles [deg]: less is no difference that matters."""
+_BOX = 0.62
+"""Height over width of a raceway that is rolled out."""
+_ARC = 0.48
+"""Half of the least arc of the groove that is shown, ball diameters."""
+_AZIMUTHS = (-15.0, 375.0)
 
 
 def contact_angles(
@@ -28,18 +37,19 @@ def contact_angles(
 ) -> "matplotlib.axes.Axes":
     """Contact angle of every loaded contact [deg] against azimuth [deg].
 
-    The area of a marker grows with the load of the contact; each row of a set has its
-    own shape.
+    The area of a marker grows with the load of the contact. Markers of the outer
+    raceway are hollow, those of the inner one full and smaller, so that neither hides
+    the other; each row of a set has its own shape.
 
     Args:
         solution: A single solution of a ball bearing.
         ax: Axes; a new figure if `None`.
 
     Returns:
-        The axes.
+        The axes; theirs is a span of two degrees at least.
     """
     ax = axes_or_new(ax)
-    azimuth = np.rad2deg(np.asarray(solution.azimuth)) % 360.0
+    azimuth = degrees(solution.azimuth)
     angle = np.rad2deg(np.asarray(solution.contact_angle))
     load = np.asarray(solution.contact_load)
     top = max(float(load.max()), 1e-300)
@@ -48,36 +58,45 @@ def contact_angles(
     rows = row_slices(solution)
     for number, row in enumerate(rows):
         for ring, name in enumerate(RACEWAYS):
+            hollow = name == "outer"
             for arc in range(half):
                 k = ring * half + arc
                 shown = loaded[row, k]
                 label = f"{name} raceway"
                 if len(rows) > 1:
                     label += f", row {number}"
+                size = 10.0 + 40.0 * load[row][shown, k] / top
                 ax.scatter(
                     azimuth[row][shown],
                     angle[row][shown, k],
-                    s=12.0 + 60.0 * load[row][shown, k] / top,
+                    s=3.0 * size if hollow else size,
                     marker=_MARKERS[number % len(_MARKERS)],
-                    facecolor=COLOURS[name],
-                    edgecolor="white",
-                    linewidth=0.6,
+                    facecolor="none" if hollow else COLOURS[name],
+                    edgecolor=COLOURS[name],
+                    linewidth=1.3 if hollow else 0.0,
                     label=label if arc == 0 else None,
                     zorder=3,
                 )
-    ax.set_xlim(-8.0, 368.0)
+    ax.set_xlim(*_AZIMUTHS)
+    ax.set_ylim(*widened(angle[loaded], _LEAST_SPAN))
     ax.set_xticks(np.arange(0, 361, 60))
     ax.grid(color="0.9")
     ax.set_axisbelow(True)
     ax.set_xlabel("azimuth [deg]")
     ax.set_ylabel("contact angle [deg]")
     ax.set_title("Contact angles (area of a marker: load)")
-    ax.legend(fontsize=SMALL, frameon=False, loc="best")
+    ax.legend(
+        fontsize=SMALL,
+        frameon=False,
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.14),
+        ncols=2,
+    )
     return ax
 
 
 def ellipses(
-    bearing: AbstractBallBearing,
+    bearing: Bearing | BearingSet,
     solution: BallSolution,
     *,
     raceway: str = "inner",
@@ -86,73 +105,112 @@ def ellipses(
 ) -> "matplotlib.axes.Axes":
     """Contact ellipses on a raceway that is rolled out, with its shoulders.
 
-    Upwards runs the arc of the groove from its bottom [mm]; to the right the azimuth,
-    where each ellipse is drawn to the scale of the upward axis.
+    Upwards runs the arc of the groove from its bottom [mm], to the right the azimuth.
+    The ellipses have their true shape, to the scale of the upward axis; how many times
+    that is the scale of the azimuth stands below. Where neighbours would overlap they
+    are drawn narrower, and that is said there.
 
     Args:
-        bearing: The design; of a set, that of the row.
+        bearing: The design; of a set, the set or the bearing of the row.
         solution: Its single solution.
         raceway: "outer" or "inner".
         row: Which row of a set.
-        ax: Axes; a new figure if `None`.
+        ax: Axes; a new figure if `None`. Their height becomes 0.62 of their width.
 
     Returns:
         The axes.
 
     Raises:
+        TypeError: If the bearing has no balls.
         ValueError: If `raceway` is unknown or the set has no such row.
     """
     ring = raceway_index(raceway)
-    ax = axes_or_new(ax)
     mine = row_slice(solution, row)
-    azimuth = np.rad2deg(np.asarray(solution.azimuth)[mine]) % 360.0
+    if isinstance(bearing, BearingSet):
+        bearing = bearing.rows[row].bearing
+    if not isinstance(bearing, AbstractBallBearing):
+        raise TypeError(
+            f"`bearing` is a {type(bearing).__name__}; it must be of balls to have"
+            " contact ellipses."
+        )
+    ax = axes_or_new(ax)
     half = solution.contact_load.shape[1] // 2
-    grooves = [g for g in bearing.grooves if g.on_outer is (ring == 0)]
-    pressure = 1e-6 * np.asarray(solution.contact_pressure)[mine]
-    top = max(float(pressure.max()), 1e-300)
+    top = max(float(np.max(solution.contact_pressure)), 1e-300)
     drawn = []
+    grooves = [g for g in bearing.grooves if g.on_outer is (ring == 0)]
     for arc, groove in enumerate(grooves):
         k = ring * half + arc
         radius = 1e3 * float(groove.radius)
-        angle = np.asarray(solution.contact_angle)[mine, k] - bearing.groove_axis
+        angle = np.asarray(solution.contact_angle)[mine, k]
+        place = radius * (angle - float(bearing.groove_axis))
         along, across = 1e3 * np.asarray(solution.semi_axes)[mine, k].T
-        parts = (azimuth, radius * angle, along, across, pressure[:, k] / top)
+        share = np.asarray(solution.contact_pressure)[mine, k] / top
+        parts = (degrees(solution.azimuth)[mine], place, along, across, share)
         loaded = np.asarray(solution.contact_load)[mine, k] > 0
         drawn.append(np.stack(parts)[:, loaded])
         _shoulders(ax, bearing, raceway, groove, radius)
     _, place, _, across, _ = patches = np.concatenate(drawn, axis=1)
-    ends = np.concatenate([place - across, place + across, [0.0]])
-    for line in ax.lines:
-        ends = np.append(ends, np.asarray(line.get_ydata(), dtype=float))
-    room = 0.08 * (np.ptp(ends) or 1.0)
-    ax.set_ylim(ends.min() - room, ends.max() + room)
-    ax.set_xlim(-15.0, 375.0)
-    _ellipse_patches(ax, patches, COLOURS[raceway])
+    arc = _ARC * 1e3 * float(bearing.ball_diameter)
+    # A raceway that goes on as a cylinder has a groove on one side only.
+    cut = grooves[0].open_side and bearing.groove_axis == 0.0
+    ends = [-0.2 * arc if cut else -arc, arc, *(place - across), *(place + across)]
+    ends += [float(np.asarray(line.get_ydata())[0]) for line in ax.lines]
+    ax.set_ylim(*widened(ends, 0.0))
+    ax.set_xlim(*_AZIMUTHS)
+    ax.set_box_aspect(_BOX)
+    scale = _ellipse_patches(ax, patches, COLOURS[raceway], mine.stop - mine.start)
     ax.set_xticks(np.arange(0, 361, 60))
     ax.axhline(0.0, color=GREY, linewidth=0.8, linestyle=":")
-    ax.set_xlabel("azimuth [deg]")
-    ax.set_ylabel("along the groove, from its bottom [mm]")
+    turn = 2.0 * np.pi * _raceway_radius(bearing, ring)
+    ax.set_xlabel(f"azimuth [deg]\n{_scale_text(scale, turn)}")
+    ax.set_ylabel("along the groove [mm]")
     which = f", row {row}" if len(solution.row_sizes) > 1 else ""
-    ax.set_title(f"Contact ellipses on the {raceway} raceway{which}")
+    ax.set_title(f"Contact ellipses, {raceway} raceway{which}")
     return ax
 
 
-def _ellipse_patches(ax, patches, colour):
-    """Ellipses (azimuth, place, semi-axes, shade) in equal scale, both axes set."""
+def _raceway_radius(bearing, ring):
+    """Distance of the middle of a raceway from the axis [mm]."""
+    side = np.cos(float(bearing.groove_axis)) * (1.0 if ring == 0 else -1.0)
+    ball = 0.5e3 * float(bearing.ball_diameter)
+    return 0.5e3 * float(bearing.pitch_diameter) + side * ball
+
+
+def _scale_text(scale, turn):
+    """What scale the ellipses have.
+
+    Args:
+        scale: Degrees of the azimuth per mm of width, true to shape and drawn.
+        turn: Once around the raceway [mm].
+    """
+    true, drawn = scale
+    times = f"{drawn * turn / 360.0:.2g} times"
+    if drawn < true:
+        return f"ellipses: width {times} that of the azimuth, narrower than true"
+    return f"ellipses in true shape, {times} the scale of the azimuth"
+
+
+def _ellipse_patches(ax, patches, colour, count):
+    """Ellipses (azimuth, place, semi-axes, shade) on axes with limits and box aspect.
+
+    Returns:
+        Degrees of the azimuth per mm of width, true to shape and as drawn: no wider
+        than `count` ellipses find room.
+    """
     from matplotlib.colors import to_rgb
     from matplotlib.patches import Ellipse
 
-    box, figure = ax.get_position(), ax.figure.get_size_inches()
-    degrees = np.ptp(ax.get_xlim()) / (box.width * figure[0])
-    millimetres = np.ptp(ax.get_ylim()) / (box.height * figure[1])
+    true = np.ptp(_AZIMUTHS) * _BOX / np.ptp(ax.get_ylim())
+    widest = 2.0 * patches[2].max(initial=0.0)
+    drawn = min(true, 0.92 * 360.0 / (count * widest)) if widest > 0.0 else true
     for azimuth, place, along, across, share in patches.T:
         for at in (azimuth - 360.0, azimuth, azimuth + 360.0):
-            if not ax.get_xlim()[0] < at < ax.get_xlim()[1]:
+            if not _AZIMUTHS[0] < at < _AZIMUTHS[1]:
                 continue
             ax.add_patch(
                 Ellipse(
                     (at, place),
-                    2.0 * along * degrees / millimetres,
+                    2.0 * along * drawn,
                     2.0 * across,
                     facecolor=(*to_rgb(colour), 0.15 + 0.6 * float(share)),
                     edgecolor=colour,
@@ -160,6 +218,7 @@ def _ellipse_patches(ax, patches, colour):
                     zorder=3,
                 )
             )
+    return true, drawn
 
 
 def _shoulders(ax, bearing, raceway, groove, radius):

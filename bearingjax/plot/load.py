@@ -35,7 +35,7 @@ def load_zone(
     Returns:
         The axes.
     """
-    ax = axes_or_new(ax, (6.0, 6.0), polar=True)
+    ax = axes_or_new(ax, (7.0, 5.2), polar=True)
     azimuth = np.asarray(solution.azimuth, dtype=float)
     load = np.asarray(solution.roller_load, dtype=float)
     zone = np.asarray(solution.load_zone)
@@ -45,8 +45,8 @@ def load_zone(
     if unit == "kN":
         load, top = 1e-3 * load, 1e-3 * top
     rows = row_slices(solution)
-    step = 2.0 * np.pi / max(solution.row_sizes)
-    width = min(0.36 * step, 0.08) / (1.0 if len(rows) == 1 else 0.75 * len(rows))
+    step = _step(azimuth, max(solution.row_sizes))
+    width = min(0.36 * step, 0.12) / (1.0 if len(rows) == 1 else 0.75 * len(rows))
     handles = []
     for k, row in enumerate(rows):
         for ring, name in enumerate(RACEWAYS):
@@ -87,15 +87,20 @@ def load_zone(
     ax.set_title(f"{'Ball' if balls else 'Roller'} loads [{unit}]")
     ax.legend(
         handles=handles if zone.all() else [*handles, unloaded],
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.06),
-        ncols=3 if len(rows) == 1 else 2,
+        loc="center left",
+        bbox_to_anchor=(1.1, 0.5),
         fontsize=SMALL,
         frameon=False,
-        columnspacing=1.2,
         handlelength=1.2,
     )
     return ax
+
+
+def _step(azimuth, count):
+    """Angle that the bars at one azimuth may take [rad]; rows may be staggered."""
+    even = 2.0 * np.pi / count
+    gaps = np.diff(np.sort(azimuth % (2.0 * np.pi)), append=np.inf)
+    return min([even, *gaps[gaps > 0.3 * even]])
 
 
 def _radial_labels(ax, azimuth, load, top, limit):

@@ -21,6 +21,7 @@ from .style import (
     head,
     pyplot,
     row_slices,
+    without_offset,
 )
 
 if TYPE_CHECKING:
@@ -170,6 +171,7 @@ def _cases(found, ax):
 
 def _history(found, ax):
     """Objective over its start and, where there are constraints, their miss."""
+    without_offset(ax)
     history = found.history
     steps = np.arange(len(history.objective))
     size = abs(history.objective[0]) or 1.0
@@ -183,7 +185,7 @@ def _history(found, ax):
     ax.set_title(f"The search: {title}")
     ax.xaxis.get_major_locator().set_params(integer=True)
     if history.violation.any():
-        other = ax.twinx()
+        other = without_offset(ax.twinx())
         other.plot(
             steps,
             history.violation,

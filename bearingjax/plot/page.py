@@ -1,10 +1,10 @@
 """One page on a solved bearing."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..design import AbstractBallBearing, Bearing, BearingSet, rows_of
+from ..design import Bearing, BearingSet
 from ..numerics.result import Result
 from ..statics.solution import BallSolution, RollerSolution, Solution
 from ..statics.warning import warnings
@@ -12,7 +12,7 @@ from .balls import contact_angles, ellipses
 from .load import load_zone
 from .pressure import pressure_map, pressure_profiles
 from .section import cross_section
-from .style import degrees, force_text, head, pyplot, row_slices
+from .style import RACEWAYS, degrees, force_text, head, pyplot, row_slices
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -29,30 +29,39 @@ def overview(
         title: Head of the page; the kind of bearing if empty.
 
     Returns:
-        The figure, 12 by 9 inches.
+        The figure, 13.5 inches wide: a line of pictures for each row of a set.
     """
-    figure = pyplot().figure(figsize=(12.0, 9.0))
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
-    axes = figure.subplot_mosaic(
-        [["section", "zone"], ["left", "right"], ["text", "text"]],
-        height_ratios=[1.15, 1.0, 0.13],
-        per_subplot_kw={"zone": {"projection": "polar"}},
+    rows = row_slices(solution)
+    n = len(rows)
+    balls = isinstance(solution, BallSolution)
+    figure = pyplot().figure(figsize=(13.5, 5.1 + 3.3 * n))
+    figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.08)
+    heights = [4.3, 3.3 * n, 0.5]
+    parts: Any = figure.subfigures(3, 1, height_ratios=heights)
+    upper, lower, foot = parts
+    section = upper.add_subplot(1, 2, 1)
+    zone = upper.add_subplot(1, 2, 2, projection="polar")
+    # Contact angles of all rows are compared in one picture.
+    axes = lower.subplot_mosaic(
+        [[f"along{0 if balls else k}", f"outer{k}", f"inner{k}"] for k in range(n)]
     )
-    cross_section(bearing, axes["section"])
-    load_zone(solution, axes["zone"])
-    raceway, row = _busier_raceway(solution), _busiest_row(solution)
+    cross_section(bearing, section)
+    load_zone(solution, zone)
     if isinstance(solution, BallSolution):
-        contact_angles(solution, axes["left"])
-        figure.draw_without_rendering()  # the layout gives the ellipses their scale
-        part = rows_of(bearing)[row].bearing
-        assert isinstance(part, AbstractBallBearing)
-        ellipses(part, solution, raceway=raceway, row=row, ax=axes["right"])
-    else:
-        assert isinstance(solution, RollerSolution)
-        pressure_profiles(solution, axes["left"], raceway=raceway, row=row)
-        pressure_map(solution, axes["right"], raceway=raceway, row=row)
-    axes["text"].set_axis_off()
-    axes["text"].text(
+        contact_angles(solution, axes["along0"])
+    for k, mine in enumerate(rows):
+        if isinstance(solution, RollerSolution):
+            ax = axes[f"along{k}"]
+            pressure_profiles(solution, ax, count=2, raceway="both", row=k)
+            # Both raceways of a row in one scale of colours.
+            top = float(np.max(np.asarray(solution.contact_pressure)[mine]))
+        for raceway in RACEWAYS:
+            ax = axes[f"{raceway}{k}"]
+            if isinstance(solution, RollerSolution):
+                pressure_map(solution, ax, raceway=raceway, row=k, top=top)
+            elif isinstance(solution, BallSolution):
+                ellipses(bearing, solution, raceway=raceway, row=k, ax=ax)
+    foot.text(
         0.5,
         0.5,
         "\n".join(_results(solution)),
@@ -60,24 +69,9 @@ def overview(
         va="center",
         fontsize=10,
         linespacing=1.5,
-        transform=axes["text"].transAxes,
-        in_layout=False,
     )
     head(figure, title or type(bearing).__name__)
     return figure
-
-
-def _busier_raceway(solution):
-    """The raceway with the higher pressure; the inner one if they are equal."""
-    outer, inner = np.asarray(solution.roller_pressure).max(axis=0)
-    return "outer" if outer > inner else "inner"
-
-
-def _busiest_row(solution):
-    """The row with the largest load of a roller or ball."""
-    load = np.asarray(solution.roller_load)
-    tops = [load[mine].max(initial=0.0) for mine in row_slices(solution)]
-    return int(np.argmax(tops))
 
 
 def _results(solution):

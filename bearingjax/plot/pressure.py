@@ -101,9 +101,8 @@ def pressure_profiles(
     ax.set_axisbelow(True)
     ax.set_xlabel("position along the roller [mm]")
     ax.set_ylabel("contact pressure [MPa]")
-    which = "both raceways" if raceway == "both" else f"{raceway} raceway"
-    which += _of_row(solution, row)
-    ax.set_title(f"Pressure along the most loaded rollers, {which}")
+    which = "" if raceway == "both" else f", {raceway} raceway"
+    ax.set_title(f"Most loaded rollers{which}{_of_row(solution, row)}")
     title = "azimuth: load"
     if np.any(edges[np.ix_(rollers, rings)]):
         title += "\n▲ loaded roller end"
@@ -126,6 +125,7 @@ def pressure_map(
     ax: "matplotlib.axes.Axes | None" = None,
     raceway: str = "inner",
     row: int = 0,
+    top: float | None = None,
 ) -> "matplotlib.axes.Axes":
     """Contact pressure [MPa] of all rollers: azimuth by position along the roller.
 
@@ -136,6 +136,8 @@ def pressure_map(
         ax: Axes; a new figure if `None`.
         raceway: "inner" or "outer".
         row: Which row of a set.
+        top: Pressure at the end of the colour scale [Pa]; the highest one of the row
+            on this raceway if `None`. Give one to compare raceways.
 
     Returns:
         The axes; the colour bar stands beside it.
@@ -150,7 +152,7 @@ def pressure_map(
     order = np.argsort(angle, kind="stable")
     pressure = 1e-6 * np.asarray(solution.contact_pressure)[mine, ring]
     position = _position(solution, mine)
-    top = np.nanmax(pressure, initial=0.0)
+    top = np.nanmax(pressure, initial=0.0) if top is None else 1e-6 * top
     # Last and first roller stand on both sides of the seam at 0°.
     around = np.concatenate([order[-1:], order, order[:1]])
     turns = np.concatenate([[-360.0], np.zeros(len(order)), [360.0]])
@@ -172,7 +174,7 @@ def pressure_map(
     ax.set_xticks(np.arange(0.0, 361.0, 45.0))
     ax.set_xlim(0.0, 360.0)
     ax.set_ylim(position[0], position[-1])
-    ax.set_xlabel("azimuth of the roller [°]")
+    ax.set_xlabel("azimuth of the roller [deg]")
     ax.set_ylabel("position along the roller [mm]")
     ax.set_title(f"Contact pressure, {raceway} raceway{_of_row(solution, row)}")
     return ax

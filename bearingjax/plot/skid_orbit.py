@@ -14,6 +14,7 @@ from .style import (
     SPIN_COLOURS,
     SPIN_NAMES,
     axes_or_new,
+    without_offset,
 )
 
 if TYPE_CHECKING:
@@ -142,7 +143,7 @@ def sliding_over_orbit(
     """
     ax = axes_or_new(ax)
     _raceways(ax, found, 1e3 * by_raceway(found.sliding_speed, found.contact_load))
-    other = ax.twinx()
+    other = without_offset(ax.twinx())
     azimuth, slip = _closed(found, 100.0 * np.asarray(found.slip))
     other.plot(azimuth, slip, ":", color=GREY, label="orbit slip")
     other.set_ylabel("slip of the orbit [%]", color=GREY)

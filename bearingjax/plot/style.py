@@ -1,6 +1,6 @@
 """What all plots share: matplotlib on demand, colours, labels."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -46,7 +46,7 @@ def pyplot():
 def axes_or_new(
     ax: "matplotlib.axes.Axes | None", size=(7.0, 5.0), polar: bool = False
 ) -> "matplotlib.axes.Axes":
-    """The given axes, or those of a new figure.
+    """The given axes, or those of a new figure; ticks tell values, without an offset.
 
     Args:
         ax: Axes or `None`.
@@ -58,10 +58,34 @@ def axes_or_new(
     """
     if ax is None:
         figure = pyplot().figure(figsize=size, layout="constrained")
-        return figure.add_subplot(projection="polar" if polar else None)
+        ax = figure.add_subplot(projection="polar" if polar else None)
     if polar and ax.name != "polar":
         raise ValueError('load_zone needs polar axes: subplot(projection="polar").')
+    return without_offset(ax)
+
+
+def without_offset(ax: "matplotlib.axes.Axes") -> "matplotlib.axes.Axes":
+    """The axes, whose ticks tell values, not what is to be added to a number."""
+    for axis in (ax.xaxis, ax.yaxis):
+        formatter: Any = axis.get_major_formatter()
+        if hasattr(formatter, "set_useOffset"):
+            formatter.set_useOffset(False)
     return ax
+
+
+def widened(values, least: float, share: float = 0.08) -> tuple[float, float]:
+    """Limits of an axis around values, so far apart that round-off does not fill it.
+
+    Args:
+        values: What is drawn.
+        least: Smallest distance of the limits, in the unit of the values.
+        share: Of the span that stays free at each end.
+    """
+    values = np.asarray(values, dtype=float)
+    values = values[np.isfinite(values)]
+    low, high = (values.min(), values.max()) if values.size else (0.0, 0.0)
+    half = max(0.5 * least, (0.5 + share) * (high - low))
+    return 0.5 * (low + high) - half, 0.5 * (low + high) + half
 
 
 def raceway_index(raceway: str) -> int:

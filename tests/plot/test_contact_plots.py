@@ -4,7 +4,6 @@ from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
-import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -19,17 +18,7 @@ from bearingjax.contact.halfspace import (
 )
 from bearingjax.contact.slices import slices
 
-matplotlib.use("Agg")
-
 LOADS = (1000.0, 3000.0)
-
-
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    for number in plt.get_fignums():
-        plt.figure(number).canvas.draw()  # nothing may fail or warn while drawing
-    plt.close("all")
 
 
 @pytest.fixture(scope="module")

@@ -1,8 +1,6 @@
 """What plots of noise draw: curves, names and units, not pixels."""
 
 import jax.numpy as jnp
-import matplotlib
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.patches import Rectangle
@@ -18,16 +16,6 @@ from bearingjax.acoustics import (
     spectrum,
 )
 from bearingjax.acoustics.reference_levels import NORM
-
-matplotlib.use("Agg")
-
-
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    for number in plt.get_fignums():
-        plt.figure(number).canvas.draw()  # nothing may fail or warn while drawing
-    plt.close("all")
 
 
 def record(turns=2, samples=256, balls=7):

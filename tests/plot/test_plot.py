@@ -1,22 +1,21 @@
 """Every plot draws what the solution says, with units, on its own or given axes."""
 
-import subprocess
 import sys
+from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import matplotlib
+import made
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.patches import Ellipse
+from registry import balls, taper
 
 import bearingjax as bj
 from bearingjax import plot
 from bearingjax.plot.section import section
-
-matplotlib.use("Agg")
 
 MM = 1e3
 
@@ -27,14 +26,6 @@ def data(line):
 
 def legend(ax):
     return [text.get_text() for text in ax.get_legend().get_texts()]
-
-
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    for number in plt.get_fignums():
-        plt.figure(number).canvas.draw()  # nothing may fail or warn while drawing
-    plt.close("all")
 
 
 @pytest.fixture(scope="module")
@@ -52,8 +43,7 @@ def bearing():
 
 @pytest.fixture(scope="module")
 def solution(bearing):
-    element = bj.BearingElement(bearing, quadrature=bj.Midpoint())
-    return bj.solve_load(element, [0.0, -4000.0, 0.0, 0.0, 0.0, 0.0])
+    return made.solution(bearing)
 
 
 @pytest.fixture(scope="module")
@@ -81,19 +71,6 @@ def non_finite(solution):
 @pytest.fixture(scope="module")
 def one_roller(solution):
     return jax.tree.map(lambda x: x[6:7] if x.ndim and x.shape[0] == 8 else x, solution)
-
-
-@pytest.fixture(scope="module")
-def taper():
-    return bj.TaperedRollerBearing(
-        17,
-        0.052,
-        0.0082,
-        0.0115,
-        roller_axis_angle=np.deg2rad(11),
-        roller_half_angle=np.deg2rad(1.7235),
-        ribs=bj.Ribs(inner_minus=bj.Rib(0.09, 1.2e-3)),
-    )
 
 
 def test_load_zone_bars_are_the_roller_loads_in_kilonewton(solution):
@@ -143,7 +120,7 @@ def test_pressure_profiles_mark_loaded_ends(solution):
     edge = eqx.tree_at(lambda s: s.edge_pressure, solution, pressed)
     ax = plot.pressure_profiles(edge, count=1)
     marks = [line for line in ax.lines if line.get_marker() == "^"]
-    np.testing.assert_allclose(data(marks[0])[0], MM * solution.position[::100])
+    np.testing.assert_allclose(data(marks[0])[0], MM * solution.position[::20])
 
 
 def test_pressure_map_runs_once_around_and_leaves_zero_white(solution):
@@ -232,8 +209,8 @@ def test_section_of_a_cylinder_has_the_drawing_dimensions(bearing):
     assert inner[inner[:, 0] > 0, 1].max() == pytest.approx(27.5, abs=0.1)
 
 
-def test_section_of_a_taper_is_inclined_with_the_large_end_at_minus_z(taper):
-    parts = section(taper)
+def test_section_of_a_taper_is_inclined_with_the_large_end_at_minus_z():
+    parts = section(taper())
     outer, inner = parts.raceways
     slopes = [(r[1, 1] - r[0, 1]) / (r[1, 0] - r[0, 0]) for r in (outer, inner)]
     expected = -np.tan(np.deg2rad([11 + 1.7235, 11 - 1.7235]))
@@ -250,14 +227,14 @@ def test_section_of_a_taper_is_inclined_with_the_large_end_at_minus_z(taper):
     np.testing.assert_allclose(np.linalg.norm(parts.rib_points - centre, axis=1), 90.0)
 
 
-def test_cross_section_draws_to_scale_and_names_dimensions(bearing, taper):
+def test_cross_section_draws_to_scale_and_names_dimensions(bearing):
     ax = plot.cross_section(bearing)
     assert ax.get_aspect() == 1.0
     words = " ".join(text.get_text() for text in ax.texts)
     for word in ("65 mm", "10 mm", "ring bodies schematic"):
         assert word in words
     assert "contact angle" not in words
-    words = " ".join(text.get_text() for text in plot.cross_section(taper).texts)
+    words = " ".join(text.get_text() for text in plot.cross_section(taper()).texts)
     assert "contact angle $α$ = 12.72°" in words
 
 
@@ -284,12 +261,11 @@ def test_given_axes_are_used(bearing, solution):
     assert len(plt.get_fignums()) == 1
 
 
-def test_overview_shows_four_plots_and_the_results(bearing, solution):
+def test_overview_shows_five_plots_and_the_results(bearing, solution):
     figure = plot.overview(bearing, solution, title="NJ")
-    titles = [ax.get_title() for ax in figure.axes]
-    assert sum(bool(title) for title in titles) == 4
+    assert sum(bool(title) for title in titles(figure)) == 5
     assert figure.get_suptitle() == "NJ"
-    words = " ".join(text.get_text() for ax in figure.axes for text in ax.texts)
+    words = " ".join(text.get_text() for part in figure.subfigs for text in part.texts)
     peak = f"{1e-6 * float(solution.roller_pressure.max()):.4g} MPa"
     assert peak in words and "converged" in words
 
@@ -300,50 +276,120 @@ def test_overview_survives(which, bearing, request):
     assert figure.get_suptitle() == "CylindricalRollerBearing"
 
 
-def test_import_leaves_matplotlib_alone_and_its_absence_is_explained():
-    program = (
-        "import sys, bearingjax.plot as p\n"
-        "assert 'matplotlib' not in sys.modules\n"
-        "sys.modules['matplotlib'] = None\n"
-        "try: p.load_displacement([1.0], [1.0])\n"
-        "except ImportError as error: print(error)\n"
+def test_absence_of_matplotlib_is_explained(monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
+    with pytest.raises(ImportError, match=r'pip install "bearingjax\[plot\]"'):
+        plot.load_displacement([1.0], [1.0])
+
+
+def titles(figure):
+    return [ax.get_title() for ax in figure.axes]
+
+
+def test_a_page_has_both_raceways_of_each_row(bearing, solution):
+    single = titles(plot.overview(bearing, solution))
+    for name in ("outer", "inner"):
+        assert f"Contact pressure, {name} raceway" in single
+    pair = bj.BearingSet.back_to_back(taper(5), 0.03)
+    page = plot.overview(pair, made.solution(pair))
+    for row in range(2):
+        for name in ("outer", "inner"):
+            title = f"Contact pressure, {name} raceway, row {row}"
+            assert titles(page).count(title) == 1
+    maps = [ax for ax in page.axes if "pressure, " in ax.get_title()]
+    # One scale of colours, so that raceways are compared by colour.
+    assert len({ax.collections[0].get_clim() for ax in maps}) == 1
+
+
+ANGLES = {
+    "pair": (0.45, 0.44),
+    "four-point": (0.4, -0.3, 0.42, -0.32),
+    "thrust": (0.5 * np.pi, 0.5 * np.pi),
+}
+
+
+@pytest.fixture(scope="module")
+def of_balls():
+    """Name to bearing and solution."""
+    found = {
+        "pair": bj.BearingSet.back_to_back(balls(7), 0.02),
+        "four-point": balls(6, bj.FourPointBallBearing, shim_angle=0.35),
+        "thrust": balls(7, bj.ThrustBallBearing),
+    }
+    return {
+        name: (bearing, made.solution(bearing, ANGLES[name]))
+        for name, bearing in found.items()
+    }
+
+
+def scale_of(ax):
+    """Inch over inch of what an ellipse shows: (across the axis, up) per data."""
+    box = 0.62  # height over width
+    return np.ptp(ax.get_xlim()) * box / np.ptp(ax.get_ylim())
+
+
+@pytest.mark.parametrize("name", ANGLES)
+def test_ellipses_have_their_true_shape(of_balls, name):
+    bearing, found = of_balls[name]
+    ax = plot.ellipses(bearing, found, raceway="outer")
+    drawn = [patch for patch in ax.patches if isinstance(patch, Ellipse)]
+    # The least loaded one first, at 180 degrees or beyond.
+    shapes = {round(p.width / p.height / scale_of(ax), 9) for p in drawn}
+    assert shapes == {0.1}  # as made
+    assert max(p.height for p in drawn) == pytest.approx(2.0, rel=0.05)
+    # The scale that is told: mm of the drawing for a mm on the raceway.
+    turn = np.pi * (52.0 + 9.5 * (name != "thrust"))
+    told = scale_of(ax) * turn / 360.0
+    assert f"{told:.2g} times" in ax.get_xlabel() and "true shape" in ax.get_xlabel()
+
+
+def test_ellipses_that_would_overlap_are_narrower_and_said_to_be(of_balls):
+    bearing, found = of_balls["thrust"]
+    round_ = eqx.tree_at(
+        lambda s: s.semi_axes, found, found.semi_axes.at[..., 0].set(1.5e-3)
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    ax = plot.ellipses(bearing, round_)
+    wide = [p.width for p in ax.patches if isinstance(p, Ellipse)]
+    assert max(wide) < 360.0 / 7 and "narrower" in ax.get_xlabel()
+
+
+def test_ellipses_refuse_rollers(bearing, of_balls):
+    with pytest.raises(TypeError, match="must be of balls"):
+        plot.ellipses(bearing, of_balls["thrust"][1])
+
+
+def test_contact_angles_hide_no_raceway_and_no_round_off(of_balls):
+    ax = plot.contact_angles(of_balls["thrust"][1])
+    markers: Any = ax.collections
+    outer, inner = markers
+    assert not len(outer.get_facecolor()) and len(inner.get_facecolor())
+    assert (outer.get_sizes() > inner.get_sizes()).all()
+    low, high = ax.get_ylim()
+    assert high - low == pytest.approx(2.0) and low + high == pytest.approx(180.0)
+    ax.figure.canvas.draw()
+    assert ax.yaxis.get_offset_text().get_text() == ""
+
+
+def test_a_page_of_balls_shows_all_rows(of_balls):
+    page = plot.overview(*of_balls["pair"])
+    for row in range(2):
+        for name in ("outer", "inner"):
+            title = f"Contact ellipses, {name} raceway, row {row}"
+            assert titles(page).count(title) == 1
+    assert titles(page)[0] == "Axial section, to scale"
+
+
+def test_bars_of_staggered_rows_stand_apart():
+    row = balls(7, bj.SelfAligningBallRow, outer_osculation=None, row_offset=0.006)
+    bearing = bj.BearingSet.self_aligning(row)
+    ax = plot.load_zone(made.solution(bearing, (0.25, 0.25)))
+    spans = sorted(
+        (bar.get_x() % (2 * np.pi), bar.get_width())
+        for bars in ax.containers
+        for bar in bars
     )
-    assert 'pip install "bearingjax[plot]"' in done.stdout
-
-
-def test_pages_of_balls_and_sets():
-    """A page for each kind; what is drawn of the ellipses is to scale."""
-    from registry import ball_elements
-
-    for name in (
-        "four-point, unlike balls, load share",
-        "ball pair, O",
-        "taper pair, X",
-    ):
-        element, _ = ball_elements()[name]
-        solution = bj.solve_load(element, [100.0, 0, 800.0, 0, 0, 0])
-        page = bj.plot.overview(element.bearing, solution, name)
-        titles = [ax.get_title() for ax in page.axes]
-        assert titles[0] == "Axial section, to scale"
-        if len(solution.row_sizes) > 1:
-            # The page shows the row with the largest load.
-            tops = np.asarray(solution.roller_load).reshape(2, -1).max(axis=1)
-            assert titles[3].endswith(f", row {tops.argmax()}")
-        if isinstance(solution, bj.BallSolution):
-            ellipse = page.axes[3].patches[0]
-            assert isinstance(ellipse, Ellipse)
-            ax = page.axes[3]
-            box, size = ax.get_position(), page.get_size_inches()
-            wide = np.ptp(ax.get_xlim()) / (box.width * size[0])
-            high = np.ptp(ax.get_ylim()) / (box.height * size[1])
-            drawn = (ellipse.width / wide) / (ellipse.height / high)
-            axes = np.asarray(solution.semi_axes).reshape(-1, 2)
-            axes = axes[axes[:, 1] > 0]
-            # The page is laid out once more when it is drawn: a few per cent.
-            assert np.isclose(drawn, axes[:, 0] / axes[:, 1], rtol=0.05).any()
+    begin, width = np.array(spans).T
+    assert (np.diff(begin) > 0.999 * width[:-1]).all()
 
 
 def test_stiffness_over_speed():

@@ -1,23 +1,11 @@
 """The picture of an optimised design says what was found."""
 
-import matplotlib
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.patches import Rectangle
 
 import bearingjax as bj
 from bearingjax import plot
-
-matplotlib.use("Agg")
-
-
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    for number in plt.get_fignums():
-        plt.figure(number).canvas.draw()  # nothing may fail or warn while drawing
-    plt.close("all")
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,6 @@
 from types import SimpleNamespace
 
 import jax.numpy as jnp
-import matplotlib
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from tolerances import ROUNDING
@@ -15,19 +13,9 @@ from bearingjax.plot.rotor_parts import disc_size
 from bearingjax.rotor import CriticalSpeeds, Modes
 from bearingjax.rotor.vibration import Branch, Ending, Event, Waterfall
 
-matplotlib.use("Agg")
-
 STEEL = bj.Material(211e9, 0.3, 7810.0)
 SHAFT = bj.Shaft([0.0, 0.1, 0.3, 0.5], [0.05, 0.07, 0.06], [0.0, 0.02, 0.0], STEEL)
 MM, UM, RPM = 1e3, 1e6, 30.0 / np.pi
-
-
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    for number in plt.get_fignums():
-        plt.figure(number).canvas.draw()  # nothing may fail or warn while drawing
-    plt.close("all")
 
 
 def named(ax, label):
