@@ -89,7 +89,8 @@ def contact_angles(
         fontsize=SMALL,
         frameon=False,
         loc="upper center",
-        bbox_to_anchor=(0.5, -0.14),
+        bbox_to_anchor=(0.5, 0.0),
+        borderaxespad=3.8,  # below ticks and name of the axis
         ncols=2,
     )
     return ax
