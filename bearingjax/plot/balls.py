@@ -149,7 +149,7 @@ def ellipses(
         parts = (degrees(solution.azimuth)[mine], place, along, across, share)
         loaded = np.asarray(solution.contact_load)[mine, k] > 0
         drawn.append(np.stack(parts)[:, loaded])
-        _shoulders(ax, bearing, raceway, groove, radius)
+    _shoulders(ax, bearing, raceway, grooves[0])
     _, place, _, across, _ = patches = np.concatenate(drawn, axis=1)
     arc = _ARC * 1e3 * float(bearing.ball_diameter)
     # A raceway that goes on as a cylinder has a groove on one side only.
@@ -222,7 +222,8 @@ def _ellipse_patches(ax, patches, colour, count):
     return true, drawn
 
 
-def _shoulders(ax, bearing, raceway, groove, radius):
+def _shoulders(ax, bearing, raceway, groove):
+    radius = 1e3 * float(groove.radius)
     height = getattr(bearing, f"{raceway}_shoulder")
     if height is None:
         return
