@@ -84,12 +84,14 @@ from .design import CircularCrown as CircularCrown
 from .design import CrownedEnds as CrownedEnds
 from .design import CylindricalRollerBearing as CylindricalRollerBearing
 from .design import DeepGrooveBallBearing as DeepGrooveBallBearing
+from .design import FitConditions as FitConditions
 from .design import FourPointBallBearing as FourPointBallBearing
 from .design import FujiwaraKawase as FujiwaraKawase
 from .design import JohnsGohar as JohnsGohar
 from .design import Logarithmic as Logarithmic
 from .design import Lundberg as Lundberg
 from .design import Material as Material
+from .design import Mounting as Mounting
 from .design import NeedleRollerBearing as NeedleRollerBearing
 from .design import PreloadSpring as PreloadSpring
 from .design import Rib as Rib
@@ -100,6 +102,8 @@ from .design import Straight as Straight
 from .design import Tabulated as Tabulated
 from .design import TaperedRollerBearing as TaperedRollerBearing
 from .design import ThrustBallBearing as ThrustBallBearing
+from .design import WarmMaterial as WarmMaterial
+from .design import mounted as mounted
 from .design.form_error import FormErrors as FormErrors
 from .design.form_error import Harmonics as Harmonics
 from .element import FREEDOMS as FREEDOMS

@@ -29,6 +29,8 @@ from .fit_limits import ball_clearance as ball_clearance
 from .fit_limits import bore_limits as bore_limits
 from .fit_limits import outside_limits as outside_limits
 from .fit_limits import roller_clearance as roller_clearance
+from .fits import PLACES as PLACES
+from .fits import WARM_MATERIALS as WARM_MATERIALS
 from .fits import ClearanceRange as ClearanceRange
 from .fits import FitConditions as FitConditions
 from .fits import FitState as FitState
@@ -36,6 +38,7 @@ from .fits import Mounting as Mounting
 from .fits import WarmMaterial as WarmMaterial
 from .fits import clearance_range as clearance_range
 from .fits import fit_state as fit_state
+from .fits import mounting_at as mounting_at
 from .fits import smoothing as smoothing
 from .form_error import FormErrors as FormErrors
 from .form_error import Harmonics as Harmonics
@@ -52,6 +55,11 @@ from .logarithmic import Lundberg as Lundberg
 from .material import MATERIALS as MATERIALS
 from .material import Material as Material
 from .material import contact_modulus as contact_modulus
+from .mounted import mounted as mounted
+from .mounted import raceway_diameters as raceway_diameters
+from .mounted import radial_clearance as radial_clearance
+from .mounted import sized as sized
+from .mounted import with_radial_clearance as with_radial_clearance
 from .profile import AbstractProfile as AbstractProfile
 from .profile import CircularCrown as CircularCrown
 from .profile import CrownedEnds as CrownedEnds

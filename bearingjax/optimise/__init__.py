@@ -29,6 +29,7 @@ from .measure import MeanPressure as MeanPressure
 from .measure import PeakPressure as PeakPressure
 from .measure import Stiffness as Stiffness
 from .measure import StiffnessTarget as StiffnessTarget
+from .mounted_bearing import MountedBearing as MountedBearing
 from .optimise import History as History
 from .optimise import Optimised as Optimised
 from .optimise import optimise as optimise

@@ -22,6 +22,7 @@ from ..statics.cases import Cases
 from ..statics.preload import preload
 from ..statics.sweep import stack_designs
 from .cases_list import LARGEST, read_list
+from .fit_table import fitted
 from .quantity import SceneError, kind_of, to_si
 from .read import Scene, scene_of
 from .scene_file import assign, find_scene, parse_bearing
@@ -41,7 +42,7 @@ OPERATING = {
 }
 """What may vary from case to case without changing the design, and its kind."""
 
-DESIGN = ("bearing", "set", "contact")
+DESIGN = ("bearing", "set", "contact", "fit", "temperature")
 """Tables of the scene whose keys make a design."""
 
 MOST_DESIGNS = 10**5
@@ -54,7 +55,8 @@ class CaseTable:
 
     Attributes:
         scene: The scene without its cases.
-        element: The bearing, preloaded; of several designs, `stack_designs`.
+        element: The bearing, preloaded and mounted; of several designs,
+            `stack_designs`.
         cases: The cases.
         varied: Keys that vary, in order.
         settings: Of each design, the settings that make it.
@@ -244,7 +246,7 @@ def _spectrum(table, data) -> list[_Column]:
 
 def _designs(data, path, columns):
     """Element, design of each case, settings and warnings of all designs."""
-    varied = [column for column in columns if column.key not in OPERATING]
+    varied = [c for c in columns if c.key not in OPERATING or _fits(data, c.key)]
     if not varied:
         scene = scene_of(data, path)
         return _preloaded(scene), None, ({},), ()
@@ -265,9 +267,11 @@ def _designs(data, path, columns):
         settings = {c.key: c.values[c.index[case]] for c in varied}
         changed = copy.deepcopy(data)
         for key, value in settings.items():
-            assign(changed, key, value, path.name)
+            # Of a range the speeds are numbers already.
+            speed = key in OPERATING and not isinstance(value, str)
+            assign(changed, key, f"{value} rad/s" if speed else value, path.name)
         scene = scene_of(changed, path)
-        made.append(settings)
+        made.append({k: v for k, v in settings.items() if k not in OPERATING})
         elements.append(_preloaded(scene))
         odd += scene.warnings
     try:
@@ -277,10 +281,16 @@ def _designs(data, path, columns):
     return element, design.reshape(-1), tuple(made), tuple(odd)
 
 
+def _fits(data, key) -> bool:
+    """Whether a key of [operating] changes the mounted bearing, by its speed."""
+    return "fit" in data and key.endswith("_speed")
+
+
 def _preloaded(scene):
-    if scene.preload_force is None:
-        return scene.element
-    return preload(scene.element, scene.preload_force, throw=False)
+    element = scene.element
+    if scene.preload_force is not None:
+        element = preload(element, scene.preload_force, throw=False)
+    return fitted(scene.fits, element)
 
 
 def _cases(table, scene, columns, design) -> Cases:

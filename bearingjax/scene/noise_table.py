@@ -19,6 +19,7 @@ from ..acoustics.reference_levels import NORM
 from ..design import BearingSet, n_elements
 from ..element import RINGS
 from .deviations_table import read_deviations
+from .fit_table import fitted
 from .noise_scene import DIRECTIONS, NoiseScene
 from .read import Scene, scene_of
 from .scene_file import find_scene, parse_bearing
@@ -52,7 +53,8 @@ def read_noise(
     vibration = top.table("vibration", required=True)
     operating, deviations = top.table("operating"), top.table("deviations")
     _check_bearing(top, operating, scene)
-    bearing: Any = scene.element.bearing
+    element = fitted(scene.fits, scene.element)
+    bearing: Any = element.bearing
     errors = read_deviations(deviations, n_elements(bearing), path.parent)
     deviations.finish()
     values = {
@@ -70,7 +72,7 @@ def read_noise(
     if retardation is not None:
         values["retardation"] = retardation
     with vibration.building():
-        model = NoiseModel(scene.element, **values)
+        model = NoiseModel(element, **values)
     tolerances, seed = None, 0
     if "tolerance" in vibration or bearings:
         table = vibration.table("tolerance", required=True)

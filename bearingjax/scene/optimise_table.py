@@ -17,6 +17,7 @@ from ..optimise.measure import (
     Stiffness,
     StiffnessTarget,
 )
+from ..optimise.mounted_bearing import MountedBearing
 from ..optimise.search import METHODS
 from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
@@ -34,6 +35,15 @@ OBJECTIVES = (
     "displacement",
     "stiffness",
 )
+
+
+OF_FITS = (
+    "shaft_interference",
+    "housing_interference",
+    "shaft_bore",
+    "housing_diameter",
+)
+"""Numbers of a [fit] that may be free."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -115,7 +125,7 @@ def _optimisation(table: Table, scene: Scene, cases: Cases) -> Optimisation:
         constraints = tuple(
             _constraint(part, exponent, balls) for part in table.tables("constraints")
         )
-    variables = _variables(table.table("variables", required=True), element)
+    variables = _variables(table.table("variables", required=True), scene)
     method = table.choice("method", METHODS, None)
     if constraints and method not in (None, "slsqp"):
         problem = f'{method!r} keeps no constraints; take "slsqp" or leave it out'
@@ -157,8 +167,25 @@ def scene_numbers(element: BearingElement[Any]) -> dict[str, tuple[str, ...]]:
     return found
 
 
-def _variables(table: Table, element) -> tuple[Variable, ...]:
-    numbers = scene_numbers(element)
+def design_of(scene: Scene) -> BearingElement[Any] | MountedBearing:
+    """What is optimised: the bearing of a scene, on its seats if it has any.
+
+    Args:
+        scene: From `read_scene`.
+    """
+    if scene.fits is None:
+        return scene.element
+    return MountedBearing(scene.element, scene.fits.mounting, scene.fits.conditions)
+
+
+def _variables(table: Table, scene: Scene) -> tuple[Variable, ...]:
+    element, numbers = design_of(scene), scene_numbers(scene.element)
+    if scene.fits is not None:
+        numbers = {
+            key: tuple(f"unmounted.{path}" for path in paths)
+            for key, paths in numbers.items()
+        }
+        numbers |= {f"fit.{name}": (f"mounting.{name}",) for name in OF_FITS}
     variables = []
     for key in table.keys():
         if key not in numbers:

@@ -10,6 +10,7 @@ from ..numerics.result import Result
 from ..statics.solution import BallSolution, Solution, message
 from ..statics.warning import warnings
 from .files import write_numbers
+from .fit_report import fit_as_dict
 from .read import Scene
 
 OF_ROLLERS = (
@@ -62,6 +63,7 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     Returns:
         The fields of `OF_ROLLERS` or `OF_BALLS`, with springs `OF_SPRINGS` (m, rad,
         N, N m, Pa), and result, message, residual, iterations, warnings and version.
+        With fits also `fit`, as of `fit_as_dict`.
         If the solve did not converge the arrays are left out: there are no results.
         What is infinite (the margin of a shoulder that is not given) is null.
     """
@@ -75,6 +77,7 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     residual = float(solution.stats.residual)
     return {
         **(numbers if solved else {}),
+        **_fits(scene),
         "result": result.label,
         "message": message(solution, scene.moving_ring),
         "residual": residual if np.isfinite(residual) else None,
@@ -82,6 +85,12 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         "warnings": [*scene.warnings, *(warnings(solution) if solved else [])],
         "version": __version__,
     }
+
+
+def _fits(scene):
+    if scene.fits is None:
+        return {}
+    return {"fit": fit_as_dict(scene.fits, scene.element.bearing)}
 
 
 def _numbers(solution):

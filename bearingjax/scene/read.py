@@ -19,6 +19,7 @@ from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit_of
 from .bearing_table import read_bearing
 from .choices_table import read_choices
+from .fit_table import Fits, fit_facts, fit_warnings, read_fits
 from .scene_file import find_scene, parse_bearing
 from .table import Table
 
@@ -33,8 +34,10 @@ class Scene:
 
     Attributes:
         name: Name of the file without its ending.
-        element: The bearing with its law and numerics, before it is preloaded.
+        element: The bearing with its law and numerics, before it is preloaded and
+            mounted.
         preload_force: Force to which its rows are ground [N], or `None`.
+        fits: Seats and temperatures, or `None`: it is solved as on the drawing.
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring [N, N m].
         prescribed: Displacements given by freedom name [m, rad].
         free: Freedoms that may move, or `None` for all that the bearing restrains.
@@ -48,6 +51,7 @@ class Scene:
     name: str
     element: BearingElement[Any]
     preload_force: float | None
+    fits: Fits | None
     load: tuple[float, ...]
     prescribed: dict[str, float]
     free: tuple[str, ...] | None
@@ -64,7 +68,7 @@ class Scene:
 
 
 def load_bearing(source: str | Path) -> Any:
-    """The bearing of a scene file.
+    """The bearing of a scene file, as on the drawing.
 
     Args:
         source: Path of a `.toml` scene, or the name of a shipped one.
@@ -133,6 +137,11 @@ def read_element(
 
 def _scene(top, name, bearing, preload, odd) -> Scene:
     operating, numerics = top.table("operating"), top.table("numerics")
+    speeds = {r: operating.real(f"{r}_speed", unit_of(Speed, r), 0.0) for r in RINGS}
+    speed = Speed(**speeds) if any(speeds.values()) else None
+    bearing, fits = read_fits(top, bearing, speed)
+    if fits is not None:
+        odd += tuple(fit_warnings(fit_facts(fits, bearing)))
     element = read_element(bearing, top.table("contact"), operating, numerics)
     tolerance = numerics.number("tolerance", None)
     if tolerance is not None and not 1e-14 <= tolerance < 1e-2:
@@ -154,7 +163,6 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
                 " that load; choose one"
             )
             raise operating.error("load", problem)
-    speeds = {r: operating.real(f"{r}_speed", unit_of(Speed, r), 0.0) for r in RINGS}
     held = is_ball(bearing) and isinstance(element.kinematics, ConstantAngle)
     if held and any(speeds.values()):
         problem = "constant_angle is for balls at rest; leave out the speeds"
@@ -163,11 +171,12 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         name=name,
         element=element,
         preload_force=preload,
+        fits=fits,
         load=tuple(load.get(component, 0.0) for component in LOADS),
         prescribed=prescribed,
         free=free,
         fixed_ring=operating.choice("fixed_ring", RINGS, "outer"),
-        speed=Speed(**speeds) if any(speeds.values()) else None,
+        speed=speed,
         tolerance=tolerance,
         points=_points(top.table("output"), bearing),
         warnings=odd,

@@ -14,6 +14,7 @@ from ..design import BearingSet, TaperedRollerBearing, is_ball, rows_of
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..statics.solution import BallSolution, Solution
 from ..statics.warning import warnings
+from .fit_report import fit_report
 from .operation_report import operation
 from .quantity import display_unit
 from .read import Scene
@@ -63,6 +64,11 @@ def _bearing(scene, solution):
     row = rows_of(bearing)[0].bearing
     own = ball_row(row, head) if is_ball(bearing) else roller_row(row, head)
     return "\n".join([*lines, *own])
+
+
+def _fits(scene, solution):
+    fits = scene.fits
+    return "" if fits is None else fit_report(fits, scene.element.bearing)
 
 
 def _place(row):
@@ -267,6 +273,7 @@ def _ending(scene, solution):
 SECTIONS: dict[str, Section] = {
     "Bearing": _bearing,
     "Operation, materials and laws": operation,
+    "Fits and clearance": _fits,
     "Displacement and load": _motion,
     "Stiffness": _stiffness,
     "Rolling elements": _elements,

@@ -89,6 +89,10 @@ def _bearing(table: Table, named: dict[str, _Bearing], path: Path) -> _Bearing:
         scene = scene_of(parse_bearing(found, ()), found)
     except SceneError as error:
         raise table.error("bearing", error) from error
+    if scene.fits is not None:
+        problem = f"{name} has a [fit], which changes with the speed of the rotor; give"
+        cure = "the clearance that is left, which `bearingjax solve` prints"
+        raise table.error("bearing", f"{problem} {cure}")
     return _Bearing(scene.name, scene.element, scene.preload_force)
 
 

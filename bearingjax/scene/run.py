@@ -3,13 +3,16 @@
 import functools
 from pathlib import Path
 
+import equinox as eqx
+
 from ..element import BearingElement
 from ..numerics.types import as_array
 from ..optimise.optimise import Optimised, optimise
 from ..statics.load import solve_load
 from ..statics.preload import preload
 from ..statics.solution import Solution
-from .optimise_table import Optimisation
+from .fit_table import fitted
+from .optimise_table import Optimisation, design_of
 from .programs import call_once
 from .quantity import SceneError
 from .read import Scene
@@ -52,11 +55,12 @@ def run_scene(scene: Scene, programs: Path | None = None) -> Solution:
 
 
 def _element(scene, programs) -> BearingElement:
-    """The bearing of a scene, with its preload set."""
-    if scene.preload_force is None:
-        return scene.element
-    force = as_array(scene.preload_force, float)
-    return _called(programs, _preloaded, scene.element, force)
+    """The bearing of a scene, with its preload set, mounted."""
+    element = scene.element
+    if scene.preload_force is not None:
+        force = as_array(scene.preload_force, float)
+        element = _called(programs, _preloaded, element, force)
+    return fitted(scene.fits, element)
 
 
 def _called(programs, function, *arguments):
@@ -100,17 +104,25 @@ def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
     scene = task.scene
     build = None
     if scene.preload_force is not None:
-        build = functools.partial(preload, force=scene.preload_force, throw=False)
+        build = functools.partial(_ground, force=scene.preload_force)
     try:
         return _optimised(task, build, progress)
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
 
 
+def _ground(design, force):
+    """A design, its rows ground to their preload before it is mounted."""
+    if isinstance(design, BearingElement):
+        return preload(design, force, throw=False)
+    ground = preload(design.unmounted, force, throw=False)
+    return eqx.tree_at(lambda d: d.unmounted, design, ground)
+
+
 def _optimised(task, build, progress) -> Optimised:
     scene = task.scene
     return optimise(
-        scene.element,
+        design_of(scene),
         task.cases,
         task.variables,
         task.objective,

@@ -26,6 +26,7 @@ from ..dynamics import (
 )
 from ..element import Speed
 from ..element.frame import LOAD_UNITS, LOADS
+from .fit_table import fitted
 from .lubricant_table import read_lubricant, read_traction
 from .quantity import kind_of
 from .read import Scene, scene_of
@@ -124,7 +125,8 @@ def read_skid(
         values["least_film"] = film
     values["inlet_heating"] = dynamics.flag("inlet_heating", False)
     with dynamics.building():
-        model = SkidModel(scene.element, oil, temperature, traction, **values)
+        element = fitted(scene.fits, scene.element)
+        model = SkidModel(element, oil, temperature, traction, **values)
     found = SkidScene(
         scene=scene,
         model=model,

@@ -169,7 +169,7 @@ def test_an_aluminium_housing_lets_go_when_warm():
 
 def test_a_ring_that_rotates():
     speed = 3000.0
-    loose = mounting(shaft_interference=-1e-3)
+    loose = mounting(shaft_interference=-1e-4)
     found = state(loose, FitConditions(speed=speed))
     # Thin: ρ ω² r³/E; the thick ring is between those of its two radii.
     free = [2 * 7850 * speed**2 * r**3 / 206e9 for r in (0.0125, 0.01528)]
@@ -177,7 +177,7 @@ def test_a_ring_that_rotates():
     # Equation of motion: stress of the ring by summing up its equilibrium in layers.
     growth = 2 * spun(0.0125, 0.01528, speed)
     np.testing.assert_allclose(found.inner_raceway_growth, growth, rtol=1e-5)
-    thin = mounting(inner_raceway=0.025 * (1 + 1e-7), shaft_interference=-1e-3)
+    thin = mounting(inner_raceway=0.025 * (1 + 1e-7), shaft_interference=-1e-4)
     found = state(thin, FitConditions(speed=speed))
     np.testing.assert_allclose(found.inner_raceway_growth, free[0], rtol=1e-6)
 
@@ -227,7 +227,7 @@ def test_slopes_are_those_of_differences():
         housing=ALUMINIUM,
         shaft_smoothing=1 * MICRON,
     )
-    warm = FitConditions(30.0, 25.0, 22.0, 12.0, 8.0, 1500.0)
+    warm = FitConditions(30.0, 25.0, 22.0, 12.0, 8.0, 1500.0, 900.0)
     numbers, tree = jax.tree.flatten((design, warm))
     scale = np.array([float(n) for n in numbers])
 
@@ -245,7 +245,7 @@ def test_slopes_are_those_of_differences():
         np.testing.assert_allclose(
             slopes[i] * step, difference * step, rtol=DIFFERENCE, atol=1e-18
         )
-    assert (slopes != 0).sum() == len(scale) - 5  # five that nothing depends on
+    assert (slopes != 0).sum() == len(scale) - 3  # elastic constants of elements
 
 
 def sizes(shaft="k5", housing="H7"):

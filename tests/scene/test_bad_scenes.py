@@ -34,8 +34,8 @@ SETTINGS = {
         "cylindrical_rig",
         "bearings.n_rollers=3",
         "`bearings`: unknown key (did you mean `bearing`?); known at the top level:"
-        " bearing, cage, cases, contact, deviations, dynamics, lubricant, numerics,"
-        " operating, optimise, output",
+        " bearing, cage, cases, contact, deviations, dynamics, fit, lubricant,"
+        " numerics, operating, optimise, output, set, temperature, vibration",
     ),
     "unknown key in bearing": (
         "cylindrical_rig",

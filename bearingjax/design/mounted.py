@@ -1,0 +1,210 @@
+"""A bearing as it is mounted: with the radial clearance that its fits leave.
+
+Fits, temperatures and speed change the radial distance of the raceways. What else they
+change is left as on the drawing: pitch and ball diameters, by a ten thousandth, and
+axial distances, such as between the rows of a set.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..numerics.types import Scalar, as_real
+from .ball import AbstractBallBearing
+from .ball_types import (
+    AngularContactBallBearing,
+    DeepGrooveBallBearing,
+    ThrustBallBearing,
+)
+from .bearing_set import Bearing, BearingSet, SetRow, rows_of
+from .checks import check, concrete, number
+from .fits import FitConditions, Mounting, fit_state
+
+
+def raceway_diameters(bearing: Bearing) -> tuple[Scalar, Scalar]:
+    """Diameters up to which the rings of a row count as thick-walled cylinders [m].
+
+    Of deep groove bearings and cylindrical rollers, at the bottom of the raceways. Of
+    other balls, where they touch at the free contact angle: near the mean thickness of
+    a ring whose shoulders differ. Of tapered rollers, in their middle.
+
+    Args:
+        bearing: One row.
+
+    Returns:
+        Inner and outer raceway.
+
+    Raises:
+        TypeError: If it is a thrust bearing or no bearing.
+    """
+    check_radial("raceway_diameters", bearing)
+    pitch = bearing.pitch_diameter
+    if isinstance(bearing, AbstractBallBearing):
+        size, bottom = bearing.ball_diameter, isinstance(bearing, DeepGrooveBallBearing)
+        across = size if bottom else size * bearing.free_cosine
+        return pitch - across, pitch + across
+    size, axis, half = bearing.roller_diameter, bearing.axis_angle, bearing.half_angle
+    return pitch - size * jnp.cos(axis - half), pitch + size * jnp.cos(axis + half)
+
+
+def radial_clearance(bearing: Bearing) -> Scalar:
+    """Radial internal clearance of a row, between the ends of its radial play [m].
+
+    Of angular contact bearings 2A (1 - cos α0), A the distance of the groove centres.
+    A tapered roller stays with the inner ring and its large rib. What moves the outer
+    ring radially closes the gap by the cosine of the outer raceway's angle.
+
+    Args:
+        bearing: One row.
+
+    Raises:
+        TypeError: If it is a thrust bearing or no bearing.
+    """
+    check_radial("radial_clearance", bearing)
+    if isinstance(bearing, AbstractBallBearing):
+        return bearing.clearance
+    return bearing.radial_internal_clearance / _outer_cosine(bearing)
+
+
+def _outer_cosine(rollers):
+    return jnp.cos(rollers.axis_angle + rollers.half_angle)
+
+
+def with_radial_clearance(bearing: Bearing, clearance: Any) -> Any:
+    """The row with another radial internal clearance.
+
+    Of an angular contact bearing it is the free contact angle that changes: grooves
+    that come nearer radially are met at a smaller angle.
+
+    Args:
+        bearing: One row.
+        clearance: Radial internal clearance as of `radial_clearance` [m].
+
+    Raises:
+        TypeError: As `radial_clearance`.
+        ValueError: If the bearing does not allow it: an angular contact bearing needs
+            some, or there is no contact angle.
+    """
+    check_radial("with_radial_clearance", bearing)
+    clearance = as_real(clearance)
+    number("with_radial_clearance", "clearance", clearance, "m")
+    if isinstance(bearing, AngularContactBallBearing):
+        quarter = clearance / (4.0 * bearing.centre_distance)
+        known = concrete(clearance, quarter)
+        if known is not None:
+            allowed = (
+                f"above 0 and below {0.5 * known[0] / known[1]:.6g} m"
+                if known[1]
+                else "above 0 m"
+            )
+            check(
+                "with_radial_clearance",
+                "clearance",
+                0.0 < known[1] < 0.5,
+                f"{allowed}: an angular contact bearing with less has no contact angle",
+                clearance,
+                "m",
+            )
+        return replace(bearing, contact_angle=2.0 * jnp.arcsin(jnp.sqrt(quarter)))
+    if isinstance(bearing, DeepGrooveBallBearing):
+        return replace(bearing, radial_internal_clearance=clearance, contact_angle=None)
+    if isinstance(bearing, AbstractBallBearing):
+        return replace(bearing, radial_internal_clearance=clearance)
+    # Made again, a taper would repeat the warning of its apexes.
+    normal = clearance * _outer_cosine(bearing)
+    return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, normal)
+
+
+def sized(mounting: Mounting, bearing: Bearing | BearingSet) -> Mounting:
+    """The mounting with the sizes of a bearing where its own are `None`.
+
+    Args:
+        mounting: The seats.
+        bearing: A row, or a set, whose first row counts.
+
+    Raises:
+        TypeError: As `radial_clearance`.
+        ValueError: If the rings are not thicker than the raceways.
+    """
+    if not isinstance(mounting, Mounting):
+        raise TypeError(
+            f"sized: `mounting` is a {type(mounting).__name__}; it must be a Mounting."
+        )
+    row = rows_of(bearing)[0].bearing
+    inner, outer = raceway_diameters(row)
+    own = {
+        "inner_raceway": inner,
+        "outer_raceway": outer,
+        "radial_clearance": radial_clearance(row),
+    }
+    missing = {k: v for k, v in own.items() if getattr(mounting, k) is None}
+    return replace(mounting, **missing)
+
+
+def mounted(
+    bearing: Bearing | BearingSet,
+    mounting: Mounting,
+    conditions: FitConditions | None = None,
+) -> Any:
+    """The bearing with the radial clearance that fits, temperatures and speed leave.
+
+    Differentiable with respect to every number. A clearance below zero is preload, with
+    which any load solve goes on; only angular contact bearings need some clearance.
+
+    In a set the rows of angular contact are preloaded more, or less: the balls touch
+    elsewhere, and the rings stay where they are on shaft and in housing (`inner_offset`
+    takes the difference of A sin α0). Set its preload first, `preload` being that of
+    the bearings as they are ground. Of one row, displacements count from where the
+    mounted balls touch.
+
+    Args:
+        bearing: One row or a set, of a radial type.
+        mounting: Its seats; sizes that are `None` are those of the bearing, in a set of
+            each row.
+        conditions: Temperatures and speed; `None`: mounted, at rest, at the temperature
+            of the measured sizes.
+
+    Returns:
+        Bearing of the same type.
+
+    Raises:
+        TypeError: For thrust bearings and what is no bearing.
+        ValueError: If the rings are not thicker than the raceways, or as
+            `with_radial_clearance`.
+    """
+    if isinstance(bearing, BearingSet):
+        rows = tuple(_mounted_row(row, mounting, conditions) for row in bearing.rows)
+        return BearingSet(rows)
+    left = fit_state(sized(mounting, bearing), conditions).radial_clearance
+    return with_radial_clearance(bearing, left)
+
+
+def _mounted_row(row: SetRow, mounting, conditions) -> SetRow:
+    new = mounted(row.bearing, mounting, conditions)
+    if not isinstance(new, AngularContactBallBearing):
+        return replace(row, bearing=new)
+    before: Any = row.bearing
+    sines = jnp.sin(before.free_contact_angle) - jnp.sin(new.free_contact_angle)
+    nearer = new.centre_distance * sines
+    # A row is pressed by its inner ring moving along +z; mirrored, along -z.
+    offset = row.inner_offset + (-nearer if row.mirrored else nearer)
+    return replace(row, bearing=new, inner_offset=offset)
+
+
+def check_radial(owner: str, bearing: Any) -> None:
+    """Raise unless fits change the radial clearance of a row.
+
+    Args:
+        owner: Function that was called.
+        bearing: What it was given.
+
+    Raises:
+        TypeError: If it is a thrust bearing or no single row.
+    """
+    if isinstance(bearing, ThrustBallBearing) or not isinstance(bearing, Bearing):
+        raise TypeError(
+            f"{owner}: `bearing` is a {type(bearing).__name__}; it must be a radial"
+            " ball or roller bearing."
+        )

@@ -1,0 +1,99 @@
+"""Fits of a scene as text for people, and as numbers in SI for programs."""
+
+from typing import Any
+
+from ..design import Bearing, BearingSet
+from .fit_table import Fits, fit_facts
+
+
+def fit_report(fits: Fits, bearing: Bearing | BearingSet) -> str:
+    """Readable report of fits: radial clearance from bearing to operation, and seats.
+
+    Args:
+        fits, bearing: As of `fit_facts`.
+    """
+    facts = fit_facts(fits, bearing)
+    shaft, housing = (name or "as given" for name in fits.names)
+    lines = [
+        f"fits: shaft {shaft}, housing {housing}; sizes of the solve:"
+        f" {fits.place.replace('_', ' ')}",
+        f"radial clearance   free {_micron(facts.free)}, mounted"
+        f" {_micron(facts.mounted.radial_clearance)}, operating"
+        f" {_micron(facts.operating.radial_clearance)} µm",
+    ]
+    for words, found in (
+        ("mounted", facts.mounted_range),
+        ("operating", facts.operating_range),
+    ):
+        lines.append(
+            f"  {words:<17}probable {_ends(found.probable)}, worst"
+            f" {_ends(found.worst)} µm"
+        )
+    lines += [_seat(facts, seat) for seat in ("shaft", "housing")]
+    stress = 1e-6 * float(facts.operating.ring_stress)
+    lines.append(
+        f"hoop stress of the inner ring at its bore, operating {stress:.4g} MPa"
+    )
+    return "\n".join(lines)
+
+
+def _micron(value) -> str:
+    return f"{round(1e6 * float(value), 2) + 0.0:.4g}"
+
+
+def _ends(limits) -> str:
+    return f"{_micron(limits.lower)} to {_micron(limits.upper)}"
+
+
+def _seat(facts, seat) -> str:
+    before, after = (
+        getattr(state, f"{seat}_interference")
+        for state in (facts.mounted, facts.operating)
+    )
+    pressure = 1e-6 * float(getattr(facts.operating, f"{seat}_pressure"))
+    return (
+        f"{seat:<9}interference mounted {_micron(before)}, operating"
+        f" {_micron(after)} µm; pressure operating {pressure:.4g} MPa"
+    )
+
+
+def fit_as_dict(fits: Fits, bearing: Bearing | BearingSet) -> dict[str, Any]:
+    """Fits of a scene as plain numbers, in SI.
+
+    Args:
+        fits, bearing: As of `fit_facts`.
+
+    Returns:
+        place; radial_clearance: free, mounted, operating; worst and probable: mounted,
+        operating, each least and largest [m]; and mounted and operating:
+        shaft_interference, housing_interference [m], shaft_pressure, housing_pressure,
+        ring_stress [Pa].
+    """
+    facts = fit_facts(fits, bearing)
+    states = {"mounted": facts.mounted, "operating": facts.operating}
+    ranges = {"mounted": facts.mounted_range, "operating": facts.operating_range}
+    kept = (
+        "shaft_interference",
+        "housing_interference",
+        "shaft_pressure",
+        "housing_pressure",
+        "ring_stress",
+    )
+    return {
+        "place": fits.place,
+        "radial_clearance": {
+            "free": facts.free,
+            **{k: float(state.radial_clearance) for k, state in states.items()},
+        },
+        **{
+            kind: {
+                k: [float(end) for end in getattr(found, kind)]
+                for k, found in ranges.items()
+            }
+            for kind in ("worst", "probable")
+        },
+        **{
+            k: {name: float(getattr(state, name)) for name in kept}
+            for k, state in states.items()
+        },
+    }

@@ -1,0 +1,363 @@
+"""The [fit] and [temperature] tables of a scene: seats of a bearing, and their heat."""
+
+import dataclasses
+from typing import Any
+
+import equinox as eqx
+import jax
+
+from ..design import (
+    CLEARANCE_CLASSES,
+    LIMIT_CLASSES,
+    PLACES,
+    WARM_MATERIALS,
+    Bearing,
+    BearingSet,
+    CylindricalRollerBearing,
+    DeepGrooveBallBearing,
+    FitConditions,
+    Limits,
+    Material,
+    Mounting,
+    TaperedRollerBearing,
+    ThrustBallBearing,
+    WarmMaterial,
+    ball_clearance,
+    bore_limits,
+    clearance_range,
+    fit_state,
+    limits,
+    mounted,
+    mounting_at,
+    outside_limits,
+    radial_clearance,
+    roller_clearance,
+    rows_of,
+    sized,
+    smoothing,
+    with_radial_clearance,
+)
+from ..design.fits import PARTS, ClearanceRange, FitState
+from ..element import Speed
+from .table import Table
+
+_ZERO = 273.15
+_REFERENCE = _ZERO + 20.0
+_COLDEST, _HOTTEST = -100.0, 400.0
+
+MOST_STRESS = 127e6
+"""Hoop stress above which a fit is warned of, of bearing steel [Pa]: the largest that
+catalogues of rolling bearings (JTEKT, NTN) allow a fit."""
+
+_CLASSES = {
+    DeepGrooveBallBearing: ball_clearance,
+    CylindricalRollerBearing: roller_clearance,
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Fits:
+    """What a scene says of the seats of its bearing.
+
+    Attributes:
+        mounting: The seats, with the interferences at `place`; raceways and clearance
+            are those of the bearing.
+        conditions: Temperatures and speeds.
+        place: Where in the tolerances, one of `PLACES`.
+        limits: `Limits` of clearance and seats, as of `clearance_range`.
+        names: Of the tolerance classes of shaft and housing; empty for numbers.
+    """
+
+    mounting: Mounting
+    conditions: FitConditions
+    place: str
+    limits: dict[str, Any]
+    names: tuple[str, str]
+
+
+@dataclasses.dataclass(frozen=True)
+class FitFacts:
+    """What fits do, in plain numbers.
+
+    Attributes:
+        free: Radial clearance before mounting [m].
+        mounted: Mounted, at rest, at the temperature of the measured sizes.
+        operating: In operation.
+        mounted_range: Radial clearance over all tolerances, mounted.
+        operating_range: The same in operation.
+        loosest: In operation, at the sizes that leave the largest clearance.
+    """
+
+    free: float
+    mounted: FitState
+    operating: FitState
+    mounted_range: ClearanceRange
+    operating_range: ClearanceRange
+    loosest: FitState
+
+
+def read_fits(
+    top: Table, bearing: Bearing | BearingSet, speed: Speed | None
+) -> tuple[Any, Fits | None]:
+    """Fits of a scene, and its bearing with the clearance that it has unmounted.
+
+    Args:
+        top: The scene.
+        bearing: The design, unmounted.
+        speed: Of the rings; `None`: at rest.
+
+    Returns:
+        The bearing, whose clearance is that of the `clearance` class if there is one,
+        and its fits; `None` without [fit].
+
+    Raises:
+        SceneError: For what is missing, unknown or not allowed.
+    """
+    temperature = top.table("temperature")
+    if "fit" not in top:
+        if temperature.keys():
+            problem = "goes with a [fit]; without one nothing depends on it"
+            raise top.error("temperature", problem)
+        return bearing, None
+    table = top.table("fit")
+    row = rows_of(bearing)[0].bearing
+    if isinstance(row, ThrustBallBearing):
+        raise top.error("fit", "is for radial bearings; a thrust bearing has no play")
+    place = table.choice("at", tuple(PLACES), "middle")
+    given, names = _limits(table, top, row)
+    conditions = _conditions(temperature, speed)
+    seats = _seats(table, top, row, conditions)
+    with table.building():
+        whole = sized(Mounting(**seats), row)
+        if given["clearance"] is None:
+            own = float(radial_clearance(row))
+            given["clearance"] = Limits(own, own)
+        # NumPy's numbers: JAX would compile every small operation on the way.
+        there = mounting_at(
+            jax.device_get(whole), place, **given, conditions=jax.device_get(conditions)
+        )
+        seats["shaft_interference"] = there.shaft_interference
+        seats["housing_interference"] = there.housing_interference
+        if "clearance" in table:
+            bearing = _with_clearance(bearing, there.radial_clearance)
+        fits = Fits(Mounting(**seats), conditions, place, given, names)
+        mounted(bearing, fits.mounting, conditions)
+    return bearing, fits
+
+
+def fit_facts(fits: Fits, bearing: Bearing | BearingSet) -> FitFacts:
+    """What the fits of a scene do.
+
+    Args:
+        fits: From `read_fits`.
+        bearing: The bearing that came with them.
+    """
+    mounting = jax.device_get(sized(fits.mounting, bearing))
+    warm, cold = jax.device_get((fits.conditions, FitConditions()))
+    loosest = mounting_at(mounting, "loosest", **fits.limits)
+    return FitFacts(
+        float(mounting.radial_clearance),
+        fit_state(mounting, cold),
+        fit_state(mounting, warm),
+        clearance_range(mounting, **fits.limits, conditions=cold),
+        clearance_range(mounting, **fits.limits, conditions=warm),
+        fit_state(loosest, warm),
+    )
+
+
+def fit_warnings(facts: FitFacts) -> list[str]:
+    """What is odd about fits, a sentence each.
+
+    Args:
+        facts: From `fit_facts`.
+    """
+    told = []
+    for name, state in (("mounted", facts.mounted), ("in operation", facts.operating)):
+        if state.ring_stress > MOST_STRESS:
+            told.append(
+                f"fit: the hoop stress of the inner ring is"
+                f" {1e-6 * float(state.ring_stress):.4g} MPa {name}, above"
+                f" {1e-6 * MOST_STRESS:g} MPa, which bearing steel bears for long"
+            )
+            break
+    seats = {"shaft": "the inner ring on its shaft", "housing": "the outer ring"}
+    for seat, words in seats.items():
+        before, after, loose = (
+            float(getattr(state, f"{seat}_interference"))
+            for state in (facts.mounted, facts.operating, facts.loosest)
+        )
+        if before > 0.0 >= after:
+            told.append(
+                f"fit: {words} is tight when mounted, but loose by"
+                f" {-1e6 * after:.3g} µm in operation: its seat has no pressure"
+            )
+        elif seat == "shaft" and after > 0.0 >= loose:
+            told.append(
+                f"fit: {words} is loose in operation, by {-1e6 * loose:.3g} µm, at the"
+                " loosest sizes of the tolerances"
+            )
+    return told
+
+
+def fitted(fits: Fits | None, element: Any) -> Any:
+    """The element with its bearing mounted.
+
+    Args:
+        fits: From `read_fits`.
+        element: With the bearing unmounted, its preload set.
+    """
+    if fits is None:
+        return element
+    new = mounted(element.bearing, fits.mounting, fits.conditions)
+    return eqx.tree_at(lambda e: e.bearing, element, new)
+
+
+def _with_clearance(bearing, clearance):
+    if not isinstance(bearing, BearingSet):
+        return with_radial_clearance(bearing, clearance)
+    return BearingSet(
+        tuple(
+            dataclasses.replace(
+                row, bearing=with_radial_clearance(row.bearing, clearance)
+            )
+            for row in bearing.rows
+        )
+    )
+
+
+def _limits(table: Table, top: Table, row) -> tuple[dict[str, Any], tuple[str, str]]:
+    """Limits of all sizes, and names of the classes of the seats."""
+    bore, outside = (table.quantity(k, "length") for k in ("bore", "outside_diameter"))
+    exact = Limits(0.0, 0.0)
+    found: dict[str, Any] = {"clearance": _clearance(table, top, row, bore)}
+    names = []
+    for seat, size, ring, of_ring in (
+        ("shaft", bore, "bore", bore_limits),
+        ("housing", outside, "outside_diameter", outside_limits),
+    ):
+        name = _class(table, seat)
+        names.append(name)
+        if not name:
+            value = table.quantity(f"{seat}_interference", "length")
+            # As a deviation: a housing that is small is tight.
+            own = value if seat == "shaft" else -value
+            found[seat], found[ring] = Limits(own, own), exact
+            continue
+        if isinstance(row, TaperedRollerBearing):
+            problem = "is for bearings of other types: the tolerances of tapered"
+            cure = f"rollers differ; give `{seat}_interference`"
+            raise table.error(seat, f"{problem} {cure}")
+        with table.building():
+            found[seat], found[ring] = limits(name, size), of_ring(size)
+    return found, (names[0], names[1])
+
+
+def _class(table: Table, seat: str) -> str:
+    """Name of the tolerance class of a seat; empty if its interference is given."""
+    key = f"{seat}_interference"
+    if (seat in table) == (key in table):
+        problem = "is missing" if seat not in table else f"stands beside `{key}`"
+        example = '"k5"' if seat == "shaft" else '"H7"'
+        raise table.error(
+            seat, f"{problem}; give a tolerance class, such as {example}, or `{key}`"
+        )
+    if key in table:
+        return ""
+    small = seat == "shaft"
+    names = tuple(name for name in LIMIT_CLASSES if name[0].islower() is small)
+    return table.choice(seat, names)
+
+
+def _clearance(table: Table, top: Table, row, bore) -> Limits | None:
+    """Limits of a clearance class; `None`: the bearing's own number."""
+    name = table.choice("clearance", CLEARANCE_CLASSES, None)
+    if name is None:
+        return None
+    find = _CLASSES.get(type(row))
+    if find is None:
+        problem = "is for deep groove balls and cylindrical rollers; give the"
+        raise table.error("clearance", f"{problem} bearing's own clearance or angle")
+    drawn = top.raw("bearing")
+    for key in ("radial_internal_clearance", "contact_angle"):
+        if key in drawn:
+            problem = f"stands beside `bearing.{key}`; one follows from the other"
+            raise table.error("clearance", problem)
+    with table.building():
+        return find(name, bore)
+
+
+def _seats(table: Table, top: Table, row, conditions) -> dict[str, Any]:
+    """Sizes and materials of a `Mounting`; interferences are put in later."""
+    seats: dict[str, Any] = {
+        key: table.quantity(key, "length")
+        for key in ("bore", "outside_diameter", "housing_diameter")
+    }
+    seats |= {"shaft_interference": 0.0, "housing_interference": 0.0}
+    for key in ("shaft_bore", "inner_raceway", "outer_raceway"):
+        if key in table:
+            seats[key] = table.quantity(key, "length")
+    ring = table.quantity("ring_roughness", "length", 0.0)
+    for seat in ("shaft", "housing"):
+        own = table.quantity(f"{seat}_roughness", "length", None)
+        if own is not None:
+            seats[f"{seat}_smoothing"] = smoothing(own, ring)
+        seats[seat] = _seat_material(table, f"{seat}_material")
+    if ring and not {"shaft_roughness", "housing_roughness"} & set(table.keys()):
+        problem = "goes with `shaft_roughness` or `housing_roughness`"
+        raise table.error("ring_roughness", problem)
+    drawn = top.raw("bearing")
+    own = "ring_material" if "ring_material" in drawn else "material"
+    rises = {part: float(getattr(conditions, part)) != 0.0 for part in PARTS}
+    warm = rises["inner_ring"] or rises["outer_ring"]
+    rings = _of_bearing(table, drawn, own, "ring_expansion", row.rings, warm)
+    balls = _of_bearing(
+        table, drawn, "material", "element_expansion", row.material, rises["elements"]
+    )
+    return {**seats, "inner_ring": rings, "outer_ring": rings, "elements": balls}
+
+
+def _of_bearing(table: Table, drawn: dict[str, Any], key, wanted, material, warm):
+    """A material of the bearing with its expansion."""
+    value = table.quantity(wanted, "temperature coefficient", None)
+    if value is None:
+        name = drawn.get(key, "steel")
+        if not isinstance(name, str):
+            if warm:
+                problem = f"is missing: `bearing.{key}` has numbers, and no expansion"
+                raise table.error(wanted, problem)
+            name = "steel"
+        value = WARM_MATERIALS[name]().expansion
+    with table.building():
+        return WarmMaterial(material, value)
+
+
+def _seat_material(table: Table, key: str) -> WarmMaterial:
+    given = table.table_or_word(key, tuple(WARM_MATERIALS))
+    if given is None:
+        return WarmMaterial.steel()
+    if isinstance(given, str):
+        return WARM_MATERIALS[given]()
+    values = given.fields(Material, "elastic_modulus", "poisson_ratio", "density")
+    own = given.quantity("expansion", "temperature coefficient")
+    with given.building():
+        return WarmMaterial(Material(**values), own)
+
+
+def _conditions(table: Table, speed: Speed | None) -> FitConditions:
+    """Temperatures above that of the measured sizes, and speeds."""
+    reference = _temperature(table, "reference", _REFERENCE)
+    rises = {part: _temperature(table, part, reference) - reference for part in PARTS}
+    if speed is None:
+        return FitConditions(**rises)
+    return FitConditions(
+        **rises, speed=float(speed.inner), outer_speed=float(speed.outer)
+    )
+
+
+def _temperature(table: Table, key: str, default: float) -> float:
+    value = table.quantity(key, "temperature", default)
+    celsius = value - _ZERO
+    if not _COLDEST <= celsius <= _HOTTEST:
+        allowed = f"from {_COLDEST:g} to {_HOTTEST:g} °C"
+        raise table.error(key, f"{celsius:.5g} °C is not allowed; {allowed}")
+    return value

@@ -1,0 +1,258 @@
+"""Mounted bearings against plane geometry, and against raceways that are moved."""
+
+from dataclasses import replace
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from slopes import with_slopes
+from tolerances import DIFFERENCE
+
+import bearingjax as bj
+from bearingjax.design import (
+    Limits,
+    Rib,
+    Ribs,
+    clearance_range,
+    fit_state,
+    mounting_at,
+    raceway_diameters,
+    radial_clearance,
+    sized,
+    with_radial_clearance,
+)
+
+MICRON = 1e-6
+BALLS = {
+    "n_balls": 7,
+    "pitch_diameter": 0.0385,
+    "ball_diameter": 0.00794,
+    "outer_osculation": 0.53,
+    "inner_osculation": 0.52,
+}
+DEEP = bj.DeepGrooveBallBearing(**BALLS, radial_internal_clearance=12.5 * MICRON)
+ANGULAR = bj.AngularContactBallBearing(**BALLS, contact_angle=0.4)
+FOUR = bj.FourPointBallBearing(
+    **BALLS, shim_angle=0.35, radial_internal_clearance=10 * MICRON
+)
+RIB = Rib(0.3, 1.5e-3, 0.0)
+TAPER = bj.TaperedRollerBearing(
+    7,
+    0.0385,
+    0.007,
+    0.009,
+    roller_axis_angle=0.2,
+    roller_half_angle=0.0361,
+    radial_internal_clearance=20 * MICRON,
+    ribs=Ribs(inner_minus=RIB),
+)
+CYLINDER = bj.CylindricalRollerBearing(
+    7, 0.0385, 0.007, 0.009, radial_internal_clearance=20 * MICRON
+)
+A = (0.53 + 0.52 - 1) * 0.00794  # distance of the groove centres
+SEATS = bj.Mounting(
+    bore=0.025,
+    outside_diameter=0.052,
+    housing_diameter=0.080,
+    shaft_interference=10 * MICRON,
+    housing_interference=-10 * MICRON,
+)
+WARM = bj.FitConditions(40.0, 38.0, 35.0, 25.0, 20.0, 800.0)
+
+
+def near(value):
+    return pytest.approx(value, rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    "bearing, inner, outer",
+    [
+        (DEEP, 0.03056, 0.04644),
+        (ANGULAR, 0.0385 - 0.00794 * np.cos(0.4), 0.0385 + 0.00794 * np.cos(0.4)),
+        (CYLINDER, 0.0315, 0.0455),
+        (TAPER, 0.0385 - 0.007 * np.cos(0.1639), 0.0385 + 0.007 * np.cos(0.2361)),
+    ],
+    ids=["deep groove", "angular contact", "cylinders", "tapers"],
+)
+def test_raceways(bearing, inner, outer):
+    found = [float(x) for x in raceway_diameters(bearing)]
+    assert found == near([inner, outer])
+
+
+@pytest.mark.parametrize("bearing", [DEEP, FOUR, CYLINDER, TAPER])
+def test_the_clearance_that_is_left(bearing):
+    state = fit_state(sized(SEATS, bearing), WARM)
+    found = bj.mounted(bearing, SEATS, WARM)
+    assert type(found) is type(bearing)
+    assert float(radial_clearance(found)) == near(float(state.radial_clearance))
+    assert float(state.radial_clearance) < 0.3 * float(radial_clearance(bearing))
+    tilt = np.cos(0.2361) if bearing is TAPER else 1.0
+    own = float(found.radial_internal_clearance)
+    assert own == near(float(state.radial_clearance) * tilt)
+
+
+def test_a_deep_groove_bearing_by_its_angle():
+    angle = np.arccos(1 - 12.5 * MICRON / (2 * A))
+    by_angle = bj.DeepGrooveBallBearing(**BALLS, contact_angle=angle)
+    found = bj.mounted(by_angle, SEATS).radial_internal_clearance
+    wanted = bj.mounted(DEEP, SEATS).radial_internal_clearance
+    assert float(found) == pytest.approx(float(wanted), rel=1e-7)
+
+
+def groove_centres(loss):
+    """Contact angle and axial distance of groove centres nearer by half a loss."""
+    radial = A * np.cos(0.4) + 0.5 * loss
+    axial = np.sqrt(A**2 - radial**2)
+    return np.arctan2(axial, radial), axial
+
+
+def test_angular_contact_meets_at_a_smaller_angle():
+    free = float(radial_clearance(ANGULAR))
+    assert free == near(2 * A * (1 - np.cos(0.4)))
+    found = bj.mounted(ANGULAR, SEATS, WARM)
+    left = float(fit_state(sized(SEATS, ANGULAR), WARM).radial_clearance)
+    angle, axial = groove_centres(free - left)
+    assert float(found.contact_angle) == near(angle)
+    pair = bj.BearingSet.back_to_back(ANGULAR, 0.02, 4 * MICRON)
+    rows = bj.mounted(pair, SEATS, WARM).rows
+    assert [float(r.bearing.contact_angle) for r in rows] == near(2 * [angle])
+    # What the groove centres come nearer along the axis presses both rows.
+    pressed = 2 * MICRON + A * np.sin(0.4) - axial
+    assert [float(r.inner_offset) for r in rows] == pytest.approx(
+        [pressed, -pressed], rel=1e-7
+    )
+
+
+def force(element, bearing, q):
+    return eqx.tree_at(lambda e: e.bearing, element, bearing).force(q)[8]
+
+
+axial_force = eqx.filter_jit(force)
+
+
+def pushed(z):
+    return np.eye(12)[8] * z
+
+
+def test_angular_contact_against_raceways_that_are_moved():
+    # The inner groove is farther from the axis by 3 µm, the load 60 µm.
+    growth, z = 6 * MICRON, 60 * MICRON
+    deviation = np.zeros((7, 2, 3))
+    deviation[:, 1, 1] = 0.5 * growth
+    flat = replace(ANGULAR, raceway_deviation=np.zeros((7, 2, 3)))
+    grown = replace(ANGULAR, raceway_deviation=deviation)
+    element = bj.BearingElement(flat)
+    moved = axial_force(element, grown, pushed(z))
+    free = radial_clearance(flat)
+    narrow = with_radial_clearance(flat, free - growth)
+    nearer = A * (np.sin(0.4) - np.sin(float(narrow.contact_angle)))
+    found = axial_force(element, narrow, pushed(z + nearer))
+    # The constants of the contacts are those of the free angles, 0.400 and 0.384.
+    np.testing.assert_allclose(found, moved, rtol=2e-3)
+    without = axial_force(element, flat, pushed(z))
+    assert moved > 1.05 * without
+
+
+def test_tapers_against_raceways_that_are_moved():
+    growth, z = 12 * MICRON, 120 * MICRON
+    deviation = np.zeros((7, 2, 3))
+    deviation[:, 0, 1] = -0.5 * growth
+    flat = replace(TAPER, raceway_deviation=np.zeros((7, 2, 3)))
+    narrowed = replace(TAPER, raceway_deviation=deviation)
+    element = bj.BearingElement(flat, quadrature=bj.Midpoint(4))
+    moved = axial_force(element, narrowed, pushed(z))
+    narrow = with_radial_clearance(flat, radial_clearance(flat) - growth)
+    found = axial_force(element, narrow, pushed(z))
+    np.testing.assert_allclose(found, moved, rtol=1e-3)
+    assert moved > 1.2 * axial_force(element, flat, pushed(z))
+
+
+def test_slopes_by_interference_and_temperature():
+    def angle(x):
+        seats = replace(SEATS, shaft_interference=x[0])
+        conditions = replace(WARM, inner_ring=x[1], elements=x[2], speed=x[3])
+        return bj.mounted(ANGULAR, seats, conditions).contact_angle
+
+    one = with_slopes(angle)
+    x = np.array([10 * MICRON, 38.0, 35.0, 800.0])
+    slopes = np.array(one(jnp.array(x))[0])
+    assert (slopes < 0).all()  # all of them take clearance
+    for i, step in enumerate(1e-3 * x):
+        shift = step * np.eye(4)[i]
+        ends = [float(one(jnp.array(x + s * shift))[1]) for s in (1, -1)]
+        difference = (ends[0] - ends[1]) / (2 * step)
+        np.testing.assert_allclose(slopes[i], difference, rtol=DIFFERENCE)
+
+
+def sizes(shaft=20):
+    return {
+        "clearance": Limits(5 * MICRON, 20 * MICRON),
+        "shaft": Limits(shaft * MICRON, (shaft + 10) * MICRON),
+        "bore": Limits(-10 * MICRON, 0.0),
+        "housing": Limits(-60 * MICRON, -30 * MICRON),
+        "outside_diameter": Limits(-13 * MICRON, 0.0),
+    }
+
+
+def test_places_in_the_tolerances():
+    base, warm = jax.device_get((sized(SEATS, DEEP), WARM))
+    found = clearance_range(base, **sizes(), conditions=warm)
+    wanted = {
+        "middle": found.middle,
+        "tightest": found.worst.lower,
+        "loosest": found.worst.upper,
+        "probable_tightest": found.probable.lower,
+        "probable_loosest": found.probable.upper,
+    }
+    for place, clearance in wanted.items():
+        there = mounting_at(base, place, **sizes(), conditions=warm)
+        # Both fits stay tight: the clearance is linear in all sizes.
+        left = fit_state(there, warm).radial_clearance
+        np.testing.assert_allclose(left, clearance, rtol=1e-9)
+    exact = dict.fromkeys(sizes(), Limits(0.0, 0.0))
+    there = mounting_at(base, "probable_loosest", **exact)
+    assert there.shaft_interference == 0 and there.radial_clearance == 0
+
+
+def test_stress_of_the_inner_ring():
+    base = jax.device_get(sized(SEATS, DEEP))
+    found = fit_state(base, jax.device_get(bj.FitConditions()))
+    d, f = 0.025, 0.03056
+    # With a shaft of the ring's steel: E I/d (1 + (d/F)²)/2
+    stress = 206e9 * 10e-6 / d * (1 + (d / f) ** 2) / 2
+    np.testing.assert_allclose(found.ring_stress, stress, rtol=1e-9)
+
+
+def test_an_outer_ring_that_rotates():
+    loose = jax.device_get(replace(sized(SEATS, DEEP), housing_interference=-1e-4))
+    still, fast = (
+        fit_state(loose, jax.device_get(bj.FitConditions(outer_speed=speed)))
+        for speed in (0.0, 3000.0)
+    )
+    # Thin rings of the radii of raceway and seat: ρ ω² r³/E, of the diameter twice.
+    ends = [2 * 7850 * 3000**2 * r**3 / 206e9 for r in (0.02322, 0.026)]
+    assert ends[0] < fast.outer_raceway_growth < ends[1]
+    # A housing without pressure, thicker and larger, grows more than the ring.
+    assert fast.housing_interference < still.housing_interference
+    grown = fast.radial_clearance - still.radial_clearance
+    np.testing.assert_allclose(grown, fast.outer_raceway_growth, rtol=1e-9)
+
+
+def test_what_is_not_allowed():
+    thrust = bj.ThrustBallBearing(**BALLS)
+    with pytest.raises(TypeError, match="`bearing` is a ThrustBallBearing"):
+        bj.mounted(thrust, SEATS)
+    tight = replace(SEATS, shaft_interference=100 * MICRON)
+    with pytest.raises(ValueError, match="`clearance` is -.*above 0.*contact angle"):
+        bj.mounted(ANGULAR, tight)
+    assert float(bj.mounted(DEEP, tight).radial_internal_clearance) < -50 * MICRON
+    with pytest.raises(ValueError, match="`inner_raceway` is None; give it, or"):
+        fit_state(SEATS)
+    with pytest.raises(ValueError, match="`inner_raceway` is 0.03056 m.*above `bore`"):
+        bj.mounted(DEEP, replace(SEATS, bore=0.031))
+    with pytest.raises(ValueError, match="`shaft_interference`.*1 % of `bore`"):
+        replace(SEATS, shaft_interference=0.01)
+    with pytest.raises(ValueError, match="`place` is 'middel'; it must be one of mid"):
+        mounting_at(SEATS, "middel", **sizes())

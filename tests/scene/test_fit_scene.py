@@ -1,0 +1,377 @@
+"""[fit] and [temperature] in a scene: what they read, and what is wrong with wrong
+ones."""
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bearingjax as bj
+from bearingjax import SceneError
+from bearingjax.design import rows_of
+from bearingjax.scene import read_cases, read_optimisation
+from bearingjax.scene.fit_table import fit_facts, fitted
+from bearingjax.scene.optimise_table import design_of
+
+MICRON = 1e-6
+BEARING = """
+[bearing]
+type = "deep_groove_ball"
+n_balls = 9
+pitch_diameter = "38.5 mm"
+ball_diameter = "7.94 mm"
+outer_osculation = 0.53
+inner_osculation = 0.52
+
+[operating]
+load = { Fy = "-2 kN" }
+free = ["uy"]
+"""
+FIT = """
+[fit]
+bore = "25 mm"
+outside_diameter = "52 mm"
+shaft = "k5"
+housing = "H7"
+housing_diameter = "80 mm"
+clearance = "CN"
+"""
+PAIR = BEARING.replace("deep_groove_ball", "angular_contact_ball").replace(
+    "\n[operating]",
+    'contact_angle = "25 deg"\n\n[set]\narrangement = "back_to_back"\n'
+    'spacing = "15 mm"\npreload_offset = "4 um"\n\n[operating]',
+)
+TAPER = """
+[bearing]
+type = "tapered_roller"
+n_rollers = 17
+pitch_diameter = "52 mm"
+roller_diameter = "8.2 mm"
+roller_length = "11.5 mm"
+roller_axis_angle = "11 deg"
+roller_half_angle = "1.7235 deg"
+"""
+ROLLERS = """
+[bearing]
+type = "cylindrical_roller"
+n_rollers = 6
+pitch_diameter = "38.5 mm"
+roller_diameter = "7.5 mm"
+roller_length = "9 mm"
+
+[operating]
+load = { Fy = "-2 kN" }
+free = ["uy"]
+
+[numerics]
+quadrature = "midpoint"
+points = 5
+
+[output]
+points = 2
+"""
+THRUST = BEARING.replace("deep_groove_ball", "thrust_ball")
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """Write a scene, and get its path."""
+
+    def write(text):
+        path = tmp_path / "fits.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def clearance(element):
+    row: Any = rows_of(element.bearing)[0].bearing
+    return float(row.radial_internal_clearance)
+
+
+def test_the_usual_fits_of_a_6205(scene):
+    read = bj.read_scene(scene(BEARING + FIT))
+    assert read.warnings == ()
+    assert clearance(read.element) == pytest.approx(12.5 * MICRON)
+    found = fit_facts(read.fits, read.element.bearing)
+    # Of 2 to 21 µm of interference 25/30.56 reach the raceway; H7 takes nothing.
+    share = 25 / 30.56
+    worst = np.array([5 - 21 * share, 20 - 2 * share]) * MICRON
+    np.testing.assert_allclose(found.mounted_range.worst, worst, rtol=1e-9)
+    np.testing.assert_allclose(found.operating_range.worst, worst, rtol=1e-9)
+    left = (12.5 - 11.5 * share) * MICRON
+    assert clearance(fitted(read.fits, read.element)) == pytest.approx(left, rel=1e-9)
+
+
+@pytest.mark.parametrize("place, left", [("tightest", 0), ("loosest", 1)])
+def test_ends_of_the_tolerances(scene, place, left):
+    read = bj.read_scene(scene(BEARING + FIT), [f"fit.at={place}"])
+    found = fit_facts(read.fits, read.element.bearing)
+    mounted = clearance(fitted(read.fits, read.element))
+    assert mounted == pytest.approx(found.mounted_range.worst[left], rel=1e-9)
+
+
+def test_given_numbers(scene):
+    text = BEARING + FIT.replace('clearance = "CN"', "").replace(
+        'shaft = "k5"\nhousing = "H7"',
+        'shaft_interference = "12 um"\nhousing_interference = "20 um"\n'
+        'shaft_bore = "10 mm"\nshaft_material = "aluminium"\n'
+        'housing_material = { elastic_modulus = "45 GPa", poisson_ratio = 0.35,'
+        ' density = "1800 kg/m^3", expansion = "26e-6 1/K" }\n'
+        'shaft_roughness = "4 um"\nring_roughness = "2 um"\n'
+        'inner_raceway = "31 mm"\nelement_expansion = "3.2e-6 1/K"\n',
+    ).replace(
+        "[fit]", '[temperature]\nreference = "25 degC"\nshaft = "333.15 K"\n[fit]'
+    )
+    read = bj.read_scene(
+        scene(text),
+        [
+            "bearing.radial_internal_clearance=15 um",
+            "operating.inner_speed=100 rad/s",
+            "operating.outer_speed=20 rad/s",
+        ],
+    )
+    seats, warm = read.fits.mounting, read.fits.conditions
+    assert float(seats.shaft_interference) == pytest.approx(12 * MICRON)
+    assert float(seats.housing_interference) == pytest.approx(20 * MICRON)
+    assert float(seats.shaft_bore) == 0.010
+    assert float(seats.shaft_smoothing) == pytest.approx(2.4 * MICRON)
+    assert float(seats.housing_smoothing) == 0.0
+    assert float(seats.inner_raceway) == 0.031 and seats.outer_raceway is None
+    assert float(seats.shaft.expansion) == 23e-6
+    assert float(seats.housing.material.elastic_modulus) == 45e9
+    assert float(seats.housing.expansion) == 26e-6
+    assert float(seats.elements.expansion) == 3.2e-6
+    assert float(warm.shaft) == pytest.approx(35.0)  # 60 °C, of 25 °C
+    assert float(warm.inner_ring) == float(warm.housing) == 0.0
+    assert float(warm.speed) == 100.0 and float(warm.outer_speed) == 20.0
+    assert fit_facts(read.fits, read.element.bearing).free == 15 * MICRON
+
+
+def test_hybrid_balls_expand_less(scene):
+    text = BEARING.replace("n_balls", 'material = "silicon_nitride"\nn_balls')
+    text = text.replace("n_balls", 'ring_material = "steel"\nn_balls', 1) + FIT
+    seats = bj.read_scene(scene(text)).fits.mounting
+    assert float(seats.elements.expansion) == 3.2e-6
+    assert float(seats.inner_ring.expansion) == 12e-6
+    assert float(seats.elements.material.elastic_modulus) == 310e9
+
+
+def test_a_pair_is_pressed_by_its_fits(scene):
+    settings = ["fit.at=tightest", "fit.shaft=j5"]
+    fit = FIT.replace('clearance = "CN"', "")
+    read = bj.read_scene(scene(PAIR + fit), settings)
+    before, after = read.element.bearing.rows, fitted(read.fits, read.element).bearing
+    assert float(before[0].inner_offset) == pytest.approx(2 * MICRON)
+    first, second = (float(row.inner_offset) for row in after.rows)
+    assert first == -second and first > 8 * MICRON
+    assert float(after.rows[0].bearing.contact_angle) < np.deg2rad(25)
+
+
+def test_command_solves_the_mounted_bearing(run, scene, tmp_path):
+    out = tmp_path / "out.json"
+    warm = "temperature.inner_ring=45 degC", "temperature.shaft=45 degC"
+    settings = [word for text in warm for word in ("--set", text)]
+    done = run("solve", scene(ROLLERS + FIT), *settings, "--json", out)
+    assert done.status == 0 and done.err == ""
+    numbers = json.loads(out.read_text())
+    found = numbers["fit"]
+    share = 25 / 31
+    left = found["radial_clearance"]
+    assert left["free"] == pytest.approx(32.5 * MICRON)
+    assert left["mounted"] == pytest.approx((32.5 - 11.5 * share) * MICRON, rel=1e-9)
+    loss = 12e-6 * 25 * 0.031
+    assert left["mounted"] - left["operating"] == pytest.approx(loss, rel=1e-9)
+    assert found["place"] == "middle" and found["mounted"]["housing_pressure"] == 0.0
+    assert found["operating"]["ring_stress"] > 70e6
+    assert found["worst"]["mounted"] == pytest.approx(
+        [(20 - 21 * share) * MICRON, (45 - 2 * share) * MICRON], rel=1e-9
+    )
+    assert "radial clearance   free 32.5, mounted 23.23, operating 13.93 µm" in done.out
+    assert "worst 3.06 to 43.39 µm" in done.out
+    assert "fits: shaft k5, housing H7; sizes of the solve: middle" in done.out
+    # The bearing of the solve is the one that is left.
+    assert "radial internal clearance 13.93 µm" in done.out
+
+
+def test_cases_vary_fits_temperatures_and_speed(scene):
+    grid = (
+        '[cases]\ngrid = { fit.shaft = ["j5", "k5"], temperature.inner_ring = ["20'
+        ' degC", "40 degC"], operating.inner_speed = { start = "0 rpm", stop ='
+        ' "20000 rpm", count = 2 } }\n'
+    )
+    table = read_cases(scene(BEARING + FIT + grid))
+    left = np.asarray(table.element.bearing.radial_internal_clearance)
+    assert left.shape == (8,) and np.unique(left.round(12)).size == 8
+    assert set(table.settings[0]) == {"fit.shaft", "temperature.inner_ring"}
+    design, speed = np.asarray(table.cases.design), np.asarray(table.cases.inner_speed)
+    # Fast rings grow: of cases that are else alike the faster has less clearance.
+    by_speed = left[design].reshape(4, 2)
+    assert (by_speed[:, 1] < by_speed[:, 0]).all()
+    assert (speed.reshape(4, 2)[:, 1] > 2000).all()
+    # Without fits speeds make no designs.
+    plain = BEARING + grid.replace(
+        'fit.shaft = ["j5", "k5"], temperature.inner_ring = ["20 degC", "40 degC"], ',
+        "",
+    )
+    assert read_cases(scene(plain)).cases.design is None
+
+
+def test_interferences_are_variables(scene):
+    text = BEARING + FIT + '[optimise]\nobjective = "peak_pressure"\n'
+    text += (
+        '[optimise.variables]\n"fit.shaft_interference" = { from = "0 um", to ='
+        ' "30 um" }\n"bearing.ball_diameter" = { from = "7.8 mm", to = "8 mm" }\n'
+    )
+    task = read_optimisation(scene(text))
+    assert [v.path for v in task.variables] == [
+        ("mounting.shaft_interference",),
+        ("unmounted.bearing.ball_diameter",),
+    ]
+    system: Any = design_of(task.scene)
+    left = (12.5 - 11.5 * 25 / 30.56) * MICRON
+    assert clearance(system.element) == pytest.approx(left, rel=1e-9)
+
+
+def test_warnings(scene):
+    path = scene(BEARING + FIT)
+    (told,) = bj.read_scene(path, ["fit.shaft=p6"]).warnings
+    assert told.startswith("fit: the hoop stress of the inner ring is 2")
+    assert "MPa mounted, above 127 MPa" in told
+    fast = ["operating.inner_speed=100000 rpm"]
+    told = bj.read_scene(path, fast).warnings
+    assert any("above 127 MPa" in text for text in told)
+    assert any("but loose by" in text for text in told)
+    cold = ["temperature.inner_ring=80 degC"]
+    (told,) = bj.read_scene(path, cold).warnings
+    assert told.startswith("fit: the inner ring on its shaft is tight when mounted, bu")
+
+
+# Text of the scene, settings, message after "fits.toml: ".
+WRONG = {
+    "bore missing": (FIT.replace('bore = "25 mm"', ""), (), "`fit.bore`: is missing"),
+    "no housing": (
+        FIT.replace('housing_diameter = "80 mm"', ""),
+        (),
+        "`fit.housing_diameter`: is missing",
+    ),
+    "unknown key": (FIT, ("fit.shaftt=k5",), "`fit.shaftt`: unknown key (did you mean"),
+    "unknown class": (FIT, ("fit.shaft=k12",), "`fit.shaft`: 'k12' is not known"),
+    "housing class": (FIT, ("fit.shaft=H7",), "`fit.shaft`: 'H7' is not known"),
+    "shaft class": (FIT, ("fit.housing=k5",), "`fit.housing`: 'k5' is not known"),
+    "both": (
+        FIT,
+        ("fit.shaft_interference=5 um",),
+        "`fit.shaft`: stands beside `shaft_interference`; give a tolerance class",
+    ),
+    "neither": (
+        FIT.replace('housing = "H7"', ""),
+        (),
+        '`fit.housing`: is missing; give a tolerance class, such as "H7", or',
+    ),
+    "bare number": (FIT, ("fit.bore=25",), "`fit.bore`: 25 has no unit"),
+    "bore too large": (
+        FIT,
+        ("fit.bore=31 mm",),
+        "[fit]: Mounting: `inner_raceway` is 0.03056 m; it must be above `bore`",
+    ),
+    "thin housing": (
+        FIT,
+        ("fit.housing_diameter=50 mm",),
+        "[fit]: Mounting: `housing_diameter` is 0.05 m; it must be above",
+    ),
+    "metres meant": (
+        FIT.replace('shaft = "k5"', 'shaft_interference = "10 mm"'),
+        (),
+        "[fit]: Mounting: `shaft_interference` is 0.01 m; it must be below 0.00025 m",
+    ),
+    "two clearances": (
+        FIT,
+        ("bearing.radial_internal_clearance=10 um",),
+        "`fit.clearance`: stands beside `bearing.radial_internal_clearance`",
+    ),
+    "no such clearance": (FIT, ("fit.clearance=C6",), "`fit.clearance`: 'C6' is not"),
+    "no such place": (FIT, ("fit.at=tight",), "`fit.at`: 'tight' is not known"),
+    "no such material": (
+        FIT,
+        ("fit.shaft_material=wood",),
+        "`fit.shaft_material`: 'wood' is not known",
+    ),
+    "roughness of no seat": (
+        FIT,
+        ("fit.ring_roughness=2 um",),
+        "`fit.ring_roughness`: goes with `shaft_roughness` or",
+    ),
+    "negative roughness": (
+        FIT,
+        ("fit.shaft_roughness=-2 um",),
+        "[fit]: Mounting: `shaft_smoothing` is -8e-07 m",
+    ),
+    "temperature alone": (
+        "",
+        ("temperature.shaft=40 degC",),
+        "`temperature`: goes with a [fit]",
+    ),
+    "hot": (
+        FIT,
+        ("temperature.shaft=4000 degC",),
+        "`temperature.shaft`: 4000 °C is not allowed; from -100 to 400 °C",
+    ),
+    "no temperature": (
+        FIT,
+        ("temperature.shaft=40 mm",),
+        "`temperature.shaft`: '40 mm' is not a temperature",
+    ),
+    "unknown part": (
+        FIT,
+        ("temperature.cage=40 degC",),
+        "`temperature.cage`: unknown key; known in [temperature]",
+    ),
+    "expansion of numbers": (
+        FIT,
+        ("temperature.elements=40 degC", "bearing.material.elastic_modulus=206 GPa"),
+        "`fit.element_expansion`: is missing: `bearing.material` has numbers",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_fits(scene, name):
+    fit, settings, wanted = WRONG[name]
+    with pytest.raises(SceneError) as caught:
+        bj.read_scene(scene(BEARING + fit), settings)
+    message = str(caught.value)
+    assert message.startswith(f"fits.toml: {wanted}"), message
+    assert "\n" not in message
+
+
+def test_bearings_that_need_numbers(scene):
+    with pytest.raises(SceneError, match="`fit`: is for radial bearings"):
+        bj.read_scene(scene(THRUST + FIT))
+    fit = FIT.replace('clearance = "CN"', "")
+    with pytest.raises(SceneError, match="`fit.shaft`: is for bearings of other types"):
+        bj.read_scene(scene(TAPER + fit))
+    with pytest.raises(SceneError, match="`fit.clearance`: is for deep groove balls"):
+        bj.read_scene(scene(PAIR + FIT))
+    tight = ["fit.shaft=s6", "bearing.contact_angle=12 deg"]
+    with pytest.raises(
+        SceneError, match=r"\[fit\]: with_radial_clearance: `clearance`"
+    ):
+        bj.read_scene(scene(PAIR + fit), tight)
+
+
+def test_rotors_take_no_fits(scene):
+    bearing = scene(BEARING + FIT)
+    rotor = bearing.with_name("rotor.toml")
+    text = """
+[rotor]
+shaft = [{ length = "100 mm", outer_diameter = "25 mm" }]
+bearings = [{ station = 0, bearing = "fits.toml" }]
+"""
+    rotor.write_text(text, encoding="utf-8")
+    from bearingjax.scene import read_rotor
+
+    with pytest.raises(SceneError, match=r"fits.toml has a \[fit\], which changes wit"):
+        read_rotor(rotor)
