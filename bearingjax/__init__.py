@@ -164,6 +164,8 @@ from .scene import read_scene as read_scene
 from .scene import run_scene as run_scene
 from .statics import BallSolution as BallSolution
 from .statics import Cases as Cases
+from .statics import Life as Life
+from .statics import LifeConditions as LifeConditions
 from .statics import OperatingPoint as OperatingPoint
 from .statics import Ratings as Ratings
 from .statics import RollerSolution as RollerSolution
@@ -173,6 +175,7 @@ from .statics import dynamic_capacity as dynamic_capacity
 from .statics import fatigue_load_limit as fatigue_load_limit
 from .statics import linearise as linearise
 from .statics import preload as preload
+from .statics import rating_life as rating_life
 from .statics import ratings as ratings
 from .statics import refine as refine
 from .statics import restrained_freedoms as restrained_freedoms

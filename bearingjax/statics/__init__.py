@@ -52,6 +52,16 @@ to do the work.
 
 from .cases import Cases as Cases
 from .cases import solve_case as solve_case
+from .equivalent_load import EquivalentLoad as EquivalentLoad
+from .equivalent_load import equivalent_load as equivalent_load
+from .life import Life as Life
+from .life import LifeConditions as LifeConditions
+from .life import rating_life as rating_life
+from .life_factor import CLEANLINESS as CLEANLINESS
+from .life_factor import Cleanliness as Cleanliness
+from .life_factor import life_factor as life_factor
+from .life_factor import reliability_factor as reliability_factor
+from .life_factor import viscosity_ratio as viscosity_ratio
 from .linearise import OperatingPoint as OperatingPoint
 from .linearise import linearise as linearise
 from .load import solve_load as solve_load

@@ -35,8 +35,8 @@ DYNAMIC_FROM_GEOMETRY = "ISO 281 from geometry"
 STATIC_FROM_GEOMETRY = "ISO 76 from geometry"
 LIMIT_FROM_STATIC = "ISO 281 from static capacity"
 
-_STEEP = 0.25 * np.pi
-"""Contact angle above which a bearing is rated by an axial load [rad]."""
+THRUST_ANGLE = 0.25 * np.pi
+"""Nominal contact angle above which a bearing is a thrust bearing [rad] (ISO 281)."""
 
 
 class Ratings(eqx.Module):
@@ -183,7 +183,7 @@ def rated_axially(bearing: Bearing | BearingSet) -> Flag:
 
     Source: ISO 281:2007, definition of thrust bearings.
     """
-    return _alike(bearing)[0].row.contact_angle > _STEEP
+    return _alike(bearing)[0].row.contact_angle > THRUST_ANGLE
 
 
 class _Rows(NamedTuple):
@@ -206,7 +206,7 @@ class _Rows(NamedTuple):
 def _capacities(rows, is_thrust):
     """C and C0, radial or axial [N]."""
     row, angle = rows.row, rows.row.contact_angle
-    axial = is_thrust | (angle > _STEEP)
+    axial = is_thrust | (angle > THRUST_ANGLE)
     if isinstance(row, RollerRow):
         dynamic = by_row.radial_roller_dynamic(row, rows.count)
         steep = by_row.steep_roller_dynamic(row, rows.one_way)
@@ -235,7 +235,7 @@ def _limit(row, static):
 
 def _row(bearing) -> BallRow | RollerRow:
     """The numbers that a row is rated by."""
-    angle, pitch = _contact_angle(bearing), bearing.pitch_diameter
+    angle, pitch = nominal_contact_angle(bearing), bearing.pitch_diameter
     count = as_real(n_elements(bearing))
     if isinstance(bearing, AbstractBallBearing):
         osculation = bearing.outer_osculation, bearing.inner_osculation
@@ -244,8 +244,15 @@ def _row(bearing) -> BallRow | RollerRow:
     return RollerRow(count, diameter, length, pitch, angle)
 
 
-def _contact_angle(bearing) -> Scalar:
-    """Nominal contact angle [rad]."""
+def nominal_contact_angle(bearing: Bearing) -> Scalar:
+    """Nominal contact angle of the standards [rad].
+
+    Zero of a deep groove ball bearing whatever its clearance; of a taper that of its
+    outer raceway.
+
+    Args:
+        bearing: A single row.
+    """
     if isinstance(bearing, DeepGrooveBallBearing):
         return as_real(0.0)
     if isinstance(bearing, AbstractBallBearing):

@@ -1,0 +1,218 @@
+"""Equivalent load of a bearing: one load in place of a radial and an axial one.
+
+P of ISO 281 is the load with which the basic rating life is computed, P0 of ISO 76 that
+which is compared with the static rating. Both are greatest values of X Fr + Y Fa.
+ISO 281 passes from one pair of factors to the other at Fa/Fr = e, where its rounded
+factors leave a step of up to 2 %; the greatest value of both pairs has none.
+
+Moments, speeds and clearance are not in it: the reference rating life has them.
+"""
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design import (
+    AbstractBallBearing,
+    AngularContactBallBearing,
+    Bearing,
+    BearingSet,
+    FourPointBallBearing,
+    SelfAligningBallRow,
+    ThrustBallBearing,
+    rows_of,
+)
+from ..numerics.types import Scalar
+from .rating import nominal_contact_angle, rated_axially
+
+# Fa/(Z D²) in MPa, and Y of a single row, Y1, Y2 of two, at each (ISO 281, table 3).
+_RELATIVE = (0.172, 0.345, 0.689, 1.03, 1.38, 2.07, 3.45, 5.17, 6.89)
+_DEEP_GROOVE = (2.30, 1.99, 1.71, 1.55, 1.45, 1.31, 1.15, 1.04, 1.00)
+_ANGLES = (5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0)
+_X = (0.56, 0.46, 0.44, 0.43, 0.41, 0.39, 0.37, 0.35, 0.33)
+_X2 = (0.78, 0.75, 0.72, 0.70, 0.67, 0.63, 0.60, 0.57, 0.54)
+_STEEP = {
+    "y": (1.00, 0.87, 0.76, 0.66, 0.57, 0.50),
+    "y1": (1.09, 0.92, 0.78, 0.66, 0.55, 0.47),
+    "y2": (1.63, 1.41, 1.24, 1.07, 0.93, 0.81),
+}
+_FLAT = {
+    "y": (
+        _DEEP_GROOVE,
+        (1.88, 1.71, 1.52, 1.41, 1.34, 1.23, 1.10, 1.01, 1.00),
+        (1.47, 1.40, 1.30, 1.23, 1.19, 1.12, 1.02, 1.00, 1.00),
+    ),
+    "y1": (
+        (2.78, 2.40, 2.07, 1.87, 1.75, 1.58, 1.39, 1.26, 1.21),
+        (2.18, 1.98, 1.76, 1.63, 1.55, 1.42, 1.27, 1.17, 1.16),
+        (1.65, 1.57, 1.46, 1.38, 1.34, 1.26, 1.14, 1.12, 1.12),
+    ),
+    "y2": (
+        (3.74, 3.23, 2.78, 2.52, 2.36, 2.13, 1.87, 1.69, 1.63),
+        (3.06, 2.78, 2.47, 2.29, 2.18, 2.00, 1.79, 1.64, 1.63),
+        (2.39, 2.28, 2.11, 2.00, 1.93, 1.82, 1.66, 1.63, 1.63),
+    ),
+}
+# Static factors of ISO 76: a single row has X0 = 0.5, two have 1.
+_Y0 = (0.52, 0.50, 0.46, 0.42, 0.38, 0.33, 0.29, 0.26, 0.22)
+_Y0_DOUBLE = (1.04, 1.00, 0.92, 0.84, 0.76, 0.66, 0.58, 0.52, 0.44)
+
+
+class Factors(NamedTuple):
+    """Factors of radial and axial load: P is the greatest of X Fr + Y Fa.
+
+    Attributes:
+        dynamic: Rows (X, Y) of ISO 281 (pair, 2) [1].
+        static: Rows (X0, Y0) of ISO 76 (pair, 2) [1].
+    """
+
+    dynamic: Float[Array, "pair 2"]
+    static: Float[Array, "pair 2"]
+
+
+class EquivalentLoad(NamedTuple):
+    """Equivalent loads.
+
+    Attributes:
+        dynamic: P of ISO 281 [N].
+        static: P0 of ISO 76 [N].
+    """
+
+    dynamic: Scalar
+    static: Scalar
+
+
+def equivalent_load(
+    bearing: Bearing | BearingSet, load: Float[Array, "6"]
+) -> EquivalentLoad:
+    """Equivalent dynamic and static load of a bearing or of a set of like rows.
+
+    Args:
+        bearing: The design. A set whose rows carry axial load in both directions
+            counts as a double-row bearing, one of rows in tandem as single rows side
+            by side.
+        load: On the moving ring [N, N m]; the moments do not count.
+
+    Returns:
+        P and P0: axial loads of thrust bearings, else radial ones.
+
+    Raises:
+        ValueError: If the rows of a set are unlike.
+
+    Source: ISO 281:2007, tables 3, 4, 7 and 9; ISO 76:2006, tables 2 and 3, and its
+        formulas for thrust bearings.
+    """
+    square = load[0] ** 2 + load[1] ** 2
+    loaded = square > 0
+    radial = jnp.where(loaded, jnp.sqrt(jnp.where(loaded, square, 1.0)), 0.0)
+    axial = jnp.abs(load[2])
+    factors = load_factors(bearing, axial)
+    both = jnp.stack([radial, axial])
+    return EquivalentLoad(
+        jnp.max(jnp.sum(factors.dynamic * both[None], axis=1)),
+        jnp.max(jnp.sum(factors.static * both[None], axis=1)),
+    )
+
+
+def load_factors(bearing: Bearing | BearingSet, axial: Scalar) -> Factors:
+    """Factors of ISO 281 and ISO 76 of a bearing or of a set of like rows.
+
+    Args:
+        bearing: The design.
+        axial: Axial load, on which those of small contact angles depend [N].
+    """
+    rows = rows_of(bearing)
+    row = rows[0].bearing
+    double = len({row.mirrored for row in rows}) > 1
+    angle = nominal_contact_angle(row)
+    if isinstance(row, ThrustBallBearing):
+        # It carries no radial load at all.
+        alone = jnp.stack([jnp.zeros_like(angle), jnp.ones_like(angle)])[None]
+        return Factors(alone, alone)
+    if isinstance(row, AbstractBallBearing):
+        radial = _of_balls(row, angle, double, len(rows), axial)
+    else:
+        radial = _of_rollers(angle, double)
+    thrust = _of_thrust(angle, isinstance(row, AbstractBallBearing), double)
+    steep = rated_axially(bearing)
+    return Factors(
+        *(jnp.where(steep, t, r) for t, r in zip(thrust, radial, strict=True))
+    )
+
+
+def _pairs(*pairs) -> Array:
+    return jnp.stack([jnp.stack([jnp.asarray(v) for v in pair]) for pair in pairs])
+
+
+def _of_balls(row, angle, double, count, axial):
+    one, zero = jnp.ones_like(angle), jnp.zeros_like(angle)
+    pressure = 1e-6 * axial / (row.n_balls * row.ball_diameter**2)
+    if isinstance(row, SelfAligningBallRow):
+        cot = 1.0 / jnp.tan(angle)
+        if double:
+            dynamic = _pairs((one, 0.42 * cot), (0.65 * one, 0.65 * cot))
+            return dynamic, _pairs((one, 0.44 * cot), (one, zero))
+        dynamic = _pairs((one, zero), (0.4 * one, 0.4 * cot))
+        return dynamic, _pairs((0.5 * one, 0.22 * cot), (one, zero))
+    if not isinstance(row, AngularContactBallBearing | FourPointBallBearing):
+        # Radial contact: all rows share the axial load.
+        y = _along(_RELATIVE, _DEEP_GROOVE, pressure / count)
+        dynamic = _pairs((one, zero), (0.56 * one, y))
+        return dynamic, _pairs((0.6 * one, 0.5 * one), (one, zero))
+    degrees = jnp.degrees(angle)
+
+    def of(values):
+        return _along(_ANGLES, values, degrees)
+
+    def y_of(name):
+        flat = [_along(_RELATIVE, values, pressure) for values in _FLAT[name]]
+        steep = jnp.asarray(_STEEP[name], degrees.dtype)
+        return of(jnp.concatenate([jnp.stack(flat), steep]))
+
+    # A four-point bearing holds both ways, as two rows do.
+    if double or isinstance(row, FourPointBallBearing):
+        dynamic = _pairs((one, y_of("y1")), (of(_X2), y_of("y2")))
+        return dynamic, _pairs((one, of(_Y0_DOUBLE)), (one, zero))
+    dynamic = _pairs((one, zero), (of(_X), y_of("y")))
+    return dynamic, _pairs((0.5 * one, of(_Y0)), (one, zero))
+
+
+def _of_rollers(angle, double):
+    one, zero = jnp.ones_like(angle), jnp.zeros_like(angle)
+    tilted = angle > 0
+    cot = jnp.where(tilted, 1.0 / jnp.tan(jnp.where(tilted, angle, 1.0)), 0.0)
+    # Without a contact angle axial load goes through the ribs: it is not rated.
+    second = jnp.where(tilted, 1.0, 0.0)
+    if double:
+        dynamic = _pairs((one, 0.45 * cot), (0.67 * second, 0.67 * cot))
+        return dynamic, _pairs((one, 0.44 * cot), (one, zero))
+    dynamic = _pairs((one, zero), (0.4 * second, 0.4 * cot))
+    return dynamic, _pairs((0.5 * second, 0.22 * cot), (one, zero))
+
+
+def _of_thrust(angle, balls, double):
+    """Thrust bearings below 90 degrees."""
+    one = jnp.ones_like(angle)
+    tangent = jnp.tan(jnp.minimum(angle, 1.5))
+    if balls:
+        sine = jnp.sin(angle)
+        x = 1.25 * tangent * (1.0 - 2.0 / 3.0 * sine)
+        first = (
+            20.0 / 13.0 * tangent * (1.0 - sine / 3.0),
+            (10.0 / 13.0) * (1.0 - sine / 3.0),
+        )
+    else:
+        x = tangent
+        first = (1.5 * tangent, 0.67 * one)
+    second = (x, one)
+    dynamic = _pairs(first, second) if double else _pairs(second, second)
+    static = (2.3 * tangent, one)
+    return dynamic, _pairs(static, static)
+
+
+def _along(places, values, at):
+    """Values between the lines of a table; beyond its ends those of the ends."""
+    xp = jnp.asarray(np.asarray(places), at.dtype)
+    return jnp.interp(at, xp, jnp.asarray(values, at.dtype))

@@ -1,0 +1,491 @@
+"""Rating life of a solved bearing: ISO 281, ISO/TS 16281, ISO 76.
+
+The basic life takes the equivalent load of the standard; the reference life the loads
+of the contacts of the solution, with its clearance, tilt, profile and speed. Lives are
+infinite without load, and their derivatives then zero; `damage`, the part of the life
+that a revolution uses, is finite and smooth throughout.
+"""
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design import AbstractBallBearing, pitch_radius, rows_of
+from ..design.checks import check, in_range, positive
+from ..element.bearing_element import BearingElement, check_element
+from ..element.frame import RINGS
+from ..element.inertia import Speed
+from ..numerics.power import positive_power
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from .equivalent_load import equivalent_load
+from .life_factor import (
+    LARGEST_FACTOR,
+    Cleanliness,
+    as_contamination,
+    check_contamination,
+    life_factor,
+    load_ratio,
+    reliability_factor,
+    viscosity_ratio,
+)
+from .rating import THRUST_ANGLE, Ratings, nominal_contact_angle, ratings
+from .reference_life import (
+    BALLS,
+    LEAST_LAMINAE,
+    RowFatigue,
+    edge_stress,
+    exponents_of,
+    row_fatigue,
+)
+from .solution import BallSolution, RollerSolution, Solution
+
+STANDARDS = {
+    "basic_rating_life": "ISO 281:2007",
+    "reference_rating_life": "ISO/TS 16281:2008",
+    "modified_rating_life": "ISO/TS 16281:2008 with a_ISO of ISO 281:2007",
+    "static_safety": "ISO 76:2006",
+}
+"""Which standard each result follows."""
+
+FRAMES = ("space", "inner", "outer")
+"""What the direction of the load may be fixed to."""
+
+_MILLION = 1e6
+
+
+class LifeConditions(eqx.Module):
+    """What a rating life needs beside the solution.
+
+    Attributes:
+        dynamic_capacity: C of the bearing, of a set that of all its rows [N]; `None`:
+            ISO 281 from geometry.
+        static_capacity: C0 [N]; `None`: ISO 76 from geometry.
+        fatigue_load_limit: C_u [N]; `None`: from C0 as in ISO 281.
+        viscosity: Kinematic viscosity of the oil, or of the base oil of a grease, at
+            the temperature of operation [m²/s]; `None`: no modified life.
+        contamination: e_C from 0 to 1 [1], a `Cleanliness`, or a name of `CLEANLINESS`
+            such as "grease, normal"; needed with `viscosity`.
+        reliability: Share of bearings that reach the modified life [1].
+        load_fixed_to: "space"; or the ring, "inner" or "outer", that the direction of
+            the load turns with, as that of an unbalance does. A ring that turns against
+            the load wears more evenly.
+        edge_stress: Whether laminae at the ends of rollers count with the
+            concentration of stress of ISO/TS 16281.
+
+    Traced: all numbers. Static: load_fixed_to, edge_stress.
+    """
+
+    dynamic_capacity: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("N"), default=None
+    )
+    static_capacity: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("N"), default=None
+    )
+    fatigue_load_limit: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("N"), default=None
+    )
+    viscosity: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("m²/s"), default=None
+    )
+    contamination: Any = eqx.field(
+        converter=as_contamination, metadata=unit("1"), default=None
+    )
+    reliability: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.9)
+    load_fixed_to: str = eqx.field(static=True, default="space")
+    edge_stress: bool = eqx.field(static=True, default=True)
+
+    def __check_init__(self):
+        for name in ("dynamic_capacity", "static_capacity", "fatigue_load_limit"):
+            if getattr(self, name) is not None:
+                positive(self, name)
+        in_range(self, "reliability", 0.9, 1.0, include_low=True)
+        if self.load_fixed_to not in FRAMES:
+            raise ValueError(
+                f"LifeConditions: `load_fixed_to` is {self.load_fixed_to!r}; it must be"
+                f" one of {', '.join(map(repr, FRAMES))}."
+            )
+        if not isinstance(self.edge_stress, bool):
+            raise TypeError(
+                f"LifeConditions: `edge_stress` is {self.edge_stress!r}; it must be"
+                " True or False."
+            )
+        self._check_lubrication()
+
+    def _check_lubrication(self):
+        if self.viscosity is not None:
+            positive(self, "viscosity")
+            # A viscosity in mm²/s would be a million times too large.
+            thin = self.viscosity < 1.0
+            check(self, "viscosity", thin, "below 1 m²/s (1 mm²/s is 1e-6 m²/s)")
+        if self.contamination is not None:
+            check_contamination(self, self.contamination)
+        if (self.viscosity is None) != (self.contamination is None):
+            pair = ("viscosity", "contamination")
+            missing = pair[self.contamination is None]
+            raise ValueError(
+                f"LifeConditions: `{missing}` is missing; the modified life needs both"
+                " `viscosity` and `contamination`."
+            )
+
+
+class Life(eqx.Module):
+    """Rating life of a bearing under one load.
+
+    Numbers are NaN if the solution did not converge. Lives are in revolutions of one
+    ring against the other.
+
+    Attributes:
+        ratings: Load ratings C, C0, C_u and where they come from.
+        equivalent_load: P of ISO 281 [N].
+        static_equivalent_load: P0 of ISO 76 [N].
+        reference_load: Load with which C gives the reference life [N].
+        static_safety: C0/P0 [1].
+        basic_rating_life: L10 = (C/P)^p of ISO 281 [1].
+        reference_rating_life: L10r of ISO/TS 16281 [1].
+        modified_rating_life: L_nmr [1], or `None` without a lubricant.
+        damage: Part of the modified life, or else of the reference life, that one
+            revolution uses [1].
+        life_hours: The same life in hours [h]; `None` if no speed is known.
+        viscosity_ratio: κ [1], or `None`.
+        contamination_factor: e_C [1], or `None`.
+        a_iso: Modified over reference life without a1 [1], or `None`.
+        reliability_factor: a1 [1].
+        damage_share: Shares of every row, raceway and track in the fatigue behind the
+            reference life, by the survival of all (row, raceway, track) [1]. Raceways
+            are (outer, inner); tracks are the arcs of a ball's raceway, or the laminae
+            of a roller's from -L/2 to +L/2.
+        turns_against_load: 1 where a ring turns against the load (outer, inner) [1].
+    """
+
+    ratings: Ratings
+    equivalent_load: Scalar = eqx.field(metadata=unit("N"))
+    static_equivalent_load: Scalar = eqx.field(metadata=unit("N"))
+    reference_load: Scalar = eqx.field(metadata=unit("N"))
+    static_safety: Scalar = eqx.field(metadata=unit("1"))
+    basic_rating_life: Scalar = eqx.field(metadata=unit("1"))
+    reference_rating_life: Scalar = eqx.field(metadata=unit("1"))
+    modified_rating_life: Scalar | None = eqx.field(metadata=unit("1"))
+    damage: Scalar = eqx.field(metadata=unit("1"))
+    life_hours: Scalar | None = eqx.field(metadata=unit("h"))
+    viscosity_ratio: Scalar | None = eqx.field(metadata=unit("1"))
+    contamination_factor: Scalar | None = eqx.field(metadata=unit("1"))
+    a_iso: Scalar | None = eqx.field(metadata=unit("1"))
+    reliability_factor: Scalar = eqx.field(metadata=unit("1"))
+    damage_share: Float[Array, "row 2 track"] = eqx.field(metadata=unit("1"))
+    turns_against_load: Float[Array, "2"] = eqx.field(metadata=unit("1"))
+
+    @property
+    def dynamic_capacity(self) -> Scalar:
+        """C [N]."""
+        return self.ratings.dynamic_capacity
+
+    @property
+    def static_capacity(self) -> Scalar:
+        """C0 [N]."""
+        return self.ratings.static_capacity
+
+    @property
+    def standards(self) -> dict[str, str]:
+        """Which standard each result follows, by its name."""
+        return STANDARDS
+
+    @property
+    def weakest(self) -> tuple[int, str, int]:
+        """Row, raceway and track with the largest share of the fatigue.
+
+        Of a single, concrete life.
+        """
+        share = np.asarray(self.damage_share)
+        row, ring, track = np.unravel_index(int(np.argmax(share)), share.shape)
+        return int(row), RINGS[int(ring)], int(track)
+
+
+def rating_life(
+    element: BearingElement,
+    solution: Solution,
+    *,
+    dynamic_capacity: Scalar | float | None = None,
+    static_capacity: Scalar | float | None = None,
+    fatigue_load_limit: Scalar | float | None = None,
+    viscosity: Scalar | float | None = None,
+    contamination: Scalar | float | Cleanliness | str | None = None,
+    reliability: Scalar | float = 0.9,
+    load_fixed_to: str = "space",
+    edge_stress: bool = True,
+    speed: Speed | None = None,
+    lamina_load: Float[Array | np.ndarray, "element 2 lamina"] | None = None,
+) -> Life:
+    """Rating life of a solved bearing by ISO 281 and ISO/TS 16281.
+
+    Args:
+        element: The bearing that was solved.
+        solution: Its solution. Of rollers every second position is the middle of a
+            lamina: 101 `points` are 50 laminae.
+        dynamic_capacity, static_capacity, fatigue_load_limit, viscosity, contamination,
+            reliability, load_fixed_to, edge_stress: As of `LifeConditions`.
+        speed: Ring speeds; `None`: those of the solution. Without any the inner ring
+            turns against a load fixed in space, and there is no life in hours.
+        lamina_load: Load of every lamina on both raceways in place of the solution's
+            [N], such as `end_loads` of a half-space contact. Concentrations of stress
+            at the ends are then in it, whatever `edge_stress`.
+
+    Returns:
+        Life, differentiable with respect to all that the solution is. Numbers are NaN
+        if the solution did not converge.
+
+    Raises:
+        TypeError: For a bearing in place of an element, or text in place of numbers.
+        ValueError: For conditions out of range, sets of unlike rows, several solutions
+            at once (map over them), or fewer than 30 laminae of a roller.
+
+    Source: ISO 281:2007; ISO/TS 16281:2008 (`reference_life`); ISO 76:2006.
+    """
+    check_element("rating_life", element)
+    conditions = LifeConditions(
+        dynamic_capacity,
+        static_capacity,
+        fatigue_load_limit,
+        viscosity,
+        contamination,
+        reliability,
+        load_fixed_to,
+        edge_stress,
+    )
+    return life_of(element, solution, conditions, speed=speed, lamina_load=lamina_load)
+
+
+def life_of(
+    element: BearingElement,
+    solution: Solution,
+    conditions: LifeConditions,
+    *,
+    speed: Speed | None = None,
+    lamina_load: Float[Array | np.ndarray, "element 2 lamina"] | None = None,
+) -> Life:
+    """As `rating_life`, the conditions in one object.
+
+    Args:
+        element, solution, speed, lamina_load: As of `rating_life`.
+        conditions: As of its keywords.
+    """
+    if not isinstance(solution, BallSolution | RollerSolution):
+        raise TypeError(
+            f"rating_life: `solution` is a {type(solution).__name__}; it must be what"
+            " `solve_load` returns of a ball or roller bearing."
+        )
+    if jnp.ndim(solution.result):
+        raise ValueError(
+            "rating_life: `solution` holds several cases; map over them with jax.vmap,"
+            " or name lives in the `outputs` of `sweep`."
+        )
+    if lamina_load is not None:
+        shape = np.shape(lamina_load)
+        wanted = (*solution.roller_load.shape, *shape[2:3])
+        if isinstance(solution, BallSolution) or shape != wanted or len(shape) != 3:
+            raise ValueError(
+                f"rating_life: `lamina_load` has shape {shape}; it must be (element, 2,"
+                " lamina), of the rollers of the solution."
+            )
+    return _life(element.bearing, solution, conditions, speed, lamina_load)
+
+
+def solution_loads(
+    solution: Solution, with_edges: bool = True
+) -> Float[Array, "element 2 track"]:
+    """Loads of the contacts of a solution that tire the raceways.
+
+    Args:
+        solution: Of balls or rollers.
+        with_edges: Whether laminae count with `edge_stress`.
+
+    Returns:
+        Of balls on each arc, of rollers on each lamina (element, raceway, track) [N].
+
+    Raises:
+        ValueError: If a roller's positions are even in number, or make fewer than 30
+            laminae.
+    """
+    if isinstance(solution, BallSolution):
+        load = solution.contact_load
+        return load.reshape(load.shape[0], 2, -1)
+    assert isinstance(solution, RollerSolution)
+    points = solution.line_load.shape[-1]
+    laminae = points // 2
+    if points % 2 == 0 or laminae < LEAST_LAMINAE:
+        raise ValueError(
+            f"rating_life: the solution has {points} `points` along the rollers; they"
+            f" must be odd and at least {2 * LEAST_LAMINAE + 1}: every second one is"
+            " the middle of a lamina."
+        )
+    lengths = solution.position[..., -1] - solution.position[..., 0]
+    width = jnp.broadcast_to(lengths, solution.line_load.shape[:1]) / laminae
+    load = solution.line_load[..., 1::2] * width[:, None, None]
+    if not with_edges:
+        return load
+    return load * jnp.asarray(edge_stress(laminae), load.dtype)[None, None]
+
+
+@eqx.filter_jit
+def _life(bearing, solution, conditions, speed, lamina_load) -> Life:
+    speed = solution.speed if speed is None else speed
+    loads = lamina_load
+    if loads is None:
+        loads = solution_loads(solution, conditions.edge_stress)
+    first = 6 * RINGS.index(solution.moving_ring)
+    force = solution.force[first : first + 6]
+    loads, force = (
+        jnp.where(solution.converged, value, jnp.nan) for value in (loads, force)
+    )
+    rated = ratings(
+        bearing,
+        conditions.dynamic_capacity,
+        conditions.static_capacity,
+        conditions.fatigue_load_limit,
+    )
+    kind = exponents_of(rows_of(bearing)[0].bearing)
+    turning = turns_against_load(speed, conditions.load_fixed_to)
+    parts = _rows(bearing, solution.row_sizes, loads, rated, turning)
+    share = jnp.stack([part.fatigue.share for part in parts])
+    total = jnp.sum(share)
+    n, d = kind.spread
+    damage = positive_power(total, d, n) / _MILLION
+    loaded = total > 0
+    same = share / jnp.where(loaded, total, 1.0)
+    life = _lifetime(damage)
+    equivalent = equivalent_load(bearing, force)
+    # ISO 281 rates rollers with 10/3, ISO/TS 16281 with 4 and a part of C.
+    exponent = (3, 1) if kind is BALLS else (10, 3)
+    ratio = equivalent.dynamic / rated.dynamic_capacity
+    fields: dict[str, Any] = {
+        "ratings": rated,
+        "equivalent_load": equivalent.dynamic,
+        "static_equivalent_load": equivalent.static,
+        "reference_load": rated.dynamic_capacity
+        * positive_power(_MILLION * damage, exponent[1], exponent[0]),
+        "static_safety": _over(rated.static_capacity, equivalent.static),
+        "basic_rating_life": _lifetime(positive_power(ratio, *exponent) / _MILLION),
+        "reference_rating_life": life,
+        "damage_share": same,
+        "turns_against_load": turning,
+    }
+    a1 = reliability_factor(conditions.reliability)
+    turns = None if speed is None else jnp.abs(speed.inner - speed.outer)
+    modified: dict[str, Any] = {
+        "viscosity_ratio": None,
+        "contamination_factor": None,
+        "a_iso": None,
+        "modified_rating_life": None,
+    }
+    if conditions.viscosity is not None:
+        kappa, clean = _lubrication(bearing, turns, conditions)
+        tired = sum(_modified(*row, kappa, clean, kind) for row in parts)
+        damage = positive_power(tired, d, n) / (_MILLION * a1)
+        a_iso = (total / jnp.where(loaded, tired, 1.0)) ** (d / n)
+        modified = {
+            "viscosity_ratio": kappa,
+            "contamination_factor": clean,
+            "a_iso": jnp.where(loaded, a_iso, LARGEST_FACTOR),
+            "modified_rating_life": _lifetime(damage),
+        }
+    hours = None
+    if turns is not None:
+        hours = _lifetime(damage * turns * (3600.0 / (2.0 * jnp.pi)))
+    return Life(
+        **fields, **modified, damage=damage, life_hours=hours, reliability_factor=a1
+    )
+
+
+def turns_against_load(
+    speed: Speed | None, load_fixed_to: str = "space"
+) -> Float[Array, "2"]:
+    """1 where a ring turns against the load, 0 where it does not (outer, inner).
+
+    Both may; if none does, or no speed is known, the inner ring counts as turning, or
+    the outer one if the load is fixed to the inner.
+
+    Args:
+        speed: Ring speeds.
+        load_fixed_to: As of `LifeConditions`.
+    """
+    usual = as_real([1.0, 0.0] if load_fixed_to == "inner" else [0.0, 1.0])
+    if speed is None:
+        return usual
+    frames = {"inner": speed.inner, "outer": speed.outer}
+    load = frames.get(load_fixed_to, jnp.zeros_like(speed.inner))
+    against = jnp.stack([speed.outer, speed.inner]) != load
+    return jnp.where(jnp.any(against), jnp.where(against, 1.0, 0.0), usual)
+
+
+class _RowPart(NamedTuple):
+    """A row's fatigue, its share of C_u, and whether it is a thrust bearing."""
+
+    fatigue: RowFatigue
+    limit: Scalar
+    thrust: Array
+
+
+def _rows(bearing, row_sizes, loads, rated, turning) -> list[_RowPart]:
+    """Fatigue of every row, as bearings of their own.
+
+    Source: ISO 281: C = C_1 i^0.7 of i rows of balls, C_1 i^(7/9) of rollers.
+    """
+    rows = rows_of(bearing)
+    turned = sum(row.mirrored for row in rows)
+    one_way = min(count for count in (turned, len(rows) - turned) if count)
+    ends = np.cumsum(row_sizes)
+    parts = []
+    for row, size, end in zip(rows, row_sizes, ends, strict=True):
+        angle = nominal_contact_angle(row.bearing)
+        thrust = angle > THRUST_ANGLE
+        together = 0.7 if isinstance(row.bearing, AbstractBallBearing) else 7.0 / 9.0
+        count = jnp.where(thrust, float(one_way), float(len(rows)))
+        fatigue = row_fatigue(
+            row.bearing,
+            rated.dynamic_capacity / count**together,
+            angle,
+            loads[int(end) - size : int(end)],
+            turning,
+        )
+        parts.append(_RowPart(fatigue, rated.fatigue_load_limit / count, thrust))
+    return parts
+
+
+def _lubrication(bearing, turns, conditions):
+    """κ and e_C, of the largest row; without a speed they are those at standstill."""
+    if turns is None:
+        raise ValueError(
+            "rating_life: `viscosity` is given, but no speed is known: solve with the"
+            " `speed` of the rings, or pass it here."
+        )
+    pitch = 2.0 * pitch_radius(bearing)
+    kappa = viscosity_ratio(conditions.viscosity, turns, pitch)
+    clean = conditions.contamination
+    if isinstance(clean, Cleanliness):
+        clean = clean.factor(kappa, pitch)
+    return kappa, clean
+
+
+def _modified(fatigue, limit, thrust, kappa, clean, kind):
+    """Sum of the shares of a row, each part with its own a_ISO."""
+    ratio = load_ratio(clean, limit, fatigue.load)
+    balls = kind is BALLS
+    factor = life_factor(kappa, ratio, balls, thrust)
+    n, d = kind.spread
+    if not balls:
+        return jnp.sum(jnp.sum(fatigue.share, axis=0) * factor ** -(n / d))
+    return jnp.sum(fatigue.share) * factor[0] ** -(n / d)
+
+
+def _lifetime(damage):
+    """1/damage; infinite, with zero derivative, without damage."""
+    return _over(jnp.ones_like(damage), damage)
+
+
+def _over(a, b):
+    """a/b; infinite, with zero derivatives, where b is 0; NaN passes through."""
+    nothing = b == 0
+    return jnp.where(nothing, jnp.inf, a / jnp.where(nothing, 1.0, b))
