@@ -8,6 +8,7 @@ from .contact import contact_surface as contact_surface
 from .contact_lines import centre_pressure as centre_pressure
 from .contact_lines import contact_line_load as contact_line_load
 from .contact_stress import contact_stress as contact_stress
+from .drawing import drawing as drawing
 from .load import load_displacement as load_displacement
 from .load import load_zone as load_zone
 from .load import stiffness_over_speed as stiffness_over_speed

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 _BODY = 0.30  # thickness of the schematic rings under the groove, ball diameters
 _WIDTH = 0.75  # half width of the schematic rings, ball diameters
-_SHOULDER = 0.2  # schematic height of a shoulder that is not given, ball diameters
+SHOULDER = 0.2
+"""Schematic height of a shoulder that is not given, ball diameters."""
 
 
 def ball_section(
@@ -75,7 +76,7 @@ def ball_section(
     return ax
 
 
-def ball_row(ax, bearing, place, reach=np.inf) -> None:
+def ball_row(ax, bearing, place, reach=np.inf, apart=0.0) -> np.ndarray:
     """One ball, its lines of contact without load, and both rings beside it.
 
     Args:
@@ -83,9 +84,14 @@ def ball_row(ax, bearing, place, reach=np.inf) -> None:
         bearing: A row of balls.
         place: Where points (point, 2) about the ball's centre, z and r in mm, stand.
         reach: Most half width of the rings [mm].
+        apart: How far each ring stands further from the ball [mm].
+
+    Returns:
+        Outlines of both rings (point, 2) [mm].
     """
-    _rings(ax, bearing, place, reach)
+    outlines = _rings(ax, bearing, place, reach, apart)
     _ball(ax, bearing, place)
+    return outlines
 
 
 def row_position(row) -> float:
@@ -119,25 +125,42 @@ def _ball(ax, bearing, place):
     ax.plot(*place(np.zeros((1, 2))).T, marker="+", color=GREY, zorder=5)
 
 
-def _rings(ax, bearing, place, reach):
-    diameter = 1e3 * float(bearing.ball_diameter)
+def contour(bearing, name, reach=np.inf) -> np.ndarray:
+    """Outline of a ring on the side of the ball, from end to end (point, 2) [mm].
+
+    Args:
+        bearing: A row of balls.
+        name: "outer" or "inner".
+        reach: Most half width of the ring [mm].
+
+    Returns:
+        z and r about the ball's centre.
+    """
+    if isinstance(bearing, SelfAligningBallRow):
+        return _aligning(bearing, name)
+    line = _raceway(bearing, name, 1.0 if name == "outer" else -1.0, reach)
+    return line[:, ::-1] if isinstance(bearing, ThrustBallBearing) else line
+
+
+def _rings(ax, bearing, place, reach, apart):
+    across = 0 if isinstance(bearing, ThrustBallBearing) else 1
+    thickness = _BODY * 1e3 * float(bearing.ball_diameter)
+    outlines = []
     for name, outwards in (("outer", 1.0), ("inner", -1.0)):
-        raceway = _raceway(bearing, name, outwards, reach)
-        if isinstance(bearing, SelfAligningBallRow):
-            raceway = _aligning(bearing, name, reach)
-        back = outwards * (np.max(outwards * raceway[:, 1]) + _BODY * diameter)
-        outline = np.concatenate(
-            [raceway, [[raceway[-1, 0], back]], [[raceway[0, 0], back]]]
-        )
-        if isinstance(bearing, ThrustBallBearing):
-            outline = outline[:, ::-1]
+        line = contour(bearing, name, reach).copy()
+        line[:, across] += outwards * apart
+        back = line[[-1, 0]]
+        back[:, across] = outwards * (np.max(outwards * line[:, across]) + thickness)
+        outline = place(np.concatenate([line, back]))
+        outlines.append(outline)
         ax.fill(
-            *place(outline).T,
+            *outline.T,
             facecolor=_light(COLOURS[name]),
             edgecolor=COLOURS[name],
             linewidth=1.2,
             zorder=1,
         )
+    return np.concatenate(outlines)
 
 
 def _light(colour):
@@ -146,7 +169,7 @@ def _light(colour):
     return (*to_rgb(colour), 0.12)
 
 
-def _aligning(bearing, name, reach):
+def _aligning(bearing, name):
     """Contour of a ring of a self-aligning bearing, from its middle outwards [mm]."""
     diameter = 1e3 * float(bearing.ball_diameter)
     middle, reach = -1e3 * float(bearing.row_offset), _WIDTH * diameter
@@ -157,7 +180,7 @@ def _aligning(bearing, name, reach):
         angles = np.arcsin((np.linspace(middle, reach, 60) - centre[0]) / radius)
         return centre + radius * np.stack([np.sin(angles), np.cos(angles)], axis=1)
     given = bearing.inner_shoulder
-    height = _SHOULDER * diameter if given is None else 1e3 * float(given)
+    height = SHOULDER * diameter if given is None else 1e3 * float(given)
     edge = np.arccos(1.0 - height / radius)
     angles = np.linspace(-edge, edge, 121) - bearing.groove_axis
     points = centre + radius * np.stack([np.sin(angles), -np.cos(angles)], axis=1)
@@ -172,7 +195,7 @@ def _raceway(bearing, name, outwards, reach):
     """
     diameter = 1e3 * float(bearing.ball_diameter)
     given = getattr(bearing, f"{name}_shoulder")
-    height = _SHOULDER * diameter if given is None else 1e3 * float(given)
+    height = SHOULDER * diameter if given is None else 1e3 * float(given)
     grooves = [g for g in bearing.grooves if g.on_outer is (name == "outer")]
     pieces = []
     for groove in grooves:

@@ -1,7 +1,8 @@
 """Outlines of a roller bearing in its axial section."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
@@ -9,10 +10,8 @@ from ..contact import Palmgren
 from ..design.bearing import AbstractRollerBearing
 from ..element.constants import contact_constants
 from ..numerics import Midpoint
+from .profiles import drops
 from .style import RACEWAYS
-
-if TYPE_CHECKING:
-    pass
 
 _BODY = 0.35  # thickness of the schematic rings, roller diameters
 _BESIDE = 0.28  # width of the schematic rings beside roller and ribs, roller diameters
@@ -28,6 +27,7 @@ class Section(NamedTuple):
         axis: Ends of the roller axis (2, 2).
         generators: Unit vectors along both generators, towards +z (2, 2).
         rib_points: Contact point on every rib (rib, 2).
+        rib_normals: Unit normals there, from the roller to the rib (rib, 2).
         pitch_radius: Radius of the pitch circle [mm].
         diameter: Roller diameter [mm].
         length: Roller length [mm].
@@ -39,6 +39,7 @@ class Section(NamedTuple):
     axis: np.ndarray
     generators: np.ndarray
     rib_points: np.ndarray
+    rib_normals: np.ndarray
     pitch_radius: float
     diameter: float
     length: float
@@ -103,15 +104,22 @@ def section(bearing: AbstractRollerBearing) -> Section:
         rib_points=to_plane(
             np.array([rib["point"] for rib in ribs.values()]).reshape(-1, 2)
         ),
+        rib_normals=np.array([rib["normal"] for rib in ribs.values()]).reshape(-1, 2)
+        @ np.stack([along, across]),
         pitch_radius=pitch_radius,
         diameter=diameter,
         length=length,
     )
 
 
+@eqx.filter_jit
+def _rib_contacts(bearing):
+    return contact_constants(bearing, Palmgren(), Midpoint()).ribs
+
+
 def _ribs(bearing):
     """Contact point, normal, height and sphere radius of every rib, in mm."""
-    contacts = contact_constants(bearing, Palmgren(), Midpoint()).ribs
+    contacts = _rib_contacts(bearing)
     if contacts is None:
         return {}
     return {
@@ -141,14 +149,16 @@ def _roller_outline(bearing, ribs):
     """Closed outline of the roller in (t, m), with profile and end spheres, in mm."""
     length, half = 1e3 * float(bearing.roller_length), float(bearing.half_angle)
     diameter = 1e3 * float(bearing.roller_diameter)
-    turn = jnp.linspace(0.0, jnp.pi, 401, dtype=bearing.roller_length.dtype)
-    position = -0.5 * bearing.roller_length * jnp.cos(turn)
+    s = -0.5 * length * np.cos(np.linspace(0.0, np.pi, 401))
+    position = jnp.asarray(1e-3 * s, bearing.roller_length.dtype)
     drop = 1e3 * np.asarray(
-        bearing.roller_profile.drop(
-            position, bearing.roller_length, bearing.roller_diameter
+        drops(
+            bearing.roller_profile,
+            position,
+            bearing.roller_length,
+            bearing.roller_diameter,
         )
     )
-    s = 1e3 * np.asarray(position)
     x, y = s * np.cos(half), 0.5 * diameter - s * np.sin(half) - drop
     # Some profiles grow without limit at the very end.
     keep = np.isfinite(drop) & (drop < 0.01 * diameter)

@@ -2,14 +2,25 @@
 
 from typing import TYPE_CHECKING
 
+import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 
-from ..design.bearing import AbstractRollerBearing
+from ..design import AbstractProfile, AbstractRollerBearing
+from ..numerics.types import Scalar
 from .style import COLOURS, ROLLER, SMALL, axes_or_new
 
 if TYPE_CHECKING:
     import matplotlib.axes
+
+
+@eqx.filter_jit
+def drops(
+    profile: AbstractProfile, position: Array, length: Scalar, diameter: Scalar
+) -> Array:
+    """`AbstractProfile.drop`, compiled as a whole."""
+    return profile.drop(position, length, diameter)
 
 
 def profile(
@@ -30,9 +41,9 @@ def profile(
     ax = axes_or_new(ax)
     length, diameter = bearing.roller_length, bearing.roller_diameter
     # Points gather at the ends, where profiles are steep.
-    turn = jnp.linspace(0.0, jnp.pi, 801, dtype=length.dtype)
-    position = -0.5 * length * jnp.cos(turn)
-    x = 1e3 * np.asarray(position)
+    turn = np.linspace(0.0, np.pi, 801)
+    along = -0.5 * float(length) * np.cos(turn)
+    position, x = jnp.asarray(along, length.dtype), 1e3 * along
     near_end = np.abs(x) <= 0.95 * x[-1]
     lines = {
         "roller": (bearing.roller_profile, ROLLER, "-", 2.0),
@@ -41,7 +52,7 @@ def profile(
     }
     limit = 0.0
     for name, (shape, colour, style, width) in lines.items():
-        drop = 1e6 * np.asarray(shape.drop(position, length, diameter))
+        drop = 1e6 * np.asarray(drops(shape, position, length, diameter))
         ax.plot(x, drop, color=colour, linestyle=style, linewidth=width, label=name)
         full = float(np.max(drop, initial=0.0, where=np.isfinite(drop)))
         inside = float(np.max(drop[near_end], initial=0.0))

@@ -1,0 +1,244 @@
+"""Dimension lines of drawings: what is measured, and labels beside the view."""
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..numerics.units import unit_of
+from .style import GREY, SMALL
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+ARROW: dict[str, Any] = {
+    "arrowstyle": "<|-|>",
+    "color": "black",
+    "linewidth": 0.9,
+    "shrinkA": 0,
+    "shrinkB": 0,
+    "mutation_scale": 9,
+}
+THIN: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 5}
+AXIS: dict[str, Any] = THIN | {"linestyle": (0, (9, 3, 2, 3))}
+_LINE = 0.16  # height of a line of a label [inch]
+_FREE = 0.1  # between labels below one another [inch]
+_SHOWN = {
+    "m": (1e3, " mm"),
+    "rad": (180.0 / np.pi, "°"),
+    "N/m": (1e-6, " N/µm"),
+    "Pa": (1e-9, " GPa"),
+}
+
+
+class Label(NamedTuple):
+    """A label beside a view, and the point of the view that it belongs to.
+
+    Attributes:
+        text: The label.
+        at: Point (2,), in the units of the view.
+    """
+
+    text: str
+    at: Any
+
+
+def quantity(value: Any, unit: str) -> str:
+    """A number as it stands on a drawing: lengths in mm, or µm below 0.1 mm.
+
+    Args:
+        value: The number, in SI units.
+        unit: Its SI unit; empty for a pure number.
+    """
+    value = float(value)
+    if unit == "m" and 0.0 < abs(value) < 1e-4:
+        return f"{1e6 * value:.4g} µm"
+    factor, name = _SHOWN.get(unit, (1.0, f" {unit}" if unit else ""))
+    return f"{factor * value:.5g}{name}"
+
+
+def label(owner: Any, name: str, prefix: str = "") -> str:
+    """Name and value of a field: "pitch_diameter = 46 mm".
+
+    Args:
+        owner: Instance with the field.
+        name: The field.
+        prefix: Before the name, such as "rows.0.".
+    """
+    value = getattr(owner, name)
+    if value is None:
+        return f"{prefix}{name}: not given"
+    if isinstance(value, bool | int):
+        return f"{prefix}{name} = {value}"
+    return f"{prefix}{name} = {quantity(value, unit_of(owner, name))}"
+
+
+def fit(ax: "matplotlib.axes.Axes", points, size, middle=(0.44, 0.86)) -> None:
+    """Set the limits of a view, to scale: its parts stand in the middle.
+
+    Args:
+        ax: Axes; they lose their frame, and their sides get the ratio of `size`.
+        points: What is to be seen (point, 2).
+        size: Width and height of the axes [inch].
+        middle: Share of width and height that the parts take.
+    """
+    points = np.asarray(points, dtype=float)
+    low, high = points.min(axis=0), points.max(axis=0)
+    inch = np.max((high - low) / (np.asarray(size) * np.asarray(middle)))
+    centre, half = 0.5 * (low + high), 0.5 * inch * np.asarray(size)
+    ax.set_xlim(centre[0] - half[0], centre[0] + half[0])
+    ax.set_ylim(centre[1] - half[1], centre[1] + half[1])
+    ax.set_box_aspect(size[1] / size[0])
+    ax.set_axis_off()
+
+
+def put_labels(ax: "matplotlib.axes.Axes", labels: list[Label], size, column=0.27):
+    """Write labels in two columns beside the view, each with a line to its point.
+
+    Args:
+        ax: Axes after `fit`.
+        labels: What to write; those of points further left stand on the left.
+        size: Width and height of the axes [inch].
+        column: Width of a column, share of the axes.
+    """
+    low, high = ax.get_ylim()
+    order = sorted(labels, key=lambda one: float(one.at[0]))
+    cut = len(order) // 2
+    for side, part in (("right", order[:cut]), ("left", order[cut:])):
+        part = sorted(part, key=lambda one: float(one.at[1]))
+        wanted = [(float(one.at[1]) - low) / (high - low) for one in part]
+        lines = np.array([1 + one.text.count("\n") for one in part])
+        places = spread(wanted, (_LINE * lines + _FREE) / size[1])
+        for one, place in zip(part, places, strict=True):
+            ax.annotate(
+                one.text,
+                tuple(np.asarray(one.at, dtype=float)),
+                (column if side == "right" else 1.0 - column, place),
+                textcoords="axes fraction",
+                fontsize=SMALL,
+                ha=side,
+                va="center",
+                zorder=8,
+                arrowprops={
+                    "arrowstyle": "-",
+                    "color": GREY,
+                    "linewidth": 0.6,
+                    "shrinkA": 1,
+                    "shrinkB": 0,
+                    "relpos": (1.0 if side == "right" else 0.0, 0.5),
+                },
+            )
+
+
+def spread(wanted, heights) -> np.ndarray:
+    """Middles of labels in a column from 0 to 1, near those that are wanted.
+
+    Args:
+        wanted: Ascending places (n,).
+        heights: Of the labels (n,); all are reduced if they do not find room.
+    """
+    if not len(wanted):
+        return np.zeros(0)
+    heights = np.asarray(heights) / max(1.0, float(np.sum(heights)))
+    steps = np.cumsum(heights) - 0.5 * heights - 0.5 * heights[0]
+    # Least squares under the distances: pool neighbours that press on each other.
+    blocks: list[tuple[float, int]] = []
+    for value in np.asarray(wanted, dtype=float) - steps:
+        mean, count = float(value), 1
+        while blocks and blocks[-1][0] >= mean:
+            before, others = blocks.pop()
+            mean = (mean * count + before * others) / (count + others)
+            count += others
+        blocks.append((mean, count))
+    pooled = np.concatenate([np.full(count, mean) for mean, count in blocks])
+    low, high = 0.5 * heights[0], 1.0 - 0.5 * heights[-1] - steps[-1]
+    return np.clip(pooled, low, max(low, high)) + steps
+
+
+def between(ax: "matplotlib.axes.Axes", start, stop, shift=(0.0, 0.0)) -> np.ndarray:
+    """A dimension line between two points, moved aside with extension lines.
+
+    Args:
+        ax: Axes.
+        start, stop: The points (2,).
+        shift: How far the line stands aside (2,).
+
+    Returns:
+        Its middle, for the label.
+    """
+    start, stop = np.asarray(start, dtype=float), np.asarray(stop, dtype=float)
+    shift = np.asarray(shift, dtype=float)
+    for point in (start, stop):
+        if shift.any():
+            ax.plot(*np.stack([point, point + 1.06 * shift]).T, **THIN)
+    ends = start + shift, stop + shift
+    ax.annotate("", tuple(ends[1]), tuple(ends[0]), arrowprops=ARROW, zorder=6)
+    return 0.5 * (ends[0] + ends[1])
+
+
+def squeeze(ax: "matplotlib.axes.Axes", start, stop, tail: float) -> None:
+    """Both ends of a short distance, by arrows from outside.
+
+    Args:
+        ax: Axes.
+        start, stop: The ends (2,).
+        tail: Length of the arrows.
+    """
+    start, stop = np.asarray(start, dtype=float), np.asarray(stop, dtype=float)
+    way = (stop - start) / np.linalg.norm(stop - start)
+    arrow = ARROW | {"arrowstyle": "-|>"}
+    for end, sign in ((start, -1.0), (stop, 1.0)):
+        ax.annotate(
+            "", tuple(end), tuple(end + sign * tail * way), arrowprops=arrow, zorder=6
+        )
+
+
+def radius(ax: "matplotlib.axes.Axes", centre, point) -> np.ndarray:
+    """An arrow from the centre of an arc to the arc.
+
+    Returns:
+        A point on it, for the label.
+    """
+    centre, point = np.asarray(centre, dtype=float), np.asarray(point, dtype=float)
+    arrow = ARROW | {"arrowstyle": "-|>"}
+    ax.annotate("", tuple(point), tuple(centre), arrowprops=arrow, zorder=6)
+    ax.plot(*centre, marker="+", color="black", markersize=5, zorder=6)
+    return centre + 0.8 * (point - centre)
+
+
+def angle(ax: "matplotlib.axes.Axes", centre, size: float, ends) -> np.ndarray:
+    """An angle between two lines through a point.
+
+    Args:
+        ax: Axes.
+        centre: The point (2,).
+        size: Radius of the arc; the lines are a little longer.
+        ends: Directions of both lines, from the first axis on [rad].
+
+    Returns:
+        The middle of the arc, for the label.
+    """
+    centre = np.asarray(centre, dtype=float)
+    for end in ends:
+        line = np.stack([np.zeros(2), 1.12 * size * _way(end)])
+        ax.plot(*(centre + line).T, **THIN)
+    turn = np.linspace(ends[0], ends[1], 30)
+    ax.plot(*(centre + size * _way(turn)).T, color="black", linewidth=0.9, zorder=6)
+    return centre + size * _way(0.5 * (ends[0] + ends[1]))
+
+
+def _way(turn):
+    return np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+
+
+def magnification(true: float, wanted: float) -> float:
+    """A round factor that makes a length about as large as wanted, at least 1.
+
+    Args:
+        true: The length.
+        wanted: Its length on the drawing.
+    """
+    if true == 0.0:
+        return 1.0
+    factor = max(abs(wanted / true), 1.0)
+    power = 10.0 ** np.floor(np.log10(factor))
+    return float(max(step for step in (1, 2, 5) if step * power <= factor) * power)

@@ -1,0 +1,140 @@
+"""A row of rolling elements seen along the axis, and how they differ."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..design import AbstractBallBearing, Bearing, n_elements
+from .dimension import AXIS, angle, between, fit, label
+from .style import CURVES, GREY, RACEWAYS, ROLLER, SMALL, axes_or_new
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+DEVIATIONS = {
+    "azimuth_deviation": (180.0 / np.pi, "deg"),
+    "ball_deviation": (1e6, "µm"),
+    "roller_deviation": (1e6, "µm"),
+    "raceway_deviation": (1e6, "µm"),
+}
+"""How fields that differ from one rolling element to the next are shown."""
+
+
+def face_view(ax: "matplotlib.axes.Axes", bearing: Bearing, size) -> None:
+    """Along the axis, to scale: the pitch circle and the rolling elements on it.
+
+    Args:
+        ax: Axes.
+        bearing: A single row.
+        size: Width and height of the axes [inch].
+    """
+    from matplotlib.patches import Circle
+
+    balls = isinstance(bearing, AbstractBallBearing)
+    pitch = 0.5e3 * float(bearing.pitch_diameter)
+    word = "ball" if balls else "roller"
+    own = 0.5e3 * float(getattr(bearing, f"{word}_diameter"))
+    count, first = n_elements(bearing), float(bearing.first_azimuth)
+    azimuth = first + 2.0 * np.pi * np.arange(count) / count
+    if bearing.azimuth_deviation is not None:
+        azimuth = azimuth + np.asarray(bearing.azimuth_deviation)
+    centres = pitch * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1)
+    for centre in centres:
+        ax.add_patch(
+            Circle(tuple(centre), own, facecolor="#DDF1EA", edgecolor=ROLLER, zorder=3)
+        )
+    ax.add_patch(Circle((0.0, 0.0), pitch, fill=False, **AXIS))
+    reach = pitch + own
+    # Towards the upper left, between two rolling elements.
+    gaps = azimuth + np.pi / count
+    turn = gaps[np.argmax(np.cos(gaps - 0.75 * np.pi))]
+    way = np.array([np.cos(turn), np.sin(turn)])
+    across = between(ax, -pitch * way, pitch * way) + 0.75 * pitch * way
+    start = angle(ax, (0.0, 0.0), 0.55 * pitch, (0.0, first))
+    ax.text(
+        centres[0, 0],
+        centres[0, 1],
+        "0",
+        ha="center",
+        va="center",
+        color=GREY,
+        zorder=4,
+    )
+    corners = {
+        "lower right": (f"{label(bearing, 'first_azimuth')}, of {word} 0", start),
+        "upper left": (label(bearing, "pitch_diameter"), across),
+        "upper right": (
+            label(bearing, f"n_{word}s"),
+            centres[np.argmax(centres.sum(axis=1))],
+        ),
+    }
+    lacking = [
+        label(bearing, name)
+        for name in DEVIATIONS
+        if hasattr(bearing, name) and getattr(bearing, name) is None
+    ]
+    fit(ax, np.array([[-1.0, -1.0], [1.0, 1.0]]) * reach, size, (0.62, 0.74))
+    for corner, (text, at) in corners.items():
+        _in_corner(ax, corner, text, at)
+    _in_corner(ax, "lower left", "\n".join(lacking))
+    for end, name in (((1.12 * reach, 0.0), "x"), ((0.0, 1.12 * reach), "y")):
+        ax.annotate("", end, (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": GREY})
+        ax.annotate(name, end, (4, 4), textcoords="offset points", color=GREY)
+    ax.set_title(f"{word.capitalize()}s, seen against z, to scale")
+
+
+def _in_corner(ax, corner, text, at=None):
+    """Text in a corner of the axes, with a line to a point."""
+    low, left = corner.startswith("lower"), corner.endswith("left")
+    ax.annotate(
+        text,
+        (0.0, 0.0) if at is None else tuple(at),
+        (0.01 if left else 0.99, 0.01 if low else 0.97),
+        textcoords="axes fraction",
+        fontsize=SMALL,
+        ha="left" if left else "right",
+        va="bottom" if low else "top",
+        zorder=8,
+        arrowprops=None
+        if at is None
+        else {
+            "arrowstyle": "-",
+            "color": GREY,
+            "linewidth": 0.6,
+            "relpos": (0.5, 1.0 if low else 0.0),
+        },
+    )
+
+
+def deviation_view(ax: "matplotlib.axes.Axes", bearing: Bearing, name: str) -> None:
+    """How each rolling element differs from the design.
+
+    Args:
+        ax: Axes.
+        bearing: A single row.
+        name: One of `DEVIATIONS`, which the bearing has.
+    """
+    ax = axes_or_new(ax)
+    factor, unit = DEVIATIONS[name]
+    values = factor * np.asarray(getattr(bearing, name))
+    number = np.arange(len(values))
+    if values.ndim == 1:
+        ax.stem(number, values, basefmt=" ")
+        ax.axhline(0.0, color=GREY, linewidth=0.8)
+    else:
+        places = ("along z", "outwards", "raised")
+        for k, ring in enumerate(RACEWAYS):
+            for m, place in enumerate(places):
+                ax.plot(
+                    number,
+                    values[:, k, m],
+                    ("-o", "--s")[k],
+                    color=CURVES[m],
+                    markersize=3,
+                    label=f"{ring}, {place}",
+                )
+        ax.legend(fontsize=SMALL, ncols=2)
+    ax.grid(color="0.9")
+    ax.set_xlabel("number of the rolling element")
+    ax.set_ylabel(f"deviation [{unit}]")
+    ax.set_title(f"{name}: of each rolling element", fontsize=11)

@@ -1,0 +1,31 @@
+"""A row of rollers in its axial section."""
+
+import numpy as np
+
+from .outline import Section
+from .style import COLOURS, RACEWAYS, ROLLER, towards_white
+
+
+def roller_row(ax, parts: Section, place=np.asarray, apart=0.0) -> np.ndarray:
+    """One roller and both rings beside it.
+
+    Args:
+        ax: Axes.
+        parts: Of a row of rollers.
+        place: Where points (point, 2), z and r in mm, stand.
+        apart: How far each ring stands further from the roller [mm].
+
+    Returns:
+        Corners of both rings (point, 2) [mm].
+    """
+    corners = []
+    for k, name in enumerate(RACEWAYS):
+        away = (1.0, -1.0)[k] * np.array([-1.0, 1.0]) * parts.generators[k, ::-1]
+        ring = place(parts.rings[k] + apart * away)
+        fill = towards_white(COLOURS[name], 0.88)
+        ax.fill(*ring.T, facecolor=fill, edgecolor=COLOURS[name], linewidth=1.2)
+        corners.append(ring)
+    ax.fill(
+        *place(parts.roller).T, facecolor="#DDF1EA", edgecolor=ROLLER, linewidth=1.4
+    )
+    return np.concatenate(corners)

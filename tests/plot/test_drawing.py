@@ -1,0 +1,223 @@
+"""A drawing has a label for every field of its design, once, where it is measured."""
+
+import dataclasses
+import functools
+import re
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.text import Annotation, Text
+from registry import balls, taper
+from tolerances import ROUNDING
+
+import bearingjax as bj
+from bearingjax import plot
+from bearingjax.plot.dimension import magnification, quantity, spread
+from bearingjax.plot.drawing import IN_WORDS
+from bearingjax.plot.set_drawing import arrangement_view
+
+RIB = bj.Rib(0.3, 1.5e-3, 15e-6)
+SAME_FOR_ALL = dict(azimuth_deviation=[1e-3, 0, 0, 0, -1e-3])
+
+
+def cylinder(**change):
+    return bj.CylindricalRollerBearing(5, 0.065, 0.010, 0.010, **change)
+
+
+DESIGNS = {
+    "deep groove": balls(
+        5, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6, **SAME_FOR_ALL
+    ),
+    "deep groove, neither clearance nor angle": balls(5, bj.DeepGrooveBallBearing),
+    "angular contact": balls(
+        5,
+        outer_shoulder=0.003,
+        inner_shoulder=0.002,
+        ball_deviation=np.arange(5) * 1e-7,
+    ),
+    "four-point": balls(
+        5, bj.FourPointBallBearing, shim_angle=0.35, radial_internal_clearance=-3e-6
+    ),
+    "thrust": balls(
+        5,
+        bj.ThrustBallBearing,
+        inner_shoulder=0.002,
+        raceway_deviation=1e-6 * np.ones((5, 2, 3)),
+    ),
+    "self-aligning row": balls(
+        5, bj.SelfAligningBallRow, outer_osculation=None, row_offset=0.006
+    ),
+    "cylindrical, unlike ribs": cylinder(
+        radial_internal_clearance=25e-6,
+        roller_profile=bj.CrownedEnds(0.006, 1.0, 0.8e-3, 0.05),
+        outer_raceway_profile=bj.CircularCrown(3.0),
+        inner_raceway_profile=bj.FujiwaraKawase(10e3, 2.0, 0.6, 15e-6),
+        roller_deviation=np.arange(5) * 1e-7,
+        ribs=bj.Ribs(RIB, RIB, inner_minus=bj.Rib(0.2, 1e-3)),
+    ),
+    "cylindrical, other profiles": cylinder(
+        roller_profile=bj.JohnsGohar(5e3, 60e-6),
+        outer_raceway_profile=bj.Lundberg(5e3),
+        inner_raceway_profile=bj.Tabulated([-5e-3, 0.0, 5e-3], [2e-6, 0.0, 2e-6]),
+    ),
+    "needle": bj.NeedleRollerBearing(5, 0.03, 0.003, 0.012),
+    "taper": taper(5),
+}
+
+
+@functools.cache
+def page(name):
+    return plot.drawing(DESIGNS[name])
+
+
+def texts(figure):
+    """All that is written on a page, part by part of it."""
+    for ax in figure.axes:
+        yield ax, [ax.get_title(), *(text.get_text() for text in ax.texts)]
+
+
+def count(lines, name):
+    """How many lines begin with the name and then have its value or say it has none."""
+    pattern = re.compile(rf"^{re.escape(name)}(?= = |: )", re.MULTILINE)
+    return sum(len(pattern.findall(line)) for line in lines)
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_every_field_of_a_bearing_is_drawn_once(name):
+    bearing = DESIGNS[name]
+    drawn = [line for _, lines in texts(page(name)) for line in lines]
+    parts = page(name).subfigs
+    words = "   ".join(t.get_text() for part in parts for t in part.texts)
+    for field in dataclasses.fields(bearing):
+        if field.name in IN_WORDS:
+            assert words.count(f" {field.name}: ") + words.startswith(field.name) == 1
+        elif field.name != "ribs":
+            assert count(drawn, field.name) == 1, field.name
+    if isinstance(bearing, bj.design.AbstractRollerBearing):
+        _ribs_and_profiles(page(name), bearing, drawn)
+
+
+def _ribs_and_profiles(figure, bearing, drawn):
+    assert count(drawn, "ribs") == (not bearing.ribs.present)
+    for rib in bearing.ribs.present:
+        (lines,) = [ls for ax, ls in texts(figure) if f"ribs.{rib}" in ax.get_title()]
+        for field in dataclasses.fields(bj.Rib):
+            assert count(lines, field.name) == 1, field.name
+    for name in ("roller_profile", "outer_raceway_profile", "inner_raceway_profile"):
+        profile = getattr(bearing, name)
+        for field in dataclasses.fields(profile):
+            title = f"{name}: {type(profile).__name__}"
+            (lines,) = [ls for ax, ls in texts(figure) if ax.get_title() == title]
+            assert count(lines, field.name) == 1, field.name
+
+
+def test_every_kind_of_bearing_and_profile_is_tried():
+    def leaves(kind):
+        below = kind.__subclasses__()
+        own = {kind} if kind.__module__.startswith("bearingjax.design") else set()
+        return set().union(*map(leaves, below)) if below else own
+
+    tried = {type(bearing) for bearing in DESIGNS.values()}
+    for kind in (bj.design.AbstractBallBearing, bj.design.AbstractRollerBearing):
+        assert leaves(kind) <= tried
+    parts = [
+        getattr(bearing, name)
+        for bearing in DESIGNS.values()
+        for name in ("roller_profile", "outer_raceway_profile", "inner_raceway_profile")
+        if hasattr(bearing, name)
+    ]
+    of_a_table = {kind for kind in leaves(bj.design.AbstractProfile)}
+    profiles = {kind for kind in of_a_table if not kind.__name__.startswith("_")}
+    assert profiles <= {type(part) for part in parts} | {bj.Logarithmic}
+
+
+def test_a_set_has_every_number_of_its_rows_and_each_bearing_once():
+    spring = bj.PreloadSpring(400.0, 1e6)
+    one, other = balls(5), balls(7, contact_angle=0.3)
+    rows = (
+        bj.SetRow(one, -0.02, inner_offset=4e-6),
+        bj.SetRow(other, 0.0),
+        bj.SetRow(balls(5, first_azimuth=0.2), 0.02, True, spring=spring),
+    )
+    figure = plot.drawing(bj.BearingSet(rows), "three")
+    assert figure.get_suptitle() == "three"
+    drawn = [line for _, lines in texts(figure) for line in lines]
+    for k, row in enumerate(rows):
+        for field in dataclasses.fields(row):
+            assert count(drawn, f"rows.{k}.{field.name}") == 1, field.name
+    (told,) = [line for line in drawn if line.startswith("rows.2.spring")]
+    for field in dataclasses.fields(spring):
+        assert told.count(f"{field.name} = ") == 1
+    heads = [part.get_suptitle() for part in figure.subfigs if part.get_suptitle()]
+    kind = "AngularContactBallBearing"
+    assert heads == [
+        f"rows.0.bearing, rows.2.bearing: {kind}",
+        f"rows.1.bearing: {kind}",
+    ]
+    # Rows that are alike but for their azimuth are drawn once, that is told of each.
+    assert count(drawn, "rows.2.bearing.first_azimuth") == 1
+    assert count(drawn, "contact_angle") == 2
+
+
+@pytest.mark.parametrize(
+    "make, word",
+    [
+        (bj.BearingSet.back_to_back, "Back-to-back (O), spacing 30 mm"),
+        (bj.BearingSet.face_to_face, "Face-to-face (X), spacing 30 mm"),
+        (bj.BearingSet.tandem, "Tandem, spacing 30 mm"),
+    ],
+)
+def test_the_arrangement_is_named(make, word):
+    ax = plt.figure().add_subplot()
+    arrangement_view(ax, make(taper(5), 0.03), [], (14.0, 5.0))
+    assert ax.get_title().startswith(word)
+
+
+@pytest.mark.parametrize("name", ["deep groove", "thrust", "needle", "taper"])
+def test_sections_are_to_scale(name):
+    """What is drawn along and across has the same scale, and the size of the design."""
+    section, face = page(name).axes[:2]
+    for ax in (section, face):
+        wide, high = np.ptp(ax.get_xlim()), np.ptp(ax.get_ylim())
+        assert high / wide == pytest.approx(ax.get_box_aspect(), rel=ROUNDING)
+    bearing = DESIGNS[name]
+    arrows = [t for t in face.texts if isinstance(t, Annotation) and not t.get_text()]
+    ends = np.array([[arrow.xy, arrow.xyann] for arrow in arrows])
+    across = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    assert np.isclose(across, 1e3 * float(bearing.pitch_diameter)).any()
+
+
+def test_labels_do_not_lie_on_each_other():
+    """In every view of every page."""
+    for name in ("angular contact", "four-point", "taper"):
+        page(name).draw_without_rendering()
+        for ax in page(name).axes[:2]:
+            # Of the words alone, without the line to what they name.
+            words = [t for t in ax.texts if t.get_text()]
+            boxes = [Text.get_window_extent(t) for t in words]
+            for k, box in enumerate(boxes):
+                assert not any(box.overlaps(other) for other in boxes[:k]), name
+
+
+def test_quantities_are_told_as_on_drawings():
+    assert quantity(0.046, "m") == "46 mm"
+    assert quantity(25e-6, "m") == "25 µm" and quantity(-3e-6, "m") == "-3 µm"
+    assert quantity(0.0, "m") == "0 mm"
+    assert quantity(np.pi / 7.2, "rad") == "25°"
+    assert quantity(0.52, "") == "0.52"
+    assert quantity(206e9, "Pa") == "206 GPa"
+
+
+def test_magnification_is_a_round_number():
+    assert magnification(2.5e-3, 0.7) == 200.0
+    assert magnification(-1e-3, 0.7) == 500.0
+    assert magnification(1.0, 0.5) == 1.0 and magnification(0.0, 1.0) == 1.0
+
+
+def test_labels_spread_to_where_there_is_room():
+    at = spread([0.5, 0.5, 0.5], [0.1, 0.2, 0.1])
+    np.testing.assert_allclose(at, [0.35, 0.5, 0.65], rtol=ROUNDING)
+    at = spread([0.0, 0.9, 1.0], [0.2, 0.2, 0.2])
+    np.testing.assert_allclose(at, [0.1, 0.7, 0.9], rtol=ROUNDING)
+    assert np.diff(spread([0.1] * 9, [0.2] * 9)).min() > 0.1  # reduced
