@@ -129,12 +129,14 @@ from .numerics import TrustRegionNewton as TrustRegionNewton
 from .optimise import Constraint as Constraint
 from .optimise import Displacement as Displacement
 from .optimise import EdgeLoad as EdgeLoad
+from .optimise import GeometryEstimate as GeometryEstimate
 from .optimise import MeanPressure as MeanPressure
 from .optimise import Optimised as Optimised
 from .optimise import PeakPressure as PeakPressure
 from .optimise import Stiffness as Stiffness
 from .optimise import StiffnessTarget as StiffnessTarget
 from .optimise import Variable as Variable
+from .optimise import estimate_geometry as estimate_geometry
 from .optimise import optimise as optimise
 from .rotor import BearingSupport as BearingSupport
 from .rotor import Disc as Disc

@@ -19,10 +19,16 @@ hold, with exact gradients (`best.optimality`, at most `tolerance`; of "nelder-m
 most its root), whatever the method says. What is doubtful in the best design is in
 `best.after.warnings`. Balls and rollers that may skid: see `bearingjax.dynamics`.
 Worked: the notebook roller_bearing.
+
+`estimate_geometry(bore, outside_diameter, width, kind, C, C0)` makes a design of a
+bearing of which only the catalogue is known: the rolling elements that the ratings and
+the usual proportions agree on. It is an estimate, and its `report()` tells how good.
 """
 
 from .constraint import Constraint as Constraint
 from .design_problem import Outcome as Outcome
+from .estimate import GeometryEstimate as GeometryEstimate
+from .estimate import estimate_geometry as estimate_geometry
 from .measure import Displacement as Displacement
 from .measure import EdgeLoad as EdgeLoad
 from .measure import MeanPressure as MeanPressure

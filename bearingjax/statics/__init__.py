@@ -18,6 +18,11 @@ and a bad one spoils no other. `outputs` are fields of a solution, or `peak_pres
 `jax.config.update("jax_num_cpu_devices", 2)` before all else uses two cores.
 `sweep(..., stop=...)` is asked between blocks.
 
+`dynamic_capacity`, `static_capacity` and `fatigue_load_limit` rate a bearing, or a set
+of alike ones, by ISO 281 and ISO 76 from its geometry; `ratings` takes what a catalogue
+gives instead and says which is which. A catalogue's C may be higher: makers use factors
+of their own. Bearings steeper than 45 degrees are rated by axial loads.
+
 A solve that fails
 ------------------
 

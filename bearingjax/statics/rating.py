@@ -6,8 +6,6 @@ set of alike rows is rated as one bearing of several rows. The formulas are made
 steel; they take the numbers of a design and no catalogue.
 """
 
-from typing import NamedTuple
-
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -28,15 +26,12 @@ from ..design.checks import is_traced, positive
 from ..numerics.types import Flag, Scalar, as_real
 from ..numerics.units import unit
 from . import row_rating as by_row
-from .row_rating import BallRow, RollerRow
+from .row_rating import THRUST_ANGLE, BallRow, RollerRow, Rows
 
 GIVEN = "given"
 DYNAMIC_FROM_GEOMETRY = "ISO 281 from geometry"
 STATIC_FROM_GEOMETRY = "ISO 76 from geometry"
 LIMIT_FROM_STATIC = "ISO 281 from static capacity"
-
-THRUST_ANGLE = 0.25 * np.pi
-"""Nominal contact angle above which a bearing is a thrust bearing [rad] (ISO 281)."""
 
 
 class Ratings(eqx.Module):
@@ -186,44 +181,7 @@ def rated_axially(bearing: Bearing | BearingSet) -> Flag:
     return _alike(bearing)[0].row.contact_angle > THRUST_ANGLE
 
 
-class _Rows(NamedTuple):
-    """Alike rows as numbers, so that all bearings of a type share one program.
-
-    Attributes:
-        row: One of them.
-        kind: What the standards say of their type; `None` of rollers.
-        count: How many there are.
-        one_way: How many bear an axial load together: of two sides the weaker.
-    """
-
-    row: BallRow | RollerRow
-    kind: by_row.BallKind | None
-    count: Scalar
-    one_way: Scalar
-
-
-@eqx.filter_jit
-def _capacities(rows, is_thrust):
-    """C and C0, radial or axial [N]."""
-    row, angle = rows.row, rows.row.contact_angle
-    axial = is_thrust | (angle > THRUST_ANGLE)
-    if isinstance(row, RollerRow):
-        dynamic = by_row.radial_roller_dynamic(row, rows.count)
-        steep = by_row.steep_roller_dynamic(row, rows.one_way)
-        load = by_row.roller_static(row)
-    else:
-        kind = rows.kind
-        if kind.open[0] is not None:
-            # Only self-aligning bearings have other raceways when steep.
-            pairs = by_row.THRUST, kind
-            kind = jax.tree.map(lambda a, b: jnp.where(axial, a, b), *pairs)
-        rate = by_row.thrust_ball_dynamic if is_thrust else by_row.steep_ball_dynamic
-        dynamic = by_row.radial_ball_dynamic(row, kind, rows.count)
-        steep = rate(row, kind, rows.one_way)
-        load = by_row.ball_static(row, kind)
-    radial = 0.2 * rows.count * jnp.cos(angle)
-    share = jnp.where(axial, rows.one_way * jnp.sin(angle), radial)
-    return jnp.where(axial, steep, dynamic), row.count * load * share
+_capacities = eqx.filter_jit(by_row.capacities)
 
 
 @eqx.filter_jit
@@ -274,7 +232,7 @@ def _kind(bearing, several) -> by_row.BallKind | None:
     return jax.tree.map(as_real, kind)
 
 
-def _alike(bearing) -> tuple[_Rows, bool]:
+def _alike(bearing) -> tuple[Rows, bool]:
     """The rows, and whether they are of a thrust bearing."""
     if not isinstance(bearing, Bearing | BearingSet):
         raise TypeError(
@@ -291,7 +249,7 @@ def _alike(bearing) -> tuple[_Rows, bool]:
             )
     sides = [sum(row.mirrored is side for row in rows) for side in (False, True)]
     one_way, kind = min(n for n in sides if n), _kind(first, len(rows) > 1)
-    numbers = _Rows(_row(first), kind, as_real(len(rows)), as_real(one_way))
+    numbers = Rows(_row(first), kind, as_real(len(rows)), as_real(one_way))
     return numbers, isinstance(first, ThrustBallBearing)
 
 

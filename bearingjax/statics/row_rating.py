@@ -9,8 +9,10 @@ Source: dynamic: ISO 281:2007, with f_c by the formulas of ISO/TR 1281-1 (Lundbe
     at which the hardest contact has a given peak pressure, by exact Hertz contact.
 """
 
+import math
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 
 from ..contact.hertz import ellipse
@@ -21,6 +23,9 @@ _PER_MM = 1e3
 
 _MODULUS = 0.5 * 2.07e11 / (1.0 - 0.3**2)
 """Contact modulus of the steel that ISO 76 counts with, 207 GPa and 0.3 [Pa]."""
+
+THRUST_ANGLE = 0.25 * math.pi
+"""Nominal contact angle above which a bearing is a thrust bearing [rad] (ISO 281)."""
 
 _LARGE_BALL = 25.4
 """Diameter above which a ball's rating grows more slowly [mm]."""
@@ -85,6 +90,51 @@ class RollerRow(NamedTuple):
     length: Scalar
     pitch_diameter: Scalar
     contact_angle: Scalar
+
+
+class Rows(NamedTuple):
+    """Alike rows as numbers, so that all bearings of a type share one program.
+
+    Attributes:
+        row: One of them.
+        kind: What the standards say of their type; `None` of rollers.
+        count: How many there are.
+        one_way: How many bear an axial load together: of two sides the weaker.
+    """
+
+    row: BallRow | RollerRow
+    kind: BallKind | None
+    count: Scalar
+    one_way: Scalar
+
+
+def capacities(rows: Rows, is_thrust: bool) -> tuple[Scalar, Scalar]:
+    """Basic load ratings C and C0 of alike rows, radial or axial [N].
+
+    Args:
+        rows: The rows.
+        is_thrust: Whether their contact angle is 90 degrees. Static.
+    """
+    row, angle = rows.row, rows.row.contact_angle
+    axial = is_thrust | (angle > THRUST_ANGLE)
+    if isinstance(row, RollerRow):
+        dynamic = radial_roller_dynamic(row, rows.count)
+        steep = steep_roller_dynamic(row, rows.one_way)
+        load = roller_static(row)
+    else:
+        kind = rows.kind
+        assert kind is not None
+        if kind.open[0] is not None:
+            # Only self-aligning bearings have other raceways when steep.
+            pairs = THRUST, kind
+            kind = jax.tree.map(lambda a, b: jnp.where(axial, a, b), *pairs)
+        rate = thrust_ball_dynamic if is_thrust else steep_ball_dynamic
+        dynamic = radial_ball_dynamic(row, kind, rows.count)
+        steep = rate(row, kind, rows.one_way)
+        load = ball_static(row, kind)
+    radial = 0.2 * rows.count * jnp.cos(angle)
+    share = jnp.where(axial, rows.one_way * jnp.sin(angle), radial)
+    return jnp.where(axial, steep, dynamic), row.count * load * share
 
 
 def radial_ball_dynamic(row: BallRow, kind: BallKind, rows: Scalar | int) -> Scalar:

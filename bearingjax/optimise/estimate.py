@@ -1,0 +1,499 @@
+"""Inner geometry of a catalogue bearing from its outer dimensions and load ratings.
+
+Two ratings do not fix three or four inner dimensions. What they leave open is closed by
+the usual proportions of the type (`typical`): for each whole number of rolling elements
+that fits, the sizes that agree best with ratings and proportions at once are found by
+least squares, and the number with the best agreement is taken.
+"""
+
+from functools import partial
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from scipy.optimize import least_squares
+
+from ..design import (
+    AbstractBallBearing,
+    AngularContactBallBearing,
+    Bearing,
+    BearingSet,
+    CylindricalRollerBearing,
+    DeepGrooveBallBearing,
+    FourPointBallBearing,
+    Logarithmic,
+    NeedleRollerBearing,
+    Rib,
+    Ribs,
+    SelfAligningBallRow,
+    TaperedRollerBearing,
+    ThrustBallBearing,
+    n_elements,
+    rows_of,
+)
+from ..design.checks import check, in_range, positive
+from ..numerics.types import as_real
+from ..statics import row_rating
+from ..statics.row_rating import BallKind, BallRow, RollerRow, Rows
+from .typical import PROPORTIONS, Proportions, Typical
+
+_EDGE = 0.003
+"""Spread of the hard limits, for the least squares to feel them [section]."""
+
+_WALL = 0.1
+"""Least wall under a raceway [section]."""
+
+_WEB = 0.985
+"""Most that the rolling elements fill between each other's centres [1]."""
+
+_BROADEST = 0.9
+"""Largest roller length or ball diameter [width]."""
+
+_WORST = 0.15
+"""Largest misfit of a rating that is still an estimate [1]."""
+
+_UNUSUAL = 20.0
+"""Misfit above which something is odd: the proportions have five degrees of freedom."""
+
+_FEWEST = 3
+
+
+class _Rated(NamedTuple):
+    """How a type is rated: what its programs differ by.
+
+    Attributes:
+        balls: What the standards say of its balls; `None` of rollers.
+        is_thrust: Whether its contact angle is 90 degrees.
+        rows: Number of rows that the ratings are of.
+    """
+
+    balls: BallKind | None
+    is_thrust: bool = False
+    rows: int = 1
+
+
+_KINDS = {
+    "deep_groove": _Rated(row_rating.ANGULAR_CONTACT),
+    "angular_contact": _Rated(row_rating.ANGULAR_CONTACT),
+    "four_point": _Rated(row_rating.ANGULAR_CONTACT),
+    "self_aligning": _Rated(row_rating.SELF_ALIGNING, rows=2),
+    "thrust_ball": _Rated(row_rating.THRUST, is_thrust=True),
+    "cylindrical": _Rated(None),
+    "needle": _Rated(None),
+    "tapered": _Rated(None),
+}
+
+
+class GeometryEstimate(eqx.Module):
+    """Estimated inner geometry: like the real one, not it.
+
+    Attributes:
+        bearing: The design. Its clearance is zero, its grooves are those that the
+            standards count with (0.52, outer rings 0.53), its rollers have the
+            logarithmic profile: none of these shows in the ratings.
+        dynamic_error: C of the design by ISO 281 over that given, less one [1].
+        static_error: C0 by ISO 76 likewise [1].
+        misfit: Sum of the squared differences from ratings and usual proportions, each
+            over its spread; above 20 the bearing is an unusual one, or its ratings are
+            not those of the standards.
+        rivals: Other numbers of rolling elements and their misfits, the best first; one
+            that is not much worse may be the true one.
+        assumed_contact_angle: Whether the contact angle is an estimate as well.
+
+    Static: all numbers but those of the bearing.
+    """
+
+    bearing: Bearing | BearingSet
+    dynamic_error: float = eqx.field(static=True)
+    static_error: float = eqx.field(static=True)
+    misfit: float = eqx.field(static=True)
+    rivals: tuple[tuple[int, float], ...] = eqx.field(static=True)
+    assumed_contact_angle: bool = eqx.field(static=True)
+
+    def report(self) -> str:
+        """What it is and how well it fits, in words."""
+        row = rows_of(self.bearing)[0].bearing
+        ball = isinstance(row, AbstractBallBearing)
+        name = "ball" if ball else "roller"
+        size = float(getattr(row, f"{name}_diameter"))
+        text = (
+            f"Estimate: {n_elements(row)} {name}s of {1e3 * size:.4g} mm"
+            + ("" if ball else f" by {1e3 * float(row.roller_length):.4g} mm")
+            + f" a row, pitch diameter {1e3 * float(row.pitch_diameter):.5g} mm."
+            f" C {100 * self.dynamic_error:+.1f} %, C0 {100 * self.static_error:+.1f} %"
+            f" off those given; misfit {self.misfit:.1f}"
+        )
+        if self.misfit > _UNUSUAL:
+            text += " (unusual: check the ratings)"
+        if self.rivals:
+            others = (f"{count} ({misfit:.1f})" for count, misfit in self.rivals)
+            text += f", with other numbers of {name}s {', '.join(others)}"
+        return text + (
+            ". The contact angle is an estimate too."
+            if self.assumed_contact_angle
+            else "."
+        )
+
+
+class _Envelope(NamedTuple):
+    """What is known: lengths [m], ratings [N], proportions, hard limits."""
+
+    section: Any
+    mean: Any
+    width: Any
+    ratings: Any
+    rating_spread: Any
+    typical: Any
+    spread: Any
+    slenderness: Any
+    by_arc: Any
+
+
+def estimate_geometry(
+    bore: float,
+    outside_diameter: float,
+    width: float,
+    kind: str,
+    dynamic_capacity: float,
+    static_capacity: float,
+    *,
+    contact_angle: float | None = None,
+) -> GeometryEstimate:
+    """Inner geometry of a bearing that has the ratings of a catalogue.
+
+    Args:
+        bore: Bore diameter d [m].
+        outside_diameter: Outside diameter D [m].
+        width: Width B; height of thrust bearings, total width of tapers [m].
+        kind: "deep_groove", "angular_contact", "four_point", "self_aligning" (of two
+            rows), "thrust_ball", "cylindrical", "needle" or "tapered".
+        dynamic_capacity: Basic dynamic load rating C [N]. Ratings that a maker has
+            raised by a factor of his own should be divided by it.
+        static_capacity: Basic static load rating C0 [N].
+        contact_angle: Of angular contact, four-point and tapered (outer raceway)
+            bearings [rad]; `None`: estimated as well, which the ratings hardly
+            support.
+
+    Returns:
+        Estimate; numbers of balls are usually exact, of rollers within one or two.
+
+    Raises:
+        TypeError: If a number is none.
+        ValueError: If a number is not positive, the bore not below the outside
+            diameter, the kind unknown, a contact angle given to a type that has none,
+            or no geometry of this size has these ratings.
+
+    Source: ratings by ISO 281 and ISO 76 (`statics.row_rating`); proportions: see
+        `typical`.
+    """
+    numbers = dict(
+        bore=bore,
+        outside_diameter=outside_diameter,
+        width=width,
+        dynamic_capacity=dynamic_capacity,
+        static_capacity=static_capacity,
+    )
+    typical = _checked(numbers, kind, contact_angle)
+    rated, known = _KINDS[kind], _envelope(numbers, kind, typical)
+    _check_reach(rated, known, numbers)
+    fits = [_fit(rated, known, count) for count in _counts(rated, known)]
+    fits.sort(key=lambda fit: fit.misfit)
+    best = fits[0]
+    _check_pair(kind, numbers, best.errors)
+    return GeometryEstimate(
+        _design(kind, known, best),
+        *best.errors,
+        best.misfit,
+        tuple((fit.count, fit.misfit) for fit in fits[1:5]),
+        contact_angle is None and typical.angle.spread > 1e-3,
+    )
+
+
+class _Fit(NamedTuple):
+    """The best sizes with a number of rolling elements.
+
+    Attributes:
+        count: The number.
+        sizes: As `_sizes`.
+        misfit: Sum of squares.
+        errors: Of C and C0 [1].
+    """
+
+    count: int
+    sizes: np.ndarray
+    misfit: float
+    errors: tuple[float, float]
+
+
+def _start(known):
+    """Usual sizes (size,): see `_sizes`."""
+    element, pitch, _, length, angle = known.typical
+    return np.array([np.log(element), pitch, np.log(length), angle])
+
+
+def _sizes(rated, known, sizes):
+    """Diameter, pitch diameter, length [m] and angle [rad] of the sizes (size,).
+
+    Sizes: log of the diameter over the section, pitch diameter over the mean diameter,
+    log of the length over the width, contact angle.
+    """
+    across = known.width if rated.is_thrust else known.section
+    angle = 0.5 * np.pi if rated.is_thrust else sizes[3]
+    return (
+        across * jnp.exp(sizes[0]),
+        known.mean * sizes[1],
+        known.width * jnp.exp(sizes[2]),
+        jnp.asarray(angle),
+    )
+
+
+def _ratings(rated, known, sizes, count):
+    diameter, pitch, length, angle = _sizes(rated, known, sizes)
+    if rated.balls is None:
+        row = RollerRow(count, diameter, length, pitch, angle)
+    else:
+        row = BallRow(count, diameter, pitch, angle, rated.balls.open)
+    numbers = Rows(row, rated.balls, as_real(rated.rows), as_real(rated.rows))
+    return jnp.stack(row_rating.capacities(numbers, rated.is_thrust))
+
+
+def _residuals(rated, known, sizes, count):
+    """Differences from ratings, proportions and hard limits, over their spreads."""
+    diameter, pitch, length, angle = _sizes(rated, known, sizes)
+    wrong = jnp.log(_ratings(rated, known, sizes, count) / known.ratings)
+    step = jnp.arcsin(jnp.minimum(diameter / pitch, 0.999))
+    arc, share = 2.0 * (count - 1.0) * step, count * step / jnp.pi
+    filling = jnp.where(known.by_arc, arc, share)
+    usual = jnp.stack((jnp.exp(sizes[0]), sizes[1], filling, jnp.exp(sizes[2]), angle))
+    odd = (usual - known.typical) / known.spread
+    radial = not rated.is_thrust
+    wall = _WALL if radial else 0.0
+    tall = diameter * (jnp.cos(angle) if radial else 1.0)
+    rolls = rated.balls is None
+    over = jnp.stack(
+        (
+            0.5 * (pitch + tall - known.mean) / known.section - 0.5 + wall,
+            0.5 * (known.mean - pitch + tall) / known.section - 0.5 + wall,
+            (diameter - _WEB * pitch * jnp.sin(jnp.pi / count)) / known.section,
+            (length if rolls else diameter) / known.width - _BROADEST,
+            (known.slenderness * diameter - length) / known.section,
+        )
+    )
+    return jnp.concatenate(
+        (wrong / known.rating_spread, odd, jnp.maximum(over, 0.0) / _EDGE)
+    )
+
+
+@eqx.filter_jit
+def _with_slopes(rated: _Rated, known, sizes, count):
+    def residuals(sizes):
+        values = _residuals(rated, known, sizes, count)
+        return values, values
+
+    return jax.jacfwd(residuals, has_aux=True)(sizes)
+
+
+def _part(evaluate, k, sizes):
+    return evaluate(sizes)[k]
+
+
+def _fit(rated, known, count) -> _Fit:
+    """The sizes that agree best, with a given number of rolling elements."""
+    seen: dict[bytes, Any] = {}
+
+    def evaluate(sizes):
+        key = sizes.tobytes()
+        if key not in seen:
+            seen.clear()
+            pair = _with_slopes(rated, known, jnp.asarray(sizes), as_real(count))
+            seen[key] = [np.asarray(part) for part in pair]
+        return seen[key]
+
+    slopes: Any = partial(_part, evaluate, 0)
+    found = least_squares(
+        partial(_part, evaluate, 1),
+        _start(known),
+        jac=slopes,
+        x_scale=np.array([0.1, 0.02, 0.1, 0.05]),
+    )
+    c, c0 = np.expm1(found.fun[:2] * known.rating_spread)
+    return _Fit(count, found.x, float(2.0 * found.cost), (float(c), float(c0)))
+
+
+def _counts(rated, known) -> range:
+    """Numbers of rolling elements worth a trial: the usual ones and more."""
+    least, most = (
+        float(np.pi / np.arcsin(min(0.99, _across(rated, known) * share / known.mean)))
+        for share in np.exp(_start(known)[0]) * np.array([1.3, 0.7])
+    )
+    return range(max(_FEWEST, int(0.5 * least)), int(most) + 2)
+
+
+def _across(rated, known):
+    """What the diameter of the rolling elements is measured by [m]."""
+    return float(known.width if rated.is_thrust else known.section)
+
+
+def _envelope(numbers, kind, typical: Proportions) -> _Envelope:
+    d, big = numbers["bore"], numbers["outside_diameter"]
+    length = typical.length or Typical(0.5, 1.0)
+    parts = typical.element, typical.pitch, typical.filling, length, typical.angle
+    values = _Envelope(
+        0.5 * (big - d),
+        0.5 * (big + d),
+        numbers["width"],
+        (numbers["dynamic_capacity"], numbers["static_capacity"]),
+        typical.ratings,
+        [part.middle for part in parts],
+        [part.spread for part in parts],
+        2.5 if kind == "needle" else 0.0,
+        typical.by_arc,
+    )
+    return _Envelope(*(np.asarray(value, float) for value in values))
+
+
+@eqx.filter_jit
+def _reach(rated: _Rated, known, shares, length):
+    """Ratings [N] of rows of one element, and the most elements, over diameters.
+
+    Args:
+        rated: How the type is rated.
+        known: The envelope.
+        shares: Diameters over what they are measured by (size,) [1].
+        length: Roller length over the width [1].
+    """
+
+    def one(share):
+        sizes = jnp.asarray(known.typical)[jnp.array([0, 1, 3, 4])]
+        sizes = sizes.at[0].set(jnp.log(share)).at[2].set(jnp.log(length))
+        diameter, pitch, _, _ = _sizes(rated, known, sizes)
+        most = jnp.floor(jnp.pi / jnp.arcsin(jnp.minimum(diameter / pitch / _WEB, 1.0)))
+        return _ratings(rated, known, sizes, jnp.ones(())), most
+
+    return jax.vmap(one)(shares)
+
+
+def _grid(rated, known):
+    """Ratings of one element, most elements, over diameters and roller lengths."""
+    limit = (1.0 - 2.0 * _WALL) * float(known.section)
+    if rated.balls is not None:
+        limit = min(limit, _BROADEST * float(known.width))
+    shares = np.linspace(0.15, 1.0, 60) * limit / _across(rated, known)
+    lengths = (0.3, 0.5, 0.7, _BROADEST) if rated.balls is None else (0.5,)
+    parts = [_reach(rated, known, shares, np.asarray(length)) for length in lengths]
+    ratings, most = (np.concatenate(part) for part in zip(*parts, strict=True))
+    usable = most >= _FEWEST
+    return ratings[usable], most[usable]
+
+
+def _check_reach(rated, known, numbers):
+    ratings, most = _grid(rated, known)
+    # C grows so with the number of elements, C0 in proportion.
+    power = 0.75 if rated.balls is None else 2 / 3
+    static = ratings[:, 1]
+    for k, name in enumerate(("dynamic_capacity", "static_capacity")):
+        exponent = (power, 1.0)[k]
+        low = (ratings[:, k] * _FEWEST**exponent).min()
+        high = (ratings[:, k] * most**exponent).max()
+        value = numbers[name]
+        allowed = (
+            f"between {low:.4g} N and {high:.4g} N, which bearings of this type and"
+            " size attain"
+        )
+        check("estimate_geometry", name, low <= value <= high, allowed, value, "N")
+    # Elements that a row has with this C0, and its C.
+    count = numbers["static_capacity"] / static
+    fits = (count >= _FEWEST) & (count <= most)
+    dynamic = ratings[fits, 0] * count[fits] ** power
+    value = numbers["dynamic_capacity"]
+    low, high = dynamic.min() / (1 + _WORST), dynamic.max() * (1 + _WORST)
+    allowed = (
+        f"between {low:.4g} N and {high:.4g} N, which bearings of this type and size"
+        f" with a static capacity of {numbers['static_capacity']:.6g} N attain"
+    )
+    ok = low <= value <= high
+    check("estimate_geometry", "dynamic_capacity", ok, allowed, value, "N")
+
+
+def _check_pair(kind, numbers, errors):
+    if max(abs(error) for error in errors) <= _WORST:
+        return
+    c, c0 = (numbers[f"{name}_capacity"] for name in ("dynamic", "static"))
+    raise ValueError(
+        f"estimate_geometry: no usual {kind.replace('_', ' ')} bearing of this size"
+        f" has both a `dynamic_capacity` of {c:.6g} N and a `static_capacity` of"
+        f" {c0:.6g} N; the nearest has {c * (1 + errors[0]):.4g} N and"
+        f" {c0 * (1 + errors[1]):.4g} N."
+    )
+
+
+def _checked(numbers, kind, contact_angle) -> Proportions:
+    """Proportions of the type, with the contact angle if it is given."""
+    owner = "estimate_geometry"
+    for name, value in numbers.items():
+        positive(owner, name, value, "N" if "capacity" in name else "m")
+    bore, outside = numbers["bore"], numbers["outside_diameter"]
+    allowed = f"below the outside diameter, {outside:.6g} m"
+    check(owner, "bore", bore < outside, allowed, bore, "m")
+    if kind not in PROPORTIONS:
+        raise ValueError(
+            f"{owner}: `kind` is {kind!r}; it must be one of {', '.join(PROPORTIONS)}."
+        )
+    typical = PROPORTIONS[kind]
+    if contact_angle is None:
+        return typical
+    if kind not in ("angular_contact", "four_point", "tapered"):
+        raise ValueError(
+            f"{owner}: `contact_angle` is given; a {kind} bearing has none to choose."
+        )
+    in_range(owner, "contact_angle", 0.0, 0.25 * np.pi, contact_angle, "rad")
+    return typical._replace(angle=Typical(float(contact_angle), 1e-4))
+
+
+def _design(kind, known, fit) -> Bearing | BearingSet:
+    sizes = _sizes(_KINDS[kind], known, fit.sizes)
+    balls = _KINDS[kind].balls
+    diameter, pitch, length, angle = (float(size) for size in sizes)
+    if kind == "tapered":
+        return _taper(fit.count, pitch, diameter, length, angle)
+    if balls is None:
+        types = CylindricalRollerBearing, NeedleRollerBearing
+        profile = Logarithmic()
+        make = types[kind == "needle"]
+        return make(fit.count, pitch, diameter, length, roller_profile=profile)
+    outer, inner = balls.open
+    row = fit.count, pitch, diameter
+    if kind == "self_aligning":
+        offset = 0.5 * pitch * np.tan(angle)
+        return BearingSet.self_aligning(
+            SelfAligningBallRow(*row, inner_osculation=inner, row_offset=offset)
+        )
+    grooves: dict[str, Any] = dict(outer_osculation=outer, inner_osculation=inner)
+    if kind == "angular_contact":
+        return AngularContactBallBearing(*row, **grooves, contact_angle=angle)
+    if kind == "four_point":
+        return FourPointBallBearing(*row, **grooves, shim_angle=angle)
+    types = DeepGrooveBallBearing, ThrustBallBearing
+    return types[kind == "thrust_ball"](*row, **grooves)
+
+
+def _taper(count, pitch, diameter, length, angle):
+    """A taper whose cones meet in one point, `angle` that of the outer raceway."""
+    half = 0.0
+    for _ in range(60):
+        half = np.arctan(diameter * np.sin(angle - half) / pitch)
+    axis = angle - half
+    # Roller ends as spheres about nearly the common apex, touching the rib low down.
+    apex = 0.5 * pitch / np.sin(axis) + 0.5 * length
+    return TaperedRollerBearing(
+        count,
+        pitch,
+        diameter,
+        length,
+        roller_axis_angle=axis,
+        roller_half_angle=half,
+        roller_profile=Logarithmic(),
+        ribs=Ribs(inner_minus=Rib(0.95 * apex, 0.1 * diameter)),
+    )

@@ -1,0 +1,111 @@
+"""Typical proportions of catalogue bearings: what a maker has left to choose.
+
+Between bore and outside diameter stands the section, half of their difference. Most
+bearings of a type share a few ratios of it, known here by a middle and a spread (one
+standard deviation) as they scatter in makers' catalogues and in the literature.
+"""
+
+import math
+from typing import NamedTuple
+
+_DEG = math.pi / 180
+
+
+class Typical(NamedTuple):
+    """A number's usual value and its spread."""
+
+    middle: float
+    spread: float
+
+
+class Proportions(NamedTuple):
+    """Of one type of bearing.
+
+    Attributes:
+        element: Diameter of the rolling elements over the section [1]; of thrust
+            bearings over the height.
+        pitch: Pitch diameter over the mean of bore and outside diameter [1].
+        filling: How full the row is: arc of the pitch circle over which the elements
+            of a deep groove bearing stand, from the first to the last [rad]; of other
+            types the share of the circle that the elements take up [1].
+        length: Roller length over the width [1]; `None` for balls.
+        angle: Contact angle [rad].
+        by_arc: Whether `filling` is the arc.
+        ratings: Spread of makers' C and C0 about those of the standards [1].
+    """
+
+    element: Typical
+    pitch: Typical
+    filling: Typical
+    length: Typical | None
+    angle: Typical
+    by_arc: bool = False
+    ratings: tuple[float, float] = (0.015, 0.01)
+
+
+_NONE = Typical(0.0, 1e-4)
+_CENTRED = Typical(1.0, 0.012)
+
+PROPORTIONS = {
+    # As many balls as go in between eccentric rings: half of the circle and a little.
+    "deep_groove": Proportions(
+        Typical(0.60, 0.03),
+        _CENTRED,
+        Typical(187 * _DEG, 4 * _DEG),
+        None,
+        _NONE,
+        by_arc=True,
+    ),
+    "angular_contact": Proportions(
+        Typical(0.60, 0.04),
+        _CENTRED,
+        Typical(0.87, 0.05),
+        None,
+        Typical(35 * _DEG, 8 * _DEG),
+    ),
+    "four_point": Proportions(
+        Typical(0.62, 0.04),
+        _CENTRED,
+        Typical(0.86, 0.05),
+        None,
+        Typical(35 * _DEG, 5 * _DEG),
+    ),
+    "self_aligning": Proportions(
+        Typical(0.52, 0.05),
+        _CENTRED,
+        Typical(0.80, 0.06),
+        None,
+        Typical(11 * _DEG, 3 * _DEG),
+    ),
+    "thrust_ball": Proportions(
+        Typical(0.55, 0.06),
+        _CENTRED,
+        Typical(0.87, 0.06),
+        None,
+        Typical(90 * _DEG, 1e-4),
+        # Makers' grooves are closer than those that ISO 76 counts with.
+        ratings=(0.05, 0.05),
+    ),
+    "cylindrical": Proportions(
+        Typical(0.51, 0.04),
+        Typical(1.0, 0.015),
+        Typical(0.76, 0.06),
+        Typical(0.57, 0.06),
+        _NONE,
+    ),
+    "needle": Proportions(
+        Typical(0.35, 0.08),
+        Typical(0.99, 0.03),
+        Typical(0.82, 0.07),
+        Typical(0.75, 0.08),
+        _NONE,
+    ),
+    "tapered": Proportions(
+        Typical(0.42, 0.04),
+        Typical(1.0, 0.015),
+        Typical(0.88, 0.05),
+        Typical(0.68, 0.07),
+        Typical(14 * _DEG, 2.5 * _DEG),
+    ),
+}
+"""By name of the type."""
