@@ -160,7 +160,10 @@ from .rotor import settle_over as settle_over
 from .rotor import stiffness_table as stiffness_table
 from .rotor import to_ross as to_ross
 from .rotor import unbalance_response as unbalance_response
+from .scene import CatalogueEntry as CatalogueEntry
 from .scene import SceneError as SceneError
+from .scene import catalogue as catalogue
+from .scene import catalogue_entry as catalogue_entry
 from .scene import load_bearing as load_bearing
 from .scene import read_scene as read_scene
 from .scene import run_scene as run_scene

@@ -164,7 +164,57 @@ def parser() -> argparse.ArgumentParser:
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
     )
     noise.add_argument("--quiet", action="store_true", help="no progress")
+    _add_catalogue(commands)
     return top
+
+
+def _add_catalogue(commands) -> None:
+    """Commands that list, and solve nothing."""
+    catalogue = commands.add_parser(
+        "catalogue",
+        help="bearings by their designation",
+        description="List the bearings of the catalogue, or say all that is known of"
+        ' some: "6205", "NJ 209 ECP/C3".',
+        epilog="Exit status: 0, or 2 for bad input.",
+    )
+    catalogue.add_argument(
+        "designation", metavar="DESIGNATION", nargs="*", help="default: all that fit"
+    )
+    catalogue.add_argument("--type", help="such as deep_groove_ball")
+    catalogue.add_argument(
+        "--bore", metavar="RANGE", help='"25 mm", "20 mm:40 mm", ":40 mm"'
+    )
+    catalogue.add_argument("--outside", metavar="RANGE", help="outside diameter")
+    catalogue.add_argument(
+        "--min-capacity",
+        dest="capacity",
+        metavar="FORCE",
+        help='least dynamic capacity, "10 kN", or a range "10 kN:20 kN"',
+    )
+    catalogue.add_argument(
+        "--json", metavar="OUT", type=Path, help="write numbers in SI"
+    )
+    catalogue.add_argument(
+        "--plot",
+        metavar="OUT",
+        type=Path,
+        help="draw sections of the bearings that are named (.png, .pdf, .svg)",
+    )
+    new = commands.add_parser(
+        "new",
+        help="a scene of a bearing of the catalogue",
+        description="Print a scene of a bearing under a tenth of its capacity:"
+        " bearingjax new 6205 > my.toml",
+        epilog="Exit status: 0, or 2 for bad input.",
+    )
+    new.add_argument("designation", metavar="DESIGNATION", nargs="+")
+    examples = commands.add_parser(
+        "examples",
+        help="the scenes that come with the package",
+        description="List the shipped scenes, or print one.",
+        epilog="Exit status: 0, or 2 for bad input.",
+    )
+    examples.add_argument("name", metavar="NAME", nargs="?")
 
 
 def _add_common(command):

@@ -1,5 +1,5 @@
 """The command line: `bearingjax solve`, `sweep`, `optimise`, `contact`, `skid`,
-`rotor`, `noise`."""
+`rotor`, `noise`, `catalogue`, `new`, `examples`."""
 
 import contextlib
 import gc
@@ -488,6 +488,71 @@ def _noise(options) -> int:
     return SOLVED
 
 
+def _catalogue(options) -> int:
+    from .scene import (
+        SceneError,
+        catalogue,
+        catalogue_as_dict,
+        catalogue_details,
+        catalogue_entry,
+        catalogue_table,
+        check_outputs,
+        select,
+        write_numbers,
+    )
+
+    named = tuple(catalogue_entry(name) for name in options.designation)
+    if options.plot is not None:
+        if not named:
+            raise SceneError("--plot draws the bearings that are named; name some")
+        _check_plot(options.plot)
+    check_outputs({"--json": options.json, "--plot": options.plot})
+    chosen = select(
+        named or catalogue(),
+        options.type,
+        options.bore,
+        options.outside,
+        options.capacity,
+    )
+
+    def draw(path):
+        from .plot import cross_sections
+
+        titles = [f"{e.designation}, inner geometry {e.geometry}" for e in chosen]
+        figure = cross_sections([entry.bearing for entry in chosen], titles)
+        figure.savefig(path, dpi=150)
+
+    _write(
+        (options.json, lambda path: write_numbers(path, catalogue_as_dict(chosen))),
+        (options.plot, draw if chosen else None),
+    )
+    if named:
+        print("\n\n".join(catalogue_details(entry) for entry in chosen), flush=True)
+    else:
+        print(catalogue_table(chosen), flush=True)
+    return SOLVED
+
+
+def _new(options) -> int:
+    from .scene import catalogue_entry, new_scene
+
+    print(new_scene(catalogue_entry(" ".join(options.designation))), end="", flush=True)
+    return SOLVED
+
+
+def _examples(options) -> int:
+    from .scene import SceneError, not_among, scene_list, shipped_scenes
+
+    if options.name is None:
+        print(scene_list(), flush=True)
+        return SOLVED
+    scenes = shipped_scenes()
+    if options.name not in scenes:
+        raise SceneError(f"examples: {not_among(options.name, tuple(scenes))}")
+    print(scenes[options.name].read_text(encoding="utf-8"), end="", flush=True)
+    return SOLVED
+
+
 def _check_sound(path: Path | None) -> None:
     from .scene import SceneError
 
@@ -553,4 +618,7 @@ _COMMANDS = {
     "skid": _skid,
     "rotor": _rotor,
     "noise": _noise,
+    "catalogue": _catalogue,
+    "new": _new,
+    "examples": _examples,
 }

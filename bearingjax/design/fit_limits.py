@@ -106,6 +106,22 @@ _CYLINDERS = {
     500: (110, 220, 220, 330, 330, 440, 440, 550, 625, 735),
 }
 
+_SELF_ALIGNING = {
+    6: (1, 8, 5, 15, 10, 20, 15, 25),
+    10: (2, 9, 6, 17, 12, 25, 19, 33),
+    14: (2, 10, 6, 19, 13, 26, 21, 35),
+    18: (3, 12, 8, 21, 15, 28, 23, 37),
+    24: (4, 14, 10, 23, 17, 30, 25, 39),
+    30: (5, 16, 11, 24, 19, 35, 29, 46),
+    40: (6, 18, 13, 29, 23, 40, 34, 53),
+    50: (6, 19, 14, 31, 25, 44, 37, 57),
+    65: (7, 21, 16, 36, 30, 50, 45, 69),
+    80: (8, 24, 18, 40, 35, 60, 54, 83),
+    100: (9, 27, 22, 48, 42, 70, 64, 96),
+    120: (10, 31, 25, 56, 50, 83, 75, 114),
+    140: (10, 38, 30, 68, 60, 100, 90, 135),
+}
+
 
 def ball_clearance(name: str, bore: Any) -> Limits:
     """Radial internal clearance of deep groove ball bearings before mounting [m].
@@ -137,6 +153,23 @@ def roller_clearance(name: str, bore: Any) -> Limits:
     Source: ISO 5753-1 (2009), as the catalogue of SKF prints it.
     """
     return _clearance("roller_clearance", name, bore, _CYLINDERS, 0.0)
+
+
+def self_aligning_clearance(name: str, bore: Any) -> Limits:
+    """Radial internal clearance of self-aligning ball bearings before mounting [m].
+
+    With cylindrical bores.
+
+    Args:
+        name: One of `CLEARANCE_CLASSES` but C5.
+        bore: Nominal bore diameter, above 2.5 mm up to 0.14 m [m].
+
+    Raises:
+        ValueError: If there is no such class, or for other bores.
+
+    Source: ISO 5753 (1991), as the catalogue of SKF prints it.
+    """
+    return _clearance("self_aligning_clearance", name, bore, _SELF_ALIGNING, 2.5)
 
 
 def _clearance(owner, name, bore, table, least):

@@ -2,6 +2,15 @@
 
 from .cases_table import CaseTable as CaseTable
 from .cases_table import read_cases as read_cases
+from .catalogue_entry import CatalogueEntry as CatalogueEntry
+from .catalogue_entry import catalogue as catalogue
+from .catalogue_entry import catalogue_entry as catalogue_entry
+from .catalogue_report import catalogue_as_dict as catalogue_as_dict
+from .catalogue_report import catalogue_details as catalogue_details
+from .catalogue_report import catalogue_table as catalogue_table
+from .catalogue_report import new_scene as new_scene
+from .catalogue_report import scene_list as scene_list
+from .catalogue_report import select as select
 from .contact_report import contact_as_dict as contact_as_dict
 from .contact_report import contact_report as contact_report
 from .contact_report import contact_warnings as contact_warnings
@@ -64,3 +73,4 @@ from .sweep_run import design_columns as design_columns
 from .sweep_run import run_cases as run_cases
 from .sweep_run import sweep_report as sweep_report
 from .sweep_run import write_sweep_json as write_sweep_json
+from .table import not_among as not_among

@@ -1,5 +1,7 @@
 """The [bearing] and [set] tables of a scene: what stands on the drawing."""
 
+from typing import Any
+
 from ..design import (
     ARRANGEMENTS,
     MATERIALS,
@@ -32,6 +34,8 @@ from ..design import (
 )
 from ..element import RINGS
 from ..statics.preload import check_preload
+from .catalogue_entry import FromCatalogue, catalogue_entry, taken_from
+from .quantity import SceneError
 from .table import Table
 
 ROLLERS = {
@@ -75,6 +79,9 @@ def read_bearing(
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
+    found = designated(table)
+    if found is not None:
+        table = table.completed(found[0])
     kind = table.choice("type", (*ROLLERS, *BALLS))
     bearing = _balls(table, kind) if kind in BALLS else _rollers(table, kind)
     if isinstance(bearing, SelfAligningBallRow):
@@ -87,6 +94,36 @@ def read_bearing(
     if "set" not in beside:
         return bearing, None
     return _set(beside.table("set"), bearing)
+
+
+def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
+    """What a [bearing] with a `designation` stands for; `None` without one.
+
+    Args:
+        table: Of the bearing; nothing in it counts as asked for by this.
+
+    Returns:
+        Its keys with those of the catalogue, and what was taken from there.
+
+    Raises:
+        SceneError: If the designation is not known, or of another `type`.
+    """
+    given = table.keys_given()
+    if "designation" not in table:
+        return None
+    name = given.pop("designation")
+    if not isinstance(name, str):
+        problem = 'is not a designation, a text such as "6205-2RS1/C3"'
+        raise table.error("designation", f"{name!r} {problem}")
+    try:
+        entry = catalogue_entry(name)
+    except SceneError as error:
+        raise table.error("designation", error) from error
+    kind = given.get("type", entry.type)
+    if kind != entry.type:
+        problem = f"is {kind!r}, but {entry.designation} is {entry.type!r}"
+        raise table.error("type", f"{problem}; leave one of them out")
+    return taken_from(entry, given)
 
 
 def _set(table: Table, bearing: Bearing) -> tuple[BearingSet, float | None]:

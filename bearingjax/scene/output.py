@@ -65,7 +65,8 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         N, N m, Pa), and result, message, residual, iterations, warnings and version.
         With fits also `fit`, as of `fit_as_dict`.
         If the solve did not converge the arrays are left out: there are no results.
-        What is infinite (the margin of a shoulder that is not given) is null.
+        What is infinite (the margin of a shoulder that is not given) is null. Of a
+        bearing of the catalogue also `catalogue`: designation, geometry, overridden.
     """
     from .. import __version__
 
@@ -78,6 +79,7 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     return {
         **(numbers if solved else {}),
         **_fits(scene),
+        **_catalogue(scene),
         "result": result.label,
         "message": message(solution, scene.moving_ring),
         "residual": residual if np.isfinite(residual) else None,
@@ -91,6 +93,19 @@ def _fits(scene):
     if scene.fits is None:
         return {}
     return {"fit": fit_as_dict(scene.fits, scene.element.bearing)}
+
+
+def _catalogue(scene):
+    taken = scene.catalogue
+    if taken is None:
+        return {}
+    return {
+        "catalogue": {
+            "designation": taken.entry.designation,
+            "geometry": taken.entry.geometry,
+            "overridden": list(taken.overridden),
+        }
+    }
 
 
 def _numbers(solution):

@@ -17,10 +17,18 @@ from ..element import (
 )
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit_of
-from .bearing_table import read_bearing
+from .bearing_table import designated, read_bearing
+from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import read_choices
 from .fit_table import Fits, fit_facts, fit_warnings, read_fits
-from .scene_file import find_scene, parse_bearing
+from .quantity import SceneError
+from .scene_file import (
+    find_scene,
+    is_scene,
+    need_float64,
+    parse_bearing,
+    shipped_scenes,
+)
 from .table import Table
 
 MOST_POINTS = 10_000
@@ -46,6 +54,7 @@ class Scene:
         tolerance: Relative residual of the load solve, or `None` for the default.
         points: Positions along the rollers at which loads are reported.
         warnings: What the validation found odd but possible.
+        catalogue: What its `designation` stands for, or `None` without one.
     """
 
     name: str
@@ -60,6 +69,7 @@ class Scene:
     tolerance: float | None
     points: int
     warnings: tuple[str, ...]
+    catalogue: FromCatalogue | None = None
 
     @property
     def moving_ring(self) -> str:
@@ -68,15 +78,24 @@ class Scene:
 
 
 def load_bearing(source: str | Path) -> Any:
-    """The bearing of a scene file, as on the drawing.
+    """The bearing of a scene file, as on the drawing, or of the catalogue.
 
     Args:
-        source: Path of a `.toml` scene, or the name of a shipped one.
+        source: Path of a `.toml` scene, the name of a shipped one, or a designation
+            such as "6205" or "NJ 206 ECP/C3" (see `catalogue_entry`).
 
     Raises:
-        SceneError: If the scene cannot be read.
+        SceneError: If the scene cannot be read, or nothing has this name.
     """
-    return read_scene(source).element.bearing
+    if is_scene(source):
+        return read_scene(source).element.bearing
+    need_float64()
+    try:
+        return catalogue_entry(str(source)).bearing
+    except SceneError as error:
+        scenes = ", ".join(shipped_scenes())
+        problem = f"{error}; nor is it a .toml file or a shipped scene ({scenes})"
+        raise SceneError(problem) from error
 
 
 def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
@@ -113,12 +132,14 @@ def scene_of(data: dict[str, Any], path: Path) -> Scene:
     top.skip("deviations", "vibration")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        bearing, preload = read_bearing(top.table("bearing", required=True), top)
+        table = top.table("bearing", required=True)
+        bearing, preload = read_bearing(table, top)
     scene = _scene(
         top, path.stem, bearing, preload, tuple(str(w.message) for w in caught)
     )
     top.finish()
-    return scene
+    found = designated(table)
+    return dataclasses.replace(scene, catalogue=None if found is None else found[1])
 
 
 def read_element(

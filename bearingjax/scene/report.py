@@ -63,7 +63,8 @@ def _bearing(scene, solution):
     head = scene.name if not lines else "each row"
     row = rows_of(bearing)[0].bearing
     own = ball_row(row, head) if is_ball(bearing) else roller_row(row, head)
-    return "\n".join([*lines, *own])
+    listed = [] if scene.catalogue is None else [str(scene.catalogue)]
+    return "\n".join([*lines, *own, *listed])
 
 
 def _fits(scene, solution):

@@ -18,17 +18,28 @@ def shipped_scenes() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
+def need_float64() -> None:
+    """Raise SceneError if float64 is off."""
+    if not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
+        raise SceneError(
+            "scenes are solved in float64, which is off: call"
+            ' jax.config.update("jax_enable_x64", True) before anything else'
+        )
+
+
+def is_scene(source: str | Path) -> bool:
+    """Whether a name can only be that of a scene: of a file, or a shipped one."""
+    path = Path(source)
+    return path.suffix == ".toml" or path.is_file() or str(source) in shipped_scenes()
+
+
 def find_scene(source: str | Path) -> Path:
     """Path of a scene file or of a shipped scene.
 
     Raises:
         SceneError: If there is none, or float64 is off.
     """
-    if not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
-        raise SceneError(
-            "scenes are solved in float64, which is off: call"
-            ' jax.config.update("jax_enable_x64", True) before anything else'
-        )
+    need_float64()
     path = Path(source)
     if path.suffix != ".toml" and not path.is_file():
         shipped = shipped_scenes()

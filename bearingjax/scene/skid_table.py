@@ -153,9 +153,9 @@ def _check_bearing(top: Table, scene: Scene) -> None:
     if isinstance(design, BearingSet):
         key = "set" if "set" in top else "bearing"
         raise top.error(key, "is of several rows; balls or rollers skid in one")
-    kind = bearing.word("type")
     rollers = isinstance(design, CylindricalRollerBearing | NeedleRollerBearing)
     if not rollers and not isinstance(design, AbstractBallBearing):
+        kind = bearing.word("type") or bearing.word("designation")
         problem = f"{kind!r} does not skid; balls, cylindrical and needle rollers do"
         raise bearing.error("type", problem)
     if scene.speed is None:

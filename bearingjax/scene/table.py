@@ -178,6 +178,17 @@ class Table:
         self._children.append(child)
         return child
 
+    def keys_given(self) -> dict[str, Any]:
+        """What stands here, as parsed; nothing counts as asked for by this."""
+        return dict(self._data)
+
+    def completed(self, values: Mapping[str, Any]) -> "Table":
+        """This table with other values; whoever asks for keys asks that one."""
+        self._asked += self._data
+        child = Table(values, self._file, self._path)
+        self._children.append(child)
+        return child
+
     def empty(self, key: str) -> "Table":
         """Sub-table without keys, where a word stands for one."""
         return Table({}, self._file, self._full(key))

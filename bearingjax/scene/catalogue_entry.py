@@ -1,0 +1,289 @@
+"""The catalogue: bearings by their designation, and where each figure comes from.
+
+One file per type stands in `catalogue/`: `type`, the `[sources]` with their short
+names, and a table for each bearing under its designation. What stands in the `bearing`
+of such a table are keys of a scene's `[bearing]`.
+"""
+
+import dataclasses
+import functools
+import tomllib
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from ..design.fit_limits import (
+    ball_clearance,
+    roller_clearance,
+    self_aligning_clearance,
+)
+from .designation import Suffixes, compact, split_designation
+from .quantity import SceneError, to_si
+
+_CLASSES = {
+    "deep_groove_ball": ball_clearance,
+    "cylindrical_roller": roller_clearance,
+    "needle_roller": roller_clearance,
+    "self_aligning_ball": self_aligning_clearance,
+}
+"""Limits of radial internal clearance by type, where classes are known."""
+
+CLEARANCE = "radial_internal_clearance"
+
+_QUANTITIES = {
+    "bore": "length",
+    "outside_diameter": "length",
+    "width": "length",
+    "inner_width": "length",
+    "outer_width": "length",
+    "dynamic_capacity": "force",
+    "static_capacity": "force",
+    "fatigue_load_limit": "force",
+    "reference_speed": "speed",
+    "limiting_speed": "speed",
+}
+
+
+_RATINGS = (
+    "dynamic_capacity",
+    "static_capacity",
+    "fatigue_load_limit",
+    "reference_speed",
+    "limiting_speed",
+)
+
+
+@dataclasses.dataclass(frozen=True)
+class CatalogueEntry:
+    """A bearing of the catalogue.
+
+    Attributes:
+        designation: As catalogues print it, with the class of clearance if one was
+            asked for.
+        type: As in a scene, "deep_groove_ball".
+        bore: d [m].
+        outside_diameter: D [m].
+        width: B; T of tapered roller bearings, H of thrust bearings [m].
+        inner_width: Width B of the inner ring of tapered roller bearings [m].
+        outer_width: Width C of their outer ring [m].
+        dynamic_capacity: C as published; axial of thrust bearings [N]. `None`: not
+            known for this variant.
+        static_capacity: C0, likewise [N].
+        fatigue_load_limit: Pu [N].
+        reference_speed: Thermal reference speed [rad/s].
+        limiting_speed: Limiting speed [rad/s].
+        geometry: "published" or "estimated": number and size of the rolling elements
+            and their pitch circle.
+        assumed: Keys of `table` that are neither, but usual.
+        sources: What comes from where: "capacity", "geometry".
+        notes: What was read into the designation, for people.
+        table: Keys of a scene's [bearing] as it would be written.
+    """
+
+    designation: str
+    type: str
+    bore: float
+    outside_diameter: float
+    width: float
+    inner_width: float | None
+    outer_width: float | None
+    dynamic_capacity: float | None
+    static_capacity: float | None
+    fatigue_load_limit: float | None
+    reference_speed: float | None
+    limiting_speed: float | None
+    geometry: str
+    assumed: tuple[str, ...]
+    sources: dict[str, str]
+    notes: tuple[str, ...]
+    table: dict[str, Any]
+
+    @property
+    def bearing(self) -> Any:
+        """The design: a bearing, or the set of both rows of a self-aligning one."""
+        from .bearing_table import read_bearing  # which reads designations in turn
+        from .table import Table
+
+        table = Table(self.table, self.designation)
+        return read_bearing(table, Table({}, self.designation))[0]
+
+
+def catalogue_entry(designation: str) -> CatalogueEntry:
+    """The bearing of the catalogue that a designation names.
+
+    Args:
+        designation: Such as "6205", "SKF 6205-2RS1/C3", "NJ 205 ECP". Letters of
+            seals, shields, cages and accuracy are accepted and said in `notes` to have
+            no effect; a class of clearance (C2 to C5) sets the clearance to the middle
+            of its range.
+
+    Raises:
+        SceneError: If there is no such bearing; names those near it.
+    """
+    listed = _names()
+    name, suffixes = split_designation(designation, listed)
+    kind, key, changes, odd = listed[name]
+    return _entry(kind, key, changes, odd, suffixes)
+
+
+def catalogue() -> tuple[CatalogueEntry, ...]:
+    """All bearings of the catalogue, by type and in the order of their files."""
+    plain = Suffixes(None, ())
+    seen: dict[str, CatalogueEntry] = {}
+    for kind, key, changes, odd in _names().values():
+        if not odd:
+            entry = _entry(kind, key, changes, odd, plain)
+            seen.setdefault(entry.designation, entry)
+    return tuple(seen.values())
+
+
+@functools.cache
+def _files() -> dict[str, dict[str, Any]]:
+    """What the files of the catalogue hold, by type."""
+    folder = Path(str(files("bearingjax.scene") / "catalogue"))
+    read = (
+        tomllib.loads(path.read_text(encoding="utf-8"))
+        for path in sorted(folder.glob("*.toml"))
+    )
+    return {data["type"]: data for data in read}
+
+
+@functools.cache
+def _names() -> dict[str, tuple[str, str, dict[str, Any], tuple[str, ...]]]:
+    """Type, key, changed keys and notes of every name, compact.
+
+    A bearing with `arrangements` has a name for each; one with `also` is found by
+    these names too. Where letters name contact angles, a size has all of them.
+    """
+    found: dict[str, tuple[str, str, dict[str, Any], tuple[str, ...]]] = {}
+    for kind, data in _files().items():
+        for key, values in data["bearings"].items():
+            first, _, rest = key.partition(" ")
+            for ribs in values.get("arrangements", (None,)):
+                shown = key if ribs is None else f"{ribs} {rest}"
+                changes = {} if ribs is None else {"arrangement": ribs}
+                found[compact(shown)] = (kind, key, changes, ())
+                for other in values.get("also", ()):
+                    other = other if ribs is None else f"{ribs} {other}"
+                    odd = (f"{other} is listed as {shown}",)
+                    found.setdefault(compact(other), (kind, key, changes, odd))
+    for kind, data in _files().items():
+        for key, values in data["bearings"].items():
+            for letter, angle in data.get("letters", {}).items():
+                name = f"{key.split()[0]} {letter}"
+                changes = {"contact_angle": angle}
+                odd = (f"{name}: balls and pitch circle of {key}; capacities unknown",)
+                if values["letter"] == "B":
+                    found.setdefault(compact(name), (kind, key, changes, odd))
+    return found
+
+
+def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
+    data = _files()[kind]
+    values = data["bearings"][key]
+    si: dict[str, Any] = {
+        name: to_si(values[name], unit) if name in values else None
+        for name, unit in _QUANTITIES.items()
+    }
+    shown = key
+    table = {"type": kind, **values["bearing"], **changes}
+    if "contact_angle" in changes:
+        shown = odd[0].partition(":")[0]
+        for name in _RATINGS:
+            si[name] = None
+        for name in ("outer_shoulder", "inner_shoulder"):
+            table.pop(name)
+    if "arrangement" in changes:
+        shown = f"{changes['arrangement']} {key.partition(' ')[2]}"
+    notes = [*odd, *(f"{word}: no effect" for word in suffixes.without_effect)]
+    assumed = list(values.get("assumed", data.get("assumed", ())))
+    if kind in _CLASSES:
+        table[CLEARANCE], note = _clearance(kind, shown, si["bore"], suffixes)
+        notes.append(note)
+    elif suffixes.clearance is not None:
+        problem = "has no classes of clearance here; leave the class out"
+        raise SceneError(f"{shown}/{suffixes.clearance}: a {kind} {problem}")
+    if suffixes.clearance not in (None, "CN"):
+        shown = f"{shown}/{suffixes.clearance}"
+    sources = {
+        part: data["sources"][values[f"{part}_source"]]
+        for part in ("capacity", "geometry")
+    }
+    return CatalogueEntry(
+        designation=shown,
+        type=kind,
+        **si,
+        geometry=values["geometry"],
+        assumed=tuple(name for name in assumed if name in table),
+        sources=sources,
+        notes=tuple(notes),
+        table=table,
+    )
+
+
+def _clearance(kind, shown, bore, suffixes) -> tuple[str, str]:
+    """Clearance as in a scene, and where it is from."""
+    name = suffixes.clearance or "CN"
+    try:
+        low, high = _CLASSES[kind](name, bore)
+    except ValueError as error:
+        raise SceneError(f"{shown}/{name}: {error}") from error
+    middle = f"{0.5e6 * (low + high):.4g} um"
+    words = f"middle of class {name}, ISO 5753-1: {1e6 * low:.3g} to"
+    return middle, f"clearance: {words} {1e6 * high:.3g} µm, not mounted"
+
+
+@dataclasses.dataclass(frozen=True)
+class FromCatalogue:
+    """What a scene's `designation` stands for.
+
+    Attributes:
+        entry: The bearing of the catalogue.
+        overridden: Keys that the scene gives otherwise.
+    """
+
+    entry: CatalogueEntry
+    overridden: tuple[str, ...]
+
+    def __str__(self):
+        words = [
+            f"{self.entry.designation} (catalogue)",
+            f"inner geometry {self.entry.geometry}",
+        ]
+        if self.overridden:
+            words.append(f"overridden: {', '.join(self.overridden)}")
+        return ", ".join(words)
+
+
+_INSTEAD = {
+    "contact_angle": (CLEARANCE,),
+    "ribs": ("arrangement", "rib", "axial_internal_clearance"),
+}
+"""Keys that a given key replaces: one follows from the other."""
+
+
+def taken_from(
+    entry: CatalogueEntry, given: Mapping[str, Any]
+) -> tuple[dict[str, Any], FromCatalogue]:
+    """Keys of [bearing] with those of the catalogue where none are given.
+
+    Args:
+        entry: Of the designation.
+        given: Keys beside the designation; of nested tables the keys that are given,
+            unless they name a `type` of their own.
+
+    Returns:
+        All keys, and what was taken from where.
+    """
+    dropped = {name for key in given for name in _INSTEAD.get(key, ())}
+    merged = {k: v for k, v in entry.table.items() if k not in dropped}
+    changed = []
+    for key, value in given.items():
+        own = entry.table.get(key)
+        if isinstance(own, Mapping) and isinstance(value, Mapping):
+            value = value if "type" in value else {**own, **value}
+        merged[key] = value
+        if value != own:
+            changed.append(key)
+    return merged, FromCatalogue(entry, tuple(changed))

@@ -1,0 +1,264 @@
+"""The catalogue as text, as numbers and as new scenes; the list of shipped scenes."""
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..design import rows_of
+from .bearing_table import BALLS, ROLLERS
+from .catalogue_entry import CatalogueEntry
+from .quantity import SceneError, to_si
+from .scene_file import shipped_scenes
+from .table import not_among
+
+_SHARE = 0.1
+"""Load of a new scene over the dynamic capacity."""
+
+_SPEED = "1500 rpm"
+
+
+def select(
+    entries: Iterable[CatalogueEntry],
+    kind: str | None = None,
+    bore: str | None = None,
+    outside: str | None = None,
+    capacity: str | None = None,
+) -> tuple[CatalogueEntry, ...]:
+    """Entries that fit.
+
+    Args:
+        entries: Of the catalogue.
+        kind: Type, as in a scene.
+        bore, outside: One size, "25 mm", or from and to, "20 mm:40 mm"; either may be
+            left out.
+        capacity: Dynamic capacity likewise; one number is the least.
+
+    Raises:
+        SceneError: Names the option, what was given and what is allowed.
+    """
+    kinds = (*BALLS, *ROLLERS)
+    if kind is not None and kind not in kinds:
+        raise SceneError(f"--type: {not_among(kind, kinds)}")
+    ranges = {
+        "bore": _range("--bore", bore, "length"),
+        "outside_diameter": _range("--outside", outside, "length"),
+        "dynamic_capacity": _range("--capacity", capacity, "force", least=True),
+    }
+    return tuple(
+        entry
+        for entry in entries
+        if kind in (None, entry.type)
+        and all(
+            low <= getattr(entry, name) <= high for name, (low, high) in ranges.items()
+        )
+    )
+
+
+def _range(option, text, kind, least=False) -> tuple[float, float]:
+    """Least and most, a millionth wider for round-off."""
+    if text is None:
+        return -np.inf, np.inf
+    first, colon, last = text.partition(":")
+    try:
+        low = to_si(first, kind) if first or not colon else -np.inf
+        high = to_si(last, kind) if last else np.inf
+    except SceneError as error:
+        raise SceneError(f"{option}: {error}") from error
+    if not colon and not least:
+        high = low
+    if high < low:
+        problem = f"{text!r} ends below where it begins; write least:most"
+        raise SceneError(f"{option}: {problem}")
+    return low * (1 - 1e-6), high * (1 + 1e-6)
+
+
+def catalogue_table(entries: Sequence[CatalogueEntry]) -> str:
+    """A line for each bearing: sizes in mm, capacities in kN."""
+    head = (
+        f"{'designation':<13}{'type':<21}{'d':>6}{'D':>7}{'B, T, H':>9}{'C':>8}"
+        f"{'C0':>8}{'Pu':>8}  geometry"
+    )
+    lines = [head]
+    for e in entries:
+        sizes = (e.bore, e.outside_diameter, e.width)
+        d, outside, width = (f"{1e3 * size:.5g}" for size in sizes)
+        loads = (e.dynamic_capacity, e.static_capacity, e.fatigue_load_limit)
+        c, c0, pu = (_number(load, 1e-3) for load in loads)
+        lines.append(
+            f"{e.designation:<13}{e.type:<21}{d:>6}{outside:>7}{width:>9}{c:>8}{c0:>8}"
+            f"{pu:>8}  {e.geometry}"
+        )
+    lines.append(
+        f"{len(entries)} bearings (mm, kN; C axial of thrust bearings, of both rows of"
+        " self-aligning ones)"
+    )
+    return "\n".join(lines)
+
+
+def _number(value, scale):
+    return "-" if value is None else f"{scale * value:.4g}"
+
+
+def catalogue_details(entry: CatalogueEntry) -> str:
+    """All that is known of a bearing, with its sources."""
+    lines = [f"{entry.designation}: {_words(entry.type)} bearing, {_sizes(entry)}"]
+    lines.append(_loads(entry))
+    speeds = {
+        "reference speed": entry.reference_speed,
+        "limiting speed": entry.limiting_speed,
+    }
+    known = [f"{k} {_rpm(v):.0f} rpm" for k, v in speeds.items() if v is not None]
+    if known:
+        lines.append(", ".join(known))
+    lines.append(f"inner geometry {entry.geometry}: {entry.sources['geometry']}")
+    lines += [f"  {key} = {_toml(value)}" for key, value in entry.table.items()]
+    if entry.assumed:
+        lines.append(f"assumed, as usual: {', '.join(entry.assumed)}")
+    return "\n".join([*lines, *entry.notes])
+
+
+def catalogue_as_dict(entries: Iterable[CatalogueEntry]) -> dict[str, Any]:
+    """The bearings as plain numbers in SI.
+
+    Returns:
+        `bearings`: of each the fields of `CatalogueEntry`, but `table` as written in a
+        scene.
+    """
+    return {"bearings": [{**vars(entry)} for entry in entries]}
+
+
+def new_scene(entry: CatalogueEntry) -> str:
+    """A scene of a bearing under a load of a tenth of its capacity, to be edited.
+
+    Args:
+        entry: The bearing; every key is written out, so that it can be changed.
+    """
+    lines = [
+        f"# {entry.designation}: {_words(entry.type)} bearing, {_sizes(entry)}.",
+        *_comment(f"{_loads(entry)}."),
+        *_comment(f"Inner geometry {entry.geometry}: {entry.sources['geometry']}."),
+    ]
+    if entry.assumed:
+        lines += _comment(f"Assumed, as usual: {', '.join(entry.assumed)}.")
+    for note in entry.notes:
+        lines += _comment(f"{note[0].upper()}{note[1:]}.")
+    lines += [
+        "",
+        "[bearing]",
+        f'designation = "{entry.designation}"',
+        "# What it stands for. A line that is changed counts; one that is left out is",
+        "# as in the catalogue.",
+        *(f"{key} = {_toml(value)}" for key, value in entry.table.items()),
+        "",
+        "[operating]",
+        'fixed_ring = "outer"',
+        *_load(entry),
+        f'inner_speed = "{_SPEED}"',
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _load(entry: CatalogueEntry) -> list[str]:
+    """Lines of a load that the bearing carries, its capacity known or not."""
+    bearing = entry.bearing
+    capacity = entry.dynamic_capacity
+    share = "a tenth of C"
+    if capacity is None:
+        capacity, share = _rough_capacity(rows_of(bearing)[0].bearing), "moderate"
+    load = f"{_rounded(_SHARE * capacity):g} N"
+    half = f"{_rounded(0.5 * _SHARE * capacity):g} N"
+    if entry.type == "thrust_ball":
+        comment = f"# axial, {share}, from the shaft washer at -z"
+        return [f'load = {{ Fz = "{load}" }}  {comment}']
+    if entry.type in ("angular_contact_ball", "four_point_ball"):
+        comment = f"# axial {share}, radial half of it; +z closes the bearing"
+        return [comment, f'load = {{ Fy = "-{half}", Fz = "{load}" }}']
+    if entry.type == "tapered_roller":
+        comment = f"# radial {share}, axial half of it; +z closes the bearing"
+        return [comment, f'load = {{ Fy = "-{load}", Fz = "{half}" }}']
+    return [f'load = {{ Fy = "-{load}" }}  # radial, {share}']
+
+
+def _rough_capacity(ball) -> float:
+    """Load of the order of C [N], where none is known: 18 N for a mm² of all balls."""
+    return 18e6 * ball.n_balls * float(ball.ball_diameter) ** 2
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.2g}")
+
+
+def _words(kind: str) -> str:
+    return kind.replace("_", " ")
+
+
+def _sizes(entry: CatalogueEntry) -> str:
+    sizes = (entry.bore, entry.outside_diameter, entry.width)
+    return " x ".join(f"{1e3 * size:.5g}" for size in sizes) + " mm"
+
+
+def _loads(entry: CatalogueEntry) -> str:
+    if entry.dynamic_capacity is None:
+        return "C, C0 not known"
+    loads = {
+        "C": entry.dynamic_capacity,
+        "C0": entry.static_capacity,
+        "Pu": entry.fatigue_load_limit,
+    }
+    known = [f"{k} {1e-3 * v:.4g} kN" for k, v in loads.items() if v is not None]
+    return f"{', '.join(known)} ({entry.sources['capacity']})"
+
+
+def _rpm(speed: float) -> float:
+    return speed * 30.0 / np.pi
+
+
+def _comment(text: str) -> list[str]:
+    """Text as comment lines of at most 88 characters."""
+    lines, line = [], "#"
+    for word in text.split():
+        if len(line) + len(word) > 87:
+            lines.append(line)
+            line = "#"
+        line = f"{line} {word}"
+    return [*lines, line]
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, Mapping):
+        inner = ", ".join(f"{key} = {_toml(part)}" for key, part in value.items())
+        return f"{{ {inner} }}"
+    return f'"{value}"' if isinstance(value, str) else f"{value}"
+
+
+def scene_list() -> str:
+    """A line for each shipped scene: name, command that runs it, what it is."""
+    lines = []
+    for name, path in shipped_scenes().items():
+        text = path.read_text(encoding="utf-8")
+        lines.append(f"{name:<20}{_command(tomllib.loads(text)):<10}{_title(text)}")
+    return "\n".join(lines)
+
+
+def _title(text: str) -> str:
+    """First sentence of the comment at the head of a scene."""
+    head = re.match(r"(?:#.*\n)*", text)
+    words = " ".join(line.lstrip("# ") for line in head[0].splitlines()) if head else ""
+    return re.split(r"(?<=\w\w[).!?])(?<=[.!?])\s", words)[0].rstrip(".")
+
+
+def _command(data: Mapping[str, Any]) -> str:
+    """Command that a scene is written for."""
+    tables = {
+        "rotor": "rotor",
+        "vibration": "noise",
+        "lubricant": "skid",
+        "raceway": "contact",
+        "optimise": "optimise",
+        "cases": "sweep",
+    }
+    return next((tables[key] for key in tables if key in data), "solve")

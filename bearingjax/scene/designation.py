@@ -1,0 +1,125 @@
+"""Designations of bearings as catalogues and boxes write them: "6205-2RS1/C3"."""
+
+import difflib
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from ..design.fit_limits import CLEARANCE_CLASSES
+from .quantity import SceneError
+
+MAKERS = ("SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "TIMKEN", "NACHI", "URB")
+"""Names that may stand before a designation."""
+
+_CLEARANCE = "|".join(CLEARANCE_CLASSES)
+# Letters of several makers for what the library does not compute with.
+_WITHOUT_EFFECT = {
+    "seals or shields": r"2?RS[RHL12]?\d?|2?RZ|2?ZZ?|LL[UBHX]|DDU?|VV",
+    "cage": r"TN[9HG]?|TNP|TVP2?B?|TVPB|TVH|TV|TB|T2X?|J[12]?|M[ABLPT]?[12]?|PH[AS]*|P"
+    r"|Y|L|W",
+    "accuracy or steel": r"P[654]X?|P0|PN|QE[456]|VA\d+|Q|QCL7C|A",
+    "grease": r"HT|WT|MT\d+|LHT\d+|GJN",
+    "mounting": r"C[ABC]|G[ABC]?|U[ALO]|K|N[12]?|Z?NR",
+}
+
+
+class Suffixes(NamedTuple):
+    """What the letters after the name of a bearing say.
+
+    Attributes:
+        clearance: Class of internal clearance, or `None` if none is named.
+        without_effect: Letters with what they stand for, "2RS1 (seals or shields)".
+    """
+
+    clearance: str | None
+    without_effect: tuple[str, ...]
+
+
+def compact(text: str) -> str:
+    """A designation in capitals, without what stands between its parts."""
+    return re.sub(r"[\s./_-]+", "", text.upper())
+
+
+def split_designation(text: str, names: Iterable[str]) -> tuple[str, Suffixes]:
+    """The listed name with which a designation begins, and what follows it.
+
+    Args:
+        text: As written, such as "SKF 6205-2RS1/C3".
+        names: The names that are known, compact.
+
+    Raises:
+        SceneError: If it begins with no such name, or with letters after it whose
+            meaning is not known.
+    """
+    if not compact(text):
+        raise SceneError(f'{text!r} is not a designation, such as "6205-2RS1/C3"')
+    names = tuple(names)
+    words = text.upper().split()
+    if len(words) > 1 and words[0] in MAKERS:
+        words = words[1:]
+    whole = " ".join(words)
+    squeezed = compact(whole)
+    # The longest first, "7205B" before "7205".
+    for name in sorted(names, key=len, reverse=True):
+        if squeezed.startswith(name) and not _goes_on(squeezed[len(name) :]):
+            return name, _suffixes(_after(whole, name), name, text)
+    raise SceneError(_unknown(text, squeezed, names))
+
+
+def _goes_on(rest: str) -> bool:
+    """Whether what follows a name is more of a number: 62055 is not 6205."""
+    return bool(re.match(r"\d(?!RS|RZ|Z)", rest))
+
+
+def _after(whole: str, name: str) -> str:
+    """What stands after a compact name in a text that is not compact."""
+    kept = iter(name)
+    wanted = next(kept)
+    for place, letter in enumerate(whole):
+        if letter == wanted:
+            wanted = next(kept, "")
+            if not wanted:
+                return whole[place + 1 :]
+    return ""
+
+
+def _suffixes(rest: str, name: str, text: str) -> Suffixes:
+    clearance, idle = None, []
+    for word in re.split(r"[\s./_-]+", rest):
+        while word:
+            found = re.match(rf"(?:{_CLEARANCE})(?![\dHLX])", word)
+            if found:
+                if clearance not in (None, found[0]):
+                    problem = f"names two classes of clearance, {clearance} and"
+                    raise SceneError(f"{text!r} {problem} {found[0]}")
+                clearance = found[0]
+                word = word[found.end() :]
+                continue
+            taken, meaning = _idle(word)
+            if not taken:
+                known = "classes of clearance, seals and shields, cages, accuracy"
+                problem = f"has letters after {name} that are not known: {word!r}"
+                raise SceneError(f"{text!r} {problem} ({known} are)")
+            idle.append(f"{taken} ({meaning})")
+            word = word[len(taken) :]
+    return Suffixes(clearance, tuple(idle))
+
+
+def _idle(word: str) -> tuple[str, str]:
+    """The longest letters without effect with which a word begins."""
+    best, meaning = "", ""
+    for kind, pattern in _WITHOUT_EFFECT.items():
+        found = re.match(pattern, word)
+        # A pattern of alternatives takes the first, not the longest.
+        for length in range(len(word), len(best), -1):
+            if found and re.fullmatch(pattern, word[:length]):
+                best, meaning = word[:length], kind
+                break
+    return best, meaning
+
+
+def _unknown(text: str, squeezed: str, names: tuple[str, ...]) -> str:
+    begun = [name for name in names if name.startswith(squeezed)]
+    near = begun or difflib.get_close_matches(squeezed, names, 4, 0.7)
+    hint = f"; near it: {', '.join(sorted(near)[:6])}" if near else ""
+    return f"{text!r} is not a bearing of the catalogue{hint}"

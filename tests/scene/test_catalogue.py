@@ -1,0 +1,314 @@
+"""Bearings by their designation: the catalogue, its commands, scenes that use it."""
+
+import json
+import tomllib
+from importlib.resources import files
+
+import jax
+import numpy as np
+import pytest
+from tolerances import SOLVER
+
+import bearingjax as bj
+from bearingjax.scene import new_scene, shipped_scenes
+from bearingjax.scene.quantity import to_si
+
+ENTRIES = bj.catalogue()
+NAMES = [entry.designation for entry in ENTRIES]
+BALL_TYPES = {e.type for e in ENTRIES if "n_balls" in e.table}
+
+
+def length(entry, key):
+    return to_si(entry.table[key], "length")
+
+
+def angle(entry, key):
+    return to_si(entry.table[key], "angle") if key in entry.table else 0.0
+
+
+def test_all_types_and_sixty_bearings_of_their_own():
+    assert len({(e.type, *sorted(map(str, e.table.items()))) for e in ENTRIES}) >= 60
+    assert {e.type for e in ENTRIES} == {
+        "deep_groove_ball",
+        "angular_contact_ball",
+        "four_point_ball",
+        "self_aligning_ball",
+        "thrust_ball",
+        "cylindrical_roller",
+        "needle_roller",
+        "tapered_roller",
+    }
+    assert len(NAMES) == len(set(NAMES))
+    published = {e.type for e in ENTRIES if e.geometry == "published"}
+    assert len(published) == 4
+    assert {e.geometry for e in ENTRIES} == {"published", "estimated"}
+
+
+def test_the_files_hold_nothing_that_is_not_read():
+    known = {"also", "arrangements", "assumed", "bearing", "capacity_source"}
+    known |= {"geometry", "geometry_source", "letter", "other", "printed"}
+    sizes = {"bore", "outside_diameter", "width", "inner_width", "outer_width"}
+    ratings = {"dynamic_capacity", "static_capacity", "fatigue_load_limit"}
+    known |= sizes | ratings | {"reference_speed", "limiting_speed"}
+    for path in (files("bearingjax.scene") / "catalogue").iterdir():
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        used = set()
+        for key, values in data["bearings"].items():
+            assert set(values) <= known, key
+            used |= {values["capacity_source"], values["geometry_source"]}
+            used |= {values["other"]["source"]} if "other" in values else set()
+        assert used == set(data["sources"]), path.name
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=NAMES)
+def test_rolling_elements_fit_between_the_rings_and_beside_each_other(entry):
+    balls = entry.type in BALL_TYPES
+    kind = "ball" if balls else "roller"
+    count, size = entry.table[f"n_{kind}s"], length(entry, f"{kind}_diameter")
+    pitch = length(entry, "pitch_diameter")
+    section = 0.5 * (entry.outside_diameter - entry.bore)
+    if entry.type == "thrust_ball":
+        # Two washers, with at least a tenth of the height under each groove.
+        washers = entry.width - size
+        assert washers > 0.2 * entry.width
+        assert entry.bore + size < pitch < entry.outside_diameter - size
+    else:
+        # Of a taper at its middle; a contact angle brings the raceways nearer.
+        inner = 0.5 * (pitch - size - entry.bore)
+        outer = 0.5 * (entry.outside_diameter - pitch - size)
+        least = 0.09 if entry.type in ("tapered_roller", "four_point_ball") else 0.1
+        assert min(inner, outer) > least * section
+        assert size < entry.width
+    assert count * np.arcsin(size / pitch) < np.pi  # apart
+    if entry.type == "deep_groove_ball":
+        # Put in with the rings eccentric, they fill little more than half.
+        assert 2 * (count - 1) * np.arcsin(size / pitch) < np.deg2rad(200.0)
+    if not balls:
+        along = length(entry, "roller_length") * np.cos(
+            angle(entry, "roller_axis_angle")
+        )
+        assert along < 0.85 * (entry.outer_width or entry.width)
+    if entry.type == "tapered_roller":
+        # The rollers stand above the cone as far as the cup is open: e = 1.5 tan α.
+        axis, half = (
+            angle(entry, "roller_axis_angle"),
+            angle(entry, "roller_half_angle"),
+        )
+        assert 0.0 < half < axis
+        assert np.tan(half) == pytest.approx(size / pitch * np.sin(axis), rel=1e-4)
+
+
+@pytest.mark.parametrize("kind", sorted({e.type for e in ENTRIES}))
+def test_every_bearing_loads_and_its_new_scene_reads(kind, tmp_path):
+    for entry in ENTRIES:
+        # The arrangements of ribs differ in one word.
+        if entry.type != kind or entry.table.get("arrangement", "NU") != "NU":
+            continue
+        path = tmp_path / "new.toml"
+        path.write_text(new_scene(entry), encoding="utf-8")
+        scene = bj.read_scene(path)
+        assert scene.warnings == (), entry.designation
+        assert scene.catalogue.entry == entry
+        assert scene.catalogue.overridden == ()
+        assert any(scene.load)
+        if entry.dynamic_capacity is not None:
+            assert np.abs(scene.load).max() == pytest.approx(
+                0.1 * entry.dynamic_capacity,
+                rel=0.06,  # two digits
+            )
+
+
+def test_a_new_scene_solves(run, tmp_path):
+    made = run("new", "NA", "4905")
+    assert made.status == 0
+    path, out = tmp_path / "my.toml", tmp_path / "out.json"
+    path.write_text(made.out, encoding="utf-8")
+    # At rest, as the program without speeds is the cheapest to compile.
+    settings = ("bearing.roller_length=10 mm", "operating.inner_speed=0 rpm")
+    given = [word for setting in settings for word in ("--set", setting)]
+    done = run("solve", path, *given, "--json", out)
+    assert done.status == 0, done.err
+    words = "NA 4905 (catalogue), inner geometry estimated, overridden: roller_length"
+    assert f"\n{words}\n" in done.out
+    numbers = json.loads(out.read_text(encoding="utf-8"))
+    assert numbers["catalogue"] == {
+        "designation": "NA 4905",
+        "geometry": "estimated",
+        "overridden": ["roller_length"],
+    }
+    assert numbers["force"][7] == pytest.approx(-2400.0, rel=SOLVER)
+
+
+def test_bearing_by_designation_and_by_scene():
+    bearing = bj.load_bearing("6205-2RS1/C3")
+    assert type(bearing) is bj.DeepGrooveBallBearing
+    assert bearing.n_balls == 9
+    assert float(bearing.pitch_diameter) == pytest.approx(39.04e-3)
+    # Class C3 of a bore of 25 mm: 13 to 28 µm.
+    assert float(bearing.radial_internal_clearance) == pytest.approx(20.5e-6)
+    entry = bj.catalogue_entry("6205-2RS1/C3")
+    assert jax.tree.leaves(entry.bearing) == jax.tree.leaves(bearing)
+    assert entry.dynamic_capacity == pytest.approx(14800.0)
+    assert entry.static_capacity == pytest.approx(7800.0)
+    assert entry.fatigue_load_limit == pytest.approx(335.0)
+    assert entry.limiting_speed == pytest.approx(18000.0 * np.pi / 30.0)
+    assert "2RS1 (seals or shields): no effect" in entry.notes
+    assert isinstance(bj.load_bearing("1205 EKTN9"), bj.BearingSet)
+    assert type(bj.load_bearing("tapered")) is bj.TaperedRollerBearing
+
+
+@pytest.mark.parametrize(
+    "written, designation",
+    [
+        ("SKF 6205", "6205"),
+        ("6205 2rs c3", "6205/C3"),
+        ("62052RS", "6205"),
+        ("6205LLUC3", "6205/C3"),
+        ("6205/CN", "6205"),
+        ("nj209ecp", "NJ 209 EC"),
+        ("NU209-E-TVP2-C3", "NU 209 EC/C3"),
+        ("N 209", "N 209 EC"),
+        ("7205 BECBP", "7205 BE"),
+        ("7205B", "7205 BE"),
+        ("7208 AC", "7208 AC"),
+        ("QJ 211 N2MA", "QJ 211"),
+        ("FAG 30206-A", "30206 J2"),
+        ("32010 X/Q", "32010 X"),
+        ("NA4905/C2", "NA 4905/C2"),
+    ],
+)
+def test_ways_to_write_a_designation(written, designation):
+    assert bj.catalogue_entry(written).designation == designation
+
+
+def test_letters_that_change_the_geometry():
+    b, ac = (bj.catalogue_entry(f"7208 {letter}") for letter in ("B", "AC"))
+    assert (b.table["contact_angle"], ac.table["contact_angle"]) == ("40 deg", "25 deg")
+    assert b.table["n_balls"] == ac.table["n_balls"]
+    assert b.dynamic_capacity == pytest.approx(34500.0)
+    assert ac.dynamic_capacity is None and "capacities unknown" in ac.notes[0]
+    listed = bj.catalogue_entry("7205 C")
+    assert listed.dynamic_capacity == pytest.approx(16700.0)
+    ribs = [bj.load_bearing(f"{kind} 206 EC").ribs.present for kind in ("NU", "N")]
+    assert ribs == [("outer_minus", "outer_plus"), ("inner_minus", "inner_plus")]
+
+
+WRONG = {
+    "6299": "'6299' is not a bearing of the catalogue; near it: 6209",
+    "62055": "'62055' is not a bearing of the catalogue; near it: 6205",
+    "": "'' is not a designation, such as",
+    "6205-XQ": "has letters after 6205 that are not known: 'XQ'",
+    "6205/C9": "has letters after 6205 that are not known: 'C9'",
+    "6205 C2/C3": "names two classes of clearance, C2 and C3",
+    "7205": "near it: 7205A, 7205AC, 7205B, 7205BE, 7205C",
+    "7205 B/C3": "7205 BE/C3: a angular_contact_ball has no classes of clearance here",
+    "1205 C5": "`name` is 'C5'; it must be one of C2, CN, C3, C4",
+    "N 2205": "'N 2205' is not a bearing of the catalogue; near it: 2205, N205",
+    "deep_grove": "nor is it a .toml file or a shipped scene (angular_contact,",
+}
+
+
+@pytest.mark.parametrize("written", WRONG)
+def test_wrong_designations_name_what_is_near(written):
+    with pytest.raises(bj.SceneError) as caught:
+        bj.load_bearing(written)
+    assert WRONG[written] in str(caught.value)
+
+
+def scene(tmp_path, text):
+    path = tmp_path / "mine.toml"
+    path.write_text(f"[bearing]\n{text}\n[operating]\nload = {{ Fy = '1 kN' }}\n")
+    return path
+
+
+def test_single_dimensions_override(tmp_path):
+    text = 'designation = "6205/C3"\ncontact_angle = "10 deg"\nn_balls = 9\n'
+    read = bj.read_scene(scene(tmp_path, text))
+    # The clearance of the class gives way to the angle it would follow from.
+    assert read.element.bearing.radial_internal_clearance is None
+    assert read.catalogue.overridden == ("contact_angle",)
+    text = 'designation = "NU 215"\n[bearing.rib]\ncontact_height = "0.4 mm"\n'
+    read = bj.read_scene(scene(tmp_path, text))
+    rib = read.element.bearing.ribs.outer_plus
+    assert float(rib.contact_height) == pytest.approx(0.4e-3)
+    assert float(rib.end_radius) == pytest.approx(0.54)
+    assert read.catalogue.overridden == ("rib",)
+
+
+@pytest.mark.parametrize(
+    "text, message",
+    [
+        (
+            'designation = "6206X"',
+            "`bearing.designation`: '6206X' has letters after 6206",
+        ),
+        ("designation = 6205", "`bearing.designation`: 6205 is not a designation"),
+        (
+            'designation = "6205"\ntype = "thrust_ball"',
+            "`bearing.type`: is 'thrust_ball', but 6205 is 'deep_groove_ball'",
+        ),
+        (
+            'designation = "6205"\nbal_diameter = "8 mm"',
+            "`bearing.bal_diameter`: unknown key (did you mean `ball_diameter`?)",
+        ),
+        (
+            'designation = "6205"\nball_diameter = "20 mm"',
+            "`n_balls` is 9 balls; it must be low enough",
+        ),
+    ],
+)
+def test_wrong_scenes_with_a_designation(text, message, tmp_path):
+    with pytest.raises(bj.SceneError) as caught:
+        bj.read_scene(scene(tmp_path, text))
+    assert message in str(caught.value)
+    assert str(caught.value).startswith("mine.toml: ")
+
+
+def test_catalogue_command(run, tmp_path):
+    out = tmp_path / "out.json"
+    done = run("catalogue", "--type", "thrust_ball", "--bore", ":45 mm", "--json", out)
+    assert done.status == 0
+    assert [line.split()[0] for line in done.out.splitlines()[1:-1]] == [
+        "51107",
+        "51108",
+        "51207",
+        "51208",
+    ]
+    listed = json.loads(out.read_text(encoding="utf-8"))["bearings"]
+    assert listed[0]["designation"] == "51107"
+    assert listed[0]["dynamic_capacity"] == pytest.approx(19900.0)
+    done = run("catalogue", "--bore", "25 mm", "--min-capacity", "20 kN:30 kN")
+    names = {line[:13].strip() for line in done.out.splitlines()[1:-1]}
+    assert {"6305", "7305 AC", "NU 205 EC", "NA 4905"} <= names
+    assert "6205" not in names and "NU 305 EC" not in names
+    done = run("catalogue", "QJ 211", "30206", "--plot", tmp_path / "out.png")
+    assert (
+        "QJ 211: four point ball bearing, 55 x 100 x 21 mm\nC 85 kN, C0 83" in done.out
+    )
+    assert (tmp_path / "out.png").stat().st_size > 20_000
+
+
+@pytest.mark.parametrize(
+    "given, message",
+    [
+        (("catalogue", "--type", "ball"), "--type: 'ball' is not known"),
+        (("catalogue", "--bore", "25"), "--bore: '25' has no unit"),
+        (("catalogue", "--bore", "9 mm:2 mm"), "--bore: '9 mm:2 mm' ends below"),
+        (("catalogue", "--plot", "a.png"), "--plot draws the bearings that are named"),
+        (("catalogue", "9999"), "'9999' is not a bearing of the catalogue"),
+        (("new", "62O5"), "'62O5' is not a bearing of the catalogue; near it: 6205"),
+        (("examples", "deep_grove"), "(did you mean `deep_groove`?)"),
+    ],
+)
+def test_wrong_words_of_the_commands(run, given, message):
+    done = run(*given)
+    assert done.status == 2 and message in done.err and done.out == ""
+
+
+def test_examples_command(run):
+    lines = run("examples").out.splitlines()
+    assert [line.split()[0] for line in lines] == list(shipped_scenes())
+    kinds = {line.split()[0]: line.split()[1] for line in lines}
+    assert kinds["deep_groove"] == "solve" and kinds["load_map"] == "sweep"
+    assert kinds["skid_axial"] == "skid" and kinds["taper_contact"] == "contact"
+    assert run("examples", "needle").out.startswith("# Drawn-cup needle roller bearing")
