@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..design.fit_limits import (
     ball_clearance,
@@ -54,6 +54,20 @@ _RATINGS = (
 )
 
 
+class OtherRating(NamedTuple):
+    """What else a bearing of these dimensions and this inside is rated at.
+
+    Attributes:
+        dynamic_capacity: C [N].
+        static_capacity: C0 [N], or `None` if it is of another inside.
+        source: By whom.
+    """
+
+    dynamic_capacity: float
+    static_capacity: float | None
+    source: str
+
+
 @dataclasses.dataclass(frozen=True)
 class CatalogueEntry:
     """A bearing of the catalogue.
@@ -73,6 +87,8 @@ class CatalogueEntry:
         fatigue_load_limit: Pu [N].
         reference_speed: Thermal reference speed [rad/s].
         limiting_speed: Limiting speed [rad/s].
+        other: What another catalogue, or the ordinary class beside an improved one, is
+            rated at.
         geometry: "published" or "estimated": number and size of the rolling elements
             and their pitch circle.
         assumed: Keys of `table` that are neither, but usual.
@@ -93,6 +109,7 @@ class CatalogueEntry:
     fatigue_load_limit: float | None
     reference_speed: float | None
     limiting_speed: float | None
+    other: OtherRating | None
     geometry: str
     assumed: tuple[str, ...]
     sources: dict[str, str]
@@ -214,11 +231,24 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         designation=shown,
         type=kind,
         **si,
+        other=_other(values, data["sources"]) if si["dynamic_capacity"] else None,
         geometry=values["geometry"],
         assumed=tuple(name for name in assumed if name in table),
         sources=sources,
         notes=tuple(notes),
         table=table,
+    )
+
+
+def _other(values, sources) -> OtherRating | None:
+    given = values.get("other")
+    if given is None:
+        return None
+    static = given.get("static_capacity")
+    return OtherRating(
+        to_si(given["dynamic_capacity"], "force"),
+        None if static is None else to_si(static, "force"),
+        sources[given["source"]],
     )
 
 

@@ -106,6 +106,10 @@ def catalogue_details(entry: CatalogueEntry) -> str:
     """All that is known of a bearing, with its sources."""
     lines = [f"{entry.designation}: {_words(entry.type)} bearing, {_sizes(entry)}"]
     lines.append(_loads(entry))
+    if entry.other is not None:
+        c, c0, source = entry.other
+        static = "" if c0 is None else f", C0 {1e-3 * c0:.4g} kN"
+        lines.append(f"elsewhere C {1e-3 * c:.4g} kN{static} ({source})")
     speeds = {
         "reference speed": entry.reference_speed,
         "limiting speed": entry.limiting_speed,
@@ -127,7 +131,12 @@ def catalogue_as_dict(entries: Iterable[CatalogueEntry]) -> dict[str, Any]:
         `bearings`: of each the fields of `CatalogueEntry`, but `table` as written in a
         scene.
     """
-    return {"bearings": [{**vars(entry)} for entry in entries]}
+    return {
+        "bearings": [
+            {**vars(entry), "other": entry.other and entry.other._asdict()}
+            for entry in entries
+        ]
+    }
 
 
 def new_scene(entry: CatalogueEntry) -> str:

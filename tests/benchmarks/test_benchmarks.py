@@ -86,6 +86,7 @@ PLAIN = (
     "crown_on_halfspace.py",
     "quarter_space.py",
     "coupled_slices.py",
+    "catalogue_capacity.py",
 )
 
 

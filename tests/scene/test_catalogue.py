@@ -185,7 +185,7 @@ def test_letters_that_change_the_geometry():
     b, ac = (bj.catalogue_entry(f"7208 {letter}") for letter in ("B", "AC"))
     assert (b.table["contact_angle"], ac.table["contact_angle"]) == ("40 deg", "25 deg")
     assert b.table["n_balls"] == ac.table["n_balls"]
-    assert b.dynamic_capacity == pytest.approx(34500.0)
+    assert b.dynamic_capacity == pytest.approx(36500.0)
     assert ac.dynamic_capacity is None and "capacities unknown" in ac.notes[0]
     listed = bj.catalogue_entry("7205 C")
     assert listed.dynamic_capacity == pytest.approx(16700.0)
