@@ -35,6 +35,7 @@ default they are chosen for the load.
 
 import argparse
 import json
+import sys
 from collections import Counter
 
 import jax
@@ -186,7 +187,7 @@ def main():
     }
     if args.json:
         print(json.dumps(out))
-        return
+        return 1 if silent else 0
     for name, number in out["endings"].items():
         print(f"{name:46s} {number:4d}")
     for name, found in apart.items():
@@ -200,7 +201,8 @@ def main():
     print(f"not finite without a word: {silent} (at most 0)")
     print(f"{seconds:.0f} s, with compilation")
     print(machine())
+    return 1 if silent else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
