@@ -209,6 +209,7 @@ def model_of(large):
         SPEED,
         FormErrors(*raceways),
         sensor=Sensor(1e4),
+        retardation=2e-6,
     )
 
 

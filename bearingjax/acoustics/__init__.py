@@ -31,6 +31,7 @@ from .cage_contact import CageContact as CageContact
 from .causes import line_causes as line_causes
 from .contact_states import ContactStates as ContactStates
 from .contact_states import contact_states as contact_states
+from .contact_width import contact_half_width as contact_half_width
 from .level import REFERENCE_ACCELERATION as REFERENCE_ACCELERATION
 from .level import acceleration_of as acceleration_of
 from .level import combined as combined

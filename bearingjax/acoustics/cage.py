@@ -123,3 +123,32 @@ def cage_forces(
     on_ring = towards * off
     on_cage = (-pushed @ along).at[:2].add(on_ring)
     return CageForces(pushed, on_cage, -on_ring)
+
+
+def fastest_of_cage(
+    cage: Cage,
+    push: Scalar,
+    count: int,
+    ball_mass: Scalar,
+    ring_mass: Scalar,
+    pitch_radius: Scalar,
+) -> Scalar:
+    """Bound of the angular frequency at which cage, balls and ring move [rad/s].
+
+    As if all pockets and the land bore at once, each as stiff as it ever becomes.
+
+    Args:
+        cage: The cage.
+        push: Largest force of a contact [N].
+        count: Number of balls, evenly spaced.
+        ball_mass, ring_mass: [kg].
+        pitch_radius: Of the circle of the balls [m].
+
+    Source: ω² of the pockets is k (1/m + z max(R²/I, 1/2M)), since turn, x and y of the
+        cage are orthogonal over even pockets; that of the land k (1/M + 1/m_ring); of
+        both at most their sum (Weyl).
+    """
+    turning = pitch_radius**2 / cage.inertia
+    pockets = 1.0 / ball_mass + count * jnp.maximum(turning, 0.5 / cage.mass)
+    land = 1.0 / cage.mass + 1.0 / ring_mass
+    return jnp.sqrt(cage.contact.stiffest(push) * (pockets + land))

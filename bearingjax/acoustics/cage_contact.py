@@ -17,6 +17,8 @@ from ..numerics.units import unit
 
 _STEPS = 12
 """Of Newton's method; the slope of the equation changes once, from 1/m to n."""
+_LEAST, _FORCES = -6.0, 128
+"""Forces at which the largest stiffness is sought: powers of ten, number."""
 
 
 class CageContact(eqx.Module):
@@ -73,6 +75,20 @@ class CageContact(eqx.Module):
         """
         elastic = self.elastic * force**self.elastic_exponent
         return elastic + self.film * force ** (1.0 / self.film_exponent)
+
+    def stiffest(self, force: Scalar) -> Scalar:
+        """Largest stiffness dF/dd of the contact under forces up to one [N/m].
+
+        A film that ends stiffens it, an elastic exponent above 1 makes it softer again.
+
+        Args:
+            force: Above 0 [N].
+        """
+        forces = force * jnp.logspace(_LEAST, 0.0, _FORCES)
+        n, m = self.elastic_exponent, self.film_exponent
+        elastic = self.elastic * n * forces ** (n - 1.0)
+        film = self.film / m * forces ** (1.0 / m - 1.0)
+        return jnp.max(1.0 / (elastic + film))
 
 
 def _excess(y, args):

@@ -1,14 +1,17 @@
 """Vibration in time: the moving ring, and every rolling element as a mass.
 
-A step is a half radian or less of the fastest mode of the loaded bearing.
+A step is a half radian or less of the fastest mode of the loaded bearing, and of what
+a cage's contacts add.
 """
 
 import dataclasses
+import math
 from typing import NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import lax
 from jaxtyping import Array, Float, Int
 
@@ -16,6 +19,7 @@ from ..design.checks import check, count, is_traced
 from ..numerics.implicit import stop
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
+from .cage import fastest_of_cage
 from .model import NoiseModel
 from .natural import natural_modes
 from .standing import standing
@@ -25,6 +29,8 @@ _STABLE = 2.5
 """Steps at which the method is stable, of a radian of the fastest mode: 2.78 [rad]."""
 STEP = 0.5
 """Longest step, of a radian of the fastest mode [rad]."""
+_DOUBLINGS = 3
+"""How often steps that proved too long for the contacts are halved."""
 
 
 class CageMotion(NamedTuple):
@@ -55,8 +61,9 @@ class Vibration(eqx.Module):
         result: `Result` code: `NON_FINITE` where it ran away, `STEP_LIMIT` where its
             steps are too long for the contacts under their largest load.
         cage: Motion of the cage, or `None`.
+        steps: Of the integration, per sample.
 
-    Static: turns.
+    Static: turns, steps.
     """
 
     time: Float[Array, " time"]
@@ -68,6 +75,7 @@ class Vibration(eqx.Module):
     result: Int[Array, ""]
     turns: int = eqx.field(static=True)
     cage: CageMotion | None = None
+    steps: int = eqx.field(static=True, default=0)
 
     @property
     def duration(self) -> Scalar:
@@ -94,9 +102,9 @@ def vibration(
         turns: Turns that are recorded. Static.
         settle: Turns before them; with none, form errors are there at once. Static.
         samples: Per turn. Static.
-        steps: Of the integration, per sample; `None`: such that one is at most half a
-            radian of the fastest mode, which counts no contact of a cage. Static;
-            under `jit` it must be given.
+        steps: Of the integration, per sample; `None`: `needed_steps`, and up to eight
+            times as many where form errors or impacts press contacts so much harder
+            than the load that these are too few. Static; under `jit` it must be given.
         throw: Raise if the record is not finite, or the bearing finds no place under
             its load; otherwise read `result`. Static.
 
@@ -121,14 +129,29 @@ def vibration(
     shaft = model.shaft_speed
     check("vibration", "speed", shaft > 0, "another than 0", shaft, "rad/s")
     if steps is None:
-        steps = needed_steps(model, samples)
-    count("vibration", "steps", steps)
-    found = _vibration(model, turns, settle, samples, steps)
+        found = _with_enough_steps(model, turns, settle, samples)
+    else:
+        count("vibration", "steps", steps)
+        found = _vibration(model, turns, settle, samples, steps)
     if not throw:
         return found
     return raise_unless_converged(
-        found, found.result, lambda: _failure(int(found.result), steps)
+        found, found.result, lambda: _failure(int(found.result), found.steps)
     )
+
+
+def _with_enough_steps(model, turns, settle, samples) -> Vibration:
+    """With as many steps as needed, or more where the contacts prove stiffer."""
+    steps = needed_steps(model, samples)
+    found = _vibration(model, turns, settle, samples, steps)
+    if int(natural_modes(model).result) != Result.CONVERGED:
+        return found
+    for _ in range(_DOUBLINGS):
+        if int(found.result) not in (Result.STEP_LIMIT, Result.NON_FINITE):
+            break
+        steps *= 2
+        found = _vibration(model, turns, settle, samples, steps)
+    return found
 
 
 def _failure(result: int, steps: int) -> str:
@@ -146,6 +169,10 @@ def _failure(result: int, steps: int) -> str:
 def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
     """Steps per sample, such that one is at most half a radian of the fastest mode.
 
+    That of the bearing under its load, without form errors. Of a cage counts the
+    stiffest that its contacts become up to the force with which friction on all balls,
+    and the cage's own load, can press them.
+
     Args:
         model: The bearing; none of its numbers traced.
         samples: Per turn of the shaft.
@@ -158,11 +185,28 @@ def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
             "vibration: `steps` is None, but the model is traced; give the number, such"
             " as `needed_steps(model)` found before."
         )
-    angular = 2.0 * jnp.pi * jnp.max(natural_modes(model).frequency)
+    angular = 2.0 * np.pi * float(np.max(natural_modes(model).frequency))
     # A mode damped beyond creeping moves with ω² τ.
-    fastest = jnp.maximum(angular, angular**2 * model.retardation)
-    sample = 2.0 * jnp.pi / model.shaft_speed / samples
-    return max(1, int(jnp.ceil(sample * fastest / STEP)))
+    fastest = max(angular, angular**2 * float(model.retardation))
+    if model.cage is not None:
+        fastest = max(fastest, float(_of_cage(model)))
+    sample = 2.0 * np.pi / float(model.shaft_speed) / samples
+    return max(1, math.ceil(sample * fastest / STEP))
+
+
+@eqx.filter_jit
+def _of_cage(model) -> Scalar:
+    """Bound of how fast a cage, and the balls along the pitch circle, move [rad/s]."""
+    system = model.still_system()
+    start, _ = standing(model, system)
+    loads = system.contact_loads(start, jnp.zeros_like(model.mass))
+    cage, (ring, ball) = model.cage, system.masses[jnp.array([0, system.mass.size])]
+    size, radius = loads.shape[0], system.row.pitch_radius
+    push = cage.friction * jnp.sum(loads) + jnp.sqrt(jnp.sum(cage.load**2))
+    angular2 = fastest_of_cage(cage, push, size, ball, ring, radius) ** 2
+    dragged = cage.friction * jnp.max(jnp.sum(loads, axis=1)) / cage.sliding_speed
+    rates = jnp.sqrt(angular2), angular2 * model.retardation, dragged / ball
+    return jnp.max(jnp.stack(rates))
 
 
 @eqx.filter_jit
@@ -212,6 +256,7 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
         result=jnp.where(standing_failed, result, lost).astype(jnp.int32),
         turns=turns,
         cage=cage,
+        steps=steps,
     )
 
 

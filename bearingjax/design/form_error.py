@@ -56,7 +56,8 @@ class Harmonics(AbstractShape):
     """Waves: Σ_k a_k cos(k angle + phase_k).
 
     Order 1 on a raceway is eccentricity (or an axial runout), 2 an oval ring, 3 and
-    more the lobes of a chuck or a seat.
+    more the lobes of a chuck or a seat. Waves that are shorter than a contact is long
+    are met as they are; a real contact bridges them (`acoustics.contact_half_width`).
 
     Attributes:
         order: Waves per turn (n,), whole numbers from 1.

@@ -10,8 +10,14 @@ from registry import balls, taper
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.acoustics import Cage, CageContact, NoiseModel, vibration
-from bearingjax.acoustics.cage import cage_forces
+from bearingjax.acoustics import (
+    Cage,
+    CageContact,
+    NoiseModel,
+    needed_steps,
+    vibration,
+)
+from bearingjax.acoustics.cage import cage_forces, fastest_of_cage
 from bearingjax.acoustics.standing import standing
 from bearingjax.acoustics.stepping import stepped
 
@@ -49,6 +55,12 @@ def test_what_one_part_gains_another_loses():
     # With an energy.
     slope = np.asarray(jax.jacfwd(forces)(at))
     np.testing.assert_allclose(slope, slope.T, atol=SOLVER * np.abs(slope).max())
+    # How fast the parts move on these contacts, against a bound for all of them.
+    mass = np.array([*[0.003] * 7, 0.02, 0.02, 1.3e-5, 0.3, 0.3])
+    fastest = np.sqrt(np.linalg.eigvalsh(slope / np.sqrt(np.outer(mass, mass)))[-1])
+    numbers = (jnp.asarray(x) for x in (0.003, 0.3, RADIUS))
+    bound = float(fastest_of_cage(CAGE, jnp.asarray(size), 7, *numbers))
+    assert 0.3 * bound < fastest <= bound
 
 
 def test_a_centred_cage_feels_nothing():
@@ -118,6 +130,18 @@ def test_a_cage_that_hits_the_balls_keeps_the_momentum(moved):
     total = masses[-2] * cage[:2] + along @ (masses[-10:-3] * arcs)
     scale = np.sum(masses[-10:-3] * arcs)
     np.testing.assert_allclose(total, 0.0, atol=1e-2 * scale)
+
+
+def test_a_stiff_cage_needs_shorter_steps():
+    with_film = [
+        dataclasses.replace(CAGE, contact=CageContact(film, 1e-10))
+        for film in (5e-6, 1e-9)
+    ]
+    turning = model(None, 1200.0)
+    soft, stiff = (
+        needed_steps(dataclasses.replace(turning, cage=cage), 64) for cage in with_film
+    )
+    assert soft < 0.5 * stiff
 
 
 def test_a_record_of_a_cage():

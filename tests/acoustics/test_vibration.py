@@ -1,6 +1,7 @@
 """Vibration of a bearing in time: decay, lines, steps, derivatives, failures."""
 
 import dataclasses
+import sys
 
 import jax
 import jax.numpy as jnp
@@ -9,7 +10,7 @@ import pytest
 from tolerances import DIFFERENCE
 
 import bearingjax as bj
-from bearingjax.acoustics import NoiseModel, Sensor, needed_steps
+from bearingjax.acoustics import NoiseModel, Sensor, level, needed_steps
 from bearingjax.acoustics import vibration as in_time
 from bearingjax.design import FormErrors, Harmonics, RacewayErrors
 
@@ -28,7 +29,9 @@ WAVES = FormErrors(
     outer=RacewayErrors(outwards=Harmonics((6, 9), (0.0, 0.0))),
     inner=RacewayErrors(axial=Harmonics((7,), (0.0,))),
 )
-AXIAL = NoiseModel(BALLS, 0.2, [0.0, 0.0, -100.0, 0, 0, 0], SPEED, WAVES)
+AXIAL = NoiseModel(
+    BALLS, 0.2, [0.0, 0.0, -100.0, 0, 0, 0], SPEED, WAVES, retardation=2e-6
+)
 SHORT = {"turns": 1, "settle": 1, "samples": 64, "steps": 60}
 
 
@@ -93,26 +96,57 @@ def test_error_of_a_step():
     assert 12.0 < errors[0] / errors[1] * 15 / 16 < 20.0
 
 
-def test_derivatives():
-    def level(values):
-        model = with_waves(outer=(values[0], 0.0), inner=values[1])
-        model = dataclasses.replace(
-            model, mass=values[2], load=model.load.at[2].set(values[3])
-        )
-        found = in_time(model, **SHORT)
-        return jnp.mean(jnp.sum(found.acceleration**2, axis=1))
+LINES = np.arange(2, 6)
+"""Of a record of a turn: a band, which holds the lines of the waves."""
+NUMBERS = np.array([1e-8, 2e-8, 0.2, -100.0, 10e-6, 2e-6])
 
-    at = jnp.array([1e-8, 2e-8, 0.2, -100.0])
-    slope = jax.grad(level)(at)
-    for k in range(4):
+
+def band_level(values):
+    """Level of a band along x and y, weighted [dB]; result, and loads of contacts."""
+    outer, inner, mass, axial, clearance, retardation = values
+    bearing = dataclasses.replace(BALLS.bearing, radial_internal_clearance=clearance)
+    model = dataclasses.replace(
+        with_waves(outer=(outer, 0.0), inner=inner),
+        element=bj.BearingElement(bearing),
+        mass=mass,
+        load=AXIAL.load.at[2].set(axial),
+        retardation=retardation,
+    )
+    found = in_time(model, **(SHORT | {"steps": 24}), throw=False)
+    turned = 2 * np.pi / 64 * np.outer(LINES, np.arange(64))
+    acceleration = found.acceleration[:, :2]
+    lines = np.cos(turned) @ acceleration, np.sin(turned) @ acceleration
+    square = jnp.sum(lines[0] ** 2 + lines[1] ** 2, axis=0) * (2.0 / 64**2)
+    total = level(jnp.sqrt(square)) @ np.array([1.0, 0.7])
+    return total, (found.result, found.contact_load)
+
+
+@pytest.fixture(scope="module")
+def slopes():
+    """Function (numbers) -> derivatives of the level, result, loads."""
+    return jax.jit(jax.grad(band_level, has_aux=True))
+
+
+def test_derivatives_of_the_level_of_a_band(slopes):
+    """By all numbers at once, along two ways through them."""
+    gradient = np.asarray(slopes(NUMBERS)[0]) * NUMBERS
+    for way in np.random.default_rng(1).normal(size=(2, 6)):
         # A V of step sizes: its lowest point counts.
         errors = []
-        for share in (1e-3, 1e-4):
-            h = share * at[k]
-            away = jnp.zeros(4).at[k].set(h)
-            difference = (level(at + away) - level(at - away)) / (2 * h)
-            errors.append(abs(float(slope[k] / difference) - 1.0))
+        for share in (1e-3, 1e-4, 1e-5):
+            ends = [band_level(NUMBERS * (1.0 + s * way))[0] for s in (share, -share)]
+            difference = float(ends[0] - ends[1]) / (2.0 * share)
+            errors.append(abs(difference / (gradient @ way) - 1.0))
         assert min(errors) < 10 * DIFFERENCE
+
+
+def test_a_bearing_that_nothing_loads_rolls_on(slopes):
+    """With clearance: balls ride on the outer ring, the inner one touches nothing."""
+    loose = np.array([1e-8, 2e-8, 0.2, 0.0, 20e-6, 2e-6])
+    gradient, (code, load) = slopes(loose)
+    assert int(code) == int(bj.Result.CONVERGED)
+    assert np.all(np.isfinite(gradient)) and gradient[0] != 0.0
+    assert np.all(load[..., 0] > 0.0) and not np.any(load[..., 1])
 
 
 def test_a_ball_larger_than_the_others_shakes_with_the_cage():
@@ -133,6 +167,17 @@ def test_steps_that_are_too_long_are_told():
     found = in_time(AXIAL, **(SHORT | {"steps": 12}), throw=False)
     assert int(found.result) != int(bj.Result.CONVERGED)
     assert int(in_time(AXIAL, **SHORT).result) == int(bj.Result.CONVERGED)
+
+
+def test_steps_that_prove_too_long_are_halved(monkeypatch):
+    """As where form errors press contacts much harder than the load does."""
+    module = sys.modules[in_time.__module__]
+    monkeypatch.setattr(module, "needed_steps", lambda *_: 12)
+    how = {k: v for k, v in SHORT.items() if k != "steps"}
+    found = in_time(AXIAL, **how)
+    assert found.steps == 24
+    given = in_time(AXIAL, **(SHORT | {"steps": 24}))
+    np.testing.assert_array_equal(found.displacement, given.displacement)
 
 
 def test_failures():

@@ -37,6 +37,7 @@ mass = "0.1 kg"
 turns = 1
 settle = 0
 samples = 64
+retardation = "2 us"
 sensor_stiffness = "5 N/mm"
 sensor_direction = [0, 3, 4]
 norm = "85-176211"
@@ -204,6 +205,11 @@ def test_what_is_doubtful_is_told(scene):
     assert few.startswith("1 steps per sample are less than the 9 that the fastest")
     assert "waves of order 60 of the inner raceway are met at 18" in fast
     assert "raise `vibration.samples`" in fast
+    task = read_noise(scene, ["deviations.waves.0.order=900"])
+    load = np.full((1, 7, 2), 30.0)
+    (short,) = noise_run._short_waves(task.model, load)
+    assert short.startswith("waves of the inner raceway of order ")
+    assert "three contacts of 0.1" in short
 
 
 def test_bad_input_is_told_before_anything_is_solved(run, scene, tmp_path):
