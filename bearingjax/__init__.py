@@ -175,6 +175,7 @@ from .statics import OperatingPoint as OperatingPoint
 from .statics import Ratings as Ratings
 from .statics import RollerSolution as RollerSolution
 from .statics import Solution as Solution
+from .statics import SpectrumLife as SpectrumLife
 from .statics import Sweep as Sweep
 from .statics import dynamic_capacity as dynamic_capacity
 from .statics import fatigue_load_limit as fatigue_load_limit
@@ -185,6 +186,7 @@ from .statics import ratings as ratings
 from .statics import refine as refine
 from .statics import restrained_freedoms as restrained_freedoms
 from .statics import solve_load as solve_load
+from .statics import spectrum_life as spectrum_life
 from .statics import stack_designs as stack_designs
 from .statics import static_capacity as static_capacity
 from .statics import sweep as sweep

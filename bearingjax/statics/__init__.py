@@ -59,6 +59,7 @@ from .cases import Cases as Cases
 from .cases import solve_case as solve_case
 from .equivalent_load import EquivalentLoad as EquivalentLoad
 from .equivalent_load import equivalent_load as equivalent_load
+from .life import LIFE_OUTPUTS as LIFE_OUTPUTS
 from .life import Life as Life
 from .life import LifeConditions as LifeConditions
 from .life import rating_life as rating_life
@@ -85,6 +86,8 @@ from .solution import RollerSolution as RollerSolution
 from .solution import Solution as Solution
 from .solution import Stats as Stats
 from .solution import message as message
+from .spectrum import SpectrumLife as SpectrumLife
+from .spectrum import spectrum_life as spectrum_life
 from .support import restrained_freedoms as restrained_freedoms
 from .sweep import Sweep as Sweep
 from .sweep import stack_designs as stack_designs

@@ -6,6 +6,7 @@ infinite without load, and their derivatives then zero; `damage`, the part of th
 that a revolution uses, is finite and smooth throughout.
 """
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -53,6 +54,23 @@ STANDARDS = {
 
 FRAMES = ("space", "inner", "outer")
 """What the direction of the load may be fixed to."""
+
+LIFE_OUTPUTS = (
+    "equivalent_load",
+    "static_equivalent_load",
+    "reference_load",
+    "static_safety",
+    "basic_rating_life",
+    "reference_rating_life",
+    "modified_rating_life",
+    "damage",
+    "life_hours",
+    "viscosity_ratio",
+    "contamination_factor",
+    "a_iso",
+    "damage_share",
+)
+"""Numbers of a `Life` that a sweep may keep."""
 
 _MILLION = 1e6
 
@@ -291,6 +309,28 @@ def life_of(
                 " lamina), of the rollers of the solution."
             )
     return _life(element.bearing, solution, conditions, speed, lamina_load)
+
+
+def life_outputs(
+    solution: Solution, conditions: LifeConditions, names: Sequence[str]
+) -> dict[str, Array]:
+    """Numbers of the life of a solution, by name.
+
+    Args:
+        solution: A single one; it has the bearing that was solved.
+        conditions: As of `life_of`.
+        names: Of `LIFE_OUTPUTS`.
+
+    Raises:
+        ValueError: For one that the conditions or the solution do not give.
+    """
+    life = life_of(solution.element, solution, conditions)
+    found = {name: getattr(life, name) for name in names}
+    for name, value in found.items():
+        if value is None:
+            what = "ring speeds" if name == "life_hours" else "a lubricant"
+            raise ValueError(f"rating_life: {name!r} needs {what}, which is not given.")
+    return found
 
 
 def solution_loads(

@@ -19,6 +19,7 @@ from ..design import Bearing, BearingSet, rows_of
 from ..element.bearing_element import BearingElement, check_element
 from ..numerics.result import Result
 from .cases import Cases
+from .life import LIFE_OUTPUTS, LifeConditions
 from .options import SolveOptions
 from .solution import Solution
 from .support import check_held
@@ -145,6 +146,7 @@ def sweep(
     progress: bool = False,
     devices: Sequence[Any] | None = None,
     stop: Callable[[], bool] | None = None,
+    life: LifeConditions | None = None,
 ) -> Sweep:
     """Solve many cases. One bad case never spoils another: each has its own code.
 
@@ -152,9 +154,9 @@ def sweep(
         element: The bearing; or many designs in one (`stack_designs`, or made under
             `jax.vmap`): then case k is of design k, or of `cases.design[k]`.
         cases: `Cases`, or loads (case, 6) [N, N m].
-        outputs: Fields of `Solution` and names of `SUMMARIES` to be kept, or a
-            function of one Solution; what is not kept is not computed. `None`: all
-            fields of `Solution`.
+        outputs: Fields of `Solution` and names of `SUMMARIES` and `LIFE_OUTPUTS` to be
+            kept, or a function of one Solution; what is not kept is not computed.
+            `None`: all fields of `Solution`.
         free, fixed_ring, points, tolerance, max_steps: As in `solve_load`.
         neighbours: Set it if consecutive cases are similar, as on a fine grid: each
             case then starts from the solution of the one before. A case that ends at
@@ -170,6 +172,7 @@ def sweep(
             and the remaining cases have the code `NOT_RUN`. It must return the same in
             all processes. (A KeyboardInterrupt loses what was solved; a signal handler
             whose flag `stop` returns does not.)
+        life: Conditions of rating lives among `outputs`; default `LifeConditions()`.
 
     Returns:
         Sweep with all cases, in every process.
@@ -190,9 +193,22 @@ def sweep(
     if not isinstance(size, int) or size < 1:
         raise ValueError(f"sweep: `chunk` is {chunk!r}; a whole number of at least 1.")
     check_held("sweep", every.load, every.prescribed, options.free)
-    keep = outputs if callable(outputs) else Keep(_checked(outputs))
+    if life is not None and not isinstance(life, LifeConditions):
+        raise TypeError(
+            f"sweep: `life` is a {type(life).__name__}; it must be LifeConditions."
+        )
+    keep, lives = outputs, ()
+    if not callable(outputs):
+        names = _checked(outputs)
+        lives = tuple(name for name in names or () if name in LIFE_OUTPUTS)
+        others = names and tuple(name for name in names if name not in lives)
+        keep = Keep(others)
+    if lives and life is None:
+        life = LifeConditions()
     places = np.array(jax.devices() if devices is None else list(devices))
-    program = Program(element, Task(options, keep, warn), size, places)
+    program = Program(
+        element, Task(options, keep, warn, lives, life if lives else None), size, places
+    )
     found = program.run(every, neighbours, progress, stop)
     if neighbours:
         codes = found["result"]
@@ -227,7 +243,7 @@ def _output(solution, name) -> Any:
         fields = [n for n, v in vars(solution).items() if eqx.is_array(v)]
         raise ValueError(
             f"sweep: `outputs` names {name!r}; there are"
-            f" {', '.join([*fields, *SUMMARIES])}."
+            f" {', '.join([*fields, *SUMMARIES, *LIFE_OUTPUTS])}."
         )
     return value
 

@@ -16,6 +16,7 @@ from jax.sharding import PartitionSpec as Spec
 from ..element.frame import RINGS
 from ..numerics.result import Result
 from .cases import solve_case
+from .life import LifeConditions, life_outputs
 from .options import SolveOptions
 from .solution import Solution
 from .warning import sizes
@@ -43,13 +44,17 @@ class Task(eqx.Module):
         options: How it is solved.
         keep: Of a Solution, the outputs by name.
         warn: Whether to look for warnings.
+        lives: Names of `LIFE_OUTPUTS` that are kept too.
+        life: Conditions of the life.
 
-    Traced: the numbers of `options`. Static: all else.
+    Traced: the numbers of `options` and `life`. Static: all else.
     """
 
     options: SolveOptions
     keep: Callable[[Solution], dict[str, jax.Array]] = eqx.field(static=True)
     warn: bool = eqx.field(static=True)
+    lives: tuple[str, ...] = eqx.field(static=True, default=())
+    life: LifeConditions | None = None
 
     def solve(self, element, case, start=None) -> Solution:
         """The solution of a case, in the design that it chooses."""
@@ -67,6 +72,9 @@ class Task(eqx.Module):
             return value
 
         kept = {name: told(v) for name, v in _arrays(self.keep(solution)).items()}
+        if self.life is not None:
+            lives = life_outputs(solution, self.life, self.lives)
+            kept |= {name: told(v) for name, v in lives.items()}
         always = {name: getattr(solution, name) for name in ALWAYS}
         if not self.warn:
             return {**kept, **always}

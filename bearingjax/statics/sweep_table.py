@@ -13,6 +13,7 @@ from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..numerics.result import Result
 from ..numerics.units import unit_of
 from .cases import Cases
+from .life import Life
 from .solution import BallSolution, RollerSolution
 from .sweep import Sweep
 from .sweep_program import WARNED
@@ -269,7 +270,7 @@ def _label(name, index, shape):
         axes, first, entry = (), len(shape), ()
     last = [axis[k] for axis, k in zip(axes, index[first:], strict=True)]
     label = "_".join([name, *map(str, index[:first]), *last])
-    for kind in (RollerSolution, BallSolution):
+    for kind in (RollerSolution, BallSolution, Life):
         if field in kind.__dataclass_fields__:
             return label, unit_of(kind, field, entry)
     return label, ""
