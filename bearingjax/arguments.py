@@ -62,6 +62,22 @@ def parser() -> argparse.ArgumentParser:
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
     )
     optimise.add_argument("--progress", action="store_true", help="show progress")
+    life = commands.add_parser(
+        "life",
+        help="rating life, of one load or of a load spectrum",
+        description="Rating life of the bearing of a scene file by ISO 281 and ISO/TS"
+        " 16281, as its [life] says, under its load or, if it has [cases], under all of"
+        " them, whose damage adds up over their hours.",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
+    )
+    _add_common(life)
+    life.add_argument(
+        "--table",
+        metavar="OUT",
+        type=Path,
+        help="write a row per case (.csv, .parquet)",
+    )
+    life.add_argument("--quiet", action="store_true", help="no progress bar")
     contact = commands.add_parser(
         "contact",
         help="one roller on one raceway, its ends included",

@@ -1,4 +1,4 @@
-"""The command line: `bearingjax solve`, `sweep`, `optimise`, `contact`, `skid`,
+"""The command line: `bearingjax solve`, `sweep`, `optimise`, `life`, `contact`, `skid`,
 `rotor`, `noise`, `catalogue`, `new`, `examples`."""
 
 import contextlib
@@ -270,6 +270,72 @@ def _optimise(options) -> int:
         print(f"bearingjax: {found.result}: {found.message}", file=sys.stderr)
         return NOT_SOLVED
     print(optimisation_report(task, found), flush=True)
+    return SOLVED
+
+
+def _life(options) -> int:
+    from .scene import has_cases
+
+    _check_table(options)
+    _check_outputs(options)
+    if has_cases(options.scene, options.set):
+        return _life_of_cases(options)
+    return _life_of_load(options)
+
+
+def _life_of_load(options) -> int:
+    from .numerics import Result
+    from .scene import (
+        SceneError,
+        life_as_dict,
+        life_report,
+        read_scene,
+        run_scene,
+        scene_life,
+        solved_as_dict,
+        write_numbers,
+    )
+
+    if options.table is not None:
+        raise SceneError("--table is for a scene with [cases]; this one has one load")
+    scene = read_scene(options.scene, options.set)
+    solution = run_scene(scene, _programs())
+    solved = Result(int(solution.result)) is Result.CONVERGED
+    life = scene_life(scene, solution) if solved else None
+    numbers = solved_as_dict(scene, solution)
+    if life is not None:
+        numbers = {**life_as_dict(life), **numbers}
+    _write((options.json, lambda path: write_numbers(path, numbers)))
+    if life is None:
+        return _tell_unsolved(scene, solution)
+    print(f"{scene.name}\n{life_report(scene, solution, life)}")
+    for text in numbers["warnings"]:
+        print(f"warning: {text}")
+    sys.stdout.flush()
+    return SOLVED
+
+
+def _life_of_cases(options) -> int:
+    from .scene import (
+        read_cases,
+        run_life,
+        spectrum_as_dict,
+        spectrum_report,
+        unsolved,
+        write_numbers,
+    )
+    from .statics.sweep_table import write
+
+    table = read_cases(options.scene, options.set)
+    run = run_life(table, not options.quiet and sys.stderr.isatty())
+    _write(
+        (options.table, lambda path: write(run.solved, path)),
+        (options.json, lambda path: write_numbers(path, spectrum_as_dict(run))),
+    )
+    if not run.converged:
+        print(f"bearingjax: {unsolved(run)}", file=sys.stderr)
+        return NOT_SOLVED
+    print(spectrum_report(run), flush=True)
     return SOLVED
 
 
@@ -614,6 +680,7 @@ _COMMANDS = {
     "solve": _solve,
     "sweep": _sweep,
     "optimise": _optimise,
+    "life": _life,
     "contact": _contact,
     "skid": _skid,
     "rotor": _rotor,

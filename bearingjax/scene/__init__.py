@@ -25,6 +25,15 @@ from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers
 from .files import write_outputs as write_outputs
 from .interrupt import Interrupt as Interrupt
+from .life_report import life_as_dict as life_as_dict
+from .life_report import life_report as life_report
+from .life_report import scene_life as scene_life
+from .life_run import LifeRun as LifeRun
+from .life_run import has_cases as has_cases
+from .life_run import run_life as run_life
+from .life_run import spectrum_as_dict as spectrum_as_dict
+from .life_run import spectrum_report as spectrum_report
+from .life_run import unsolved as unsolved
 from .noise_output import noise_as_dict as noise_as_dict
 from .noise_output import noise_columns as noise_columns
 from .noise_output import write_noise_json as write_noise_json
@@ -40,6 +49,7 @@ from .optimise_report import unsolved_start_as_dict as unsolved_start_as_dict
 from .optimise_table import Optimisation as Optimisation
 from .optimise_table import read_optimisation as read_optimisation
 from .output import as_dict as as_dict
+from .output import solved_as_dict as solved_as_dict
 from .output import write_json as write_json
 from .quantity import SceneError as SceneError
 from .read import Scene as Scene

@@ -11,6 +11,7 @@ from ..statics.solution import BallSolution, Solution, message
 from ..statics.warning import warnings
 from .files import write_numbers
 from .fit_report import fit_as_dict
+from .life_report import life_as_dict, scene_life
 from .read import Scene
 
 OF_ROLLERS = (
@@ -63,23 +64,37 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     Returns:
         The fields of `OF_ROLLERS` or `OF_BALLS`, with springs `OF_SPRINGS` (m, rad,
         N, N m, Pa), and result, message, residual, iterations, warnings and version.
-        With fits also `fit`, as of `fit_as_dict`.
+        With fits also `fit`, as of `fit_as_dict`; with [life] also `life_as_dict`.
         If the solve did not converge the arrays are left out: there are no results.
         What is infinite (the margin of a shoulder that is not given) is null. Of a
         bearing of the catalogue also `catalogue`: designation, geometry, overridden.
     """
+    # As NumPy holds it: JAX would compile every small operation on the way.
+    solution = jax.device_get(solution)
+    solved = Result(int(solution.result)) is Result.CONVERGED
+    return {
+        **(_numbers(solution) if solved else {}),
+        **_fits(scene),
+        **_catalogue(scene),
+        **(_life(scene, solution) if solved else {}),
+        **solved_as_dict(scene, solution),
+    }
+
+
+def solved_as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
+    """How a solve ended: result, message, residual, iterations, warnings, version.
+
+    Args:
+        scene: What was solved.
+        solution: Its solution.
+    """
     from .. import __version__
 
-    # As NumPy holds it: JAX would compile every small operation on the way.
     solution = jax.device_get(solution)
     result = Result(int(solution.result))
     solved = result is Result.CONVERGED
-    numbers = _numbers(solution)
     residual = float(solution.stats.residual)
     return {
-        **(numbers if solved else {}),
-        **_fits(scene),
-        **_catalogue(scene),
         "result": result.label,
         "message": message(solution, scene.moving_ring),
         "residual": residual if np.isfinite(residual) else None,
@@ -106,6 +121,10 @@ def _catalogue(scene):
             "overridden": list(taken.overridden),
         }
     }
+
+
+def _life(scene, solution):
+    return {} if scene.life is None else life_as_dict(scene_life(scene, solution))
 
 
 def _numbers(solution):

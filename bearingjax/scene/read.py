@@ -17,10 +17,12 @@ from ..element import (
 )
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit_of
+from ..statics.life import LifeConditions
 from .bearing_table import designated, read_bearing
 from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import read_choices
 from .fit_table import Fits, fit_facts, fit_warnings, read_fits
+from .life_table import read_life
 from .quantity import SceneError
 from .scene_file import (
     find_scene,
@@ -53,6 +55,7 @@ class Scene:
         speed: Ring speeds, or `None` if both rings stand still.
         tolerance: Relative residual of the load solve, or `None` for the default.
         points: Positions along the rollers at which loads are reported.
+        life: Conditions of its rating life, or `None`: it is not asked for.
         warnings: What the validation found odd but possible.
         catalogue: What its `designation` stands for, or `None` without one.
     """
@@ -68,6 +71,7 @@ class Scene:
     speed: Speed | None
     tolerance: float | None
     points: int
+    life: LifeConditions | None
     warnings: tuple[str, ...]
     catalogue: FromCatalogue | None = None
 
@@ -184,6 +188,7 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
                 " that load; choose one"
             )
             raise operating.error("load", problem)
+    points = _points(top.table("output"), bearing)
     held = is_ball(bearing) and isinstance(element.kinematics, ConstantAngle)
     if held and any(speeds.values()):
         problem = "constant_angle is for balls at rest; leave out the speeds"
@@ -199,7 +204,8 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         fixed_ring=operating.choice("fixed_ring", RINGS, "outer"),
         speed=speed,
         tolerance=tolerance,
-        points=_points(top.table("output"), bearing),
+        points=points,
+        life=read_life(top, bearing, speed, points),
         warnings=odd,
     )
 

@@ -15,6 +15,7 @@ from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..statics.solution import BallSolution, Solution
 from ..statics.warning import warnings
 from .fit_report import fit_report
+from .life_report import life_report, scene_life
 from .operation_report import operation
 from .quantity import display_unit
 from .read import Scene
@@ -261,6 +262,12 @@ def _angle(angle, load, touching):
     return f"{angle:5.2f}" if load > touching else "    -"
 
 
+def _life(scene, solution):
+    if scene.life is None:
+        return ""
+    return life_report(scene, solution, scene_life(scene, solution))
+
+
 def _ending(scene, solution):
     stats = solution.stats
     lines = [
@@ -278,6 +285,7 @@ SECTIONS: dict[str, Section] = {
     "Displacement and load": _motion,
     "Stiffness": _stiffness,
     "Rolling elements": _elements,
+    "Rating life": _life,
     "Solution and warnings": _ending,
 }
 """Sections of a report by their titles, in their order."""

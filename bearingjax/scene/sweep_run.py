@@ -52,6 +52,7 @@ def run_cases(
             neighbours=table.neighbours,
             progress=progress,
             stop=stop,
+            life=scene.life,
         )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
@@ -105,20 +106,27 @@ def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
     """A sweep as plain lists, in SI: a column each, null where a case failed."""
     from .. import __version__
 
+    return {
+        "columns": listed_columns(columns(solved, design_columns(table))),
+        "counts": solved.counts(),
+        "warnings": [*table.warnings, *solved.warnings],
+        "version": __version__,
+    }
+
+
+def listed_columns(found: dict[str, Any]) -> dict[str, list]:
+    """Columns of a table as plain lists; null where a number is not finite.
+
+    Args:
+        found: NumPy arrays by header.
+    """
+
     def listed(column):
         if column.dtype.kind != "f":
             return column.tolist()
         return [float(x) if np.isfinite(x) else None for x in column]
 
-    return {
-        "columns": {
-            name: listed(column)
-            for name, column in columns(solved, design_columns(table)).items()
-        },
-        "counts": solved.counts(),
-        "warnings": [*table.warnings, *solved.warnings],
-        "version": __version__,
-    }
+    return {name: listed(column) for name, column in found.items()}
 
 
 def write_sweep_json(path: str | Path, table: CaseTable, solved: Sweep) -> None:

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..numerics.types import Scalar, namespace
+from ..numerics.types import namespace
 from ..numerics.units import unit
 from .cases import Cases
 
@@ -22,8 +22,8 @@ class SpectrumLife(eqx.Module):
             none at all.
     """
 
-    rating_life: Scalar = eqx.field(metadata=unit("1"))
-    life_hours: Scalar | None = eqx.field(metadata=unit("h"))
+    rating_life: Float[Array | np.ndarray, ""] = eqx.field(metadata=unit("1"))
+    life_hours: Float[Array | np.ndarray, ""] | None = eqx.field(metadata=unit("h"))
     damage_share: Float[Array | np.ndarray, " case"] = eqx.field(metadata=unit("1"))
 
 
@@ -61,7 +61,7 @@ def spectrum_life(
     once = xp.where(nothing, 1.0, total)
 
     def life(amount):
-        return xp.where(nothing, np.inf, xp.sum(amount) / once)
+        return xp.asarray(xp.where(nothing, np.inf, xp.sum(amount) / once))
 
     return SpectrumLife(
         life(weight), None if turns is None else life(hours), parts / once

@@ -197,18 +197,11 @@ def sweep(
         raise TypeError(
             f"sweep: `life` is a {type(life).__name__}; it must be LifeConditions."
         )
-    keep, lives = outputs, ()
-    if not callable(outputs):
-        names = _checked(outputs)
-        lives = tuple(name for name in names or () if name in LIFE_OUTPUTS)
-        others = names and tuple(name for name in names if name not in lives)
-        keep = Keep(others)
-    if lives and life is None:
-        life = LifeConditions()
+    keep, lives = _kept(outputs)
+    life = (life or LifeConditions()) if lives else None
     places = np.array(jax.devices() if devices is None else list(devices))
-    program = Program(
-        element, Task(options, keep, warn, lives, life if lives else None), size, places
-    )
+    task = Task(options, keep, warn, lives, life)
+    program = Program(element, task, size, places)
     found = program.run(every, neighbours, progress, stop)
     if neighbours:
         codes = found["result"]
@@ -246,6 +239,17 @@ def _output(solution, name) -> Any:
             f" {', '.join([*fields, *SUMMARIES, *LIFE_OUTPUTS])}."
         )
     return value
+
+
+def _kept(outputs: Any) -> tuple[Any, tuple[str, ...]]:
+    """What is kept of a solution, and the names of what is kept of its life."""
+    if callable(outputs):
+        return outputs, ()
+    names = _checked(outputs)
+    if names is None:
+        return Keep(None), ()
+    lives = tuple(name for name in names if name in LIFE_OUTPUTS)
+    return Keep(tuple(name for name in names if name not in lives)), lives
 
 
 def _checked(outputs):

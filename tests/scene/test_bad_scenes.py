@@ -29,12 +29,83 @@ RIB = '{end_radius = "300 mm", contact_height = "1.5 mm"}'
 
 # Scene, setting, text of the message after "file: ".
 SETTINGS = {
+    # Rating life.
+    "unknown key of life": (
+        "life_spectrum",
+        "life.dynamic_rating=23 kN",
+        "`life.dynamic_rating`: unknown key (did you mean `dynamic_capacity`?)",
+    ),
+    "capacity without its unit": (
+        "life_spectrum",
+        "life.dynamic_capacity=23400",
+        "`life.dynamic_capacity`: 23400 has no unit; a force with its unit is wanted",
+    ),
+    "capacity below zero": (
+        "life_spectrum",
+        "life.static_capacity=-11 kN",
+        "`life.static_capacity`: -11000 N is not allowed; above 0 N",
+    ),
+    "limit of no force": (
+        "life_spectrum",
+        "life.fatigue_load_limit=0 N",
+        "`life.fatigue_load_limit`: 0 N is not allowed; above 0 N",
+    ),
+    "reliability in per cent": (
+        "life_spectrum",
+        "life.reliability=95",
+        "`life.reliability`: 95 is not allowed; from 0.9 to 0.9995 (a share, not %)",
+    ),
+    "contamination above one": (
+        "life_spectrum",
+        "life.contamination=1.2",
+        "`life.contamination`: 1.2 is not allowed; e_C from 0 to 1, or a class of ISO",
+    ),
+    "contamination of no class": (
+        "life_spectrum",
+        "life.contamination=grease, hihg",
+        "`life.contamination`: 'grease, hihg' is not known (did you mean",
+    ),
+    "dynamic viscosity of a life": (
+        "life_spectrum",
+        "life.viscosity=20 mPa s",
+        "`life.viscosity`: '20 mPa s' is not a kinematic viscosity",
+    ),
+    "thick oil of a life": (
+        "life_spectrum",
+        "life.viscosity=20 m^2/s",
+        "`life.viscosity`: 2e+07 mm²/s is not allowed; above 0, below 10^6 mm²/s",
+    ),
+    "load fixed to a shaft": (
+        "life_spectrum",
+        "life.load_fixed_to=shaft",
+        "`life.load_fixed_to`: 'shaft' is not known; it must be one of space, inner,",
+    ),
+    "edge stress in words": (
+        "life_spectrum",
+        "life.edge_stress=none",
+        "`life.edge_stress`: 'none' is not true or false",
+    ),
+    "film at rest": (
+        "cylindrical_rig",
+        'life={contamination=0.5,viscosity="20 mm^2/s"}',
+        "`life.contamination`: needs a speed of one ring against the other",
+    ),
+    "contamination without an oil": (
+        "tapered",
+        "life={contamination=0.5}",
+        "`life.viscosity`: is missing, and so is [lubricant]; `contamination` needs an",
+    ),
+    "oil without contamination": (
+        "tapered",
+        'life={viscosity="20 mm^2/s"}',
+        "`life.contamination`: is missing; the modified life needs it beside",
+    ),
     # Keys.
     "unknown table": (
         "cylindrical_rig",
         "bearings.n_rollers=3",
         "`bearings`: unknown key (did you mean `bearing`?); known at the top level:"
-        " bearing, cage, cases, contact, deviations, dynamics, fit, lubricant,"
+        " bearing, cage, cases, contact, deviations, dynamics, fit, life, lubricant,"
         " numerics, operating, optimise, output, set, temperature, vibration",
     ),
     "unknown key in bearing": (
@@ -917,6 +988,12 @@ def test_lines_of_a_setting_are_not_lost():
 def test_reader_raises_what_the_command_line_prints():
     with pytest.raises(SceneError, match=r"^tapered\.toml: `bearing\.n_rollers`: 0 is"):
         read_scene("tapered", ["bearing.n_rollers=0"])
+
+
+def test_life_of_few_laminae():
+    settings = ["life.reliability=0.95", "output.points=40"]
+    with pytest.raises(SceneError, match=r"`output.points`: 40 .*odd and at least 61"):
+        read_scene("tapered", settings)
 
 
 def test_errors_are_value_errors():

@@ -22,6 +22,7 @@ SHIPPED = (
     "deep_groove",
     "fujiwara_kawase",
     "hybrid_spindle",
+    "life_spectrum",
     "load_map",
     "needle",
     "nj_axial",

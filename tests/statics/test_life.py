@@ -18,9 +18,8 @@ from tolerances import DIFFERENCE, SOLVER
 import bearingjax as bj
 from bearingjax.statics import life_factor, reliability_factor, viscosity_ratio
 from bearingjax.statics.equivalent_load import equivalent_load, load_factors
-from bearingjax.statics.life import FRAMES, turns_against_load
+from bearingjax.statics.life import FRAMES, life_outputs, turns_against_load
 from bearingjax.statics.reference_life import edge_stress, row_fatigue
-from bearingjax.statics.sweep_table import columns
 
 ATTRIBUTED = 3e-4  # between programs that solve the same equations
 LAMINAE = 30
@@ -599,43 +598,36 @@ def test_a_life_of_what_is_not_solved_is_refused(balls, rollers, untyped):
         bj.rating_life(roller_element(x), solution, lamina_load=np.zeros((2, 2)))
 
 
-def test_a_sweep_has_lives_and_a_spectrum_adds_up_their_damage(balls):
-    """Palmgren and Miner: each case uses its revolutions over its life."""
-    radial = [800.0, 1500.0, 0.0, 2500.0]
-    hours, speeds = np.array([60.0, 25.0, 10.0, 5.0]), np.array([150.0, 150, 200, 90])
-    load = np.zeros((4, 6))
-    load[:, 0], load[:, 2] = radial, [600.0, 0.0, 0.0, 200.0]
-    cases = bj.Cases(load, inner_speed=speeds, outer_speed=0.0, hours=hours)
-    element = ball_element(jnp.asarray([5e-6]))
-    conditions = bj.LifeConditions(23400.0)
-    names = ["reference_rating_life", "life_hours", "damage", "largest_load"]
-    found = bj.sweep(element, cases, outputs=names, life=conditions, warn=False)
-    assert found.converged.all()
-    lives = np.asarray(found.reference_rating_life)
-    # Speed presses the balls a little onto the outer raceway.
-    _, alone = balls(jnp.asarray([5e-6, 1500.0, 0.0, 0.0]))
-    assert abs(lives[1] / alone["of"][1].reference_rating_life - 1) < 0.01
-    # Without load that is all that tires it.
-    assert lives[2] > 1e12 * lives[1]
-    per_hour = speeds * 3600 / (2 * np.pi)
-    np.testing.assert_allclose(found.life_hours, lives / per_hour, rtol=1e-12)
-    used = hours * per_hour / lives
-    life = bj.spectrum_life(cases, found.damage)
-    np.testing.assert_allclose(life.life_hours, hours.sum() / used.sum(), rtol=1e-12)
-    turns = (hours * per_hour).sum()
-    np.testing.assert_allclose(life.rating_life, turns / used.sum(), rtol=1e-12)
+def test_the_damage_of_cases_adds_up():
+    """Palmgren and Miner: each case uses its revolutions over its life. That a sweep
+    has these lives is tested with the command `life`."""
+    hours, speeds = np.array([60.0, 25.0, 15.0]), np.array([150.0, -150.0, 90.0])
+    lives = np.array([1e9, 3e7, np.inf])
+    cases = bj.Cases(np.zeros((3, 6)), inner_speed=speeds, outer_speed=0.0, hours=hours)
+    turns = hours * abs(speeds) * 3600 / (2 * np.pi)
+    used = turns / lives
+    life = bj.spectrum_life(cases, 1 / lives)
+    expected = hours.sum() / used.sum()
+    np.testing.assert_allclose(np.asarray(life.life_hours), expected, rtol=1e-12)
+    expected = turns.sum() / used.sum()
+    np.testing.assert_allclose(np.asarray(life.rating_life), expected, rtol=1e-12)
     np.testing.assert_allclose(life.damage_share, used / used.sum(), rtol=1e-12)
-    table = columns(found)
-    assert "life_hours [h]" in table and "reference_rating_life" in table
-    # Without speeds revolutions count; without load life is infinite.
-    still = bj.Cases(load, hours=hours)
-    life = bj.spectrum_life(still, found.damage)
+    # Without speeds all turn alike; without load life is infinite.
+    still = bj.Cases(np.zeros((3, 6)), hours=hours)
+    life = bj.spectrum_life(still, 1 / lives)
     assert life.life_hours is None
-    np.testing.assert_allclose(
-        life.rating_life, hours.sum() / (hours / lives).sum(), rtol=1e-12
-    )
-    assert np.isinf(bj.spectrum_life(still, np.zeros(4)).rating_life)
-    with pytest.raises(ValueError, match=r"`damage` has shape \(3,\).*\(4,\)"):
-        bj.spectrum_life(still, np.zeros(3))
-    with pytest.raises(ValueError, match="'modified_rating_life' needs a lubricant"):
-        bj.sweep(element, cases, outputs=["modified_rating_life"], warn=False)
+    expected = hours.sum() / (hours / lives).sum()
+    np.testing.assert_allclose(np.asarray(life.rating_life), expected, rtol=1e-12)
+    assert np.isinf(bj.spectrum_life(still, np.zeros(3)).rating_life)
+    with pytest.raises(ValueError, match=r"`damage` has shape \(2,\).*\(3,\)"):
+        bj.spectrum_life(still, np.zeros(2))
+
+
+def test_a_sweep_says_which_life_it_cannot_have(balls, untyped):
+    solution, _ = balls(jnp.asarray([0.0, 1e3, 0.0, 0.0]))[1]["of"]
+    for name, needed in (("a_iso", "a lubricant"), ("life_hours", "ring speeds")):
+        with pytest.raises(ValueError, match=f"'{name}' needs {needed}"):
+            life_outputs(solution, bj.LifeConditions(), [name])
+    element = ball_element(jnp.asarray([0.0]))
+    with pytest.raises(TypeError, match="`life` is a dict; it must be LifeConditions"):
+        bj.sweep(element, np.ones((2, 6)), outputs=["damage"], life={})  # pyright: ignore[reportArgumentType]

@@ -1,0 +1,170 @@
+"""Rating life of a scene as text for people, and as numbers in SI for programs."""
+
+import dataclasses
+from typing import Any
+
+import jax
+import numpy as np
+
+from ..element.frame import RINGS
+from ..statics.life import LIFE_OUTPUTS, Life, LifeConditions, life_of
+from ..statics.solution import RollerSolution, Solution
+from .quantity import SceneError
+from .read import Scene
+
+_SOURCES = {
+    "dynamic_capacity": "dynamic_source",
+    "static_capacity": "static_source",
+    "fatigue_load_limit": "limit_source",
+}
+
+
+def scene_life(scene: Scene, solution: Solution) -> Life:
+    """Rating life of a solved scene, in NumPy, by its [life] or by the defaults.
+
+    Without a speed of one ring against the other there is no modified life.
+
+    Args:
+        scene: What was solved.
+        solution: Its solution, converged.
+
+    Raises:
+        SceneError: If its numbers of life and bearing do not go together.
+    """
+    conditions = LifeConditions() if scene.life is None else scene.life
+    speed = scene.speed
+    if speed is None or float(speed.inner) == float(speed.outer):
+        conditions = dataclasses.replace(conditions, viscosity=None, contamination=None)
+    try:
+        life = life_of(solution.element, solution, conditions)
+    except ValueError as error:
+        raise SceneError(f"{scene.name}: {error}") from error
+    return jax.device_get(life)
+
+
+def life_as_dict(life: Life) -> dict[str, Any]:
+    """Numbers of a rating life in SI, by name; what is infinite is null.
+
+    Args:
+        life: In NumPy.
+
+    Returns:
+        The numbers of `LIFE_OUTPUTS` that there are, the ratings each with its
+        `..._source`, `reliability_factor`, `weakest` (row, ring, track), and the
+        `standards` that results follow.
+    """
+    found: dict[str, Any] = {}
+    for name, source in _SOURCES.items():
+        found[name] = _plain(getattr(life.ratings, name))
+        found[f"{name}_source"] = getattr(life.ratings, source)
+    for name in (*LIFE_OUTPUTS, "reliability_factor"):
+        value = getattr(life, name)
+        found[name] = None if value is None else _plain(value)
+    row, ring, track = life.weakest
+    found["weakest"] = {"row": row, "ring": ring, "track": track}
+    return {**found, "standards": dict(life.standards)}
+
+
+def _plain(value) -> Any:
+    values = np.asarray(value, dtype=float)
+    if np.isfinite(values).all():
+        return values.tolist()
+    plain = values.astype(object)
+    plain[~np.isfinite(values)] = None
+    return plain.tolist()
+
+
+def life_report(scene: Scene, solution: Solution, life: Life) -> str:
+    """Readable report of a rating life.
+
+    Args:
+        scene: What was solved.
+        solution: Its solution, in NumPy.
+        life: Its life, in NumPy.
+    """
+    r, axially = life.ratings, "axial" if life.ratings.axial else "radial"
+    hours = _hours_per_turn(solution)
+    lines = [
+        "rating life                 million rev"
+        + ("            hours" if hours is not None else ""),
+        _line("basic, ISO 281", life.basic_rating_life, hours),
+        _line("reference, ISO/TS 16281", life.reference_rating_life, hours),
+    ]
+    if life.modified_rating_life is not None:
+        lines.append(_line("modified (a1, a_ISO)", life.modified_rating_life, hours))
+        factors = {
+            "viscosity ratio": life.viscosity_ratio,
+            "e_C": life.contamination_factor,
+            "a_ISO": life.a_iso,
+            "a1": life.reliability_factor,
+        }
+        parts = (f"{name} {np.asarray(x):.4g}" for name, x in factors.items())
+        lines.append(", ".join(parts))
+    lines += [
+        f"{axially} ratings: C {_kilo(r.dynamic_capacity)} kN ({r.dynamic_source}),"
+        f" C0 {_kilo(r.static_capacity)} kN ({r.static_source}),",
+        f"  C_u {_kilo(r.fatigue_load_limit)} kN ({r.limit_source})",
+        f"equivalent load: P {_kilo(life.equivalent_load)} kN, of the reference life"
+        f" {_kilo(life.reference_load)} kN",
+        f"static safety C0/P0 {_number(life.static_safety)}, P0"
+        f" {_kilo(life.static_equivalent_load)} kN (ISO 76)",
+    ]
+    lines += limits(solution, life)
+    lines.append(_turning(life))
+    return "\n".join(lines)
+
+
+def limits(solution: Solution, life: Life) -> list[str]:
+    """What limits the reference life, in words.
+
+    Args:
+        solution: In NumPy.
+        life: Its life, in NumPy.
+    """
+    share = np.asarray(life.damage_share)
+    if not share.any():
+        return ["no contact is loaded: no fatigue"]
+    row, ring, track = life.weakest
+    rows = len(solution.row_sizes)
+    place = f"{ring} raceway" + (f" of row {row}" if rows > 1 else "")
+    size = 100.0 * share[row, RINGS.index(ring)].sum()
+    words = f"limited by the {place}: {size:.3g} % of the fatigue"
+    tracks = share.shape[2]
+    if isinstance(solution, RollerSolution):
+        position = np.asarray(solution.position)
+        at = 1e3 * np.reshape(position, (-1, position.shape[-1]))[0][2 * track + 1]
+        most = 100.0 * share[row, RINGS.index(ring), track]
+        words += (
+            f", most in lamina {track + 1} of {tracks} at {at:.3g} mm ({most:.3g} %)"
+        )
+    elif tracks > 1:
+        words += f", most in arc {track + 1}"
+    return [words]
+
+
+def _turning(life) -> str:
+    turning = [
+        ring for ring, t in zip(RINGS, life.turns_against_load, strict=True) if t
+    ]
+    rings = " and ".join(turning)
+    return f"turning against the load: {rings} ring{'s' if len(turning) > 1 else ''}"
+
+
+def _hours_per_turn(solution) -> float | None:
+    speed = solution.speed
+    if speed is None or float(speed.inner) == float(speed.outer):
+        return None
+    return 2.0 * np.pi / 3600.0 / abs(float(speed.inner) - float(speed.outer))
+
+
+def _line(name, life, hours) -> str:
+    line = f"  {name:<24}{_number(1e-6 * life):>13}"
+    return line if hours is None else line + f"{_number(hours * life):>17}"
+
+
+def _number(value) -> str:
+    return f"{float(value):.5g}" if np.isfinite(value) else "infinite"
+
+
+def _kilo(value) -> str:
+    return f"{1e-3 * float(value):.5g}"

@@ -1,0 +1,241 @@
+"""Rating life under the cases of a scene, a load spectrum: running and telling."""
+
+import dataclasses
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..design import is_ball
+from ..numerics.result import Result
+from ..statics.life import LIFE_OUTPUTS, LifeConditions
+from ..statics.rating import Ratings, ratings
+from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
+from ..statics.sweep import Sweep, sweep
+from ..statics.sweep_table import columns
+from .cases_table import CaseTable
+from .quantity import SceneError
+from .scene_file import find_scene, parse_bearing
+from .sweep_run import listed_columns
+
+LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
+_SHOWN = 12
+"""Cases that a report lists."""
+
+
+@dataclasses.dataclass(frozen=True)
+class LifeRun:
+    """Life under the cases of a scene.
+
+    Attributes:
+        table: What was asked.
+        solved: The cases and their lives.
+        lives: Life under all of them, by its name in `LIVES`.
+        ratings: Of the bearing; of several designs those of the scene.
+    """
+
+    table: CaseTable
+    solved: Sweep
+    lives: dict[str, SpectrumLife]
+    ratings: Ratings
+
+    @property
+    def last(self) -> str:
+        """The life with most in it: modified, or else reference."""
+        return [name for name in LIVES if name in self.lives][-1]
+
+    @property
+    def converged(self) -> bool:
+        """Whether all cases were solved: else there is no life."""
+        return bool(self.solved.converged.all())
+
+
+def has_cases(source: str | Path, settings: Any = ()) -> bool:
+    """Whether a scene has [cases].
+
+    Args:
+        source, settings: As of `read_scene`.
+
+    Raises:
+        SceneError: If it cannot be read.
+    """
+    return "cases" in parse_bearing(find_scene(source), settings)
+
+
+def run_life(
+    table: CaseTable, progress: bool = False, stop: Callable[[], bool] | None = None
+) -> LifeRun:
+    """Solve the cases of a scene for their lives, and add up their damage.
+
+    Args:
+        table: From `read_cases`.
+        progress: Show a bar.
+        stop: As in `sweep`.
+
+    Raises:
+        SceneError: For cases whose life cannot be worked out.
+    """
+    scene = table.scene
+    conditions = LifeConditions() if scene.life is None else scene.life
+    turning = revolutions_per_hour(table.cases, np) is not None
+    oiled = conditions.viscosity is not None
+    if oiled and not turning:
+        raise SceneError(
+            f"{scene.name}: `life.contamination`: needs a speed, in [operating] or in"
+            " the cases, for the film"
+        )
+    left_out = {"damage_share"}
+    if not turning:
+        left_out |= {"life_hours"}
+    if not oiled:
+        left_out |= {
+            "modified_rating_life",
+            "viscosity_ratio",
+            "contamination_factor",
+            "a_iso",
+        }
+    outputs = [name for name in LIFE_OUTPUTS if name not in left_out]
+    bearing = scene.element.bearing
+    given = (
+        conditions.dynamic_capacity,
+        conditions.static_capacity,
+        conditions.fatigue_load_limit,
+    )
+    try:
+        rated = ratings(bearing, *given)
+        solved = sweep(
+            table.element,
+            table.cases,
+            outputs=outputs,
+            free=scene.free,
+            fixed_ring=scene.fixed_ring,
+            points=scene.points,
+            tolerance=scene.tolerance,
+            neighbours=table.neighbours,
+            progress=progress,
+            stop=stop,
+            life=conditions,
+        )
+    except ValueError as error:
+        raise SceneError(f"{scene.name}: {error}") from error
+    lives = {
+        name: spectrum_life(table.cases, 1.0 / np.asarray(getattr(solved, name)))
+        for name in LIVES
+        if name in outputs
+    }
+    return LifeRun(table, solved, lives, rated)
+
+
+def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
+    """Life under the cases as plain numbers and lists, in SI; infinite is null.
+
+    Returns:
+        Ratings with their sources, lives under all cases and the damage shares of the
+        cases; `equivalent_load` is the constant one with the basic life, and
+        `static_safety` the least of all cases. Columns of the cases; counts, warnings,
+        version. Without the lives if a case was not solved.
+    """
+    from .. import __version__
+
+    rated = run.ratings
+    found: dict[str, Any] = {
+        "dynamic_capacity": float(rated.dynamic_capacity),
+        "dynamic_capacity_source": rated.dynamic_source,
+        "static_capacity": float(rated.static_capacity),
+        "static_capacity_source": rated.static_source,
+        "fatigue_load_limit": float(rated.fatigue_load_limit),
+        "fatigue_load_limit_source": rated.limit_source,
+    }
+    if run.converged:
+        for name, life in run.lives.items():
+            found[name] = _finite(life.rating_life)
+        found.setdefault("modified_rating_life", None)
+        found["equivalent_load"] = equivalent_load(run)
+        found["static_safety"] = _finite(np.min(run.solved.static_safety))
+        hours = run.lives[run.last].life_hours
+        found["life_hours"] = None if hours is None else _finite(hours)
+        found["damage_share"] = np.asarray(run.lives[run.last].damage_share).tolist()
+    return {
+        **found,
+        "columns": listed_columns(columns(run.solved)),
+        "counts": run.solved.counts(),
+        "warnings": [*run.table.warnings, *run.solved.warnings],
+        "version": __version__,
+    }
+
+
+def equivalent_load(run: LifeRun) -> float:
+    """The constant equivalent load with the basic life of the cases [N].
+
+    Args:
+        run: With all cases solved.
+    """
+    power = 3.0 if is_ball(run.table.scene.element.bearing) else 10.0 / 3.0
+    life = float(run.lives["basic_rating_life"].rating_life) / 1e6
+    return float(run.ratings.dynamic_capacity) * life ** (-1.0 / power)
+
+
+def _finite(value) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def spectrum_report(run: LifeRun) -> str:
+    """Readable report of the life under the cases.
+
+    Args:
+        run: With all cases solved.
+    """
+    table, rated = run.table, run.ratings
+    count = table.cases.count
+    lines = [
+        f"{table.scene.name}: life under {count} cases over {', '.join(table.varied)}",
+        f"C {1e-3 * float(rated.dynamic_capacity):.5g} kN ({rated.dynamic_source}),"
+        f" C0 {1e-3 * float(rated.static_capacity):.5g} kN ({rated.static_source})",
+        f"\n{'':<24}{'million rev':>14}{'hours':>14}",
+    ]
+    for name, life in run.lives.items():
+        words = name.removesuffix("_rating_life")
+        line = f"{words:<24}{_shown(1e-6 * life.rating_life):>14}"
+        if life.life_hours is not None:
+            line += f"{_shown(life.life_hours):>14}"
+        lines.append(line)
+    lines.append(
+        f"equivalent load of the spectrum {1e-3 * equivalent_load(run):.5g} kN; least"
+        f" static safety {_shown(np.min(run.solved.static_safety))}"
+    )
+    lines += _by_case(run)
+    told = (*table.warnings, *run.solved.warnings)
+    lines += [f"warning: {text}" for text in told]
+    return "\n".join(lines)
+
+
+def _by_case(run) -> list[str]:
+    """The cases that use most of the last life."""
+    share = np.asarray(run.lives[run.last].damage_share)
+    alone = np.asarray(getattr(run.solved, run.last))
+    order = np.argsort(-share, kind="stable")[:_SHOWN]
+    hours = run.table.cases.hours
+    head = f"\n{'case':>6}{'hours':>12}{'million rev alone':>20}{'damage %':>12}"
+    lines = [head]
+    for k in order:
+        spent = "-" if hours is None else f"{float(hours[k]):.5g}"
+        lines.append(
+            f"{k:>6}{spent:>12}{_shown(1e-6 * alone[k]):>20}{100 * share[k]:>12.4g}"
+        )
+    left = len(share) - len(order)
+    if left:
+        lines.append(f"  and {left} more, {100 * (1 - share[order].sum()):.3g} %")
+    return lines
+
+
+def _shown(value) -> str:
+    return f"{float(value):.5g}" if np.isfinite(value) else "infinite"
+
+
+def unsolved(run: LifeRun) -> str:
+    """Which cases were not solved, in words."""
+    codes = np.asarray(run.solved.result)
+    lost = np.flatnonzero(codes != Result.CONVERGED)
+    first = Result(int(codes[lost[0]])).label
+    return f"{len(lost)} of {len(codes)} cases not solved (case {lost[0]}: {first})"

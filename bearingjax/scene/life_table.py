@@ -1,0 +1,107 @@
+"""The [life] table of a scene: what a rating life needs beside the bearing."""
+
+from typing import Any
+
+from ..design import Bearing, BearingSet, is_ball
+from ..element import Speed
+from ..statics.life import FRAMES, LifeConditions
+from ..statics.life_factor import CLEANLINESS
+from ..statics.rating import rated_axially
+from ..statics.reference_life import LEAST_LAMINAE
+from .lubricant_table import read_lubricant
+from .table import Table
+
+_RATINGS = ("dynamic_capacity", "static_capacity", "fatigue_load_limit")
+_SURVIVING = (0.9, 0.9995)
+"""Reliabilities of ISO 281."""
+
+
+def read_life(
+    top: Table, bearing: Bearing | BearingSet, speed: Speed | None, points: int
+) -> LifeConditions | None:
+    """Conditions of the rating life, or `None` without a [life] table.
+
+    Args:
+        top: The scene.
+        bearing: Its bearing.
+        speed: Its ring speeds, or `None` at rest; its [cases] may have others.
+        points: Positions along its rollers.
+
+    Raises:
+        SceneError: For what is missing, unknown or not allowed.
+    """
+    if "life" not in top:
+        return None
+    table = top.table("life")
+    values: dict[str, Any] = {
+        name: table.quantity(name, "force", None) for name in _RATINGS
+    }
+    for name, value in values.items():
+        if value is not None and not value > 0:
+            raise table.error(name, f"{value:g} N is not allowed; above 0 N")
+    values["reliability"] = _reliability(table)
+    values["load_fixed_to"] = table.choice("load_fixed_to", FRAMES, "space")
+    values["edge_stress"] = table.flag("edge_stress", True)
+    values |= _lubrication(top, table)
+    if values["viscosity"] is not None and not _turns(speed) and "cases" not in top:
+        problem = "needs a speed of one ring against the other, for its film"
+        raise table.error("contamination", problem)
+    _check_points(top, bearing, points)
+    table.finish()
+    with table.building():
+        rated_axially(bearing)  # which refuses sets of unlike rows
+        return LifeConditions(**values)
+
+
+def _turns(speed) -> bool:
+    return speed is not None and float(speed.inner) != float(speed.outer)
+
+
+def _reliability(table: Table) -> float:
+    value, (low, high) = table.number("reliability", 0.9), _SURVIVING
+    if not low <= value <= high:
+        problem = f"{value:g} is not allowed; from {low:g} to {high:g} (a share, not %)"
+        raise table.error("reliability", problem)
+    return value
+
+
+def _lubrication(top: Table, table: Table) -> dict[str, Any]:
+    """Viscosity and contamination; the oil may be that of [lubricant]."""
+    viscosity = table.quantity("viscosity", "kinematic viscosity", None)
+    if viscosity is not None and not 0 < viscosity < 1.0:
+        problem = f"{1e6 * viscosity:g} mm²/s is not allowed; above 0, below 10^6 mm²/s"
+        raise table.error("viscosity", problem)
+    if "contamination" not in table:
+        if viscosity is not None:
+            problem = "is missing; the modified life needs it beside `viscosity`"
+            raise table.error("contamination", problem)
+        return {"viscosity": None, "contamination": None}
+    if viscosity is None:
+        if "lubricant" not in top:
+            problem = "is missing, and so is [lubricant]; `contamination` needs an oil"
+            raise table.error("viscosity", problem)
+        lubricant = top.table("lubricant")
+        lubricant.skip("traction")
+        oil, temperature, _ = read_lubricant(lubricant)
+        viscosity = float(oil.kinematic_viscosity(temperature))
+    if table.word("contamination") is not None:
+        return {
+            "viscosity": viscosity,
+            "contamination": table.choice("contamination", tuple(CLEANLINESS)),
+        }
+    share = table.number("contamination")
+    if not 0 <= share <= 1:
+        problem = f"{share:g} is not allowed; e_C from 0 to 1, or a class of ISO 281"
+        raise table.error("contamination", problem)
+    return {"viscosity": viscosity, "contamination": share}
+
+
+def _check_points(top: Table, bearing: Bearing | BearingSet, points: int) -> None:
+    least = 2 * LEAST_LAMINAE + 1
+    if is_ball(bearing) or (points % 2 and points >= least):
+        return
+    problem = (
+        f"{points} is not allowed with [life]; odd and at least {least}: every second"
+        " position is the middle of a lamina"
+    )
+    raise top.table("output").error("points", problem)

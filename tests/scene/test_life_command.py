@@ -1,0 +1,104 @@
+"""`bearingjax life`, and the rating life in reports, files and sweeps."""
+
+import json
+
+import numpy as np
+import pytest
+from tolerances import SOLVER
+
+import bearingjax as bj
+from bearingjax.lubrication import OILS
+from bearingjax.scene import run_scene, shipped_scenes
+
+SCENE = "life_spectrum"
+NAMES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
+
+
+@pytest.fixture(scope="module")
+def solution():
+    return run_scene(bj.read_scene(SCENE))
+
+
+def test_a_scene_has_the_conditions_of_its_life():
+    life = bj.read_scene(SCENE).life
+    assert isinstance(life, bj.LifeConditions)
+    oil = OILS["ISO VG 68"]().kinematic_viscosity(343.15)
+    np.testing.assert_allclose(np.asarray(life.viscosity), oil, rtol=SOLVER)
+    assert float(life.dynamic_capacity) == 23400.0 and life.static_capacity is None
+    assert bj.read_scene("deep_groove").life is None
+    still = bj.read_scene("deep_groove", ["life={}"]).life
+    assert isinstance(still, bj.LifeConditions) and still.viscosity is None
+
+
+def test_solve_tells_the_life_that_python_has(run, tmp_path, solution, untyped):
+    out = tmp_path / "out.json"
+    told = run("solve", SCENE, "--json", out)
+    assert told.status == 0
+    found = json.loads(out.read_text(encoding="utf-8"))
+    scene = bj.read_scene(SCENE)
+    life = bj.rating_life(
+        scene.element,
+        solution,
+        dynamic_capacity=23400.0,
+        viscosity=scene.life.viscosity,
+        contamination="grease, normal",
+    )
+    for name in (*NAMES, "life_hours", "static_safety", "equivalent_load", "a_iso"):
+        np.testing.assert_allclose(found[name], float(getattr(life, name)), rtol=SOLVER)
+    assert found["dynamic_capacity"] == 23400.0
+    assert found["dynamic_capacity_source"] == "given"
+    assert found["static_capacity_source"] == "ISO 76 from geometry"
+    assert found["weakest"] == {"row": 0, "ring": "inner", "track": 0}
+    assert "limited by the inner raceway" in told.out
+    assert f"{1e-6 * float(life.reference_rating_life):.5g}" in told.out
+    # The same without the cases, by the command for lives alone.
+    path = tmp_path / "one.toml"
+    text = shipped_scenes()[SCENE].read_text(encoding="utf-8")
+    path.write_text(text.partition("[[cases")[0], encoding="utf-8")
+    told = run("life", path, "--json", out)
+    assert told.status == 0 and "turning against the load: inner ring" in told.out
+    alone = json.loads(out.read_text(encoding="utf-8"))
+    assert all(alone[name] == found[name] for name in NAMES)
+    assert alone["result"] == "converged" and "displacement" not in alone
+    told = run("life", path, "--table", tmp_path / "t.csv")
+    assert told.status == 2 and "--table is for a scene with [cases]" in told.err
+
+
+def test_a_spectrum_adds_up_the_damage_of_its_cases(run, tmp_path):
+    out, table = tmp_path / "out.json", tmp_path / "cases.csv"
+    told = run("life", SCENE, "--json", out, "--table", table, "--quiet")
+    assert told.status == 0, told.err
+    found = json.loads(out.read_text(encoding="utf-8"))
+    columns = found["columns"]
+    hours = np.array([700.0, 250.0, 50.0])
+    turns = hours * 60 * np.array([3000.0, 1500.0, 800.0])
+    for name in NAMES:
+        used = turns / np.array(columns[name])
+        np.testing.assert_allclose(found[name], turns.sum() / used.sum(), rtol=1e-10)
+    np.testing.assert_allclose(found["damage_share"], used / used.sum(), rtol=1e-10)
+    np.testing.assert_allclose(
+        found["life_hours"], hours.sum() / used.sum(), rtol=1e-10
+    )
+    assert found["static_safety"] == min(columns["static_safety"])
+    lines = table.read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 4 and "modified_rating_life" in lines[0]
+    assert "damage %" in told.out
+    # The mean load of ISO 281: powers of the loads by their revolutions.
+    loads = np.array(columns["equivalent_load [N]"])
+    mean = np.cbrt((turns * loads**3).sum() / turns.sum())
+    np.testing.assert_allclose(found["equivalent_load"], mean, rtol=1e-9)
+
+
+def test_a_case_that_is_not_solved_leaves_no_life(run, tmp_path):
+    """Likewise a sweep whose cases carry no speed leaves no hours."""
+    path, out = tmp_path / "bad.toml", tmp_path / "out.json"
+    text = shipped_scenes()[SCENE].read_text(encoding="utf-8")
+    text = text.replace('Fx = "4 kN"', 'Fx = "4e30 N"')
+    path.write_text(text, encoding="utf-8")
+    told = run("life", path, "--json", out, "--quiet")
+    assert told.status == 3 and "1 of 3 cases not solved (case 2: " in told.err
+    assert told.out == ""
+    found = json.loads(out.read_text(encoding="utf-8"))
+    assert "reference_rating_life" not in found
+    assert found["columns"]["reference_rating_life"][2] is None
+    assert found["dynamic_capacity"] == 23400.0
