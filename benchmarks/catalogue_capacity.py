@@ -15,21 +15,24 @@ published geometry
 calculated over printed, %                 C      C0 other C      C0
 7218 BE     angular_contact_ball     -12.0   -17.5    -5.4   -11.1
 NU 215 EC   cylindrical_roller        -6.4   +10.7    +8.0   +10.7
+608         deep_groove_ball          -4.5    +0.1    -0.1    +0.1
 6203        deep_groove_ball          -4.0    +0.3    -0.1    +0.3
 6204        deep_groove_ball          -5.2    +0.7    +0.8    +0.7
 6205        deep_groove_ball          -5.2    +0.9    +0.2    +0.9
 6206        deep_groove_ball          -4.2    +0.5    -0.2    +0.5
 6207        deep_groove_ball          -4.9    +0.0    +0.7    +0.0
+6208        deep_groove_ball         -10.4    -6.1    +0.1    -0.3
 6209        deep_groove_ball          -6.8    -5.5    -1.4    -5.5
 6305        deep_groove_ball          -4.4    -0.8    -0.6    -0.8
-6306        deep_groove_ball          -9.9    -6.0    -5.1    -6.0
+6306        deep_groove_ball          -9.9    -6.0    -0.2    +0.3
+6308        deep_groove_ball          -3.7    +0.0    -0.7    +0.0
 176211      four_point_ball           -3.2   +17.1       -       -
-C of the ordinary class within 2 %: 7 of 11
+C of the ordinary class within 2 %: 11 of 14
 
 estimated geometry, C of the ordinary class: mean and worst, %
 angular_contact_ball    17    +0.2    +3.2
 cylindrical_roller      14    -7.2   -13.6
-deep_groove_ball        16    -0.3    -4.7
+deep_groove_ball        13    +0.0    -1.0
 four_point_ball          7   -42.2   -42.5
 needle_roller            6    -5.0    -7.6
 self_aligning_ball       8    -1.0    -1.3
@@ -37,8 +40,10 @@ tapered_roller          12    -0.0    -0.6
 thrust_ball              8    +0.2    +1.9
 
 Where C0 closes too, the published sizes are those that the printed figures were made
-with: 6203 to 6207, 6305. Others are of another design of that size: Harris' 209 and
-218, the 6306 of JIS; or rollers longer than what counts as their length (NU 215). The
+with. Others are of another design of that size: SKF's 6208 and 6306 have larger balls
+than those published, which are NSK's; Harris' 209 and 218 are examples of a textbook;
+rollers are longer than what counts as their length (NU 215); C0 of the 176211 is older
+than ISO 76. The
 improved class (first column) is 4 to 7 % above ISO 281 for balls, 12 to 14 % for
 cylindrical rollers. SKF rates four-point bearings as two rows, where we rate them as
 one: 2^0.7 in C, 2 in C0, and 6 % for the improved class.

@@ -1,0 +1,285 @@
+"""Does the estimated geometry in the catalogue follow from what is printed?
+
+Number and size of the rolling elements of each bearing with `geometry = "estimated"`,
+worked out anew from what its file holds: C and C0 (of the ordinary class, where
+"other" has them), diameters of shoulders or raceways, the limit e or the factor Y2 of
+axial loads. This is how the files were filled; a line for each bearing that differs.
+
+Balls: of all numbers that can be put in, and all sizes in which balls are made (64ths
+of an inch, half millimetres), those whose C by ISO 281 and C0 by ISO 76 are nearest.
+Cylindrical rollers and needles: they fill a share of their circle, C0 gives the length.
+Tapers: likewise, and C gives the diameter, around a quarter of the section's height.
+Then `estimate_geometry`, which knows bore, outside, width, C and C0 only: how far the
+diameter of its rolling elements is from that of the catalogue.
+
+Run: python benchmarks/catalogue_geometry.py [--smoke] [--json]
+
+Last run:
+
+    0 of 85 differ
+    estimate_geometry, diameter of rolling elements: mean and worst, %
+    angular_contact_ball   17 of 17    -0.6    -6.6
+    cylindrical_roller     14 of 14   +11.5   +23.6
+    deep_groove_ball       13 of 13    -0.1    -0.5
+    four_point_ball         0 of 7
+    needle_roller           6 of 6     +7.1   +12.3
+    self_aligning_ball      0 of 8
+    tapered_roller         12 of 12    -1.6    -3.4
+    thrust_ball             8 of 8     -1.0    -2.6
+
+Where it is far off, C is not that of ISO 281: cylindrical rollers of the improved
+class, four-point bearings rated as two rows. It finds no self-aligning bearing.
+"""
+
+import argparse
+import functools
+import json
+import math
+import tomllib
+from importlib.resources import files
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+from bearingjax.scene.quantity import to_si  # noqa: E402
+from bearingjax.statics import row_rating as by_row  # noqa: E402
+
+INCH = 25.4
+SIZES = sorted(
+    {round(k * INCH / 64, 3) for k in range(5, 97)} | {0.5 * k for k in range(4, 80)}
+)
+"""Diameters in which balls are made [mm]."""
+
+IMPROVED = 1.06
+"""C of four-point bearings, all of the improved class, over that of ISO 281."""
+
+KINDS = {
+    "deep_groove_ball": (by_row.ANGULAR_CONTACT, (0.53, 0.52), 1),
+    "angular_contact_ball": (by_row.ANGULAR_CONTACT, (0.52, 0.52), 1),
+    # SKF rates them as two rows.
+    "four_point_ball": (by_row.ANGULAR_CONTACT, (0.52, 0.52), 2),
+    "self_aligning_ball": (by_row.SELF_ALIGNING, (None, 0.53), 2),
+    "thrust_ball": (by_row.THRUST, (0.54, 0.54), 1),
+}
+"""What balls are rated by: kind, osculations, rows."""
+
+NAMES = {
+    "deep_groove_ball": "deep_groove",
+    "angular_contact_ball": "angular_contact",
+    "four_point_ball": "four_point",
+    "self_aligning_ball": "self_aligning",
+    "thrust_ball": "thrust_ball",
+    "cylindrical_roller": "cylindrical",
+    "needle_roller": "needle",
+    "tapered_roller": "tapered",
+}
+"""Types as `estimate_geometry` calls them."""
+
+
+def listed() -> dict[str, list[tuple[str, dict]]]:
+    """Bearings with estimated geometry, as their files have them, by type."""
+    found = {}
+    for path in (files("bearingjax.scene") / "catalogue").iterdir():
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        found[data["type"]] = [
+            (key, values)
+            for key, values in data["bearings"].items()
+            if values["geometry"] == "estimated"
+        ]
+    return found
+
+
+def number(values, key, kind="length"):
+    """Printed number in mm, kN or degrees; a bare one as it stands."""
+    given = values[key]
+    if not isinstance(given, str):
+        return given
+    scale = {"length": 1e3, "force": 1e-3, "angle": 180 / math.pi}[kind]
+    return scale * to_si(given, kind)
+
+
+def capacities(values):
+    """C and C0 of the ordinary class, if it is listed [kN]."""
+    names = ("dynamic_capacity", "static_capacity")
+    given = {**values, **values.get("other", {})}
+    return tuple(number(given, name, "force") for name in names)
+
+
+@functools.cache
+def rating(kind):
+    """C and C0 [kN] of arrays of numbers, diameters, pitch diameters and angles."""
+    what, osculation, rows = KINDS[kind]
+
+    def rate(count, diameter, pitch, angle):
+        row = by_row.BallRow(count, diameter / 1e3, pitch / 1e3, angle, osculation)
+        load = count * by_row.ball_static(row, what) / 1e3
+        if kind == "thrust_ball":
+            return by_row.thrust_ball_dynamic(row, what, 1) / 1e3, load
+        c = by_row.radial_ball_dynamic(row, what, rows) / 1e3
+        return c, 0.2 * rows * jnp.cos(angle) * load
+
+    return jax.jit(jax.vmap(rate))
+
+
+def balls(kind, values) -> dict[str, float]:
+    """Number and diameter of balls, and their pitch diameter [mm]."""
+    c, c0 = capacities(values)
+    pitch, angle = circle(kind, values), contact_angle(kind, values)
+    count, size = (x.ravel() for x in np.meshgrid(np.arange(6.0, 31.0), SIZES))
+    lean = np.arcsin(np.minimum(1.0, size / pitch))
+    fits = (size < 0.6 * pitch) & (count * lean < 0.95 * math.pi)
+    if kind == "deep_groove_ball":
+        # As many as go in while the rings are eccentric.
+        fits &= np.rad2deg(2 * (count - 1) * lean) <= 200.0
+    count, size, lean = count[fits], size[fits], lean[fits]
+    # Of one length for all bearings, so that a type is compiled once.
+    full = [np.resize(np.broadcast_to(x, size.shape), 4096) for x in (pitch, angle)]
+    rates = rating(kind)(np.resize(count, 4096), np.resize(size, 4096), *full)
+    mine, mine0 = (np.asarray(x)[: size.size] for x in rates)
+    if kind == "four_point_ball":
+        mine = IMPROVED * mine
+    off = ((mine / c - 1) / 0.01) ** 2
+    # C0 of thrust bearings is no guide; 83 % of their circle is filled.
+    filled = ((count * lean / math.pi - 0.83) / 0.03) ** 2
+    off += filled if kind == "thrust_ball" else ((mine0 / c0 - 1) / 0.01) ** 2
+    best = int(np.argmin(off))
+    return {
+        "n_balls": int(count[best]),
+        "ball_diameter": float(size[best]),
+        "pitch_diameter": pitch,
+    }
+
+
+def circle(kind, values) -> float:
+    """Halfway between the printed shoulders, or between bore and outside [mm]."""
+    printed = values.get("printed", {})
+    if kind in ("angular_contact_ball", "four_point_ball") or not printed:
+        return 0.5 * sum(number(values, key) for key in ("bore", "outside_diameter"))
+    sides = ("inner_shoulder_diameter", "outer_shoulder_diameter")
+    return 0.5 * sum(number(printed, key) for key in sides)
+
+
+def contact_angle(kind, values) -> float:
+    """Nominal contact angle [rad]."""
+    printed = values.get("printed", {})
+    if kind == "self_aligning_ball":
+        return math.atan(0.65 / printed["axial_factor"])
+    if kind == "tapered_roller":
+        return math.atan(printed["axial_load_limit"] / 1.5)
+    if kind == "thrust_ball":
+        return 0.5 * math.pi
+    held = printed if "contact_angle" in printed else values["bearing"]
+    if "contact_angle" in held:
+        return math.radians(number(held, "contact_angle", "angle"))
+    return 0.0
+
+
+def rollers(kind, values) -> dict[str, float]:
+    """Number, diameter and length of rollers, and their pitch diameter [mm]."""
+    c, c0 = capacities(values)
+    if kind != "tapered_roller":
+        inner = number(values["printed"], "inner_raceway_diameter")
+        if kind == "needle_roller":
+            # Of 2.5 and 3.5 mm the one that gives C.
+            tries = [of_roller(d, inner + d, 0.0, c0, 0.79) for d in (2.5, 3.5)]
+            return min(tries, key=lambda one: abs(one[1] / c - 1))[0]
+        outer = number(values["printed"], "outer_raceway_diameter")
+        size, pitch = 0.5 * (outer - inner), 0.5 * (outer + inner)
+        return of_roller(size, pitch, 0.0, c0, 0.835)[0]
+    bore, outside = (number(values, key) for key in ("bore", "outside_diameter"))
+    angle, tries = contact_angle(kind, values), []
+    for share in np.arange(0.20, 0.2801, 0.005):
+        size = round(share * (outside - bore), 1)
+        found, mine = of_roller(size, 0.5 * (bore + outside), angle, c0, 0.885)
+        off = ((mine / c - 1) / 0.01) ** 2 + ((share - 0.24) / 0.02) ** 2
+        tries.append((off, found))
+    return min(tries, key=lambda one: one[0])[1]
+
+
+def of_roller(size, pitch, angle, c0, share):
+    """Rollers of a diameter that fill a share of their circle and have C0; their C."""
+    if angle:
+        count = round(share * math.pi / math.asin(size / pitch))
+    else:
+        count = int(share * math.pi * pitch / size)
+    gamma = size * math.cos(angle) / pitch
+    length = 1e3 * c0 / (44 * (1 - gamma) * count * size * math.cos(angle))
+    lengths = (one / 1e3 for one in (size, length, pitch))
+    row = by_row.RollerRow(count, *lengths, angle)
+    mine = float(by_row.radial_roller_dynamic(row, 1)) / 1e3
+    names = ("n_rollers", "roller_diameter", "roller_length", "pitch_diameter")
+    return dict(zip(names, (count, size, length, pitch), strict=True)), mine
+
+
+def check(kind, key, values) -> dict:
+    """What differs from the catalogue, and what `estimate_geometry` finds."""
+    found = balls(kind, values) if "ball" in kind else rollers(kind, values)
+    held = {name: number(values["bearing"], name) for name in found}
+    # Lengths are listed to 0.1 mm, rounded pitch diameters to 1 µm.
+    spread = {"roller_length": 0.051}
+    differs = {
+        name: (held[name], value)
+        for name, value in found.items()
+        if abs(held[name] - value) > spread.get(name, 1.1e-3)
+    }
+    size = held["ball_diameter" if "ball" in kind else "roller_diameter"]
+    return {
+        "designation": key,
+        "type": kind,
+        "differs": differs,
+        "estimate_geometry": blind(kind, values, size),
+    }
+
+
+def blind(kind, values, size) -> float | None:
+    """Diameter by `estimate_geometry` over that of the catalogue, less one."""
+    sizes = [number(values, k) / 1e3 for k in ("bore", "outside_diameter", "width")]
+    loads = [1e3 * load for load in capacities(values)]
+    known = kind in ("angular_contact_ball", "four_point_ball", "tapered_roller")
+    given = {"contact_angle": contact_angle(kind, values)} if known else {}
+    try:
+        found = bj.estimate_geometry(*sizes, NAMES[kind], *loads, **given)
+    except ValueError:
+        return None
+    row = bj.design.rows_of(found.bearing)[0].bearing
+    name = "ball_diameter" if "ball" in kind else "roller_diameter"
+    return 1e3 * float(getattr(row, name)) / size - 1.0
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--smoke", action="store_true", help="one bearing a type")
+    parser.add_argument("--json", action="store_true", help="a line of JSON each")
+    options = parser.parse_args()
+    rows = [
+        check(kind, key, values)
+        for kind, bearings in sorted(listed().items())
+        for key, values in (bearings[:1] if options.smoke else bearings)
+    ]
+    if options.json:
+        for row in rows:
+            print(json.dumps(row))
+        return
+    for row in rows:
+        if row["differs"]:
+            print(row["designation"], row["differs"])
+    print(f"{sum(bool(row['differs']) for row in rows)} of {len(rows)} differ")
+    print("estimate_geometry, diameter of rolling elements: mean and worst, %")
+    for kind in sorted({row["type"] for row in rows}):
+        all_of = [row["estimate_geometry"] for row in rows if row["type"] == kind]
+        found = 100.0 * np.array([x for x in all_of if x is not None])
+        words = f"{kind:<22}{len(found):3d} of {len(all_of)}"
+        if found.size:
+            worst = found[np.argmax(np.abs(found))]
+            words += f"{found.mean():+8.1f}{worst:+8.1f}"
+        print(words)
+
+
+if __name__ == "__main__":
+    main()
