@@ -169,6 +169,7 @@ from .scene import read_scene as read_scene
 from .scene import run_scene as run_scene
 from .statics import BallSolution as BallSolution
 from .statics import Cases as Cases
+from .statics import Friction as Friction
 from .statics import Life as Life
 from .statics import LifeConditions as LifeConditions
 from .statics import OperatingPoint as OperatingPoint
@@ -179,6 +180,8 @@ from .statics import SpectrumLife as SpectrumLife
 from .statics import Sweep as Sweep
 from .statics import dynamic_capacity as dynamic_capacity
 from .statics import fatigue_load_limit as fatigue_load_limit
+from .statics import films as films
+from .statics import friction_torque as friction_torque
 from .statics import linearise as linearise
 from .statics import preload as preload
 from .statics import rating_life as rating_life

@@ -9,6 +9,7 @@ from ..statics.life_factor import CLEANLINESS
 from ..statics.rating import rated_axially
 from ..statics.reference_life import LEAST_LAMINAE
 from .lubricant_table import read_lubricant
+from .oil_table import OWN
 from .table import Table
 
 _RATINGS = ("dynamic_capacity", "static_capacity", "fatigue_load_limit")
@@ -81,7 +82,7 @@ def _lubrication(top: Table, table: Table) -> dict[str, Any]:
             problem = "is missing, and so is [lubricant]; `contamination` needs an oil"
             raise table.error("viscosity", problem)
         lubricant = top.table("lubricant")
-        lubricant.skip("traction")
+        lubricant.skip("traction", *OWN)
         oil, temperature, _ = read_lubricant(lubricant)
         viscosity = float(oil.kinematic_viscosity(temperature))
     if table.word("contamination") is not None:

@@ -12,6 +12,7 @@ from ..statics.warning import warnings
 from .files import write_numbers
 from .fit_report import fit_as_dict
 from .life_report import life_as_dict, scene_life
+from .oil_table import oil_as_dict
 from .read import Scene
 
 OF_ROLLERS = (
@@ -64,7 +65,8 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     Returns:
         The fields of `OF_ROLLERS` or `OF_BALLS`, with springs `OF_SPRINGS` (m, rad,
         N, N m, Pa), and result, message, residual, iterations, warnings and version.
-        With fits also `fit`, as of `fit_as_dict`; with [life] also `life_as_dict`.
+        With fits also `fit`, as of `fit_as_dict`; with [life] also `life_as_dict`;
+        with a lubricant and a speed what `oil_as_dict` has.
         If the solve did not converge the arrays are left out: there are no results.
         What is infinite (the margin of a shoulder that is not given) is null. Of a
         bearing of the catalogue also `catalogue`: designation, geometry, overridden.
@@ -73,7 +75,7 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     solution = jax.device_get(solution)
     solved = Result(int(solution.result)) is Result.CONVERGED
     return {
-        **(_numbers(solution) if solved else {}),
+        **({**_numbers(solution), **_oil(scene, solution)} if solved else {}),
         **_fits(scene),
         **_catalogue(scene),
         **(_life(scene, solution) if solved else {}),
@@ -102,6 +104,10 @@ def solved_as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         "warnings": [*scene.warnings, *(warnings(solution) if solved else [])],
         "version": __version__,
     }
+
+
+def _oil(scene, solution):
+    return {} if scene.oil is None else oil_as_dict(scene.oil, solution)
 
 
 def _fits(scene):

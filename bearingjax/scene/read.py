@@ -23,6 +23,7 @@ from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import read_choices
 from .fit_table import Fits, fit_facts, fit_warnings, read_fits
 from .life_table import read_life
+from .oil_table import Oil, read_oil
 from .quantity import SceneError
 from .scene_file import (
     find_scene,
@@ -48,6 +49,7 @@ class Scene:
             mounted.
         preload_force: Force to which its rows are ground [N], or `None`.
         fits: Seats and temperatures, or `None`: it is solved as on the drawing.
+        oil: Its lubricant, or `None`: neither friction nor films are told.
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring [N, N m].
         prescribed: Displacements given by freedom name [m, rad].
         free: Freedoms that may move, or `None` for all that the bearing restrains.
@@ -64,6 +66,7 @@ class Scene:
     element: BearingElement[Any]
     preload_force: float | None
     fits: Fits | None
+    oil: Oil | None
     load: tuple[float, ...]
     prescribed: dict[str, float]
     free: tuple[str, ...] | None
@@ -132,7 +135,7 @@ def scene_of(data: dict[str, Any], path: Path) -> Scene:
     """
     top = Table(data, path.name)
     # What other commands ask for.
-    top.skip("cases", "optimise", "lubricant", "cage", "dynamics")
+    top.skip("cases", "optimise", "cage", "dynamics")
     top.skip("deviations", "vibration")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -164,6 +167,10 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
     operating, numerics = top.table("operating"), top.table("numerics")
     speeds = {r: operating.real(f"{r}_speed", unit_of(Speed, r), 0.0) for r in RINGS}
     speed = Speed(**speeds) if any(speeds.values()) else None
+    oil = None
+    if "lubricant" in top:
+        oil, assumed = read_oil(top.table("lubricant"))
+        odd += assumed
     bearing, fits = read_fits(top, bearing, speed)
     if fits is not None:
         odd += tuple(fit_warnings(fit_facts(fits, bearing)))
@@ -198,6 +205,7 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         element=element,
         preload_force=preload,
         fits=fits,
+        oil=oil,
         load=tuple(load.get(component, 0.0) for component in LOADS),
         prescribed=prescribed,
         free=free,

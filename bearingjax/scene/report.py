@@ -16,6 +16,7 @@ from ..statics.solution import BallSolution, Solution
 from ..statics.warning import warnings
 from .fit_report import fit_report
 from .life_report import life_report, scene_life
+from .oil_table import oil_report
 from .operation_report import operation
 from .quantity import display_unit
 from .read import Scene
@@ -71,6 +72,10 @@ def _bearing(scene, solution):
 def _fits(scene, solution):
     fits = scene.fits
     return "" if fits is None else fit_report(fits, scene.element.bearing)
+
+
+def _oil(scene, solution):
+    return "" if scene.oil is None else oil_report(scene.oil, solution)
 
 
 def _place(row):
@@ -286,6 +291,7 @@ SECTIONS: dict[str, Section] = {
     "Stiffness": _stiffness,
     "Rolling elements": _elements,
     "Rating life": _life,
+    "Friction and films": _oil,
     "Solution and warnings": _ending,
 }
 """Sections of a report by their titles, in their order."""

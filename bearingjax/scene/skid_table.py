@@ -28,6 +28,7 @@ from ..element import Speed
 from ..element.frame import LOAD_UNITS, LOADS
 from .fit_table import fitted
 from .lubricant_table import read_lubricant, read_traction
+from .oil_table import OWN
 from .quantity import kind_of
 from .read import Scene, scene_of
 from .scene_file import find_scene, parse_bearing
@@ -114,6 +115,7 @@ def read_skid(
     _check_bearing(top, scene)
     lubricant = top.table("lubricant", required=True)
     cage, dynamics = top.table("cage"), top.table("dynamics")
+    lubricant.skip(*OWN)
     oil, temperature, odd = read_lubricant(lubricant)
     traction = read_traction(lubricant)
     values: dict[str, Any] = {
@@ -135,7 +137,7 @@ def read_skid(
         **_loads(dynamics, scene),
         **_time(dynamics, steady),
         places=_places(dynamics, steady, n_elements(model.bearing)),
-        warnings=(*scene.warnings, *odd),
+        warnings=tuple(dict.fromkeys((*scene.warnings, *odd))),
     )
     for table in (lubricant, cage, dynamics):
         table.finish()

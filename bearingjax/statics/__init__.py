@@ -57,8 +57,13 @@ to do the work.
 
 from .cases import Cases as Cases
 from .cases import solve_case as solve_case
+from .contact_films import Films as Films
+from .contact_films import films as films
 from .equivalent_load import EquivalentLoad as EquivalentLoad
 from .equivalent_load import equivalent_load as equivalent_load
+from .friction import SUPPLIES as SUPPLIES
+from .friction import Friction as Friction
+from .friction import friction_torque as friction_torque
 from .life import LIFE_OUTPUTS as LIFE_OUTPUTS
 from .life import Life as Life
 from .life import LifeConditions as LifeConditions

@@ -431,5 +431,6 @@ def test_temperatures():
 
 
 def test_other_commands_pass_the_tables_over():
-    scene = bj.read_scene("skid_axial", ["lubricant.name=water"])
+    settings = ["cage.stiffness=soft", "dynamics.duration=long"]
+    scene = bj.read_scene("skid_axial", settings)
     assert scene.load[2] == 80.0

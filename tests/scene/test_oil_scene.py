@@ -1,0 +1,107 @@
+"""[lubricant] in a scene that is solved: friction and films, and what is wrong."""
+
+import json
+
+import numpy as np
+import pytest
+
+import bearingjax as bj
+from bearingjax import SceneError
+
+ROLLERS = """
+[bearing]
+type = "cylindrical_roller"
+n_rollers = 6
+pitch_diameter = "38.5 mm"
+roller_diameter = "7.5 mm"
+roller_length = "9 mm"
+
+[operating]
+load = { Fy = "-2 kN" }
+free = ["uy"]
+inner_speed = "3000 rpm"
+
+[numerics]
+quadrature = "midpoint"
+points = 5
+
+[output]
+points = 2
+
+[lubricant]
+law = "barus"
+reference_viscosity = "20 mPa s"
+coefficient = "18 1/GPa"
+density = "880 kg/m^3"
+density_temperature = "50 degC"
+temperature = "50 degC"
+roughness = "0.3 um"
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """Write the scene, and get its path."""
+    path = tmp_path / "oil.toml"
+    path.write_text(ROLLERS, encoding="utf-8")
+    return path
+
+
+def test_command_tells_friction_and_films(run, scene, tmp_path):
+    out = tmp_path / "out.json"
+    done = run("solve", scene, "--json", out, "--set", "lubricant.supply=grease")
+    assert done.status == 0
+    numbers = json.loads(out.read_text())
+    load = np.array(numbers["roller_load"])
+    nu, pitch = 20e-3 / 880 * 1e6, 38.5
+    viscous = 0.8 * (nu * 3000) ** (2 / 3) * pitch**3 * 1e-10
+    torque = 0.0003 * 2000 * 0.0385 + viscous
+    assert numbers["friction_torque"] == pytest.approx(torque, rel=1e-6)
+    found = numbers["friction"]
+    assert found["viscous"] == pytest.approx([viscous]) and found["flange"] == [0.0]
+    assert found["power"] == pytest.approx(torque * 100 * np.pi, rel=1e-6)
+    assert f"friction torque (Palmgren) {1e3 * torque:.4g} N mm" in done.out
+    assert "barus, grease, at 50 °C: 20 mPa s, 18 1/GPa, 880 kg/m³" in done.out
+    # The film of the roller that bears most, on the inner raceway.
+    film = numbers["film"]
+    k = int(np.argmax(load[:, 1]))
+    gamma = 7.5 / 38.5
+    radius = 0.5 * 7.5e-3 * (1 - gamma)
+    # Rolling on both raceways: half of the speed of the raceway.
+    speed = 0.25 * 38.5e-3 * (1 - gamma) * 100 * np.pi * (1 + gamma)
+    assert film["entrainment"][k] == pytest.approx([speed, speed], rel=1e-9)
+    modulus = 206e9 / (1 - 0.3**2)
+    u, g = 20e-3 * speed / (modulus * radius), modulus * 18e-9
+    w = load[k, 1] / 9e-3 / (modulus * radius)
+    least = 1.714 * u**0.694 * g**0.568 * w**-0.128 * radius
+    assert film["minimum"][k][1] == pytest.approx(least, rel=1e-6)
+    assert film["ratio"][k][1] == pytest.approx(least / 0.3e-6, rel=1e-6)
+    assert f"of element {k} on the inner raceway; over the roughness" in done.out
+    # Without load there is no contact to have a film.
+    free = int(np.argmin(load[:, 1]))
+    assert load[free, 1] == 0 and film["minimum"][free][1] is None
+
+
+WRONG = {
+    "lubricant.supply=bath": "`lubricant.supply`: 'bath' is not known",
+    "lubricant.roughness=3 mm": "`lubricant.roughness`: 0.003 m is not allowed; above",
+    "lubricant.roughness=0 um": "`lubricant.roughness`: 0 m is not allowed; above 0",
+    "lubricant.roughness=0.3": "`lubricant.roughness`: 0.3 has no unit",
+    "lubricant.rougness=1 um": "`lubricant.rougness`: unknown key (did you mean",
+    "lubricant.temperature=900 degC": "`lubricant.temperature`: 900 °C is not allowed",
+    "lubricant.law=walther": "`lubricant.law`: 'walther' is not known",
+}
+
+
+@pytest.mark.parametrize("setting", WRONG)
+def test_wrong_oils(scene, setting):
+    with pytest.raises(SceneError) as caught:
+        bj.read_scene(scene, [setting])
+    assert str(caught.value).startswith(f"oil.toml: {WRONG[setting]}")
+
+
+def test_a_scene_that_skids_may_say_both():
+    settings = ["lubricant.supply=oil_jet", "lubricant.roughness=0.2 um"]
+    from bearingjax.scene import read_skid
+
+    assert read_skid("skid_axial", settings).scene.oil.supply == "oil_jet"

@@ -1,0 +1,160 @@
+"""Friction torques and films by hand, of single rows and of a solved pair."""
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+import bearingjax as bj
+from bearingjax.lubrication import OILS
+from bearingjax.statics import SUPPLIES
+from bearingjax.statics.friction import _of_row
+
+BALLS = {
+    "n_balls": 9,
+    "pitch_diameter": 0.0385,
+    "ball_diameter": 0.00794,
+    "outer_osculation": 0.53,
+    "inner_osculation": 0.52,
+}
+DEEP = bj.DeepGrooveBallBearing(**BALLS)
+ANGULAR = bj.AngularContactBallBearing(**BALLS, contact_angle=np.deg2rad(25))
+ROLLERS = (13, 0.0385, 0.0075, 0.009)
+CYLINDER = bj.CylindricalRollerBearing(*ROLLERS)
+TAPER = bj.TaperedRollerBearing(*ROLLERS, roller_axis_angle=0.22, roller_half_angle=0.0)
+PITCH = 38.5  # mm
+VISCOSITY, SPEED = 30e-6, 3000 * np.pi / 30
+FLOW = 30 * 3000.0  # mm²/s per minute
+COT25, COT_TAPER = 1 / np.tan(np.deg2rad(25)), 1 / np.tan(0.22)
+
+row = eqx.filter_jit(_of_row)
+
+
+@pytest.mark.parametrize(
+    "bearing, radial, axial, supply, load, viscous, flange",
+    [
+        # f1 F dm with C0 = 8 kN; f0 (ν n)^(2/3) dm³ 1e-7: all in N mm.
+        (DEEP, 2000, 0, "oil_bath", 0.0006 * 0.25**0.55 * 2000, 2.0, 0),
+        (DEEP, 1000, 800, "oil_mist", 0.0006 * 0.125**0.55 * 2300, 1.0, 0),
+        (ANGULAR, 0, 800, "oil_jet", 0.001 * 0.038 ** (1 / 3) * 720 * COT25, 6.6, 0),
+        (TAPER, 500, 900, "grease", 0.0004 * 720 * COT_TAPER, 6.0, 0),
+        (CYLINDER, 2000, 300, "oil_bath", 0.0003 * 2000, 3.0, 0.006 * 300),
+        (CYLINDER, 2000, 300, "grease", 0.0003 * 2000, 0.8, 0.009 * 300),
+    ],
+)
+def test_a_row_by_hand(bearing, radial, axial, supply, load, viscous, flange):
+    force = np.array([0.0, -radial, axial, 0.0, 0.0, 0.0], float)
+    found = row(bearing, force, VISCOSITY * SPEED, supply, 8000.0)
+    wanted = np.array(
+        [load * PITCH, viscous * FLOW ** (2 / 3) * PITCH**3 * 1e-7, flange * PITCH]
+    )
+    # P0 of the angular contact bearing is 0.38 Fa at 25° (ISO 76).
+    np.testing.assert_allclose(1e3 * np.array(found), wanted, rtol=1e-9)
+
+
+def test_a_slow_bearing_has_the_torque_of_its_oil_at_2000():
+    force = np.zeros(6)
+    slow, edge = (
+        float(row(DEEP, force, flow * 2 * np.pi / 60e6, "oil_bath", 8000.0)[1])
+        for flow in (10.0, 2000.1)
+    )
+    assert 1e3 * slow == pytest.approx(160e-7 * 2.0 * PITCH**3, rel=1e-9)
+    assert edge == pytest.approx(slow, rel=0.01)  # 2000^(2/3) is 158.7
+
+
+def test_the_newer_model_of_skf():
+    """Of a 6205 under 2 kN at 3000/min, by its own formulas (SKF 2013, series 62)."""
+    speed, nu, force = 3000.0, 30.0, 2000.0
+    shear = 1 / (1 + 1.84e-9 * (speed * PITCH) ** 1.28 * nu**0.64)
+    starved = np.exp(-3e-8 * nu * speed * (25 + 52) * np.sqrt(3.1 / (2 * (52 - 25))))
+    rolling = 3.9e-7 * PITCH**1.96 * force**0.54 * (nu * speed) ** 0.6
+    share = np.exp(-2.6e-8 * (speed * nu) ** 1.4 * PITCH)
+    sliding = 3.23e-3 * PITCH**-0.26 * force ** (5 / 3)
+    wanted = shear * starved * rolling + (0.12 * share + 0.05 * (1 - share)) * sliding
+    load = np.array([0.0, -force, 0.0, 0.0, 0.0, 0.0])
+    found = row(DEEP, load, VISCOSITY * SPEED, "oil_bath", None)
+    # Two models of what scatters by tens of per cent.
+    assert 1e3 * float(sum(found)) == pytest.approx(wanted, rel=0.2)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """A preloaded pair under an axial load, with its friction and films."""
+    element = bj.BearingElement(bj.BearingSet.back_to_back(ANGULAR, 0.015, 20e-6))
+    oil = OILS["ISO VG 46"]()
+
+    @eqx.filter_jit
+    def solve(element, load, speed):
+        solution = bj.solve_load(
+            element, load, free=["uz"], speed=bj.Speed(speed), throw=False
+        )
+        viscosity = oil.kinematic_viscosity(323.15)
+        return (
+            solution,
+            bj.friction_torque(solution, viscosity),
+            bj.films(solution, oil, 323.15, 0.2e-6),
+        )
+
+    load = np.array([0.0, 0.0, 300.0, 0.0, 0.0, 0.0])
+    return oil, *solve(element, load, SPEED)
+
+
+def test_rows_of_a_pair(pair):
+    oil, solution, friction, _ = pair
+    assert bool(solution.converged)
+    load, angle = np.asarray(solution.contact_load), np.asarray(solution.contact_angle)
+    axial = (load * np.sin(angle))[:, 0].reshape(2, 9).sum(axis=1)
+    # But for what balls that want to turn gyroscopically pass on by friction.
+    assert axial[0] - axial[1] == pytest.approx(300.0, rel=1e-3)
+    limit = float(bj.static_capacity(ANGULAR))
+    factor = 0.001 * (0.38 * axial / limit) ** (1 / 3)
+    torque = factor * 0.9 * axial * COT25 * 0.0385
+    np.testing.assert_allclose(friction.load_torque, torque, rtol=1e-6)
+    nu = 1e6 * float(oil.kinematic_viscosity(323.15))
+    viscous = 3.3 * (nu * 3000) ** (2 / 3) * PITCH**3 * 1e-10
+    np.testing.assert_allclose(friction.viscous_torque, 2 * [viscous], rtol=1e-9)
+    total = torque.sum() + 2 * viscous
+    assert float(friction.torque) == pytest.approx(total, rel=1e-6)
+    assert float(friction.power) == pytest.approx(total * SPEED, rel=1e-6)
+
+
+def test_films_by_hand(pair):
+    oil, solution, _, films = pair
+    load, angle = (
+        np.asarray(x)[0] for x in (solution.contact_load, solution.contact_angle)
+    )
+    axes = np.asarray(solution.semi_axes)[0]
+    ratio = axes[:, 1] / axes[:, 0]
+    gamma = np.array([1.0, -1.0]) * 0.00794 / 0.0385 * np.cos(angle)
+    radius = 0.5 * 0.00794 * (1 + gamma)
+    orbit = float(solution.kinematics.orbit[0])
+    speed = np.array([orbit, SPEED - orbit]) * 0.5 * 0.0385 * (1 + gamma)
+    np.testing.assert_allclose(np.asarray(films.entrainment)[0], speed, rtol=1e-9)
+    # Both surfaces roll alike, to the change of the contact angles with speed.
+    assert speed[0] == pytest.approx(speed[1], rel=0.02)
+    modulus = 206e9 / (1 - 0.3**2)  # E'
+    mu = float(oil.viscosity(0.0, 323.15))
+    g = modulus * float(oil.pressure_coefficient(323.15))
+    u, w = mu * speed / (modulus * radius), load / (modulus * radius**2)
+    least = 3.63 * u**0.68 * g**0.49 * w**-0.073 * (1 - np.exp(-0.68 * ratio)) * radius
+    middle = 2.69 * u**0.67 * g**0.53 * w**-0.067 * (1 - 0.61 * np.exp(-0.73 * ratio))
+    np.testing.assert_allclose(np.asarray(films.minimum)[0], least, rtol=1e-6)
+    np.testing.assert_allclose(np.asarray(films.central)[0], middle * radius, rtol=1e-6)
+    np.testing.assert_allclose(films.ratio, np.asarray(films.minimum) / 0.2e-6)
+
+
+def test_what_is_not_allowed(pair):
+    oil, solution, *_ = pair
+    still = eqx.tree_at(lambda s: s.speed, solution, None)
+    with pytest.raises(ValueError, match="friction_torque: `solution` is at rest"):
+        bj.friction_torque(still, 30e-6)
+    with pytest.raises(ValueError, match="films: `solution` is at rest; solve it"):
+        bj.films(still, oil, 323.15)
+    with pytest.raises(ValueError, match="`supply` is 'bath'.*grease, oil_mist"):
+        bj.friction_torque(solution, 30e-6, "bath")
+    with pytest.raises(ValueError, match="`viscosity` is 30 m²/s.*1 mm²/s is 1e-6"):
+        bj.friction_torque(solution, 30.0)
+    with pytest.raises(ValueError, match="`viscosity` is 0 m²/s"):
+        bj.friction_torque(solution, 0.0)
+    with pytest.raises(ValueError, match="films: `roughness` is -1e-07 m"):
+        bj.films(solution, oil, 323.15, -1e-7)
+    assert len(SUPPLIES) == 4
