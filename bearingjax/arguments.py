@@ -35,7 +35,7 @@ def parser() -> argparse.ArgumentParser:
         "--table",
         metavar="OUT",
         type=Path,
-        help="write a row per case (.csv, .parquet)",
+        help="write a row per case (.csv, .parquet, .xlsx)",
     )
     sweep.add_argument(
         "--resume",
@@ -117,7 +117,8 @@ def parser() -> argparse.ArgumentParser:
         "--table",
         metavar="OUT",
         type=Path,
-        help="write a row per time, or per place along the orbit (.csv, .parquet)",
+        help="write a row per time, or per place along the orbit (.csv, .parquet,"
+        " .xlsx)",
     )
     skid.add_argument(
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
@@ -138,7 +139,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="OUT",
         type=Path,
         help="write a row per point of the response, or per time of the motion in time"
-        " (.csv, .parquet)",
+        " (.csv, .parquet, .xlsx)",
     )
     rotor.add_argument(
         "--series",
@@ -174,7 +175,7 @@ def parser() -> argparse.ArgumentParser:
         "--table",
         metavar="OUT",
         type=Path,
-        help="write a row per time (.csv, .parquet)",
+        help="write a row per time (.csv, .parquet, .xlsx)",
     )
     noise.add_argument(
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"

@@ -193,6 +193,7 @@ def _sweep(options) -> int:
         raise SceneError("--resume takes up a table; name it with --table")
     begin = time.perf_counter()
     table = read_cases(options.scene, options.set)
+    _check_table(options, table.cases.count)
     shown = not options.quiet and sys.stderr.isatty()
     with Interrupt() as interrupt:
         done = options.table if options.resume else None
@@ -631,15 +632,15 @@ def _show_stage(name: str) -> None:
     print(f"\r\x1b[K{name}{'…' if name else ''}", end="", file=sys.stderr, flush=True)
 
 
-def _check_table(options) -> None:
-    """Fail before anything is solved if a table cannot be written."""
+def _check_table(options, rows: int = 0) -> None:
+    """Fail before anything is solved if a table, of so many rows, cannot be written."""
     from .scene import SceneError
     from .statics.sweep_table import check_writable
 
     if options.table is None:
         return
     try:
-        check_writable(options.table)
+        check_writable(options.table, rows)
     except (ValueError, ImportError) as error:
         raise SceneError(str(error)) from error
 

@@ -36,7 +36,7 @@ from ..element import RINGS
 from ..statics.preload import check_preload
 from .catalogue_entry import FromCatalogue, catalogue_entry, taken_from
 from .quantity import SceneError
-from .table import Table
+from .table import Table, written_numbers
 
 ROLLERS = {
     "cylindrical_roller": CylindricalRollerBearing,
@@ -201,10 +201,14 @@ def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
 
 
 def _materials(table: Table) -> dict[str, Material | None]:
-    return {
+    found = {
         "material": read_material(table, "material") or Material(),
         "ring_material": read_material(table, "ring_material"),
     }
+    for key, material in found.items():
+        if material is not None:
+            table.fill(key, written_numbers(material))
+    return found
 
 
 def read_material(table: Table, key: str) -> Material | None:
@@ -239,6 +243,8 @@ def _ribs(table: Table, kind: str) -> Ribs:
     if play is not None and "axial_gap" in common:
         problem = "give either `rib.axial_gap` or this, not both"
         raise table.error("axial_internal_clearance", problem)
+    if play is not None:
+        common.fill("axial_gap", None)  # it follows from the clearance
     with table.building():
         return Ribs.arrangement(name, rib, play)
 

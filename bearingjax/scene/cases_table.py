@@ -13,14 +13,17 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+import jax
 import numpy as np
 
+from ..design import n_elements, rows_of
 from ..element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit_of
 from ..statics.cases import Cases
+from ..statics.life import LIFE_OUTPUTS
 from ..statics.preload import preload
-from ..statics.sweep import stack_designs
+from ..statics.sweep import SUMMARIES, stack_designs
 from .cases_list import LARGEST, read_list
 from .fit_table import fitted
 from .quantity import SceneError, kind_of, to_si
@@ -50,29 +53,47 @@ MOST_DESIGNS = 10**5
 
 
 @dataclasses.dataclass(frozen=True)
+class Structure:
+    """Designs that one program solves: of the same classes, counts and parts.
+
+    Attributes:
+        element: The bearing; of several designs, `stack_designs`.
+        designs: Numbers of these designs among all, rising; `None` if nothing of the
+            design varies.
+    """
+
+    element: BearingElement[Any]
+    designs: np.ndarray | None
+
+
+@dataclasses.dataclass(frozen=True)
 class CaseTable:
     """What `[cases]` asks for.
 
     Attributes:
         scene: The scene without its cases.
-        element: The bearing, preloaded and mounted; of several designs,
-            `stack_designs`.
+        structures: The bearing, preloaded and mounted; of several designs those of
+            each structure.
         cases: The cases.
         varied: Keys that vary, in order.
-        settings: Of each design, the settings that make it.
+        settings: Of each design, the settings that make it: by "key [unit]" numbers in
+            SI, or what the scene writes where that is no number.
         outputs: Names of what is kept, or `None` for the usual.
         neighbours: Whether cases that follow each other are alike.
         warnings: What the validation found odd but possible, of all designs.
+        inputs: The scene as it was read, in SI (`Scene.inputs`), with its cases as they
+            are written.
     """
 
     scene: Scene
-    element: BearingElement[Any]
+    structures: tuple[Structure, ...]
     cases: Cases
     varied: tuple[str, ...]
     settings: tuple[dict[str, Any], ...]
     outputs: tuple[str, ...] | None
     neighbours: bool
     warnings: tuple[str, ...]
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -122,17 +143,47 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     scene = scene_of(data, path)
     for column in columns:
         _check_key(table, column.key, scene)
-    element, design, made, odd = _designs(data, path, columns)
+    structures, design, made, odd = _designs(data, path, columns)
+    _check_outputs(table, outputs, structures)
     return CaseTable(
         scene=scene,
-        element=element,
+        structures=structures,
         cases=_cases(table, scene, columns, design),
         varied=tuple(column.key for column in columns),
         settings=made,
         outputs=None if outputs is None else tuple(outputs),
         neighbours=neighbours,
         warnings=tuple(dict.fromkeys((*scene.warnings, *odd))),
+        inputs=_inputs(scene, columns, data["cases"]),
     )
+
+
+def _inputs(scene, columns, cases) -> dict[str, Any]:
+    """The echo of a scene with its cases, which prescribe what was free."""
+    keys = [column.key for column in columns]
+    given = [f for f in FREEDOMS if f"operating.prescribed.{f}" in keys]
+    operating = dict(scene.inputs["operating"])
+    operating["free"] = [f for f in operating["free"] if f not in given]
+    return {**scene.inputs, "operating": operating, "cases": cases}
+
+
+def _check_outputs(table, outputs, structures) -> None:
+    """Outputs of each rolling element have no column if their number varies."""
+    sizes = {
+        tuple(n_elements(row.bearing) for row in rows_of(part.element.bearing))
+        for part in structures
+    }
+    lives = [name for name in LIFE_OUTPUTS if name != "damage_share"]
+    whole = ("displacement", "force", "stiffness", *SUMMARIES, *lives)
+    if len(sizes) == 1:
+        return
+    for name in outputs or ():
+        if name not in whole:
+            problem = (
+                f"{name!r} is of each rolling element or row, and their number varies"
+                f" from case to case; those that can be kept then: {', '.join(whole)}"
+            )
+            raise table.error("outputs", problem)
 
 
 def _check_key(table, key, scene):
@@ -245,11 +296,11 @@ def _spectrum(table, data) -> list[_Column]:
 
 
 def _designs(data, path, columns):
-    """Element, design of each case, settings and warnings of all designs."""
+    """Structures, design of each case, settings and warnings of all designs."""
     varied = [c for c in columns if c.key not in OPERATING or _fits(data, c.key)]
     if not varied:
         scene = scene_of(data, path)
-        return _preloaded(scene), None, ({},), ()
+        return (Structure(_preloaded(scene), None),), None, ({},), ()
     # Values that repeat are one value; designs that repeat are one design.
     codes = []
     for column in varied:
@@ -271,14 +322,41 @@ def _designs(data, path, columns):
             speed = key in OPERATING and not isinstance(value, str)
             assign(changed, key, f"{value} rad/s" if speed else value, path.name)
         scene = scene_of(changed, path)
-        made.append({k: v for k, v in settings.items() if k not in OPERATING})
+        pairs = [
+            _resolved(scene.inputs, key, given)
+            for key, given in settings.items()
+            if key not in OPERATING
+        ]
+        made.append(dict(pairs))
         elements.append(_preloaded(scene))
         odd += scene.warnings
+    alike: dict[Any, list[int]] = {}
+    for number, element in enumerate(elements):
+        shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(element))
+        alike.setdefault((jax.tree.structure(element), shapes), []).append(number)
+    structures = tuple(
+        Structure(stack_designs([elements[k] for k in numbers]), np.array(numbers))
+        for numbers in alike.values()
+    )
+    return structures, design.reshape(-1), tuple(made), tuple(odd)
+
+
+def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
+    """Header and value of a setting: a number in SI, or text as it was given."""
+    found: Any = inputs
+    for part in key.split("."):
+        if isinstance(found, list) and part.isdecimal():
+            found = found[int(part)]
+        else:
+            found = found.get(part) if isinstance(found, dict) else None
+    if isinstance(found, int | float) and not isinstance(found, bool):
+        return key, found
+    number, _, unit = found.partition(" ") if isinstance(found, str) else ("", "", "")
     try:
-        element = stack_designs(elements)
-    except ValueError as error:
-        raise SceneError(f"{path.name}: `cases`: {error}") from error
-    return element, design.reshape(-1), tuple(made), tuple(odd)
+        # "20 um" is 2e-05 m here, not the neighbour that a product of floats ends at.
+        return f"{key} [{unit}]", float(f"{float(number):.15g}")
+    except ValueError:
+        return key, str(given)
 
 
 def _fits(data, key) -> bool:

@@ -113,7 +113,9 @@ def _quadrature(numerics: Table, n_rollers: int) -> AbstractQuadrature:
         )
         raise numerics.error("points", problem)
     with numerics.building():
-        return QUADRATURES[rule]() if points is None else QUADRATURES[rule](points)
+        chosen = QUADRATURES[rule]() if points is None else QUADRATURES[rule](points)
+    numerics.fill("points", chosen.points)
+    return chosen
 
 
 def _kinematics(numerics: Table) -> AbstractKinematics:

@@ -12,12 +12,12 @@ from ..numerics.result import Result
 from ..statics.life import LIFE_OUTPUTS, LifeConditions
 from ..statics.rating import Ratings, ratings
 from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
-from ..statics.sweep import Sweep, sweep
+from ..statics.sweep import Sweep
 from ..statics.sweep_table import columns
 from .cases_table import CaseTable
 from .quantity import SceneError
 from .scene_file import find_scene, parse_bearing
-from .sweep_run import listed_columns
+from .sweep_run import listed_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 _SHOWN = 12
@@ -104,21 +104,11 @@ def run_life(
     )
     try:
         rated = ratings(bearing, *given)
-        solved = sweep(
-            table.element,
-            table.cases,
-            outputs=outputs,
-            free=scene.free,
-            fixed_ring=scene.fixed_ring,
-            points=scene.points,
-            tolerance=scene.tolerance,
-            neighbours=table.neighbours,
-            progress=progress,
-            stop=stop,
-            life=conditions,
-        )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
+    asked = dataclasses.replace(scene, life=conditions)
+    wanted = dataclasses.replace(table, scene=asked, outputs=tuple(outputs))
+    solved = run_cases(wanted, progress, stop)
     lives = {
         name: spectrum_life(table.cases, 1.0 / np.asarray(getattr(solved, name)))
         for name in LIVES

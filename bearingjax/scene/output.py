@@ -64,9 +64,10 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
 
     Returns:
         The fields of `OF_ROLLERS` or `OF_BALLS`, with springs `OF_SPRINGS` (m, rad,
-        N, N m, Pa), and result, message, residual, iterations, warnings and version.
-        With fits also `fit`, as of `fit_as_dict`; with [life] also `life_as_dict`;
-        with a lubricant and a speed what `oil_as_dict` has.
+        N, N m, Pa), and result, message, residual, iterations, warnings, inputs (the
+        scene in SI, which `read_scene` reads again from the file) and version. With
+        fits also `fit`, as of `fit_as_dict`; with [life] also `life_as_dict`; with a
+        lubricant and a speed what `oil_as_dict` has.
         If the solve did not converge the arrays are left out: there are no results.
         What is infinite (the margin of a shoulder that is not given) is null. Of a
         bearing of the catalogue also `catalogue`: designation, geometry, overridden.
@@ -102,6 +103,7 @@ def solved_as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         "residual": residual if np.isfinite(residual) else None,
         "iterations": int(solution.stats.iterations),
         "warnings": [*scene.warnings, *(warnings(solution) if solved else [])],
+        "inputs": scene.inputs,
         "version": __version__,
     }
 

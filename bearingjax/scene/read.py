@@ -18,9 +18,11 @@ from ..element import (
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit_of
 from ..statics.life import LifeConditions
+from ..statics.options import DEFAULT_TOLERANCE
+from ..statics.support import restrained_freedoms
 from .bearing_table import designated, read_bearing
 from .catalogue_entry import FromCatalogue, catalogue_entry
-from .choices_table import read_choices
+from .choices_table import KINEMATICS, read_choices
 from .fit_table import Fits, fit_facts, fit_warnings, read_fits
 from .life_table import read_life
 from .oil_table import Oil, read_oil
@@ -60,6 +62,8 @@ class Scene:
         life: Conditions of its rating life, or `None`: it is not asked for.
         warnings: What the validation found odd but possible.
         catalogue: What its `designation` stands for, or `None` without one.
+        inputs: The scene as it was read, all quantities in SI, defaults filled in: as
+            a file of scenes may write it.
     """
 
     name: str
@@ -77,6 +81,7 @@ class Scene:
     life: LifeConditions | None
     warnings: tuple[str, ...]
     catalogue: FromCatalogue | None = None
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
 
     @property
     def moving_ring(self) -> str:
@@ -146,7 +151,8 @@ def scene_of(data: dict[str, Any], path: Path) -> Scene:
     )
     top.finish()
     found = designated(table)
-    return dataclasses.replace(scene, catalogue=None if found is None else found[1])
+    taken = None if found is None else found[1]
+    return dataclasses.replace(scene, catalogue=taken, inputs=top.echo())
 
 
 def read_element(
@@ -160,7 +166,11 @@ def read_element(
     """
     choices = read_choices(contact, operating, numerics, bearing)
     with numerics.building():
-        return BearingElement(bearing, **choices)
+        element = BearingElement(bearing, **choices)
+    for name, kind in KINEMATICS.items():
+        if type(element.kinematics) is kind:
+            numerics.fill("kinematics", name)
+    return element
 
 
 def _scene(top, name, bearing, preload, odd) -> Scene:
@@ -179,12 +189,16 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
     if tolerance is not None and not 1e-14 <= tolerance < 1e-2:
         problem = f"{tolerance:g} is not allowed; from 1e-14 to below 0.01"
         raise numerics.error("tolerance", problem)
+    numerics.fill("tolerance", tolerance or DEFAULT_TOLERANCE["float64"])
     free = operating.words("free", FREEDOMS[:5])
     prescribed = _components(operating, "prescribed", FREEDOMS, MOTION_UNITS)
     both = sorted(set(free or ()) & set(prescribed))
     if both:
         problem = f"{', '.join(both)} is both free and prescribed; choose one"
         raise operating.error("free", problem)
+    if free is None:
+        held = [f for f in restrained_freedoms(bearing) if f not in prescribed]
+        operating.fill("free", held)
     load = _components(operating, "load", LOADS, LOAD_UNITS)
     for freedom, component in zip(FREEDOMS, LOADS, strict=True):
         left_out = free is not None and freedom not in (*free, "gz")

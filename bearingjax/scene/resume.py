@@ -49,7 +49,7 @@ def resume_cases(
     """
     designs = design_columns(table)
     try:
-        known = read(path, designs)
+        known = read(path, [k for k, v in designs.items() if v.dtype.kind == "U"])
     except (OSError, ValueError) as error:
         first = str(error).partition("\n")[0]
         raise SceneError(f"{path}: cannot be read as a table: {first}") from error
@@ -63,7 +63,7 @@ def resume_cases(
     again = (solved if solved.size else ran)[-CHECKED:]
     checked = run_cases(_part(table, again))
     try:
-        outputs = restored(known, checked.outputs)
+        outputs = restored(known, checked.outputs, checked.zeros)
     except ValueError as error:
         raise SceneError(f"{path}: {error}; {_CURE}") from error
     _check_same(path, checked.outputs, {k: v[again] for k, v in outputs.items()})
@@ -71,7 +71,7 @@ def resume_cases(
         new = run_cases(_part(table, rest), progress, stop)
         for name, values in new.outputs.items():
             outputs[name][rest] = values
-    return Sweep(table.cases, outputs, checked.moving_ring)
+    return Sweep(table.cases, outputs, checked.moving_ring, checked.zeros)
 
 
 def _part(table: CaseTable, rows: np.ndarray) -> CaseTable:

@@ -1,5 +1,6 @@
 """Scene files as text: where they are, TOML, and settings that change them."""
 
+import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -129,18 +130,32 @@ def parse_scene(path: Path, settings: Iterable[str]) -> dict[str, Any]:
 
 
 def _parse(path):
+    kind = "JSON" if path.suffix.lower() == ".json" else "TOML"
     try:
         # Editors of Windows put a mark before the text.
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        text = path.read_text(encoding="utf-8-sig")
+        return _echoed(path, text) if kind == "JSON" else tomllib.loads(text)
+    except SceneError:
+        raise
     except OSError as error:
         problem = f"cannot be read: {error.strerror or error}"
         raise SceneError(f"{path.name}: {problem}") from error
     except UnicodeDecodeError as error:
-        problem = f"cannot be read as TOML: {error}; save it as UTF-8"
+        problem = f"cannot be read as {kind}: {error}; save it as UTF-8"
         raise SceneError(f"{path.name}: {problem}") from error
     except (ValueError, RecursionError) as error:
-        # TOML syntax, and numbers too long to convert, are ValueErrors.
-        raise SceneError(f"{path.name}: cannot be read as TOML: {error}") from error
+        # Syntax, and numbers too long to convert, are ValueErrors.
+        raise SceneError(f"{path.name}: cannot be read as {kind}: {error}") from error
+
+
+def _echoed(path: Path, text: str) -> dict[str, Any]:
+    """The scene that an output file of `--json` was made of."""
+    data = json.loads(text)
+    inputs = data.get("inputs") if isinstance(data, dict) else None
+    if not isinstance(inputs, dict):
+        problem = "`inputs` is missing; it must be a table, as `--json` writes it"
+        raise SceneError(f"{path.name}: {problem}")
+    return inputs
 
 
 def _set(data: dict, setting: str, file: str) -> None:

@@ -1,14 +1,17 @@
 """Running the cases of a scene, and what is told of them."""
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import jax
 import numpy as np
 
 from ..statics.sweep import Sweep, sweep
+from ..statics.sweep_program import not_run
 from ..statics.sweep_table import columns
-from .cases_table import CaseTable
+from .cases_table import CaseTable, Structure
 from .files import write_numbers
 from .quantity import SceneError, display_unit
 
@@ -39,11 +42,35 @@ def run_cases(
     Raises:
         SceneError: For outputs that do not exist or would not fit memory.
     """
-    scene = table.scene
+    done: list[tuple[np.ndarray, Sweep]] = []
+    for part in table.structures:
+        mine = _cases_of(table, part)
+        # A sweep asks after its first block; what was stopped begins no other one.
+        stopped = bool(done) and stop is not None and stop()
+        if mine.size and not stopped:
+            done.append((mine, _run(table, part, mine, progress, stop)))
+    if len(table.structures) == 1:
+        return done[0][1]
+    return _merged(table, done)
+
+
+def _cases_of(table: CaseTable, part: Structure) -> np.ndarray:
+    """Numbers of the cases whose design is of a structure."""
+    if part.designs is None:
+        return np.arange(table.cases.count)
+    return np.flatnonzero(np.isin(np.asarray(table.cases.design), part.designs))
+
+
+def _run(table, part, mine, progress, stop) -> Sweep:
+    scene, cases = table.scene, table.cases
+    if part.designs is not None:
+        cases = jax.tree.map(lambda a: np.asarray(a)[mine], cases)
+        number = np.searchsorted(part.designs, np.asarray(cases.design))
+        cases = dataclasses.replace(cases, design=number)
     try:
         return sweep(
-            table.element,
-            table.cases,
+            part.element,
+            cases,
             outputs=OUTPUTS if table.outputs is None else table.outputs,
             free=scene.free,
             fixed_ring=scene.fixed_ring,
@@ -56,6 +83,25 @@ def run_cases(
         )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
+
+
+def _merged(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:
+    """Sweeps of the structures as one; cases of none were not run."""
+    outputs: dict[str, np.ndarray] = {}
+    for mine, solved in done:
+        for name, values in solved.outputs.items():
+            if name not in outputs:
+                shape = (table.cases.count, *values.shape[1:])
+                nothing = not_run(name, values.dtype)
+                outputs[name] = np.full(shape, nothing, values.dtype)
+            outputs[name][mine] = values
+    first = done[0][1]
+    common = {
+        name: tuple(n for n in names if all(n in dict(s.zeros)[name] for _, s in done))
+        for name, names in first.zeros
+    }
+    ring = first.moving_ring
+    return Sweep(table.cases, outputs, ring, tuple(common.items()))
 
 
 def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
@@ -73,7 +119,9 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
         f"{counts}; {seconds:.3g} s, compiling included",
     ]
     if len(table.settings) > 1:
-        lines.append(f"{len(table.settings)} designs")
+        kinds = len(table.structures)
+        of = f" of {kinds} structures, solved one after the other"
+        lines.append(f"{len(table.settings)} designs{of if kinds > 1 else ''}")
     lines.append(f"\n{'':<38}{'least':>14}{'largest':>14}  unit")
     for header, column in columns(solved).items():
         values = np.asarray(column)
@@ -92,12 +140,13 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
 
 
 def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
-    """What makes the design of each case, as the scene writes it, by key."""
+    """What makes the design of each case, by "key [unit]": numbers in SI, and texts as
+    the scene writes them."""
     if table.cases.design is None:
         return {}
     design = np.asarray(table.cases.design)
     return {
-        key: np.array([str(made[key]) for made in table.settings])[design]
+        key: np.array([made.get(key) for made in table.settings])[design]
         for key in table.settings[0]
     }
 
@@ -110,6 +159,7 @@ def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
         "columns": listed_columns(columns(solved, design_columns(table))),
         "counts": solved.counts(),
         "warnings": [*table.warnings, *solved.warnings],
+        "inputs": table.inputs,
         "version": __version__,
     }
 

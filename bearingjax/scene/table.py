@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
 from ..numerics.units import unit_of
-from .quantity import SceneError, kind_of, to_si
+from .quantity import KINDS, SceneError, kind_of, to_si
 
 _MISSING: Any = object()
 _BARE = re.compile(r"[A-Za-z0-9_.\[\]-]+")
@@ -33,6 +33,9 @@ class Table:
         # Keys that may stand here, asked for or only looked for.
         self._known: list[str] = []
         self._children: list[Table] = []
+        # What was read, defaults included, for `echo`.
+        self._read: dict[str, Any] = {}
+        self._stand_in: Table | None = None
 
     def __contains__(self, key: str) -> bool:
         self._known.append(key)
@@ -55,13 +58,15 @@ class Table:
             kind: Kind of quantity, see `quantity.KINDS`.
             default: If absent; without a default the key is required.
         """
-        value = self._get(key, default, f"a {kind}, a text with its unit")
-        if key not in self._data:
-            return value
-        try:
-            return to_si(value, kind)
-        except SceneError as error:
-            raise self.error(key, error) from error
+        value: Any = self._get(key, default, f"a {kind}, a text with its unit")
+        if key in self._data:
+            try:
+                value = to_si(value, kind)
+            except SceneError as error:
+                raise self.error(key, error) from error
+        if value is not None:
+            self.fill(key, written(value, KINDS[kind][0]))
+        return value
 
     def quantities(self, key: str, kind: str) -> list[float]:
         """List of numbers in SI, each with a unit."""
@@ -69,9 +74,11 @@ class Table:
         if not isinstance(values, list):
             raise self.error(key, f"{values!r} is not a list of quantities ({kind})")
         try:
-            return [to_si(value, kind) for value in values]
+            found = [to_si(value, kind) for value in values]
         except SceneError as error:
             raise self.error(key, error) from error
+        self.fill(key, [written(value, KINDS[kind][0]) for value in found])
+        return found
 
     def number(self, key: str, default: Any = _MISSING) -> Any:
         """Dimensionless number, bare."""
@@ -84,6 +91,7 @@ class Table:
             raise self.error(key, "nan is not a finite number")
         if abs(value) > LARGEST:
             raise self.error(key, f"is out of range; at most {LARGEST:g} in size")
+        self.fill(key, float(value))
         return float(value)
 
     def real(self, key: str, unit: str, default: Any = _MISSING) -> Any:
@@ -118,6 +126,8 @@ class Table:
                     if several
                     else self.real(name, unit)
                 )
+            elif isinstance(field.default, int | float):
+                self.fill(name, written(field.default, unit))
         return found
 
     def integer(self, key: str, default: Any = _MISSING, least: int = 1) -> Any:
@@ -176,6 +186,7 @@ class Table:
             raise self.error(key, f"{value!r} is not a table")
         child = Table(value, self._file, self._full(key))
         self._children.append(child)
+        self._read[key] = child
         return child
 
     def keys_given(self) -> dict[str, Any]:
@@ -187,6 +198,7 @@ class Table:
         self._asked += self._data
         child = Table(values, self._file, self._path)
         self._children.append(child)
+        self._stand_in = child
         return child
 
     def empty(self, key: str) -> "Table":
@@ -204,6 +216,7 @@ class Table:
                 raise self.error(key, f"{value!r} is not a table")
             children.append(Table(value, self._file, f"{self._full(key)}[{k}]"))
         self._children += children
+        self._read[key] = children
         return children
 
     def flag(self, key: str, default: Any = _MISSING) -> Any:
@@ -222,6 +235,31 @@ class Table:
             problem = f"{self._data[key]!r} is not a table, nor one of {names}"
             raise self.error(key, problem)
         return self.table(key) if key in self else None
+
+    def fill(self, key: str, value: Any) -> None:
+        """Say what stands for a key in `echo`, such as a default that was worked out.
+
+        Args:
+            key: Key in this table.
+            value: As a scene may write it; `None`: nothing.
+        """
+        self._read[key] = value
+
+    def echo(self) -> dict[str, Any]:
+        """All that was read here and below, as a scene may write it: quantities in SI
+        with their unit, defaults filled in. What was skipped is not in it."""
+
+        def plain(value):
+            if isinstance(value, Table):
+                return value.echo()
+            if isinstance(value, Mapping):
+                return {key: plain(inner) for key, inner in value.items()}
+            return [plain(one) for one in value] if isinstance(value, list) else value
+
+        if self._stand_in is not None:
+            return self._stand_in.echo()
+        found = {key: plain(value) for key, value in self._read.items()}
+        return {k: value for k, value in found.items() if value not in (None, {})}
 
     @contextlib.contextmanager
     def building(self):
@@ -249,7 +287,10 @@ class Table:
         self._asked.append(key)
         self._known.append(key)
         if key in self._data:
+            self._read.setdefault(key, self._data[key])
             return self._data[key]
+        if default is not _MISSING and isinstance(default, bool | int | float | str):
+            self._read.setdefault(key, default)
         if default is _MISSING:
             # A misspelt key is more likely than a forgotten one.
             strange = [k for k in self._data if k not in self._asked]
@@ -261,6 +302,31 @@ class Table:
     def _full(self, key):
         shown = key if _BARE.fullmatch(key) else repr(key)
         return f"{self._path}.{shown}" if self._path else shown
+
+
+def written(value: float, unit: str) -> str | float:
+    """A number in SI as a scene writes it, to the last digit.
+
+    Args:
+        value: In SI.
+        unit: SI unit, empty for a bare number.
+    """
+    return f"{float(value)!r} {unit}" if unit else float(value)
+
+
+def written_numbers(owner: Any) -> dict[str, str | float]:
+    """Numbers of a module under their own names, as a scene writes them.
+
+    Args:
+        owner: Concrete; its fields that have units are numbers.
+    """
+    return {
+        field.name: written(
+            float(getattr(owner, field.name)), unit_of(owner, field.name)
+        )
+        for field in dataclasses.fields(owner)
+        if "unit" in field.metadata
+    }
 
 
 def _is_array(annotation):

@@ -25,6 +25,7 @@ from .solution import Solution
 from .support import check_held
 from .sweep_program import WARNED, Program, Task
 from .warning import counted, given
+from .zero_names import zero_names
 
 CHUNK, RUNS = 512, 128
 """Cases of a batch, of which `load_search.SLOTS` are at work at a time, and runs of
@@ -53,11 +54,14 @@ class Sweep(eqx.Module):
         outputs: By name, leading axis case; among them `warning_KIND`, the size of
             every kind of warning that can arise (`statics.warning_kinds.KINDS`).
         moving_ring: "outer" or "inner".
+        zeros: (output, names along its last axes whose numbers are zero whatever the
+            case), each; a table leaves them out.
     """
 
     cases: Cases
     outputs: dict[str, np.ndarray]
     moving_ring: str = eqx.field(static=True)
+    zeros: tuple[tuple[str, tuple[str, ...]], ...] = eqx.field(static=True, default=())
 
     def __getattr__(self, name: str) -> Any:
         outputs = self.__dict__.get("outputs", {})
@@ -211,7 +215,7 @@ def sweep(
             anew = program.run(again, False, False)
             for name, values in found.items():
                 values[lost] = anew[name]
-    return Sweep(every, found, options.moving_ring)
+    return Sweep(every, found, options.moving_ring, zero_names(element, every, options))
 
 
 class Keep(eqx.Module):

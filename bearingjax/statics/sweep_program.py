@@ -158,7 +158,7 @@ class Program:
                 if begin is None:
                     break
         for name, values in found.items():
-            values[last:] = _not_run(name, values.dtype)
+            values[last:] = not_run(name, values.dtype)
         return found
 
 
@@ -232,8 +232,13 @@ def _wait(values):
         time.sleep(_PAUSE)
 
 
-def _not_run(name, dtype):
-    """What an output holds of a case that was not run."""
+def not_run(name: str, dtype: np.dtype) -> int | float:
+    """What an output holds of a case that was not run.
+
+    Args:
+        name: Of the output.
+        dtype: Its type.
+    """
     if name == "result":
         return Result.NOT_RUN
     return np.nan if dtype.kind == "f" else 0

@@ -1,4 +1,7 @@
-"""A sweep as a flat table: one row per case, units in the header."""
+"""A sweep as a flat table: one row per case, units in the header.
+
+Tables of all commands are written here: CSV, Parquet, and sheets of Excel.
+"""
 
 import importlib.util
 import itertools
@@ -19,7 +22,10 @@ from .sweep import Sweep
 from .sweep_program import WARNED
 from .warning import given
 
-ENDINGS = (".csv", ".parquet")
+ENDINGS = (".csv", ".parquet", ".xlsx")
+
+MOST_ROWS = 2**20 - 1
+"""Most rows of a sheet of Excel beside its header."""
 
 WARNINGS = "warnings"
 """Header of the column of warnings."""
@@ -44,7 +50,8 @@ def columns(
 ) -> dict[str, np.ndarray]:
     """A sweep as columns by header, "name [unit]": first the cases, then the results.
 
-    Arrays are spread over columns, `displacement_inner_uy [m]`. The result is the
+    Arrays are spread over columns, `displacement_inner_uy [m]`, without those that are
+    zero whatever the case (`Sweep.zeros`). The result is the
     code's label; where it is not "converged", numbers are NaN. `warnings` holds the
     kinds of warning that are given for a case, each with its size.
 
@@ -59,7 +66,8 @@ def columns(
         header: column
         for name, values in sweep.outputs.items()
         if name not in ("result", "unrestrained") and not name.startswith(WARNED)
-        for header, column in _spread(name, values)
+        for header, column in _spread(name, values, sweep.zeros)
+        if column is not None
     }
     labels = np.array([code.label for code in Result])
     return {
@@ -81,20 +89,28 @@ def _warned(sweep):
     return texts.astype(str)
 
 
-def check_writable(path: Path) -> None:
+def check_writable(path: Path, rows: int = 0) -> None:
     """Raise unless `write` can write this format. Call it before a long sweep.
 
     Args:
         path: Of the table.
+        rows: How many it will have, if that is known.
 
     Raises:
-        ValueError: For an ending other than .csv and .parquet.
-        ImportError: Without pyarrow.
+        ValueError: For an ending other than .csv, .parquet and .xlsx; for more rows
+            than a sheet of Excel has.
+        ImportError: Without pyarrow, or of a sheet without openpyxl.
     """
-    if path.suffix.lower() not in ENDINGS:
-        raise ValueError(f"{path}: a table ends in {' or '.join(ENDINGS)}")
-    if importlib.util.find_spec("pyarrow") is None:
-        raise ImportError('tables need pyarrow: pip install "bearingjax[table]"')
+    ending = path.suffix.lower()
+    if ending not in ENDINGS:
+        raise ValueError(f"{path}: a table ends in {', '.join(ENDINGS)}")
+    needed = "openpyxl" if ending == ".xlsx" else "pyarrow"
+    if importlib.util.find_spec(needed) is None:
+        what = f"{ending} tables need {needed}"
+        raise ImportError(f'{path}: {what}: pip install "bearingjax[table]"')
+    if ending == ".xlsx" and rows > MOST_ROWS:
+        problem = f"{rows} rows, and a sheet has {MOST_ROWS} at most"
+        raise ValueError(f"{path}: {problem}; write .csv or .parquet")
 
 
 def write(
@@ -102,11 +118,11 @@ def write(
     path: str | Path,
     beside: Mapping[str, np.ndarray] | None = None,
 ) -> None:
-    """Write `columns` to a .csv or .parquet file (with pyarrow).
+    """Write `columns` to a file.
 
     Args:
         sweep: From `sweep`.
-        path: Its ending, .csv or .parquet, sets the format.
+        path: Its ending, .csv, .parquet or .xlsx, sets the format.
         beside: As in `columns`.
 
     Raises:
@@ -117,18 +133,22 @@ def write(
 
 
 def write_columns(found: Mapping[str, np.ndarray], path: str | Path) -> None:
-    """Write columns to a .csv or .parquet file (with pyarrow).
+    """Write columns to a file: .csv and .parquet with pyarrow, .xlsx with openpyxl.
+
+    In a sheet of Excel what is not finite is an empty cell, and numbers have 16 digits.
 
     Args:
         found: Columns by header, of the same length.
-        path: Its ending, .csv or .parquet, sets the format.
+        path: Its ending, .csv, .parquet or .xlsx, sets the format.
 
     Raises:
         ValueError, ImportError: As `check_writable`.
         OSError: If the file cannot be written.
     """
     path = Path(path)
-    check_writable(path)
+    check_writable(path, max(map(len, found.values()), default=0))
+    if path.suffix.lower() == ".xlsx":
+        return _write_sheet(found, path)
     import pyarrow
     import pyarrow.csv
     import pyarrow.parquet
@@ -140,11 +160,67 @@ def write_columns(found: Mapping[str, np.ndarray], path: str | Path) -> None:
         pyarrow.parquet.write_table(table, path)
 
 
+def _write_sheet(found: Mapping[str, np.ndarray], path: Path) -> None:
+    """A sheet whose header stays in sight and has a filter."""
+    from openpyxl import Workbook
+    from openpyxl.cell import WriteOnlyCell
+    from openpyxl.styles import Font
+    from openpyxl.utils import get_column_letter
+
+    book = Workbook(write_only=True)
+    sheet = book.create_sheet("cases")
+    sheet.freeze_panes = "A2"
+    for k, header in enumerate(found, 1):
+        width = max(12, len(header) + 2)
+        sheet.column_dimensions[get_column_letter(k)].width = width
+    heads = [WriteOnlyCell(sheet, header) for header in found]
+    for head in heads:
+        head.font = Font(bold=True)
+    sheet.append(heads)
+    for row in zip(*(_cells(column) for column in found.values()), strict=True):
+        sheet.append(row)
+    book.save(path)
+
+
+def _cells(column: np.ndarray) -> list[Any]:
+    values = np.asarray(column)
+    if values.dtype.kind != "f":
+        return values.tolist()
+    return [x if np.isfinite(x) else None for x in values.tolist()]
+
+
+def _read_sheet(path: Path, texts: Iterable[str]) -> dict[str, np.ndarray]:
+    from zipfile import BadZipFile
+
+    from openpyxl import load_workbook
+    from openpyxl.utils.exceptions import InvalidFileException
+
+    try:
+        book = load_workbook(path, read_only=True)
+    except (BadZipFile, InvalidFileException, KeyError) as error:
+        raise ValueError(f"is no sheet of Excel: {error}") from error
+    try:
+        rows = list(book.worksheets[0].iter_rows(values_only=True))
+    finally:
+        book.close()
+    heads = [str(head) for head in rows[0]] if rows else []
+    words = {"result", WARNINGS, *texts}
+    found = {}
+    # Rows end with their last cell that is not empty.
+    columns = itertools.zip_longest(*(row[: len(heads)] for row in [heads, *rows[1:]]))
+    for head, *cells in columns:
+        if head in words:
+            found[head] = np.array(["" if c is None else str(c) for c in cells])
+        else:
+            found[head] = np.array([np.nan if c is None else c for c in cells])
+    return found
+
+
 def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
     """Columns of a table that `write` wrote.
 
     Args:
-        path: Its ending, .csv or .parquet, sets the format.
+        path: Its ending, .csv, .parquet or .xlsx, sets the format.
         texts: Headers of columns that are text even if they look like numbers.
 
     Raises:
@@ -154,6 +230,8 @@ def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
     """
     path = Path(path)
     check_writable(path)
+    if path.suffix.lower() == ".xlsx":
+        return _read_sheet(path, texts)
     import pyarrow
     import pyarrow.csv
     import pyarrow.parquet
@@ -169,7 +247,9 @@ def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
 
 
 def restored(
-    table: Mapping[str, np.ndarray], like: Mapping[str, np.ndarray]
+    table: Mapping[str, np.ndarray],
+    like: Mapping[str, np.ndarray],
+    zeros: Iterable[tuple[str, tuple[str, ...]]] = (),
 ) -> dict[str, np.ndarray]:
     """Outputs of a sweep, from the columns of its table.
 
@@ -177,6 +257,7 @@ def restored(
         table: From `read`.
         like: Outputs of a sweep of the same kind, with any number of cases: their
             names, shapes and dtypes are taken.
+        zeros: As of `Sweep`.
 
     Returns:
         Outputs by name; `unrestrained`, which no table holds, is -1, and a warning
@@ -199,11 +280,14 @@ def restored(
         elif name.startswith(WARNED):
             plain = _sizes(table, name.removeprefix(WARNED), count)
         else:
-            headers = [header for header, _ in _spread(name, values)]
-            for header in headers:
-                if header not in table:
+            solved = np.asarray(table["result"]) == Result.CONVERGED.label
+            nothing = np.where(solved, 0.0, np.nan)
+            parts = []
+            for header, column in _spread(name, values, zeros):
+                if column is not None and header not in table:
                     raise ValueError(f"has no column {header!r}")
-            parts = [np.asarray(table[h], dtype=values.dtype) for h in headers]
+                there = nothing if column is None else table[header]
+                parts.append(np.asarray(there, dtype=values.dtype))
             plain = np.stack(parts, axis=-1) if parts else np.empty(0)
         shape = (count, *values.shape[1:])
         found[name] = np.asarray(plain, dtype=values.dtype).reshape(shape)
@@ -248,12 +332,17 @@ def asked(cases: Cases) -> dict[str, np.ndarray]:
     return out
 
 
-def _spread(name, values):
-    """(header, column) of an output with any number of axes."""
-    values = np.asarray(values)
+def _spread(name, values, zeros=()):
+    """(header, column) of an output with any number of axes; the column is `None`
+    where all is zero whatever the case."""
+    values, none = np.asarray(values), dict(zeros).get(name, ())
+    axes = _LAST_AXES.get(name, ())
+    named = len(axes) > 0 and values.shape[-len(axes) :] == tuple(map(len, axes))
     for index in itertools.product(*(range(n) for n in values.shape[1:])):
         label = _header(*_label(name, index, values.shape[1:]))
-        yield label, values[(slice(None), *index)]
+        last = zip(axes, index[-len(axes) :], strict=True) if named else ()
+        left_out = any(axis[k] in none for axis, k in last)
+        yield label, None if left_out else values[(slice(None), *index)]
 
 
 def _header(name, unit):

@@ -2,12 +2,20 @@
 
 import json
 
+import jax
 import numpy as np
 import pyarrow.csv
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import SceneError, cases_table, read_cases, read_scene
+from bearingjax.scene import (
+    SceneError,
+    cases_table,
+    design_columns,
+    read_cases,
+    read_scene,
+)
+from bearingjax.statics import sweep_table
 
 HEAD = """
 [bearing]
@@ -76,9 +84,12 @@ def test_grid_runs_its_last_key_fastest(scene):
     tilts = np.repeat([0.0, 0.5e-3, 1e-3, 0.0, 0.5e-3, 1e-3], 2)
     np.testing.assert_allclose(cases.prescribed["gx"], tilts, atol=1e-18)
     np.testing.assert_array_equal(cases.design, np.repeat([0, 1], 6))
-    stacked = table.element.bearing.radial_internal_clearance
+    (structure,) = table.structures
+    stacked = structure.element.bearing.radial_internal_clearance
     np.testing.assert_allclose(stacked, [0.0, 20e-6], atol=1e-18)
-    assert table.settings[1] == {"bearing.radial_internal_clearance": "20 um"}
+    (header,) = table.settings[1]
+    assert header == "bearing.radial_internal_clearance [m]"
+    assert table.settings[1][header] == 20e-6
 
 
 def test_spectrum_has_hours(scene):
@@ -110,7 +121,16 @@ def test_command_writes_a_row_per_case(run, scene, tmp_path):
     ended = run("sweep", path, "--table", csv, "--json", out)
     assert ended.status == 0 and "12 converged" in ended.out
     table = pyarrow.csv.read_csv(csv).to_pydict()
-    assert list(table)[0] == "bearing.radial_internal_clearance"
+    assert list(table)[0] == "bearing.radial_internal_clearance [m]"
+    assert table["bearing.radial_internal_clearance [m]"][::6] == [0.0, 20e-6]
+    # What stands still by construction has no column.
+    moves = [name for name in table if name.startswith("displacement")]
+    assert moves == [
+        "displacement_inner_ux [m]",
+        "displacement_inner_uy [m]",
+        "displacement_inner_gx [rad]",
+        "displacement_inner_gy [rad]",
+    ]
     assert table["result"] == ["converged"] * 12
     one = bj.run_scene(
         read_scene(
@@ -173,7 +193,10 @@ WRONG = {
         "one and the same unit",
     ),
     "design value": ('[cases.grid]\nbearing.roller_length = ["-1 mm"]', "above 0 m"),
-    "structure": ("[cases.grid]\nbearing.n_rollers = [6, 7]", "another structure"),
+    "uneven outputs": (
+        '[cases]\noutputs = ["roller_load"]\n[cases.grid]\nbearing.n_rollers = [6, 7]',
+        "`cases.outputs`: 'roller_load' is of each rolling element or row, and their",
+    ),
     "unknown table key": ("[cases]\ngird = 3\n" + GRID, "unknown key"),
     "no hours": (
         '[[cases.spectrum]]\noperating.load.Fy = "1 kN"',
@@ -281,7 +304,7 @@ def test_cases_against_the_scene(scene, change, message):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--table", "x.xlsx"], "a table ends in .csv or .parquet"),
+        (["--table", "x.xls"], "a table ends in .csv, .parquet, .xlsx"),
         (["--devices", "0"], "must be at least 1"),
         (["--devices", "1000000"], "the cores that there are"),
         (["--table", "nowhere/x.csv"], "its folder does not exist"),
@@ -292,11 +315,81 @@ def test_wrong_command(run, scene, arguments, message):
     assert ended.status == 2 and message in ended.err
 
 
-def test_a_table_without_pyarrow_is_refused_before_the_sweep(run, scene, monkeypatch):
+@pytest.mark.parametrize(
+    ("name", "needed"), [("x.csv", "pyarrow"), ("x.XLSX", "openpyxl")]
+)
+def test_a_table_without_its_package_is_refused_before_the_sweep(
+    run, scene, monkeypatch, name, needed
+):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     monkeypatch.setattr(bj.scene, "run_cases", None)
-    ended = run("sweep", scene(GRID), "--table", "x.csv")
-    assert ended.status == 2 and "tables need pyarrow" in ended.err
+    ended = run("sweep", scene(GRID), "--table", name)
+    ending = name[1:].lower()
+    cure = 'pip install "bearingjax[table]"'
+    problem = f"bearingjax: {name}: {ending} tables need {needed}: {cure}\n"
+    assert ended == (2, "", problem)
+
+
+def test_a_sheet_has_so_many_rows(run, scene, monkeypatch):
+    monkeypatch.setattr(sweep_table, "MOST_ROWS", 11)
+    monkeypatch.setattr(bj.scene, "run_cases", None)
+    ended = run("sweep", scene(GRID), "--table", "x.xlsx")
+    assert ended.status == 2
+    assert "x.xlsx: 12 rows, and a sheet has 11 at most; write .csv" in ended.err
+
+
+COUNTS = """
+[cases.grid]
+bearing.n_rollers = [6, 7]
+operating.load.Fy = ["-1 kN", "-2000 N"]
+"""
+PROFILES = """
+bearing.roller_profile = [{ type = "straight" }, { type = "logarithmic" }]
+"""
+
+
+def test_designs_of_several_structures(run, scene, tmp_path):
+    """As many programs, one table."""
+    path, out, sheet = scene(COUNTS), tmp_path / "t.json", tmp_path / "t.xlsx"
+    ended = run("sweep", path, "--json", out, "--table", sheet)
+    assert ended.status == 0 and "4 converged" in ended.out
+    assert "2 designs of 2 structures, solved one after the other" in ended.out
+    found = json.loads(out.read_text())["columns"]
+    assert found["bearing.n_rollers"] == [6, 6, 7, 7]
+    settings = ["bearing.n_rollers=7", "operating.load.Fy=-2 kN"]
+    one = bj.run_scene(read_scene(path, settings))
+    assert found["largest_load [N]"][3] == pytest.approx(
+        float(one.roller_load.max()), rel=1e-8
+    )
+    # The sheet holds the same numbers, to the 16 digits that it has.
+    again = sweep_table.read(sheet)
+    assert list(again) == list(found)
+    for header, column in found.items():
+        if np.asarray(column).dtype.kind == "U":
+            assert list(again[header]) == column
+        else:
+            np.testing.assert_allclose(again[header], column, rtol=1e-15)
+
+
+def test_profiles_may_vary(scene):
+    table = read_cases(scene(COUNTS + PROFILES))
+    assert [list(part.designs) for part in table.structures] == [[0], [1], [2], [3]]
+    column = design_columns(table)["bearing.roller_profile"]
+    assert column[2] == "{'type': 'logarithmic'}" and column.size == 8
+
+
+def test_the_echo_is_the_scene(scene, tmp_path):
+    table = read_cases(scene(GRID))
+    echo = tmp_path / "echo.json"
+    echo.write_text(json.dumps({"inputs": table.inputs}))
+    again = read_cases(echo)
+    assert again.inputs == table.inputs and again.settings == table.settings
+    for one, other in zip(
+        jax.tree.leaves((table.cases, table.structures[0].element)),
+        jax.tree.leaves((again.cases, again.structures[0].element)),
+        strict=True,
+    ):
+        np.testing.assert_array_equal(one, other)
 
 
 def test_wrong_outputs(run, scene):

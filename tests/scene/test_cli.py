@@ -35,9 +35,18 @@ FIELDS = {
     "residual",
     "iterations",
     "warnings",
+    "inputs",
     "version",
 }
-WORDS = {"result", "message", "residual", "iterations", "warnings", "version"}
+WORDS = {
+    "result",
+    "message",
+    "residual",
+    "iterations",
+    "warnings",
+    "inputs",
+    "version",
+}
 
 
 @pytest.fixture

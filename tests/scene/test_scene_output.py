@@ -30,7 +30,15 @@ NUMBERS = (
     "line_load",
     "contact_pressure",
 )
-WORDS = ("result", "message", "residual", "iterations", "warnings", "version")
+WORDS = (
+    "result",
+    "message",
+    "residual",
+    "iterations",
+    "warnings",
+    "inputs",
+    "version",
+)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -288,5 +288,5 @@ def test_bad_designs(swept):
         bj.stack_designs([ELEMENT, other])
     with pytest.raises(ValueError, match="is empty"):
         bj.stack_designs([])
-    with pytest.raises(ValueError, match="ends in .csv or .parquet"):
-        sweep_table.write(swept, "table.xlsx")
+    with pytest.raises(ValueError, match="ends in .csv, .parquet, .xlsx"):
+        sweep_table.write(swept, "table.xls")

@@ -1,0 +1,51 @@
+"""Which numbers of a sweep are zero whatever the case."""
+
+from ..design import AbstractRollerBearing, rows_of
+from ..design.rib import RIB_NAMES
+from ..element.bearing_element import BearingElement
+from ..element.frame import FREEDOMS, RINGS
+from .cases import Cases
+from .options import SolveOptions
+from .support import restrained_freedoms
+
+
+def zero_names(
+    element: BearingElement, cases: Cases, options: SolveOptions
+) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Names along the last axis of outputs whose numbers are zero by construction.
+
+    They are the displacements of a ring that stands and of freedoms that are held
+    there, the moment and the stiffness about the axis, and the load of ribs that are
+    not there.
+
+    Args:
+        element: What is solved.
+        cases: With what.
+        options: And how.
+
+    Returns:
+        (output, names such as "outer_ux", as the columns of a table have them), each.
+    """
+    free = options.free
+    if free is None:
+        free = restrained_freedoms(element.bearing)
+    moving = {*free, *cases.prescribed}
+    fixed = FREEDOMS if cases.fixed_displacement is not None else ()
+    moves = {options.moving_ring: moving, options.fixed_ring: fixed}
+    still = tuple(
+        f"{ring}_{f}" for ring in RINGS for f in FREEDOMS if f not in moves[ring]
+    )
+    about_axis = not element.cage_torque
+    zeros = {
+        "displacement": still,
+        "force": tuple(f"{ring}_Mz" for ring in RINGS if about_axis),
+        "stiffness": tuple(f"{ring}_gz" for ring in RINGS if about_axis),
+        "rib_load": tuple(name for name in RIB_NAMES if name not in _ribs(element)),
+    }
+    return tuple(zeros.items())
+
+
+def _ribs(element: BearingElement) -> set[str]:
+    bearings = [row.bearing for row in rows_of(element.bearing)]
+    rollers = [b for b in bearings if isinstance(b, AbstractRollerBearing)]
+    return {name for bearing in rollers for name in bearing.ribs.present}

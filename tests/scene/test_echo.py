@@ -1,0 +1,109 @@
+"""The inputs in a JSON file: in SI, complete, and a scene again."""
+
+import dataclasses
+import json
+
+import jax
+import numpy as np
+import pytest
+
+import bearingjax as bj
+from bearingjax.scene import SceneError, as_dict, read_scene
+from bearingjax.scene.quantity import KINDS, to_si
+
+SCENES = (
+    "ball_pair",
+    "cylindrical_ribs",
+    "hybrid_spindle",
+    "load_map",
+    "self_aligning",
+    "skid_roller",
+    "sprung_pair",
+    "tapered",
+)
+
+
+def echoed(path, scene):
+    path.write_text(json.dumps({"inputs": scene.inputs}), encoding="utf-8")
+    return read_scene(path)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_units_of_the_echo_are_read_as_they_are(kind):
+    assert to_si(f"0.1 {KINDS[kind][0]}", kind) == 0.1
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_echo_is_the_scene(tmp_path, name):
+    """To the last bit; what was left to defaults is said."""
+    scene = read_scene(name)
+    again = echoed(tmp_path / f"{name}.json", scene)
+    assert again.inputs == scene.inputs and again.name == name
+    trees = [(one.element, one.speed) for one in (scene, again)]
+    assert jax.tree.structure(trees[0]) == jax.tree.structure(trees[1])
+    for one, other in zip(*map(jax.tree.leaves, trees), strict=True):
+        np.testing.assert_array_equal(one, other)
+    chosen = {"element", "speed", "free", "tolerance", "inputs"}
+    for field in dataclasses.fields(scene):
+        if field.name not in chosen:
+            assert getattr(again, field.name) == getattr(scene, field.name)
+    assert again.tolerance == (scene.tolerance or 1e-11)
+
+
+def test_defaults_are_filled_in():
+    inputs = read_scene("tapered").inputs
+    assert to_si(inputs["bearing"]["pitch_diameter"], "length") == 52 * 1e-3
+    assert inputs["bearing"]["material"] == {
+        "elastic_modulus": "206000000000.0 Pa",
+        "poisson_ratio": 0.3,
+        "density": "7850.0 kg/m³",
+    }
+    assert inputs["contact"] == {"line_law": "palmgren"}
+    assert inputs["operating"]["free"] == ["ux", "uy", "uz", "gx", "gy"]
+    assert inputs["operating"]["outer_speed"] == "0.0 rad/s"
+    assert inputs["numerics"]["quadrature"] == "contact_mapped"
+    assert inputs["numerics"]["points"] == 32
+
+
+def test_settings_are_in_it():
+    inputs = read_scene("tapered", ["operating.load.Fz=-6 kN"]).inputs
+    assert inputs["operating"]["load"]["Fz"] == "-6000.0 N"
+
+
+def test_an_output_file_is_solved_again(run, tmp_path):
+    """Also that of a run without a solution."""
+    first, second = tmp_path / "first.json", tmp_path / "second.json"
+    # What is static in the echo, said: so that one program serves.
+    free = "operating.free=['ux', 'uy', 'uz', 'gx', 'gy']"
+    settings = ["output.points=2", "numerics.tolerance=1e-11", free]
+    scene = read_scene("tapered", settings)
+    settings.append("operating.load.Fz=-6 kN")
+    pull = [word for text in settings for word in ("--set", text)]
+    assert run("solve", "tapered", *pull, "--json", first).status == 3
+    push = ("--set", "operating.load.Fz=6 kN")
+    assert run("solve", first, *push, "--json", second).status == 0
+    expected = as_dict(scene, bj.run_scene(scene))
+    found = json.loads(second.read_text(encoding="utf-8"))
+    assert found["inputs"] == expected["inputs"]
+    np.testing.assert_array_equal(found["displacement"], expected["displacement"])
+    refused = run("solve", second, "--json", second)
+    assert refused.status == 2 and "--json would overwrite it" in refused.err
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{", "cannot be read as JSON: "),
+        ("[1]", "`inputs` is missing; it must be a table, as `--json` writes it"),
+        ("{}", "`inputs` is missing"),
+        ('{"inputs": 3}', "`inputs` is missing"),
+        ('{"inputs": {}}', "`bearing`: is missing"),
+        ('{"inputs": {"bearing": {"type": "ball"}}}', "`bearing.type`: 'ball' is not"),
+    ],
+)
+def test_wrong_files(tmp_path, text, message):
+    path = tmp_path / "out.json"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        read_scene(path)
+    assert str(caught.value).startswith("out.json: ") and message in str(caught.value)
