@@ -23,6 +23,12 @@ def parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--plot", metavar="OUT", type=Path, help="write a picture (.png, .pdf, .svg)"
     )
+    solve.add_argument(
+        "--report",
+        metavar="OUT",
+        type=Path,
+        help="write a report that stands alone (.html), with inputs and pictures",
+    )
     sweep = commands.add_parser(
         "sweep",
         help="many cases: loads, displacements, speeds, designs",
@@ -41,6 +47,12 @@ def parser() -> argparse.ArgumentParser:
         "--resume",
         action="store_true",
         help="solve only the cases that the table lacks, after an interruption",
+    )
+    sweep.add_argument(
+        "--report",
+        metavar="OUT",
+        type=Path,
+        help="write a report that stands alone (.html), with inputs and cases",
     )
     sweep.add_argument("--quiet", action="store_true", help="no progress bar")
     sweep.add_argument(

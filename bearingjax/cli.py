@@ -138,27 +138,55 @@ def _devices(options) -> int:
 
 def _solve(options) -> int:
     from .numerics import Result
-    from .scene import read_scene, report, run_scene, write_json
+    from .scene import read_scene, report, run_scene, solve_page, write_json
 
+    if options.report is not None:
+        _check_report(options.report)
+        _check_matplotlib()
     _check_outputs(options)
     scene = read_scene(options.scene, options.set)
+    origin = _origin(options)
     solution = run_scene(scene, _programs())
 
-    def draw(path):
+    def draw(path, **format):
         from .plot import overview
 
         figure = overview(scene.element.bearing, solution, title=scene.name)
-        figure.savefig(path, dpi=150)
+        figure.savefig(path, dpi=150, **format)
+
+    def tell(path):
+        picture = io.BytesIO()
+        draw(picture, format="png")
+        pictures = {"Section, load zone, contacts": picture.getvalue()}
+        page = solve_page(scene, solution, pictures, origin)
+        path.write_text(page, encoding="utf-8")
 
     solved = Result(int(solution.result)) is Result.CONVERGED
     _write(
         (options.json, lambda path: write_json(path, scene, solution)),
         (options.plot, draw if solved else None),
+        (options.report, tell if solved else None),
     )
     if not solved:
         return _tell_unsolved(scene, solution)
     print(report(scene, solution), flush=True)
     return SOLVED
+
+
+def _origin(options):
+    """Where a report comes from; read before anything is solved."""
+    import datetime
+
+    from .scene import Origin
+    from .scene.scene_file import find_scene
+
+    now = datetime.datetime.now().astimezone()
+    return Origin(
+        shlex.join(["bearingjax", *options.given]),
+        find_scene(options.scene).read_text(encoding="utf-8-sig"),
+        tuple(options.set),
+        now.strftime("%Y-%m-%d %H:%M %z"),
+    )
 
 
 def _tell_unsolved(scene, solution) -> int:
@@ -181,11 +209,14 @@ def _sweep(options) -> int:
         read_cases,
         resume_cases,
         run_cases,
+        sweep_page,
         sweep_report,
         write_sweep_json,
     )
     from .statics.sweep_table import write
 
+    if options.report is not None:
+        _check_report(options.report)
     _check_table(options)
     _check_outputs(options)
     _devices(options)
@@ -194,6 +225,7 @@ def _sweep(options) -> int:
     begin = time.perf_counter()
     table = read_cases(options.scene, options.set)
     _check_table(options, table.cases.count)
+    origin = _origin(options)
     shown = not options.quiet and sys.stderr.isatty()
     with Interrupt() as interrupt:
         done = options.table if options.resume else None
@@ -201,11 +233,18 @@ def _sweep(options) -> int:
             solved = resume_cases(table, done, shown, interrupt)
         else:
             solved = run_cases(table, shown, interrupt)
+        summary = sweep_report(table, solved, time.perf_counter() - begin)
+
+        def tell(path):
+            page = sweep_page(table, solved, summary, origin)
+            path.write_text(page, encoding="utf-8")
+
         _write(
             (options.table, lambda path: write(solved, path, design_columns(table))),
             (options.json, lambda path: write_sweep_json(path, table, solved)),
+            (options.report, tell),
         )
-    print(sweep_report(table, solved, time.perf_counter() - begin), flush=True)
+    print(summary, flush=True)
     left = int((np.asarray(solved.result) == Result.NOT_RUN).sum())
     if left or interrupt.number is not None:
         _tell_interrupted(options, left, solved.cases.count)
@@ -649,7 +688,7 @@ def _check_outputs(options) -> None:
     """Fail before anything is solved if outputs cannot be written or hit an input."""
     from .scene import check_outputs, scene_files
 
-    names = ("json", "plot", "table", "wav")
+    names = ("json", "plot", "table", "wav", "report")
     outputs = {f"--{name}": getattr(options, name, None) for name in names}
     if outputs["--plot"] is not None:
         _check_plot(outputs["--plot"])
@@ -664,7 +703,14 @@ def _write(*outputs) -> None:
         print(f"bearingjax: {path}: of an earlier run, removed", file=sys.stderr)
 
 
-def _check_plot(path: Path) -> None:
+def _check_report(path: Path) -> None:
+    from .scene import SceneError
+
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise SceneError(f"{path}: a report ends in .html")
+
+
+def _check_matplotlib() -> None:
     from .scene import SceneError
 
     try:
@@ -673,6 +719,12 @@ def _check_plot(path: Path) -> None:
         problem = 'pictures need matplotlib: pip install "bearingjax[plot]"'
         raise SceneError(problem) from error
     matplotlib.use("Agg")
+
+
+def _check_plot(path: Path) -> None:
+    from .scene import SceneError
+
+    _check_matplotlib()
     if path.suffix.lower() not in (".png", ".pdf", ".svg"):
         raise SceneError(f"{path}: a picture ends in .png, .pdf or .svg")
 

@@ -24,6 +24,9 @@ from .files import check_outputs as check_outputs
 from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers
 from .files import write_outputs as write_outputs
+from .html_report import Origin as Origin
+from .html_report import solve_page as solve_page
+from .html_report import sweep_page as sweep_page
 from .interrupt import Interrupt as Interrupt
 from .life_report import life_as_dict as life_as_dict
 from .life_report import life_report as life_report

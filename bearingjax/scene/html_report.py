@@ -1,0 +1,256 @@
+"""A report as one HTML file that opens anywhere and prints well.
+
+Nothing in it is fetched: pictures are part of the file, so is the style. Its sections
+are the texts of the report on the terminal (`report.SECTIONS`); so whatever that tells
+stands here too.
+"""
+
+import base64
+import dataclasses
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from ..statics.solution import Solution
+from ..statics.sweep import Sweep
+from ..statics.sweep_table import columns
+from .cases_table import CaseTable
+from .read import Scene
+from .report import sections
+from .sweep_run import design_columns
+
+MOST_CASES = 200
+"""Most cases of a sweep that a page shows; a table has them all."""
+
+_STYLE = """
+:root { color-scheme: light }
+body { margin: 0 auto; max-width: 62rem; padding: 1.5rem; color: #1b1f24;
+  background: #fff; font: 15px/1.5 system-ui, "Segoe UI", Helvetica, Arial, sans-serif }
+h1 { font-size: 1.7rem; margin: 0 0 .2rem }
+h2 { font-size: 1.15rem; margin: 2rem 0 .6rem; padding-bottom: .2rem;
+  border-bottom: 2px solid #2f6f9f }
+header p { margin: 0; color: #57606a }
+pre { font: 12.5px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace;
+  margin: 0; white-space: pre-wrap; overflow-wrap: break-word }
+pre.columns { white-space: pre; overflow-x: auto }
+figure { margin: 0 } figure img { width: 100%; height: auto }
+.warnings { border-left: 5px solid #c77700; background: #fff6e5; padding: .6rem 1rem }
+.warnings ul { margin: .2rem 0; padding-left: 1.2rem }
+.scroll { overflow-x: auto }
+table { border-collapse: collapse; font-size: 13px; width: 100% }
+th, td { text-align: left; padding: .15rem .6rem .15rem 0; vertical-align: top;
+  border-bottom: 1px solid #e3e6ea }
+th[scope=colgroup] { padding-top: .8rem; border-bottom: 1px solid #9aa4ae }
+td.number { font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
+.cases th, .cases td { font-size: 11px; white-space: nowrap }
+@page { size: A4; margin: 14mm 12mm }
+@media print {
+  body { max-width: none; padding: 0; font-size: 10pt }
+  pre { font-size: 7.2pt } pre.columns { overflow: visible }
+  h2 { break-after: avoid } figure, .warnings, tr { break-inside: avoid }
+  .scroll { overflow: visible } .cases th, .cases td { font-size: 6pt }
+}
+"""
+
+
+@dataclasses.dataclass(frozen=True)
+class Origin:
+    """Where a report comes from, so that it can be made again.
+
+    Attributes:
+        command: As it was called.
+        text: The scene file.
+        settings: Changes to it, "key=value".
+        date: When, in words.
+    """
+
+    command: str
+    text: str
+    settings: tuple[str, ...]
+    date: str
+
+
+def solve_page(
+    scene: Scene, solution: Solution, pictures: Mapping[str, bytes], origin: Origin
+) -> str:
+    """Report of a solved scene.
+
+    Args:
+        scene: What was solved.
+        solution: Its solution, converged.
+        pictures: PNG files by their titles.
+        origin: Where it comes from.
+
+    Returns:
+        HTML, a whole document.
+    """
+    texts = sections(scene, solution)
+    parts = [
+        _warnings("\n".join(texts.values())),
+        *(_picture(title, png) for title, png in pictures.items()),
+        *(_text(title, text) for title, text in texts.items()),
+        _inputs(scene.inputs),
+        _rerun(origin),
+    ]
+    return _page(scene.name, parts, origin)
+
+
+def sweep_page(table: CaseTable, solved: Sweep, summary: str, origin: Origin) -> str:
+    """Report of a sweep: its summary, its first cases, its inputs.
+
+    Args:
+        table: What was asked.
+        solved: What came out.
+        summary: As of `sweep_report`.
+        origin: Where it comes from.
+
+    Returns:
+        HTML, a whole document.
+    """
+    found = columns(solved, design_columns(table))
+    parts = [
+        _warnings(summary),
+        _text("Cases", summary),
+        _cases(found, solved.cases.count),
+        _inputs(table.inputs),
+        _rerun(origin),
+    ]
+    return _page(table.scene.name, parts, origin)
+
+
+def _page(title: str, parts: Iterable[str], origin: Origin) -> str:
+    from .. import __version__
+
+    made = f"bearingjax {__version__}, {origin.date}"
+    body = "\n".join(part for part in parts if part)
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="generator" content="bearingjax {escape(__version__)}">
+<title>{escape(title)}</title>
+<style>{_STYLE}</style>
+</head>
+<body>
+<header>
+<h1>{escape(title)}</h1>
+<p>{escape(made)}</p>
+</header>
+{body}
+</body>
+</html>
+"""
+
+
+def _section(title: str, content: str, kind: str = "") -> str:
+    extra = f' class="{kind}"' if kind else ""
+    return f"<section{extra}>\n<h2>{escape(title)}</h2>\n{content}\n</section>"
+
+
+def _text(title: str, text: str) -> str:
+    """A text of the terminal; lines of columns keep them, others may be broken."""
+    blocks: list[tuple[bool, list[str]]] = []
+    for line in text.splitlines():
+        aligned = "  " in line.strip() or line.startswith("  ")
+        if not blocks or blocks[-1][0] != aligned:
+            blocks.append((aligned, []))
+        blocks[-1][1].append(line)
+    return _section(title, "\n".join(_pre(lines, kind) for kind, lines in blocks))
+
+
+def _pre(lines: Iterable[str], aligned: bool) -> str:
+    kind = ' class="columns"' if aligned else ""
+    return f"<pre{kind}>{escape(chr(10).join(lines))}</pre>"
+
+
+def _warnings(text: str) -> str:
+    """Lines of a text that begin with "warning: ", where nobody overlooks them."""
+    told = [line for line in text.splitlines() if line.startswith("warning: ")]
+    if not told:
+        return ""
+    items = "\n".join(f"<li>{escape(t.removeprefix('warning: '))}</li>" for t in told)
+    return _section("Warnings", f"<ul>\n{items}\n</ul>", "warnings")
+
+
+def _picture(title: str, png: bytes) -> str:
+    data = base64.b64encode(png).decode("ascii")
+    image = f'<img alt="{escape(title)}" src="data:image/png;base64,{data}">'
+    return _section(title, f"<figure>{image}</figure>")
+
+
+def _inputs(inputs: Mapping[str, Any]) -> str:
+    """A table of all that was read, defaults included."""
+    rows = []
+    for table, held in inputs.items():
+        head = f'<th scope="colgroup" colspan="2">[{escape(table)}]</th>'
+        rows.append(f"<tr>{head}</tr>")
+        rows += [
+            f'<tr><td>{escape(key)}</td><td class="number">{escape(value)}</td></tr>'
+            for key, value in _flat(held)
+        ]
+    body = "\n".join(rows)
+    note = "<p>All that was read, in SI; what the scene leaves out has its default.</p>"
+    return _section("Inputs", f"{note}\n<table>\n{body}\n</table>")
+
+
+def _flat(held: Any, key: str = "") -> list[tuple[str, str]]:
+    """(dotted key, value in words) of nested tables."""
+    if isinstance(held, Mapping):
+        pairs = held.items()
+    elif isinstance(held, Sequence) and any(isinstance(x, Mapping) for x in held):
+        pairs = ((str(k), one) for k, one in enumerate(held))
+    else:
+        return [(key, _shown(held))]
+    return [
+        pair
+        for name, one in pairs
+        for pair in _flat(one, f"{key}.{name}" if key else name)
+    ]
+
+
+def _shown(value: Any) -> str:
+    """A value as people read it: numbers with twelve digits at most."""
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return ", ".join(map(_shown, value))
+    if isinstance(value, float):
+        return f"{value:.12g}"
+    number, space, unit = str(value).partition(" ")
+    try:
+        return f"{float(number):.12g}{space}{unit}"
+    except ValueError:
+        return str(value)
+
+
+def _cases(found: Mapping[str, np.ndarray], count: int) -> str:
+    """The first cases as a table."""
+    head = "".join(f'<th scope="col">{escape(header)}</th>' for header in found)
+    rows = [
+        "<tr>" + "".join(f"<td>{escape(_cell(x))}</td>" for x in row) + "</tr>"
+        for row in zip(*(v[:MOST_CASES] for v in found.values()), strict=True)
+    ]
+    left = count - len(rows)
+    note = f"<p>The first {len(rows)} of {count} cases.</p>\n" if left > 0 else ""
+    body = "\n".join(rows)
+    table = f'<table class="cases">\n<tr>{head}</tr>\n{body}\n</table>'
+    return _section("Table", f'{note}<div class="scroll">{table}</div>')
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, float | np.floating):
+        return f"{value:.6g}" if np.isfinite(value) else ""
+    return str(value)
+
+
+def _rerun(origin: Origin) -> str:
+    """What makes the same report again."""
+    changes = "".join(f"\n  {one}" for one in origin.settings)
+    changed = f"\nwith these changes to the scene below:{changes}" if changes else ""
+    again = f"{origin.command}{changed}"
+    return _section(
+        "How to run it again",
+        f"<pre>{escape(again)}</pre>\n<p>The scene:</p>\n"
+        f"<pre>{escape(origin.text)}</pre>",
+    )
