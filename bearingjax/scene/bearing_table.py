@@ -79,11 +79,7 @@ def read_bearing(
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    found = designated(table)
-    if found is not None:
-        table = table.completed(found[0])
-    kind = table.choice("type", (*ROLLERS, *BALLS))
-    bearing = _balls(table, kind) if kind in BALLS else _rollers(table, kind)
+    bearing = _single(table)
     if isinstance(bearing, SelfAligningBallRow):
         if "set" in beside:
             raise beside.error(
@@ -126,6 +122,26 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
     return taken_from(entry, given)
 
 
+def _single(table: Table) -> Bearing:
+    """A bearing of one row."""
+    found = designated(table)
+    if found is not None:
+        table = table.completed(found[0])
+    kind = table.choice("type", (*ROLLERS, *BALLS))
+    return _balls(table, kind) if kind in BALLS else _rollers(table, kind)
+
+
+def _own(row: Table, common: Bearing) -> Bearing:
+    """The bearing of a row of a set: its own, or the one of all rows without."""
+    if "bearing" not in row:
+        return common
+    own = row.table("bearing")
+    bearing = _single(own)
+    if isinstance(bearing, SelfAligningBallRow):
+        raise row.error("bearing", "a self-aligning bearing is no row of a set")
+    return bearing
+
+
 def _set(table: Table, bearing: Bearing) -> tuple[BearingSet, float | None]:
     arrangement = table.choice("arrangement", SETS)
     if arrangement == "tandem":
@@ -142,8 +158,9 @@ def _set(table: Table, bearing: Bearing) -> tuple[BearingSet, float | None]:
         for row in table.tables("rows"):
             places = row.fields(SetRow, "position")
             mirrored, spring = row.flag("mirrored", False), _spring(row)
+            own = _own(row, bearing)
             with row.building():
-                rows.append(SetRow(bearing, mirrored=mirrored, spring=spring, **places))
+                rows.append(SetRow(own, mirrored=mirrored, spring=spring, **places))
         with table.building():
             pack = BearingSet(tuple(rows))
     else:

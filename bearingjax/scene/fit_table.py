@@ -26,6 +26,7 @@ from ..design import (
     bore_limits,
     clearance_range,
     fit_state,
+    is_self_aligning,
     limits,
     mounted,
     mounting_at,
@@ -39,7 +40,7 @@ from ..design import (
 )
 from ..design.fits import PARTS, ClearanceRange, FitState
 from ..element import Speed
-from .table import Table
+from .table import Table, written
 
 _ZERO = 273.15
 _REFERENCE = _ZERO + 20.0
@@ -123,6 +124,10 @@ def read_fits(
     row = rows_of(bearing)[0].bearing
     if isinstance(row, ThrustBallBearing):
         raise top.error("fit", "is for radial bearings; a thrust bearing has no play")
+    if len({id(one.bearing) for one in rows_of(bearing)}) > 1 and not is_self_aligning(
+        bearing
+    ):
+        raise top.error("fit", "is for rows of one bearing; those of this set differ")
     place = table.choice("at", tuple(PLACES), "middle")
     given, names = _limits(table, top, row)
     conditions = _conditions(temperature, speed)
@@ -282,6 +287,7 @@ def _clearance(table: Table, top: Table, row, bore) -> Limits | None:
         if key in drawn:
             problem = f"stands beside `bearing.{key}`; one follows from the other"
             raise table.error("clearance", problem)
+    top.table("bearing").fill("radial_internal_clearance", None)  # it follows
     with table.building():
         return find(name, bore)
 
@@ -326,7 +332,8 @@ def _of_bearing(table: Table, drawn: dict[str, Any], key, wanted, material, warm
                 problem = f"is missing: `bearing.{key}` has numbers, and no expansion"
                 raise table.error(wanted, problem)
             name = "steel"
-        value = WARM_MATERIALS[name]().expansion
+        value = float(WARM_MATERIALS[name]().expansion)
+        table.fill(wanted, written(value, "1/K"))
     with table.building():
         return WarmMaterial(material, value)
 
@@ -334,6 +341,7 @@ def _of_bearing(table: Table, drawn: dict[str, Any], key, wanted, material, warm
 def _seat_material(table: Table, key: str) -> WarmMaterial:
     given = table.table_or_word(key, tuple(WARM_MATERIALS))
     if given is None:
+        table.fill(key, "steel")
         return WarmMaterial.steel()
     if isinstance(given, str):
         return WARM_MATERIALS[given]()

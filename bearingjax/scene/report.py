@@ -62,9 +62,13 @@ def _bearing(scene, solution):
         if scene.preload_force is not None:
             lines.append(f"ground to a preload of {scene.preload_force:.5g} N")
         lines += _springs(bearing, solution)
-    head = scene.name if not lines else "each row"
-    row = rows_of(bearing)[0].bearing
-    own = ball_row(row, head) if is_ball(bearing) else roller_row(row, head)
+    tell = ball_row if is_ball(bearing) else roller_row
+    parts = [row.bearing for row in rows_of(bearing)]
+    alike = len({"\n".join(tell(part, "")) for part in parts}) == 1
+    if alike:
+        own = tell(parts[0], "each row" if lines else scene.name)
+    else:
+        own = [line for k, part in enumerate(parts) for line in tell(part, f"row {k}")]
     listed = [] if scene.catalogue is None else [str(scene.catalogue)]
     return "\n".join([*lines, *own, *listed])
 

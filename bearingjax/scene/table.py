@@ -184,6 +184,9 @@ class Table:
         value = self._get(key, _MISSING if required else {}, "a table")
         if not isinstance(value, Mapping):
             raise self.error(key, f"{value!r} is not a table")
+        known = self._read.get(key)
+        if isinstance(known, Table):  # asked for before
+            return known
         child = Table(value, self._file, self._full(key))
         self._children.append(child)
         self._read[key] = child
@@ -243,7 +246,7 @@ class Table:
             key: Key in this table.
             value: As a scene may write it; `None`: nothing.
         """
-        self._read[key] = value
+        (self._stand_in or self)._read[key] = value
 
     def echo(self) -> dict[str, Any]:
         """All that was read here and below, as a scene may write it: quantities in SI

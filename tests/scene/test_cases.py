@@ -1,6 +1,7 @@
 """`[cases]` of a scene: grid, list and spectrum, what may be wrong, the command."""
 
 import json
+from html import unescape
 
 import jax
 import numpy as np
@@ -117,9 +118,12 @@ def test_solve_leaves_the_cases_alone(scene):
 
 def test_command_writes_a_row_per_case(run, scene, tmp_path):
     path = scene(GRID)
-    csv, out = tmp_path / "t.csv", tmp_path / "t.json"
-    ended = run("sweep", path, "--table", csv, "--json", out)
+    csv, out, page = (tmp_path / f"t.{end}" for end in ("csv", "json", "html"))
+    ended = run("sweep", path, "--table", csv, "--json", out, "--report", page)
     assert ended.status == 0 and "12 converged" in ended.out
+    text = unescape(page.read_text(encoding="utf-8"))
+    assert all(line in text for line in ended.out.splitlines())
+    assert path.read_text() in text and text.count("<td>converged</td>") == 12
     table = pyarrow.csv.read_csv(csv).to_pydict()
     assert list(table)[0] == "bearing.radial_internal_clearance [m]"
     assert table["bearing.radial_internal_clearance [m]"][::6] == [0.0, 20e-6]
@@ -304,6 +308,7 @@ def test_cases_against_the_scene(scene, change, message):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["--report", "x.pdf"], "x.pdf: a report ends in .html"),
         (["--table", "x.xls"], "a table ends in .csv, .parquet, .xlsx"),
         (["--devices", "0"], "must be at least 1"),
         (["--devices", "1000000"], "the cores that there are"),

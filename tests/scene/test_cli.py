@@ -1,5 +1,6 @@
 """The command line: report, JSON, picture, exit status."""
 
+import base64
 import json
 import os
 import re
@@ -7,6 +8,7 @@ import runpy
 import struct
 import subprocess
 import sys
+from html.parser import HTMLParser
 
 import numpy as np
 import pytest
@@ -100,6 +102,102 @@ def test_solved(run, tmp_path):
     width, height = size_of_png(picture)
     assert width > 800 and height > 500
     assert picture.stat().st_size > 50_000
+
+
+class Page(HTMLParser):
+    """What stands on a page; every element must end where it began."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.inside, self.titles, self.images, self.words = [], [], [], []
+        self.feed(text)
+        self.close()
+        assert self.inside == []
+
+    def handle_starttag(self, tag, attrs):
+        if tag == "img":
+            self.images.append(dict(attrs)["src"])
+        if tag not in ("img", "meta"):
+            self.inside.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.inside.pop() == tag
+
+    def handle_data(self, data):
+        if self.inside and self.inside[-1] == "h2":
+            self.titles.append(data)
+        if "style" not in self.inside:
+            self.words.append(data)
+
+
+def test_report_that_stands_alone(run, tmp_path):
+    path, picture = tmp_path / "out.html", tmp_path / "out.png"
+    change = "operating.load.Fy=-9 kN"
+    arguments = ("solve", "cylindrical_rig", "--set", change, "--report", path)
+    done = run(*arguments, "--plot", picture)
+    assert done.status == 0 and done.err == ""
+    text = path.read_text(encoding="utf-8")
+    page = Page(text)
+    assert page.titles == [
+        "Warnings",
+        "Section, load zone, contacts",
+        "Bearing",
+        "Operation, materials and laws",
+        "Displacement and load",
+        "Stiffness",
+        "Rolling elements",
+        "Solution and warnings",
+        "Inputs",
+        "How to run it again",
+    ]
+    words = "\n".join(page.words)
+    # All of the report on the terminal stands there, but for the rules between parts.
+    for line in done.out.splitlines():
+        assert set(line) == {"-"} or line in words
+    # The picture is that of --plot, and nothing is fetched.
+    (image,) = page.images
+    data = base64.b64decode(image.removeprefix("data:image/png;base64,"))
+    assert data == picture.read_bytes()
+    assert not re.search(r"(?:src|href)=\"(?!data:)|url\(|@import|<script", text)
+    assert "@media print" in text
+    # It tells how to make it again: command, changes, scene.
+    shipped = bj.scene.shipped_scenes()["cylindrical_rig"].read_text(encoding="utf-8")
+    assert shipped in words and f"--set '{change}'" in words
+    assert bj.__version__ in words and "-9000 N" in words
+
+
+def test_a_report_of_strange_names_is_still_a_page(run, tmp_path):
+    scene = tmp_path / "<b>&amp;.toml"
+    shipped = bj.scene.shipped_scenes()["cylindrical_rig"].read_text(encoding="utf-8")
+    scene.write_text(f"# </pre><script>x</script>\n{shipped}", encoding="utf-8")
+    path = tmp_path / "out.HTM"
+    assert run("solve", scene, "--report", path).status == 0
+    text = path.read_text(encoding="utf-8")
+    assert "<script" not in text and "<h1>&lt;b&gt;&amp;amp;</h1>" in text
+    assert "# </pre><script>x</script>" in "\n".join(Page(text).words)
+
+
+def test_no_report_of_no_solution(run, tmp_path):
+    path = tmp_path / "out.html"
+    path.write_text("of an earlier run", encoding="utf-8")
+    assert run(*PULLED, "--report", path).status == 3
+    assert not path.exists()
+
+
+@pytest.mark.usefixtures("no_solve")
+def test_report_that_cannot_be_written(run, tmp_path, monkeypatch):
+    done = run("solve", "tapered", "--report", "out.pdf")
+    assert done == (2, "", "bearingjax: out.pdf: a report ends in .html\n")
+    path = tmp_path / "none" / "out.html"
+    done = run("solve", "tapered", "--report", path)
+    assert done == (2, "", f"bearingjax: {path}: its folder does not exist\n")
+    same = tmp_path / "out.html"
+    done = run("solve", "tapered", "--report", same, "--json", same)
+    assert done.status == 2 and "by --json and by --report; name two" in done.err
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    done = run("solve", "tapered", "--report", same)
+    problem = 'pictures need matplotlib: pip install "bearingjax[plot]"'
+    assert done == (2, "", f"bearingjax: {problem}\n")
 
 
 def test_numbers_of_the_taper(run, tmp_path):

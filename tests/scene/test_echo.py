@@ -15,6 +15,7 @@ SCENES = (
     "ball_pair",
     "cylindrical_ribs",
     "hybrid_spindle",
+    "life_spectrum",
     "load_map",
     "self_aligning",
     "skid_roller",
@@ -63,6 +64,45 @@ def test_defaults_are_filled_in():
     assert inputs["operating"]["outer_speed"] == "0.0 rad/s"
     assert inputs["numerics"]["quadrature"] == "contact_mapped"
     assert inputs["numerics"]["points"] == 32
+
+
+def test_a_designation_is_its_numbers(tmp_path):
+    path = tmp_path / "listed.toml"
+    path.write_text('[bearing]\ndesignation = "6205/C3"\n', encoding="utf-8")
+    scene = read_scene(path)
+    again = echoed(tmp_path / "listed.json", scene)
+    assert "designation" not in scene.inputs["bearing"]
+    assert again.inputs == scene.inputs
+    leaves = [jax.tree.leaves(one.element) for one in (scene, again)]
+    for one, other in zip(*leaves, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+FIT = """
+at = "tightest"
+bore = "30 mm"
+outside_diameter = "62 mm"
+housing_diameter = "80 mm"
+shaft = "k5"
+housing = "H7"
+clearance = "C3"
+shaft_roughness = "0.8 um"
+"""
+
+
+def test_fits_are_in_it(tmp_path):
+    """A class of clearance stands for the number that the bearing has not."""
+    text = bj.scene.shipped_scenes()["deep_groove"].read_text(encoding="utf-8")
+    lines = [x for x in text.splitlines() if "radial_internal_clearance" not in x]
+    path = tmp_path / "fits.toml"
+    warm = '[temperature]\nshaft = "60 °C"\ninner_ring = "55 °C"\n'
+    path.write_text("\n".join(lines) + f"\n[fit]{FIT}\n{warm}", encoding="utf-8")
+    scene = read_scene(path)
+    again = echoed(tmp_path / "fits.json", scene)
+    assert again.inputs == scene.inputs
+    leaves = [jax.tree.leaves((one.element, one.fits)) for one in (scene, again)]
+    for one, other in zip(*leaves, strict=True):
+        np.testing.assert_array_equal(one, other)
 
 
 def test_settings_are_in_it():

@@ -20,6 +20,7 @@ SHIPPED = (
     "cylindrical_ribs",
     "cylindrical_rig",
     "deep_groove",
+    "four_point",
     "fujiwara_kawase",
     "hybrid_spindle",
     "life_spectrum",
@@ -32,6 +33,7 @@ SHIPPED = (
     "skid_roller",
     "sprung_pair",
     "tapered",
+    "thrust_ball",
 )
 CONTACT = "taper_contact"  # of one roller, for `read_contact`
 ROTORS = {  # for `read_rotor`
@@ -84,6 +86,61 @@ def test_every_shipped_scene_reads(name):
     assert scene.points == (101 if "n_rollers" in raw["bearing"] else 2)
     assert scene.tolerance is None
     assert any(scene.load)
+
+
+ROWS = """
+[set]
+arrangement = "rows"
+[[set.rows]]
+position = "-20 mm"
+[[set.rows]]
+position = "20 mm"
+mirrored = true
+bearing = { type = "angular_contact_ball", n_balls = 15, pitch_diameter = "70 mm",\
+ ball_diameter = "11 mm", outer_osculation = 0.53, contact_angle = "25 deg" }
+"""
+
+
+def with_rows(folder, text=ROWS, settings=()):
+    shipped = shipped_scenes()["angular_contact"].read_text(encoding="utf-8")
+    return read_text(folder, shipped + text.replace("\\\n", ""), settings)
+
+
+def test_rows_of_a_set_have_their_own_bearings(tmp_path):
+    first, second = with_rows(tmp_path).element.bearing.rows
+    assert first.bearing.n_balls == 19 and second.bearing.n_balls == 15
+    assert float(second.bearing.pitch_diameter) == near(70e-3)
+    assert fields(second.bearing.material) == steel()
+    scene = with_rows(tmp_path, settings=["set.rows.1.bearing.ball_diameter=12 mm"])
+    assert float(scene.element.bearing.rows[1].bearing.ball_diameter) == near(12e-3)
+    assert scene.inputs["set"]["rows"][1]["bearing"]["n_balls"] == 15
+    assert "bearing" not in scene.inputs["set"]["rows"][0]
+
+
+@pytest.mark.parametrize(
+    "setting, message",
+    [
+        (
+            "set.rows.1.bearing.n_balls=0",
+            "`set.rows[1].bearing.n_balls`: 0 is not a wh",
+        ),
+        ("set.rows.1.bearing.type=ball", "`set.rows[1].bearing.type`: 'ball' is not k"),
+        (
+            'set.rows.1.bearing={ designation = "1205" }',
+            "`set.rows[1].bearing`: a self-aligning bearing is no row of a set",
+        ),
+        ("set.rows.1.bearing=3", "`set.rows[1].bearing`: 3 is not a table"),
+        ("set.rows.1.bearing.bore=3", "`set.rows[1].bearing.bore`: unknown key"),
+        (
+            'fit={ bore = "70 mm", outside_diameter = "110 mm", shaft = "k5" }',
+            "`fit`: is for rows of one bearing; those of this set differ",
+        ),
+    ],
+)
+def test_wrong_rows(tmp_path, setting, message):
+    with pytest.raises(bj.scene.SceneError) as caught:
+        with_rows(tmp_path, settings=[setting])
+    assert str(caught.value).startswith("mine.toml: ") and message in str(caught.value)
 
 
 @pytest.mark.parametrize("name", ["needle", "tapered"])
