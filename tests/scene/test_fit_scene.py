@@ -203,9 +203,10 @@ def test_cases_vary_fits_temperatures_and_speed(scene):
         ' "20000 rpm", count = 2 } }\n'
     )
     table = read_cases(scene(BEARING + FIT + grid))
-    left = np.asarray(table.element.bearing.radial_internal_clearance)
+    (structure,) = table.structures
+    left = np.asarray(structure.element.bearing.radial_internal_clearance)
     assert left.shape == (8,) and np.unique(left.round(12)).size == 8
-    assert set(table.settings[0]) == {"fit.shaft", "temperature.inner_ring"}
+    assert set(table.settings[0]) == {"fit.shaft", "temperature.inner_ring [K]"}
     design, speed = np.asarray(table.cases.design), np.asarray(table.cases.inner_speed)
     # Fast rings grow: of cases that are else alike the faster has less clearance.
     by_speed = left[design].reshape(4, 2)

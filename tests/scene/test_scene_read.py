@@ -97,7 +97,8 @@ position = "-20 mm"
 position = "20 mm"
 mirrored = true
 bearing = { type = "angular_contact_ball", n_balls = 15, pitch_diameter = "70 mm",\
- ball_diameter = "11 mm", outer_osculation = 0.53, contact_angle = "25 deg" }
+ ball_diameter = "11 mm", outer_osculation = 0.53,\
+ inner_osculation = 0.53, contact_angle = "25 deg" }
 """
 
 
