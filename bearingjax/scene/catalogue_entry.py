@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..design.fit_limits import (
+    CLEARANCE_CLASSES,
     ball_clearance,
     roller_clearance,
     self_aligning_clearance,
@@ -21,7 +22,7 @@ from ..design.fit_limits import (
 from .designation import Suffixes, compact, split_designation
 from .quantity import SceneError, to_si
 
-_CLASSES = {
+CLEARANCES = {
     "deep_groove_ball": ball_clearance,
     "cylindrical_roller": roller_clearance,
     "needle_roller": roller_clearance,
@@ -115,6 +116,14 @@ class CatalogueEntry:
     sources: dict[str, str]
     notes: tuple[str, ...]
     table: dict[str, Any]
+
+    @property
+    def clearance_class(self) -> str | None:
+        """Class of radial internal clearance; `None` of a type without such."""
+        if self.type not in CLEARANCES:
+            return None
+        after = self.designation.rpartition("/")[2]
+        return after if after in CLEARANCE_CLASSES else "CN"
 
     @property
     def bearing(self) -> Any:
@@ -215,7 +224,7 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         shown = f"{changes['arrangement']} {key.partition(' ')[2]}"
     notes = [*odd, *(f"{word}: no effect" for word in suffixes.without_effect)]
     assumed = list(values.get("assumed", data.get("assumed", ())))
-    if kind in _CLASSES:
+    if kind in CLEARANCES:
         table[CLEARANCE], note = _clearance(kind, shown, si["bore"], suffixes)
         notes.append(note)
     elif suffixes.clearance is not None:
@@ -256,7 +265,7 @@ def _clearance(kind, shown, bore, suffixes) -> tuple[str, str]:
     """Clearance as in a scene, and where it is from."""
     name = suffixes.clearance or "CN"
     try:
-        low, high = _CLASSES[kind](name, bore)
+        low, high = CLEARANCES[kind](name, bore)
     except ValueError as error:
         raise SceneError(f"{shown}/{name}: {error}") from error
     middle = f"{0.5e6 * (low + high):.4g} um"

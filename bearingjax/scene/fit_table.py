@@ -13,8 +13,6 @@ from ..design import (
     WARM_MATERIALS,
     Bearing,
     BearingSet,
-    CylindricalRollerBearing,
-    DeepGrooveBallBearing,
     FitConditions,
     Limits,
     Material,
@@ -22,7 +20,6 @@ from ..design import (
     TaperedRollerBearing,
     ThrustBallBearing,
     WarmMaterial,
-    ball_clearance,
     bore_limits,
     clearance_range,
     fit_state,
@@ -32,7 +29,6 @@ from ..design import (
     mounting_at,
     outside_limits,
     radial_clearance,
-    roller_clearance,
     rows_of,
     sized,
     smoothing,
@@ -40,6 +36,7 @@ from ..design import (
 )
 from ..design.fits import PARTS, ClearanceRange, FitState
 from ..element import Speed
+from .catalogue_entry import CLEARANCE, CLEARANCES, FromCatalogue
 from .table import Table, written
 
 _ZERO = 273.15
@@ -49,11 +46,6 @@ _COLDEST, _HOTTEST = -100.0, 400.0
 MOST_STRESS = 127e6
 """Hoop stress above which a fit is warned of, of bearing steel [Pa]: the largest that
 catalogues of rolling bearings (JTEKT, NTN) allow a fit."""
-
-_CLASSES = {
-    DeepGrooveBallBearing: ball_clearance,
-    CylindricalRollerBearing: roller_clearance,
-}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -98,7 +90,10 @@ class FitFacts:
 
 
 def read_fits(
-    top: Table, bearing: Bearing | BearingSet, speed: Speed | None
+    top: Table,
+    bearing: Bearing | BearingSet,
+    speed: Speed | None,
+    catalogue: FromCatalogue | None = None,
 ) -> tuple[Any, Fits | None]:
     """Fits of a scene, and its bearing with the clearance that it has unmounted.
 
@@ -106,9 +101,11 @@ def read_fits(
         top: The scene.
         bearing: The design, unmounted.
         speed: Of the rings; `None`: at rest.
+        catalogue: What a designation stands for: boundary dimensions, and the class of
+            clearance, where the scene has no others.
 
     Returns:
-        The bearing, whose clearance is that of the `clearance` class if there is one,
+        The bearing, whose clearance is that of the class of clearance if there is one,
         and its fits; `None` without [fit].
 
     Raises:
@@ -129,12 +126,15 @@ def read_fits(
     ):
         raise top.error("fit", "is for rows of one bearing; those of this set differ")
     place = table.choice("at", tuple(PLACES), "middle")
-    given, names = _limits(table, top, row)
+    sizes = _sizes(table, catalogue)
+    given, names = _limits(table, row, sizes)
+    given["clearance"] = _clearance(table, top, row, sizes["bore"], catalogue)
+    scatters = given["clearance"] is not None
     conditions = _conditions(temperature, speed)
-    seats = _seats(table, top, row, conditions)
+    seats = sizes | _seats(table, top, row, conditions)
     with table.building():
         whole = sized(Mounting(**seats), row)
-        if given["clearance"] is None:
+        if not scatters:
             own = float(radial_clearance(row))
             given["clearance"] = Limits(own, own)
         # NumPy's numbers: JAX would compile every small operation on the way.
@@ -143,7 +143,7 @@ def read_fits(
         )
         seats["shaft_interference"] = there.shaft_interference
         seats["housing_interference"] = there.housing_interference
-        if "clearance" in table:
+        if scatters:
             bearing = _with_clearance(bearing, there.radial_clearance)
         fits = Fits(Mounting(**seats), conditions, place, given, names)
         mounted(bearing, fits.mounting, conditions)
@@ -230,15 +230,23 @@ def _with_clearance(bearing, clearance):
     )
 
 
-def _limits(table: Table, top: Table, row) -> tuple[dict[str, Any], tuple[str, str]]:
-    """Limits of all sizes, and names of the classes of the seats."""
-    bore, outside = (table.quantity(k, "length") for k in ("bore", "outside_diameter"))
+def _sizes(table: Table, catalogue: FromCatalogue | None) -> dict[str, Any]:
+    """Diameters of the seats and of the housing."""
+    found = {}
+    for key in ("bore", "outside_diameter", "housing_diameter"):
+        own = getattr(catalogue.entry, key, None) if catalogue else None
+        found[key] = table.quantity(key, "length", *([] if own is None else [own]))
+    return found
+
+
+def _limits(table: Table, row, sizes) -> tuple[dict[str, Any], tuple[str, str]]:
+    """Limits of the seats and rings, and names of the classes of the seats."""
     exact = Limits(0.0, 0.0)
-    found: dict[str, Any] = {"clearance": _clearance(table, top, row, bore)}
+    found: dict[str, Any] = {}
     names = []
-    for seat, size, ring, of_ring in (
-        ("shaft", bore, "bore", bore_limits),
-        ("housing", outside, "outside_diameter", outside_limits),
+    for seat, ring, of_ring in (
+        ("shaft", "bore", bore_limits),
+        ("housing", "outside_diameter", outside_limits),
     ):
         name = _class(table, seat)
         names.append(name)
@@ -253,7 +261,7 @@ def _limits(table: Table, top: Table, row) -> tuple[dict[str, Any], tuple[str, s
             cure = f"rollers differ; give `{seat}_interference`"
             raise table.error(seat, f"{problem} {cure}")
         with table.building():
-            found[seat], found[ring] = limits(name, size), of_ring(size)
+            found[seat], found[ring] = limits(name, sizes[ring]), of_ring(sizes[ring])
     return found, (names[0], names[1])
 
 
@@ -273,20 +281,27 @@ def _class(table: Table, seat: str) -> str:
     return table.choice(seat, names)
 
 
-def _clearance(table: Table, top: Table, row, bore) -> Limits | None:
+def _clearance(table: Table, top: Table, row, bore, catalogue) -> Limits | None:
     """Limits of a clearance class; `None`: the bearing's own number."""
     name = table.choice("clearance", CLEARANCE_CLASSES, None)
     if name is None:
-        return None
-    find = _CLASSES.get(type(row))
-    if find is None:
-        problem = "is for deep groove balls and cylindrical rollers; give the"
-        raise table.error("clearance", f"{problem} bearing's own clearance or angle")
+        if catalogue is None or {CLEARANCE, "contact_angle"} & set(
+            catalogue.overridden
+        ):
+            return None
+        name = catalogue.entry.clearance_class
+        if name is None:
+            return None
     drawn = top.raw("bearing")
+    find = CLEARANCES.get(catalogue.entry.type if catalogue else drawn["type"])
+    if find is None:
+        problem = "is for bearings with classes of radial clearance, not of this type;"
+        raise table.error("clearance", f"{problem} give its own clearance or angle")
     for key in ("radial_internal_clearance", "contact_angle"):
         if key in drawn:
             problem = f"stands beside `bearing.{key}`; one follows from the other"
             raise table.error("clearance", problem)
+    table.fill("clearance", name)
     top.table("bearing").fill("radial_internal_clearance", None)  # it follows
     with table.building():
         return find(name, bore)
@@ -294,11 +309,7 @@ def _clearance(table: Table, top: Table, row, bore) -> Limits | None:
 
 def _seats(table: Table, top: Table, row, conditions) -> dict[str, Any]:
     """Sizes and materials of a `Mounting`; interferences are put in later."""
-    seats: dict[str, Any] = {
-        key: table.quantity(key, "length")
-        for key in ("bore", "outside_diameter", "housing_diameter")
-    }
-    seats |= {"shaft_interference": 0.0, "housing_interference": 0.0}
+    seats: dict[str, Any] = {"shaft_interference": 0.0, "housing_interference": 0.0}
     for key in ("shaft_bore", "inner_raceway", "outer_raceway"):
         if key in table:
             seats[key] = table.quantity(key, "length")

@@ -146,13 +146,12 @@ def scene_of(data: dict[str, Any], path: Path) -> Scene:
         warnings.simplefilter("always")
         table = top.table("bearing", required=True)
         bearing, preload = read_bearing(table, top)
-    scene = _scene(
-        top, path.stem, bearing, preload, tuple(str(w.message) for w in caught)
-    )
-    top.finish()
     found = designated(table)
-    taken = None if found is None else found[1]
-    return dataclasses.replace(scene, catalogue=taken, inputs=top.echo())
+    catalogue = None if found is None else found[1]
+    odd = tuple(str(w.message) for w in caught)
+    scene = _scene(top, path.stem, bearing, preload, catalogue, odd)
+    top.finish()
+    return dataclasses.replace(scene, inputs=top.echo())
 
 
 def read_element(
@@ -173,7 +172,7 @@ def read_element(
     return element
 
 
-def _scene(top, name, bearing, preload, odd) -> Scene:
+def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
     operating, numerics = top.table("operating"), top.table("numerics")
     speeds = {r: operating.real(f"{r}_speed", unit_of(Speed, r), 0.0) for r in RINGS}
     speed = Speed(**speeds) if any(speeds.values()) else None
@@ -181,7 +180,7 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
     if "lubricant" in top:
         oil, assumed = read_oil(top.table("lubricant"))
         odd += assumed
-    bearing, fits = read_fits(top, bearing, speed)
+    bearing, fits = read_fits(top, bearing, speed, catalogue)
     if fits is not None:
         odd += tuple(fit_warnings(fit_facts(fits, bearing)))
     element = read_element(bearing, top.table("contact"), operating, numerics)
@@ -229,6 +228,7 @@ def _scene(top, name, bearing, preload, odd) -> Scene:
         points=points,
         life=read_life(top, bearing, speed, points),
         warnings=odd,
+        catalogue=catalogue,
     )
 
 

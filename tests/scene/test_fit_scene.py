@@ -105,6 +105,26 @@ def test_the_usual_fits_of_a_6205(scene):
     assert clearance(fitted(read.fits, read.element)) == pytest.approx(left, rel=1e-9)
 
 
+def test_a_bearing_of_the_catalogue_brings_its_sizes(scene):
+    text = FIT.replace('bore = "25 mm"\noutside_diameter = "52 mm"\n', "").replace(
+        'clearance = "CN"\n', ""
+    )
+    path = scene('[bearing]\ndesignation = "6205/C3"\n' + text)
+    read = bj.read_scene(path, ["fit.at=tightest"])
+    assert float(read.fits.mounting.bore) == 0.025
+    assert float(read.fits.mounting.outside_diameter) == pytest.approx(0.052)
+    assert read.fits.limits["clearance"] == pytest.approx((13e-6, 28e-6))  # ISO 5753-1
+    assert clearance(read.element) == pytest.approx(13 * MICRON)
+    assert read.inputs["fit"]["clearance"] == "C3"
+    other = bj.read_scene(path, ["bearing.radial_internal_clearance=9 um"])
+    assert other.fits.limits["clearance"] == pytest.approx((9e-6, 9e-6))
+    assert bj.read_scene(path, ["fit.clearance=C4"]).fits.limits[
+        "clearance"
+    ] == pytest.approx((23e-6, 41e-6))
+    with pytest.raises(SceneError, match="`fit.housing_diameter`: is missing"):
+        bj.read_scene(scene(path.read_text().replace('housing_diameter = "80 mm"', "")))
+
+
 @pytest.mark.parametrize("place, left", [("tightest", 0), ("loosest", 1)])
 def test_ends_of_the_tolerances(scene, place, left):
     read = bj.read_scene(scene(BEARING + FIT), [f"fit.at={place}"])
@@ -354,7 +374,7 @@ def test_bearings_that_need_numbers(scene):
     fit = FIT.replace('clearance = "CN"', "")
     with pytest.raises(SceneError, match="`fit.shaft`: is for bearings of other types"):
         bj.read_scene(scene(TAPER + fit))
-    with pytest.raises(SceneError, match="`fit.clearance`: is for deep groove balls"):
+    with pytest.raises(SceneError, match="`fit.clearance`: is for bearings with cl"):
         bj.read_scene(scene(PAIR + FIT))
     tight = ["fit.shaft=s6", "bearing.contact_angle=12 deg"]
     with pytest.raises(
