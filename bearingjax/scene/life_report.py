@@ -7,8 +7,9 @@ import jax
 import numpy as np
 
 from ..element.frame import RINGS
-from ..statics.life import LIFE_OUTPUTS, Life, LifeConditions, life_of
+from ..statics.life import LIFE_OUTPUTS, Life, life_of
 from ..statics.solution import RollerSolution, Solution
+from .life_table import life_conditions
 from .quantity import SceneError
 from .read import Scene
 
@@ -31,7 +32,7 @@ def scene_life(scene: Scene, solution: Solution) -> Life:
     Raises:
         SceneError: If its numbers of life and bearing do not go together.
     """
-    conditions = LifeConditions() if scene.life is None else scene.life
+    conditions = life_conditions(scene)
     speed = scene.speed
     if speed is None or float(speed.inner) == float(speed.outer):
         conditions = dataclasses.replace(conditions, viscosity=None, contamination=None)

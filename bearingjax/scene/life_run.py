@@ -9,12 +9,13 @@ import numpy as np
 
 from ..design import is_ball
 from ..numerics.result import Result
-from ..statics.life import LIFE_OUTPUTS, LifeConditions
+from ..statics.life import LIFE_OUTPUTS
 from ..statics.rating import Ratings, ratings
 from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ..statics.sweep import Sweep
 from ..statics.sweep_table import columns
 from .cases_table import CaseTable
+from .life_table import life_conditions
 from .quantity import SceneError
 from .scene_file import find_scene, parse_bearing
 from .sweep_run import listed_columns, run_cases
@@ -77,7 +78,7 @@ def run_life(
         SceneError: For cases whose life cannot be worked out.
     """
     scene = table.scene
-    conditions = LifeConditions() if scene.life is None else scene.life
+    conditions = life_conditions(scene, table.varied)
     turning = revolutions_per_hour(table.cases, np) is not None
     oiled = conditions.viscosity is not None
     if oiled and not turning:

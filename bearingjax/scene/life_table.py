@@ -1,16 +1,21 @@
 """The [life] table of a scene: what a rating life needs beside the bearing."""
 
-from typing import Any
+import dataclasses
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
 from ..design import Bearing, BearingSet, is_ball
 from ..element import Speed
 from ..statics.life import FRAMES, LifeConditions
 from ..statics.life_factor import CLEANLINESS
-from ..statics.rating import rated_axially
+from ..statics.rating import dynamic_capacity, rated_axially, static_capacity
 from ..statics.reference_life import LEAST_LAMINAE
 from .lubricant_table import read_lubricant
 from .oil_table import OWN
 from .table import Table
+
+if TYPE_CHECKING:
+    from .read import Scene
 
 _RATINGS = ("dynamic_capacity", "static_capacity", "fatigue_load_limit")
 _SURVIVING = (0.9, 0.9995)
@@ -52,6 +57,49 @@ def read_life(
     with table.building():
         rated_axially(bearing)  # which refuses sets of unlike rows
         return LifeConditions(**values)
+
+
+_UNRATED = (
+    "designation type radial_internal_clearance axial_internal_clearance first_azimuth"
+    " outer_shoulder inner_shoulder material ring_material roller_profile"
+    " raceway_profile ribs rib arrangement ball_deviation roller_deviation"
+    " azimuth_deviation"
+).split()
+"""Keys of [bearing] that change no load rating."""
+
+
+def life_conditions(scene: "Scene", varied: Iterable[str] = ()) -> LifeConditions:
+    """Conditions of the rating life of a scene, with the ratings of its designation.
+
+    A bearing of the catalogue has the published ratings where [life] gives none, those
+    of a set in proportion to ISO 281 and ISO 76; not so if the scene or its cases
+    change what ratings follow from.
+
+    Args:
+        scene: The scene.
+        varied: Keys that its cases vary.
+    """
+    own = LifeConditions() if scene.life is None else scene.life
+    taken = scene.catalogue
+    of_bearing = [key.split(".")[1] for key in varied if key.startswith("bearing.")]
+    if taken is None or not {*taken.overridden, *of_bearing} <= set(_UNRATED):
+        return own
+    entry, bearing = taken.entry, scene.element.bearing
+    more = {"dynamic_capacity": 1.0, "static_capacity": 1.0}
+    alone = entry.bearing
+    if isinstance(bearing, BearingSet) and not isinstance(alone, BearingSet):
+        for name, rate in (
+            ("dynamic_capacity", dynamic_capacity),
+            ("static_capacity", static_capacity),
+        ):
+            more[name] = float(rate(bearing)) / float(rate(alone))
+    more["fatigue_load_limit"] = more["static_capacity"]
+    published = {
+        name: getattr(entry, name) * more[name]
+        for name in _RATINGS
+        if getattr(own, name) is None and getattr(entry, name) is not None
+    }
+    return dataclasses.replace(own, **published)
 
 
 def _turns(speed) -> bool:

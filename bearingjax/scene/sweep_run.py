@@ -13,6 +13,7 @@ from ..statics.sweep_program import not_run
 from ..statics.sweep_table import columns
 from .cases_table import CaseTable, Structure
 from .files import write_numbers
+from .life_table import life_conditions
 from .quantity import SceneError, display_unit
 
 OUTPUTS = (
@@ -79,7 +80,7 @@ def _run(table, part, mine, progress, stop) -> Sweep:
             neighbours=table.neighbours,
             progress=progress,
             stop=stop,
-            life=scene.life,
+            life=life_conditions(scene, table.varied),
         )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error

@@ -1,0 +1,64 @@
+"""What a designation brings to [life]: the published ratings."""
+
+import pytest
+
+import bearingjax as bj
+from bearingjax.scene.life_table import life_conditions
+
+LOAD = '[operating]\nload = { Fy = "-1 kN" }\n'
+
+
+@pytest.fixture
+def read(tmp_path):
+    def made(bearing, more="", settings=()):
+        path = tmp_path / "scene.toml"
+        path.write_text(f"[bearing]\n{bearing}\n{LOAD}{more}", encoding="utf-8")
+        return bj.read_scene(path, settings)
+
+    return made
+
+
+def rated(conditions):
+    names = ("dynamic_capacity", "static_capacity", "fatigue_load_limit")
+    values = (getattr(conditions, name) for name in names)
+    return tuple(None if value is None else float(value) for value in values)
+
+
+def test_published_ratings_count_unless_given(read):
+    entry = bj.catalogue_entry("6205")
+    scene = read('designation = "6205"', "[life]\n")
+    own = (entry.dynamic_capacity, entry.static_capacity, entry.fatigue_load_limit)
+    assert rated(life_conditions(scene)) == own
+    # What says nothing of the ratings leaves them, what is said in [life] counts.
+    scene = read(
+        'designation = "6205"\nradial_internal_clearance = "3 um"\n',
+        '[life]\ndynamic_capacity = "15 kN"\n',
+    )
+    assert rated(life_conditions(scene)) == (15e3, *own[1:])
+
+
+def test_another_geometry_is_rated_by_the_standards(read):
+    scene = read('designation = "6205"\nn_balls = 8', "[life]\n")
+    assert rated(life_conditions(scene)) == (None, None, None)
+    scene = read('designation = "6205"', "[life]\n")
+    assert rated(life_conditions(scene, ["bearing.ball_diameter"])) == (None,) * 3
+    harmless = ["bearing.radial_internal_clearance", "operating.load.Fy"]
+    assert rated(life_conditions(scene, harmless))[0] == 14.8e3
+
+
+def test_a_pair_is_rated_as_two_rows(read):
+    entry = bj.catalogue_entry("7208B")
+    pair = '[set]\narrangement = "back_to_back"\nspacing = "18 mm"\n'
+    scene = read('designation = "7208B"', pair)
+    dynamic, static, limit = rated(life_conditions(scene))
+    # ISO 281, 5.1.2.2: two rows bear 2^0.7 of what one bears.
+    assert dynamic == pytest.approx(2**0.7 * entry.dynamic_capacity, rel=1e-12)
+    assert static == pytest.approx(2 * entry.static_capacity, rel=1e-12)
+    assert limit == pytest.approx(2 * entry.fatigue_load_limit, rel=1e-12)
+
+
+def test_both_rows_of_a_self_aligning_bearing_are_in_its_ratings(read):
+    entry = bj.catalogue_entry("1205")
+    assert rated(life_conditions(read('designation = "1205"')))[0] == (
+        entry.dynamic_capacity
+    )
