@@ -9,8 +9,8 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import SceneError
-from bearingjax.design import rows_of
-from bearingjax.scene import read_cases, read_optimisation
+from bearingjax.design import raceway_diameters, radial_clearance, rows_of
+from bearingjax.scene import read_cases, read_noise, read_optimisation, read_skid
 from bearingjax.scene.fit_table import fit_facts, fitted
 from bearingjax.scene.optimise_table import design_of
 
@@ -396,3 +396,21 @@ bearings = [{ station = 0, bearing = "fits.toml" }]
 
     with pytest.raises(SceneError, match=r"fits.toml has a \[fit\], which changes wit"):
         read_rotor(rotor)
+
+
+@pytest.mark.parametrize("name", ["skid_combined", "noise_deep_groove"])
+def test_skidding_and_noise_are_of_the_mounted_bearing(name):
+    row: Any = rows_of(bj.load_bearing(name))[0].bearing
+    inner, outer = (1e3 * float(x) for x in raceway_diameters(row))
+    settings = [
+        f"fit.bore={inner - 5} mm",
+        f"fit.outside_diameter={outer + 5} mm",
+        f"fit.housing_diameter={outer + 40} mm",
+        "fit.shaft_interference=4 um",
+        "fit.housing_interference=-4 um",
+    ]
+    read = read_skid if name.startswith("skid") else read_noise
+    task: Any = read(name, settings)
+    left = float(radial_clearance(task.model.element.bearing))
+    taken = float(radial_clearance(row)) - left
+    assert 3 * MICRON < taken < 4 * MICRON
