@@ -284,23 +284,21 @@ def _class(table: Table, seat: str) -> str:
 def _clearance(table: Table, top: Table, row, bore, catalogue) -> Limits | None:
     """Limits of a clearance class; `None`: the bearing's own number."""
     name = table.choice("clearance", CLEARANCE_CLASSES, None)
-    if name is None:
-        if catalogue is None or {CLEARANCE, "contact_angle"} & set(
-            catalogue.overridden
-        ):
-            return None
-        name = catalogue.entry.clearance_class
-        if name is None:
-            return None
     drawn = top.raw("bearing")
+    # A line that only restates the catalogue does not count.
+    own = drawn if catalogue is None else catalogue.overridden
+    stated = [key for key in (CLEARANCE, "contact_angle") if key in own]
+    if name is None and catalogue is not None and not stated:
+        name = catalogue.entry.clearance_class
+    if name is None:
+        return None
     find = CLEARANCES.get(catalogue.entry.type if catalogue else drawn["type"])
     if find is None:
         problem = "is for bearings with classes of radial clearance, not of this type;"
         raise table.error("clearance", f"{problem} give its own clearance or angle")
-    for key in ("radial_internal_clearance", "contact_angle"):
-        if key in drawn:
-            problem = f"stands beside `bearing.{key}`; one follows from the other"
-            raise table.error("clearance", problem)
+    for key in stated:
+        problem = f"stands beside `bearing.{key}`; one follows from the other"
+        raise table.error("clearance", problem)
     table.fill("clearance", name)
     top.table("bearing").fill("radial_internal_clearance", None)  # it follows
     with table.building():

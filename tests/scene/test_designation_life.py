@@ -1,4 +1,4 @@
-"""What a designation brings to [life]: the published ratings."""
+"""What a designation brings to [life], and to [fit] if `new` has restated it."""
 
 import pytest
 
@@ -61,3 +61,14 @@ def test_both_rows_of_a_self_aligning_bearing_are_in_its_ratings(read):
     assert rated(life_conditions(read('designation = "1205"')))[0] == (
         entry.dynamic_capacity
     )
+
+
+def test_a_clearance_that_only_restates_the_catalogue_is_its_class(read):
+    fit = '[fit]\nshaft = "k5"\nhousing = "H7"\nhousing_diameter = "80 mm"\n'
+    restated = 'designation = "6205"\nradial_internal_clearance = "12.5 um"'
+    limits = read(restated, fit).fits.limits["clearance"]
+    assert tuple(limits) == pytest.approx((5e-6, 20e-6))
+    limits = read(restated, fit, ["fit.clearance=C3"]).fits.limits["clearance"]
+    assert tuple(limits) == pytest.approx((13e-6, 28e-6))
+    with pytest.raises(bj.SceneError, match=r"`fit.clearance`: stands beside"):
+        read(restated.replace("12.5", "3"), fit, ["fit.clearance=C3"])
