@@ -201,7 +201,7 @@ def rollers(kind, values) -> dict[str, float]:
     return min(tries, key=lambda one: one[0])[1]
 
 
-def of_roller(size, pitch, angle, c0, share):
+def of_roller(size, pitch, angle, c0, share) -> tuple[dict[str, float], float]:
     """Rollers of a diameter that fill a share of their circle and have C0; their C."""
     if angle:
         count = round(share * math.pi / math.asin(size / pitch))
@@ -209,11 +209,10 @@ def of_roller(size, pitch, angle, c0, share):
         count = int(share * math.pi * pitch / size)
     gamma = size * math.cos(angle) / pitch
     length = 1e3 * c0 / (44 * (1 - gamma) * count * size * math.cos(angle))
-    lengths = (one / 1e3 for one in (size, length, pitch))
-    row = by_row.RollerRow(count, *lengths, angle)
+    row = by_row.RollerRow(count, size / 1e3, length / 1e3, pitch / 1e3, angle)
     mine = float(by_row.radial_roller_dynamic(row, 1)) / 1e3
-    names = ("n_rollers", "roller_diameter", "roller_length", "pitch_diameter")
-    return dict(zip(names, (count, size, length, pitch), strict=True)), mine
+    found = {"n_rollers": count, "roller_diameter": size, "roller_length": length}
+    return {**found, "pitch_diameter": pitch}, mine
 
 
 def check(kind, key, values) -> dict:
@@ -238,12 +237,14 @@ def check(kind, key, values) -> dict:
 
 def blind(kind, values, size) -> float | None:
     """Diameter by `estimate_geometry` over that of the catalogue, less one."""
-    sizes = [number(values, k) / 1e3 for k in ("bore", "outside_diameter", "width")]
-    loads = [1e3 * load for load in capacities(values)]
+    bore, outside, width = (
+        number(values, key) / 1e3 for key in ("bore", "outside_diameter", "width")
+    )
+    c, c0 = (1e3 * load for load in capacities(values))
     known = kind in ("angular_contact_ball", "four_point_ball", "tapered_roller")
     given = {"contact_angle": contact_angle(kind, values)} if known else {}
     try:
-        found = bj.estimate_geometry(*sizes, NAMES[kind], *loads, **given)
+        found = bj.estimate_geometry(bore, outside, width, NAMES[kind], c, c0, **given)
     except ValueError:
         return None
     row = bj.design.rows_of(found.bearing)[0].bearing
