@@ -10,7 +10,7 @@ import numpy as np
 from ..numerics.result import Result
 from ..statics.sweep import Sweep
 from ..statics.sweep_program import WARNED
-from ..statics.sweep_table import asked, read, restored
+from ..statics.sweep_table import asked, left_out, read, restored
 from .cases_table import CaseTable
 from .quantity import SceneError
 from .sweep_run import design_columns, run_cases
@@ -62,8 +62,9 @@ def resume_cases(
         return run_cases(table, progress, stop)
     again = (solved if solved.size else ran)[-CHECKED:]
     checked = run_cases(_part(table, again))
+    whole = Sweep(table.cases, {}, checked.moving_ring, checked.zeros)
     try:
-        outputs = restored(known, checked.outputs, checked.zeros)
+        outputs = restored(known, checked.outputs, left_out(whole))
     except ValueError as error:
         raise SceneError(f"{path}: {error}; {_CURE}") from error
     _check_same(path, checked.outputs, {k: v[again] for k, v in outputs.items()})

@@ -51,7 +51,7 @@ def columns(
     """A sweep as columns by header, "name [unit]": first the cases, then the results.
 
     Arrays are spread over columns, `displacement_inner_uy [m]`, without those that are
-    zero whatever the case (`Sweep.zeros`). The result is the
+    zero whatever the case (`left_out`). The result is the
     code's label; where it is not "converged", numbers are NaN. `warnings` holds the
     kinds of warning that are given for a case, each with its size.
 
@@ -66,7 +66,7 @@ def columns(
         header: column
         for name, values in sweep.outputs.items()
         if name not in ("result", "unrestrained") and not name.startswith(WARNED)
-        for header, column in _spread(name, values, sweep.zeros)
+        for header, column in _spread(name, values, left_out(sweep))
         if column is not None
     }
     labels = np.array([code.label for code in Result])
@@ -77,6 +77,19 @@ def columns(
         **({WARNINGS: _warned(sweep)} if sweep.warned else {}),
         **found,
     }
+
+
+def left_out(sweep: Sweep) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """`Sweep.zeros`, and the displacements that all its cases hold at zero."""
+    held = tuple(
+        f"{sweep.moving_ring}_{freedom}"
+        for freedom, values in sweep.cases.prescribed.items()
+        if not np.any(np.asarray(values))
+    )
+    zeros = dict(sweep.zeros)
+    return tuple(
+        {**zeros, "displacement": zeros.get("displacement", ()) + held}.items()
+    )
 
 
 def _warned(sweep):
@@ -257,7 +270,7 @@ def restored(
         table: From `read`.
         like: Outputs of a sweep of the same kind, with any number of cases: their
             names, shapes and dtypes are taken.
-        zeros: As of `Sweep`.
+        zeros: As of `left_out`.
 
     Returns:
         Outputs by name; `unrestrained`, which no table holds, is -1, and a warning
@@ -317,6 +330,8 @@ def asked(cases: Cases) -> dict[str, np.ndarray]:
             head = _header(name, unit_of(cases, "load", (k,)))
             out[head] = np.asarray(cases.load)[:, k]
     for name, values in cases.prescribed.items():
+        if not np.any(np.asarray(values)):
+            continue
         unit = unit_of(cases, "prescribed", (FREEDOMS.index(name),))
         out[_header(f"prescribed_{name}", unit)] = np.asarray(values)
     if cases.fixed_displacement is not None:

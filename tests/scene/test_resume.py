@@ -9,9 +9,10 @@ import pyarrow.csv
 import pytest
 from test_cases import HEAD
 
+from bearingjax import FREEDOMS, Cases
 from bearingjax.scene import design_columns, read_cases, resume
 from bearingjax.statics import Sweep, sweep_program, sweep_table
-from bearingjax.statics.sweep_table import asked, read, restored, write
+from bearingjax.statics.sweep_table import asked, left_out, read, restored, write
 
 SWEEP = importlib.import_module("bearingjax.statics.sweep")  # the name is a function
 
@@ -149,6 +150,28 @@ operating.load.Fy = ["-0.1 kN", "-1 kN"]
     again = restored(known, outputs)
     for name, values in outputs.items():
         np.testing.assert_array_equal(again[name], values)
+
+
+def test_what_is_held_at_zero_has_no_column_and_comes_back(tmp_path):
+    """A tilt held at zero; one that is zero in some cases only has its column."""
+    tilts = {"gx": [0.0, 0.0, 0.0], "gy": [0.0, 1e-3, 0.0]}
+    cases = Cases(np.tile([0, -1e3, 0, 0, 0, 0], (3, 1)), prescribed=tilts)
+    q = np.zeros((3, 12))
+    q[:, 7], q[:, 10] = [-1e-6, -2e-6, np.nan], tilts["gy"]
+    q[2] = np.nan
+    outputs = {"result": np.array([0, 0, 5]), "displacement": q}
+    outer = tuple(f"outer_{name}" for name in FREEDOMS)
+    zeros = (("displacement", (*outer, "inner_gz")),)
+    sweep = Sweep(cases, outputs, "inner", zeros)
+    place = tmp_path / "t.csv"
+    write(sweep, place)
+    known = read(place)
+    moves = [name for name in known if name.startswith(("displacement", "prescribed"))]
+    ours = ["ux [m]", "uy [m]", "uz [m]", "gy [rad]"]
+    wanted = [f"displacement_inner_{name}" for name in ours]
+    assert moves == ["prescribed_gy [rad]", *wanted]
+    again = restored(known, outputs, left_out(sweep))
+    np.testing.assert_array_equal(again["displacement"], q)
 
 
 def test_interrupted_while_the_table_is_written(
