@@ -133,6 +133,7 @@ from .optimise import GeometryEstimate as GeometryEstimate
 from .optimise import MeanPressure as MeanPressure
 from .optimise import Optimised as Optimised
 from .optimise import PeakPressure as PeakPressure
+from .optimise import RatingLife as RatingLife
 from .optimise import Stiffness as Stiffness
 from .optimise import StiffnessTarget as StiffnessTarget
 from .optimise import Variable as Variable

@@ -25,6 +25,7 @@ MEASURES = [
     bj.EdgeLoad(),
     *(bj.Displacement(freedom) for freedom in ("ux", "gy")),
     *(bj.Stiffness(freedom) for freedom in ("uz", "gx")),
+    bj.RatingLife(hours=True),
 ]
 
 

@@ -9,7 +9,8 @@ implicit function theorem), for little more than the solves; SciPy's L-BFGS-B (b
 and SLSQP (constraints) or any Optax descent do the rest.
 
 Measures, as objective or in a `Constraint`: `PeakPressure`, `MeanPressure` (weighted by
-hours), `EdgeLoad`, `Displacement`, `Stiffness`, `StiffnessTarget`, or any smooth
+hours), `EdgeLoad`, `Displacement`, `Stiffness`, `StiffnessTarget`, `RatingLife` (over a
+load spectrum; as an objective made largest) and its inverse `Damage`, or any smooth
 function `(element, cases, solution) -> scalar` of your own. Maxima are p-norms, never
 below the true maximum (`best.after.exact`) and above it by at most (number of
 samples)^(1/exponent). A line contact knows no pressure peak at a roller end: keep load
@@ -29,6 +30,8 @@ from .constraint import Constraint as Constraint
 from .design_problem import Outcome as Outcome
 from .estimate import GeometryEstimate as GeometryEstimate
 from .estimate import estimate_geometry as estimate_geometry
+from .life import Damage as Damage
+from .life import RatingLife as RatingLife
 from .measure import Displacement as Displacement
 from .measure import EdgeLoad as EdgeLoad
 from .measure import MeanPressure as MeanPressure

@@ -3,8 +3,7 @@
 A measure is any function (element, cases, solution) -> scalar, where the solution has
 a leading case axis; those here are Modules. The solution of a system (`system.py`) is
 what it solves, such as a skidding end state; those here look at the loads in it. Life
-over a load spectrum can be added as one: the element has the design, the cases have
-hours and speeds.
+over a load spectrum is one in `life.py`.
 
 Maxima and minima are smooth (`smooth.py`).
 """
@@ -47,6 +46,12 @@ class AbstractMeasure(eqx.Module):
             element, cases, solution: As of a call.
         """
         return self(element, cases, solution)
+
+    @property
+    def as_objective(self) -> "AbstractMeasure":
+        """What is made least if this is an objective: itself, or what falls as it
+        rises."""
+        return self
 
     @property
     def least_size(self) -> float:

@@ -16,7 +16,7 @@ from ..statics.options import SolveOptions
 from ..statics.support import check_held
 from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem
-from .measure import label_of
+from .measure import AbstractMeasure, label_of
 from .search import METHODS, Ending, search, takes_gradients
 from .system import Design, check_design
 from .trials import Trial, Trials, optimality
@@ -129,7 +129,8 @@ def optimise(
         cases: Operating cases, all of this design.
         variables: The design variables.
         objective: The measure to be minimised, such as `PeakPressure()`, or any
-            smooth function (element, cases, solution) -> scalar.
+            smooth function (element, cases, solution) -> scalar. Of a `RatingLife` its
+            inverse is minimised.
         constraints: Bounds on measures.
         method: "l-bfgs-b" (the default without constraints), "slsqp" (with them),
             "adam" or any Optax gradient transformation, projected onto the bounds;
@@ -161,6 +162,8 @@ def optimise(
         SolveError: If the starting design does not solve.
     """
     variables, constraints = tuple(variables), tuple(constraints)
+    if isinstance(objective, AbstractMeasure):
+        objective = objective.as_objective
     method = _check_method(method, constraints)
     _check_call(cases, objective, constraints, max_steps, tolerance)
     check_design("optimise", element, cases)

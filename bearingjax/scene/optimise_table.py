@@ -9,6 +9,7 @@ from ..design import BearingSet, is_ball, rows_of
 from ..element import FREEDOMS, BearingElement
 from ..numerics.units import unit_of
 from ..optimise.constraint import Constraint
+from ..optimise.life import RatingLife
 from ..optimise.measure import (
     Displacement,
     EdgeLoad,
@@ -22,6 +23,7 @@ from ..optimise.search import METHODS
 from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
+from ..statics.life import LifeConditions
 from .cases_table import read_cases
 from .quantity import SceneError, kind_of
 from .read import Scene, scene_of
@@ -34,6 +36,7 @@ OBJECTIVES = (
     "edge_load",
     "displacement",
     "stiffness",
+    "rating_life",
 )
 
 
@@ -119,11 +122,13 @@ def _optimisation(table: Table, scene: Scene, cases: Cases) -> Optimisation:
     exponent = table.number("exponent", EXPONENT)
     with table.building():
         PeakPressure(exponent)
-    objective = _measure(table, "objective", kind, exponent, balls, target=True)
+    life = _life(scene, cases)
+    objective = _measure(table, "objective", kind, exponent, balls, life, target=True)
     constraints = ()
     if "constraints" in table:
         constraints = tuple(
-            _constraint(part, exponent, balls) for part in table.tables("constraints")
+            _constraint(part, exponent, balls, life)
+            for part in table.tables("constraints")
         )
     variables = _variables(table.table("variables", required=True), scene)
     method = table.choice("method", METHODS, None)
@@ -207,9 +212,9 @@ def _no_number(key, table, numbers):
     return not_among(key, tuple(numbers))
 
 
-def _constraint(table: Table, exponent, balls) -> Constraint:
+def _constraint(table: Table, exponent, balls, life) -> Constraint:
     kind = table.choice("measure", OBJECTIVES)
-    measure = _measure(table, "measure", kind, exponent, balls)
+    measure = _measure(table, "measure", kind, exponent, balls, life)
     least, most = (
         table.quantity(key, _kind_of(measure), None) for key in ("at_least", "at_most")
     )
@@ -219,7 +224,19 @@ def _constraint(table: Table, exponent, balls) -> Constraint:
         return Constraint(measure, least, most)
 
 
-def _measure(table: Table, key, kind, exponent, balls, target=False) -> Any:
+def _life(scene: Scene, cases: Cases) -> RatingLife | None:
+    """Rating life in hours by the [life] of a scene, or `None` without speeds."""
+    if cases.inner_speed is None and cases.outer_speed is None:
+        return None
+    return RatingLife(LifeConditions() if scene.life is None else scene.life, True)
+
+
+def _measure(table: Table, key, kind, exponent, balls, life, target=False) -> Any:
+    if kind == "rating_life":
+        if life is None:
+            problem = "rating_life is in hours: it needs a speed in [operating]"
+            raise table.error(key, problem)
+        return life
     if kind == "peak_pressure":
         return PeakPressure(exponent)
     if kind == "mean_pressure":
@@ -241,5 +258,7 @@ def _measure(table: Table, key, kind, exponent, balls, target=False) -> Any:
 def _kind_of(measure) -> str:
     if isinstance(measure, EdgeLoad):
         return "line load"
+    if isinstance(measure, RatingLife):
+        return "duration"
     tilting = isinstance(measure, Stiffness) and measure.unit == "N m"
     return "tilting stiffness" if tilting else kind_of(measure.unit)

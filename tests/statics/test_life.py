@@ -631,3 +631,31 @@ def test_a_sweep_says_which_life_it_cannot_have(balls, untyped):
     element = ball_element(jnp.asarray([0.0]))
     with pytest.raises(TypeError, match="`life` is a dict; it must be LifeConditions"):
         bj.sweep(element, np.ones((2, 6)), outputs=["damage"], life={})  # pyright: ignore[reportArgumentType]
+
+
+def test_as_a_measure_it_is_the_life_of_all_cases(balls, untyped):
+    """One number of cases, its inverse as an objective, both in hours if asked."""
+    loads = (1500.0, 800.0)
+    found = [balls(jnp.asarray([5e-6, f, 100.0, 0.0]))[1]["of"] for f in loads]
+    stacked = jax.tree.map(lambda *a: np.stack(a), *(pair[0] for pair in found))
+    hours, speed = np.array([3.0, 9.0]), np.array([150.0, 300.0])
+    load = np.zeros((2, 6))
+    cases = bj.Cases(load, inner_speed=speed, hours=hours)
+    element = ball_element(jnp.asarray([5e-6]))
+    measure = bj.RatingLife(bj.LifeConditions(23400.0), hours=True)
+
+    @eqx.filter_jit
+    def both(element, cases, solution):
+        of = element, cases, solution
+        return measure(*of), measure.as_objective(*of)
+
+    life, damage = both(element, cases, stacked)
+    turns = hours * speed * 3600 / (2 * np.pi)
+    alone = np.array([float(pair[1].reference_rating_life) for pair in found])
+    expected = hours.sum() / (turns / alone).sum()
+    np.testing.assert_allclose(life, expected, rtol=1e-10)
+    np.testing.assert_allclose(damage, 1 / expected, rtol=1e-10)
+    with pytest.raises(ValueError, match="`hours` is True, but the cases have no"):
+        measure(element, bj.Cases(load), stacked)
+    with pytest.raises(TypeError, match="`conditions` is a float"):
+        bj.RatingLife(23400.0)  # pyright: ignore[reportArgumentType]

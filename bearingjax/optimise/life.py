@@ -1,0 +1,111 @@
+"""Rating life as a measure: of all cases together, whose damage adds up."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+
+from ..element.bearing_element import BearingElement
+from ..statics.cases import Cases
+from ..statics.life import LifeConditions, life_of
+from ..statics.spectrum import spectrum_life
+from .measure import AbstractMeasure
+from .system import element_of, loads_of
+
+
+class _OfCases(AbstractMeasure):
+    """Life that the damage of the cases leaves.
+
+    Attributes:
+        conditions: Of the life: the modified life with a lubricant in them, else the
+            reference life.
+        hours: Whether it is counted in hours, by the speeds of the cases; else in
+            revolutions.
+
+    Traced: conditions. Static: hours.
+    """
+
+    conditions: LifeConditions = eqx.field(default_factory=LifeConditions)
+    hours: bool = eqx.field(static=True, default=False)
+
+    def __check_init__(self):
+        if not isinstance(self.conditions, LifeConditions):
+            raise TypeError(
+                f"{type(self).__name__}: `conditions` is a"
+                f" {type(self.conditions).__name__}; it must be LifeConditions."
+            )
+        if not isinstance(self.hours, bool):
+            raise TypeError(
+                f"{type(self).__name__}: `hours` is {self.hours!r}; True or False."
+            )
+
+    def life(self, element: BearingElement, cases: Cases, solution: Any) -> Any:
+        """Life under all cases [1, h].
+
+        Args:
+            element, cases, solution: As of a call.
+
+        Raises:
+            ValueError: For hours of cases without speeds, and as `rating_life`.
+        """
+
+        def damage(solution):
+            return life_of(element, solution, self.conditions).damage
+
+        found = spectrum_life(cases, jax.vmap(damage)(loads_of(solution)))
+        if not self.hours:
+            return found.rating_life
+        if found.life_hours is None:
+            raise ValueError(
+                f"{type(self).__name__}: `hours` is True, but the cases have no speeds."
+            )
+        return found.life_hours
+
+
+class RatingLife(_OfCases):
+    """Rating life under all cases [1, h].
+
+    By ISO/TS 16281, of the cases one after the other for their hours (Palmgren, Miner):
+    of a bearing with a lubricant in its conditions modified by a_ISO. As an objective
+    it is made largest: its inverse, the damage, is what is made least.
+
+    Attributes are `conditions` (`LifeConditions`; its capacity follows the design
+    unless it is given) and `hours`: whether it is in hours, else in revolutions.
+
+    Traced: conditions. Static: hours.
+    """
+
+    def __call__(self, element, cases, solution):
+        return self.life(element_of(element), cases, solution)
+
+    @property
+    def as_objective(self):
+        return Damage(self.conditions, self.hours)
+
+    @property
+    def label(self):
+        return "rating life"
+
+    @property
+    def unit(self):
+        return "h" if self.hours else ""
+
+
+class Damage(_OfCases):
+    """Part of the rating life that a revolution or an hour uses [1, 1/h].
+
+    The inverse of `RatingLife`, with its attributes; finite without load.
+
+    Traced: conditions. Static: hours.
+    """
+
+    def __call__(self, element, cases, solution):
+        return 1.0 / self.life(element_of(element), cases, solution)
+
+    @property
+    def label(self):
+        return "damage"
+
+    @property
+    def unit(self):
+        return "1/h" if self.hours else ""
