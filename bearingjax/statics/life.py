@@ -248,8 +248,9 @@ def rating_life(
         speed: Ring speeds; `None`: those of the solution. Without any the inner ring
             turns against a load fixed in space, and there is no life in hours.
         lamina_load: Load of every lamina on both raceways in place of the solution's
-            [N], such as `end_loads` of a half-space contact. Concentrations of stress
-            at the ends are then in it, whatever `edge_stress`.
+            [N], such as π ρ p²/E* times its length, of the pressures p of a contact
+            as `refine` gives them (Hertz; ρ the relative radius). Concentrations of
+            stress at the ends are then in it, whatever `edge_stress`.
 
     Returns:
         Life, differentiable with respect to all that the solution is. Numbers are NaN

@@ -169,7 +169,7 @@ def edge_stress(n_laminae: int) -> np.ndarray:
     """Concentration of stress of every lamina of a roller (lamina,) [1].
 
     Near 1 but for the laminae at the ends, 2.3 there, whatever the profile: the
-    standard's stand-in for a solution of the contact (`end_loads` gives one).
+    standard's stand-in for a solution of the contact, as `refine` gives one.
 
     Args:
         n_laminae: Number of laminae.
