@@ -7,6 +7,7 @@ of such a table are keys of a scene's `[bearing]`.
 
 import dataclasses
 import functools
+import math
 import tomllib
 from collections.abc import Mapping
 from importlib.resources import files
@@ -323,6 +324,18 @@ def taken_from(
         if isinstance(own, Mapping) and isinstance(value, Mapping):
             value = value if "type" in value else {**own, **value}
         merged[key] = value
-        if value != own:
+        if not _same(value, own):
             changed.append(key)
     return merged, FromCatalogue(entry, tuple(changed))
+
+
+def _same(value: Any, own: Any) -> bool:
+    """Whether two entries of a scene mean the same: "7.94 mm" and "0.00794 m" do."""
+    if value == own or not (isinstance(value, str) and isinstance(own, str)):
+        return value == own
+    for kind in ("length", "angle"):
+        try:
+            return math.isclose(to_si(value, kind), to_si(own, kind), rel_tol=1e-9)
+        except SceneError:
+            continue
+    return False

@@ -227,6 +227,9 @@ def test_single_dimensions_override(tmp_path):
     # The clearance of the class gives way to the angle it would follow from.
     assert read.element.bearing.radial_internal_clearance is None
     assert read.catalogue.overridden == ("contact_angle",)
+    # The same in other units is no other dimension.
+    text = 'designation = "6205"\nball_diameter = "0.00794 m"\ninner_osculation = 0.52'
+    assert bj.read_scene(scene(tmp_path, text)).catalogue.overridden == ()
     text = 'designation = "NU 215"\n[bearing.rib]\ncontact_height = "0.4 mm"\n'
     read = bj.read_scene(scene(tmp_path, text))
     rib = read.element.bearing.ribs.outer_plus
