@@ -151,7 +151,7 @@ def _solve(options) -> int:
     def draw(path, **format):
         from .plot import overview
 
-        figure = overview(scene.element.bearing, solution, title=scene.name)
+        figure = overview(solution.element.bearing, solution, title=scene.name)
         figure.savefig(path, dpi=150, **format)
 
     def tell(path):

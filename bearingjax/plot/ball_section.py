@@ -12,7 +12,7 @@ from ..design import (
     ThrustBallBearing,
     rows_of,
 )
-from .style import COLOURS, GREY, ROLLER, SMALL, axes_or_new
+from .style import COLOURS, GREY, ROLLER, axes_or_new
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -54,24 +54,12 @@ def ball_section(
     first = rows_of(bearing)[0].bearing
     assert isinstance(first, AbstractBallBearing)
     ax.set_title("Axial section, to scale")
-    ax.text(
-        0.01, 0.01, "ring bodies schematic", transform=ax.transAxes, fontsize=SMALL,
-        color=GREY, va="bottom",
-    )  # fmt: skip
     angle = np.rad2deg(float(first.free_contact_angle))
-    ax.text(
-        0.99,
-        0.01,
-        f"free contact angle {angle:.4g}°",
-        transform=ax.transAxes,
-        fontsize=SMALL,
-        color=GREY,
-        va="bottom",
-        ha="right",
-    )
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
-    ax.set_xlabel("z [mm]")
+    # Below the axes, where no ring is in the way.
+    note = f"ring bodies schematic; free contact angle {angle:.4g}°"
+    ax.set_xlabel(f"z [mm]    ({note})")
     ax.set_ylabel("radius [mm]")
     return ax
 

@@ -71,6 +71,8 @@ def overview(
         linespacing=1.5,
     )
     head(figure, title or type(bearing).__name__)
+    # Equal scales move the ticks, for whose words the layout then makes room.
+    figure.draw_without_rendering()
     return figure
 
 
