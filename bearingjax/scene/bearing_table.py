@@ -127,6 +127,8 @@ def _single(table: Table) -> Bearing:
     found = designated(table)
     if found is not None:
         table = table.completed(found[0])
+        # In the echo it says whose ratings count, and what clearance.
+        table.fill("designation", found[1].entry.designation)
     kind = table.choice("type", (*ROLLERS, *BALLS))
     return _balls(table, kind) if kind in BALLS else _rollers(table, kind)
 

@@ -23,8 +23,8 @@ from ..optimise.search import METHODS
 from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
-from ..statics.life import LifeConditions
 from .cases_table import read_cases
+from .life_table import life_conditions
 from .quantity import SceneError, kind_of
 from .read import Scene, scene_of
 from .scene_file import find_scene, parse_bearing
@@ -122,7 +122,7 @@ def _optimisation(table: Table, scene: Scene, cases: Cases) -> Optimisation:
     exponent = table.number("exponent", EXPONENT)
     with table.building():
         PeakPressure(exponent)
-    life = _life(scene, cases)
+    life = _life(scene, cases, table.table("variables").keys())
     objective = _measure(table, "objective", kind, exponent, balls, life, target=True)
     constraints = ()
     if "constraints" in table:
@@ -224,11 +224,11 @@ def _constraint(table: Table, exponent, balls, life) -> Constraint:
         return Constraint(measure, least, most)
 
 
-def _life(scene: Scene, cases: Cases) -> RatingLife | None:
+def _life(scene: Scene, cases: Cases, varied: Iterable[str]) -> RatingLife | None:
     """Rating life in hours by the [life] of a scene, or `None` without speeds."""
     if cases.inner_speed is None and cases.outer_speed is None:
         return None
-    return RatingLife(LifeConditions() if scene.life is None else scene.life, True)
+    return RatingLife(life_conditions(scene, varied), True)
 
 
 def _measure(table: Table, key, kind, exponent, balls, life, target=False) -> Any:

@@ -1,5 +1,7 @@
 """What a designation brings to [life], and to [fit] if `new` has restated it."""
 
+import json
+
 import pytest
 
 import bearingjax as bj
@@ -72,3 +74,12 @@ def test_a_clearance_that_only_restates_the_catalogue_is_its_class(read):
     assert tuple(limits) == pytest.approx((13e-6, 28e-6))
     with pytest.raises(bj.SceneError, match=r"`fit.clearance`: stands beside"):
         read(restated.replace("12.5", "3"), fit, ["fit.clearance=C3"])
+
+
+def test_ratings_come_back_from_the_json(read, tmp_path):
+    pair = '[set]\narrangement = "back_to_back"\nspacing = "18 mm"\n[life]\n'
+    scene = read('designation = "7208B"', pair)
+    path = tmp_path / "again.json"
+    path.write_text(json.dumps({"inputs": scene.inputs}), encoding="utf-8")
+    again = bj.read_scene(path)
+    assert rated(life_conditions(again)) == rated(life_conditions(scene))

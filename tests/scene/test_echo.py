@@ -66,12 +66,13 @@ def test_defaults_are_filled_in():
     assert inputs["numerics"]["points"] == 32
 
 
-def test_a_designation_is_its_numbers(tmp_path):
+def test_a_designation_stands_beside_its_numbers(tmp_path):
     path = tmp_path / "listed.toml"
     path.write_text('[bearing]\ndesignation = "6205/C3"\n', encoding="utf-8")
     scene = read_scene(path)
     again = echoed(tmp_path / "listed.json", scene)
-    assert "designation" not in scene.inputs["bearing"]
+    assert scene.inputs["bearing"]["designation"] == "6205/C3"
+    assert scene.inputs["bearing"]["n_balls"] == 9
     assert again.inputs == scene.inputs
     leaves = [jax.tree.leaves(one.element) for one in (scene, again)]
     for one, other in zip(*leaves, strict=True):
