@@ -86,6 +86,7 @@ from .rating import ratings as ratings
 from .rating import static_capacity as static_capacity
 from .refine import Refined as Refined
 from .refine import refine as refine
+from .refined_life import refined_lamina_loads as refined_lamina_loads
 from .solution import BallSolution as BallSolution
 from .solution import RollerSolution as RollerSolution
 from .solution import Solution as Solution

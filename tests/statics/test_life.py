@@ -8,6 +8,8 @@ Sources of the published numbers:
 * a_ISO and the reference viscosity of ISO 281:2007.
 """
 
+from types import SimpleNamespace
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -16,10 +18,16 @@ import pytest
 from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
-from bearingjax.statics import life_factor, reliability_factor, viscosity_ratio
+from bearingjax.statics import (
+    life_factor,
+    refined_lamina_loads,
+    reliability_factor,
+    viscosity_ratio,
+)
 from bearingjax.statics.equivalent_load import equivalent_load, load_factors
 from bearingjax.statics.life import FRAMES, life_outputs, turns_against_load
 from bearingjax.statics.reference_life import edge_stress, row_fatigue
+from bearingjax.statics.refined_life import _of_laminae
 
 ATTRIBUTED = 3e-4  # between programs that solve the same equations
 LAMINAE = 30
@@ -555,6 +563,36 @@ def test_stress_at_the_ends_is_that_of_the_standard():
     stress = edge_stress(41)
     np.testing.assert_allclose(stress[[0, -1]], 1 - 0.01 / np.log(0.9925), rtol=1e-12)
     assert stress[20] == 1.0 and (stress[1:-1] < 1.25).all()
+
+
+def test_pressures_of_half_spaces_become_loads_of_laminae(untyped):
+    """Of unlike cells: what tires, the sum of q^4.5 over the length, is kept."""
+    cells = np.sort(np.random.default_rng(0).uniform(-5e-3, 5e-3, 40))
+    edges = np.concatenate([[-5e-3], 0.5 * (cells[1:] + cells[:-1]), [5e-3]])
+    line = 3e5 * (1.0 + 0.5 * np.sin(900.0 * cells))
+    pressure = np.sqrt(line * 1.1e11 / (np.pi * 4e-3))
+    found = SimpleNamespace(
+        solution=SimpleNamespace(
+            grid=SimpleNamespace(y=cells),
+            pressure=pressure * np.array([0.5, 1.0, 0.7])[:, None],
+        ),
+        contact=SimpleNamespace(
+            relative_radius=lambda y: np.full_like(y, 4e-3),
+            modulus=1.1e11,
+            roller_length=1e-2,
+        ),
+    )
+    loads = _of_laminae(found, 32) / (1e-2 / 32)  # pyright: ignore[reportArgumentType]
+    tired = np.sum(line**4.5 * np.diff(edges))
+    np.testing.assert_allclose(np.sum(loads**4.5) * 1e-2 / 32, tired, rtol=1e-10)
+    assert line.min() < loads.min() and loads.max() < line.max()
+
+
+def test_half_spaces_with_few_laminae_are_refused(rollers):
+    x = jnp.asarray([0.0, 1e3, 0.0, 0.0, 1e-4])
+    solution, *_ = rollers(x)[1]["of"]
+    with pytest.raises(ValueError, match="`n_laminae` is 20; it must be at least 30"):
+        refined_lamina_loads(roller_element(x), solution, 20)
 
 
 @pytest.mark.parametrize(
