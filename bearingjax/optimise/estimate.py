@@ -39,6 +39,9 @@ from ..statics import row_rating
 from ..statics.row_rating import BallKind, BallRow, RollerRow, Rows
 from .typical import PROPORTIONS, Proportions, Typical
 
+_RATINGS = (0.015, 0.01)
+"""Spread of makers' C and C0 about those of the standards [1]."""
+
 _EDGE = 0.003
 """Spread of the hard limits, for the least squares to feel them [section]."""
 
@@ -345,7 +348,7 @@ def _envelope(numbers, kind, typical: Proportions) -> _Envelope:
         0.5 * (big + d),
         numbers["width"],
         (numbers["dynamic_capacity"], numbers["static_capacity"]),
-        typical.ratings,
+        _RATINGS,
         [part.middle for part in parts],
         [part.spread for part in parts],
         2.5 if kind == "needle" else 0.0,

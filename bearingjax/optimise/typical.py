@@ -31,7 +31,6 @@ class Proportions(NamedTuple):
         length: Roller length over the width [1]; `None` for balls.
         angle: Contact angle [rad].
         by_arc: Whether `filling` is the arc.
-        ratings: Spread of makers' C and C0 about those of the standards [1].
     """
 
     element: Typical
@@ -40,7 +39,6 @@ class Proportions(NamedTuple):
     length: Typical | None
     angle: Typical
     by_arc: bool = False
-    ratings: tuple[float, float] = (0.015, 0.01)
 
 
 _NONE = Typical(0.0, 1e-4)
@@ -49,7 +47,7 @@ _CENTRED = Typical(1.0, 0.012)
 PROPORTIONS = {
     # As many balls as go in between eccentric rings: half of the circle and a little.
     "deep_groove": Proportions(
-        Typical(0.60, 0.03),
+        Typical(0.58, 0.055),
         _CENTRED,
         Typical(187 * _DEG, 4 * _DEG),
         None,
@@ -57,9 +55,9 @@ PROPORTIONS = {
         by_arc=True,
     ),
     "angular_contact": Proportions(
-        Typical(0.60, 0.04),
+        Typical(0.59, 0.05),
         _CENTRED,
-        Typical(0.87, 0.05),
+        Typical(0.84, 0.07),
         None,
         Typical(35 * _DEG, 8 * _DEG),
     ),
@@ -78,13 +76,11 @@ PROPORTIONS = {
         Typical(11 * _DEG, 3 * _DEG),
     ),
     "thrust_ball": Proportions(
-        Typical(0.55, 0.06),
-        _CENTRED,
-        Typical(0.87, 0.06),
+        Typical(0.52, 0.04),
+        Typical(1.0, 0.006),
+        Typical(0.90, 0.02),
         None,
         Typical(90 * _DEG, 1e-4),
-        # Makers' grooves are closer than those that ISO 76 counts with.
-        ratings=(0.05, 0.05),
     ),
     "cylindrical": Proportions(
         Typical(0.51, 0.04),
