@@ -12,13 +12,15 @@ from ..design import (
     ThrustBallBearing,
     rows_of,
 )
-from .style import COLOURS, GREY, ROLLER, axes_or_new
+from .dimension import AXIS, between, contact_angle, pitch_arrow, quantity
+from .style import COLOURS, GREY, ROLLER, SMALL, axes_or_new
 
 if TYPE_CHECKING:
     import matplotlib.axes
 
 _BODY = 0.30  # thickness of the schematic rings under the groove, ball diameters
 _WIDTH = 0.75  # half width of the schematic rings, ball diameters
+_STEEP = np.deg2rad(75.0)  # contact angles beyond have no room above the section
 SHOULDER = 0.2
 """Schematic height of a shoulder that is not given, ball diameters."""
 
@@ -41,6 +43,7 @@ def ball_section(
     places = np.sort([row_position(row) for row in rows_of(bearing)])
     # Rings of neighbouring rows meet halfway.
     reach = 0.49 * np.diff(places).min() if len(places) > 1 else np.inf
+    outlines = []
     for row in rows_of(bearing):
         part = row.bearing
         assert isinstance(part, AbstractBallBearing)
@@ -50,18 +53,50 @@ def ball_section(
         def place(points, sign=sign, centre=centre):
             return centre + np.asarray(points) * np.array([sign, 1.0])
 
-        ball_row(ax, part, place, reach)
-    first = rows_of(bearing)[0].bearing
-    assert isinstance(first, AbstractBallBearing)
-    ax.set_title("Axial section, to scale")
-    angle = np.rad2deg(float(first.free_contact_angle))
+        outlines.append(ball_row(ax, part, place, reach))
+    corners = np.concatenate(outlines)
+    first = min(rows_of(bearing), key=row_position)
+    _dimensions(ax, first, corners.min(axis=0), corners.max(axis=0))
+    ax.set_title("Axial section, to scale; ring bodies schematic")
     ax.set_aspect("equal", adjustable="datalim")
-    ax.margins(0.08)
-    # Below the axes, where no ring is in the way.
-    note = f"ring bodies schematic; free contact angle {angle:.4g}°"
-    ax.set_xlabel(f"z [mm]    ({note})")
+    ax.margins(0.05)
+    note = ""
+    assert isinstance(first.bearing, AbstractBallBearing)
+    if (angle := float(first.bearing.free_contact_angle)) >= _STEEP:
+        note = f"    (free contact angle {quantity(angle, 'rad')})"
+    ax.set_xlabel(f"z [mm]{note}")
     ax.set_ylabel("radius [mm]")
     return ax
+
+
+def _dimensions(ax, row, low, high):
+    """Ball, pitch circle and free contact angle, of the row at the left."""
+    part = row.bearing
+    sign = -1.0 if row.mirrored else 1.0
+    angle = float(part.free_contact_angle)
+    diameter, tall = 1e3 * float(part.ball_diameter), high[1] - low[1]
+    centre = np.array([row_position(row), 0.5e3 * float(part.pitch_diameter)])
+    half = np.array([0.0, 0.5 * diameter])
+    aside = np.array([low[0] - 0.18 * diameter - centre[0], 0.0])
+    at = between(ax, centre - half, centre + half, aside)
+    ax.annotate(
+        f"D = {quantity(part.ball_diameter, 'm')}",
+        tuple(at),
+        (-3, 0),
+        textcoords="offset points",
+        rotation=90,
+        fontsize=SMALL,
+        ha="right",
+        va="center",
+    )
+    beyond = np.array([high[0] + 0.2 * diameter, centre[1]])
+    ax.plot([low[0], beyond[0] + 0.1 * diameter], [centre[1]] * 2, **AXIS)
+    pitch_arrow(ax, beyond, part.pitch_diameter)
+    if 0.0 < angle < _STEEP:
+        top = high[1] + 0.07 * tall, high[1] + 0.14 * tall
+        contact_angle(ax, centre, angle, top, sign, "free contact angle")
+    left = low - np.array([0.35 * diameter, 0.0])
+    ax.update_datalim([left, high + np.array([0.5 * diameter, 0.18 * tall])])
 
 
 def ball_row(ax, bearing, place, reach=np.inf, apart=0.0) -> np.ndarray:

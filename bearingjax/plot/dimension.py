@@ -226,6 +226,96 @@ def angle(ax: "matplotlib.axes.Axes", centre, size: float, ends) -> np.ndarray:
     return centre + size * _way(0.5 * (ends[0] + ends[1]))
 
 
+def pitch_arrow(ax: "matplotlib.axes.Axes", at, diameter: Any) -> None:
+    """An arrow from the axis, that is not seen, to the pitch circle.
+
+    Args:
+        ax: Axes.
+        at: Its head (2,).
+        diameter: Of the pitch circle [m].
+    """
+    ax.annotate(
+        "",
+        tuple(at),
+        (0, -70),
+        textcoords="offset points",
+        arrowprops=ARROW | {"arrowstyle": "-|>"},
+        zorder=6,
+    )
+    ax.annotate(
+        f"pitch Ø {quantity(diameter, 'm')}",
+        tuple(at),
+        (3, -10),
+        textcoords="offset points",
+        rotation=90,
+        fontsize=SMALL,
+        ha="left",
+        va="top",
+        zorder=6,
+    )
+
+
+def contact_angle(
+    ax: "matplotlib.axes.Axes",
+    centre,
+    contact: float,
+    top,
+    sense: float = 1.0,
+    name: str = "contact angle",
+) -> None:
+    """The angle of a contact normal to the radial direction, above a section.
+
+    Args:
+        ax: Axes.
+        centre: Of the rolling element (2,).
+        contact: The angle, below 90 degrees [rad].
+        top: Radial place of the arc, and of the end of the lines.
+        sense: -1 if the row is mirrored.
+        name: What it is.
+    """
+    centre = np.asarray(centre, dtype=float)
+    arc, end = (place - centre[1] for place in top)
+    tip = centre + end * np.array([sense * np.tan(contact), 1.0])
+    ax.plot(*np.stack([centre, tip]).T, **THIN)
+    ax.plot([centre[0]] * 2, [centre[1], centre[1] + end], **THIN)
+    turn = 0.5 * np.pi - sense * np.linspace(0.0, contact, 30)
+    ax.plot(*(centre + arc * _way(turn)).T, **THIN)
+    ax.annotate(
+        f"{name} α = {np.rad2deg(contact):.4g}°",
+        (max(tip[0], centre[0]), tip[1]),
+        (6, 0),
+        textcoords="offset points",
+        fontsize=SMALL,
+        va="center",
+    )
+
+
+def on_line(
+    ax: "matplotlib.axes.Axes", at, text: str, turn: float = 0.0, ha: str = "center"
+) -> None:
+    """A label on or beside its dimension line within a rolling element.
+
+    Args:
+        ax: Axes.
+        at: Its middle or end (2,).
+        text: The label.
+        turn: Of the text [rad].
+        ha: Which end of the text is there, as of matplotlib.
+    """
+    ax.text(
+        at[0],
+        at[1],
+        text,
+        rotation=np.rad2deg(turn),
+        rotation_mode="anchor",
+        fontsize=SMALL,
+        ha=ha,
+        va="center",
+        zorder=7,
+        bbox={"facecolor": "#DDF1EA", "edgecolor": "none", "pad": 0.6},
+    )
+
+
 def _way(turn):
     return np.stack([np.cos(turn), np.sin(turn)], axis=-1)
 

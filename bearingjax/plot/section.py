@@ -6,8 +6,10 @@ import numpy as np
 
 from ..design import AbstractRollerBearing, Bearing, BearingSet, is_ball, rows_of
 from .ball_section import ball_section
+from .dimension import AXIS, between, contact_angle, on_line, pitch_arrow, quantity
 from .outline import section
-from .style import COLOURS, GREY, RACEWAYS, ROLLER, SMALL, axes_or_new
+from .roller_section import roller_row
+from .style import COLOURS, RACEWAYS, ROLLER, SMALL, axes_or_new
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -22,7 +24,7 @@ def cross_section(
     are schematic.
 
     Args:
-        bearing: The design; of a set of roller bearings the first row is drawn.
+        bearing: The design; of a set all rows, with the dimensions of the first one.
         ax: Axes; a new figure if `None`.
 
     Returns:
@@ -30,9 +32,12 @@ def cross_section(
     """
     if is_ball(bearing):
         return ball_section(bearing, ax)
-    bearing = rows_of(bearing)[0].bearing
-    assert isinstance(bearing, AbstractRollerBearing)
     ax = axes_or_new(ax, (7.0, 6.0))
+    first, *others = rows_of(bearing)
+    if others:
+        return _set_section(ax, [first, *others])
+    bearing = first.bearing
+    assert isinstance(bearing, AbstractRollerBearing)
     parts = section(bearing)
     low = min(ring[:, 1].min() for ring in parts.rings)
     high = max(ring[:, 1].max() for ring in parts.rings)
@@ -87,15 +92,6 @@ def cross_section(
         )
     _name_rings(ax, parts)
     _dimensions(ax, bearing, parts, left, right, high, height)
-    ax.text(
-        0.01,
-        0.01,
-        "ring bodies schematic",
-        transform=ax.transAxes,
-        fontsize=SMALL,
-        color=GREY,
-        va="bottom",
-    )
     ax.set_aspect("equal", adjustable="datalim")
     # Limits that stay automatic may widen to keep the aspect.
     ax.update_datalim(
@@ -107,7 +103,7 @@ def cross_section(
     ax.margins(0.0)
     ax.set_xlabel("z [mm]")
     ax.set_ylabel("radius [mm]")
-    ax.set_title("Axial section, to scale")
+    ax.set_title("Axial section, to scale; ring bodies schematic")
     return ax
 
 
@@ -136,7 +132,6 @@ def _name_rings(ax, parts):
 
 def _dimensions(ax, bearing, parts, left, right, high, height):
     """Centre lines and dimensions with their labels."""
-    dash = {"color": GREY, "linestyle": (0, (9, 3, 2, 3)), "linewidth": 0.9}
     centre = np.array([0.0, parts.pitch_radius])
     angle = float(bearing.axis_angle)
     along = (parts.axis[1] - parts.axis[0]) / np.linalg.norm(
@@ -144,106 +139,59 @@ def _dimensions(ax, bearing, parts, left, right, high, height):
     )
     across = np.array([-along[1], along[0]])
     beyond = right + 0.22 * parts.diameter
-    ax.plot([left, beyond + 0.1 * parts.diameter], [parts.pitch_radius] * 2, **dash)
+    ax.plot([left, beyond + 0.1 * parts.diameter], [parts.pitch_radius] * 2, **AXIS)
     if angle > 0:
         over = 0.12 * parts.length * along
-        ax.plot(*np.stack([parts.axis[0] - over, parts.axis[1] + over]).T, **dash)
-    turn = np.rad2deg(np.arctan2(along[1], along[0]))
+        ax.plot(*np.stack([parts.axis[0] - over, parts.axis[1] + over]).T, **AXIS)
+    turn = np.arctan2(along[1], along[0])
     half = float(bearing.half_angle)
     # Roller diameter, across the roller towards its -z end.
     at = -0.36 * parts.length
     radius = 0.5 * parts.diameter
     spot = centre + at * along
     wide = radius - at * np.sin(half)
-    _arrow(ax, spot - wide * across, spot + wide * across)
-    _label(
-        ax,
-        spot + 0.5 * radius * across + 0.06 * parts.length * along,
-        f"$D$ = {_mm(bearing.roller_diameter)}",
-        turn,
-        "left",
-    )
+    between(ax, spot - wide * across, spot + wide * across)
+    text = f"D = {quantity(bearing.roller_diameter, 'm')}"
+    beside = spot + 0.5 * radius * across + 0.06 * parts.length * along
+    on_line(ax, beside, text, turn, "left")
     below = -0.5 * radius * across
-    _arrow(ax, parts.axis[0] + below, parts.axis[1] + below)
-    _label(
-        ax,
-        centre + below + 0.05 * parts.length * along,
-        f"$L$ = {_mm(bearing.roller_length)}",
-        turn,
-        "center",
-    )
-    ax.annotate(
-        "",
-        (beyond, parts.pitch_radius),
-        (0, -70),
-        textcoords="offset points",
-        arrowprops=_ARROW | {"arrowstyle": "-|>"},
-        zorder=6,
-    )
-    ax.annotate(
-        f"pitch Ø {_mm(bearing.pitch_diameter)}",
-        (beyond, parts.pitch_radius),
-        (3, -10),
-        textcoords="offset points",
-        rotation=90,
-        fontsize=SMALL,
-        ha="left",
-        va="top",
-        zorder=6,
-    )
+    between(ax, parts.axis[0] + below, parts.axis[1] + below)
+    text = f"L = {quantity(bearing.roller_length, 'm')}"
+    on_line(ax, centre + below + 0.05 * parts.length * along, text, turn)
+    pitch_arrow(ax, (beyond, parts.pitch_radius), bearing.pitch_diameter)
     if angle > 0:
-        _contact_angle(ax, parts, centre, angle + half, high, height)
+        top = high + 0.07 * height, high + 0.14 * height
+        contact_angle(ax, centre, angle + half, top)
 
 
-def _contact_angle(ax, parts, centre, contact, high, height):
-    """The angle of the outer contact normal to the radial direction."""
-    normal = np.array([np.sin(contact), np.cos(contact)])
-    reach = high + 0.14 * height - centre[1]
-    thin = {"color": GREY, "linewidth": 0.9, "zorder": 4}
-    ends = np.stack([centre, centre + normal * reach / normal[1]])
-    ax.plot(*ends.T, **thin)
-    ax.plot([0.0, 0.0], [centre[1], centre[1] + reach], **thin)
-    radius = high + 0.07 * height - centre[1]
-    turn = np.linspace(0.0, contact, 30)
-    arc = centre + radius * np.stack([np.sin(turn), np.cos(turn)], axis=1)
-    ax.plot(*arc.T, **thin)
-    ax.annotate(
-        f"contact angle $α$ = {np.rad2deg(contact):.4g}°",
-        ends[1],
-        (6, 0),
-        textcoords="offset points",
-        fontsize=SMALL,
-        va="center",
-    )
+def _set_section(ax, rows):
+    """All rows of a set; the pitch circle and contact angle of the first one."""
+    corners = []
+    for row in rows:
+        at = np.array([1e3 * float(row.position), 0.0])
+        sense = np.array([-1.0 if row.mirrored else 1.0, 1.0])
 
+        def place(points, at=at, sense=sense):
+            return at + np.asarray(points) * sense
 
-_ARROW = {
-    "arrowstyle": "<|-|>",
-    "color": "black",
-    "linewidth": 0.9,
-    "shrinkA": 0,
-    "shrinkB": 0,
-    "mutation_scale": 9,
-}
-
-
-def _arrow(ax, start, stop):
-    ax.annotate("", tuple(stop), tuple(start), arrowprops=_ARROW, zorder=6)
-
-
-def _label(ax, at, text, turn, ha):
-    ax.text(
-        *at,
-        text,
-        rotation=turn,
-        rotation_mode="anchor",
-        fontsize=SMALL,
-        ha=ha,
-        va="center",
-        zorder=7,
-        bbox={"facecolor": "#DDF1EA", "edgecolor": "none", "pad": 0.6},
-    )
-
-
-def _mm(value):
-    return f"{1e3 * float(value):.5g} mm"
+        corners.append(roller_row(ax, section(row.bearing), place))
+    points = np.concatenate(corners)
+    low, high = points.min(axis=0), points.max(axis=0)
+    row, part = rows[0], rows[0].bearing
+    centre = np.array([1e3 * float(row.position), 0.5e3 * float(part.pitch_diameter)])
+    diameter, tall = 1e3 * float(part.roller_diameter), high[1] - low[1]
+    beyond = high[0] + 0.2 * diameter
+    ax.plot([low[0], beyond + 0.1 * diameter], [centre[1]] * 2, **AXIS)
+    pitch_arrow(ax, (beyond, centre[1]), part.pitch_diameter)
+    angle = float(part.axis_angle) + float(part.half_angle)
+    if angle > 0.0:
+        top = high[1] + 0.07 * tall, high[1] + 0.14 * tall
+        contact_angle(ax, centre, angle, top, -1.0 if row.mirrored else 1.0)
+    ax.set_aspect("equal", adjustable="datalim")
+    room = np.array([0.5 * diameter, 0.2 * tall])
+    ax.update_datalim([low, high + room])
+    ax.margins(0.05)
+    ax.set_xlabel("z [mm]")
+    ax.set_ylabel("radius [mm]")
+    ax.set_title("Axial section, to scale; ring bodies schematic")
+    return ax
