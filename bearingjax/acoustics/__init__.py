@@ -44,8 +44,6 @@ from .lines import UNNAMED as UNNAMED
 from .lines import Line as Line
 from .lines import name_lines as name_lines
 from .model import NoiseModel as NoiseModel
-from .model import NoiseSystem as NoiseSystem
-from .model import Sensor as Sensor
 from .monte_carlo import MonteCarlo as MonteCarlo
 from .monte_carlo import drawn as drawn
 from .monte_carlo import monte_carlo as monte_carlo
@@ -62,6 +60,7 @@ from .scatter import Drawn as Drawn
 from .scatter import RandomWaves as RandomWaves
 from .scatter import Tolerances as Tolerances
 from .scatter import draw as draw
+from .sensor import Sensor as Sensor
 from .shares import Shares as Shares
 from .shares import shares as shares
 from .sound import sound as sound
@@ -72,6 +71,7 @@ from .spectrum import Rectangular as Rectangular
 from .spectrum import Spectrum as Spectrum
 from .spectrum import spectrum as spectrum
 from .standing import standing as standing
+from .system import NoiseSystem as NoiseSystem
 from .vibration import CageMotion as CageMotion
 from .vibration import Vibration as Vibration
 from .vibration import needed_steps as needed_steps

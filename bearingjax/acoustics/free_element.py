@@ -5,6 +5,7 @@ them. Here its place p is counted in space: along z and r for a ball, along and 
 its axis, with its tilt, for a roller. No equilibrium is solved for.
 """
 
+import dataclasses
 import functools
 from typing import Any
 
@@ -16,9 +17,11 @@ from jaxtyping import Array, Float
 from ..design.material import Material
 from ..element.ball import Ball
 from ..element.ball_speed import ball_mass
+from ..element.frame import FREEDOMS
 from ..element.inertia import Speed, inertia_force, mass_and_inertia
 from ..element.roller import Roller
 from ..element.rolling_element import RingMotion
+from ..numerics.linear import combined
 from ..numerics.types import Scalar
 
 
@@ -30,6 +33,8 @@ class FreeElement(eqx.Module):
         mass: Of each coordinate of its place (n,) [kg, kg m²].
         force: Of inertia, from its orbit, at the drawing's place (n,) [N, N m].
         scale: What x counts for a unit of p (n,) [1, m].
+        own: Motion of a ring in the element's axes, from that in the axial section
+            (h, 3) [1, m, 1/m].
 
     Traced: all numbers.
     """
@@ -38,6 +43,19 @@ class FreeElement(eqx.Module):
     mass: Float[Array, " n"]
     force: Float[Array, " n"]
     scale: Float[Array, " n"]
+    own: Float[Array, "h 3"]
+
+    def seen(self, outer: Float[Array, "3"], inner: Float[Array, "3"]) -> RingMotion:
+        """Motions of the rings in its axes, from those in the axial section [m, rad].
+
+        Args:
+            outer, inner: (u, v, θ) of each ring [m, rad].
+        """
+        return RingMotion(combined(self.own.T, outer), combined(self.own.T, inner))
+
+    def in_section(self, forces: Float[Array, " h"]) -> Float[Array, "3"]:
+        """Forces on (u, v, θ) of a ring, from those in its axes [N, N m]."""
+        return combined(self.own, forces)
 
     def unknowns(
         self, rings: RingMotion, place: Float[Array, " n"]
@@ -56,8 +74,7 @@ class FreeElement(eqx.Module):
 
     def raised(self, heights: Float[Array, "2"]) -> "FreeElement":
         """The same with material added in its contacts [m]."""
-        element = self.element.raised(heights)
-        return FreeElement(element, self.mass, self.force, self.scale)
+        return dataclasses.replace(self, element=self.element.raised(heights))
 
     def energy(self, rings: RingMotion, place: Float[Array, " n"]) -> Scalar:
         """Strain energy of its contacts [J]; arguments as of `unknowns`."""
@@ -114,7 +131,7 @@ def _(element: Ball, material, pitch_radius, speed, orbit) -> FreeElement:
     mass, _ = ball_mass(element.diameter, material.density)
     both, none = jnp.stack([mass, mass]), jnp.zeros_like(mass)
     force = jnp.stack([none, mass * pitch_radius * orbit**2])
-    return FreeElement(element, both, force, jnp.ones_like(both))
+    return FreeElement(element, both, force, jnp.ones_like(both), _own(element))
 
 
 @free_element.register
@@ -125,7 +142,13 @@ def _(element: Roller, material, pitch_radius, speed, orbit) -> FreeElement:
     masses = jnp.stack([mass, mass, tilting])
     scale = jnp.stack([one, one, c.half_length])
     force = inertia_force(c, speed)
-    return FreeElement(element, masses, force, scale)
+    return FreeElement(element, masses, force, scale, _own(element))
+
+
+def _own(element):
+    """Of `FreeElement`: at azimuth 0 the section's (u, v, θ) are uz, ux and gy."""
+    at_zero = element.axes(jnp.zeros_like(element.diameter))
+    return jnp.stack([at_zero[:, FREEDOMS.index(k)] for k in ("uz", "ux", "gy")], 1)
 
 
 def forces(

@@ -18,8 +18,9 @@ from jaxtyping import Array, Float, Int
 
 from ..numerics.eigen import eigh
 from ..numerics.implicit import stop
-from .model import NoiseModel, NoiseSystem
+from .model import NoiseModel
 from .standing import standing
+from .system import NoiseSystem
 
 
 class NaturalModes(NamedTuple):

@@ -21,7 +21,8 @@ from ..element.rolling_element import split
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.load import solve
-from .model import NoiseModel, NoiseSystem
+from .model import NoiseModel
+from .system import NoiseSystem
 
 _LANES = 64
 """Instants that are solved side by side."""

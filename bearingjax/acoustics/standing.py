@@ -9,7 +9,8 @@ from ..element.ball_speed import CentrifugalOnly
 from ..element.choices import BallChoices
 from ..element.rolling_element import RingMotion
 from ..statics.load import solve
-from .model import NoiseModel, NoiseSystem
+from .model import NoiseModel
+from .system import NoiseSystem
 
 
 def standing(
@@ -48,4 +49,4 @@ def standing(
 
     places = system.row.each(place, system.row.azimuth, found.x)
     ring = (q[6:] if system.moving else q[:6])[: system.mass.shape[0]]
-    return jnp.concatenate([ring, places.ravel()]), solution.result
+    return jnp.concatenate([ring, places.T.ravel()]), solution.result

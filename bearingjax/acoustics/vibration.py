@@ -27,6 +27,8 @@ from .stepping import stepped
 
 _STABLE = 2.5
 """Steps at which the method is stable, of a radian of the fastest mode: 2.78 [rad]."""
+_TOGETHER = 64
+"""Samples whose contact loads are worked out together."""
 STEP = 0.5
 """Longest step, of a radian of the fastest mode [rad]."""
 _DOUBLINGS = 3
@@ -222,8 +224,12 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
     start = jnp.pad(start, (0, masses.shape[0] - start.shape[0]))
     k = system.mass.shape[0]
 
-    def acceleration(motion, velocity, time):
-        return system.forces(motion, velocity, time, start) / masses
+    def acceleration(motion, velocity, known):
+        time, course = known
+        return system.forces(motion, velocity, time, start, course) / masses
+
+    def known(time):
+        return time, system.course(time)
 
     number = (settle + turns) * samples
     begin = start, jnp.zeros_like(start)
@@ -231,7 +237,7 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
     def kept(acceleration):
         return acceleration[:k], None if model.cage is None else acceleration[-3:]
 
-    moved = stepped(acceleration, begin, h, steps, number, kept)
+    moved = stepped(acceleration, begin, h, steps, number, kept, known)
     motion, (seen, of_cage) = jax.tree.map(lambda r: r[settle * samples :], moved[:2])
     numbers = jnp.arange(settle * samples, number, dtype=start.dtype)
     time = numbers * (h * steps)
@@ -239,7 +245,9 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
     if model.cage is not None:
         along = jnp.stack([jnp.ones_like(h)] * 2 + [system.row.pitch_radius])[None]
         cage = CageMotion(motion[:, -3:] * along, of_cage * along)
-    loads = lax.map(lambda given: system.contact_loads(*given), (motion, time))
+    loads = lax.map(
+        lambda given: system.contact_loads(*given), (motion, time), batch_size=_TOGETHER
+    )
     ended = jnp.all(jnp.isfinite(moved.end[0])) & jnp.all(jnp.isfinite(moved.end[1]))
     peak = jnp.argmax(jnp.max(loads, axis=(1, 2)))
     rate = _fastest(system, motion[peak], time[peak])

@@ -318,6 +318,11 @@ class FormErrors(eqx.Module):
         instance(self, "outer", RacewayErrors)
         instance(self, "inner", RacewayErrors)
 
+    @property
+    def raise_surfaces(self) -> bool:
+        """Whether a surface stands out or in anywhere. Static."""
+        return bool(self.outer.raised or self.inner.raised or self.elements)
+
     def met(
         self,
         surfaces: "Surfaces",

@@ -41,6 +41,13 @@ def lengths(vectors: Any) -> Any:
     return xp.where(none, 0.0, xp.sqrt(xp.where(none, 1.0, squares)))
 
 
+def combined(
+    rows: Float[Array, "n m"], shares: Float[Array, " n"]
+) -> Float[Array, " m"]:
+    """Σ shares_i rows_i, for a few rows [any unit]."""
+    return _sum(rows * shares[:, None])
+
+
 def quadratic(matrix: Float[Array, "n n"], a: Float[Array, " n"]) -> Float[Array, ""]:
     """aᵀ M a, for a symmetric M."""
     return dot(a, _sum(matrix * a[:, None]))

@@ -1,0 +1,100 @@
+"""Where rolling elements are at a time, and the form errors that they meet there."""
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+
+class Section(NamedTuple):
+    """Motions of a ring in the axial sections of the elements, or forces on them.
+
+    Attributes:
+        axial: (element,) [m, N].
+        outwards: (element,) [m, N].
+        tilt: From the axis outwards (element,) [rad, N m]; `None`: none.
+    """
+
+    axial: Float[Array, " element"]
+    outwards: Float[Array, " element"]
+    tilt: Float[Array, " element"] | None
+
+    @property
+    def stacked(self) -> Float[Array, "element 3"]:
+        """All three."""
+        tilt = jnp.zeros_like(self.axial) if self.tilt is None else self.tilt
+        return jnp.stack([self.axial, self.outwards, tilt], axis=1)
+
+
+class Encounter(NamedTuple):
+    """How every rolling element finds the raceways.
+
+    The axis of the elements is the last one: a compiler works on neighbours at once.
+
+    Attributes:
+        azimuth: Where they are (element,) [rad].
+        cosine, sine: Of the azimuth (element,) [1].
+        axial: How far outer and inner raceway stand along the axis there, (2, element)
+            [m]; `None`: as on the drawing.
+        outwards: Likewise from the axis.
+        raised: How far their surfaces stand towards the element (2, element) [m];
+            `None`: not at all.
+    """
+
+    azimuth: Float[Array, " element"]
+    cosine: Float[Array, " element"]
+    sine: Float[Array, " element"]
+    axial: Float[Array, "2 element"] | None = None
+    outwards: Float[Array, "2 element"] | None = None
+    raised: Float[Array, "2 element"] | None = None
+
+    @classmethod
+    def at(cls, azimuth: Float[Array, " element"]) -> "Encounter":
+        """On raceways as on the drawing."""
+        return cls(azimuth, jnp.cos(azimuth), jnp.sin(azimuth))
+
+    def meeting(
+        self, met: Float[Array, "element 2 3"], raised: bool = True
+    ) -> "Encounter":
+        """The same on raceways with deviations.
+
+        Args:
+            met: `Deviation.raceway` of every element [m].
+            raised: Whether surfaces stand out anywhere. Static.
+        """
+        axial, outwards, heights = met.transpose(2, 1, 0)
+        return self._replace(
+            axial=axial, outwards=outwards, raised=heights if raised else None
+        )
+
+    def motion(self, ring: Float[Array, " k"] | None, raceway: int) -> Section:
+        """Motion of a raceway in the axial section of every element [m, rad].
+
+        Args:
+            ring: Motion of the ring, three freedoms or five [m, rad]; `None`: none.
+            raceway: 0 for the outer one, 1 for the inner one. Static.
+        """
+        axial = outwards = jnp.zeros_like(self.azimuth)
+        tilt = None
+        if ring is not None:
+            axial = axial + ring[2]
+            outwards = ring[0] * self.cosine + ring[1] * self.sine
+            if ring.shape[0] > 3:
+                tilt = ring[4] * self.cosine - ring[3] * self.sine
+        if self.axial is not None and self.outwards is not None:
+            axial = axial + self.axial[raceway]
+            outwards = outwards + self.outwards[raceway]
+        return Section(axial, outwards, tilt)
+
+    def push(self, forces: Section, freedoms: int) -> Float[Array, " k"]:
+        """What forces on the motions of all sections do on the ring [N, N m].
+
+        Args:
+            forces: On every element's section [N, N m].
+            freedoms: Of the ring, three or five. Static.
+        """
+        axial, outwards, moment = forces
+        along = [outwards * self.cosine, outwards * self.sine, axial]
+        if moment is not None and freedoms > 3:
+            along = [*along, -moment * self.sine, moment * self.cosine]
+        return jnp.sum(jnp.stack(along), axis=1)

@@ -1,0 +1,325 @@
+"""Equations of motion of a bearing on a noise rig: one ring moves, the other is held.
+
+M q'' + ∂E/∂q + sensor = load for the moving ring, m p'' + ∂E/∂p = inertia of the orbit
+for every rolling element, with E(q, p, t) the strain energy of all contacts. Its time
+enters by the places of the rolling elements and by the form errors that they meet. The
+cage carries them round evenly, at the speed of rolling without slip.
+
+A film, and what else damps in a contact, resists the change of the contact's force:
+forces are f + τ df/dt, with a retardation time τ. No force jumps where a contact opens.
+Damping over stiffness of whole bearings is some 2.5 to 25 us, and contacts in series
+have the τ of each. The default lies in the middle of that range.
+
+With a `Cage` every ball also has a place along the pitch circle: m s'' = its traction
+and what its pocket does. Its contacts with the raceways move along; that they push it
+along too, by slopes of form errors, is left out.
+
+Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011) for balls moving
+    radially; here with all freedoms of the section, on the energy of the contacts.
+    Retardation: Krämer, Dynamics of Rotors and Foundations (1993), and Friswell et al.,
+    Dynamics of Rotating Machines (2010), p. 182-185: (0.25 to 2.5) 1e-5 s.
+"""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..design.form_error import FormErrors, Surfaces
+from ..element.frame import RINGS, orbit, roll_ratio
+from ..element.row import Row
+from ..numerics.types import Scalar
+from .cage import Cage, cage_forces
+from .encounter import Encounter, Section
+from .free_balls import ball_forces, is_written_out
+from .free_element import FreeElement, forces
+from .sensor import Sensor
+
+
+class NoiseSystem(eqx.Module):
+    """Equations of motion of a `NoiseModel`.
+
+    Coordinates (n,) are those of the ring, then the first of all rolling elements, the
+    second of all and so on: a compiler works best on like neighbours. With a cage
+    follow how far every rolling element is ahead of the even orbit, along the pitch
+    circle, and the cage's x, y and turn beyond that orbit.
+
+    Attributes:
+        row: The rolling elements, each a `FreeElement`.
+        errors: Form errors, tabulated; `None`: none.
+        surfaces: Where the contacts run.
+        turning: Speeds of outer ring, inner ring, orbit and of the elements about
+            their own axes, against the orbit [rad/s].
+        mass: Of the ring's freedoms (k,) [kg, kg m²].
+        load: On them (k,) [N, N m].
+        growth: Time in which form errors grow from nothing, so that they excite no
+            vibration of their own by being there; `None`: they are there [s].
+        sensor: As of the model.
+        retardation: As of the model [s].
+        moving: 0 for the outer ring, 1 for the inner one. Static.
+        cage: As of the model.
+    """
+
+    row: Row
+    errors: FormErrors | None
+    surfaces: Surfaces
+    turning: tuple[Scalar, Scalar, Scalar, Scalar]
+    mass: Float[Array, " k"]
+    load: Float[Array, " k"]
+    sensor: Sensor | None
+    retardation: Scalar
+    growth: Scalar | None
+    moving: int = eqx.field(static=True)
+    cage: Cage | None = None
+
+    @property
+    def masses(self) -> Float[Array, " n"]:
+        """Of all coordinates [kg, kg m²]."""
+        each = self._of_each("mass")
+        masses = [self.mass, each.T.ravel()]
+        if (cage := self.cage) is not None:
+            own = jnp.stack([cage.mass, cage.mass, cage.inertia])
+            masses = [*masses, each[:, 0], own]
+        return jnp.concatenate(masses)
+
+    def _of_each(self, name):
+        """A number of the rolling elements, with leading axis element."""
+        return self.row.each(lambda free, _: getattr(free, name), self.row.azimuth)
+
+    def parted(
+        self, motion: Float[Array, " n"]
+    ) -> tuple[Float[Array, " k"], Float[Array, "element m"]]:
+        """Ring's and rolling elements' coordinates."""
+        k = self.mass.shape[0]
+        count = self.row.azimuth.shape[0]
+        end = k + count * self.row.element.mass.shape[-1]
+        return motion[:k], motion[k:end].reshape(-1, count).T
+
+    def caged(
+        self, motion: Float[Array, " n"]
+    ) -> tuple[Float[Array, " element"], Float[Array, "3"]]:
+        """Places along the pitch circle, and the cage's coordinates, where it is."""
+        count = self.row.azimuth.shape[0]
+        return motion[-3 - count : -3], motion[-3:]
+
+    def azimuth(
+        self, time: Scalar, motion: Float[Array, " n"] | None = None
+    ) -> Float[Array, " element"]:
+        """Where the rolling elements are [rad].
+
+        Args:
+            time: [s].
+            motion: Coordinates (n,) [m, rad], which count where there is a cage;
+                `None`: on the even orbit.
+        """
+        even = self.row.azimuth + self.turning[2] * time
+        if self.cage is None or motion is None:
+            return even
+        return even + self.caged(motion)[0] / self.row.pitch_radius
+
+    def met(
+        self, azimuth: Float[Array, " element"], time: Scalar
+    ) -> Float[Array, "element 2 3"] | None:
+        """How every rolling element finds the raceways, `Deviation.raceway` [m].
+
+        Args:
+            azimuth: Where they are [rad].
+            time: [s].
+        """
+        if self.errors is None:
+            return None
+        outer, inner, _, spin = self.turning
+        rolled = jnp.full_like(azimuth, 1.0) * spin * time
+        turns = outer * time, inner * time
+        met = self.errors.met(self.surfaces, azimuth, *turns, rolled)
+        return met if self.growth is None else _grown(time / self.growth) * met
+
+    def encounter(self, azimuth: Float[Array, " element"], time: Scalar) -> Encounter:
+        """How every rolling element finds the raceways; arguments as of `met`."""
+        found = Encounter.at(azimuth)
+        met = self.met(azimuth, time)
+        if met is None or self.errors is None:
+            return found
+        return found.meeting(met, self.errors.raise_surfaces)
+
+    def course(self, time: Scalar) -> tuple[Encounter, Encounter] | None:
+        """Encounters at a time and their rates, as far as time alone decides on them.
+
+        Args:
+            time: [s].
+
+        Returns:
+            `None` with a cage: the elements are then where their motion takes them.
+        """
+        if self.cage is not None:
+            return None
+
+        def at(time):
+            return self.encounter(self.azimuth(time), time)
+
+        return jax.jvp(at, (time,), (jnp.ones_like(time),))
+
+    def _passing(self, motion, velocity, time):
+        """As `course`, of a motion with a cage."""
+
+        def at(motion, time):
+            return self.encounter(self.azimuth(time, motion), time)
+
+        return jax.jvp(at, (motion, time), (velocity, jnp.ones_like(time)))
+
+    def _motions(self, motion, encounter):
+        """Motions of both rings at the elements, and these's own places."""
+        ring, places = self.parted(motion)
+        moved = (None, ring) if self.moving else (ring, None)
+        outer, inner = (encounter.motion(q, k) for k, q in enumerate(moved))
+        return outer, inner, places
+
+    def _each(self, function, motion, encounter):
+        """Map function(free, rings, place) over the elements, as they are met."""
+        outer, inner, places = self._motions(motion, encounter)
+        rings = outer.stacked, inner.stacked
+        raised = encounter.raised
+        heights = () if raised is None else (raised.T,)
+
+        def one(free, outer, inner, place, *heights):
+            if heights:
+                free = free.raised(heights[0])
+            return function(free, free.seen(outer, inner), place)
+
+        return self.row.each(one, *rings, places, *heights)
+
+    def _contacts(self, motion, encounter):
+        """Derivatives of the energy by the moving ring's sections, and by places."""
+        if is_written_out(self.row.element):
+            given = self._motions(motion, encounter)
+            on_rings, on_places = ball_forces(
+                self.row.element, *given, encounter.raised
+            )
+            return on_rings[self.moving], on_places
+
+        def one(free, rings, place):
+            on_rings, on_place = forces(free, rings, place)
+            return free.in_section(on_rings[self.moving]), on_place
+
+        on_ring, on_places = self._each(one, motion, encounter)
+        return Section(*on_ring.T), on_places
+
+    def contact_forces(
+        self,
+        motion: Float[Array, " n"],
+        time: Scalar,
+        met: Float[Array, "element 2 3"] | None = None,
+    ) -> Float[Array, " n"]:
+        """∂E/∂(q, p) at a time [N, N m].
+
+        Args:
+            motion: Coordinates (n,) [m, rad].
+            time: [s].
+            met: How the rolling elements find the raceways [m]; `None`: as `met`.
+        """
+        azimuth = self.azimuth(time, motion)
+        if met is not None:
+            return self.resistance(motion, Encounter.at(azimuth).meeting(met))
+        return self.resistance(motion, self.encounter(azimuth, time))
+
+    def resistance(
+        self, motion: Float[Array, " n"], encounter: Encounter
+    ) -> Float[Array, " n"]:
+        """∂E/∂(q, p) where the rolling elements find the raceways so [N, N m].
+
+        Args:
+            motion: Coordinates (n,) [m, rad].
+            encounter: Of the rolling elements.
+        """
+        on_ring, on_places = self._contacts(motion, encounter)
+        on_places = on_places - self._of_each("force")
+        on_ring = encounter.push(on_ring, self.mass.shape[0])
+        if (cage := self.cage) is None:
+            return jnp.concatenate([on_ring, on_places.T.ravel()])
+        arcs, place = self.caged(motion)
+        guided = RINGS.index(cage.guiding_ring) == self.moving
+        guide = motion[:2] if guided else jnp.zeros((2,), motion.dtype)
+        radius = self.row.pitch_radius
+        found = cage_forces(cage, place, arcs, encounter.azimuth, guide, radius)
+        if guided:
+            on_ring = on_ring.at[:2].add(found.ring)
+        return jnp.concatenate([on_ring, on_places.T.ravel(), found.arcs, found.cage])
+
+    def contact_loads(
+        self, motion: Float[Array, " n"], time: Scalar
+    ) -> Float[Array, "element contact"]:
+        """Load of every contact [N]; arguments as of `contact_forces`."""
+        encounter = self.encounter(self.azimuth(time, motion), time)
+        return self._each(FreeElement.loads, motion, encounter)
+
+    def traction(
+        self,
+        cage: Cage,
+        motion: Float[Array, " n"],
+        velocity: Float[Array, " n"],
+        encounter: Encounter,
+    ) -> Float[Array, " element"]:
+        """Force of both raceways on every ball along the pitch circle [N].
+
+        It draws the ball to the orbit on which it would roll: that of its own diameter
+        and contact angle, the mean of its contacts by their loads. Between the two it
+        slides, with friction on all its loads. Its turn about its own axis follows
+        without delay.
+
+        Args:
+            cage: Of the bearing.
+            motion, velocity: [m, rad], [m/s, rad/s].
+            encounter: Of the rolling elements.
+        """
+        outer, inner, even, _ = self.turning
+        radius = self.row.pitch_radius
+
+        def one(free, rings, place):
+            load, cosine = free.carried(rings, place)
+            diameter = free.element.diameter
+            own = roll_ratio(diameter, 2.0 * radius, cosine)
+            return load, radius * (orbit(own, outer, inner) - even)
+
+        load, ahead = self._each(one, motion, encounter)
+        slip = ahead - self.caged(velocity)[0]
+        return cage.friction * load * jnp.tanh(slip / cage.sliding_speed)
+
+    def forces(
+        self,
+        motion: Float[Array, " n"],
+        velocity: Float[Array, " n"],
+        time: Scalar,
+        start: Float[Array, " n"],
+        course: tuple[Encounter, Encounter] | None = None,
+    ) -> Float[Array, " n"]:
+        """What acts on every coordinate [N, N m].
+
+        Args:
+            motion, velocity: [m, rad], [m/s, rad/s].
+            time: [s].
+            start: Where the sensor was set [m, rad].
+            course: `course` of the time, if it is at hand.
+        """
+        if course is None:
+            course = self._passing(motion, velocity, time)
+        encounter, change = course
+        found, rate = jax.jvp(self.resistance, (motion, encounter), (velocity, change))
+        force = -found - self.retardation * rate
+        force = force.at[: self.mass.shape[0]].add(self.load)
+        if self.cage is not None:
+            count = self.row.azimuth.shape[0]
+            force = force.at[-3 - count : -3].add(
+                self.traction(self.cage, motion, velocity, encounter)
+            )
+            force = force.at[-3:-1].add(self.cage.load)
+        if self.sensor is None:
+            return force
+        s = self.sensor
+        pull = s.stiffness * (motion[:3] - start[:3]) + s.damping * velocity[:3]
+        return force.at[:3].add(-s.projector @ pull)
+
+
+def _grown(share):
+    """From 0 at 0 to 1 at 1 and beyond, with two derivatives."""
+    t = jnp.clip(share, 0.0, 1.0)
+    return t * t * t * (10.0 - t * (15.0 - 6.0 * t))
