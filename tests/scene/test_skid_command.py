@@ -293,7 +293,7 @@ def test_no_solution_leaves_no_numbers(run, tmp_path):
 def test_bad_input(run, tmp_path):
     table = ("--table", tmp_path / "end.txt")
     done = run(*SMALL, "--steady", *table)
-    assert done.status == 2 and "a table ends in .csv or .parquet" in done.err
+    assert done.status == 2 and "a table ends in .csv, .parquet, .xlsx" in done.err
     done = run(*SMALL, "--steady", "--set", "dynamics.places=1")
     assert done.status == 2 and "`places` is 1, but the balls bear unlike" in done.err
     done = run("skid", "deep_groove", "--steady")
