@@ -13,6 +13,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
 from ..element.inertia import Speed
@@ -38,7 +39,10 @@ class LoadTable(eqx.Module):
     """Loaded balls or rollers over the azimuth; from `load_table`.
 
     Attributes:
-        coefficients: Of the spline, leading axis place; of one place: what is there.
+        rows: Of every place: coefficients of the spline, of one place what is there;
+            then its number [1] (place, n). The number stands here because a compiler
+            may work out the place of an angle twice, and round it to two neighbouring
+            places: number and coefficients are then of one.
         like: One of them, for what does not depend on its place.
 
     Largest errors against an evaluation at the azimuth itself, five balls under 250 N
@@ -48,7 +52,7 @@ class LoadTable(eqx.Module):
         errors fall with the distance of the places only slowly.
     """
 
-    coefficients: _Row
+    rows: Float[Array, "place n"]
     like: LoadedBall | LoadedRoller
 
     n_own: ClassVar[int] = 0
@@ -82,19 +86,20 @@ class LoadTable(eqx.Module):
         Args:
             azimuth: Any angle [rad].
         """
-        count = self.coefficients.load.shape[0]
+        count = self.rows.shape[0]
         if count == 1:
-            return _ball(jax.tree.map(lambda c: c[0], self.coefficients), self.like)
+            return _ball(self.rows[0, :-1], self.like)
         place = azimuth * (0.5 * count / jnp.pi)
-        below = jnp.floor(jax.lax.stop_gradient(place))
-        powers = jnp.stack([(place - below) ** k for k in range(_DEGREE + 1)])
-        weight = jnp.asarray(_pieces(), powers.dtype) @ powers
-        first = below.astype(jnp.int32) - _DEGREE // 2
+        before = _DEGREE // 2
+        first = jnp.floor(jax.lax.stop_gradient(place)).astype(jnp.int32) - before
         index = (first + jnp.arange(_DEGREE + 1, dtype=jnp.int32)) % count
-        row = jax.tree.map(
-            lambda c: jnp.tensordot(weight, c[index], axes=1), self.coefficients
-        )
-        return _ball(row, self.like)
+        rows = self.rows[index]
+        # Whole turns off, whichever place was found at their end.
+        way = place - jax.lax.stop_gradient(rows[before, -1])
+        way = way - count * jnp.round((way - 0.5) / count)
+        powers = jnp.stack([way**k for k in range(_DEGREE + 1)])
+        weight = jnp.asarray(_pieces(), powers.dtype) @ powers
+        return _ball(weight @ rows[:, :-1], self.like)
 
 
 def load_table(balls: LoadedBall | LoadedRoller) -> LoadTable:
@@ -104,10 +109,13 @@ def load_table(balls: LoadedBall | LoadedRoller) -> LoadTable:
         balls: At one place, or at places spread evenly around the bearing from azimuth
             zero on, at least 6; leading axis place.
     """
-    rows = jax.vmap(_row)(balls)
-    if rows.load.shape[0] > 1:
-        rows = jax.tree.map(_coefficients, rows)
-    return LoadTable(rows, jax.tree.map(lambda b: b[0], balls))
+    rows = jax.vmap(lambda ball: ravel_pytree(_row(ball))[0])(balls)
+    count = rows.shape[0]
+    if count > 1:
+        rows = _coefficients(rows)
+    number = jnp.arange(count, dtype=rows.dtype)[:, None]
+    like = jax.tree.map(lambda b: b[0], balls)
+    return LoadTable(jnp.concatenate([rows, number], axis=1), like)
 
 
 def _row(ball):
@@ -130,7 +138,8 @@ def _row(ball):
     )
 
 
-def _ball(row, like):
+def _ball(numbers, like):
+    row = _as_row(numbers, like)
     # A spline may pass below zero beside places without load.
     total, polar = jnp.moveaxis(
         jnp.maximum(row.extent, 0.0) * jnp.exp(row.log_mean), -1, 0
@@ -152,6 +161,16 @@ def _ball(row, like):
     return eqx.tree_at(lambda b: b.angle, ball, row.angle)
 
 
+def _as_row(numbers, like):
+    """The `_Row` that `ravel_pytree` had laid in one line."""
+    leaves, tree = jax.tree.flatten(jax.eval_shape(_row, like))
+    ends = np.cumsum([leaf.size for leaf in leaves])[:-1]
+    parts = jnp.split(numbers, ends)
+    return tree.unflatten(
+        [part.reshape(leaf.shape) for part, leaf in zip(parts, leaves, strict=True)]
+    )
+
+
 def _pieces():
     """B-spline of degree p by its pieces (piece, power of the way across a knot span).
 
@@ -167,12 +186,12 @@ def _pieces():
     return pieces
 
 
-def _coefficients(values: Float[Array, "place ..."]) -> Float[Array, "place ..."]:
+def _coefficients(values: Float[Array, "place n"]) -> Float[Array, "place n"]:
     """Of the periodic spline through values at its knots."""
     count = values.shape[0]
     kernel = np.zeros(count)
     for k, weight in enumerate(_pieces()[:, 0]):
         kernel[(k - _DEGREE // 2) % count] += weight
-    symbol = np.fft.rfft(kernel).real.reshape(-1, *[1] * (values.ndim - 1))
+    symbol = np.fft.rfft(kernel).real[:, None]
     waves = jnp.fft.rfft(values, axis=0)
     return jnp.fft.irfft(waves / jnp.asarray(symbol, waves.dtype), n=count, axis=0)
