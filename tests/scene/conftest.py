@@ -5,6 +5,7 @@ from typing import NamedTuple
 import pytest
 
 from bearingjax import cli
+from bearingjax.cli import jax_settings
 
 
 class Run(NamedTuple):
@@ -18,8 +19,8 @@ class Run(NamedTuple):
 @pytest.fixture
 def run(monkeypatch, capsys):
     """Call `bearingjax` with arguments; programs are those of this process."""
-    monkeypatch.setattr(cli, "_configure_jax", lambda options: None)
-    monkeypatch.setattr(cli, "_programs", lambda: None)
+    monkeypatch.setattr(jax_settings, "configure", lambda options: None)
+    monkeypatch.setattr(jax_settings, "programs", lambda: None)
 
     def call(*arguments):
         status = cli.main([str(a) for a in arguments])

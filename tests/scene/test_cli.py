@@ -16,6 +16,7 @@ from tolerances import SOLVER
 
 import bearingjax as bj
 from bearingjax import cli
+from bearingjax.cli import jax_settings
 
 POINTS = 21
 TAPER = ("solve", "tapered", "--set", f"output.points={POINTS}")
@@ -332,8 +333,8 @@ def test_folder_to_write_to(run, tmp_path, option):
 
 def test_reader_that_left(monkeypatch):
     """As in `bearingjax solve tapered | true`."""
-    monkeypatch.setattr(cli, "_configure_jax", lambda options: None)
-    monkeypatch.setattr(cli, "_programs", lambda: None)
+    monkeypatch.setattr(jax_settings, "configure", lambda options: None)
+    monkeypatch.setattr(jax_settings, "programs", lambda: None)
     back, front = os.pipe()
     os.close(back)
     out = os.fdopen(front, "w")
@@ -358,8 +359,8 @@ def test_full_disk(run, monkeypatch, capsys, what):
         problem = "/dev/full: cannot be written: No space left on device"
         assert done == (2, "", f"bearingjax: {problem}\n")
         return
-    monkeypatch.setattr(cli, "_configure_jax", lambda options: None)
-    monkeypatch.setattr(cli, "_programs", lambda: None)
+    monkeypatch.setattr(jax_settings, "configure", lambda options: None)
+    monkeypatch.setattr(jax_settings, "programs", lambda: None)
     with open("/dev/full", "w", encoding="utf-8") as out:
         with monkeypatch.context() as patch:
             patch.setattr(sys, "stdout", out)

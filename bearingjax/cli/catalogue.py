@@ -1,0 +1,78 @@
+"""`bearingjax catalogue`."""
+
+from .options import add_json, add_plot
+from .outputs import check_plot, save, write
+from .status import SOLVED
+
+
+def add(commands):
+    """What may be written after it."""
+    command = commands.add_parser(
+        "catalogue",
+        help="bearings by their designation",
+        description="List the bearings of the catalogue, or say all that is known of"
+        ' some: "6205", "NJ 209 ECP/C3".',
+        epilog="Exit status: 0, or 2 for bad input.",
+    )
+    command.add_argument(
+        "designation", metavar="DESIGNATION", nargs="*", help="default: all that fit"
+    )
+    command.add_argument("--type", help="such as deep_groove_ball")
+    command.add_argument(
+        "--bore", metavar="RANGE", help='"25 mm", "20 mm:40 mm", ":40 mm"'
+    )
+    command.add_argument("--outside", metavar="RANGE", help="outside diameter")
+    command.add_argument(
+        "--min-capacity",
+        dest="capacity",
+        metavar="FORCE",
+        help='least dynamic capacity, "10 kN", or a range "10 kN:20 kN"',
+    )
+    add_json(command)
+    add_plot(command, "draw sections of the bearings that are named")
+    return command
+
+
+def run(options) -> int:
+    """List bearings of the catalogue."""
+    from ..scene import (
+        SceneError,
+        catalogue,
+        catalogue_as_dict,
+        catalogue_details,
+        catalogue_entry,
+        catalogue_table,
+        check_outputs,
+        select,
+        write_numbers,
+    )
+
+    named = tuple(catalogue_entry(name) for name in options.designation)
+    if options.plot is not None:
+        if not named:
+            raise SceneError("--plot draws the bearings that are named; name some")
+        check_plot(options.plot)
+    check_outputs({"--json": options.json, "--plot": options.plot})
+    chosen = select(
+        named or catalogue(),
+        options.type,
+        options.bore,
+        options.outside,
+        options.capacity,
+    )
+
+    def draw(path):
+        from ..plot import cross_sections
+
+        titles = [f"{e.designation}, inner geometry {e.geometry}" for e in chosen]
+        save(cross_sections([entry.bearing for entry in chosen], titles), path)
+
+    write(
+        (options.json, lambda path: write_numbers(path, catalogue_as_dict(chosen))),
+        (options.plot, draw if chosen else None),
+    )
+    if named:
+        print("\n\n".join(catalogue_details(entry) for entry in chosen), flush=True)
+    else:
+        print(catalogue_table(chosen), flush=True)
+    return SOLVED

@@ -1,0 +1,102 @@
+"""`main`: reads the command line, runs a command, tells what stopped it."""
+
+import argparse
+import gc
+import io
+import os
+import sys
+from collections.abc import Sequence
+
+from . import (
+    catalogue,
+    contact,
+    examples,
+    jax_settings,
+    life,
+    new,
+    noise,
+    optimise,
+    rotor,
+    skid,
+    solve,
+    sweep,
+)
+from .status import BAD_INPUT, INTERRUPTED, SOLVED, complain
+
+_COMMANDS = (
+    solve,
+    sweep,
+    optimise,
+    life,
+    contact,
+    skid,
+    rotor,
+    noise,
+    catalogue,
+    new,
+    examples,
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Args:
+        arguments: Without the program's name; default: those of the process.
+
+    Returns:
+        Exit status: 0 solved, 2 bad input (or an output that cannot be written), 3 not
+        solved, 130 interrupted.
+    """
+    options = parser().parse_args(arguments)
+    options.given = list(sys.argv[1:] if arguments is None else arguments)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # which may not know "µ"
+            stream.reconfigure(errors="backslashreplace")
+    from ..scene import SceneError
+
+    # Tracing makes many small objects; searching them for cycles takes a seventh of the
+    # time of a command that ends before memory matters.
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        jax_settings.configure(options)
+        return options.run(options)
+    except SceneError as error:
+        complain(error)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        complain("interrupted")
+        return INTERRUPTED
+    except BrokenPipeError:
+        # The reader of the report has seen enough.
+        _forget_output()
+        return SOLVED
+    except OSError as error:
+        place = error.filename or "standard output"
+        complain(f"{place}: {error.strerror or error}")
+        if error.filename is None:
+            _forget_output()
+        return BAD_INPUT
+    finally:
+        if collecting:
+            gc.enable()
+
+
+def parser() -> argparse.ArgumentParser:
+    """Of the command line; `run` of what it parses is what the command does."""
+    from importlib.metadata import version
+
+    top = argparse.ArgumentParser(
+        prog="bearingjax", description="Rolling-bearing mechanics."
+    )
+    top.add_argument("--version", action="version", version=version("bearingjax"))
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for command in _COMMANDS:
+        command.add(commands).set_defaults(run=command.run)
+    return top
+
+
+def _forget_output() -> None:
+    """What standard output still holds goes nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,0 +1,92 @@
+"""`bearingjax life`."""
+
+import sys
+
+from . import jax_settings
+from .options import add_quiet, add_scene, add_table
+from .outputs import check_outputs, check_table, write
+from .progress import is_shown
+from .status import NOT_SOLVED, SOLVED, complain, tell_unsolved
+
+
+def add(commands):
+    """What may be written after it."""
+    command = commands.add_parser(
+        "life",
+        help="rating life, of one load or of a load spectrum",
+        description="Rating life of the bearing of a scene file by ISO 281 and ISO/TS"
+        " 16281, as its [life] says, under its load or, if it has [cases], under all of"
+        " them, whose damage adds up over their hours.",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
+    )
+    add_scene(command)
+    add_table(command, "case", ".csv, .parquet")
+    add_quiet(command)
+    return command
+
+
+def run(options) -> int:
+    """Rating life of the bearing of a scene."""
+    from ..scene import has_cases
+
+    check_table(options)
+    check_outputs(options)
+    if has_cases(options.scene, options.set):
+        return _life_of_cases(options)
+    return _life_of_load(options)
+
+
+def _life_of_load(options) -> int:
+    from ..numerics import Result
+    from ..scene import (
+        SceneError,
+        life_as_dict,
+        life_report,
+        read_scene,
+        run_scene,
+        scene_life,
+        solved_as_dict,
+        write_numbers,
+    )
+
+    if options.table is not None:
+        raise SceneError("--table is for a scene with [cases]; this one has one load")
+    scene = read_scene(options.scene, options.set)
+    solution = run_scene(scene, jax_settings.programs())
+    solved = Result(int(solution.result)) is Result.CONVERGED
+    life = scene_life(scene, solution) if solved else None
+    numbers = solved_as_dict(scene, solution)
+    if life is not None:
+        numbers = {**life_as_dict(life), **numbers}
+    write((options.json, lambda path: write_numbers(path, numbers)))
+    if life is None:
+        return tell_unsolved(scene, solution)
+    print(f"{scene.name}\n{life_report(scene, solution, life)}")
+    for text in numbers["warnings"]:
+        print(f"warning: {text}")
+    sys.stdout.flush()
+    return SOLVED
+
+
+def _life_of_cases(options) -> int:
+    from ..scene import (
+        read_cases,
+        run_life,
+        spectrum_as_dict,
+        spectrum_report,
+        unsolved,
+        write_numbers,
+    )
+    from ..statics import sweep_table
+
+    table = read_cases(options.scene, options.set)
+    done = run_life(table, is_shown(options))
+    write(
+        (options.table, lambda path: sweep_table.write(done.solved, path)),
+        (options.json, lambda path: write_numbers(path, spectrum_as_dict(done))),
+    )
+    if not done.converged:
+        complain(unsolved(done))
+        return NOT_SOLVED
+    print(spectrum_report(done), flush=True)
+    return SOLVED

@@ -1,0 +1,64 @@
+"""`bearingjax optimise`."""
+
+from .options import add_plot, add_scene
+from .outputs import check_outputs, save, write
+from .status import NOT_SOLVED, SOLVED, complain
+
+
+def add(commands):
+    """What may be written after it."""
+    command = commands.add_parser(
+        "optimise",
+        help="the free numbers of a design that make a measure least",
+        description="Optimise the bearing of a scene file, as its [optimise] says, over"
+        " its [cases].",
+        epilog="Exit status: 0 optimised, 2 bad input, 3 not solved or not converged.",
+    )
+    add_scene(command)
+    add_plot(command)
+    command.add_argument("--progress", action="store_true", help="show progress")
+    return command
+
+
+def run(options) -> int:
+    """Optimise the bearing of a scene."""
+    from ..numerics import SolveError
+    from ..scene import (
+        optimisation_as_dict,
+        optimisation_report,
+        read_optimisation,
+        run_optimisation,
+        unsolved_start_as_dict,
+        write_numbers,
+    )
+
+    check_outputs(options)
+    task = read_optimisation(options.scene, options.set)
+    try:
+        found = run_optimisation(task, progress=options.progress)
+    except SolveError as error:
+        numbers = unsolved_start_as_dict(task, error)
+        write(
+            (options.json, lambda path: write_numbers(path, numbers)),
+            (options.plot, None),
+        )
+        complain(error)
+        return NOT_SOLVED
+
+    def draw(path):
+        from ..plot import optimised
+
+        save(optimised(found, title=task.scene.name), path)
+
+    def tell(path):
+        write_numbers(path, optimisation_as_dict(task, found))
+
+    write(
+        (options.json, tell),
+        (options.plot, draw if found.converged else None),
+    )
+    if not found.converged:
+        complain(f"{found.result}: {found.message}")
+        return NOT_SOLVED
+    print(optimisation_report(task, found), flush=True)
+    return SOLVED

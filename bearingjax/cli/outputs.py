@@ -1,0 +1,92 @@
+"""Files that commands write: refused before anything is solved, written at its end."""
+
+import shlex
+from pathlib import Path
+
+from .status import complain
+
+
+def check_outputs(options) -> None:
+    """Fail before anything is solved if outputs cannot be written or hit an input."""
+    from ..scene import check_outputs, scene_files
+
+    names = ("json", "plot", "table", "wav", "report")
+    outputs = {f"--{name}": getattr(options, name, None) for name in names}
+    if outputs["--plot"] is not None:
+        check_plot(outputs["--plot"])
+    check_outputs(outputs, scene_files(options.scene, options.set))
+
+
+def check_table(options, rows: int = 0) -> None:
+    """Fail before anything is solved if a table, of so many rows, cannot be written."""
+    from ..scene import SceneError
+    from ..statics.sweep_table import check_writable
+
+    if options.table is None:
+        return
+    try:
+        check_writable(options.table, rows)
+    except (ValueError, ImportError) as error:
+        raise SceneError(str(error)) from error
+
+
+def check_report(path: Path | None) -> None:
+    """Fail if it is no page."""
+    from ..scene import SceneError
+
+    if path is not None and path.suffix.lower() not in (".html", ".htm"):
+        raise SceneError(f"{path}: a report ends in .html")
+
+
+def check_plot(path: Path) -> None:
+    """Fail if a picture cannot be drawn, or not in this format."""
+    from ..scene import SceneError
+
+    check_matplotlib()
+    if path.suffix.lower() not in (".png", ".pdf", ".svg"):
+        raise SceneError(f"{path}: a picture ends in .png, .pdf or .svg")
+
+
+def check_matplotlib() -> None:
+    """Fail if pictures cannot be drawn."""
+    from ..scene import SceneError
+
+    try:
+        import matplotlib
+    except ImportError as error:
+        problem = 'pictures need matplotlib: pip install "bearingjax[plot]"'
+        raise SceneError(problem) from error
+    matplotlib.use("Agg")
+
+
+def save(figure, path, **format) -> None:
+    """Write a picture, to a file or a stream."""
+    figure.savefig(path, dpi=150, **format)
+
+
+def write(*outputs) -> None:
+    """Write the outputs of a run, pairs of a path and what writes there.
+
+    What cannot be told of an unsolved run has `None` as its second. Says which files of
+    an earlier run were removed.
+    """
+    from ..scene import write_outputs
+
+    for path in write_outputs(outputs):
+        complain(f"{path}: of an earlier run, removed")
+
+
+def origin(options):
+    """Where a report comes from; read before anything is solved."""
+    import datetime
+
+    from ..scene import Origin
+    from ..scene.scene_file import find_scene
+
+    now = datetime.datetime.now().astimezone()
+    return Origin(
+        shlex.join(["bearingjax", *options.given]),
+        find_scene(options.scene).read_text(encoding="utf-8-sig"),
+        tuple(options.set),
+        now.strftime("%Y-%m-%d %H:%M %z"),
+    )

@@ -1,0 +1,73 @@
+"""`bearingjax rotor`."""
+
+from .options import add_plot, add_quiet, add_scene, add_table
+from .outputs import check_outputs, check_table, save, write
+from .progress import stages
+from .status import NOT_SOLVED, SOLVED, complain
+
+
+def add(commands):
+    """What may be written after it."""
+    command = commands.add_parser(
+        "rotor",
+        help="a shaft on its bearings: modes, critical speeds, vibration",
+        description="Static equilibrium of the [rotor] of a scene on its bearings,"
+        " modes at its speed, critical speeds; and if the scene has these tables, the"
+        " [rotor.campbell] diagram, the [rotor.response] to unbalance or a shaking"
+        " base, and the motion in time of [rotor.transient].",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved, or only in part.",
+    )
+    add_scene(command)
+    add_table(command, "point of the response, or per time of the motion in time")
+    command.add_argument(
+        "--series",
+        choices=("response", "transient"),
+        help="which of them --table has, if the scene has both",
+    )
+    add_plot(command)
+    add_quiet(command, "progress")
+    return command
+
+
+def run(options) -> int:
+    """A shaft on its bearings."""
+    from ..scene import (
+        SceneError,
+        read_rotor,
+        rotor_columns,
+        rotor_report,
+        rotor_series,
+        run_rotor,
+        write_rotor_json,
+    )
+    from ..statics.sweep_table import write_columns
+
+    check_table(options)
+    check_outputs(options)
+    task = read_rotor(options.scene, options.set)
+    if options.table is None and options.series is not None:
+        raise SceneError("--series is for a table; name it with --table")
+    series = None if options.table is None else rotor_series(task, options.series)
+    with stages(options) as show:
+        done = run_rotor(task, show)
+
+    def draw(path):
+        from ..plot import rotor_overview
+
+        save(rotor_overview(done, title=task.name), path)
+
+    columns = {} if series is None else rotor_columns(done, series)
+
+    def tabulate(path):
+        write_columns(columns, path)
+
+    write(
+        (options.json, lambda path: write_rotor_json(path, done)),
+        (options.table, tabulate if columns else None),
+        (options.plot, None if done.settled is None else draw),
+    )
+    if done.settled is not None:
+        print(rotor_report(done), flush=True)
+    for failure in done.failures:
+        complain(f"{failure.result.label}: {failure.part}: {failure.message}")
+    return SOLVED if done.converged else NOT_SOLVED

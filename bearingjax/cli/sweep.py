@@ -1,0 +1,113 @@
+"""`bearingjax sweep`."""
+
+import shlex
+import signal
+import time
+from pathlib import Path
+
+import numpy as np
+
+from .jax_settings import devices
+from .options import add_quiet, add_report, add_scene, add_table
+from .outputs import check_outputs, check_report, check_table, origin, write
+from .progress import is_shown
+from .status import NOT_SOLVED, SOLVED, complain
+
+
+def add(commands):
+    """What may be written after it."""
+    command = commands.add_parser(
+        "sweep",
+        help="many cases: loads, displacements, speeds, designs",
+        description="Solve the [cases] of a scene file.",
+        epilog="Exit status: 0 all solved, 2 bad input, 3 some not solved (the table"
+        " holds a result for each case), 130 interrupted (what is solved is kept).",
+    )
+    add_scene(command)
+    add_table(command, "case")
+    command.add_argument(
+        "--resume",
+        action="store_true",
+        help="solve only the cases that the table lacks, after an interruption",
+    )
+    add_report(command, "cases")
+    add_quiet(command)
+    command.add_argument(
+        "--devices",
+        metavar="N",
+        type=int,
+        default=None,
+        help="parts of the processor to spread the cases over; default: all its cores",
+    )
+    return command
+
+
+def run(options) -> int:
+    """Solve the cases of a scene."""
+    from ..numerics import Result
+    from ..scene import (
+        Interrupt,
+        SceneError,
+        design_columns,
+        read_cases,
+        resume_cases,
+        run_cases,
+        sweep_page,
+        sweep_report,
+        write_sweep_json,
+    )
+    from ..statics import sweep_table
+
+    check_report(options.report)
+    check_table(options)
+    check_outputs(options)
+    devices(options)
+    if options.resume and options.table is None:
+        raise SceneError("--resume takes up a table; name it with --table")
+    begin = time.perf_counter()
+    table = read_cases(options.scene, options.set)
+    check_table(options, table.cases.count)
+    begun = origin(options)
+    shown = is_shown(options)
+    with Interrupt() as interrupt:
+        done = options.table if options.resume else None
+        if done is not None and done.exists():
+            solved = resume_cases(table, done, shown, interrupt)
+        else:
+            solved = run_cases(table, shown, interrupt)
+        summary = sweep_report(table, solved, time.perf_counter() - begin)
+
+        def tabulate(path: Path):
+            sweep_table.write(solved, path, design_columns(table))
+
+        def tell(path: Path):
+            page = sweep_page(table, solved, summary, begun)
+            path.write_text(page, encoding="utf-8")
+
+        write(
+            (options.table, tabulate),
+            (options.json, lambda path: write_sweep_json(path, table, solved)),
+            (options.report, tell),
+        )
+    print(summary, flush=True)
+    left = int((np.asarray(solved.result) == Result.NOT_RUN).sum())
+    if left or interrupt.number is not None:
+        _tell_interrupted(options, left, solved.cases.count)
+        return 128 + (interrupt.number or signal.SIGINT)
+    if solved.converged.all():
+        return SOLVED
+    lost = int((~solved.converged).sum())
+    complain(f"{lost} of {solved.cases.count} cases not solved")
+    return NOT_SOLVED
+
+
+def _tell_interrupted(options, left: int, count: int) -> None:
+    """Say how an interrupted sweep goes on."""
+    words = f"interrupted: {left} of {count} cases not run"
+    if left and options.table is not None:
+        given = [word for word in options.given if word != "--resume"]
+        again = shlex.join(["bearingjax", *given, "--resume"])
+        words += f"; go on with: {again}"
+    elif left:
+        words += "; with --table what is solved is kept, and --resume goes on from it"
+    complain(words)
