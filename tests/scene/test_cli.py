@@ -288,6 +288,8 @@ def test_version(capsys):
 
 def test_as_a_module(capsys, monkeypatch):
     monkeypatch.setattr(sys, "argv", ["bearingjax", "--version"])
+    # Another test may have imported it, and runpy warns of that.
+    monkeypatch.delitem(sys.modules, "bearingjax.__main__", raising=False)
     with pytest.raises(SystemExit) as stop:
         runpy.run_module("bearingjax", run_name="__main__")
     assert stop.value.code == 0
