@@ -24,7 +24,7 @@ from .dimension import (
     radius,
     squeeze,
 )
-from .style import RACEWAYS
+from .style import COLOURS, RACEWAYS
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -47,7 +47,7 @@ def dimensioned_balls(
     rings = ball_row(ax, bearing, np.asarray)
     lines = {name: contour(bearing, name) for name in RACEWAYS}
     corners = np.array([rings.min(axis=0), rings.max(axis=0)])
-    corners += 0.25 * diameter * np.array([[-1.0], [1.0]])
+    corners += 0.2 * diameter * np.array([[-1.0], [1.0]])
     labels = [
         _diameter(ax, bearing, corners[0, 0]),
         *_grooves(ax, bearing),
@@ -69,7 +69,6 @@ def _diameter(ax, bearing, left):
 
 def _grooves(ax, bearing):
     """Radius of a groove of each ring, from its centre."""
-    free = float(bearing.free_contact_angle) - float(bearing.groove_axis)
     for name, sign in (("outer", 1.0), ("inner", -1.0)):
         field = f"{name}_osculation"
         groove = next(g for g in bearing.grooves if g.on_outer is (name == "outer"))
@@ -78,18 +77,20 @@ def _grooves(ax, bearing):
         if isinstance(bearing, SelfAligningBallRow) and name == "outer":
             turn = float(bearing.groove_axis) + 0.05
             at = centre + 1e3 * size * np.array([np.sin(turn), np.cos(turn)])
-            text = f"{field}: none, a sphere of radius {quantity(size, 'm')}"
+            text = f"{field}: none\nsphere of radius {quantity(size, 'm')}"
             yield Label(f"{text}\nabout the middle of the bearing", at)
             continue
-        turn = float(bearing.groove_axis) + _arc_angle(bearing, groove, name, free)
+        turn = float(bearing.groove_axis) + _arc_angle(bearing, groove, name)
         way = sign * np.array([np.sin(turn), np.cos(turn)])
         at = radius(ax, centre, centre + 1e3 * size * way)
         text = f"{label(bearing, field)}\ngroove radius {quantity(size, 'm')}"
         yield Label(text, at)
 
 
-def _arc_angle(bearing, groove, name, free):
-    """Where on its arc a radius is drawn: beside the line of contact [rad]."""
+def _arc_angle(bearing, groove, name):
+    """Where on its arc a radius is drawn: beside the lines of contact [rad]."""
+    turn = float(bearing.free_contact_angle) - float(bearing.groove_axis)
+    lines = turn, float(getattr(bearing, "shim_angle", turn))
     height = getattr(bearing, f"{name}_shoulder")
     height = SHOULDER * bearing.ball_diameter if height is None else height
     deepest = float(groove.deepest)
@@ -98,8 +99,10 @@ def _arc_angle(bearing, groove, name, free):
     # Not opposite each other: they would look like one line.
     shares = (0.5, 0.3, 0.8) if name == "outer" else (0.8, 0.5, 0.3)
     turns = [start + share * (edge - start) for share in shares]
-    clear = [turn for turn in turns if abs(turn - free) > np.deg2rad(8.0)]
-    return (clear or turns)[0]
+    # At least 8 degrees beside them, or as far as may be.
+    beside = [min(abs(turn - line) for line in lines) for turn in turns]
+    clear = [turn for turn, far in zip(turns, beside, strict=True) if far > 0.14]
+    return clear[0] if clear else turns[int(np.argmax(beside))]
 
 
 def _shoulders(ax, bearing, lines):
@@ -109,7 +112,8 @@ def _shoulders(ax, bearing, lines):
     diameter = 1e3 * float(bearing.ball_diameter)
     for name, sign in (("outer", 1.0), ("inner", -1.0)):
         if name == "outer" and isinstance(bearing, SelfAligningBallRow):
-            yield Label("outer_shoulder: none, the raceway is a sphere", lines[name][0])
+            text = "outer_shoulder: none\nthe raceway is a sphere"
+            yield Label(text, lines[name][0])
             continue
         value, line = getattr(bearing, f"{name}_shoulder"), lines[name]
         # An angular contact bearing has its outer shoulder at +z, the inner one at -z.
@@ -139,10 +143,10 @@ def _angles(ax, bearing):
     if hasattr(bearing, "contact_angle"):
         turn = float(bearing.free_contact_angle)
         ends = 0.5 * np.pi, 0.5 * np.pi - turn
-        at = angle(ax, (0.0, 0.0), 0.36 * ball, ends)
+        at = angle(ax, (0.0, 0.0), 0.28 * ball, ends)
         text = label(bearing, "contact_angle")
         if bearing.contact_angle is None:
-            text = f"contact_angle = {quantity(turn, 'rad')}, from the clearance"
+            text = f"contact_angle = {quantity(turn, 'rad')}\nfrom the clearance"
         yield Label(text, at)
 
 
@@ -169,8 +173,14 @@ def ball_clearance_view(ax: "matplotlib.axes.Axes", bearing, size) -> None:
     half = 0.5 * diameter
     for sign in (1.0, -1.0):
         wall = sign * (half + times * gap)
-        if gap > 0.0:
-            squeeze(ax, (0.0, sign * half), (0.0, wall), 0.25 * diameter)
+        near, far = sorted((half, abs(wall)))
+        if gap != 0.0:
+            squeeze(ax, (0.0, sign * near), (0.0, sign * far), 0.25 * diameter)
+    if gap < 0.0:
+        # The rings are hidden where the ball overlaps them.
+        for name, outwards in (("outer", 1.0), ("inner", -1.0)):
+            line = contour(bearing, name) + [0.0, outwards * (times - 1.0) * gap]
+            ax.plot(*line.T, color=COLOURS[name], linewidth=1.2, zorder=4)
     fit(ax, rings, size, (0.9, 0.96))
     text = label(bearing, "radial_internal_clearance")
     if bearing.radial_internal_clearance is None:

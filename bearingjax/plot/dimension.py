@@ -20,7 +20,8 @@ ARROW: dict[str, Any] = {
 }
 THIN: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 5}
 AXIS: dict[str, Any] = THIN | {"linestyle": (0, (9, 3, 2, 3))}
-_LINE = 0.16  # height of a line of a label [inch]
+LINE = 0.16
+"""Height of a line of a label [inch]."""
 _FREE = 0.1  # between labels below one another [inch]
 _SHOWN = {
     "m": (1e3, " mm"),
@@ -53,7 +54,7 @@ def quantity(value: Any, unit: str) -> str:
     if unit == "m" and 0.0 < abs(value) < 1e-4:
         return f"{1e6 * value:.4g} µm"
     factor, name = _SHOWN.get(unit, (1.0, f" {unit}" if unit else ""))
-    return f"{factor * value:.5g}{name}"
+    return f"{factor * value + 0.0:.5g}{name}"
 
 
 def label(owner: Any, name: str, prefix: str = "") -> str:
@@ -105,14 +106,13 @@ def put_labels(ax: "matplotlib.axes.Axes", labels: list[Label], size, column=0.2
     cut = len(order) // 2
     for side, part in (("right", order[:cut]), ("left", order[cut:])):
         part = sorted(part, key=lambda one: float(one.at[1]))
-        wanted = [(float(one.at[1]) - low) / (high - low) for one in part]
-        lines = np.array([1 + one.text.count("\n") for one in part])
-        places = spread(wanted, (_LINE * lines + _FREE) / size[1])
+        edge = column if side == "right" else 1.0 - column
+        part, places = _uncrossed(part, (low, high), ax.get_xlim(), edge, size[1])
         for one, place in zip(part, places, strict=True):
             ax.annotate(
                 one.text,
                 tuple(np.asarray(one.at, dtype=float)),
-                (column if side == "right" else 1.0 - column, place),
+                (edge, place),
                 textcoords="axes fraction",
                 fontsize=SMALL,
                 ha=side,
@@ -127,6 +127,58 @@ def put_labels(ax: "matplotlib.axes.Axes", labels: list[Label], size, column=0.2
                     "relpos": (1.0 if side == "right" else 0.0, 0.5),
                 },
             )
+
+
+def _uncrossed(labels, low_high, left_right, edge, height):
+    """Labels from below, and their places, so that no two lines to points cross."""
+    corner = np.array([left_right[0], low_high[0]])
+    whole = np.array([np.ptp(left_right), np.ptp(low_high)])
+    labels = list(labels)
+    for _ in range(len(labels) + 1):
+        ats = [(np.asarray(one.at, dtype=float) - corner) / whole for one in labels]
+        lines = np.array([1 + one.text.count("\n") for one in labels])
+        places = spread([at[1] for at in ats], (LINE * lines + _FREE) / height)
+        starts = [np.array([edge, place]) for place in places]
+        crossing = [
+            k
+            for k in range(len(labels) - 1)
+            if _cross((starts[k], ats[k]), (starts[k + 1], ats[k + 1]))
+        ]
+        if not crossing:
+            break
+        k = crossing[0]
+        labels[k], labels[k + 1] = labels[k + 1], labels[k]
+    return labels, places
+
+
+def _cross(one, other):
+    """Whether two lines from labels to points meet, or would a little beyond these."""
+    one, other = ((start, end + 0.2 * (end - start)) for start, end in (one, other))
+
+    def side(line, point):
+        (ax, ay), (bx, by) = line
+        return (bx - ax) * (point[1] - ay) - (by - ay) * (point[0] - ax)
+
+    return all(
+        side(line, two[0]) * side(line, two[1]) < 0.0
+        for line, two in ((one, other), (other, one))
+    )
+
+
+def middle_only(ax: "matplotlib.axes.Axes", column: float) -> None:
+    """Cut off what is drawn beside the middle of a view, where labels stand.
+
+    Args:
+        ax: Axes, before labels are written.
+        column: Width of a column of labels, share of the axes.
+    """
+    from matplotlib.patches import Rectangle
+
+    room = Rectangle(
+        (column + 0.01, 0.0), 0.98 - 2.0 * column, 1.0, transform=ax.transAxes
+    )
+    for artist in (*ax.patches, *ax.lines):
+        artist.set_clip_path(room)
 
 
 def spread(wanted, heights) -> np.ndarray:

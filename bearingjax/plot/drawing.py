@@ -1,7 +1,7 @@
 """Drawings: every number of a design where it is measured, to scale."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import equinox as eqx
 
@@ -33,9 +33,44 @@ IN_WORDS = "material", "ring_material"
 """Fields of a bearing that have no place on a drawing: they stand below it."""
 _WIDTH = 15.0
 _SECTION, _FACE = (9.2, 5.4), (5.8, 5.4)
-_SMALL = (4.9, 3.4)
-_ACROSS = 3
-_FOOT = 0.45
+_SMALL = (5.0, 3.6)
+_HEAD, _PART, _FOOT = 0.35, 0.4, 0.45
+"""Room of the page's head, of the head of a bearing in a set, of words [inch]."""
+_MARGINS = {False: (0.05, 0.05, 0.5, 0.05), True: (0.75, 0.15, 0.5, 0.6)}
+"""Left, right, above and below a view; a framed one has ticks there [inch]."""
+
+
+class _View(NamedTuple):
+    """A view and its place on a strip of the page.
+
+    Attributes:
+        draw: Draws it, given axes and their width and height [inch].
+        size: Width and height, with title and ticks [inch].
+        left, down: From the upper left corner of the strip [inch].
+        framed: Whether it has ticks.
+    """
+
+    draw: Callable[[Any, tuple[float, float]], None]
+    size: tuple[float, float]
+    left: float = 0.0
+    down: float = 0.0
+    framed: bool = False
+
+
+class _Strip(NamedTuple):
+    """Views over the width of the page, or words.
+
+    Attributes:
+        height: Of the strip [inch].
+        views: Its views.
+        words: In its middle.
+        bold: How they are written.
+    """
+
+    height: float
+    views: Sequence[_View] = ()
+    words: str = ""
+    bold: bool = False
 
 
 def drawing(
@@ -55,37 +90,57 @@ def drawing(
     Returns:
         The figure, 15 inches wide.
     """
-    if not isinstance(bearing, BearingSet):
-        views = _views(bearing)
-        figure = _page(_height(views))
-        _draw_bearing(figure, bearing, views)
-        head(figure, title or type(bearing).__name__)
-        return figure
+    whole = isinstance(bearing, BearingSet)
+    figure = _page(_set_strips(bearing) if whole else _strips(bearing))
+    place = 1.0 - 0.1 / figure.get_figheight()
+    head(figure, title or type(bearing).__name__, y=place)
+    return figure
+
+
+def _page(strips):
+    """The strips below each other; all sizes are known, so nothing is to be fitted."""
+    tall = _HEAD + sum(strip.height for strip in strips)
+    figure = pyplot().figure(figsize=(_WIDTH, tall), layout="none")
+    top = tall - _HEAD
+    for strip in strips:
+        weight, size = ("bold", 12.0) if strip.bold else ("normal", 10.0)
+        figure.text(
+            0.5,
+            (top - 0.5 * strip.height) / tall,
+            strip.words,
+            ha="center",
+            va="center",
+            fontsize=size,
+            fontweight=weight,
+        )
+        for view in strip.views:
+            left, right, above, below = _MARGINS[view.framed]
+            wide, high = view.size[0] - left - right, view.size[1] - above - below
+            foot = top - view.down - above - high
+            corner = (view.left + left) / _WIDTH, foot / tall
+            ax = figure.add_axes((*corner, wide / _WIDTH, high / tall))
+            view.draw(ax, (wide, high))
+        top -= strip.height
+    return figure
+
+
+def _set_strips(bearing):
+    """The arrangement, then each different bearing under the names of its rows."""
     kinds = _different([row.bearing for row in bearing.rows])
-    views = [_views(one) for one, _ in kinds]
-    heights = [_SECTION[1] + 0.4, *(_height(part) + 0.5 for part in views)]
-    figure = _page(sum(heights))
-    parts: Any = figure.subfigures(len(heights), 1, height_ratios=heights)
     turned = [
         row
         for one, rows in kinds
         for row in rows
         if bearing.rows[row].bearing.first_azimuth != one.first_azimuth
     ]
-    size = (_WIDTH - 0.4, _SECTION[1])
-    arrangement_view(parts[0].add_subplot(), bearing, turned, size)
-    for part, (one, rows), drawn in zip(parts[1:], kinds, views, strict=True):
-        _draw_bearing(part, one, drawn)
-        names = ", ".join(f"rows.{row}.bearing" for row in rows)
-        part.suptitle(f"{names}: {type(one).__name__}", fontweight="bold")
-    head(figure, title or type(bearing).__name__)
-    return figure
-
-
-def _page(height):
-    figure = pyplot().figure(figsize=(_WIDTH, height + 0.5))
-    figure.set_layout_engine("constrained", w_pad=0.05, h_pad=0.08)
-    return figure
+    whole = (_WIDTH, _SECTION[1])
+    rows = _View(lambda ax, size: arrangement_view(ax, bearing, turned, size), whole)
+    strips = [_Strip(whole[1], [rows])]
+    for one, numbers in kinds:
+        names = ", ".join(f"rows.{row}.bearing" for row in numbers)
+        strips.append(_Strip(_PART, words=f"{names}: {type(one).__name__}", bold=True))
+        strips += _strips(one)
+    return strips
 
 
 def _different(bearings):
@@ -108,64 +163,73 @@ def _alike(one, other):
     return bool(eqx.tree_equal(one, turned))
 
 
-def _height(views):
-    lines = -(-len(views[1:]) // _ACROSS)
-    return _SECTION[1] + lines * (_SMALL[1] + 0.5) + _FOOT
-
-
-def _draw_bearing(figure, bearing, views):
-    """The section beside the view along the axis, the other views below."""
-    main, *others = views
-    lines = [others[k : k + _ACROSS] for k in range(0, len(others), _ACROSS)]
-    heights = [_SECTION[1], *[_SMALL[1] + 0.5] * len(lines), _FOOT]
-    parts: Any = figure.subfigures(len(heights), 1, height_ratios=heights)
-    widths = [_SECTION[0], _FACE[0]]
-    left, right = parts[0].subplots(1, 2, width_ratios=widths)
-    main(left)
-    face_view(right, bearing, _FACE)
-    for part, line in zip(parts[1:-1], lines, strict=True):
-        axes = part.subplots(1, len(line), squeeze=False)[0]
-        for draw, ax in zip(line, axes, strict=True):
-            draw(ax)
-    parts[-1].text(0.5, 0.5, _in_words(bearing), ha="center", va="center", fontsize=10)
-
-
-def _views(bearing) -> list[Callable]:
-    """What draws the section and the smaller views that a bearing needs."""
-    views = _of_balls(bearing)
-    if isinstance(bearing, AbstractRollerBearing):
-        views = _of_rollers(bearing)
-    return views + [
-        lambda ax, name=name: deviation_view(ax, bearing, name)
+def _strips(bearing):
+    """Section and view along the axis, the smaller views below, words at the foot."""
+    rollers = isinstance(bearing, AbstractRollerBearing)
+    first, others = _of_rollers(bearing) if rollers else _of_balls(bearing)
+    others += [
+        (lambda ax, _, name=name: deviation_view(ax, bearing, name), True)
         for name in DEVIATIONS
         if getattr(bearing, name, None) is not None
     ]
+    strips = [_Strip(_SECTION[1], first)]
+    across = int(_WIDTH // _SMALL[0])
+    for k in range(0, len(others), across):
+        line = others[k : k + across]
+        left = 0.5 * (_WIDTH - len(line) * _SMALL[0])
+        views = [
+            _View(draw, _SMALL, left + m * _SMALL[0], framed=framed)
+            for m, (draw, framed) in enumerate(line)
+        ]
+        strips.append(_Strip(_SMALL[1], views))
+    return [*strips, _Strip(_FOOT, words=_in_words(bearing))]
 
 
-def _of_balls(bearing) -> list[Callable]:
-    views: list[Callable] = [lambda ax: dimensioned_balls(ax, bearing, _SECTION)]
+def _of_balls(bearing):
+    """Views of the first strip, and smaller ones with whether they are framed."""
+    views = [_View(lambda ax, size: dimensioned_balls(ax, bearing, size), _SECTION)]
+    wide, high = _FACE
     if hasattr(bearing, "radial_internal_clearance"):
-        views.append(lambda ax: ball_clearance_view(ax, bearing, _SMALL))
-    return views
+        # It finds room below the view along the axis.
+        low = 0.46 * high
+        high -= low
+        views.append(
+            _View(
+                lambda ax, size: ball_clearance_view(ax, bearing, size),
+                (wide, low),
+                _SECTION[0],
+                high,
+            )
+        )
+    views.insert(1, _face(bearing, (wide, high)))
+    return views, []
 
 
-def _of_rollers(bearing) -> list[Callable]:
+def _of_rollers(bearing):
+    """As `_of_balls`."""
     parts = section(bearing)
+    views = [
+        _View(lambda ax, size: dimensioned_rollers(ax, bearing, parts, size), _SECTION),
+        _face(bearing, _FACE),
+    ]
+
+    def clearance(ax, size):
+        roller_clearance_view(ax, bearing, parts, size)
+
     profiles = [
-        lambda ax, name=name: profile_view(ax, bearing, name)
+        (lambda ax, _, name=name: profile_view(ax, bearing, name), True)
         for name in PROFILES
         if not isinstance(getattr(bearing, name), Straight)
     ]
     ribs = [
-        lambda ax, names=names: rib_view(ax, bearing, parts, names, _SMALL)
+        (lambda ax, size, names=names: rib_view(ax, bearing, parts, names, size), False)
         for names in _like_ribs(bearing.ribs)
     ]
-    return [
-        lambda ax: dimensioned_rollers(ax, bearing, parts, _SECTION),
-        lambda ax: roller_clearance_view(ax, bearing, parts, _SMALL),
-        *profiles,
-        *ribs,
-    ]
+    return views, [(clearance, False), *profiles, *ribs]
+
+
+def _face(bearing, size):
+    return _View(lambda ax, size: face_view(ax, bearing, size), size, _SECTION[0])
 
 
 def _like_ribs(ribs):

@@ -57,8 +57,9 @@ def face_view(ax: "matplotlib.axes.Axes", bearing: Bearing, size) -> None:
         "0",
         ha="center",
         va="center",
-        color=GREY,
-        zorder=4,
+        fontsize=SMALL,
+        bbox={"facecolor": "#DDF1EA", "edgecolor": "none", "pad": 1.0},
+        zorder=6,
     )
     corners = {
         "lower right": (f"{label(bearing, 'first_azimuth')}, of {word} 0", start),
@@ -73,13 +74,14 @@ def face_view(ax: "matplotlib.axes.Axes", bearing: Bearing, size) -> None:
         for name in DEVIATIONS
         if hasattr(bearing, name) and getattr(bearing, name) is None
     ]
-    fit(ax, np.array([[-1.0, -1.0], [1.0, 1.0]]) * reach, size, (0.62, 0.74))
+    fit(ax, np.array([[-1.0, -1.0], [1.0, 1.0]]) * reach, size, (0.66, 0.84))
     for corner, (text, at) in corners.items():
         _in_corner(ax, corner, text, at)
     _in_corner(ax, "lower left", "\n".join(lacking))
     for end, name in (((1.12 * reach, 0.0), "x"), ((0.0, 1.12 * reach), "y")):
         ax.annotate("", end, (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": GREY})
-        ax.annotate(name, end, (4, 4), textcoords="offset points", color=GREY)
+        beside = (5, -3) if name == "y" else (4, 4)
+        ax.annotate(name, end, beside, textcoords="offset points", color=GREY)
     ax.set_title(f"{word.capitalize()}s, seen against z, to scale")
 
 
@@ -134,6 +136,7 @@ def deviation_view(ax: "matplotlib.axes.Axes", bearing: Bearing, name: str) -> N
                     label=f"{ring}, {place}",
                 )
         ax.legend(fontsize=SMALL, ncols=2)
+    ax.locator_params(axis="x", integer=True)
     ax.grid(color="0.9")
     ax.set_xlabel("number of the rolling element")
     ax.set_ylabel(f"deviation [{unit}]")

@@ -15,6 +15,7 @@ from .dimension import (
     fit,
     label,
     magnification,
+    middle_only,
     put_labels,
     quantity,
     squeeze,
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 _GAP = 0.05
 """Gap of a clearance as drawn, roller diameters."""
+_RIB_COLUMN = 0.36
+"""Width of the labels beside a rib, share of its view."""
 PROFILES = "roller_profile", "outer_raceway_profile", "inner_raceway_profile"
 
 
@@ -113,8 +116,10 @@ def roller_clearance_view(
     for k, sign in enumerate((1.0, -1.0)):
         way = sign * np.array([-parts.generators[k, 1], parts.generators[k, 0]])
         wall = parts.raceways[k].mean(axis=0)
-        if gap > 0.0:
-            squeeze(ax, wall - gap * way, wall + apart * way, 0.25 * parts.diameter)
+        near, far = wall - gap * way, wall + apart * way
+        if gap != 0.0:
+            ends = (near, far) if gap > 0.0 else (far, near)
+            squeeze(ax, ends[0], ends[1], 0.25 * parts.diameter)
     fit(ax, corners, size, (0.8, 0.9))
     text = label(bearing, "radial_internal_clearance")
     ax.set_title(clearance_title(text, gap, times), fontsize=10)
@@ -171,12 +176,13 @@ def rib_view(
         at = between(ax, point - height * rise, point, 0.6 * reach * away)
     told = f"\ndrawn {times:g} times as large" if gap else ""
     labels = [
-        Label(f"{label(rib, 'end_radius')}\ncentre on the axis of the roller", inside),
+        Label(f"{label(rib, 'end_radius')}\ncentre on the axis\nof the roller", inside),
         Label(label(rib, "contact_height"), at),
         Label(f"{label(rib, 'axial_gap')}{told}", 0.5 * (point + face)),
     ]
     around = np.array([[-1.0, -1.0], [1.0, 1.0]]) * 2.0 * reach + point
-    fit(ax, around, size, (0.42, 0.9))
-    put_labels(ax, labels, size)
+    fit(ax, around, size, (0.98 - 2.0 * _RIB_COLUMN, 0.9))
+    middle_only(ax, _RIB_COLUMN)
+    put_labels(ax, labels, size, _RIB_COLUMN)
     words = [f"ribs.{one}" for one in names]
     ax.set_title("\n".join(map(", ".join, (words[:2], words[2:]))), fontsize=11)

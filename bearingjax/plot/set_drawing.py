@@ -6,13 +6,16 @@ import numpy as np
 
 from ..design import AbstractBallBearing, BearingSet, is_self_aligning
 from .ball_section import ball_row, row_position
-from .dimension import AXIS, Label, between, fit, label, put_labels, quantity
+from .dimension import AXIS, LINE, between, fit, label, quantity, spread
 from .outline import section
 from .roller_section import roller_row
-from .style import INNER
+from .style import INNER, SMALL
 
 if TYPE_CHECKING:
     import matplotlib.axes
+
+_BLOCK = 3.55
+"""Width of the words on a row [inch]."""
 
 
 def arrangement_view(
@@ -30,36 +33,110 @@ def arrangement_view(
     points = np.concatenate(outlines)
     (left, low), (right, high) = points.min(axis=0), points.max(axis=0)
     tall = high - low
-    labels = []
     for k, (row, outline) in enumerate(zip(bearing.rows, outlines, strict=True)):
-        place = 1e3 * float(row.position)
-        below = np.array([0.0, -tall * (0.12 + 0.14 * k)])
-        middle = between(ax, (0.0, low), (place, low), below)
-        name = f"rows.{k}."
-        centre = outline.mean(axis=0)
-        sign = -1.0 if float(row.inner_offset) < 0.0 else 1.0
-        push = centre + np.array([0.0, -0.42 * tall])
-        told = ""
-        if float(row.inner_offset) != 0.0:
-            told = ", arrow not to scale"
-            way = np.array([0.5 * sign * 0.2 * tall, 0.0])
-            arrow = {"arrowstyle": "-|>", "color": INNER, "linewidth": 2.0}
-            ax.annotate("", push + way, push - way, arrowprops=arrow, zorder=6)
-        labels += [
-            Label(f"{name}bearing: {type(row.bearing).__name__}, below", centre),
-            Label(label(row, "position", name), middle),
-            Label(label(row, "mirrored", name), centre + (0.0, 0.3 * tall)),
-            Label(label(row, "inner_offset", name) + told, push),
-            Label(_spring(row, name), centre + (0.0, 0.1 * tall)),
-        ]
-        if k in turned:
-            text = label(row.bearing, "first_azimuth", f"{name}bearing.")
-            labels.append(Label(text, centre + (0.0, 0.2 * tall)))
-    depth = low - tall * (0.2 + 0.14 * len(bearing.rows))
+        middle = outline.mean(axis=0)[0]
+        ax.text(
+            middle,
+            high + 0.05 * tall,
+            f"rows.{k}",
+            ha="center",
+            fontsize=SMALL,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
+            zorder=7,
+        )
+        _push(ax, row, (middle, low + 0.08 * tall), 0.1 * tall)
+    depth = _positions(ax, bearing, low, 0.13 * tall)
     ax.plot([0.0, 0.0], [depth, high + 0.1 * tall], **AXIS)
-    fit(ax, [(left, depth), (right, high + 0.1 * tall)], size, (0.42, 0.92))
-    put_labels(ax, labels, size)
+    # The words stand below the view.
+    texts = [_words(row, k, k in turned) for k, row in enumerate(bearing.rows)]
+    across = int(size[0] // _BLOCK)
+    lines = 1 + max(text.count("\n") for text in texts)
+    deep = LINE * (lines + 1)
+    below = deep * -(-len(texts) // across)
+    corners = [(left, depth), (right, high + 0.15 * tall)]
+    fit(ax, corners, (size[0], size[1] - below), (0.76, 0.98))
+    bottom, top = ax.get_ylim()
+    ax.set_ylim(bottom - (top - bottom) * below / (size[1] - below), top)
+    ax.set_box_aspect(size[1] / size[0])
+    order = np.argsort([outline.mean(axis=0)[0] for outline in outlines])
+    start, stop = ax.get_xlim()
+    for m in range(0, len(order), across):
+        part = order[m : m + across]
+        wanted = [(outlines[k].mean(axis=0)[0] - start) / (stop - start) for k in part]
+        places = spread(wanted, np.full(len(part), _BLOCK / size[0]))
+        up = (below - deep * (m // across) - 0.5 * LINE) / size[1]
+        for k, place in zip(part, places, strict=True):
+            ax.text(
+                place,
+                up,
+                texts[k],
+                transform=ax.transAxes,
+                fontsize=SMALL,
+                ha="center",
+                va="top",
+                multialignment="left",
+            )
     ax.set_title(f"{_arrangement(bearing)}; section to scale, ring bodies schematic")
+
+
+def _positions(ax, bearing, low, step):
+    """Dimensions of the rows from the origin, the nearest first; how deep they go."""
+    depth = low - step
+    for side in (-1.0, 1.0):
+        places = [
+            (side * 1e3 * float(r.position), k) for k, r in enumerate(bearing.rows)
+        ]
+        down = low
+        for far, k in sorted(one for one in places if one[0] > 0.0):
+            down -= step
+            place, below = side * far, np.array([0.0, down - low])
+            between(ax, (0.0, low), (place, low), below)
+            _beside(ax, bearing, k, (place, down), side)
+        depth = min(depth, down)
+    for k, row in enumerate(bearing.rows):
+        if float(row.position) == 0.0:
+            depth -= step
+            _beside(ax, bearing, k, (0.0, depth), 1.0)
+    return depth - 0.5 * step
+
+
+def _beside(ax, bearing, k, at, side):
+    """The position of a row, beside the end of its dimension."""
+    ax.annotate(
+        label(bearing.rows[k], "position", f"rows.{k}."),
+        at,
+        (6.0 * side, 0.0),
+        textcoords="offset points",
+        fontsize=SMALL,
+        ha="left" if side > 0.0 else "right",
+        va="center",
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
+        zorder=7,
+    )
+
+
+def _push(ax, row, at, half):
+    """An arrow on the inner ring where it stands aside."""
+    if float(row.inner_offset) == 0.0:
+        return
+    way = np.array([np.sign(float(row.inner_offset)) * half, 0.0])
+    arrow = {"arrowstyle": "-|>", "color": INNER, "linewidth": 2.0}
+    ax.annotate("", at + way, at - way, arrowprops=arrow, zorder=6)
+
+
+def _words(row, k, turned):
+    """What is told of a row, beside its place."""
+    name = f"rows.{k}."
+    told = "" if float(row.inner_offset) == 0.0 else ", arrow not to scale"
+    lines = [
+        f"{name}bearing: {type(row.bearing).__name__}, below",
+        label(row, "mirrored", name),
+        label(row, "inner_offset", name) + told,
+        _spring(row, name),
+    ]
+    if turned:
+        lines.append(label(row.bearing, "first_azimuth", f"{name}bearing."))
+    return "\n".join(lines)
 
 
 def _draw(ax, row, bearing):
@@ -107,8 +184,8 @@ def _arrangement(bearing):
         word = "Tandem"
     if is_self_aligning(bearing):
         word = "Self-aligning"
-    text = ", ".join(quantity(1e-3 * gap, "m") for gap in spacing)
-    return f"{word}, spacing {text}"
+    gaps = [quantity(1e-3 * gap, "m") for gap in spacing]
+    return f"{word}, spacing {', '.join(gaps[:1] if len(set(gaps)) == 1 else gaps)}"
 
 
 def _place(row):

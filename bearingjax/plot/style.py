@@ -160,6 +160,6 @@ def towards_white(colour, share: float) -> tuple[float, ...]:
     return tuple(c + share * (1.0 - c) for c in to_rgb(colour))
 
 
-def head(figure, title: str) -> None:
+def head(figure, title: str, **place) -> None:
     """Title of a page, as it stands: a file may have a dollar in its name."""
-    figure.suptitle(title, fontsize=14, fontweight="bold", parse_math=False)
+    figure.suptitle(title, fontsize=14, fontweight="bold", parse_math=False, **place)
