@@ -52,6 +52,17 @@ BALLS = {
 }
 SETS = ("back_to_back", "face_to_face", "tandem", "rows")
 
+BESIDE = (
+    "set",
+    "contact",
+    "numerics",
+    "fit",
+    "temperature",
+    "raceway_control",
+    "friction_coefficient",
+)
+"""Keys of a rotor's [bearings.NAME] that are none of a [bearing]."""
+
 PROFILES = {
     "straight": Straight,
     "circular_crown": CircularCrown,
@@ -99,12 +110,13 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
         table: Of the bearing; nothing in it counts as asked for by this.
 
     Returns:
-        Its keys with those of the catalogue, and what was taken from there.
+        Its keys with those of the catalogue, and what was taken from there; without
+        what stands beside them (`BESIDE`).
 
     Raises:
         SceneError: If the designation is not known, or of another `type`.
     """
-    given = table.keys_given()
+    given = {k: v for k, v in table.keys_given().items() if k not in BESIDE}
     if "designation" not in table:
         return None
     name = given.pop("designation")
@@ -126,6 +138,7 @@ def _single(table: Table) -> Bearing:
     """A bearing of one row."""
     found = designated(table)
     if found is not None:
+        table.skip("designation")
         table = table.completed(found[0])
         # In the echo it says whose ratings count, and what clearance.
         table.fill("designation", found[1].entry.designation)

@@ -90,7 +90,8 @@ class FitFacts:
 
 
 def read_fits(
-    top: Table,
+    beside: Table,
+    own: Table,
     bearing: Bearing | BearingSet,
     speed: Speed | None,
     catalogue: FromCatalogue | None = None,
@@ -98,7 +99,9 @@ def read_fits(
     """Fits of a scene, and its bearing with the clearance that it has unmounted.
 
     Args:
-        top: The scene.
+        beside: The table in which [fit] and [temperature] stand: the scene, or one
+            bearing of a rotor.
+        own: The table of the bearing, as it was read.
         bearing: The design, unmounted.
         speed: Of the rings; `None`: at rest.
         catalogue: What a designation stands for: boundary dimensions, and the class of
@@ -111,32 +114,34 @@ def read_fits(
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    temperature = top.table("temperature")
-    if "fit" not in top:
+    temperature = beside.table("temperature")
+    if "fit" not in beside:
         if temperature.keys():
             problem = "goes with a [fit]; without one nothing depends on it"
-            raise top.error("temperature", problem)
+            raise beside.error("temperature", problem)
         return bearing, None
-    table = top.table("fit")
+    table = beside.table("fit")
     row = rows_of(bearing)[0].bearing
     if isinstance(row, ThrustBallBearing):
-        raise top.error("fit", "is for radial bearings; a thrust bearing has no play")
+        problem = "is for radial bearings; a thrust bearing has no play"
+        raise beside.error("fit", problem)
     if len({id(one.bearing) for one in rows_of(bearing)}) > 1 and not is_self_aligning(
         bearing
     ):
-        raise top.error("fit", "is for rows of one bearing; those of this set differ")
+        problem = "is for rows of one bearing; those of this set differ"
+        raise beside.error("fit", problem)
     place = table.choice("at", tuple(PLACES), "middle")
     sizes = _sizes(table, catalogue)
     given, names = _limits(table, row, sizes)
-    given["clearance"] = _clearance(table, top, row, sizes["bore"], catalogue)
+    given["clearance"] = _clearance(table, own, sizes["bore"], catalogue)
     scatters = given["clearance"] is not None
     conditions = _conditions(temperature, speed)
-    seats = sizes | _seats(table, top, row, conditions)
+    seats = sizes | _seats(table, own, row, conditions)
     with table.building():
         whole = sized(Mounting(**seats), row)
         if not scatters:
-            own = float(radial_clearance(row))
-            given["clearance"] = Limits(own, own)
+            free = float(radial_clearance(row))
+            given["clearance"] = Limits(free, free)
         # NumPy's numbers: JAX would compile every small operation on the way.
         there = mounting_at(
             jax.device_get(whole), place, **given, conditions=jax.device_get(conditions)
@@ -202,6 +207,19 @@ def fit_warnings(facts: FitFacts) -> list[str]:
                 " loosest sizes of the tolerances"
             )
     return told
+
+
+def turning(fits: Fits | None, speed: float) -> Fits | None:
+    """Fits on a shaft that turns, in a housing that stands still.
+
+    Args:
+        fits: From `read_fits`.
+        speed: Of shaft and inner ring [rad/s].
+    """
+    if fits is None:
+        return None
+    given = dataclasses.replace(fits.conditions, speed=speed, outer_speed=0.0)
+    return dataclasses.replace(fits, conditions=given)
 
 
 def fitted(fits: Fits | None, element: Any) -> Any:
@@ -281,13 +299,13 @@ def _class(table: Table, seat: str) -> str:
     return table.choice(seat, names)
 
 
-def _clearance(table: Table, top: Table, row, bore, catalogue) -> Limits | None:
+def _clearance(table: Table, own: Table, bore, catalogue) -> Limits | None:
     """Limits of a clearance class; `None`: the bearing's own number."""
     name = table.choice("clearance", CLEARANCE_CLASSES, None)
-    drawn = top.raw("bearing")
+    drawn = own.keys_given()
     # A line that only restates the catalogue does not count.
-    own = drawn if catalogue is None else catalogue.overridden
-    stated = [key for key in (CLEARANCE, "contact_angle") if key in own]
+    changed = drawn if catalogue is None else catalogue.overridden
+    stated = [key for key in (CLEARANCE, "contact_angle") if key in changed]
     if name is None and catalogue is not None and not stated:
         name = catalogue.entry.clearance_class
     if name is None:
@@ -300,12 +318,12 @@ def _clearance(table: Table, top: Table, row, bore, catalogue) -> Limits | None:
         problem = f"stands beside `bearing.{key}`; one follows from the other"
         raise table.error("clearance", problem)
     table.fill("clearance", name)
-    top.table("bearing").fill("radial_internal_clearance", None)  # it follows
+    own.fill("radial_internal_clearance", None)  # it follows
     with table.building():
         return find(name, bore)
 
 
-def _seats(table: Table, top: Table, row, conditions) -> dict[str, Any]:
+def _seats(table: Table, own: Table, row, conditions) -> dict[str, Any]:
     """Sizes and materials of a `Mounting`; interferences are put in later."""
     seats: dict[str, Any] = {"shaft_interference": 0.0, "housing_interference": 0.0}
     for key in ("shaft_bore", "inner_raceway", "outer_raceway"):
@@ -313,18 +331,18 @@ def _seats(table: Table, top: Table, row, conditions) -> dict[str, Any]:
             seats[key] = table.quantity(key, "length")
     ring = table.quantity("ring_roughness", "length", 0.0)
     for seat in ("shaft", "housing"):
-        own = table.quantity(f"{seat}_roughness", "length", None)
-        if own is not None:
-            seats[f"{seat}_smoothing"] = smoothing(own, ring)
+        rough = table.quantity(f"{seat}_roughness", "length", None)
+        if rough is not None:
+            seats[f"{seat}_smoothing"] = smoothing(rough, ring)
         seats[seat] = _seat_material(table, f"{seat}_material")
     if ring and not {"shaft_roughness", "housing_roughness"} & set(table.keys()):
         problem = "goes with `shaft_roughness` or `housing_roughness`"
         raise table.error("ring_roughness", problem)
-    drawn = top.raw("bearing")
-    own = "ring_material" if "ring_material" in drawn else "material"
+    drawn = own.keys_given()
+    key = "ring_material" if "ring_material" in drawn else "material"
     rises = {part: float(getattr(conditions, part)) != 0.0 for part in PARTS}
     warm = rises["inner_ring"] or rises["outer_ring"]
-    rings = _of_bearing(table, drawn, own, "ring_expansion", row.rings, warm)
+    rings = _of_bearing(table, drawn, key, "ring_expansion", row.rings, warm)
     balls = _of_bearing(
         table, drawn, "material", "element_expansion", row.material, rises["elements"]
     )

@@ -180,7 +180,7 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
     if "lubricant" in top:
         oil, assumed = read_oil(top.table("lubricant"))
         odd += assumed
-    bearing, fits = read_fits(top, bearing, speed, catalogue)
+    bearing, fits = read_fits(top, top.table("bearing"), bearing, speed, catalogue)
     if fits is not None:
         odd += tuple(fit_warnings(fit_facts(fits, bearing)))
     element = read_element(bearing, top.table("contact"), operating, numerics)

@@ -1,15 +1,19 @@
 """The [[rotor.bearings]] and [bearings.NAME] tables of a scene: what holds a shaft."""
 
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ..design import AbstractBallBearing
-from ..element import BearingElement
+from ..element import BearingElement, Speed
 from ..rotor import Housing, Shaft
 from ..rotor.vibration import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
-from .bearing_table import read_bearing
+from .bearing_table import designated, read_bearing
+from .fit_table import Fits, fit_facts, fit_warnings, read_fits, turning
 from .quantity import SceneError
 from .read import read_element, scene_of
 from .rotor_scene import Mount
@@ -22,18 +26,22 @@ LAWS = {
     "moving_angle": MovingAngle,
     "cubic": CubicExpansion,
 }
+_SAME = 1e-3
+"""Difference of diameters, over the bore, from which a shaft is another one [1]."""
 
 
 class _Bearing(NamedTuple):
-    """A bearing by its name, and the force to which its rows are ground [N]."""
+    """A bearing by its name, its seats, and the force to which its rows are ground
+    [N]."""
 
     name: str
     element: BearingElement[Any]
+    fits: Fits | None
     set_force: float | None
 
 
 def read_mounts(
-    top: Table, rotor: Table, shaft: Shaft, path: Path
+    top: Table, rotor: Table, shaft: Shaft, speed: float, path: Path
 ) -> tuple[Mount, ...]:
     """What holds the shaft of a rotor.
 
@@ -41,18 +49,18 @@ def read_mounts(
         top: The whole scene.
         rotor: Its [rotor].
         shaft: The shaft.
+        speed: Of the rotor [rad/s], at which inner rings turn on their seats.
         path: Of the scene: others are named from there.
 
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    tables, named = top.table("bearings"), {}
-    for name in tables.keys():
-        table = tables.table(name)
-        design, force = read_bearing(table, table)
-        contact, numerics = table.table("contact"), table.table("numerics")
-        element = read_element(design, contact, table, numerics)
-        named[name] = _Bearing(name, element, force)
+    for key in ("fit", "temperature"):
+        if key in top:
+            problem = "belongs to one of the bearings: write"
+            raise top.error(key, f"{problem} [bearings.NAME.{key}]")
+    tables = top.table("bearings")
+    named = {name: _own(tables.table(name), name, speed) for name in tables.keys()}
     mounts, used = [], set()
     for table in rotor.tables("bearings"):
         station = read_station(table, shaft)
@@ -64,8 +72,9 @@ def read_mounts(
         if "stiffness" in table:
             mounts.append(_springs(table, station))
             continue
-        bearing = _bearing(table, named, path)
+        bearing = _bearing(table, named, speed, path)
         used.add(bearing.name)
+        _check_seat(bearing, shaft, station)
         mounts.append(_mount(table, station, bearing))
     for name in named:
         if name not in used:
@@ -73,7 +82,49 @@ def read_mounts(
     return tuple(mounts)
 
 
-def _bearing(table: Table, named: dict[str, _Bearing], path: Path) -> _Bearing:
+def _own(table: Table, name: str, speed: float) -> _Bearing:
+    """A bearing of [bearings.NAME]."""
+    design, force = read_bearing(table, table)
+    found = designated(table)
+    catalogue = None if found is None else found[1]
+    design, fits = read_fits(table, table, design, Speed(speed, 0.0), catalogue)
+    contact, numerics = table.table("contact"), table.table("numerics")
+    element = read_element(design, contact, table, numerics)
+    return _told(_Bearing(name, element, fits, force))
+
+
+def _told(bearing: _Bearing) -> _Bearing:
+    """The bearing; what is odd about its fits is warned of."""
+    if bearing.fits is not None:
+        facts = fit_facts(bearing.fits, bearing.element.bearing)
+        for text in fit_warnings(facts):
+            warnings.warn(f"{bearing.name}: {text}", stacklevel=2)
+    return bearing
+
+
+def _check_seat(bearing: _Bearing, shaft: Shaft, station: int) -> None:
+    """Warn of a fit on another shaft than that of the station."""
+    if bearing.fits is None:
+        return
+    seat = bearing.fits.mounting
+    wanted = np.array([float(seat.bore), float(seat.shaft_bore)])
+    beside = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
+    diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
+    there = diameters[:, beside].T
+    if (np.abs(there - wanted) < _SAME * wanted[0]).all(axis=1).any():
+        return
+    sizes = " or ".join(f"{1e3 * a:.5g} and {1e3 * b:.5g}" for a, b in there)
+    warnings.warn(
+        f"{bearing.name}: its fit has a shaft of {1e3 * wanted[0]:.5g} mm with a bore"
+        f" of {1e3 * wanted[1]:.5g} mm (`shaft_bore`); at station {station} the shaft"
+        f" has {sizes} mm",
+        stacklevel=2,
+    )
+
+
+def _bearing(
+    table: Table, named: dict[str, _Bearing], speed: float, path: Path
+) -> _Bearing:
     name = table.word("bearing")
     if table.raw("bearing") != name or name is None:
         raise table.error("bearing", f"{table.raw('bearing')!r} is not a name")
@@ -89,11 +140,8 @@ def _bearing(table: Table, named: dict[str, _Bearing], path: Path) -> _Bearing:
         scene = scene_of(parse_bearing(found, ()), found)
     except SceneError as error:
         raise table.error("bearing", error) from error
-    if scene.fits is not None:
-        problem = f"{name} has a [fit], which changes with the speed of the rotor; give"
-        cure = "the clearance that is left, which `bearingjax solve` prints"
-        raise table.error("bearing", f"{problem} {cure}")
-    return _Bearing(scene.name, scene.element, scene.preload_force)
+    fits = turning(scene.fits, speed)
+    return _told(_Bearing(scene.name, scene.element, fits, scene.preload_force))
 
 
 def _mount(table: Table, station: int, bearing: _Bearing) -> Mount:
@@ -123,6 +171,7 @@ def _mount(table: Table, station: int, bearing: _Bearing) -> Mount:
         station=station,
         name=bearing.name,
         element=bearing.element,
+        fits=bearing.fits,
         set_force=bearing.set_force,
         preload=preload,
         offset=0.0 if offset is None else offset,
@@ -147,6 +196,7 @@ def _springs(table: Table, station: int) -> Mount:
         station=station,
         name="springs",
         element=None,
+        fits=None,
         set_force=None,
         preload=None,
         offset=0.0,

@@ -8,6 +8,7 @@ import numpy as np
 from ..numerics.result import Result
 from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes
 from .files import write_numbers
+from .fit_report import fit_as_dict
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient
 from .rotor_run import RotorRun
@@ -41,6 +42,8 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         `frequency` [Hz], `amplitude` (coordinate,)), `ending`;
         `transient`: `time`, `speed`, `coordinate`, `displacement` and `velocity`
         (time, coordinate). Parts that were not asked for or not solved are left out.
+        With fits `fit`, a list: `bearing`, its `stations`, the `speed` [rad/s] at which
+        its inner ring turns, and what `fit_as_dict` has.
         And result, message, warnings and version.
     """
     from .. import __version__
@@ -50,6 +53,8 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         parts |= _modes(run.modes)
     if run.critical is not None:
         parts |= _critical(run.critical)
+    if run.task.seats:
+        parts["fit"] = _fits(run.task)
     if run.settled is not None:
         parts["static"] = _static(run)
     if run.campbell is not None and run.task.campbell is not None:
@@ -178,6 +183,19 @@ def _static(run: RotorRun) -> dict[str, Any]:
         "load": np.asarray(settled.support_load).tolist(),
         "stiffness": np.asarray(settled.stiffness).tolist(),
     }
+
+
+def _fits(task: RotorScene) -> list[dict[str, Any]]:
+    return [
+        {
+            "bearing": mount.name,
+            "stations": list(stations),
+            "speed": task.speed,
+            **fit_as_dict(mount.fits, mount.element.bearing),
+        }
+        for mount, stations in task.seats
+        if mount.fits is not None and mount.element is not None
+    ]
 
 
 def _campbell(found: Modes, speeds: np.ndarray) -> dict[str, Any]:

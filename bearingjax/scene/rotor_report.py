@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..rotor import STATION_FREEDOMS
+from .fit_report import fit_report
 from .rotor_motion import RotorResponse, RotorTransient
 from .rotor_run import RotorRun
 from .rotor_warnings import RPM, mode_numbers, rotor_warnings, rpm
@@ -20,7 +21,7 @@ def rotor_report(run: RotorRun) -> str:
     Args:
         run: From `run_rotor`.
     """
-    parts = [_head(run)]
+    parts = [_head(run), *_fits(run.task)]
     if run.settled is not None:
         parts += [_stations(run), _bearings(run)]
     if run.modes is not None:
@@ -53,6 +54,17 @@ def _head(run):
         f" segments, {task.shaft.n_nodes - 1} elements; {mass:.4g} kg; {gravity};"
         f" {rpm(task.speed)}"
     )
+
+
+def _fits(task):
+    """What the fits of each bearing leave."""
+    for mount, stations in task.seats:
+        where = "station" + "s" * (len(stations) > 1)
+        yield (
+            f"{mount.name} at {where} {', '.join(map(str, stations))}, its inner ring"
+            f" turning at {rpm(task.speed)}\n"
+            + fit_report(mount.fits, mount.element.bearing)
+        )
 
 
 def _stations(run):

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..element import BearingElement
 from ..rotor import AbstractDamping, AbstractPart, Housing, Shaft
+from .fit_table import Fits
 
 
 @dataclasses.dataclass(frozen=True)
@@ -15,8 +16,10 @@ class Mount:
 
     Attributes:
         station: Number of the station.
-        name: Of the bearing; "linear" of springs.
-        element: The bearing before it is preloaded; `None`: springs.
+        name: Of the bearing; "springs" without one.
+        element: The bearing before it is preloaded and mounted; `None`: springs.
+        fits: Its seats, temperatures and the speed of the rotor, or `None`: it is
+            taken as on the drawing.
         set_force: Force to which the rows of a set are ground [N], or `None`.
         preload: Axial force that the bearing alone carries in its place [N], or `None`.
         offset: Axial displacement of the inner ring in its place [m].
@@ -31,6 +34,7 @@ class Mount:
     station: int
     name: str
     element: BearingElement[Any] | None
+    fits: Fits | None
     set_force: float | None
     preload: float | None
     offset: float
@@ -131,6 +135,16 @@ class RotorScene:
     response: ResponseTask | None
     transient: TransientTask | None
     warnings: tuple[str, ...]
+
+    @property
+    def seats(self) -> tuple[tuple[Mount, tuple[int, ...]], ...]:
+        """Each bearing with fits, by its first mount, and its stations."""
+        found: dict[int, tuple[Mount, tuple[int, ...]]] = {}
+        for mount in self.mounts:
+            if mount.fits is not None:
+                first, stations = found.get(id(mount.element), (mount, ()))
+                found[id(mount.element)] = first, (*stations, mount.station)
+        return tuple(found.values())
 
     @property
     def station_names(self) -> tuple[str, ...]:

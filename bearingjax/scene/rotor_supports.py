@@ -15,6 +15,7 @@ from ..rotor import (
 )
 from ..rotor.vibration import LawSupport
 from ..statics.preload import preload
+from .fit_table import fitted
 from .rotor_mounts import LAWS
 from .rotor_scene import Mount
 
@@ -39,6 +40,7 @@ def support_of(mount: Mount) -> AbstractSupport:
     element, offset = mount.element, as_array(mount.offset, float)
     if mount.set_force is not None:
         element = preload(element, as_array(mount.set_force, float))
+    element = fitted(mount.fits, element)
     if mount.preload is not None:
         offset = preload_offset(element, as_array(mount.preload, float))
     if mount.law is not None:

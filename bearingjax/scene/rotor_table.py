@@ -70,7 +70,8 @@ def _scene(top: Table, path: Path) -> RotorScene:
     rotor = top.table("rotor")
     shaft = _shaft(rotor)
     discs = _discs(rotor, shaft)
-    mounts = read_mounts(top, rotor, shaft, path)
+    speed = rotor.quantity("speed", "speed", 0.0)
+    mounts = read_mounts(top, rotor, shaft, speed, path)
     excitation = rotor.table("excitation")
     axis = rotor.choice("axis", tuple(AXES), "horizontal")
     loads = _loads(excitation, shaft, AXES[axis])
@@ -82,7 +83,7 @@ def _scene(top: Table, path: Path) -> RotorScene:
         mounts=mounts,
         damping=_damping(rotor),
         rigid=rotor.flag("rigid", False),
-        speed=rotor.quantity("speed", "speed", 0.0),
+        speed=speed,
         axis=axis,
         loads=loads,
         n_modes=rotor.integer("modes", 10),

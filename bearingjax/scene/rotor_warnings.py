@@ -5,13 +5,17 @@ from typing import Any
 import numpy as np
 
 from ..rotor import Modes
+from .fit_table import fit_facts, turning
 from .rotor_run import RotorRun
+from .rotor_scene import RotorScene
 
 RPM = 30.0 / np.pi
 """Revolutions per minute of a speed [rpm s/rad]."""
 _TURN = 2.0 * np.pi
 _NEAR = 0.1
 """Share of a critical speed within which running is worth a word [1]."""
+_DRIFT = 0.5e-6
+"""Change of radial clearance over the speed that is worth a word [m]."""
 _UNSTABLE = -1e-9
 """Damping ratio below which a mode grows, not by round-off [1]."""
 
@@ -22,7 +26,7 @@ def rotor_warnings(run: RotorRun) -> list[str]:
     Args:
         run: From `run_rotor`.
     """
-    told = list(run.warnings)
+    told = [*run.warnings, *_held_fits(run.task)]
     if run.modes is not None:
         (_, frequency), (_, ratio), _ = mode_numbers(run.modes)
         grows = (ratio < _UNSTABLE) & (frequency > 0)
@@ -46,6 +50,39 @@ def rotor_warnings(run: RotorRun) -> list[str]:
             " are unstable: the rotor does not stay there"
         )
     return told
+
+
+def _held_fits(task: RotorScene):
+    """Bearings whose rings grow over the speeds that are asked for, which their fits
+    leave out."""
+    for mount, _ in task.seats:
+        assert mount.element is not None  # it has fits
+        bearing = mount.element.bearing
+        left = {
+            speed: float(fit_facts(fits, bearing).operating.radial_clearance)
+            for speed in (task.speed, *_ends(task))
+            if (fits := turning(mount.fits, speed)) is not None
+        }
+        far = max(left, key=lambda speed: abs(left[speed] - left[task.speed]))
+        if abs(left[far] - left[task.speed]) > _DRIFT:
+            yield (
+                f"{mount.name}: all speeds are solved with the radial clearance at"
+                f" {rpm(task.speed)}, {1e6 * left[task.speed]:.4g} µm; at {rpm(far)}"
+                f" its fits leave {1e6 * left[far]:.4g} µm"
+            )
+
+
+def _ends(task: RotorScene) -> list[float]:
+    """Ends of the speeds that a scene asks for [rad/s]."""
+    ends: list[float] = []
+    if task.campbell is not None:
+        ends += [float(task.campbell[0]), float(task.campbell[-1])]
+    asked, motion = task.response, task.transient
+    if asked is not None:
+        ends += (asked.begin, asked.end) if asked.speed is None else (asked.speed,)
+    if motion is not None and motion.speed_to is not None:
+        ends.append(motion.speed_to)
+    return ends
 
 
 def mode_numbers(found: Modes) -> list[tuple[str, np.ndarray]]:

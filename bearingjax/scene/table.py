@@ -197,9 +197,10 @@ class Table:
         return dict(self._data)
 
     def completed(self, values: Mapping[str, Any]) -> "Table":
-        """This table with other values; whoever asks for keys asks that one."""
-        self._asked += self._data
+        """This table with other values; whoever asks for their keys asks that one."""
+        self._asked += values
         child = Table(values, self._file, self._path)
+        child._known = self._known
         self._children.append(child)
         self._stand_in = child
         return child
@@ -259,9 +260,9 @@ class Table:
                 return {key: plain(inner) for key, inner in value.items()}
             return [plain(one) for one in value] if isinstance(value, list) else value
 
-        if self._stand_in is not None:
-            return self._stand_in.echo()
         found = {key: plain(value) for key, value in self._read.items()}
+        if self._stand_in is not None:
+            found |= self._stand_in.echo()
         return {k: value for k, value in found.items() if value not in (None, {})}
 
     @contextlib.contextmanager

@@ -1,6 +1,7 @@
 """[fit] and [temperature] in a scene: what they read, and what is wrong with wrong
 ones."""
 
+import dataclasses
 import json
 from typing import Any
 
@@ -10,9 +11,21 @@ import pytest
 import bearingjax as bj
 from bearingjax import SceneError
 from bearingjax.design import raceway_diameters, radial_clearance, rows_of
-from bearingjax.scene import read_cases, read_noise, read_optimisation, read_skid
+from bearingjax.scene import (
+    read_cases,
+    read_noise,
+    read_optimisation,
+    read_rotor,
+    read_skid,
+    rotor_as_dict,
+    rotor_report,
+)
+from bearingjax.scene.fit_report import fit_as_dict
 from bearingjax.scene.fit_table import fit_facts, fitted
 from bearingjax.scene.optimise_table import design_of
+from bearingjax.scene.rotor_run import RotorRun
+from bearingjax.scene.rotor_supports import support_of
+from bearingjax.scene.rotor_warnings import rotor_warnings
 
 MICRON = 1e-6
 BEARING = """
@@ -383,19 +396,132 @@ def test_bearings_that_need_numbers(scene):
         bj.read_scene(scene(PAIR + fit), tight)
 
 
-def test_rotors_take_no_fits(scene):
-    bearing = scene(BEARING + FIT)
-    rotor = bearing.with_name("rotor.toml")
-    text = """
+ROTOR = """
 [rotor]
+speed = "30000 rpm"
 shaft = [{ length = "100 mm", outer_diameter = "25 mm" }]
-bearings = [{ station = 0, bearing = "fits.toml" }]
-"""
-    rotor.write_text(text, encoding="utf-8")
-    from bearingjax.scene import read_rotor
+bearings = [
+  { station = 0, bearing = "fits.toml" },
+  { station = 1, bearing = "own" },
+]
+campbell = { to = "60000 rpm" }
 
-    with pytest.raises(SceneError, match=r"fits.toml has a \[fit\], which changes wit"):
-        read_rotor(rotor)
+[bearings.own]
+designation = "6205"
+contact = { point_law = "zero_angle" }
+fit = { shaft = "k5", housing = "H7", housing_diameter = "80 mm" }
+temperature = { inner_ring = "45 degC", shaft = "45 degC" }
+"""
+
+
+def test_a_rotor_turns_on_its_fits(scene):
+    """Each bearing has the clearance of its own fits, at the speed of the rotor."""
+    other = scene(BEARING + FIT)
+    path = other.with_name("rotor.toml")
+    path.write_text(ROTOR, encoding="utf-8")
+    # What its own file says of the speed does not count.
+    other.write_text(other.read_text().replace("free =", 'inner_speed="1 rpm"\nfree ='))
+    task = read_rotor(path)
+    speed = 1000.0 * np.pi
+    alone = bj.read_scene(other, ["operating.inner_speed=30000 rpm"])
+    supports: list[Any] = [support_of(mount) for mount in task.mounts]
+    one, two = supports
+    assert clearance(one.element) == clearance(fitted(alone.fits, alone.element))
+    # By hand: of 11.5 µm of interference, less what the speed takes, d/F is left.
+    row: Any = task.mounts[1].element.bearing
+    d, square = 0.025, 7850.0 * speed**2 / 16.0
+    f = float(row.pitch_diameter - row.ball_diameter)
+    rise, grown = 25.0 * 12e-6, square / 206e9
+    bore = d * grown * (3.3 * f**2 + 0.7 * d**2)
+    seat = d * grown * 0.7 * d**2
+    raceway = f * grown * (3.3 * d**2 + 0.7 * f**2)
+    fit = (11.5e-6 + seat - bore) * d / f
+    left = 12.5e-6 - fit - raceway - f * rise
+    assert clearance(two.element) == pytest.approx(left, rel=1e-9)
+    assert type(two.element.point_law) is bj.ZeroAngle
+
+
+def test_what_a_rotor_tells_of_its_fits(scene):
+    path = scene(BEARING + FIT).with_name("rotor.toml")
+    path.write_text(ROTOR, encoding="utf-8")
+    task = read_rotor(path, ["rotor.bearings.0.bearing=own"])
+    assert [stations for _, stations in task.seats] == [(0, 1)]
+    run = RotorRun(task, None)
+    (found,) = rotor_as_dict(run)["fit"]
+    assert found["bearing"] == "own" and found["stations"] == [0, 1]
+    assert found["speed"] == pytest.approx(1000.0 * np.pi)
+    (mount, _), *_ = task.seats
+    expected = fit_as_dict(mount.fits, mount.element.bearing)
+    assert found | expected == found
+    text = rotor_report(run)
+    assert "own at stations 0, 1, its inner ring turning at 30000 rpm" in text
+    assert "fits: shaft k5, housing H7; sizes of the solve: middle" in text
+    left = expected["radial_clearance"]
+    (told,) = rotor_warnings(run)
+    words = f"with the radial clearance at 30000 rpm, {1e6 * left['operating']:.4g} µm"
+    assert words in told and "; at 60000 rpm its fits leave " in told
+    # Speeds that are not asked for are no matter.
+    slow = read_rotor(path, ["rotor.bearings.0.bearing=own", "rotor.campbell.to=1 rpm"])
+    slow = dataclasses.replace(slow, speed=0.0)
+    assert rotor_warnings(RotorRun(slow, None)) == []
+    odd = read_rotor(
+        path,
+        [
+            "bearings.own.fit.shaft_bore=10 mm",
+            "bearings.own.fit.shaft=p6",
+            "rotor.bearings.0.bearing=own",
+        ],
+    ).warnings
+    assert any(text.startswith("own: fit: the hoop stress") for text in odd)
+    wanted = (
+        "own: its fit has a shaft of 25 mm with a bore of 10 mm (`shaft_bore`); at"
+        " station 1 the shaft has 25 and 0 mm"
+    )
+    assert wanted in odd
+
+
+# Settings of the rotor, message after "rotor.toml: ".
+WRONG_OF_ROTORS = {
+    "fit of no bearing": (
+        "fit.shaft=k5",
+        "`fit`: belongs to one of the bearings: write [bearings.NAME.fit]",
+    ),
+    "temperature of no bearing": (
+        "temperature.shaft=40 degC",
+        "`temperature`: belongs to one of the bearings: write",
+    ),
+    "no such class": (
+        "bearings.own.fit.shaft=k12",
+        "`bearings.own.fit.shaft`: 'k12' is not known",
+    ),
+    "temperature alone": (
+        "bearings.own={designation='6205', temperature={shaft='40 degC'}}",
+        "`bearings.own.temperature`: goes with a [fit]",
+    ),
+    "key that no bearing has": (
+        "bearings.own.contacts={}",
+        "`bearings.own.contacts`: unknown key (did you mean `contact`?)",
+    ),
+    "key of a bearing alone": (
+        "bearings.own.life={}",
+        "`bearings.own.life`: unknown key",
+    ),
+    "wrong fit of another file": (
+        "rotor.bearings.0.bearing=thrust.toml",
+        "`rotor.bearings[0].bearing`: thrust.toml: `fit`: is for radial bearings",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_OF_ROTORS)
+def test_wrong_fits_of_rotors(scene, name):
+    path = scene(BEARING + FIT).with_name("rotor.toml")
+    path.write_text(ROTOR, encoding="utf-8")
+    path.with_name("thrust.toml").write_text(THRUST + FIT, encoding="utf-8")
+    setting, wanted = WRONG_OF_ROTORS[name]
+    with pytest.raises(SceneError) as caught:
+        read_rotor(path, [setting])
+    assert str(caught.value).startswith(f"rotor.toml: {wanted}"), caught.value
 
 
 @pytest.mark.parametrize("name", ["skid_combined", "noise_deep_groove"])
