@@ -178,18 +178,24 @@ def _larger(owner, name, smaller):
 
 
 class FitConditions(eqx.Module):
-    """Temperatures above that of the measured sizes, and speed.
+    """Temperatures and speed.
 
     Attributes:
-        shaft: Temperature rise of the shaft, even throughout it; likewise below [K].
+        shaft: Temperature of the shaft, even throughout it, on the scale of
+            `reference`; likewise below [K].
         inner_ring: Of the inner ring [K].
         elements: Of the rolling elements [K].
         outer_ring: Of the outer ring [K].
         housing: Of the housing [K].
+        reference: Temperature of the measured sizes [K]. 0: the others are rises above
+            it. Otherwise they are true temperatures, and all five must be given.
         speed: Speed at which shaft and inner ring rotate [rad/s].
         outer_speed: Speed at which outer ring and housing rotate [rad/s].
 
     Traced: all fields.
+
+    Raises:
+        ValueError: If a temperature is not within -280 to 1500 K of `reference`.
     """
 
     shaft: Scalar = eqx.field(converter=as_real, metadata=unit("K"), default=0.0)
@@ -201,11 +207,21 @@ class FitConditions(eqx.Module):
     outer_speed: Scalar = eqx.field(
         converter=as_real, metadata=unit("rad/s"), default=0.0
     )
+    reference: Scalar = eqx.field(converter=as_real, metadata=unit("K"), default=0.0)
 
     def __check_init__(self):
-        for name in (*PARTS, "speed", "outer_speed"):
+        for name in (*PARTS, "reference", "speed", "outer_speed"):
             number(self, name)
+        for name in PARTS:
+            known = concrete(getattr(self, name), self.reference)
+            if known is not None:
+                rise, base = known[0] - known[1], f"`reference`, {known[1]:.6g} K"
+                allowed = f"from {_COLDER:g} to {_HOTTER:g} K above {base}"
+                check(self, name, _COLDER <= rise <= _HOTTER, allowed)
 
+
+_COLDER, _HOTTER = -280.0, 1500.0
+"""Rises that are possible [K]: one left at 0 K beside a true temperature is not."""
 
 _REST = SimpleNamespace(
     shaft=0.0,
@@ -213,6 +229,7 @@ _REST = SimpleNamespace(
     elements=0.0,
     outer_ring=0.0,
     housing=0.0,
+    reference=0.0,
     speed=0.0,
     outer_speed=0.0,
 )
@@ -279,10 +296,11 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
     _check_sized(mounting)
     m: Any = mounting
     c: Any = _REST if conditions is None else conditions
+    warm = {part: _strain(getattr(m, part), c, part) for part in PARTS}
     shaft_interference = (
         m.shaft_interference
         - m.shaft_smoothing
-        + m.bore * (_strain(m.shaft, c.shaft) - _strain(m.inner_ring, c.inner_ring))
+        + m.bore * (warm["shaft"] - warm["inner_ring"])
         + _spin(m.shaft.material, m.bore, m.shaft_bore, c.speed)
         - _spin(m.inner_ring.material, m.bore, m.inner_raceway, c.speed)
     )
@@ -290,7 +308,7 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
     housing_interference = (
         m.housing_interference
         - m.housing_smoothing
-        + out * (_strain(m.outer_ring, c.outer_ring) - _strain(m.housing, c.housing))
+        + out * (warm["outer_ring"] - warm["housing"])
         + _spin(m.outer_ring.material, out, m.outer_raceway, c.outer_speed)
         - _spin(m.housing.material, out, m.housing_diameter, c.outer_speed)
     )
@@ -303,20 +321,19 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
         + _stretch(m.housing.material, out, m.housing_diameter)
     )
     inner = (
-        m.inner_raceway * _strain(m.inner_ring, c.inner_ring)
+        m.inner_raceway * warm["inner_ring"]
         + _spin(m.inner_ring.material, m.inner_raceway, m.bore, c.speed)
         + shaft_pressure
         * _across(m.inner_ring.material, m.bore, m.inner_raceway, m.bore)
     )
     outer = (
-        m.outer_raceway * _strain(m.outer_ring, c.outer_ring)
+        m.outer_raceway * warm["outer_ring"]
         + _spin(m.outer_ring.material, m.outer_raceway, out, c.outer_speed)
         - housing_pressure * _across(m.outer_ring.material, m.outer_raceway, out, out)
     )
     # Two rolling elements and the clearance fill the room between the raceways.
-    elements = (m.outer_raceway - m.inner_raceway - m.radial_clearance) * _strain(
-        m.elements, c.elements
-    )
+    room = m.outer_raceway - m.inner_raceway - m.radial_clearance
+    elements = room * warm["elements"]
     return FitState(
         shaft_interference,
         housing_interference,
@@ -349,8 +366,8 @@ def _ratio(inside, outside):
     return (outside**2 + inside**2) / (outside**2 - inside**2)
 
 
-def _strain(body, rise):
-    return body.expansion * rise
+def _strain(body, conditions, part):
+    return body.expansion * (getattr(conditions, part) - conditions.reference)
 
 
 def _squeeze(material, inside, outside):

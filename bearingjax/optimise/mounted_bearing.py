@@ -15,7 +15,8 @@ class MountedBearing(AbstractSystem):
     """A bearing on its seats, for `bearingjax.optimise`.
 
     Any number may be a variable: "mounting.shaft_interference",
-    "unmounted.bearing.radial_internal_clearance", "conditions.inner_ring".
+    "unmounted.bearing.radial_internal_clearance" (the clearance before mounting),
+    "conditions.inner_ring" (a temperature, of the scale of `conditions.reference`).
 
     Attributes:
         unmounted: The bearing, its preload set, before it is mounted.

@@ -37,11 +37,19 @@ from ..design import (
 from ..design.fits import PARTS, ClearanceRange, FitState
 from ..element import Speed
 from .catalogue_entry import CLEARANCE, CLEARANCES, FromCatalogue
+from .quantity import SceneError
 from .table import Table, written
 
 _ZERO = 273.15
 _REFERENCE = _ZERO + 20.0
 _COLDEST, _HOTTEST = -100.0, 400.0
+
+EXPANSIONS = {
+    "inner_ring": "ring_expansion",
+    "elements": "element_expansion",
+    "outer_ring": "ring_expansion",
+}
+"""Keys of the expansions of the parts of a bearing."""
 
 MOST_STRESS = 127e6
 """Hoop stress above which a fit is warned of, of bearing steel [Pa]: the largest that
@@ -59,6 +67,8 @@ class Fits:
         place: Where in the tolerances, one of `PLACES`.
         limits: `Limits` of clearance and seats, as of `clearance_range`.
         names: Of the tolerance classes of shaft and housing; empty for numbers.
+        unknown: Parts of the bearing whose expansion is not known, which are as warm
+            as the measured sizes, with the key of their material in [bearing].
     """
 
     mounting: Mounting
@@ -66,6 +76,7 @@ class Fits:
     place: str
     limits: dict[str, Any]
     names: tuple[str, str]
+    unknown: dict[str, str]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -136,7 +147,11 @@ def read_fits(
     given["clearance"] = _clearance(table, own, sizes["bore"], catalogue)
     scatters = given["clearance"] is not None
     conditions = _conditions(temperature, speed)
-    seats = sizes | _seats(table, own, row, conditions)
+    unknown = _unknown_expansions(table, own)
+    for part, key in unknown.items():
+        if float(getattr(conditions, part)) != float(conditions.reference):
+            raise no_expansion(table, part, key)
+    seats = sizes | _seats(table, own, row)
     with table.building():
         whole = sized(Mounting(**seats), row)
         if not scatters:
@@ -150,7 +165,8 @@ def read_fits(
         seats["housing_interference"] = there.housing_interference
         if scatters:
             bearing = _with_clearance(bearing, there.radial_clearance)
-        fits = Fits(Mounting(**seats), conditions, place, given, names)
+        mounting = Mounting(**seats)
+        fits = Fits(mounting, conditions, place, given, names, unknown)
         mounted(bearing, fits.mounting, conditions)
     return bearing, fits
 
@@ -323,7 +339,32 @@ def _clearance(table: Table, own: Table, bore, catalogue) -> Limits | None:
         return find(name, bore)
 
 
-def _seats(table: Table, own: Table, row, conditions) -> dict[str, Any]:
+def _unknown_expansions(table: Table, own: Table) -> dict[str, str]:
+    """Parts of the bearing whose material has numbers, but no expansion; with the key
+    of the material."""
+    drawn = own.keys_given()
+    found = {}
+    for part, wanted in EXPANSIONS.items():
+        ring = part != "elements" and "ring_material" in drawn
+        key = "ring_material" if ring else "material"
+        named = isinstance(drawn.get(key, "steel"), str)
+        if not named and wanted not in table:
+            found[part] = key
+    return found
+
+
+def no_expansion(table: Table, part: str, key: str) -> SceneError:
+    """Error of a part that gets warm and whose expansion is not known.
+
+    Args:
+        table: [fit].
+        part, key: As of `Fits.unknown`.
+    """
+    problem = f"is missing: `bearing.{key}` has numbers, and no expansion"
+    return table.error(EXPANSIONS[part], problem)
+
+
+def _seats(table: Table, own: Table, row) -> dict[str, Any]:
     """Sizes and materials of a `Mounting`; interferences are put in later."""
     seats: dict[str, Any] = {"shaft_interference": 0.0, "housing_interference": 0.0}
     for key in ("shaft_bore", "inner_raceway", "outer_raceway"):
@@ -339,26 +380,18 @@ def _seats(table: Table, own: Table, row, conditions) -> dict[str, Any]:
         problem = "goes with `shaft_roughness` or `housing_roughness`"
         raise table.error("ring_roughness", problem)
     drawn = own.keys_given()
-    key = "ring_material" if "ring_material" in drawn else "material"
-    rises = {part: float(getattr(conditions, part)) != 0.0 for part in PARTS}
-    warm = rises["inner_ring"] or rises["outer_ring"]
-    rings = _of_bearing(table, drawn, key, "ring_expansion", row.rings, warm)
-    balls = _of_bearing(
-        table, drawn, "material", "element_expansion", row.material, rises["elements"]
-    )
-    return {**seats, "inner_ring": rings, "outer_ring": rings, "elements": balls}
+    balls = drawn.get("material", "steel")
+    rings = drawn.get("ring_material", balls)
+    ring = _of_bearing(table, rings, "ring_expansion", row.rings)
+    ball = _of_bearing(table, balls, "element_expansion", row.material)
+    return {**seats, "inner_ring": ring, "outer_ring": ring, "elements": ball}
 
 
-def _of_bearing(table: Table, drawn: dict[str, Any], key, wanted, material, warm):
-    """A material of the bearing with its expansion."""
+def _of_bearing(table: Table, given: Any, wanted: str, material) -> WarmMaterial:
+    """A material of the bearing with its expansion; without a name that of steel."""
     value = table.quantity(wanted, "temperature coefficient", None)
     if value is None:
-        name = drawn.get(key, "steel")
-        if not isinstance(name, str):
-            if warm:
-                problem = f"is missing: `bearing.{key}` has numbers, and no expansion"
-                raise table.error(wanted, problem)
-            name = "steel"
+        name = given if isinstance(given, str) else "steel"
         value = float(WARM_MATERIALS[name]().expansion)
         table.fill(wanted, written(value, "1/K"))
     with table.building():
@@ -379,18 +412,28 @@ def _seat_material(table: Table, key: str) -> WarmMaterial:
 
 
 def _conditions(table: Table, speed: Speed | None) -> FitConditions:
-    """Temperatures above that of the measured sizes, and speeds."""
-    reference = _temperature(table, "reference", _REFERENCE)
-    rises = {part: _temperature(table, part, reference) - reference for part in PARTS}
+    """Temperatures and speeds."""
+    reference = read_temperature(table, "reference", _REFERENCE)
+    warm = {part: read_temperature(table, part, reference) for part in PARTS}
+    warm["reference"] = reference
     if speed is None:
-        return FitConditions(**rises)
+        return FitConditions(**warm)
     return FitConditions(
-        **rises, speed=float(speed.inner), outer_speed=float(speed.outer)
+        **warm, speed=float(speed.inner), outer_speed=float(speed.outer)
     )
 
 
-def _temperature(table: Table, key: str, default: float) -> float:
-    value = table.quantity(key, "temperature", default)
+def read_temperature(table: Table, key: str, *default: float | None) -> Any:
+    """A temperature that bearings have [K].
+
+    Args:
+        table: Where it stands.
+        key: Key in it.
+        default: If absent; without a default the key is required.
+    """
+    value = table.quantity(key, "temperature", *default)
+    if value is None:
+        return None
     celsius = value - _ZERO
     if not _COLDEST <= celsius <= _HOTTEST:
         allowed = f"from {_COLDEST:g} to {_HOTTEST:g} °C"

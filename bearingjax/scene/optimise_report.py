@@ -8,10 +8,12 @@ from ..numerics.units import unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
-from .optimise_table import Optimisation
+from .optimise_table import WARMTH, Optimisation
 from .quantity import display_unit
 
 _RULE = "-" * 78
+_CELSIUS = 273.15
+"""0 °C [K]."""
 _STIFFNESSES = {"N/m": (1e-6, "kN/mm"), "N m": (1e-3, "N m/mrad")}
 
 
@@ -151,10 +153,15 @@ def _variables(found):
     )
     for name, v, first, last in rows:
         scale, unit = display_unit(unit_of(found.element, v.path[0]), v.upper)
-        low, high = scale * v.lower, scale * v.upper
+        zero = 0.0
+        if v.name in WARMTH:
+            zero, unit = _CELSIUS, "°C"
+        low, high, before, after = (
+            scale * (x - zero) for x in (v.lower, v.upper, first, last)
+        )
         bound = {v.lower: ", at the lower", v.upper: ", at the upper"}.get(last, "")
         lines.append(
-            f"{name:{width}} {scale * first:12.5g} {scale * last:12.5g}   {low:.5g} to"
+            f"{name:{width}} {before:12.5g} {after:12.5g}   {low:.5g} to"
             f" {high:.5g} {unit}".rstrip()
             + bound
         )

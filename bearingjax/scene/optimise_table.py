@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..design import BearingSet, is_ball, rows_of
+from ..design.fits import PARTS
 from ..element import FREEDOMS, BearingElement
 from ..numerics.units import unit_of
 from ..optimise.constraint import Constraint
@@ -24,6 +25,7 @@ from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
 from .cases_table import read_cases
+from .fit_table import no_expansion, read_temperature
 from .life_table import life_conditions
 from .quantity import SceneError, kind_of
 from .read import Scene, scene_of
@@ -47,6 +49,9 @@ OF_FITS = (
     "housing_diameter",
 )
 """Numbers of a [fit] that may be free."""
+
+WARMTH = {f"temperature.{part}": part for part in PARTS}
+"""Temperatures that may be free beside a [fit]."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,7 +105,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
             problem = "vary the design, which [optimise] is to find"
             raise top.error("cases", problem)
     table = top.table("optimise")
-    task = _optimisation(table, scene, cases)
+    task = _optimisation(top, table, scene, cases)
     table.finish()
     return task
 
@@ -115,7 +120,7 @@ def _operating(scene: Scene) -> Cases:
     )
 
 
-def _optimisation(table: Table, scene: Scene, cases: Cases) -> Optimisation:
+def _optimisation(top: Table, table: Table, scene: Scene, cases: Cases) -> Optimisation:
     element = scene.element
     kind = table.choice("objective", OBJECTIVES)
     balls = is_ball(element.bearing)
@@ -130,7 +135,8 @@ def _optimisation(table: Table, scene: Scene, cases: Cases) -> Optimisation:
             _constraint(part, exponent, balls, life)
             for part in table.tables("constraints")
         )
-    variables = _variables(table.table("variables", required=True), scene)
+    fit = top.table("fit")
+    variables = _variables(table.table("variables", required=True), fit, scene)
     method = table.choice("method", METHODS, None)
     if constraints and method not in (None, "slsqp"):
         problem = f'{method!r} keeps no constraints; take "slsqp" or leave it out'
@@ -183,7 +189,7 @@ def design_of(scene: Scene) -> BearingElement[Any] | MountedBearing:
     return MountedBearing(scene.element, scene.fits.mounting, scene.fits.conditions)
 
 
-def _variables(table: Table, scene: Scene) -> tuple[Variable, ...]:
+def _variables(table: Table, fit: Table, scene: Scene) -> tuple[Variable, ...]:
     element, numbers = design_of(scene), scene_numbers(scene.element)
     if scene.fits is not None:
         numbers = {
@@ -191,13 +197,22 @@ def _variables(table: Table, scene: Scene) -> tuple[Variable, ...]:
             for key, paths in numbers.items()
         }
         numbers |= {f"fit.{name}": (f"mounting.{name}",) for name in OF_FITS}
+        numbers |= {key: (f"conditions.{part}",) for key, part in WARMTH.items()}
     variables = []
     for key in table.keys():
         if key not in numbers:
             raise table.error(key, _no_number(key, table, numbers))
-        part, unit = table.table(key), unit_of(element, numbers[key][0])
-        low, high = (part.real(word, unit) for word in ("from", "to"))
-        start = part.real("start", unit, None)
+        warm = WARMTH.get(key)
+        if warm is not None and scene.fits is not None and warm in scene.fits.unknown:
+            raise no_expansion(fit, warm, scene.fits.unknown[warm])
+        part = table.table(key)
+        if warm is not None:
+            low, high = (read_temperature(part, word) for word in ("from", "to"))
+            start = read_temperature(part, "start", None)
+        else:
+            unit = unit_of(element, numbers[key][0])
+            low, high = (part.real(word, unit) for word in ("from", "to"))
+            start = part.real("start", unit, None)
         with part.building():
             variables.append(Variable(numbers[key], low, high, start, key))
     with table.building():

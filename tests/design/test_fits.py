@@ -158,6 +158,15 @@ def test_a_warm_inner_ring_on_a_warm_shaft():
     np.testing.assert_allclose(loss, 12e-6 * 10 * (0.04645 - 12.5 * MICRON), rtol=1e-9)
 
 
+def test_true_temperatures_are_rises_above_the_reference():
+    rises = FitConditions(10.0, 12.0, 8.0, 5.0, 0.0, 300.0)
+    true = FitConditions(303.0, 305.0, 301.0, 298.0, 293.0, 300.0, reference=293.0)
+    for one, other in zip(
+        state(mounting(), rises), state(mounting(), true), strict=True
+    ):
+        np.testing.assert_allclose(one, other, rtol=1e-12)
+
+
 def test_an_aluminium_housing_lets_go_when_warm():
     design = mounting(housing_interference=20 * MICRON, housing=ALUMINIUM)
     warm = FitConditions(outer_ring=60.0, housing=60.0)
@@ -355,5 +364,9 @@ def test_what_is_not_allowed():
         mounting(radial_clearance=np.nan)
     with pytest.raises(ValueError, match="FitConditions: `speed`.*finite"):
         FitConditions(speed=np.inf)
+    with pytest.raises(
+        ValueError, match="`shaft` is 0 K; it must be from -280 to 1500 K above `refer"
+    ):
+        FitConditions(inner_ring=320.0, reference=293.0)
     with pytest.raises(ValueError, match="`bore` is 1e-06 to 0 m.*lower limit"):
         clearance_range(mounting(), **{**sizes(), "bore": Limits(1e-6, 0.0)})

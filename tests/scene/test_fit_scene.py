@@ -3,6 +3,7 @@ ones."""
 
 import dataclasses
 import json
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import bearingjax as bj
 from bearingjax import SceneError
 from bearingjax.design import raceway_diameters, radial_clearance, rows_of
+from bearingjax.optimise.design_problem import Problem
 from bearingjax.scene import (
     read_cases,
     read_noise,
@@ -22,10 +24,12 @@ from bearingjax.scene import (
 )
 from bearingjax.scene.fit_report import fit_as_dict
 from bearingjax.scene.fit_table import fit_facts, fitted
+from bearingjax.scene.optimise_report import _variables
 from bearingjax.scene.optimise_table import design_of
 from bearingjax.scene.rotor_run import RotorRun
 from bearingjax.scene.rotor_supports import support_of
 from bearingjax.scene.rotor_warnings import rotor_warnings
+from bearingjax.statics.options import SolveOptions
 
 MICRON = 1e-6
 BEARING = """
@@ -177,8 +181,8 @@ def test_given_numbers(scene):
     assert float(seats.housing.material.elastic_modulus) == 45e9
     assert float(seats.housing.expansion) == 26e-6
     assert float(seats.elements.expansion) == 3.2e-6
-    assert float(warm.shaft) == pytest.approx(35.0)  # 60 °C, of 25 °C
-    assert float(warm.inner_ring) == float(warm.housing) == 0.0
+    assert float(warm.shaft) == 333.15 and float(warm.reference) == 298.15
+    assert float(warm.inner_ring) == float(warm.housing) == 298.15
     assert float(warm.speed) == 100.0 and float(warm.outer_speed) == 20.0
     assert fit_facts(read.fits, read.element.bearing).free == 15 * MICRON
 
@@ -267,6 +271,99 @@ def test_interferences_are_variables(scene):
     system: Any = design_of(task.scene)
     left = (12.5 - 11.5 * 25 / 30.56) * MICRON
     assert clearance(system.element) == pytest.approx(left, rel=1e-9)
+
+
+def free(scene, settings=(), **bounds):
+    """The optimisation of a mounted roller bearing over numbers of its fits."""
+    lines = [
+        f'"{key}" = {{ from = "{low}", to = "{high}" }}'
+        for key, (low, high) in bounds.items()
+    ]
+    table = '[optimise]\nobjective = "displacement"\nfreedom = "uy"\n'
+    table += "\n".join(["[optimise.variables]", *lines])
+    text = f"{ROLLERS}{FIT}[temperature]\ninner_ring = '50 °C'\n{table}\n"
+    return read_optimisation(scene(text), settings)
+
+
+def test_slopes_by_temperature_interference_and_clearance(scene):
+    """Beside differences; and beside what each does to the clearance, by hand."""
+    bounds: Any = {
+        "temperature.inner_ring": ("20 °C", "80 °C"),
+        "temperature.elements": ("20 °C", "80 °C"),
+        "fit.shaft_interference": ("2 um", "30 um"),
+        "bearing.radial_internal_clearance": ("10 um", "50 um"),
+    }
+    task = free(scene, **bounds)
+    problem = Problem(
+        design_of(task.scene),
+        task.cases,
+        task.variables,
+        task.objective,
+        (),
+        SolveOptions(free=("uy",), points=2),
+    )
+    start = np.array([v.start_in(problem.element) for v in task.variables])
+    np.testing.assert_allclose(start, [323.15, 293.15, 11.5e-6, 32.5e-6])
+    middle = problem.scaled(start)
+
+    def tried(unit):
+        return problem.evaluate(unit, True)
+
+    slope = tried(middle).slope
+    assert slope is not None
+    # Fourth order: error step⁴; round-off of 1e-13 over a step of 1e-2.
+    step = 1e-2
+    for k, along in enumerate(np.eye(len(middle))):
+        one, two, three, four = (
+            tried(middle + x * step * along).objective for x in (-2, -1, 1, 2)
+        )
+        difference = (one - 8 * two + 8 * three - four) / (12 * step)
+        assert slope[k] == pytest.approx(difference, rel=1e-7)
+    # Of rings of one material on a shaft of the same, d/F of an interference is left.
+    row: Any = task.scene.element.bearing
+    f = float(row.pitch_diameter - row.roller_diameter)
+    size = 2 * float(row.roller_diameter) - 32.5e-6
+    d, alpha = 0.025, 12e-6
+    by_hand = [alpha * (d * d / f - f), -alpha * size, -d / f, 1.0]
+    each = slope / problem.width
+    np.testing.assert_allclose(each / each[-1], by_hand, rtol=1e-9)
+
+
+def test_a_temperature_is_found(scene):
+    """How it is read, reported, and what is wrong with wrong ones."""
+    bounds: Any = {"temperature.inner_ring": ("20 °C", "80 °C")}
+    task = free(scene, **bounds)
+    (variable,) = task.variables
+    assert variable.path == ("conditions.inner_ring",)
+    assert variable.lower == 293.15 and variable.upper == 353.15
+    before = SimpleNamespace(values=np.array([323.15]))
+    after = SimpleNamespace(values=np.array([293.15]))
+    found: Any = SimpleNamespace(
+        variables=task.variables,
+        element=design_of(task.scene),
+        before=before,
+        after=after,
+    )
+    assert (
+        "temperature.inner_ring           50           20   20 to 80 °C, at the low"
+        in (_variables(found))
+    )
+    own = "{elastic_modulus='206 GPa', poisson_ratio=0.3, density='7850 kg/m^3'}"
+    for settings, key, ends, message in (
+        ((), "temperature.inner_ring", ("20 °C", "500 °C"), "500 °C is not allowed"),
+        ((), "temperature.inner_ring", ("20 mm", "80 °C"), "'20 mm' is not a temp"),
+        ((), "temperature.inner_ring", ("60 °C", "80 °C"), "must lie between its b"),
+        ((), "temperature.cage", ("20 °C", "80 °C"), "is not known"),
+        (
+            (f"bearing.material={own}", "bearing.ring_material=steel"),
+            "temperature.elements",
+            ("20 °C", "80 °C"),
+            "`fit.element_expansion`: is missing: `bearing.material` has numbers",
+        ),
+    ):
+        with pytest.raises(SceneError) as caught:
+            free(scene, settings, **{key: ends})
+        assert message in str(caught.value)
 
 
 def test_warnings(scene):
