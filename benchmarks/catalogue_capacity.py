@@ -33,7 +33,7 @@ estimated geometry, C of the ordinary class: mean and worst, %
 angular_contact_ball    17    +0.2    +3.2
 cylindrical_roller      14    -7.2   -13.6
 deep_groove_ball        13    +0.0    -1.0
-four_point_ball          7   -42.2   -42.5
+four_point_ball          7    -5.4    -6.7
 needle_roller            6    -5.0    -7.6
 self_aligning_ball       8    -1.0    -1.3
 tapered_roller          12    -0.0    -0.6
@@ -45,8 +45,8 @@ than those published, which are NSK's; Harris' 209 and 218 are examples of a tex
 rollers are longer than what counts as their length (NU 215); C0 of the 176211 is older
 than ISO 76. The
 improved class (first column) is 4 to 7 % above ISO 281 for balls, 12 to 14 % for
-cylindrical rollers. SKF rates four-point bearings as two rows, where we rate them as
-one: 2^0.7 in C, 2 in C0, and 6 % for the improved class.
+cylindrical rollers. C of four-point bearings, of two rows, is all of the improved
+class.
 """
 
 import argparse

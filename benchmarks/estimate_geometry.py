@@ -92,7 +92,8 @@ PUBLISHED = (
      "Harris, 209", NSK + " 6209"),
     ("218", "angular_contact", 90, 160, 30, 116.0, 104.0, 40, 16, 22.225, 125.26, None,
      "Harris, 218", "SKF 7218 BECBP"),
-    ("176211", "four_point", 55, 100, 21, 50.3, 31.5, 26, 14, 14.288, 77.5, None,
+    # EPK's 50.3 and 31.5 kN are of one row; four points count as two.
+    ("176211", "four_point", 55, 100, 21, 81.7, 63.0, 26, 14, 14.288, 77.5, None,
      "Kurushin", "EPK"),
     ("N 209", "cylindrical", 45, 85, 19, 46.0, 47.0, None, 14, 10.0, 65.0, 9.6,
      "Harris, 209", NSK),

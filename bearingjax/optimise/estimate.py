@@ -51,6 +51,9 @@ _WALL = 0.1
 _WEB = 0.985
 """Most that the rolling elements fill between each other's centres [1]."""
 
+_APART = 1.01
+"""Least distance of the two rows of a self-aligning bearing [ball diameter]."""
+
 _BROADEST = 0.9
 """Largest roller length or ball diameter [width]."""
 
@@ -80,7 +83,7 @@ class _Rated(NamedTuple):
 _KINDS = {
     "deep_groove": _Rated(row_rating.ANGULAR_CONTACT),
     "angular_contact": _Rated(row_rating.ANGULAR_CONTACT),
-    "four_point": _Rated(row_rating.ANGULAR_CONTACT),
+    "four_point": _Rated(row_rating.ANGULAR_CONTACT, rows=2),
     "self_aligning": _Rated(row_rating.SELF_ALIGNING, rows=2),
     "thrust_ball": _Rated(row_rating.THRUST, is_thrust=True),
     "cylindrical": _Rated(None),
@@ -173,7 +176,8 @@ def estimate_geometry(
         kind: "deep_groove", "angular_contact", "four_point", "self_aligning" (of two
             rows), "thrust_ball", "cylindrical", "needle" or "tapered".
         dynamic_capacity: Basic dynamic load rating C [N]. Ratings that a maker has
-            raised by a factor of his own should be divided by it.
+            raised by a factor of his own should be divided by it; those of four-point
+            bearings are of two rows (`rating.arc_rows`).
         static_capacity: Basic static load rating C0 [N].
         contact_angle: Of angular contact, four-point and tapered (outer raceway)
             bearings [rad]; `None`: estimated as well, which the ratings hardly
@@ -243,13 +247,12 @@ def _sizes(rated, known, sizes):
     log of the length over the width, contact angle.
     """
     across = known.width if rated.is_thrust else known.section
-    angle = 0.5 * np.pi if rated.is_thrust else sizes[3]
-    return (
-        across * jnp.exp(sizes[0]),
-        known.mean * sizes[1],
-        known.width * jnp.exp(sizes[2]),
-        jnp.asarray(angle),
-    )
+    diameter, pitch = across * jnp.exp(sizes[0]), known.mean * sizes[1]
+    angle = jnp.asarray(0.5 * np.pi if rated.is_thrust else sizes[3])
+    if rated.balls is not None and rated.balls.open[0] is None:
+        # Rows on one sphere lean at least so far that they do not overlap.
+        angle = jnp.maximum(angle, jnp.arctan(_APART * diameter / pitch))
+    return diameter, pitch, known.width * jnp.exp(sizes[2]), angle
 
 
 def _ratings(rated, known, sizes, count):

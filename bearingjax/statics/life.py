@@ -33,7 +33,13 @@ from .life_factor import (
     reliability_factor,
     viscosity_ratio,
 )
-from .rating import THRUST_ANGLE, Ratings, nominal_contact_angle, ratings
+from .rating import (
+    THRUST_ANGLE,
+    Ratings,
+    arc_rows,
+    nominal_contact_angle,
+    ratings,
+)
 from .reference_life import (
     BALLS,
     LEAST_LAMINAE,
@@ -471,18 +477,21 @@ class _RowPart(NamedTuple):
 def _rows(bearing, row_sizes, loads, rated, turning) -> list[_RowPart]:
     """Fatigue of every row, as bearings of their own.
 
-    Source: ISO 281: C = C_1 i^0.7 of i rows of balls, C_1 i^(7/9) of rollers.
+    Source: ISO 281: C = C_1 i^0.7 of i rows of balls, C_1 i^(7/9) of rollers; the
+        arcs of a four-point bearing count as two rows (`arc_rows`).
     """
     rows = rows_of(bearing)
+    arcs = arc_rows(rows[0].bearing)
     turned = sum(row.mirrored for row in rows)
     one_way = min(count for count in (turned, len(rows) - turned) if count)
+    one_way = len(rows) if arcs == 2 else one_way
     ends = np.cumsum(row_sizes)
     parts = []
     for row, size, end in zip(rows, row_sizes, ends, strict=True):
         angle = nominal_contact_angle(row.bearing)
         thrust = angle > THRUST_ANGLE
         together = 0.7 if isinstance(row.bearing, AbstractBallBearing) else 7.0 / 9.0
-        count = jnp.where(thrust, float(one_way), float(len(rows)))
+        count = jnp.where(thrust, float(one_way), float(arcs * len(rows)))
         fatigue = row_fatigue(
             row.bearing,
             rated.dynamic_capacity / count**together,
@@ -515,9 +524,7 @@ def _modified(fatigue, limit, thrust, kappa, clean, kind):
     balls = kind is BALLS
     factor = life_factor(kappa, ratio, balls, thrust)
     n, d = kind.spread
-    if not balls:
-        return jnp.sum(jnp.sum(fatigue.share, axis=0) * factor ** -(n / d))
-    return jnp.sum(fatigue.share) * factor[0] ** -(n / d)
+    return jnp.sum(jnp.sum(fatigue.share, axis=0) * factor ** -(n / d))
 
 
 def _lifetime(damage):

@@ -17,6 +17,7 @@ from ..design import (
     Bearing,
     BearingSet,
     DeepGrooveBallBearing,
+    FourPointBallBearing,
     SelfAligningBallRow,
     ThrustBallBearing,
     n_elements,
@@ -100,7 +101,8 @@ def dynamic_capacity(bearing: Bearing | BearingSet) -> Scalar:
     here). Grooves closer than 0.52 (outer ring 0.53, thrust bearings 0.54) do not raise
     it. Several rows: C_1 i^0.7 of balls, C_1 i^(7/9) of rollers, 5 % less for deep
     groove pairs; of an axial rating only rows that face the same way count, of two
-    unequal sides the weaker.
+    unequal sides the weaker. A four-point bearing is rated as two rows, like the
+    factors of its equivalent load (`arc_rows`).
 
     Args:
         bearing: Any bearing, or a set of alike ones. The contact angle is zero for deep
@@ -144,24 +146,51 @@ def static_capacity(bearing: Bearing | BearingSet) -> Scalar:
 
 
 def fatigue_load_limit(
-    bearing: Bearing | BearingSet, static_capacity: Scalar | float | None = None
+    bearing: Bearing | BearingSet,
+    static_capacity: Scalar | float | None = None,
+    *,
+    method: str = "static",
 ) -> Scalar:
-    """Fatigue load limit C_u by the simplified formulas of ISO 281 [N].
+    """Fatigue load limit C_u of ISO 281 [N].
 
-    C0/22 of balls, C0/8.2 of rollers; above a pitch diameter of 100 mm less, by
+    "static": C0/22 of balls, C0/8.2 of rollers. "contact", of balls: the load under
+    which the hardest ball has a peak pressure of 1500 MPa, 0.2288 i Z cos α Q_u of
+    radial bearings (0.2288 = 1/4.37 by Sjövall, half of the balls loaded) and Z sin α
+    Q_u of thrust bearings. Both are less above a pitch diameter of 100 mm, by
     (100 mm/D_pw)^0.5 and (100 mm/D_pw)^0.3.
+
+    With usual grooves the contacts give C0/19.2, C0/25 of self-aligning bearings;
+    SKF prints C0/23.6 of deep groove and angular contact bearings, C0/25.4 of
+    four-point and C0/19 of self-aligning ones, C0/7.9 of cylindrical rollers. So it is
+    an estimate by either method, to a quarter. Of rollers the contacts need the
+    pressures along their profile: a line evenly loaded would give C0/5.8.
 
     Args:
         bearing: As in `dynamic_capacity`.
-        static_capacity: C0 [N]; `None`: `static_capacity`.
+        static_capacity: C0 [N]; `None`: `static_capacity`. Of "static" alone.
+        method: "static" or "contact".
 
     Raises:
         TypeError: If it is no bearing, or C0 no number.
-        ValueError: If the rows of a set are unlike, or C0 is not positive.
+        ValueError: If the rows of a set are unlike, C0 is not positive, the method
+            unknown or "contact" of rollers.
 
-    Source: ISO 281:2007, B.3.2.2 (an estimate; its B.3.2.1 works with the contacts).
+    Source: ISO 281:2007, annex B: B.3.2.2 ("static"), B.3.2.1 ("contact"; here by
+        exact Hertz contact).
     """
     rows, is_thrust = _alike(bearing)
+    if method not in ("static", "contact"):
+        raise ValueError(
+            f"fatigue_load_limit: `method` is {method!r}; it must be 'static' or"
+            " 'contact'."
+        )
+    if method == "contact":
+        if static_capacity is not None or not isinstance(rows.row, BallRow):
+            raise ValueError(
+                "fatigue_load_limit: `method` 'contact' is of ball bearings, and takes"
+                " no `static_capacity`; rollers need the pressures along their profile."
+            )
+        return _contact_limit(rows, is_thrust)
     if static_capacity is None:
         return _limit(rows.row, _capacities(rows, is_thrust)[1])
     value = as_real(static_capacity)
@@ -187,8 +216,21 @@ _capacities = eqx.filter_jit(by_row.capacities)
 @eqx.filter_jit
 def _limit(row, static):
     share, power = (22, 0.5) if isinstance(row, BallRow) else (8.2, 0.3)
-    large = jnp.maximum(row.pitch_diameter / 0.1, 1.0)
-    return static / share / large**power
+    return static / share / _large(row) ** power
+
+
+@eqx.filter_jit
+def _contact_limit(rows, is_thrust):
+    row, angle = rows.row, rows.row.contact_angle
+    axial = is_thrust | (angle > THRUST_ANGLE)
+    radial = 0.2288 * rows.count * jnp.cos(angle)
+    share = jnp.where(axial, rows.one_way * jnp.sin(angle), radial)
+    return row.count * by_row.ball_fatigue(row) * share / _large(row) ** 0.5
+
+
+def _large(row):
+    """Pitch diameter over 100 mm, at least 1 [1]."""
+    return jnp.maximum(row.pitch_diameter / 0.1, 1.0)
 
 
 def _row(bearing) -> BallRow | RollerRow:
@@ -217,6 +259,26 @@ def nominal_contact_angle(bearing: Bearing) -> Scalar:
         return bearing.free_contact_angle
     # The load of a taper leaves through its outer raceway, which has no rib.
     return bearing.axis_angle + bearing.half_angle
+
+
+def arc_rows(bearing: Bearing) -> int:
+    """How many rows the standards count in one row of elements: 2 of four-point balls.
+
+    Under radial load each of their balls bears on two pairs of arcs, which tire as the
+    raceways of two rows do. The factors of their equivalent load are those of two rows
+    as well, so that under axial load alone, which one pair of arcs bears, the life is
+    that of a single row: C grows by 2^0.7 = 1.62, Y by 1.625. SKF and Schaeffler rate
+    them so; ratings of makers who count one row (GOST) are to be multiplied by 2^0.7
+    and 2 (C0).
+
+    Args:
+        bearing: A single row.
+
+    Source: SKF, general catalogue: P = Fr + 0.66 Fa or 0.6 Fr + 1.07 Fa, P0 = Fr +
+        0.58 Fa of bearings with 35 degrees, the factors of ISO 281, table 3, for two
+        rows; their C as of two rows (`benchmarks/catalogue_capacity.py`).
+    """
+    return 2 if isinstance(bearing, FourPointBallBearing) else 1
 
 
 def _kind(bearing, several) -> by_row.BallKind | None:
@@ -249,7 +311,10 @@ def _alike(bearing) -> tuple[Rows, bool]:
             )
     sides = [sum(row.mirrored is side for row in rows) for side in (False, True)]
     one_way, kind = min(n for n in sides if n), _kind(first, len(rows) > 1)
-    numbers = Rows(_row(first), kind, as_real(len(rows)), as_real(one_way))
+    count, arcs = len(rows), arc_rows(first)
+    # Of two pairs of arcs each bears one way.
+    one_way = count if arcs == 2 else one_way
+    numbers = Rows(_row(first), kind, as_real(arcs * count), as_real(one_way))
     return numbers, isinstance(first, ThrustBallBearing)
 
 

@@ -70,8 +70,8 @@ class RowFatigue(NamedTuple):
             (raceway, track) [1]. Tracks are the arcs of a ball's raceways, or the
             laminae of a roller's.
         load: Load of a bearing without clearance, its tracks evenly loaded, that
-            tires a part of the row as much (part,) [N]: of balls the row, of rollers
-            a lamina.
+            tires a part of the row as much (part,) [N]: of balls a pair of arcs, of
+            rollers a lamina.
         fatigue: Its exponents. Static.
     """
 
@@ -160,7 +160,7 @@ def row_fatigue(
     share = jnp.where(turning[:, None] > 0, turns, stands)
     thrust = angle > THRUST_ANGLE
     whole = capacity / jnp.where(thrust, *reversed(kind.reduction))
-    part = jnp.sum(share, keepdims=True)[0] if balls else tracks * jnp.sum(share, 0)
+    part = tracks * jnp.sum(share, 0)
     n, d = kind.share
     return RowFatigue(share, whole * positive_power(part, d, n), kind)
 

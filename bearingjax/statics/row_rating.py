@@ -27,6 +27,9 @@ _MODULUS = 0.5 * 2.07e11 / (1.0 - 0.3**2)
 THRUST_ANGLE = 0.25 * math.pi
 """Nominal contact angle above which a bearing is a thrust bearing [rad] (ISO 281)."""
 
+_FATIGUE_PRESSURE = 1500e6
+"""Peak pressure of a contact at the fatigue limit [Pa] (ISO 281:2007, annex B)."""
+
 _LARGE_BALL = 25.4
 """Diameter above which a ball's rating grows more slowly [mm]."""
 
@@ -201,20 +204,34 @@ def steep_roller_dynamic(row: RollerRow, rows: Scalar | int) -> Scalar:
 def ball_static(row: BallRow, kind: BallKind) -> Scalar:
     """Load of a ball [N] with the peak pressure of the static rating at a raceway.
 
-    Of the raceway that has it first: f_0 D² is a fifth of this load, that of thrust
-    bearings all of it. A groove closer than the standard counts with, 0.52 of inner and
-    0.53 of outer rings, is taken as that.
+    f_0 D² is a fifth of this load, that of thrust bearings all of it. A groove closer
+    than the standard counts with, 0.52 of inner and 0.53 of outer rings, is taken as
+    that.
     """
+    outer, inner = _opened(row, kind)
+    return _ball_load(row._replace(osculation=(outer, inner)), kind.stress)
+
+
+def ball_fatigue(row: BallRow) -> Scalar:
+    """Q_u: load of a ball [N] with a peak pressure of 1500 MPa at a raceway.
+
+    That of the fatigue limit of bearing steels, with the grooves as they are.
+    """
+    return _ball_load(row, _FATIGUE_PRESSURE)
+
+
+def _ball_load(row, pressure):
+    """Load of a ball [N] with this peak pressure at the raceway that has it first."""
     gamma = _gamma(row)
     rolling = 2 - 2 * gamma / (1 + gamma), 2 + 2 * gamma / (1 - gamma)
-    opened = _opened(row, kind)
     across = [
-        r if f is None else 2 - 1 / f for r, f in zip(rolling, opened, strict=True)
+        r if f is None else 2 - 1 / f
+        for r, f in zip(rolling, row.osculation, strict=True)
     ]
     # Of a ball of unit diameter: the load grows with its square.
     contact = ellipse(jnp.stack(rolling), jnp.stack(across), jnp.asarray(_MODULUS))
     axes = contact.rolling * contact.transverse
-    least = jnp.min((jnp.pi * kind.stress / 1.5 * axes) ** 3, axis=0)
+    least = jnp.min((jnp.pi * pressure / 1.5 * axes) ** 3, axis=0)
     return least * row.diameter**2
 
 

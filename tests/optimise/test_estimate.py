@@ -126,6 +126,30 @@ def test_designs_are_found_from_their_own_ratings(kind):
     assert "Estimate" in found.report()
 
 
+@pytest.mark.parametrize(
+    "kind, size, ratings, angle, count, diameter",
+    [
+        ("self_aligning", (25, 52, 15), (14.3, 4.0), None, 13, 7.541),
+        ("self_aligning", (20, 47, 14), (12.7, 3.4), None, 12, 7.144),
+        # C of the improved class, 6 % above ISO 281.
+        ("four_point", (50, 90, 20), (65.5 / 1.06, 61.0), 35, 17, 11.906),
+    ],
+)
+def test_ratings_of_two_rows_are_understood(
+    kind, size, ratings, angle, count, diameter
+):
+    """SKF's 1205 E, 1204 E and QJ 210; wanted are the sizes in which balls are made
+    that fit their ratings and printed shoulders best."""
+    d, big, b = (1e-3 * x for x in size)
+    c, c0 = (1e3 * x for x in ratings)
+    angle = None if angle is None else angle * _DEG
+    found = bj.estimate_geometry(d, big, b, kind, c, c0, contact_angle=angle)
+    number, ball, _ = inside(found.bearing)
+    assert number == count
+    assert ball == pytest.approx(1e-3 * diameter, rel=0.02)
+    assert found.misfit < 3
+
+
 def test_slopes_of_the_least_squares_are_those_of_differences():
     kind, d, big, b, c, c0, count, _ = PUBLISHED["6205"]
     numbers = dict(bore=1e-3 * d, outside_diameter=1e-3 * big, width=1e-3 * b)

@@ -25,8 +25,14 @@ from bearingjax.statics import (
     viscosity_ratio,
 )
 from bearingjax.statics.equivalent_load import equivalent_load, load_factors
-from bearingjax.statics.life import FRAMES, life_outputs, turns_against_load
-from bearingjax.statics.reference_life import edge_stress, row_fatigue
+from bearingjax.statics.life import (
+    FRAMES,
+    _modified,
+    _rows,
+    life_outputs,
+    turns_against_load,
+)
+from bearingjax.statics.reference_life import BALLS, edge_stress, row_fatigue
 from bearingjax.statics.refined_life import _of_laminae
 
 ATTRIBUTED = 3e-4  # between programs that solve the same equations
@@ -514,6 +520,57 @@ def angular(degrees, n=14):
     )
 
 
+def four_points(degrees, n=14):
+    return bj.FourPointBallBearing(
+        n,
+        77.5e-3,
+        14.288e-3,
+        inner_osculation=0.52,
+        outer_osculation=0.53,
+        shim_angle=np.deg2rad(degrees),
+    )
+
+
+def test_four_points_live_as_one_row_by_axial_and_as_two_by_radial_load():
+    """Under axial load balls touch one pair of arcs, under radial load both."""
+    one, four = angular(35), four_points(35)
+    pair = bj.BearingSet.back_to_back(one, 0.03)
+    axial = jnp.asarray([0.0, 0.0, 5e3, 0.0, 0.0, 0.0])
+    radial = jnp.asarray([5e3, 0.0, 0.0, 0.0, 0.0, 0.0])
+    c, p = (
+        {
+            kind: np.array([float(f(bearing, load)) for load in (axial, radial)])
+            for kind, bearing in (("one", one), ("four", four), ("pair", pair))
+        }
+        for f in (
+            lambda bearing, load: bj.dynamic_capacity(bearing),
+            lambda bearing, load: equivalent_load(bearing, load).dynamic,
+        )
+    )
+    # As far as 1.07 and 0.66 are rounded: 2^0.7 is 1.6245.
+    np.testing.assert_allclose(p["four"][0] / c["four"], (p["one"] / c["one"])[0], 0.01)
+    np.testing.assert_allclose(p["four"] / c["four"], p["pair"] / c["pair"], 1e-9)
+
+    rng, turning = np.random.default_rng(3), jnp.asarray([0.0, 1.0])
+    right, left = rng.uniform(50.0, 400.0, (2, 14, 2, 1))
+
+    @eqx.filter_jit
+    def numbers(bearing, sizes, loads, c):
+        rated = SimpleNamespace(dynamic_capacity=c, fatigue_load_limit=900.0)
+        oil = jnp.asarray(1.5), jnp.asarray(0.5)  # κ and e_C
+        rows = _rows(bearing, sizes, loads, rated, turning)
+        tired = sum(_modified(*row, *oil, BALLS) for row in rows)
+        return jnp.stack([sum(row.fatigue.share.sum() for row in rows), tired])
+
+    of_four = numbers(four, (14,), jnp.asarray(np.concatenate([right, left], 2)), 7e4)
+    of_pair = numbers(pair, (14, 14), jnp.asarray(np.concatenate([right, left])), 7e4)
+    np.testing.assert_allclose(of_four, of_pair, rtol=1e-12)
+    alone = jnp.asarray(np.concatenate([right, 0 * right], 2))
+    of_four = numbers(four, (14,), alone, 7e4)[0]
+    of_one = numbers(one, (14,), jnp.asarray(right), 7e4 / 2**0.7)[0]
+    np.testing.assert_allclose(of_four, of_one, rtol=1e-12)
+
+
 def test_equivalent_loads_are_those_of_the_tables():
     taper = bj.TaperedRollerBearing(
         14, 0.06, 0.008, 0.011, roller_axis_angle=0.25, roller_half_angle=0.0
@@ -535,6 +592,9 @@ def test_equivalent_loads_are_those_of_the_tables():
         (angular(27.5), 1e3, 3e3, 400 + 0.815 * 3e3, 500 + 0.355 * 3e3),
         (pair, 1e3, 1e3, 1e3 + 550, 1e3 + 520),
         (pair, 1e3, 2e3, 570 + 1860, 1e3 + 1040),
+        # As SKF's catalogue prints them for four-point bearings.
+        (four_points(35), 1e3, 0.9e3, 1e3 + 0.66 * 0.9e3, 1e3 + 0.58 * 0.9e3),
+        (four_points(35), 1e3, 2e3, 600 + 2140, 1e3 + 1160),
         (tandem, 1e3, 2e3, 350 + 1140, 1020.0),
         (thrust, 0.0, 3e3, 3e3, 3e3),
         (taper, 1e3, 1e3, 400 + 400 * cot, 500 + 220 * cot),
