@@ -1,7 +1,7 @@
 """`bearingjax catalogue`."""
 
-from .options import add_json, add_plot
-from .outputs import check_plot, save, write
+from .options import add_drawing, add_json, add_plot
+from .outputs import check_plot, save, save_drawing, write
 from .status import SOLVED
 
 
@@ -30,6 +30,7 @@ def add(commands):
     )
     add_json(command)
     add_plot(command, "draw sections of the bearings that are named")
+    add_drawing(command)
     return command
 
 
@@ -42,6 +43,7 @@ def run(options) -> int:
         catalogue_details,
         catalogue_entry,
         catalogue_table,
+        catalogue_title,
         check_outputs,
         select,
         write_numbers,
@@ -52,7 +54,12 @@ def run(options) -> int:
         if not named:
             raise SceneError("--plot draws the bearings that are named; name some")
         check_plot(options.plot)
-    check_outputs({"--json": options.json, "--plot": options.plot})
+    if options.drawing is not None:
+        if len(named) != 1:
+            raise SceneError("--drawing draws one bearing; name one")
+        check_plot(options.drawing)
+    names = ("json", "plot", "drawing")
+    check_outputs({f"--{name}": getattr(options, name) for name in names})
     chosen = select(
         named or catalogue(),
         options.type,
@@ -67,9 +74,13 @@ def run(options) -> int:
         titles = [f"{e.designation}, inner geometry {e.geometry}" for e in chosen]
         save(cross_sections([entry.bearing for entry in chosen], titles), path)
 
+    def draw_all_of_it(path):
+        save_drawing(chosen[0].bearing, catalogue_title(chosen[0]), path)
+
     write(
         (options.json, lambda path: write_numbers(path, catalogue_as_dict(chosen))),
         (options.plot, draw if chosen else None),
+        (options.drawing, draw_all_of_it if chosen else None),
     )
     if named:
         print("\n\n".join(catalogue_details(entry) for entry in chosen), flush=True)

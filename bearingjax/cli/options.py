@@ -26,6 +26,12 @@ def add_plot(command, what: str = "write a picture") -> None:
     _add_output(command, "--plot", f"{what} (.png, .pdf, .svg)")
 
 
+def add_drawing(command, what: str = "of the one bearing that is named") -> None:
+    """A drawing of a bearing."""
+    text = f"write a drawing {what}, with all its dimensions (.png, .pdf, .svg)"
+    _add_output(command, "--drawing", text)
+
+
 def add_table(command, row: str, endings: str = ".csv, .parquet, .xlsx") -> None:
     """A table with one row per `row`."""
     _add_output(command, "--table", f"write a row per {row} ({endings})")

@@ -10,10 +10,11 @@ def check_outputs(options) -> None:
     """Fail before anything is solved if outputs cannot be written or hit an input."""
     from ..scene import check_outputs, scene_files
 
-    names = ("json", "plot", "table", "wav", "report")
+    names = ("json", "plot", "drawing", "table", "wav", "report")
     outputs = {f"--{name}": getattr(options, name, None) for name in names}
-    if outputs["--plot"] is not None:
-        check_plot(outputs["--plot"])
+    for picture in (outputs["--plot"], outputs["--drawing"]):
+        if picture is not None:
+            check_plot(picture)
     check_outputs(outputs, scene_files(options.scene, options.set))
 
 
@@ -57,6 +58,13 @@ def check_matplotlib() -> None:
         problem = 'pictures need matplotlib: pip install "bearingjax[plot]"'
         raise SceneError(problem) from error
     matplotlib.use("Agg")
+
+
+def save_drawing(bearing, title: str, path, **format) -> None:
+    """Write the drawing of a bearing."""
+    from ..plot import drawing
+
+    save(drawing(bearing, title), path, **format)
 
 
 def save(figure, path, **format) -> None:

@@ -3,8 +3,16 @@
 import io
 
 from . import jax_settings
-from .options import add_plot, add_report, add_scene
-from .outputs import check_matplotlib, check_outputs, check_report, origin, save, write
+from .options import add_drawing, add_plot, add_report, add_scene
+from .outputs import (
+    check_matplotlib,
+    check_outputs,
+    check_report,
+    origin,
+    save,
+    save_drawing,
+    write,
+)
 from .status import SOLVED, tell_unsolved
 
 
@@ -18,6 +26,7 @@ def add(commands):
     )
     add_scene(command)
     add_plot(command)
+    add_drawing(command, "of the bearing, as it is solved")
     add_report(command, "pictures")
     return command
 
@@ -41,20 +50,35 @@ def run(options) -> int:
         figure = overview(solution.element.bearing, solution, title=scene.name)
         save(figure, path, **format)
 
+    solved = Result(int(solution.result)) is Result.CONVERGED
+
+    def draw_bearing(path, **format):
+        # Mounted and preloaded where the scene says so.
+        element = solution.element if solved else scene.element
+        save_drawing(element.bearing, scene.name, path, **format)
+
     def tell(path):
-        picture = io.BytesIO()
-        draw(picture, format="png")
-        pictures = {"Section, load zone, contacts": picture.getvalue()}
+        pictures = {
+            "Section, load zone, contacts": _png(draw),
+            "Drawing": _png(draw_bearing),
+        }
         page = solve_page(scene, solution, pictures, begun)
         path.write_text(page, encoding="utf-8")
 
-    solved = Result(int(solution.result)) is Result.CONVERGED
     write(
         (options.json, lambda path: write_json(path, scene, solution)),
         (options.plot, draw if solved else None),
+        (options.drawing, draw_bearing),
         (options.report, tell if solved else None),
     )
     if not solved:
         return tell_unsolved(scene, solution)
     print(report(scene, solution), flush=True)
     return SOLVED
+
+
+def _png(draw):
+    """A picture as the content of a file."""
+    picture = io.BytesIO()
+    draw(picture, format="png")
+    return picture.getvalue()

@@ -8,6 +8,7 @@ from .catalogue_entry import catalogue_entry as catalogue_entry
 from .catalogue_report import catalogue_as_dict as catalogue_as_dict
 from .catalogue_report import catalogue_details as catalogue_details
 from .catalogue_report import catalogue_table as catalogue_table
+from .catalogue_report import catalogue_title as catalogue_title
 from .catalogue_report import new_scene as new_scene
 from .catalogue_report import scene_list as scene_list
 from .catalogue_report import select as select

@@ -102,9 +102,18 @@ def _number(value, scale):
     return "-" if value is None else f"{scale * value:.4g}"
 
 
+def catalogue_title(entry: CatalogueEntry) -> str:
+    """What a bearing is, its sizes, and where its inner geometry is from."""
+    return f"{_what(entry)}, inner geometry {entry.geometry}"
+
+
+def _what(entry):
+    return f"{entry.designation}: {_words(entry.type)} bearing, {_sizes(entry)}"
+
+
 def catalogue_details(entry: CatalogueEntry) -> str:
     """All that is known of a bearing, with its sources."""
-    lines = [f"{entry.designation}: {_words(entry.type)} bearing, {_sizes(entry)}"]
+    lines = [_what(entry)]
     lines.append(_loads(entry))
     if entry.other is not None:
         c, c0, source = entry.other
@@ -146,7 +155,7 @@ def new_scene(entry: CatalogueEntry) -> str:
         entry: The bearing; every key is written out, so that it can be changed.
     """
     lines = [
-        f"# {entry.designation}: {_words(entry.type)} bearing, {_sizes(entry)}.",
+        f"# {_what(entry)}.",
         *_comment(f"{_loads(entry)}."),
         *_comment(f"Inner geometry {entry.geometry}: {entry.sources['geometry']}."),
     ]

@@ -289,6 +289,12 @@ def test_catalogue_command(run, tmp_path):
         "QJ 211: four point ball bearing, 55 x 100 x 21 mm\nC 85 kN, C0 83" in done.out
     )
     assert (tmp_path / "out.png").stat().st_size > 20_000
+    done = run("catalogue", "QJ 211", "--drawing", tmp_path / "out.svg")
+    assert done.status == 0
+    drawn = (tmp_path / "out.svg").read_text(encoding="utf-8")
+    # Of an SVG file words are kept in its comments.
+    assert "55 x 100 x 21 mm, inner geometry estimated" in drawn
+    assert "shim_angle = " in drawn
 
 
 @pytest.mark.parametrize(
@@ -298,6 +304,14 @@ def test_catalogue_command(run, tmp_path):
         (("catalogue", "--bore", "25"), "--bore: '25' has no unit"),
         (("catalogue", "--bore", "9 mm:2 mm"), "--bore: '9 mm:2 mm' ends below"),
         (("catalogue", "--plot", "a.png"), "--plot draws the bearings that are named"),
+        (("catalogue", "--drawing", "a.png"), "--drawing draws one bearing; name one"),
+        (("catalogue", "6205", "6206", "--drawing", "a.png"), "name one"),
+        (("catalogue", "6205", "--drawing", "a.jpg"), "ends in .png, .pdf or .svg"),
+        (("catalogue", "6205", "--drawing", "no/a.png"), "its folder does not exist"),
+        (
+            ("catalogue", "6205", "--drawing", "a.png", "--plot", "a.png"),
+            "is named by --plot and by --drawing; name two files",
+        ),
         (("catalogue", "9999"), "'9999' is not a bearing of the catalogue"),
         (("new", "62O5"), "'62O5' is not a bearing of the catalogue; near it: 6205"),
         (("examples", "deep_grove"), "(did you mean `deep_groove`?)"),
