@@ -58,11 +58,8 @@ def run(options) -> int:
         save_drawing(element.bearing, scene.name, path, **format)
 
     def tell(path):
-        pictures = {
-            "Section, load zone, contacts": _png(draw),
-            "Drawing": _png(draw_bearing),
-        }
-        page = solve_page(scene, solution, pictures, begun)
+        pictures = {"Section, load zone, contacts": _png(draw)}
+        page = solve_page(scene, solution, pictures, _png(draw_bearing), begun)
         path.write_text(page, encoding="utf-8")
 
     write(

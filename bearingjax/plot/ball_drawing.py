@@ -24,7 +24,7 @@ from .dimension import (
     radius,
     squeeze,
 )
-from .style import COLOURS, RACEWAYS
+from .style import COLOURS, RACEWAYS, SMALL
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -120,7 +120,7 @@ def _shoulders(ax, bearing, lines):
         place = np.argmax(sign * line[:, aside])
         corner = line[place]
         if value is None:
-            text = f"{name}_shoulder: not given, schematic"
+            text = f"{name}_shoulder: not given\ndrawn schematically"
             yield Label(text, corner)
             continue
         bottom = corner.copy()
@@ -188,7 +188,7 @@ def ball_clearance_view(ax: "matplotlib.axes.Axes", bearing, size) -> None:
         why = "from the contact angle" if follows is not None else "no clearance"
         value = quantity(bearing.clearance, "m")
         text = f"radial_internal_clearance = {value}, {why}"
-    ax.set_title(clearance_title(text, gap, times), fontsize=10)
+    ax.set_title(clearance_title(text, gap, times), fontsize=SMALL)
 
 
 def clearance_title(text: str, gap: float, times: float) -> str:
@@ -202,6 +202,5 @@ def clearance_title(text: str, gap: float, times: float) -> str:
     if gap == 0.0:
         return f"{text}\nno gap at the raceways"
     word = "gap" if gap > 0.0 else "overlap"
-    return (
-        f"{text}\na quarter of it is the {word} at each raceway, drawn {times:g} times"
-    )
+    drawn = f"drawn {times:g} times" if times != 1.0 else "drawn to scale"
+    return f"{text}\na quarter of it is the {word} at each raceway\n{drawn}"

@@ -73,7 +73,7 @@ def label(owner: Any, name: str, prefix: str = "") -> str:
     return f"{prefix}{name} = {quantity(value, unit_of(owner, name))}"
 
 
-def fit(ax: "matplotlib.axes.Axes", points, size, middle=(0.44, 0.86)) -> None:
+def fit(ax: "matplotlib.axes.Axes", points, size, middle=(0.48, 0.86)) -> None:
     """Set the limits of a view, to scale: its parts stand in the middle.
 
     Args:
@@ -92,7 +92,7 @@ def fit(ax: "matplotlib.axes.Axes", points, size, middle=(0.44, 0.86)) -> None:
     ax.set_axis_off()
 
 
-def put_labels(ax: "matplotlib.axes.Axes", labels: list[Label], size, column=0.27):
+def put_labels(ax: "matplotlib.axes.Axes", labels: list[Label], size, column=0.25):
     """Write labels in two columns beside the view, each with a line to its point.
 
     Args:

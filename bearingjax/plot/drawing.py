@@ -14,6 +14,7 @@ from ..design import (
     Straight,
 )
 from .ball_drawing import ball_clearance_view, dimensioned_balls
+from .dimension import label
 from .face_drawing import DEVIATIONS, deviation_view, face_view
 from .outline import section
 from .profile_drawing import profile_view
@@ -31,10 +32,11 @@ if TYPE_CHECKING:
 
 IN_WORDS = "material", "ring_material"
 """Fields of a bearing that have no place on a drawing: they stand below it."""
-_WIDTH = 15.0
-_SECTION, _FACE = (9.2, 5.4), (5.8, 5.4)
-_SMALL = (5.0, 3.6)
-_HEAD, _PART, _FOOT = 0.35, 0.4, 0.45
+_WIDTH = 13.2
+_SECTION, _FACE = (8.8, 5.2), (4.4, 5.2)
+_ACROSS = 3
+_SMALL = (_WIDTH / _ACROSS, 3.4)
+_HEAD, _PART, _FOOT = 0.35, 0.4, 0.6
 """Room of the page's head, of the head of a bearing in a set, of words [inch]."""
 _MARGINS = {False: (0.05, 0.05, 0.5, 0.05), True: (0.75, 0.15, 0.5, 0.6)}
 """Left, right, above and below a view; a framed one has ticks there [inch]."""
@@ -88,7 +90,7 @@ def drawing(
         title: Head of the page; the kind of bearing if empty.
 
     Returns:
-        The figure, 15 inches wide.
+        The figure, 13.2 inches wide.
     """
     whole = isinstance(bearing, BearingSet)
     figure = _page(_set_strips(bearing) if whole else _strips(bearing))
@@ -173,9 +175,8 @@ def _strips(bearing):
         if getattr(bearing, name, None) is not None
     ]
     strips = [_Strip(_SECTION[1], first)]
-    across = int(_WIDTH // _SMALL[0])
-    for k in range(0, len(others), across):
-        line = others[k : k + across]
+    for k in range(0, len(others), _ACROSS):
+        line = others[k : k + _ACROSS]
         left = 0.5 * (_WIDTH - len(line) * _SMALL[0])
         views = [
             _View(draw, _SMALL, left + m * _SMALL[0], framed=framed)
@@ -244,10 +245,14 @@ def _like_ribs(ribs):
 
 
 def _in_words(bearing):
-    """What has no place on a drawing."""
-    return ",   ".join(
-        f"{name}: {_of_material(getattr(bearing, name))}" for name in IN_WORDS
-    )
+    """What has no place on a drawing: materials, and deviations that there are not."""
+    materials = [f"{name}: {_of_material(getattr(bearing, name))}" for name in IN_WORDS]
+    lacking = [
+        label(bearing, name)
+        for name in DEVIATIONS
+        if hasattr(bearing, name) and getattr(bearing, name) is None
+    ]
+    return "\n".join(",   ".join(line) for line in (materials, lacking))
 
 
 def _of_material(material: Material | None):

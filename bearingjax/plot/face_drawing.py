@@ -69,15 +69,9 @@ def face_view(ax: "matplotlib.axes.Axes", bearing: Bearing, size) -> None:
             centres[np.argmax(centres.sum(axis=1))],
         ),
     }
-    lacking = [
-        label(bearing, name)
-        for name in DEVIATIONS
-        if hasattr(bearing, name) and getattr(bearing, name) is None
-    ]
-    fit(ax, np.array([[-1.0, -1.0], [1.0, 1.0]]) * reach, size, (0.66, 0.84))
+    fit(ax, np.array([[-1.0, -1.0], [1.0, 1.0]]) * reach, size, (0.78, 0.84))
     for corner, (text, at) in corners.items():
         _in_corner(ax, corner, text, at)
-    _in_corner(ax, "lower left", "\n".join(lacking))
     for end, name in (((1.12 * reach, 0.0), "x"), ((0.0, 1.12 * reach), "y")):
         ax.annotate("", end, (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": GREY})
         beside = (5, -3) if name == "y" else (4, 4)
@@ -85,21 +79,19 @@ def face_view(ax: "matplotlib.axes.Axes", bearing: Bearing, size) -> None:
     ax.set_title(f"{word.capitalize()}s, seen against z, to scale")
 
 
-def _in_corner(ax, corner, text, at=None):
+def _in_corner(ax, corner, text, at):
     """Text in a corner of the axes, with a line to a point."""
     low, left = corner.startswith("lower"), corner.endswith("left")
     ax.annotate(
         text,
-        (0.0, 0.0) if at is None else tuple(at),
+        tuple(at),
         (0.01 if left else 0.99, 0.01 if low else 0.97),
         textcoords="axes fraction",
         fontsize=SMALL,
         ha="left" if left else "right",
         va="bottom" if low else "top",
         zorder=8,
-        arrowprops=None
-        if at is None
-        else {
+        arrowprops={
             "arrowstyle": "-",
             "color": GREY,
             "linewidth": 0.6,

@@ -22,7 +22,7 @@ from .dimension import (
 )
 from .outline import Section
 from .roller_section import roller_row
-from .style import COLOURS, RACEWAYS, ROLLER, towards_white
+from .style import COLOURS, RACEWAYS, ROLLER, SMALL, towards_white
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -122,7 +122,7 @@ def roller_clearance_view(
             squeeze(ax, ends[0], ends[1], 0.25 * parts.diameter)
     fit(ax, corners, size, (0.8, 0.9))
     text = label(bearing, "radial_internal_clearance")
-    ax.set_title(clearance_title(text, gap, times), fontsize=10)
+    ax.set_title(clearance_title(text, gap, times), fontsize=SMALL)
 
 
 def rib_view(

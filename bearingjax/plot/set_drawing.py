@@ -14,7 +14,7 @@ from .style import INNER, SMALL
 if TYPE_CHECKING:
     import matplotlib.axes
 
-_BLOCK = 3.55
+_BLOCK = 3.27
 """Width of the words on a row [inch]."""
 
 

@@ -36,7 +36,9 @@ pre { font: 12.5px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monos
   margin: 0; white-space: pre-wrap; overflow-wrap: break-word }
 pre.columns { white-space: pre; overflow-x: auto }
 figure { margin: 0 } figure img { width: 100%; height: auto }
-.warnings { border-left: 5px solid #c77700; background: #fff6e5; padding: .6rem 1rem }
+.warnings { border-left: 5px solid #c77700; background: #fff6e5; padding: .6rem 1rem;
+  margin: 1rem 0 }
+.warnings h2 { margin: 0; padding: 0; border: none }
 .warnings ul { margin: .2rem 0; padding-left: 1.2rem }
 .scroll { overflow-x: auto }
 table { border-collapse: collapse; font-size: 13px; width: 100% }
@@ -45,11 +47,18 @@ th, td { text-align: left; padding: .15rem .6rem .15rem 0; vertical-align: top;
 th[scope=colgroup] { padding-top: .8rem; border-bottom: 1px solid #9aa4ae }
 td.number { font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
 .cases th, .cases td { font-size: 11px; white-space: nowrap }
-@page { size: A4; margin: 14mm 12mm }
+@media screen {
+  figure { width: min(96vw, 80rem); margin-left: 50%; transform: translateX(-50%) }
+}
+@page { size: A4; margin: 14mm 12mm;
+  @bottom-right { content: counter(page) " / " counter(pages); font: 8pt sans-serif } }
 @media print {
-  body { max-width: none; padding: 0; font-size: 10pt }
-  pre { font-size: 7.2pt } pre.columns { overflow: visible }
-  h2 { break-after: avoid } figure, .warnings, tr { break-inside: avoid }
+  body { max-width: none; padding: 0; font-size: 9pt; line-height: 1.35 }
+  h1 { font-size: 16pt } h2 { font-size: 11pt; margin: 5mm 0 2mm; break-after: avoid }
+  pre { font-size: 7.2pt; line-height: 1.3 } pre.columns { overflow: visible }
+  table { font-size: 8pt } th, td { padding: .3mm 3mm .3mm 0 }
+  figure, .warnings, tr { break-inside: avoid } p { break-after: avoid }
+  tr:has(th[scope=colgroup]) { break-after: avoid }
   .scroll { overflow: visible } .cases th, .cases td { font-size: 6pt }
 }
 """
@@ -73,7 +82,11 @@ class Origin:
 
 
 def solve_page(
-    scene: Scene, solution: Solution, pictures: Mapping[str, bytes], origin: Origin
+    scene: Scene,
+    solution: Solution,
+    pictures: Mapping[str, bytes],
+    drawing: bytes,
+    origin: Origin,
 ) -> str:
     """Report of a solved scene.
 
@@ -81,6 +94,7 @@ def solve_page(
         scene: What was solved.
         solution: Its solution, converged.
         pictures: PNG files by their titles.
+        drawing: PNG file of the bearing, which stands with the inputs.
         origin: Where it comes from.
 
     Returns:
@@ -91,6 +105,7 @@ def solve_page(
         _warnings("\n".join(texts.values())),
         *(_picture(title, png) for title, png in pictures.items()),
         *(_text(title, text) for title, text in texts.items()),
+        _picture("Drawing", drawing),
         _inputs(scene.inputs),
         _rerun(origin),
     ]

@@ -132,10 +132,10 @@ class Page(HTMLParser):
 
 
 def test_report_that_stands_alone(run, tmp_path):
-    path, picture = tmp_path / "out.html", tmp_path / "out.png"
+    path, pictures = tmp_path / "out.html", [tmp_path / "a.png", tmp_path / "b.png"]
     change = "operating.load.Fy=-9 kN"
     arguments = ("solve", "cylindrical_rig", "--set", change, "--report", path)
-    done = run(*arguments, "--plot", picture)
+    done = run(*arguments, "--plot", pictures[0], "--drawing", pictures[1])
     assert done.status == 0 and done.err == ""
     text = path.read_text(encoding="utf-8")
     page = Page(text)
@@ -148,6 +148,7 @@ def test_report_that_stands_alone(run, tmp_path):
         "Stiffness",
         "Rolling elements",
         "Solution and warnings",
+        "Drawing",
         "Inputs",
         "How to run it again",
     ]
@@ -155,10 +156,10 @@ def test_report_that_stands_alone(run, tmp_path):
     # All of the report on the terminal stands there, but for the rules between parts.
     for line in done.out.splitlines():
         assert set(line) == {"-"} or line in words
-    # The picture is that of --plot, and nothing is fetched.
-    (image,) = page.images
-    data = base64.b64decode(image.removeprefix("data:image/png;base64,"))
-    assert data == picture.read_bytes()
+    # The pictures are those of --plot and --drawing, and nothing is fetched.
+    for image, picture in zip(page.images, pictures, strict=True):
+        data = base64.b64decode(image.removeprefix("data:image/png;base64,"))
+        assert data == picture.read_bytes()
     assert not re.search(r"(?:src|href)=\"(?!data:)|url\(|@import|<script", text)
     assert "@media print" in text
     # It tells how to make it again: command, changes, scene.
@@ -240,8 +241,11 @@ def test_setting_changes_the_load(run, tmp_path):
 def test_pulled_apart(run, tmp_path):
     out, picture = tmp_path / "out.json", tmp_path / "out.PNG"
     picture.write_text("of an earlier run", encoding="utf-8")
-    done = run(*PULLED, "--json", out, "--plot", picture)
+    drawing = tmp_path / "drawing.svg"
+    done = run(*PULLED, "--json", out, "--plot", picture, "--drawing", drawing)
     assert done.status == 3
+    # The bearing is drawn all the same.
+    assert "roller_axis_angle = 11" in drawing.read_text(encoding="utf-8")
     assert done.out == ""
     said, why = done.err.splitlines()
     assert said == f"bearingjax: {picture}: of an earlier run, removed"
@@ -372,18 +376,22 @@ def test_full_disk(run, monkeypatch, capsys, what):
 
 
 @pytest.mark.usefixtures("no_solve")
+@pytest.mark.parametrize("option", ["--plot", "--drawing"])
 @pytest.mark.parametrize("name", ["out.gif", "out", "out.png.txt"])
-def test_unknown_picture(run, tmp_path, name):
+def test_unknown_picture(run, tmp_path, option, name):
     path = tmp_path / name
-    done = run("solve", "tapered", "--plot", path)
+    done = run("solve", "tapered", option, path)
     ending = "a picture ends in .png, .pdf or .svg"
     assert done == (2, "", f"bearingjax: {path}: {ending}\n")
 
 
 @pytest.mark.usefixtures("no_solve")
-def test_picture_without_matplotlib(run, tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    "words", [("solve", "tapered", "--plot"), ("catalogue", "6205", "--drawing")]
+)
+def test_picture_without_matplotlib(run, tmp_path, monkeypatch, words):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    done = run("solve", "tapered", "--plot", tmp_path / "out.png")
+    done = run(*words, tmp_path / "out.png")
     assert done.status == 2 and done.out == ""
     assert 'pip install "bearingjax[plot]"' in done.err and done.err.count("\n") == 1
 
