@@ -75,7 +75,8 @@ def life_factor(
         balls: Whether the rolling elements are balls, else rollers. Static.
         thrust: Whether it is a thrust bearing.
 
-    Source: ISO 281:2007, formulas (31) to (42).
+    Source: ISO 281:2007, formulas (31) to (42); all constants agree with those of an
+        independent program (in C, of all four types of bearing).
     """
     kappa = jnp.clip(kappa, *KAPPA)
     low, high = kappa < 0.4, kappa >= 1.0
@@ -174,7 +175,12 @@ CLEANLINESS = {
 """Constants of `Cleanliness` by name. Oils have their class of ISO 4406; circulating
 oil is filtered in line, an oil bath off line or not at all.
 
-Source: ISO 281:2007, annex A.
+Source: ISO 281:2007, annex A. "grease, high", and "grease, slight to typical" above
+    500 mm, agree with what MASTA computes (to 0.1 %, as two public programs quote it),
+    the former with a third program. The other lines were found nowhere but in the
+    standard. But for 0.0177 each `film` is a simple part of 0.0864 (1/2, 1/3, 1/4,
+    1/6.5, 1/7.5, 1/10, 1/14, 1/21), and e_C falls from class to class through the
+    ranges of the standard's table of guide values, which makers print as well.
 """
 
 
