@@ -55,7 +55,7 @@ def _life_of_load(options) -> int:
     solution = run_scene(scene, jax_settings.programs())
     solved = Result(int(solution.result)) is Result.CONVERGED
     life = scene_life(scene, solution) if solved else None
-    numbers = solved_as_dict(scene, solution)
+    numbers = solved_as_dict(scene, solution, life)
     if life is not None:
         numbers = {**life_as_dict(life), **numbers}
     write((options.json, lambda path: write_numbers(path, numbers)))

@@ -93,12 +93,18 @@ class AngularContactBallBearing(AbstractBallBearing):
 
     Attributes are those of `AbstractBallBearing`, and
         contact_angle: Free contact angle, above 0 and below π/2 [rad].
+        rated_contact_angle: Nominal contact angle, which load ratings and equivalent
+            loads refer to, if it is another one, as of a mounted bearing [rad];
+            `None`: the free one.
 
     Traced: all fields but `n_balls`.
     """
 
     contact_angle: Scalar = eqx.field(
         converter=as_real, metadata=unit("rad"), kw_only=True
+    )
+    rated_contact_angle: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
     )
 
     @property
@@ -123,6 +129,7 @@ class AngularContactBallBearing(AbstractBallBearing):
 
     def __check_init__(self):
         in_range(self, "contact_angle", 0.0, 0.5 * np.pi)
+        _check_rated(self)
 
 
 class ThrustBallBearing(AbstractBallBearing):
@@ -174,6 +181,7 @@ class FourPointBallBearing(AbstractBallBearing):
     Attributes are those of `AbstractBallBearing`, and
         shim_angle: Angle at which a ball rests in the arcs of one ring [rad].
         radial_internal_clearance: Diametral play; negative is preload [m].
+        rated_contact_angle: As of `AngularContactBallBearing` [rad].
 
     Traced: all fields but `n_balls`.
     """
@@ -183,6 +191,9 @@ class FourPointBallBearing(AbstractBallBearing):
     )
     radial_internal_clearance: Scalar = eqx.field(
         converter=as_real, metadata=unit("m"), default=0.0, kw_only=True
+    )
+    rated_contact_angle: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
     )
 
     @property
@@ -219,6 +230,7 @@ class FourPointBallBearing(AbstractBallBearing):
 
     def __check_init__(self):
         in_range(self, "shim_angle", 0.0, 0.5 * np.pi)
+        _check_rated(self)
         clearance = self.radial_internal_clearance
         number(self, "radial_internal_clearance")
         numbers = concrete(clearance, self.centre_distance, self.shim_angle)
@@ -335,6 +347,11 @@ def clearance_of(contact_angle: Scalar, centre_distance: Scalar) -> Scalar:
     Source: Harris, Rolling Bearing Analysis, geometry of ball bearings.
     """
     return 4.0 * centre_distance * jnp.sin(0.5 * contact_angle) ** 2
+
+
+def _check_rated(bearing):
+    if bearing.rated_contact_angle is not None:
+        in_range(bearing, "rated_contact_angle", 0.0, 0.5 * np.pi, include_low=True)
 
 
 def _pair(bearing, angle, open_side):

@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 from .checks import positive
 
 _MICRON = 1e-6
-_SAME = 1e-9
-"""Share by which a diameter may exceed a range: 0.03 m is 30 mm."""
+_SAME = 1e-6
+"""Share by which a diameter may exceed a range: 0.03 m is 30 mm, in single precision
+too."""
 
 
 class Limits(NamedTuple):

@@ -16,6 +16,7 @@ from .ball import AbstractBallBearing
 from .ball_types import (
     AngularContactBallBearing,
     DeepGrooveBallBearing,
+    FourPointBallBearing,
     ThrustBallBearing,
 )
 from .bearing_set import Bearing, BearingSet, SetRow, rows_of
@@ -150,6 +151,8 @@ def mounted(
 ) -> Any:
     """The bearing with the radial clearance that fits, temperatures and speed leave.
 
+    Load ratings stay those of the drawing (`rated_contact_angle`).
+
     Differentiable with respect to every number. A clearance below zero is preload, with
     which any load solve goes on; only angular contact bearings need some clearance.
 
@@ -178,7 +181,15 @@ def mounted(
         rows = tuple(_mounted_row(row, mounting, conditions) for row in bearing.rows)
         return BearingSet(rows)
     left = fit_state(sized(mounting, bearing), conditions).radial_clearance
-    return with_radial_clearance(bearing, left)
+    new = with_radial_clearance(bearing, left)
+    if not isinstance(new, AngularContactBallBearing | FourPointBallBearing):
+        return new
+    # Load ratings are made with the angle of the drawing, whatever the fits.
+    before: Any = bearing
+    drawn = before.rated_contact_angle
+    if drawn is None:
+        drawn = before.free_contact_angle
+    return replace(new, rated_contact_angle=drawn)
 
 
 def _mounted_row(row: SetRow, mounting, conditions) -> SetRow:

@@ -9,7 +9,7 @@ import numpy as np
 from ..element.frame import RINGS
 from ..statics.life import LIFE_OUTPUTS, Life, life_of
 from ..statics.solution import RollerSolution, Solution
-from .life_table import life_conditions
+from .life_table import life_conditions, not_published
 from .quantity import SceneError
 from .read import Scene
 
@@ -101,10 +101,15 @@ def life_report(scene: Scene, solution: Solution, life: Life) -> str:
         }
         parts = (f"{name} {np.asarray(x):.4g}" for name, x in factors.items())
         lines.append(", ".join(parts))
+    elif life.reliability_factor < 0.999999:
+        a1 = float(life.reliability_factor)
+        asked = a1 * life.reference_rating_life
+        lines.append(_line(f"reference, a1 {a1:.4g}", asked, hours))
     lines += [
         f"{axially} ratings: C {_kilo(r.dynamic_capacity)} kN ({r.dynamic_source}),"
         f" C0 {_kilo(r.static_capacity)} kN ({r.static_source}),",
         f"  C_u {_kilo(r.fatigue_load_limit)} kN ({r.limit_source})",
+        *not_published(scene),
         f"equivalent load: P {_kilo(life.equivalent_load)} kN, of the reference life"
         f" {_kilo(life.reference_load)} kN",
         f"static safety C0/P0 {_number(life.static_safety)}, P0"

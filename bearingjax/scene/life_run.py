@@ -10,12 +10,13 @@ import numpy as np
 from ..design import is_ball
 from ..numerics.result import Result
 from ..statics.life import LIFE_OUTPUTS
+from ..statics.life_warning import life_warnings
 from ..statics.rating import Ratings, ratings
 from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ..statics.sweep import Sweep
 from ..statics.sweep_table import columns
 from .cases_table import CaseTable
-from .life_table import life_conditions
+from .life_table import life_conditions, not_published
 from .quantity import SceneError
 from .scene_file import find_scene, parse_bearing
 from .sweep_run import listed_columns, run_cases
@@ -33,18 +34,16 @@ class LifeRun:
         table: What was asked.
         solved: The cases and their lives.
         lives: Life under all of them, by its name in `LIVES`.
+        asked: That of the asked reliability: modified, or without a lubricant the
+            reference life times a1.
         ratings: Of the bearing; of several designs those of the scene.
     """
 
     table: CaseTable
     solved: Sweep
     lives: dict[str, SpectrumLife]
+    asked: SpectrumLife
     ratings: Ratings
-
-    @property
-    def last(self) -> str:
-        """The life with most in it: modified, or else reference."""
-        return [name for name in LIVES if name in self.lives][-1]
 
     @property
     def converged(self) -> bool:
@@ -115,7 +114,8 @@ def run_life(
         for name in LIVES
         if name in outputs
     }
-    return LifeRun(table, solved, lives, rated)
+    asked_for = spectrum_life(table.cases, np.asarray(solved.damage))
+    return LifeRun(table, solved, lives, asked_for, rated)
 
 
 def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
@@ -144,16 +144,21 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         found.setdefault("modified_rating_life", None)
         found["equivalent_load"] = equivalent_load(run)
         found["static_safety"] = _finite(np.min(run.solved.static_safety))
-        hours = run.lives[run.last].life_hours
+        hours = run.asked.life_hours
         found["life_hours"] = None if hours is None else _finite(hours)
-        found["damage_share"] = np.asarray(run.lives[run.last].damage_share).tolist()
+        found["damage_share"] = np.asarray(run.asked.damage_share).tolist()
     return {
         **found,
         "columns": listed_columns(columns(run.solved)),
         "counts": run.solved.counts(),
-        "warnings": [*run.table.warnings, *run.solved.warnings],
+        "warnings": _warnings(run),
         "version": __version__,
     }
+
+
+def _warnings(run: LifeRun) -> list[str]:
+    ours = life_warnings(run.ratings, run.solved.outputs)
+    return [*run.table.warnings, *run.solved.warnings, *ours]
 
 
 def equivalent_load(run: LifeRun) -> float:
@@ -183,10 +188,14 @@ def spectrum_report(run: LifeRun) -> str:
         f"{table.scene.name}: life under {count} cases over {', '.join(table.varied)}",
         f"C {1e-3 * float(rated.dynamic_capacity):.5g} kN ({rated.dynamic_source}),"
         f" C0 {1e-3 * float(rated.static_capacity):.5g} kN ({rated.static_source})",
+        *not_published(table.scene, table.varied),
         f"\n{'':<24}{'million rev':>14}{'hours':>14}",
     ]
-    for name, life in run.lives.items():
-        words = name.removesuffix("_rating_life")
+    lives = {name.removesuffix("_rating_life"): x for name, x in run.lives.items()}
+    a1 = float(run.asked.rating_life) / float(lives["reference"].rating_life)
+    if "modified" not in lives and a1 < 0.999999:
+        lives[f"reference, a1 {a1:.4g}"] = run.asked
+    for words, life in lives.items():
         line = f"{words:<24}{_shown(1e-6 * life.rating_life):>14}"
         if life.life_hours is not None:
             line += f"{_shown(life.life_hours):>14}"
@@ -196,15 +205,15 @@ def spectrum_report(run: LifeRun) -> str:
         f" static safety {_shown(np.min(run.solved.static_safety))}"
     )
     lines += _by_case(run)
-    told = (*table.warnings, *run.solved.warnings)
-    lines += [f"warning: {text}" for text in told]
+    lines += [f"warning: {text}" for text in _warnings(run)]
     return "\n".join(lines)
 
 
 def _by_case(run) -> list[str]:
-    """The cases that use most of the last life."""
-    share = np.asarray(run.lives[run.last].damage_share)
-    alone = np.asarray(getattr(run.solved, run.last))
+    """The cases that use most of the life that is asked for."""
+    share = np.asarray(run.asked.damage_share)
+    with np.errstate(divide="ignore"):
+        alone = 1.0 / np.asarray(run.solved.damage)
     order = np.argsort(-share, kind="stable")[:_SHOWN]
     hours = run.table.cases.hours
     head = f"\n{'case':>6}{'hours':>12}{'million rev alone':>20}{'damage %':>12}"

@@ -81,8 +81,7 @@ def life_conditions(scene: "Scene", varied: Iterable[str] = ()) -> LifeCondition
     """
     own = LifeConditions() if scene.life is None else scene.life
     taken = scene.catalogue
-    of_bearing = [key.split(".")[1] for key in varied if key.startswith("bearing.")]
-    if taken is None or not {*taken.overridden, *of_bearing} <= set(_UNRATED):
+    if taken is None or rated_otherwise(scene, varied):
         return own
     entry, bearing = taken.entry, scene.element.bearing
     more = {"dynamic_capacity": 1.0, "static_capacity": 1.0}
@@ -100,6 +99,32 @@ def life_conditions(scene: "Scene", varied: Iterable[str] = ()) -> LifeCondition
         if getattr(own, name) is None and getattr(entry, name) is not None
     }
     return dataclasses.replace(own, **published)
+
+
+def rated_otherwise(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
+    """Keys of [bearing] for which published ratings of a designation do not hold.
+
+    Args:
+        scene, varied: As of `life_conditions`.
+    """
+    if scene.catalogue is None:
+        return []
+    of_bearing = [key.split(".")[1] for key in varied if key.startswith("bearing.")]
+    changed = dict.fromkeys((*scene.catalogue.overridden, *of_bearing))
+    return [key for key in changed if key not in _UNRATED]
+
+
+def not_published(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
+    """A line that says why ratings are not those of the designation, if they are not.
+
+    Args:
+        scene, varied: As of `life_conditions`.
+    """
+    changed = rated_otherwise(scene, varied)
+    if scene.catalogue is None or not changed:
+        return []
+    name = scene.catalogue.entry.designation
+    return [f"  (not the published ones of {name}: {', '.join(changed)} differs)"]
 
 
 def _turns(speed) -> bool:

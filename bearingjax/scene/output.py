@@ -7,6 +7,8 @@ import jax
 import numpy as np
 
 from ..numerics.result import Result
+from ..statics.life import Life
+from ..statics.life_warning import life_warnings
 from ..statics.solution import BallSolution, Solution, message
 from ..statics.warning import warnings
 from .files import write_numbers
@@ -75,21 +77,25 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     # As NumPy holds it: JAX would compile every small operation on the way.
     solution = jax.device_get(solution)
     solved = Result(int(solution.result)) is Result.CONVERGED
+    life = scene_life(scene, solution) if solved and scene.life is not None else None
     return {
         **({**_numbers(solution), **_oil(scene, solution)} if solved else {}),
         **_fits(scene),
         **_catalogue(scene),
-        **(_life(scene, solution) if solved else {}),
-        **solved_as_dict(scene, solution),
+        **({} if life is None else life_as_dict(life)),
+        **solved_as_dict(scene, solution, life),
     }
 
 
-def solved_as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
+def solved_as_dict(
+    scene: Scene, solution: Solution, life: Life | None = None
+) -> dict[str, Any]:
     """How a solve ended: result, message, residual, iterations, warnings, version.
 
     Args:
         scene: What was solved.
         solution: Its solution.
+        life: Its rating life, in NumPy, of which there may be warnings too.
     """
     from .. import __version__
 
@@ -102,7 +108,11 @@ def solved_as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         "message": message(solution, scene.moving_ring),
         "residual": residual if np.isfinite(residual) else None,
         "iterations": int(solution.stats.iterations),
-        "warnings": [*scene.warnings, *(warnings(solution) if solved else [])],
+        "warnings": [
+            *scene.warnings,
+            *(warnings(solution) if solved else []),
+            *([] if life is None else life_warnings(life.ratings, vars(life))),
+        ],
         "inputs": scene.inputs,
         "version": __version__,
     }
@@ -129,10 +139,6 @@ def _catalogue(scene):
             "overridden": list(taken.overridden),
         }
     }
-
-
-def _life(scene, solution):
-    return {} if scene.life is None else life_as_dict(scene_life(scene, solution))
 
 
 def _numbers(solution):

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..design import BearingSet, TaperedRollerBearing, is_ball, rows_of
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
+from ..statics.life_warning import life_warnings
 from ..statics.solution import BallSolution, Solution
 from ..statics.warning import warnings
 from .fit_report import fit_report
@@ -283,7 +284,11 @@ def _ending(scene, solution):
         f"converged in {int(stats.iterations)} steps, residual"
         f" {float(stats.residual):.1e} of the load"
     ]
-    lines += [f"warning: {w}" for w in (*scene.warnings, *warnings(solution))]
+    told = [*scene.warnings, *warnings(solution)]
+    if scene.life is not None:
+        life = scene_life(scene, solution)
+        told += life_warnings(life.ratings, vars(life))
+    lines += [f"warning: {w}" for w in told]
     return "\n".join(lines)
 
 

@@ -73,6 +73,7 @@ from .life_factor import Cleanliness as Cleanliness
 from .life_factor import life_factor as life_factor
 from .life_factor import reliability_factor as reliability_factor
 from .life_factor import viscosity_ratio as viscosity_ratio
+from .life_warning import life_warnings as life_warnings
 from .linearise import OperatingPoint as OperatingPoint
 from .linearise import linearise as linearise
 from .load import solve_load as solve_load

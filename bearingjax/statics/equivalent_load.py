@@ -133,14 +133,17 @@ def load_factors(bearing: Bearing | BearingSet, axial: Scalar) -> Factors:
     """
     rows = rows_of(bearing)
     row = rows[0].bearing
-    double = len({row.mirrored for row in rows}) > 1
+    turned = sum(row.mirrored for row in rows)
+    double = 0 < turned < len(rows)
     angle = nominal_contact_angle(row)
     if isinstance(row, ThrustBallBearing):
         # It carries no radial load at all.
         alone = jnp.stack([jnp.zeros_like(angle), jnp.ones_like(angle)])[None]
         return Factors(alone, alone)
     if isinstance(row, AbstractBallBearing):
-        radial = _of_balls(row, angle, double, len(rows), axial)
+        # Rows that share the axial load: all of radial contact, else those of a side.
+        sharing = len(rows), max(turned, len(rows) - turned)
+        radial = _of_balls(row, angle, double, sharing, axial)
     else:
         radial = _of_rollers(angle, double)
     thrust = _of_thrust(angle, isinstance(row, AbstractBallBearing), double)
@@ -154,7 +157,7 @@ def _pairs(*pairs) -> Array:
     return jnp.stack([jnp.stack([jnp.asarray(v) for v in pair]) for pair in pairs])
 
 
-def _of_balls(row, angle, double, count, axial):
+def _of_balls(row, angle, double, sharing, axial):
     one, zero = jnp.ones_like(angle), jnp.zeros_like(angle)
     pressure = 1e-6 * axial / (row.n_balls * row.ball_diameter**2)
     if isinstance(row, SelfAligningBallRow):
@@ -166,7 +169,7 @@ def _of_balls(row, angle, double, count, axial):
         return dynamic, _pairs((0.5 * one, 0.22 * cot), (one, zero))
     if not isinstance(row, AngularContactBallBearing | FourPointBallBearing):
         # Radial contact: all rows share the axial load.
-        y = _along(_RELATIVE, _DEEP_GROOVE, pressure / count)
+        y = _along(_RELATIVE, _DEEP_GROOVE, pressure / sharing[0])
         dynamic = _pairs((one, zero), (0.56 * one, y))
         return dynamic, _pairs((0.6 * one, 0.5 * one), (one, zero))
     degrees = jnp.degrees(angle)
@@ -175,7 +178,8 @@ def _of_balls(row, angle, double, count, axial):
         return _along(_ANGLES, values, degrees)
 
     def y_of(name):
-        flat = [_along(_RELATIVE, values, pressure) for values in _FLAT[name]]
+        alone = pressure / sharing[1]
+        flat = [_along(_RELATIVE, values, alone) for values in _FLAT[name]]
         steep = jnp.asarray(_STEEP[name], degrees.dtype)
         return of(jnp.concatenate([jnp.stack(flat), steep]))
 

@@ -93,7 +93,8 @@ class LifeConditions(eqx.Module):
             the temperature of operation [m²/s]; `None`: no modified life.
         contamination: e_C from 0 to 1 [1], a `Cleanliness`, or a name of `CLEANLINESS`
             such as "grease, normal"; needed with `viscosity`.
-        reliability: Share of bearings that reach the modified life [1].
+        reliability: Share of bearings that reach the modified life [1]; without a
+            lubricant `damage` and `life_hours` count it all the same.
         load_fixed_to: "space"; or the ring, "inner" or "outer", that the direction of
             the load turns with, as that of an unbalance does. A ring that turns against
             the load wears more evenly.
@@ -126,7 +127,8 @@ class LifeConditions(eqx.Module):
         for name in ("dynamic_capacity", "static_capacity", "fatigue_load_limit"):
             if getattr(self, name) is not None:
                 positive(self, name)
-        in_range(self, "reliability", 0.9, 1.0, include_low=True)
+        # Single precision has 0.9 a little below it.
+        in_range(self, "reliability", 0.9 - 1e-7, 1.0, include_low=True)
         if self.load_fixed_to not in FRAMES:
             raise ValueError(
                 f"LifeConditions: `load_fixed_to` is {self.load_fixed_to!r}; it must be"
@@ -171,8 +173,8 @@ class Life(eqx.Module):
         basic_rating_life: L10 = (C/P)^p of ISO 281 [1].
         reference_rating_life: L10r of ISO/TS 16281 [1].
         modified_rating_life: L_nmr [1], or `None` without a lubricant.
-        damage: Part of the modified life, or else of the reference life, that one
-            revolution uses [1].
+        damage: Part of the modified life, or without a lubricant of the reference life
+            times a1, that one revolution uses [1].
         life_hours: The same life in hours [h]; `None` if no speed is known.
         viscosity_ratio: κ [1], or `None`.
         contamination_factor: e_C [1], or `None`.
@@ -419,6 +421,7 @@ def _life(bearing, solution, conditions, speed, lamina_load) -> Life:
         "turns_against_load": turning,
     }
     a1 = reliability_factor(conditions.reliability)
+    damage = damage / a1
     turns = None if speed is None else jnp.abs(speed.inner - speed.outer)
     modified: dict[str, Any] = {
         "viscosity_ratio": None,
@@ -434,7 +437,7 @@ def _life(bearing, solution, conditions, speed, lamina_load) -> Life:
         modified = {
             "viscosity_ratio": kappa,
             "contamination_factor": clean,
-            "a_iso": jnp.where(loaded, a_iso, LARGEST_FACTOR),
+            "a_iso": jnp.where(total == 0, LARGEST_FACTOR, a_iso),
             "modified_rating_life": _lifetime(damage),
         }
     hours = None

@@ -248,13 +248,16 @@ def nominal_contact_angle(bearing: Bearing) -> Scalar:
     """Nominal contact angle of the standards [rad].
 
     Zero of a deep groove ball bearing whatever its clearance; of a taper that of its
-    outer raceway.
+    outer raceway; of a mounted bearing that of the drawing.
 
     Args:
         bearing: A single row.
     """
     if isinstance(bearing, DeepGrooveBallBearing):
         return as_real(0.0)
+    rated = getattr(bearing, "rated_contact_angle", None)
+    if rated is not None:
+        return rated
     if isinstance(bearing, AbstractBallBearing):
         return bearing.free_contact_angle
     # The load of a taper leaves through its outer raceway, which has no rib.

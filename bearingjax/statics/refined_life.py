@@ -1,5 +1,7 @@
 """Loads of laminae from the pressures of half-spaces, for the rating life."""
 
+import warnings
+
 import numpy as np
 
 from ..contact.halfspace import Grid
@@ -41,7 +43,8 @@ def refined_lamina_loads(
 
     Valid:  ends that carry no load or run out smoothly, as logarithmic profiles do (a
         life within 3 % of that with `edge_stress`). At a sharp end under load the
-        pressure of half-spaces is infinite: the life then falls with ever finer cells.
+        pressure of half-spaces is infinite: the life then falls with ever finer cells,
+        by orders of magnitude, and it warns.
     Source: Hertz's line contact; the stress that tires is that of the pressure.
     """
     if n_laminae < LEAST_LAMINAE:
@@ -51,12 +54,28 @@ def refined_lamina_loads(
         )
     loads = np.asarray(solution.roller_load)
     found = np.zeros((*loads.shape, n_laminae))
+    sharp = []
     for roller, ring in zip(*np.nonzero(loads > 1e-9 * loads.max()), strict=True):
         contact = refine(
             element, solution, int(roller), RINGS[ring], speed=speed, grid=grid
         )
         found[roller, ring] = _of_laminae(contact, n_laminae)
+        if _peaks_at_an_end(contact):
+            sharp.append(f"roller {roller} on the {RINGS[ring]} raceway")
+    if sharp:
+        warnings.warn(
+            f"refined_lamina_loads: the pressure is largest at the ends of"
+            f" {len(sharp)} contacts, such as that of {sharp[0]}. At a sharp end it has"
+            " no limit: it grows, and the life falls, with ever finer cells. Give the"
+            " rollers a profile that runs out, or use the laminae of the solution.",
+            stacklevel=2,
+        )
     return found
+
+
+def _peaks_at_an_end(found: Refined) -> bool:
+    along = np.asarray(found.solution.pressure).max(axis=0)
+    return along.argmax() in (0, along.size - 1)
 
 
 def _of_laminae(found: Refined, count: int) -> np.ndarray:

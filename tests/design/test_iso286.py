@@ -151,6 +151,15 @@ def test_clearances(find, bore, published):
     np.testing.assert_allclose(found, np.array(published) * MICRON)
 
 
+def test_diameters_at_an_end_in_single_precision():
+    """50 mm is 0.0500000007 m there, and not above 50 mm."""
+    for bore in (10, 18, 30, 50, 65, 80, 120):
+        single, double = np.float32(1e-3 * bore), 1e-3 * bore
+        assert limits("k5", single) == limits("k5", double)
+        assert bore_limits(single) == bore_limits(double)
+        assert ball_clearance("CN", single) == ball_clearance("CN", double)
+
+
 @pytest.mark.parametrize("find", [ball_clearance, roller_clearance])
 def test_classes_follow_each_other(find):
     for bore in np.linspace(0.007, 0.5, 90):

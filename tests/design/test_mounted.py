@@ -23,6 +23,7 @@ from bearingjax.design import (
     sized,
     with_radial_clearance,
 )
+from bearingjax.statics.rating import nominal_contact_angle
 
 MICRON = 1e-6
 BALLS = {
@@ -123,6 +124,19 @@ def test_angular_contact_meets_at_a_smaller_angle():
     assert [float(r.inner_offset) for r in rows] == pytest.approx(
         [pressed, -pressed], rel=1e-7
     )
+
+
+def test_ratings_keep_the_angle_of_the_drawing():
+    """A fit is no other bearing: it has the published C, and X and Y of its angle."""
+    for bearing in (ANGULAR, FOUR):
+        drawn = float(bearing.free_contact_angle)
+        once = bj.mounted(bearing, SEATS, WARM)
+        again = bj.mounted(once, replace(SEATS, shaft_interference=2 * MICRON))
+        for found in (once, again):
+            assert float(found.free_contact_angle) < drawn - 0.01
+            assert float(nominal_contact_angle(found)) == near(drawn)
+    with pytest.raises(ValueError, match="`rated_contact_angle` is 2 rad; it must"):
+        replace(ANGULAR, rated_contact_angle=2.0)
 
 
 def force(element, bearing, q):

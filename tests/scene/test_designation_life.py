@@ -5,7 +5,7 @@ import json
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene.life_table import life_conditions
+from bearingjax.scene.life_table import life_conditions, not_published
 
 LOAD = '[operating]\nload = { Fy = "-1 kN" }\n'
 
@@ -42,10 +42,14 @@ def test_published_ratings_count_unless_given(read):
 def test_another_geometry_is_rated_by_the_standards(read):
     scene = read('designation = "6205"\nn_balls = 8', "[life]\n")
     assert rated(life_conditions(scene)) == (None, None, None)
+    assert not_published(scene) == [
+        "  (not the published ones of 6205: n_balls differs)"
+    ]
     scene = read('designation = "6205"', "[life]\n")
     assert rated(life_conditions(scene, ["bearing.ball_diameter"])) == (None,) * 3
     harmless = ["bearing.radial_internal_clearance", "operating.load.Fy"]
     assert rated(life_conditions(scene, harmless))[0] == 14.8e3
+    assert not_published(scene, harmless) == []
 
 
 def test_a_pair_is_rated_as_two_rows(read):

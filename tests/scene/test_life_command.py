@@ -1,6 +1,7 @@
 """`bearingjax life`, and the rating life in reports, files and sweeps."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,10 @@ from tolerances import SOLVER
 import bearingjax as bj
 from bearingjax.lubrication import OILS
 from bearingjax.scene import run_scene, shipped_scenes
+from bearingjax.scene.life_run import LifeRun, spectrum_as_dict, spectrum_report
+from bearingjax.statics.sweep import Sweep
 
+GROOVES = {"inner_osculation": 0.52, "outer_osculation": 0.53}
 SCENE = "life_spectrum"
 NAMES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 
@@ -102,3 +106,47 @@ def test_a_case_that_is_not_solved_leaves_no_life(run, tmp_path):
     assert "reference_rating_life" not in found
     assert found["columns"]["reference_rating_life"][2] is None
     assert found["dynamic_capacity"] == 23400.0
+
+
+def test_reliability_counts_without_a_lubricant_too(untyped):
+    """A spectrum of two cases whose lives are known."""
+    a1, hours, speed = 0.64, np.array([3.0, 1.0]), np.array([100.0, 50.0])
+    cases = bj.Cases(np.zeros((2, 6)), inner_speed=speed, hours=hours)
+    lives = np.array([1e9, 1e8])
+    outputs = {
+        "result": np.zeros(2, int),
+        "reference_rating_life": lives,
+        "basic_rating_life": lives,
+        "damage": 1 / (a1 * lives),
+        "static_safety": np.array([9.0, 3.0]),
+        "equivalent_load": np.array([1e3, 2e3]),
+        "reference_load": np.array([1e3, 2e3]),
+    }
+    element = SimpleNamespace(
+        bearing=bj.DeepGrooveBallBearing(7, 0.04, 0.008, **GROOVES)
+    )
+    scene = SimpleNamespace(name="two", element=element, catalogue=None)
+    table = SimpleNamespace(scene=scene, cases=cases, varied=["hours"], warnings=[])
+    known = {
+        name: bj.spectrum_life(cases, 1 / lives)
+        for name in ("basic_rating_life", "reference_rating_life")
+    }
+    asked = bj.spectrum_life(cases, outputs["damage"])
+    ratings = SimpleNamespace(
+        dynamic_capacity=2e4,
+        static_capacity=1e4,
+        fatigue_load_limit=500.0,
+        dynamic_source="given",
+        static_source="given",
+        limit_source="given",
+    )
+    solved = Sweep(cases, outputs, "inner", ())
+    run = LifeRun(table, solved, known, asked, ratings)  # pyright: ignore[reportArgumentType]
+    found = spectrum_as_dict(run)
+    used = hours * speed * 3600 / (2 * np.pi) / lives
+    np.testing.assert_allclose(found["life_hours"], a1 * 4 / used.sum(), rtol=1e-12)
+    np.testing.assert_allclose(found["damage_share"], used / used.sum(), rtol=1e-12)
+    assert found["modified_rating_life"] is None
+    lines = spectrum_report(run).splitlines()
+    (line,) = [line for line in lines if line.startswith("reference, a1 0.64")]
+    assert f"{a1 * 4 / used.sum():.5g}" in line

@@ -39,18 +39,20 @@ from bearingjax.statics.equivalent_load import (
 )
 from bearingjax.statics.life import (
     FRAMES,
+    LIFE_OUTPUTS,
     _modified,
     _rows,
     life_outputs,
     turns_against_load,
 )
+from bearingjax.statics.life_warning import life_warnings
 from bearingjax.statics.reference_life import (
     BALLS,
     contact_capacities,
     edge_stress,
     row_fatigue,
 )
-from bearingjax.statics.refined_life import _of_laminae
+from bearingjax.statics.refined_life import _of_laminae, _peaks_at_an_end
 
 ATTRIBUTED = 3e-4  # between programs that solve the same equations
 LAMINAE = 30
@@ -700,6 +702,20 @@ def test_contamination_factors_of_other_programs():
         assert (np.diff(mine) < 0).all() and 0.5 < mine[0] < 0.9 and mine[-1] < 0.3
 
 
+def test_rows_in_tandem_share_the_axial_load_on_which_factors_depend():
+    """ISO 281: of a set in tandem Fa/(Z D²) is that of one of its bearings."""
+    load = 0.689e6 * 14 * 14.288e-3**2  # a line of the table, Y = 1.52 at 10 degrees
+    tandem = bj.BearingSet.tandem(angular(10), 0.03, 3)
+    single = load_factors(angular(10), jnp.asarray(load)).dynamic
+    np.testing.assert_allclose(np.asarray(single)[1], [0.46, 1.52], rtol=1e-9)
+    found = load_factors(tandem, jnp.asarray(3 * load)).dynamic
+    np.testing.assert_allclose(found, single, rtol=1e-12)
+    # Of two that face each other either may have to bear it all.
+    pair = bj.BearingSet.back_to_back(angular(10), 0.03)
+    found = np.asarray(load_factors(pair, jnp.asarray(load)).dynamic)
+    np.testing.assert_allclose(found, [[1.0, 1.76], [0.75, 2.47]], rtol=1e-9)
+
+
 def test_equivalent_load_joins_where_the_axial_load_begins_to_count():
     """ISO 281 steps there, by its rounded factors, from Fr to 0.56 Fr + Y e Fr."""
     deep = ball_element([0.0]).bearing
@@ -744,6 +760,60 @@ def test_half_spaces_with_few_laminae_are_refused(rollers):
     solution, *_ = rollers(x)[1]["of"]
     with pytest.raises(ValueError, match="`n_laminae` is 20; it must be at least 30"):
         refined_lamina_loads(roller_element(x), solution, 20)
+
+
+def test_a_peak_at_the_end_of_a_roller_is_seen(untyped):
+    """There the pressure of half-spaces, and with it the life, follows the cells."""
+    for pressure, expected in (([1, 2, 3, 2, 0], False), ([4, 2, 2, 2, 3], True)):
+        field = np.array([np.zeros(5), pressure])
+        found = SimpleNamespace(solution=SimpleNamespace(pressure=field))
+        assert _peaks_at_an_end(found) == expected  # pyright: ignore[reportArgumentType]
+
+
+def test_what_is_doubtful_about_a_life_is_told(untyped):
+    ratings = SimpleNamespace(dynamic_capacity=20e3, static_capacity=12e3)
+    sound = {
+        "equivalent_load": np.array(3e3),
+        "reference_load": np.array(4e3),
+        "viscosity_ratio": np.array(0.1),
+        "life_hours": np.array(9e3),
+        "damage": np.array(1e-9),
+    }
+    doubtful = {
+        "equivalent_load": np.array(11e3),
+        "viscosity_ratio": np.array(0.05),
+        "life_hours": np.array(np.inf),
+    }
+
+    def told(**others):
+        return life_warnings(ratings, sound | others)  # pyright: ignore[reportArgumentType]
+
+    assert told() == []
+    words = ["of 11 kN, above 10 kN", "viscosity ratio of 0.05", "do not turn against"]
+    for (name, value), text in zip(doubtful.items(), words, strict=True):
+        (only,) = told(**{name: value})
+        assert text in only and "case" not in only
+    assert told(viscosity_ratio=None, life_hours=None) == []
+    assert told(life_hours=np.array(np.inf), damage=np.array(0.0)) == []
+    # Of many cases, one at a standstill and one that was not solved.
+    cases = {name: np.array([x, x, x, np.nan]) for name, x in sound.items()}
+    cases["reference_load"][1] = 15e3
+    cases["viscosity_ratio"][:] = [0.08, 0.0, 0.02, np.nan]
+    heavy, thin = life_warnings(ratings, cases)  # pyright: ignore[reportArgumentType]
+    assert "of 15 kN" in heavy and "in 1 of 4 cases, worst case 1" in heavy
+    assert "of 0.02:" in thin and "in 2 of 4 cases, worst case 2" in thin
+
+
+def test_numbers_of_what_did_not_converge_are_nan(balls):
+    solution, life = balls(jnp.asarray([0.0, 1e40, 0.0, 0.0]))[1]["of"]
+    assert not bool(solution.converged)
+    for name in (*LIFE_OUTPUTS, "a_iso"):
+        if name not in ("viscosity_ratio", "contamination_factor"):
+            assert np.isnan(getattr(life, name)).all(), name
+
+
+def test_single_precision_has_the_usual_reliability():
+    assert bj.LifeConditions(reliability=np.float32(0.9)).viscosity is None
 
 
 @pytest.mark.parametrize(
@@ -831,7 +901,8 @@ def test_as_a_measure_it_is_the_life_of_all_cases(balls, untyped):
     load = np.zeros((2, 6))
     cases = bj.Cases(load, inner_speed=speed, hours=hours)
     element = ball_element(jnp.asarray([5e-6]))
-    measure = bj.RatingLife(bj.LifeConditions(23400.0), hours=True)
+    conditions = bj.LifeConditions(23400.0, reliability=0.95)
+    measure = bj.RatingLife(conditions, hours=True)
 
     @eqx.filter_jit
     def both(element, cases, solution):
@@ -841,7 +912,9 @@ def test_as_a_measure_it_is_the_life_of_all_cases(balls, untyped):
     life, damage = both(element, cases, stacked)
     turns = hours * speed * 3600 / (2 * np.pi)
     alone = np.array([float(pair[1].reference_rating_life) for pair in found])
-    expected = hours.sum() / (turns / alone).sum()
+    # 95 of 100 reach less than the reference life, without a lubricant too.
+    a1 = 0.05 + 0.95 * (np.log(0.95) / np.log(0.9)) ** (2 / 3)
+    expected = a1 * hours.sum() / (turns / alone).sum()
     np.testing.assert_allclose(life, expected, rtol=1e-10)
     np.testing.assert_allclose(damage, 1 / expected, rtol=1e-10)
     with pytest.raises(ValueError, match="`hours` is True, but the cases have no"):
