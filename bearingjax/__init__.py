@@ -189,6 +189,7 @@ from .statics import rating_life as rating_life
 from .statics import ratings as ratings
 from .statics import refine as refine
 from .statics import restrained_freedoms as restrained_freedoms
+from .statics import skf_friction_torque as skf_friction_torque
 from .statics import solve_load as solve_load
 from .statics import spectrum_life as spectrum_life
 from .statics import stack_designs as stack_designs

@@ -1,6 +1,7 @@
 """The [lubricant] table of a scene that is solved: its oil, films and friction."""
 
 import dataclasses
+import re
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -12,7 +13,9 @@ from ..lubrication import Lubricant
 from ..numerics.types import as_array
 from ..statics.contact_films import Films, films
 from ..statics.friction import SUPPLIES, Friction, friction_torque
+from ..statics.friction_skf import SkfFriction, skf_friction_torque, skf_series
 from ..statics.solution import Solution
+from .catalogue_entry import FromCatalogue
 from .lubricant_table import described, read_lubricant, read_traction
 from .table import Table
 
@@ -40,9 +43,16 @@ class Oil:
 
 
 class OilFacts(NamedTuple):
-    """Friction and films of a solved scene, in NumPy's numbers."""
+    """Friction and films of a solved scene, in NumPy's numbers.
+
+    Attributes:
+        friction: By Palmgren.
+        skf: By SKF's model; `None` of types that it does not have.
+        films: Of every contact.
+    """
 
     friction: Friction
+    skf: SkfFriction | None
     films: Films
 
 
@@ -66,20 +76,53 @@ def read_oil(table: Table) -> tuple[Oil, tuple[str, ...]]:
     return Oil(name, lubricant, temperature, supply, roughness), odd
 
 
-def oil_facts(oil: Oil, solution: Solution) -> OilFacts | None:
+def oil_facts(
+    oil: Oil, solution: Solution, catalogue: FromCatalogue | None = None
+) -> OilFacts | None:
     """Friction and films of a solution; `None` at rest.
 
     Args:
         oil: From `read_oil`.
         solution: Converged.
+        catalogue: What the bearing's designation stands for.
     """
     if solution.speed is None or float(_turning(solution)) == 0.0:
         return None
     numbers = jax.tree.map(jnp.asarray, solution)
     rough = None if oil.roughness is None else as_array(oil.roughness, float)
     temperature = as_array(oil.temperature, float)
-    found = _facts(numbers, oil.lubricant, temperature, oil.supply, rough)
-    return jax.device_get(found)
+    series, diameters = None, None
+    if catalogue is not None:
+        entry = catalogue.entry
+        series = series_of(entry.designation, skf_series(solution.element.bearing))
+        sizes = entry.bore, entry.outside_diameter
+        diameters = tuple(as_array(size, float) for size in sizes)
+    known = oil.supply, rough, series, diameters
+    return jax.device_get(_facts(numbers, oil.lubricant, temperature, *known))
+
+
+def series_of(designation: str, known: tuple[str, ...]) -> str | None:
+    """The series of a designation that SKF's model knows, such as 62 of 6205.
+
+    Args:
+        designation: As "6205-2RS1/C3", "NU 2205 EC" or "7208 BE".
+        known: As `skf_series`.
+
+    Returns:
+        One of those known, or `None`.
+    """
+    text = designation.replace(" ", "").upper()
+    found = re.search(r"\d+", text)
+    if found is None:
+        return None
+    after = text[found.end() :]
+    # The last two digits tell the bore, of small bearings such as 608 the last one.
+    for bore in (2, 1):
+        for suffix in ("AC", "B", ""):
+            name = found[0][:-bore] + suffix
+            if after.startswith(suffix) and name in known:
+                return name
+    return None
 
 
 def _turning(solution):
@@ -87,21 +130,27 @@ def _turning(solution):
 
 
 @eqx.filter_jit
-def _facts(solution, lubricant, temperature, supply, roughness):
+def _facts(solution, lubricant, temperature, supply, roughness, series, diameters):
     viscosity = lubricant.kinematic_viscosity(temperature)
+    skf, more = None, dict(series=series, diameters=diameters)
+    if skf_series(solution.element.bearing):
+        skf = skf_friction_torque(solution, viscosity, supply, **more)
     return OilFacts(
         friction_torque(solution, viscosity, supply),
+        skf,
         films(solution, lubricant, temperature, roughness),
     )
 
 
-def oil_report(oil: Oil, solution: Solution) -> str:
+def oil_report(
+    oil: Oil, solution: Solution, catalogue: FromCatalogue | None = None
+) -> str:
     """Readable report of friction and films; "" at rest.
 
     Args:
-        oil, solution: As of `oil_facts`.
+        oil, solution, catalogue: As of `oil_facts`.
     """
-    facts = oil_facts(oil, solution)
+    facts = oil_facts(oil, solution, catalogue)
     if facts is None:
         return ""
     friction = facts.friction
@@ -117,6 +166,13 @@ def oil_report(oil: Oil, solution: Solution) -> str:
         f"friction torque (Palmgren) {1e3 * float(friction.torque):.4g} N mm ({told});"
         f" {float(friction.power):.4g} W",
     ]
+    if facts.skf is not None:
+        skf = facts.skf
+        lines.append(
+            f"friction torque (SKF, series {skf.series}) {1e3 * float(skf.torque):.4g}"
+            f" N mm (rolling {1e3 * skf.rolling_torque.sum():.4g}, sliding"
+            f" {1e3 * skf.sliding_torque.sum():.4g}); {float(skf.power):.4g} W"
+        )
     thin = facts.films.minimum
     if np.isfinite(thin).any():
         element, contact = np.unravel_index(np.argmin(thin), thin.shape)
@@ -131,22 +187,26 @@ def oil_report(oil: Oil, solution: Solution) -> str:
     return "\n".join(lines)
 
 
-def oil_as_dict(oil: Oil, solution: Solution) -> dict[str, Any]:
+def oil_as_dict(
+    oil: Oil, solution: Solution, catalogue: FromCatalogue | None = None
+) -> dict[str, Any]:
     """Friction and films of a solved scene as plain numbers, in SI; empty at rest.
 
     Args:
-        oil, solution: As of `oil_facts`.
+        oil, solution, catalogue: As of `oil_facts`.
 
     Returns:
         friction_torque [N m]; friction: load, viscous, flange (row) [N m], power [W];
+        friction_skf, of types that SKF's model has: torque [N m], rolling, sliding
+        (row) [N m], power [W], series whose constants it takes;
         film: central, minimum [m], entrainment [m/s] and with a roughness ratio, each
         (element, contact), null where no load is carried. Contacts as of
         `contact_load` of balls, as of `roller_load` of rollers.
     """
-    facts = oil_facts(oil, solution)
+    facts = oil_facts(oil, solution, catalogue)
     if facts is None:
         return {}
-    friction, found = facts
+    friction, skf, found = facts
     names = ["entrainment", "central", "minimum"]
     names += ["ratio"] if found.ratio is not None else []
     return {
@@ -157,7 +217,18 @@ def oil_as_dict(oil: Oil, solution: Solution) -> dict[str, Any]:
             "flange": friction.flange_torque.tolist(),
             "power": float(friction.power),
         },
+        **({} if skf is None else {"friction_skf": _skf_as_dict(skf)}),
         "film": {name: _listed(getattr(found, name)) for name in names},
+    }
+
+
+def _skf_as_dict(skf):
+    return {
+        "torque": float(skf.torque),
+        "rolling": skf.rolling_torque.tolist(),
+        "sliding": skf.sliding_torque.tolist(),
+        "power": float(skf.power),
+        "series": skf.series,
     }
 
 

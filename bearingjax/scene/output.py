@@ -119,7 +119,9 @@ def solved_as_dict(
 
 
 def _oil(scene, solution):
-    return {} if scene.oil is None else oil_as_dict(scene.oil, solution)
+    if scene.oil is None:
+        return {}
+    return oil_as_dict(scene.oil, solution, scene.catalogue)
 
 
 def _fits(scene):

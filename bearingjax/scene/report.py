@@ -80,7 +80,9 @@ def _fits(scene, solution):
 
 
 def _oil(scene, solution):
-    return "" if scene.oil is None else oil_report(scene.oil, solution)
+    if scene.oil is None:
+        return ""
+    return oil_report(scene.oil, solution, scene.catalogue)
 
 
 def _place(row):

@@ -64,6 +64,9 @@ from .equivalent_load import equivalent_load as equivalent_load
 from .friction import SUPPLIES as SUPPLIES
 from .friction import Friction as Friction
 from .friction import friction_torque as friction_torque
+from .friction_skf import SkfFriction as SkfFriction
+from .friction_skf import skf_friction_torque as skf_friction_torque
+from .friction_skf import skf_series as skf_series
 from .life import LIFE_OUTPUTS as LIFE_OUTPUTS
 from .life import Life as Life
 from .life import LifeConditions as LifeConditions

@@ -122,55 +122,62 @@ def friction_torque(
         chapter on friction; the constants of each type there and in catalogues of SKF
         of the time.
     """
-    _check_call(solution, viscosity, supply)
+    check_call("friction_torque", solution, viscosity, supply)
     assert solution.speed is not None
     bearing = solution.element.bearing
     speed = solution.speed.inner - solution.speed.outer
     parts = [
         _of_row(row, load, as_real(viscosity) * abs(speed), supply, static_capacity)
-        for row, load in zip(_units(bearing), _loads(solution), strict=True)
+        for row, (_, _, load) in zip(
+            units_of(bearing), unit_loads(solution), strict=True
+        )
     ]
     load, viscous, flange = (jnp.stack(v) for v in zip(*parts, strict=True))
     return Friction(load, viscous, flange, speed)
 
 
-def _check_call(solution, viscosity, supply):
+def check_call(owner: str, solution: Any, viscosity: Any, supply: Any) -> None:
+    """Raise unless a friction torque can be told of a solution.
+
+    Args:
+        owner: Name of the function that was called.
+        solution, viscosity, supply: Its arguments.
+
+    Raises:
+        TypeError, ValueError: As `friction_torque`.
+    """
     if not isinstance(solution, Solution):
         raise TypeError(
-            f"friction_torque: `solution` is a {type(solution).__name__}; it must be a"
+            f"{owner}: `solution` is a {type(solution).__name__}; it must be a"
             " Solution, as of solve_load."
         )
     if solution.speed is None:
-        raise ValueError(
-            "friction_torque: `solution` is at rest; solve it with `speed`."
-        )
+        raise ValueError(f"{owner}: `solution` is at rest; solve it with `speed`.")
     if supply not in SUPPLIES:
         raise ValueError(
-            f"friction_torque: `supply` is {supply!r}; it must be one of"
-            f" {', '.join(SUPPLIES)}."
+            f"{owner}: `supply` is {supply!r}; it must be one of {', '.join(SUPPLIES)}."
         )
     viscosity = as_real(viscosity)
-    positive("friction_torque", "viscosity", viscosity, "m²/s")
+    positive(owner, "viscosity", viscosity, "m²/s")
     # A viscosity in mm²/s would be a million times too large.
     allowed = "below 1 m²/s (1 mm²/s is 1e-6 m²/s)"
-    thin = viscosity < 1.0
-    check("friction_torque", "viscosity", thin, allowed, viscosity, "m²/s")
+    check(owner, "viscosity", viscosity < 1.0, allowed, viscosity, "m²/s")
 
 
-def _units(bearing) -> list[Any]:
+def units_of(bearing: Bearing | BearingSet) -> list[Any]:
     """What counts as one bearing: a row, or both rows of a self-aligning one."""
     if is_self_aligning(bearing):
         return [bearing]
     return [row.bearing for row in rows_of(bearing)]
 
 
-def _loads(solution) -> list[Any]:
-    """Load (6,) of each of `_units` [N]; the moments do not count."""
+def unit_loads(solution: Solution) -> list[tuple[Scalar, Scalar, Any]]:
+    """Radial and axial load of each of `units_of` [N], and its load (6,)."""
     bearing = solution.element.bearing
     first = 0 if solution.moving_ring == "outer" else 6
-    if not isinstance(bearing, BearingSet) or is_self_aligning(bearing):
-        return [solution.force[first : first + 6]]
-    return _row_loads(solution)
+    alone = not isinstance(bearing, BearingSet) or is_self_aligning(bearing)
+    loads = [solution.force[first : first + 6]] if alone else _row_loads(solution)
+    return [(*_directions(load), load) for load in loads]
 
 
 def _row_loads(solution) -> list[Any]:
@@ -207,7 +214,7 @@ def _of_row(bearing: Bearing | BearingSet, load, flow, supply, capacity):
     row: Any = rows_of(bearing)[0].bearing
     kind = _KINDS.get(type(row), _CYLINDERS)
     pitch = row.pitch_diameter
-    radial, axial = _length(load[0], load[1]), jnp.abs(load[2])
+    radial, axial = _directions(load)
     # The numbers of the formula are per minute, in mm and N mm.
     fast = flow / (2.0 * jnp.pi)
     reached = jnp.maximum(fast, _SLOW)
@@ -242,7 +249,9 @@ def _directed(row, radial, axial):
     return radial
 
 
-def _length(x, y):
-    square = x**2 + y**2
+def _directions(load):
+    """Radial and axial part of a load (6,); the moments do not count."""
+    square = load[0] ** 2 + load[1] ** 2
     some = square > 0
-    return jnp.where(some, jnp.sqrt(jnp.where(some, square, 1.0)), 0.0)
+    radial = jnp.where(some, jnp.sqrt(jnp.where(some, square, 1.0)), 0.0)
+    return radial, jnp.abs(load[2])
