@@ -220,6 +220,9 @@ def contact_state_map(
         vmax=most - 0.5,
         extent=(0.0, float(record.turns), -0.5, number.shape[1] - 0.5),
     )
+    if np.count_nonzero(states.samples) == 1:
+        text = f"{np.argmax(states.samples)} contacts all the time"
+        ax.text(0.5, 0.5, text, transform=ax.transAxes, ha="center", va="center")
     ax.set_yticks(range(number.shape[1]))
     ax.tick_params(axis="y", labelsize=SMALL)
     ax.set_xlabel("turns of the shaft")

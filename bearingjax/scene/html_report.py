@@ -47,11 +47,13 @@ th, td { text-align: left; padding: .15rem .6rem .15rem 0; vertical-align: top;
 th[scope=colgroup] { padding-top: .8rem; border-bottom: 1px solid #9aa4ae }
 td.number { font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
 .cases th, .cases td { font-size: 11px; white-space: nowrap }
+.cases th { white-space: normal; vertical-align: bottom }
 @media screen {
   figure { width: min(96vw, 80rem); margin-left: 50%; transform: translateX(-50%) }
 }
 @page { size: A4; margin: 14mm 12mm;
   @bottom-right { content: counter(page) " / " counter(pages); font: 8pt sans-serif } }
+@page wide { size: A4 landscape }
 @media print {
   body { max-width: none; padding: 0; font-size: 9pt; line-height: 1.35 }
   h1 { font-size: 16pt } h2 { font-size: 11pt; margin: 5mm 0 2mm; break-after: avoid }
@@ -59,7 +61,8 @@ td.number { font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
   table { font-size: 8pt } th, td { padding: .3mm 3mm .3mm 0 }
   figure, .warnings, tr { break-inside: avoid } p { break-after: avoid }
   tr:has(th[scope=colgroup]) { break-after: avoid }
-  .scroll { overflow: visible } .cases th, .cases td { font-size: 6pt }
+  .wide { page: wide; break-after: page } .scroll { overflow: visible }
+  .cases th, .cases td { font-size: 6pt; padding-right: 1.5mm; white-space: normal }
 }
 """
 
@@ -241,7 +244,7 @@ def _shown(value: Any) -> str:
 
 def _cases(found: Mapping[str, np.ndarray], count: int) -> str:
     """The first cases as a table."""
-    head = "".join(f'<th scope="col">{escape(header)}</th>' for header in found)
+    head = "".join(f'<th scope="col">{_breakable(header)}</th>' for header in found)
     rows = [
         "<tr>" + "".join(f"<td>{escape(_cell(x))}</td>" for x in row) + "</tr>"
         for row in zip(*(v[:MOST_CASES] for v in found.values()), strict=True)
@@ -249,8 +252,14 @@ def _cases(found: Mapping[str, np.ndarray], count: int) -> str:
     left = count - len(rows)
     note = f"<p>The first {len(rows)} of {count} cases.</p>\n" if left > 0 else ""
     body = "\n".join(rows)
-    table = f'<table class="cases">\n<tr>{head}</tr>\n{body}\n</table>'
-    return _section("Table", f'{note}<div class="scroll">{table}</div>')
+    head = f"<thead>\n<tr>{head}</tr>\n</thead>"
+    table = f'<table class="cases">\n{head}\n<tbody>\n{body}\n</tbody>\n</table>'
+    return _section("Table", f'{note}<div class="scroll">{table}</div>', "wide")
+
+
+def _breakable(name: str) -> str:
+    """A name of several words, which may be broken between them."""
+    return escape(name).replace("_", "_<wbr>").replace(".", ".<wbr>")
 
 
 def _cell(value: Any) -> str:

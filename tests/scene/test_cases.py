@@ -124,6 +124,7 @@ def test_command_writes_a_row_per_case(run, scene, tmp_path):
     text = unescape(page.read_text(encoding="utf-8"))
     assert all(line in text for line in ended.out.splitlines())
     assert path.read_text() in text and text.count("<td>converged</td>") == 12
+    assert '<th scope="col">displacement_<wbr>inner_<wbr>uy [m]</th>' in text
     table = pyarrow.csv.read_csv(csv).to_pydict()
     assert list(table)[0] == "bearing.radial_internal_clearance [m]"
     assert table["bearing.radial_internal_clearance [m]"][::6] == [0.0, 20e-6]

@@ -118,7 +118,7 @@ class Page(HTMLParser):
     def handle_starttag(self, tag, attrs):
         if tag == "img":
             self.images.append(dict(attrs)["src"])
-        if tag not in ("img", "meta"):
+        if tag not in ("img", "meta", "wbr"):
             self.inside.append(tag)
 
     def handle_endtag(self, tag):
