@@ -82,7 +82,7 @@ def run(options) -> int:
         (options.plot, draw if chosen else None),
         (options.drawing, draw_all_of_it if chosen else None),
     )
-    if named:
+    if named and chosen:
         print("\n\n".join(catalogue_details(entry) for entry in chosen), flush=True)
     else:
         print(catalogue_table(chosen), flush=True)

@@ -1,5 +1,6 @@
 """The [bearing] and [set] tables of a scene: what stands on the drawing."""
 
+import difflib
 from typing import Any
 
 from ..design import (
@@ -137,6 +138,11 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
 def _single(table: Table) -> Bearing:
     """A bearing of one row."""
     found = designated(table)
+    if found is None and "type" not in table:
+        meant = difflib.get_close_matches("designation", table.keys(), 1, 0.7)
+        if meant:
+            problem = "unknown key (did you mean `designation`?)"
+            raise table.error(meant[0], problem)
     if found is not None:
         table.skip("designation")
         table = table.completed(found[0])

@@ -45,22 +45,27 @@ def select(
     ranges = {
         "bore": _range("--bore", bore, "length"),
         "outside_diameter": _range("--outside", outside, "length"),
-        "dynamic_capacity": _range("--capacity", capacity, "force", least=True),
+        "dynamic_capacity": _range("--min-capacity", capacity, "force", least=True),
     }
     return tuple(
         entry
         for entry in entries
         if kind in (None, entry.type)
-        and all(
-            low <= getattr(entry, name) <= high for name, (low, high) in ranges.items()
-        )
+        and all(_within(getattr(entry, name), ends) for name, ends in ranges.items())
     )
 
 
-def _range(option, text, kind, least=False) -> tuple[float, float]:
-    """Least and most, a millionth wider for round-off."""
+def _within(value, ends) -> bool:
+    """Whether a number lies between two; what is not known does not."""
+    if ends is None:
+        return True
+    return value is not None and ends[0] <= value <= ends[1]
+
+
+def _range(option, text, kind, least=False) -> tuple[float, float] | None:
+    """Least and most, a millionth wider for round-off; `None` without a text."""
     if text is None:
-        return -np.inf, np.inf
+        return None
     first, colon, last = text.partition(":")
     try:
         low = to_si(first, kind) if first or not colon else -np.inf

@@ -97,9 +97,11 @@ def _suffixes(rest: str, name: str, text: str) -> Suffixes:
                 continue
             taken, meaning = _idle(word)
             if not taken:
-                known = "classes of clearance, seals and shields, cages, accuracy"
+                known = (
+                    f"{', '.join(CLEARANCE_CLASSES)}, seals, shields, cages, accuracy"
+                )
                 problem = f"has letters after {name} that are not known: {word!r}"
-                raise SceneError(f"{text!r} {problem} ({known} are)")
+                raise SceneError(f"{text!r} {problem} (known are {known})")
             idle.append(f"{taken} ({meaning})")
             word = word[len(taken) :]
     return Suffixes(clearance, tuple(idle))

@@ -10,6 +10,7 @@ from typing import Any
 
 import jax
 
+from .catalogue_entry import catalogue_entry
 from .quantity import SceneError
 
 
@@ -46,13 +47,21 @@ def find_scene(source: str | Path) -> Path:
         shipped = shipped_scenes()
         if str(source) in shipped:
             return shipped[str(source)]
-        raise SceneError(
-            f"{source}: neither a .toml file nor a shipped scene ({', '.join(shipped)})"
-        )
+        problem = f"neither a .toml file nor a shipped scene ({', '.join(shipped)})"
+        raise SceneError(f"{source}: {problem}{_of_catalogue(str(source))}")
     if not path.is_file():
         problem = "is a folder; name a file" if path.is_dir() else "no such file"
         raise SceneError(f"{source}: {problem}")
     return path
+
+
+def _of_catalogue(name: str) -> str:
+    """What to do with a designation that stands for a scene; "" if it is none."""
+    try:
+        catalogue_entry(name)
+    except SceneError:
+        return ""
+    return f"; `bearingjax new {name} > my.toml` writes the scene of this bearing"
 
 
 def is_contact(data: dict[str, Any]) -> bool:

@@ -198,10 +198,10 @@ WRONG = {
     "62055": "'62055' is not a bearing of the catalogue; near it: 6205",
     "": "'' is not a designation, such as",
     "6205-XQ": "has letters after 6205 that are not known: 'XQ'",
-    "6205/C9": "has letters after 6205 that are not known: 'C9'",
+    "6205/C9": "has letters after 6205 that are not known: 'C9' (known are C2, CN, C3,",
     "6205 C2/C3": "names two classes of clearance, C2 and C3",
     "7205": "near it: 7205A, 7205AC, 7205B, 7205BE, 7205C",
-    "7205 B/C3": "7205 BE/C3: a angular_contact_ball has no classes of clearance here",
+    "7205 B/C3": "7205 BE/C3: angular_contact_ball has no classes of clearance here",
     "1205 C5": "`name` is 'C5'; it must be one of C2, CN, C3, C4",
     "N 2205": "'N 2205' is not a bearing of the catalogue; near it: 2205, N205",
     "deep_grove": "nor is it a .toml file or a shipped scene (angular_contact,",
@@ -242,6 +242,10 @@ def test_single_dimensions_override(tmp_path):
     "text, message",
     [
         (
+            'designaton = "6206"',
+            "`bearing.designaton`: unknown key (did you mean `designation`?)",
+        ),
+        (
             'designation = "6206X"',
             "`bearing.designation`: '6206X' has letters after 6206",
         ),
@@ -265,6 +269,30 @@ def test_wrong_scenes_with_a_designation(text, message, tmp_path):
         bj.read_scene(scene(tmp_path, text))
     assert message in str(caught.value)
     assert str(caught.value).startswith("mine.toml: ")
+
+
+def test_a_bearing_whose_capacity_is_not_known(run, tmp_path):
+    out = tmp_path / "out.json"
+    done = run("catalogue", "7208 C", "--json", out)
+    assert done.status == 0 and "\nC, C0 not known\n" in done.out
+    (entry,) = json.loads(out.read_text(encoding="utf-8"))["bearings"]
+    assert entry["dynamic_capacity"] is None
+    done = run("catalogue", "7208 C", "--min-capacity", "1 N")
+    assert done.status == 0 and done.out.splitlines()[1].startswith("0 bearings")
+
+
+def test_wrong_capacity_of_the_catalogue(run):
+    done = run("catalogue", "--min-capacity", "10")
+    assert done.status == 2
+    assert done.err.startswith("bearingjax: --min-capacity: '10' has no unit")
+
+
+def test_a_designation_is_no_scene(run):
+    done = run("solve", "6205/C3")
+    assert done.status == 2
+    assert done.err.endswith(
+        "; `bearingjax new 6205/C3 > my.toml` writes the scene of this bearing\n"
+    )
 
 
 def test_catalogue_command(run, tmp_path):
