@@ -46,6 +46,7 @@ from .form_error import RacewayErrors as RacewayErrors
 from .form_error import Spall as Spall
 from .iso286 import LIMIT_CLASSES as LIMIT_CLASSES
 from .iso286 import Limits as Limits
+from .iso286 import limit_classes as limit_classes
 from .iso286 import limits as limits
 from .iso286 import standard_tolerance as standard_tolerance
 from .logarithmic import FujiwaraKawase as FujiwaraKawase

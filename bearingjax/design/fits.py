@@ -41,7 +41,7 @@ class WarmMaterial(eqx.Module):
 
     def __check_init__(self):
         instance(self, "material", Material)
-        number(self, "expansion")
+        in_range(self, "expansion", -1e-4, 1e-3)
 
     @classmethod
     def steel(cls) -> "WarmMaterial":
@@ -415,7 +415,8 @@ class ClearanceRange(NamedTuple):
         worst: Least and largest of all [m].
         probable: Root sum of squares of what each size does alone, about the middle:
             the same share of bearings is within as of each size within its limits, if
-            sizes are normal and independent, and fits do not come loose [m].
+            sizes are normal and independent, and fits do not come loose. Where they do,
+            it is cut off at `worst` [m].
     """
 
     middle: Any
@@ -448,11 +449,16 @@ def clearance_range(
     """
     cases = _Cases(mounting, _given(clearance, shaft, bore, housing, outside_diameter))
     middle, half = cases.spread(conditions)[:2]
+    least, most = (cases.clearance(side, conditions) for side in (-1.0, 1.0))
     return ClearanceRange(
         middle,
-        Limits(*(cases.clearance(side, conditions) for side in (-1.0, 1.0))),
-        Limits(middle - half, middle + half),
+        Limits(least, most),
+        Limits(_larger_of(middle - half, least), -_larger_of(-middle - half, -most)),
     )
+
+
+def _larger_of(one, other):
+    return other + _tight(one - other)
 
 
 PLACES = {

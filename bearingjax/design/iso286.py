@@ -98,6 +98,15 @@ LIMIT_CLASSES = tuple(
 """Names of the tolerance classes: small letters are shafts, capital ones housings."""
 
 
+def limit_classes(small: bool) -> str:
+    """Tolerance classes in words, "k4 to k7": of shafts (small letters) or housings."""
+    return ", ".join(
+        f"{letter}{first} to {letter}{last}"
+        for letter, (first, last) in _LETTERS.items()
+        if letter.islower() is small
+    )
+
+
 def standard_tolerance(grade: int, diameter: Any) -> float:
     """Width of a tolerance zone [m].
 
@@ -187,10 +196,7 @@ def _split(name):
     """Letter and grade of a class, or an error that names all classes."""
     found = re.fullmatch(r"([A-Za-z]+)(\d+)", name)
     if name not in LIMIT_CLASSES or found is None:
-        known = ", ".join(
-            f"{letter}{first} to {letter}{last}"
-            for letter, (first, last) in _LETTERS.items()
-        )
+        known = f"{limit_classes(True)}, {limit_classes(False)}"
         raise ValueError(f"limits: `name` is {name!r}; it must be one of {known}.")
     return found[1], int(found[2])
 

@@ -24,6 +24,7 @@ from ..design import (
     clearance_range,
     fit_state,
     is_self_aligning,
+    limit_classes,
     limits,
     mounted,
     mounting_at,
@@ -43,6 +44,9 @@ from .table import Table, written
 _ZERO = 273.15
 _REFERENCE = _ZERO + 20.0
 _COLDEST, _HOTTEST = -100.0, 400.0
+_ROUGHEST = 100e-6
+_THICKEST = 100.0
+"""Outside diameters of the bearing: any larger housing gives way as an endless one."""
 
 EXPANSIONS = {
     "inner_ring": "ring_expansion",
@@ -146,6 +150,9 @@ def read_fits(
     given, names = _limits(table, row, sizes)
     given["clearance"] = _clearance(table, own, sizes["bore"], catalogue)
     scatters = given["clearance"] is not None
+    if place != "middle" and not (scatters or any(names)):
+        problem = "goes with tolerance classes, or a class of clearance"
+        raise table.error("at", f"{place!r} {problem}; here all sizes are given")
     conditions = _conditions(temperature, speed)
     unknown = _unknown_expansions(table, own)
     for part, key in unknown.items():
@@ -270,6 +277,10 @@ def _sizes(table: Table, catalogue: FromCatalogue | None) -> dict[str, Any]:
     for key in ("bore", "outside_diameter", "housing_diameter"):
         own = getattr(catalogue.entry, key, None) if catalogue else None
         found[key] = table.quantity(key, "length", *([] if own is None else [own]))
+    size, most = found["housing_diameter"], _THICKEST * found["outside_diameter"]
+    if size > most:
+        problem = f"{size:.5g} m is not allowed; at most {most:.4g} m (metres meant?)"
+        raise table.error("housing_diameter", problem)
     return found
 
 
@@ -312,7 +323,7 @@ def _class(table: Table, seat: str) -> str:
         return ""
     small = seat == "shaft"
     names = tuple(name for name in LIMIT_CLASSES if name[0].islower() is small)
-    return table.choice(seat, names)
+    return table.choice(seat, names, words=limit_classes(small))
 
 
 def _clearance(table: Table, own: Table, bore, catalogue) -> Limits | None:
@@ -370,9 +381,9 @@ def _seats(table: Table, own: Table, row) -> dict[str, Any]:
     for key in ("shaft_bore", "inner_raceway", "outer_raceway"):
         if key in table:
             seats[key] = table.quantity(key, "length")
-    ring = table.quantity("ring_roughness", "length", 0.0)
+    ring = _roughness(table, "ring_roughness", 0.0)
     for seat in ("shaft", "housing"):
-        rough = table.quantity(f"{seat}_roughness", "length", None)
+        rough = _roughness(table, f"{seat}_roughness", None)
         if rough is not None:
             seats[f"{seat}_smoothing"] = smoothing(rough, ring)
         seats[seat] = _seat_material(table, f"{seat}_material")
@@ -385,6 +396,15 @@ def _seats(table: Table, own: Table, row) -> dict[str, Any]:
     ring = _of_bearing(table, rings, "ring_expansion", row.rings)
     ball = _of_bearing(table, balls, "element_expansion", row.material)
     return {**seats, "inner_ring": ring, "outer_ring": ring, "elements": ball}
+
+
+def _roughness(table: Table, key: str, default: float | None) -> Any:
+    """Mean roughness depth Rz of a seat or ring."""
+    value = table.quantity(key, "length", default)
+    if value is not None and not 0.0 <= value <= _ROUGHEST:
+        problem = f"{1e6 * value:.5g} µm is not allowed; from 0 to"
+        raise table.error(key, f"{problem} {1e6 * _ROUGHEST:g} µm")
+    return value
 
 
 def _of_bearing(table: Table, given: Any, wanted: str, material) -> WarmMaterial:

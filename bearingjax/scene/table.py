@@ -142,11 +142,24 @@ class Table:
             raise self.error(key, f"is out of range; at most {LARGEST:g}")
         return value
 
-    def choice(self, key: str, choices: Sequence[str], default: Any = _MISSING) -> Any:
-        """One of several words."""
-        value = self._get(key, default, f"one of {', '.join(choices)}")
+    def choice(
+        self,
+        key: str,
+        choices: Sequence[str],
+        default: Any = _MISSING,
+        words: str = "",
+    ) -> Any:
+        """One of several words.
+
+        Args:
+            key: Key in this table.
+            choices: What may stand there.
+            default: If absent; without a default the key is required.
+            words: The choices as an error tells them, where they are too many to list.
+        """
+        value = self._get(key, default, f"one of {words or ', '.join(choices)}")
         if key in self._data and value not in choices:
-            raise self.error(key, not_among(value, choices))
+            raise self.error(key, not_among(value, choices, words))
         return value
 
     def word(self, key: str) -> str | None:
@@ -339,15 +352,18 @@ def _is_array(annotation):
     return any(getattr(kind, "dim_str", "") for kind in kinds)
 
 
-def not_among(value: object, choices: Sequence[str]) -> str:
+def not_among(value: object, choices: Sequence[str], words: str = "") -> str:
     """Problem of a word that is not one of several.
 
     Args:
         value: What stands there.
         choices: What may.
+        words: The choices as they are told, if not one by one.
     """
     hint = _suggest(value, choices) if isinstance(value, str) else ""
-    return f"{value!r} is not known{hint}; it must be one of {', '.join(choices)}"
+    return (
+        f"{value!r} is not known{hint}; it must be one of {words or ', '.join(choices)}"
+    )
 
 
 def _suggest(word, known):

@@ -321,6 +321,17 @@ def test_tight_housings_take_clearance():
     assert tight.worst.lower < tight.probable.lower < tight.middle
 
 
+def test_the_probable_is_within_the_worst():
+    # A loose shaft takes no clearance: the largest is that of the drawing.
+    found = scatter(
+        mounting(), **{**sizes("h5", "G7"), "clearance": Limits(1e-5, 1e-5)}
+    )
+    assert found.middle < found.worst.upper
+    np.testing.assert_allclose(found.worst.upper, 1e-5, rtol=1e-12)
+    np.testing.assert_allclose(found.probable.upper, 1e-5, rtol=1e-12)
+    assert found.worst.lower < found.probable.lower < found.middle
+
+
 def test_the_worst_cases_are_those_of_all_corners():
     given = sizes("m6", "P7")
     found = scatter(mounting(), **given)

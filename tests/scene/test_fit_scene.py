@@ -438,7 +438,34 @@ WRONG = {
     "negative roughness": (
         FIT,
         ("fit.shaft_roughness=-2 um",),
-        "[fit]: Mounting: `shaft_smoothing` is -8e-07 m",
+        "`fit.shaft_roughness`: -2 µm is not allowed; from 0 to 100 µm",
+    ),
+    "negative roughness of the ring": (
+        FIT,
+        ("fit.shaft_roughness=2 um", "fit.ring_roughness=-1 um"),
+        "`fit.ring_roughness`: -1 µm is not allowed; from 0 to 100 µm",
+    ),
+    "roughness in millimetres": (
+        FIT,
+        ("fit.housing_roughness=1.6 mm",),
+        "`fit.housing_roughness`: 1600 µm is not allowed; from 0 to 100 µm",
+    ),
+    "housing in metres": (
+        FIT,
+        ("fit.housing_diameter=80 m",),
+        "`fit.housing_diameter`: 80 m is not allowed; at most 5.2 m (metres meant?)",
+    ),
+    "expansion without its power of ten": (
+        FIT,
+        ("fit.element_expansion=12 1/K",),
+        "[fit]: WarmMaterial: `expansion` is 12 1/K; it must be above -0.0001 and",
+    ),
+    "place among exact sizes": (
+        FIT.replace('shaft = "k5"', 'shaft_interference = "5 um"')
+        .replace('housing = "H7"', 'housing_interference = "0 um"')
+        .replace('clearance = "CN"', 'at = "tightest"'),
+        (),
+        "`fit.at`: 'tightest' goes with tolerance classes, or a class of clearance",
     ),
     "temperature alone": (
         "",
@@ -466,6 +493,14 @@ WRONG = {
         "`fit.element_expansion`: is missing: `bearing.material` has numbers",
     ),
 }
+
+
+def test_classes_are_told_by_their_letters(scene):
+    with pytest.raises(SceneError) as caught:
+        bj.read_scene(scene(BEARING + FIT), ["fit.shaft=K5"])
+    message = str(caught.value)
+    assert "(did you mean `k5`?); it must be one of d1 to d11, e1 to e11," in message
+    assert "k4 to k7" in message and "K3" not in message
 
 
 @pytest.mark.parametrize("name", WRONG)
