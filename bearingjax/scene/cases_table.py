@@ -26,7 +26,7 @@ from ..statics.preload import preload
 from ..statics.sweep import SUMMARIES, stack_designs
 from .cases_list import LARGEST, read_list
 from .fit_table import fitted
-from .quantity import SceneError, kind_of, to_si
+from .quantity import KINDS, SceneError, kind_of, to_si
 from .read import Scene, scene_of
 from .scene_file import assign, find_scene, parse_bearing
 from .table import Table
@@ -48,22 +48,27 @@ OPERATING = {
 DESIGN = ("bearing", "set", "contact", "fit", "temperature")
 """Tables of the scene whose keys make a design."""
 
+_SI_UNITS = {unit for unit, _ in KINDS.values()}
+
 MOST_DESIGNS = 10**5
 """Most designs of a scene: each is read and checked by itself, in some 5 ms."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Structure:
-    """Designs that one program solves: of the same classes, counts and parts.
+    """Designs that one program solves: of the same classes, counts and parts, and of
+    one bearing of the catalogue.
 
     Attributes:
         element: The bearing; of several designs, `stack_designs`.
         designs: Numbers of these designs among all, rising; `None` if nothing of the
             design varies.
+        scene: The scene of the first of them.
     """
 
     element: BearingElement[Any]
     designs: np.ndarray | None
+    scene: Scene
 
 
 @dataclasses.dataclass(frozen=True)
@@ -213,7 +218,8 @@ def _flat(table, where: str, data: dict) -> dict[str, Any]:
     out: dict[str, Any] = {}
     for key, value in data.items():
         inner = {key: value}
-        if isinstance(value, dict) and not {"start", "stop", "count"} & set(value):
+        # A `count` alone is that of a set.
+        if isinstance(value, dict) and not {"start", "stop"} & set(value):
             flat = _flat(table, f"{where}.{key}", value)
             inner = {f"{key}.{name}": one for name, one in flat.items()}
         for name, one in inner.items():
@@ -263,6 +269,8 @@ def _range(table, key, data) -> Any:
         raise table.error(path, problem)
     unit = parts[0][1]
     numbers = np.linspace(parts[0][0], parts[1][0], count)
+    if all(isinstance(end, int) for end in ends) and not (numbers % 1).any():
+        return [int(x) for x in numbers]  # of counts
     return [float(x) if unit is None else f"{float(x)!r} {unit}" for x in numbers]
 
 
@@ -300,7 +308,7 @@ def _designs(data, path, columns):
     varied = [c for c in columns if c.key not in OPERATING or _fits(data, c.key)]
     if not varied:
         scene = scene_of(data, path)
-        return (Structure(_preloaded(scene), None),), None, ({},), ()
+        return (Structure(_preloaded(scene), None, scene),), None, ({},), ()
     # Values that repeat are one value; designs that repeat are one design.
     codes = []
     for column in varied:
@@ -313,7 +321,7 @@ def _designs(data, path, columns):
     if len(first) > MOST_DESIGNS:
         problem = f"make {len(first)} designs; at most {MOST_DESIGNS}"
         raise SceneError(f"{path.name}: `cases`: {problem}")
-    made, elements, odd = [], [], []
+    made, elements, scenes, odd = [], [], [], []
     for case in first:
         settings = {c.key: c.values[c.index[case]] for c in varied}
         changed = copy.deepcopy(data)
@@ -321,7 +329,7 @@ def _designs(data, path, columns):
             # Of a range the speeds are numbers already.
             speed = key in OPERATING and not isinstance(value, str)
             assign(changed, key, f"{value} rad/s" if speed else value, path.name)
-        scene = scene_of(changed, path)
+        scene = scene_of(changed, path, settings)
         pairs = [
             _resolved(scene.inputs, key, given)
             for key, given in settings.items()
@@ -329,16 +337,32 @@ def _designs(data, path, columns):
         ]
         made.append(dict(pairs))
         elements.append(_preloaded(scene))
+        scenes.append(scene)
         odd += scene.warnings
     alike: dict[Any, list[int]] = {}
     for number, element in enumerate(elements):
         shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(element))
-        alike.setdefault((jax.tree.structure(element), shapes), []).append(number)
+        key = jax.tree.structure(element), shapes, _rated_as(scenes[number])
+        alike.setdefault(key, []).append(number)
     structures = tuple(
-        Structure(stack_designs([elements[k] for k in numbers]), np.array(numbers))
+        Structure(
+            stack_designs([elements[k] for k in numbers]),
+            np.array(numbers),
+            scenes[numbers[0]],
+        )
         for numbers in alike.values()
     )
     return structures, design.reshape(-1), tuple(made), tuple(odd)
+
+
+def _rated_as(scene: Scene) -> tuple[Any, ...]:
+    """What published ratings of a design follow from."""
+    arrangement = scene.inputs.get("set", {}).get("arrangement")
+    if scene.catalogue is None:
+        return None, arrangement
+    entry = scene.catalogue.entry
+    published = entry.dynamic_capacity, entry.static_capacity, entry.fatigue_load_limit
+    return published, arrangement
 
 
 def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
@@ -352,11 +376,11 @@ def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
     if isinstance(found, int | float) and not isinstance(found, bool):
         return key, found
     number, _, unit = found.partition(" ") if isinstance(found, str) else ("", "", "")
-    try:
-        # "20 um" is 2e-05 m here, not the neighbour that a product of floats ends at.
-        return f"{key} [{unit}]", float(f"{float(number):.15g}")
-    except ValueError:
+    # A designation, "7208 BE", is no quantity.
+    if unit not in _SI_UNITS:
         return key, str(given)
+    # "20 um" is 2e-05 m here, not the neighbour that a product of floats ends at.
+    return f"{key} [{unit}]", float(f"{float(number):.15g}")
 
 
 def _fits(data, key) -> bool:

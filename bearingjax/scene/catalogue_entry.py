@@ -9,7 +9,7 @@ import dataclasses
 import functools
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -229,8 +229,8 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         table[CLEARANCE], note = _clearance(kind, shown, si["bore"], suffixes)
         notes.append(note)
     elif suffixes.clearance is not None:
-        problem = "has no classes of clearance here; leave the class out"
-        raise SceneError(f"{shown}/{suffixes.clearance}: a {kind} {problem}")
+        problem = f"{kind} has no classes of clearance here; leave the class out"
+        raise SceneError(f"{shown}/{suffixes.clearance}: {problem}")
     if suffixes.clearance not in (None, "CN"):
         shown = f"{shown}/{suffixes.clearance}"
     sources = {
@@ -285,6 +285,12 @@ class FromCatalogue:
 
     entry: CatalogueEntry
     overridden: tuple[str, ...]
+
+    def varied(self, keys: Iterable[str]) -> "FromCatalogue":
+        """With keys of a scene, "bearing.n_balls", that count as given otherwise."""
+        given = [key.split(".")[1] for key in keys if key.startswith("bearing.")]
+        names = dict.fromkeys((*self.overridden, *given))
+        return dataclasses.replace(self, overridden=tuple(names))
 
     def __str__(self):
         words = [

@@ -106,8 +106,7 @@ def run_life(
         rated = ratings(bearing, *given)
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
-    asked = dataclasses.replace(scene, life=conditions)
-    wanted = dataclasses.replace(table, scene=asked, outputs=tuple(outputs))
+    wanted = dataclasses.replace(table, outputs=tuple(outputs))
     solved = run_cases(wanted, progress, stop)
     lives = {
         name: spectrum_life(table.cases, 1.0 / np.asarray(getattr(solved, name)))

@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from ..design import Bearing, BearingSet, is_ball
+from ..design import Bearing, BearingSet, is_ball, n_elements, rows_of
 from ..element import Speed
 from ..statics.life import FRAMES, LifeConditions
 from ..statics.life_factor import CLEANLINESS
@@ -47,7 +47,7 @@ def read_life(
             raise table.error(name, f"{value:g} N is not allowed; above 0 N")
     values["reliability"] = _reliability(table)
     values["load_fixed_to"] = table.choice("load_fixed_to", FRAMES, "space")
-    values["edge_stress"] = table.flag("edge_stress", True)
+    values["edge_stress"] = _edge_stress(table, bearing)
     values |= _lubrication(top, table)
     if values["viscosity"] is not None and not _turns(speed) and "cases" not in top:
         problem = "needs a speed of one ring against the other, for its film"
@@ -57,6 +57,39 @@ def read_life(
     with table.building():
         rated_axially(bearing)  # which refuses sets of unlike rows
         return LifeConditions(**values)
+
+
+_USUAL = {"dynamic_capacity": 1.0, "static_capacity": 1.0, "fatigue_load_limit": 0.07}
+"""Ratings over the load that rolling elements bear, in the middle of all types."""
+
+
+def rating_warnings(
+    life: LifeConditions | None, bearing: Bearing | BearingSet
+) -> tuple[str, ...]:
+    """Ratings twenty times off those that bearings of this size have, a line each.
+
+    Args:
+        life: From `read_life`.
+        bearing: The design.
+    """
+    usual = sum(_usual_load(row.bearing) for row in rows_of(bearing))
+    told = []
+    for name, share in _USUAL.items():
+        value = getattr(life, name, None)
+        if value is not None and not 0.05 < float(value) / (share * usual) < 20.0:
+            told.append(
+                f"life: `{name}` is {1e-3 * float(value):.4g} kN; bearings of this size"
+                f" have some {1e-3 * share * usual:.2g} kN (another unit meant?)"
+            )
+    return tuple(told)
+
+
+def _usual_load(row: Any) -> float:
+    """18 N for a mm² of all balls, 40 N of rollers: the order of C and C0 [N]."""
+    if is_ball(row):
+        return 18e6 * n_elements(row) * float(row.ball_diameter) ** 2
+    area = float(row.roller_diameter) * float(row.roller_length)
+    return 40e6 * n_elements(row) * area
 
 
 _UNRATED = (
@@ -83,6 +116,8 @@ def life_conditions(scene: "Scene", varied: Iterable[str] = ()) -> LifeCondition
     taken = scene.catalogue
     if taken is None or rated_otherwise(scene, varied):
         return own
+    if any("bearing" in row for row in scene.inputs.get("set", {}).get("rows", ())):
+        return own  # rows with bearings of their own
     entry, bearing = taken.entry, scene.element.bearing
     more = {"dynamic_capacity": 1.0, "static_capacity": 1.0}
     alone = entry.bearing
@@ -137,6 +172,16 @@ def _reliability(table: Table) -> float:
         problem = f"{value:g} is not allowed; from {low:g} to {high:g} (a share, not %)"
         raise table.error("reliability", problem)
     return value
+
+
+def _edge_stress(table: Table, bearing: Bearing | BearingSet) -> bool:
+    """Whether roller ends are stressed more; balls have no ends."""
+    if not is_ball(bearing):
+        return table.flag("edge_stress", True)
+    if "edge_stress" in table:
+        table.flag("edge_stress")
+        raise table.error("edge_stress", "is for rollers; balls have no ends")
+    return True
 
 
 def _lubrication(top: Table, table: Table) -> dict[str, Any]:

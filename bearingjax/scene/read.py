@@ -24,7 +24,7 @@ from .bearing_table import designated, read_bearing
 from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import KINEMATICS, read_choices
 from .fit_table import Fits, fit_facts, fit_warnings, read_fits
-from .life_table import read_life
+from .life_table import rating_warnings, read_life
 from .oil_table import Oil, read_oil
 from .quantity import SceneError
 from .scene_file import (
@@ -128,12 +128,14 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
     return scene_of(parse_bearing(path, settings), path)
 
 
-def scene_of(data: dict[str, Any], path: Path) -> Scene:
+def scene_of(data: dict[str, Any], path: Path, varied: Iterable[str] = ()) -> Scene:
     """The scene in parsed data.
 
     Args:
         data: From `parse_scene`.
         path: Where from, for messages.
+        varied: Keys that its cases vary: these are given, even where they are as in the
+            catalogue.
 
     Raises:
         SceneError: As `read_scene`.
@@ -147,7 +149,7 @@ def scene_of(data: dict[str, Any], path: Path) -> Scene:
         table = top.table("bearing", required=True)
         bearing, preload = read_bearing(table, top)
     found = designated(table)
-    catalogue = None if found is None else found[1]
+    catalogue = None if found is None else found[1].varied(varied)
     odd = tuple(str(w.message) for w in caught)
     scene = _scene(top, path.stem, bearing, preload, catalogue, odd)
     top.finish()
@@ -213,6 +215,7 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
     if held and any(speeds.values()):
         problem = "constant_angle is for balls at rest; leave out the speeds"
         raise numerics.error("kinematics", problem)
+    life = read_life(top, bearing, speed, points)
     return Scene(
         name=name,
         element=element,
@@ -226,8 +229,8 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
         speed=speed,
         tolerance=tolerance,
         points=points,
-        life=read_life(top, bearing, speed, points),
-        warnings=odd,
+        life=life,
+        warnings=(*odd, *rating_warnings(life, bearing)),
         catalogue=catalogue,
     )
 

@@ -80,7 +80,7 @@ def _run(table, part, mine, progress, stop) -> Sweep:
             neighbours=table.neighbours,
             progress=progress,
             stop=stop,
-            life=life_conditions(scene, table.varied),
+            life=life_conditions(part.scene),
         )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error

@@ -161,11 +161,14 @@ def _array(name, value, tail):
 def _check_hours(hours):
     if hours is None or is_traced(hours):
         return
-    values = np.asarray(hours)
-    if not (np.isfinite(values).all() and (values >= 0).all() and values.sum() > 0):
-        raise ValueError(
-            "Cases: `hours` must be finite, at least 0 h each, and above 0 h in all."
-        )
+    values = np.atleast_1d(hours)
+    allowed = "finite, at least 0 h each, and above 0 h in all"
+    wrong = np.flatnonzero(~(np.isfinite(values) & (values >= 0)))
+    if wrong.size:
+        worst = f"{values[wrong[0]]:g} h in case {wrong[0]}"
+        raise ValueError(f"Cases: `hours` is {worst}; it must be {allowed}.")
+    if not values.sum() > 0:
+        raise ValueError(f"Cases: `hours` is 0 h in all; it must be {allowed}.")
 
 
 def solve_case(

@@ -100,6 +100,11 @@ SETTINGS = {
         'life={viscosity="20 mm^2/s"}',
         "`life.contamination`: is missing; the modified life needs it beside",
     ),
+    "ends of balls": (
+        "life_spectrum",
+        "life.edge_stress=false",
+        "`life.edge_stress`: is for rollers; balls have no ends",
+    ),
     # Keys.
     "unknown table": (
         "cylindrical_rig",
@@ -994,6 +999,14 @@ def test_life_of_few_laminae():
     settings = ["life.reliability=0.95", "output.points=40"]
     with pytest.raises(SceneError, match=r"`output.points`: 40 .*odd and at least 61"):
         read_scene("tapered", settings)
+
+
+@pytest.mark.parametrize("name, unit", [("dynamic_capacity", "MN"), ("static", "N")])
+def test_ratings_in_another_unit(name, unit):
+    name = f"{name.removesuffix('_capacity')}_capacity"
+    (told,) = read_scene("life_spectrum", [f"life.{name}=23.4 {unit}"]).warnings
+    assert told.startswith(f"life: `{name}` is ")
+    assert told.endswith("bearings of this size have some 17 kN (another unit meant?)")
 
 
 def test_errors_are_value_errors():

@@ -1,10 +1,13 @@
 """What a designation brings to [life], and to [fit] if `new` has restated it."""
 
 import json
+from typing import Any
 
+import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.scene import read_cases
 from bearingjax.scene.life_table import life_conditions, not_published
 
 LOAD = '[operating]\nload = { Fy = "-1 kN" }\n'
@@ -20,7 +23,7 @@ def read(tmp_path):
     return made
 
 
-def rated(conditions):
+def rated(conditions) -> tuple[Any, ...]:
     names = ("dynamic_capacity", "static_capacity", "fatigue_load_limit")
     values = (getattr(conditions, name) for name in names)
     return tuple(None if value is None else float(value) for value in values)
@@ -78,6 +81,62 @@ def test_a_clearance_that_only_restates_the_catalogue_is_its_class(read):
     assert tuple(limits) == pytest.approx((13e-6, 28e-6))
     with pytest.raises(bj.SceneError, match=r"`fit.clearance`: stands beside"):
         read(restated.replace("12.5", "3"), fit, ["fit.clearance=C3"])
+
+
+CATALOGUED = """
+[bearing]
+designation = "7208 B"
+[fit]
+shaft_interference = "0 um"
+housing_interference = "0 um"
+housing_diameter = "120 mm"
+[cases.grid]
+"""
+
+
+def cases(tmp_path, text):
+    path = tmp_path / "cases.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_cases(path)
+
+
+def test_each_bearing_of_a_sweep_has_its_own_ratings(tmp_path):
+    names = ["7208 BE", "7210 BE", "7208 C"]
+    table = cases(tmp_path, f"{CATALOGUED}bearing.designation = {names}")
+    assert [made["bearing.designation"] for made in table.settings] == names
+    found = {
+        names[number]: rated(life_conditions(part.scene))[0]
+        for part in table.structures
+        for number in np.asarray(part.designs)
+    }
+    assert found == {n: bj.catalogue_entry(n).dynamic_capacity for n in names}
+    assert found["7208 C"] is None  # from the geometry
+
+
+def test_rows_that_vary_have_their_ratings(tmp_path):
+    tandem = '[set]\narrangement = "tandem"\nspacing = "18 mm"\n'
+    text = CATALOGUED.replace("[cases", tandem + "[cases")
+    counts = "{ start = 1, stop = 2, count = 2 }"
+    table = cases(tmp_path, f"{text}set.count = {counts}")
+    one, two = (rated(life_conditions(part.scene))[0] for part in table.structures)
+    assert two == pytest.approx(2**0.7 * one, rel=1e-12)  # ISO 281, 5.1.2.2
+
+
+def test_rows_with_bearings_of_their_own_are_rated_by_the_standards(read):
+    own = '[[set.rows]]\nbearing = { designation = "7210 B" }\n'
+    rows = "".join(f'{own}position = "{z} mm"\n' for z in (0, 20))
+    scene = read('designation = "7208 B"', f'[set]\narrangement = "rows"\n{rows}')
+    assert rated(life_conditions(scene)) == (None, None, None)
+
+
+def test_a_clearance_that_varies_is_that_of_the_scene(tmp_path):
+    key = "bearing.radial_internal_clearance"
+    text = CATALOGUED.replace("7208 B", "6205") + f'{key} = ["10 um", "12.5 um"]'
+    (part,) = (table := cases(tmp_path, text)).structures
+    clearances = [10e-6, 12.5e-6]
+    assert [made[f"{key} [m]"] for made in table.settings] == clearances
+    left = part.element.bearing.radial_internal_clearance
+    assert left == pytest.approx(clearances, rel=1e-9)
 
 
 def test_ratings_come_back_from_the_json(read, tmp_path):

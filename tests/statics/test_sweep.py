@@ -243,7 +243,8 @@ def test_bad_calls(what):
 def test_bad_cases():
     for wrong, message in [
         (dict(hours=[1.0, 2.0]), "not one number of cases: hours 2, load 3"),
-        (dict(hours=[0.0, 0.0, 0.0]), "above 0 h in all"),
+        (dict(hours=[0.0, 0.0, 0.0]), "`hours` is 0 h in all; it must be finite, at"),
+        (dict(hours=[1.0, 2.0, -3.0]), "`hours` is -3 h in case 2; it must be finite"),
         (dict(hours=[1.0, -1.0, 1.0]), "at least 0 h each"),
         (dict(prescribed={"uw": 0.0}), "names 'uw'"),
         (dict(load=np.zeros((3, 5))), r"shape \(3, 5\)"),
