@@ -20,7 +20,7 @@ def add(commands):
         epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
     )
     add_scene(command)
-    add_table(command, "case", ".csv, .parquet")
+    add_table(command, "case")
     add_quiet(command)
     return command
 

@@ -32,9 +32,9 @@ def add_drawing(command, what: str = "of the one bearing that is named") -> None
     _add_output(command, "--drawing", text)
 
 
-def add_table(command, row: str, endings: str = ".csv, .parquet, .xlsx") -> None:
+def add_table(command, row: str) -> None:
     """A table with one row per `row`."""
-    _add_output(command, "--table", f"write a row per {row} ({endings})")
+    _add_output(command, "--table", f"write a row per {row} (.csv, .parquet, .xlsx)")
 
 
 def add_report(command, what: str) -> None:
