@@ -23,6 +23,7 @@ AXIS: dict[str, Any] = THIN | {"linestyle": (0, (9, 3, 2, 3))}
 LINE = 0.16
 """Height of a line of a label [inch]."""
 _FREE = 0.1  # between labels below one another [inch]
+_LEANING = 0.4  # contact angle beyond which its label stands at its other side [rad]
 _SHOWN = {
     "m": (1e3, " mm"),
     "rad": (180.0 / np.pi, "°"),
@@ -332,12 +333,15 @@ def contact_angle(
     ax.plot([centre[0]] * 2, [centre[1], centre[1] + end], **THIN)
     turn = 0.5 * np.pi - sense * np.linspace(0.0, contact, 30)
     ax.plot(*(centre + arc * _way(turn)).T, **THIN)
+    # A steep line leans far out: there is more room on the other side of the angle.
+    left = sense > 0.0 and contact > _LEANING
     ax.annotate(
         f"{name} α = {np.rad2deg(contact):.4g}°",
-        (max(tip[0], centre[0]), tip[1]),
-        (6, 0),
+        (centre[0] if left else max(tip[0], centre[0]), tip[1]),
+        (-6 if left else 6, 0),
         textcoords="offset points",
         fontsize=SMALL,
+        ha="right" if left else "left",
         va="center",
     )
 

@@ -197,7 +197,8 @@ def _critical(ax, critical, rpm, top):
         if whirl == 1:
             ax.annotate(
                 f"{at:.0f} rpm", (at, at / 60.0), (6, -12), fontsize=SMALL,
-                textcoords="offset points",
+                textcoords="offset points", zorder=4,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
             )  # fmt: skip
 
 

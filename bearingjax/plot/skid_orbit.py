@@ -122,6 +122,9 @@ def load_over_orbit(
     ax = axes_or_new(ax)
     _raceways(ax, found, by_raceway(found.contact_load, found.contact_load))
     _finish(ax, found, "Load")
+    if zones(found):
+        told = "B, D: more load than by the axial load alone"
+        ax.set_xlabel(f"{ax.get_xlabel()}\n{told}")
     ax.set_ylim(bottom=0.0)
     ax.set_ylabel("contact load [N]")
     return ax
