@@ -48,7 +48,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit status: 0 solved, 2 bad input (or an output that cannot be written), 3 not
         solved, 130 interrupted.
     """
-    options = parser().parse_args(arguments)
+    options, unknown = parser().parse_known_args(arguments)
+    if unknown:  # told with the usage of the command, not with that of all
+        options.refuse(f"unrecognized arguments: {' '.join(unknown)}")
     options.given = list(sys.argv[1:] if arguments is None else arguments)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # which may not know "µ"
@@ -93,7 +95,8 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action="version", version=version("bearingjax"))
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in _COMMANDS:
-        command.add(commands).set_defaults(run=command.run)
+        added = command.add(commands)
+        added.set_defaults(run=command.run, refuse=added.error)
     return top
 
 

@@ -1,10 +1,22 @@
 """`bearingjax life`."""
 
+import dataclasses
 import sys
+from pathlib import Path
 
 from . import jax_settings
-from .options import add_quiet, add_scene, add_table
-from .outputs import check_outputs, check_table, write
+from .options import add_plot, add_quiet, add_report, add_scene, add_table
+from .outputs import (
+    check_outputs,
+    check_table,
+    draws_bearing,
+    draws_solution,
+    origin,
+    png,
+    save,
+    tells_solution,
+    write,
+)
 from .progress import is_shown
 from .status import NOT_SOLVED, SOLVED, complain, tell_unsolved
 
@@ -21,6 +33,8 @@ def add(commands):
     )
     add_scene(command)
     add_table(command, "case")
+    add_plot(command)
+    add_report(command, "pictures")
     add_quiet(command)
     return command
 
@@ -48,17 +62,25 @@ def _life_of_load(options) -> int:
         solved_as_dict,
         write_numbers,
     )
+    from ..statics import LifeConditions
 
     if options.table is not None:
         raise SceneError("--table is for a scene with [cases]; this one has one load")
     scene = read_scene(options.scene, options.set)
+    if scene.life is None:
+        scene = dataclasses.replace(scene, life=LifeConditions())
+    begun = origin(options)
     solution = run_scene(scene, jax_settings.programs())
     solved = Result(int(solution.result)) is Result.CONVERGED
     life = scene_life(scene, solution) if solved else None
     numbers = solved_as_dict(scene, solution, life)
     if life is not None:
         numbers = {**life_as_dict(life), **numbers}
-    write((options.json, lambda path: write_numbers(path, numbers)))
+    write(
+        (options.json, lambda path: write_numbers(path, numbers)),
+        (options.plot, draws_solution(scene, solution) if solved else None),
+        (options.report, tells_solution(scene, solution, begun) if solved else None),
+    )
     if life is None:
         return tell_unsolved(scene, solution)
     print(f"{scene.name}\n{life_report(scene, solution, life)}")
@@ -70,6 +92,8 @@ def _life_of_load(options) -> int:
 
 def _life_of_cases(options) -> int:
     from ..scene import (
+        life_columns,
+        life_page,
         read_cases,
         run_life,
         spectrum_as_dict,
@@ -77,13 +101,28 @@ def _life_of_cases(options) -> int:
         unsolved,
         write_numbers,
     )
-    from ..statics import sweep_table
+    from ..statics.sweep_table import write_columns
 
     table = read_cases(options.scene, options.set)
+    begun = origin(options)
     done = run_life(table, is_shown(options))
+
+    def draw(path, **format):
+        from ..plot import life_overview
+
+        save(life_overview(done, title=table.scene.name), path, **format)
+
+    def tell(path: Path):
+        pictures = {"Lives and damage of the cases": png(draw)}
+        drawing = png(draws_bearing(table.scene, table.scene.element))
+        page = life_page(done, pictures, drawing, begun)
+        path.write_text(page, encoding="utf-8")
+
     write(
-        (options.table, lambda path: sweep_table.write(done.solved, path)),
+        (options.table, lambda path: write_columns(life_columns(done), path)),
         (options.json, lambda path: write_numbers(path, spectrum_as_dict(done))),
+        (options.plot, draw if done.converged else None),
+        (options.report, tell if done.converged else None),
     )
     if not done.converged:
         complain(unsolved(done))

@@ -1,5 +1,6 @@
 """Files that commands write: refused before anything is solved, written at its end."""
 
+import io
 import shlex
 from pathlib import Path
 
@@ -15,6 +16,8 @@ def check_outputs(options) -> None:
     for picture in (outputs["--plot"], outputs["--drawing"]):
         if picture is not None:
             check_plot(picture)
+    if outputs["--report"] is not None:
+        check_report(outputs["--report"])
     check_outputs(outputs, scene_files(options.scene, options.set))
 
 
@@ -31,11 +34,12 @@ def check_table(options, rows: int = 0) -> None:
         raise SceneError(str(error)) from error
 
 
-def check_report(path: Path | None) -> None:
-    """Fail if it is no page."""
+def check_report(path: Path) -> None:
+    """Fail if a page cannot be made, or has another ending."""
     from ..scene import SceneError
 
-    if path is not None and path.suffix.lower() not in (".html", ".htm"):
+    check_matplotlib()
+    if path.suffix.lower() not in (".html", ".htm"):
         raise SceneError(f"{path}: a report ends in .html")
 
 
@@ -70,6 +74,57 @@ def save_drawing(bearing, title: str, path, **format) -> None:
 def save(figure, path, **format) -> None:
     """Write a picture, to a file or a stream."""
     figure.savefig(path, dpi=150, **format)
+
+
+def draws_solution(scene, solution):
+    """What draws the page of a solved bearing, to a file or a stream."""
+
+    def draw(path, **format):
+        from ..plot import overview
+
+        figure = overview(solution.element.bearing, solution, title=scene.name)
+        save(figure, path, **format)
+
+    return draw
+
+
+def draws_bearing(scene, element):
+    """What draws the bearing of an element, to a file or a stream."""
+
+    def draw(path, **format):
+        from ..plot import drawing
+
+        save(drawing(element.bearing, scene.name), path, **format)
+
+    return draw
+
+
+def tells_solution(scene, solution, begun):
+    """What writes the report of a solved bearing.
+
+    Args:
+        scene, solution: What was solved.
+        begun: Its `origin`.
+    """
+
+    def tell(path: Path):
+        from ..scene import solve_page
+
+        pictures = {
+            "Section, load zone, contacts": png(draws_solution(scene, solution))
+        }
+        drawing = png(draws_bearing(scene, solution.element))
+        page = solve_page(scene, solution, pictures, drawing, begun)
+        path.write_text(page, encoding="utf-8")
+
+    return tell
+
+
+def png(draw) -> bytes:
+    """The picture that `draw` draws."""
+    picture = io.BytesIO()
+    draw(picture, format="png")
+    return picture.getvalue()
 
 
 def write(*outputs) -> None:

@@ -1,19 +1,16 @@
 """`bearingjax solve`."""
 
-import io
-
 from . import jax_settings
 from .options import add_drawing, add_plot, add_report, add_scene
 from .outputs import (
-    check_matplotlib,
     check_outputs,
-    check_report,
+    draws_bearing,
+    draws_solution,
     origin,
-    save,
-    save_drawing,
+    tells_solution,
     write,
 )
-from .status import SOLVED, tell_unsolved
+from .status import SOLVED, complain, tell_unsolved
 
 
 def add(commands):
@@ -34,48 +31,24 @@ def add(commands):
 def run(options) -> int:
     """Solve the bearing of a scene."""
     from ..numerics import Result
-    from ..scene import read_scene, report, run_scene, solve_page, write_json
+    from ..scene import has_cases, read_scene, report, run_scene, write_json
 
-    if options.report is not None:
-        check_report(options.report)
-        check_matplotlib()
     check_outputs(options)
     scene = read_scene(options.scene, options.set)
     begun = origin(options)
+    if has_cases(options.scene, options.set):
+        complain("one load, that of [operating]; [cases] are for sweep, life, optimise")
     solution = run_scene(scene, jax_settings.programs())
-
-    def draw(path, **format):
-        from ..plot import overview
-
-        figure = overview(solution.element.bearing, solution, title=scene.name)
-        save(figure, path, **format)
-
     solved = Result(int(solution.result)) is Result.CONVERGED
-
-    def draw_bearing(path, **format):
-        # Mounted and preloaded where the scene says so.
-        element = solution.element if solved else scene.element
-        save_drawing(element.bearing, scene.name, path, **format)
-
-    def tell(path):
-        pictures = {"Section, load zone, contacts": _png(draw)}
-        page = solve_page(scene, solution, pictures, _png(draw_bearing), begun)
-        path.write_text(page, encoding="utf-8")
-
+    # Mounted and preloaded where the scene says so.
+    element = solution.element if solved else scene.element
     write(
         (options.json, lambda path: write_json(path, scene, solution)),
-        (options.plot, draw if solved else None),
-        (options.drawing, draw_bearing),
-        (options.report, tell if solved else None),
+        (options.plot, draws_solution(scene, solution) if solved else None),
+        (options.drawing, draws_bearing(scene, element)),
+        (options.report, tells_solution(scene, solution, begun) if solved else None),
     )
     if not solved:
         return tell_unsolved(scene, solution)
     print(report(scene, solution), flush=True)
     return SOLVED
-
-
-def _png(draw):
-    """A picture as the content of a file."""
-    picture = io.BytesIO()
-    draw(picture, format="png")
-    return picture.getvalue()

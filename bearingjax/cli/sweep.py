@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from .jax_settings import devices
-from .options import add_quiet, add_report, add_scene, add_table
-from .outputs import check_outputs, check_report, check_table, origin, write
+from .options import add_plot, add_quiet, add_report, add_scene, add_table
+from .outputs import check_outputs, check_table, origin, png, save, write
 from .progress import is_shown
 from .status import NOT_SOLVED, SOLVED, complain
 
@@ -30,6 +30,7 @@ def add(commands):
         action="store_true",
         help="solve only the cases that the table lacks, after an interruption",
     )
+    add_plot(command)
     add_report(command, "cases")
     add_quiet(command)
     command.add_argument(
@@ -58,7 +59,6 @@ def run(options) -> int:
     )
     from ..statics import sweep_table
 
-    check_report(options.report)
     check_table(options)
     check_outputs(options)
     devices(options)
@@ -80,13 +80,23 @@ def run(options) -> int:
         def tabulate(path: Path):
             sweep_table.write(solved, path, design_columns(table))
 
+        def draw(path, **format):
+            from ..plot import sweep_overview
+
+            figure = sweep_overview(solved, design_columns(table), table.scene.name)
+            save(figure, path, **format)
+
+        drawn = bool(solved.converged.any())
+
         def tell(path: Path):
-            page = sweep_page(table, solved, summary, begun)
+            pictures = {"Results over the cases": png(draw)} if drawn else {}
+            page = sweep_page(table, solved, summary, begun, pictures)
             path.write_text(page, encoding="utf-8")
 
         write(
             (options.table, tabulate),
             (options.json, lambda path: write_sweep_json(path, table, solved)),
+            (options.plot, draw if drawn else None),
             (options.report, tell),
         )
     print(summary, flush=True)

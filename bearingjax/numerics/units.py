@@ -45,3 +45,27 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
     last = zip(index[len(index) - units.ndim :], units.shape, strict=True)
     found = str(units[tuple(k % size for k, size in last)])
     return "" if found == "1" else found
+
+
+_SHOWN = {
+    "m": (1e6, "µm"),
+    "rad": (1e3, "mrad"),
+    "Pa": (1e-6, "MPa"),
+    "N": (1e-3, "kN"),
+    "rad/s": (30.0 / np.pi, "rpm"),
+}
+
+
+def display_unit(unit: str, largest: float = 0.0) -> tuple[float, str]:
+    """Factor from SI, and the unit in which numbers are shown to people.
+
+    Args:
+        unit: SI unit; empty for a pure number.
+        largest: The largest number that is shown so [SI]: lengths from 1 mm are shown
+            in mm, moduli in GPa.
+    """
+    if unit == "m" and largest >= 1e-3:
+        return 1e3, "mm"
+    if unit == "Pa" and largest >= 1e10:
+        return 1e-9, "GPa"
+    return _SHOWN.get(unit, (1.0, unit))

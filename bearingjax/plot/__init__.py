@@ -9,6 +9,7 @@ from .contact_lines import centre_pressure as centre_pressure
 from .contact_lines import contact_line_load as contact_line_load
 from .contact_stress import contact_stress as contact_stress
 from .drawing import drawing as drawing
+from .life import life_overview as life_overview
 from .load import load_displacement as load_displacement
 from .load import load_zone as load_zone
 from .load import stiffness_over_speed as stiffness_over_speed
@@ -61,3 +62,4 @@ from .skid_time import slip_over_time as slip_over_time
 from .skid_time import spectrum as spectrum
 from .skid_time import speed_over_time as speed_over_time
 from .skid_time import spin_over_time as spin_over_time
+from .sweep import sweep_overview as sweep_overview

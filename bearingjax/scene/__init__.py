@@ -26,6 +26,7 @@ from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers
 from .files import write_outputs as write_outputs
 from .html_report import Origin as Origin
+from .html_report import life_page as life_page
 from .html_report import solve_page as solve_page
 from .html_report import sweep_page as sweep_page
 from .interrupt import Interrupt as Interrupt
@@ -34,6 +35,7 @@ from .life_report import life_report as life_report
 from .life_report import scene_life as scene_life
 from .life_run import LifeRun as LifeRun
 from .life_run import has_cases as has_cases
+from .life_run import life_columns as life_columns
 from .life_run import run_life as run_life
 from .life_run import spectrum_as_dict as spectrum_as_dict
 from .life_run import spectrum_report as spectrum_report

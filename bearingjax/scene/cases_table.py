@@ -158,8 +158,20 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         settings=made,
         outputs=None if outputs is None else tuple(outputs),
         neighbours=neighbours,
-        warnings=tuple(dict.fromkeys((*scene.warnings, *odd))),
+        warnings=_alike(scene.warnings, odd),
         inputs=_inputs(scene, columns, data["cases"]),
+    )
+
+
+def _alike(first: Iterable[str], odd: Sequence[str]) -> tuple[str, ...]:
+    """Warnings of a scene and of its designs; those that differ in their numbers alone
+    are one, as first told."""
+    kinds: dict[str, list[str]] = {}
+    for text in dict.fromkeys((*first, *odd)):
+        kinds.setdefault(re.sub(r"\d[\d.e+-]*", "#", text), []).append(text)
+    return tuple(
+        texts[0] + (f" ({len(texts)} designs alike)" if len(texts) > 1 else "")
+        for texts in kinds.values()
     )
 
 

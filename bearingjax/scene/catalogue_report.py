@@ -19,6 +19,15 @@ _SHARE = 0.1
 
 _SPEED = "1500 rpm"
 
+_WARM = {
+    "shaft": 60,
+    "inner_ring": 60,
+    "elements": 60,
+    "outer_ring": 50,
+    "housing": 45,
+}
+"""Usual temperatures [°C]."""
+
 
 def select(
     entries: Iterable[CatalogueEntry],
@@ -180,9 +189,60 @@ def new_scene(entry: CatalogueEntry) -> str:
         'fixed_ring = "outer"',
         *_load(entry),
         f'inner_speed = "{_SPEED}"',
+        "# Shaft and housing hold the ring straight; without this line it tilts.",
+        'prescribed = { gx = "0 mrad", gy = "0 mrad" }',
+        "",
+        "# What may be added; a # less at the beginning of its lines:",
+        *(f"# {line}".rstrip() for line in _further(entry)),
         "",
     ]
     return "\n".join(lines)
+
+
+def _further(entry: CatalogueEntry) -> list[str]:
+    """Lines of the tables that a life in operation needs."""
+    lines = []
+    if entry.type in ("angular_contact_ball", "tapered_roller"):
+        lines += [
+            "",
+            "[set]  # two of them",
+            'arrangement = "back_to_back"  # or "face_to_face"',
+            f'spacing = "{1e3 * entry.width:.5g} mm"',
+        ]
+    if entry.type != "thrust_ball":
+        lines += [
+            "",
+            "[fit]  # seats, from which the clearance in operation follows",
+            *_seats(entry),
+            "",
+            "[temperature]",
+            *(f'{part} = "{degrees} °C"' for part, degrees in _WARM.items()),
+        ]
+    share = _load(entry)[-1].partition("{ ")[2].partition(" }")[0]
+    return [
+        *lines,
+        "",
+        "[lubricant]",
+        'name = "ISO VG 68"',
+        'temperature = "60 °C"',
+        "",
+        "[life]  # bearingjax life my.toml",
+        'contamination = "grease, normal"',
+        "",
+        "[[cases.spectrum]]  # its loads, a table for each",
+        'hours = "1000 h"',
+        f'operating.inner_speed = "{_SPEED}"',
+        *(f"operating.load.{part}" for part in share.split(", ")),
+    ]
+
+
+def _seats(entry: CatalogueEntry) -> list[str]:
+    """Lines of a usual [fit]; the housing half as large again as the bearing."""
+    classes = ['shaft = "k5"', 'housing = "H7"']
+    if entry.type == "tapered_roller":
+        classes = ['shaft_interference = "10 um"', 'housing_interference = "-10 um"']
+    outside = 5.0 * round(1.5e3 * entry.outside_diameter / 5.0)
+    return [*classes, f'housing_diameter = "{outside:g} mm"']
 
 
 def _load(entry: CatalogueEntry) -> list[str]:
@@ -279,6 +339,7 @@ def _command(data: Mapping[str, Any]) -> str:
     tables = {
         "rotor": "rotor",
         "vibration": "noise",
+        "life": "life",
         "lubricant": "skid",
         "raceway": "contact",
         "optimise": "optimise",

@@ -138,8 +138,8 @@ def read_fits(
     table = beside.table("fit")
     row = rows_of(bearing)[0].bearing
     if isinstance(row, ThrustBallBearing):
-        problem = "is for radial bearings; a thrust bearing has no play"
-        raise beside.error("fit", problem)
+        problem = "is for radial bearings; a thrust bearing has no play to be changed:"
+        raise beside.error("fit", f"{problem} leave [fit] and [temperature] out")
     if len({id(one.bearing) for one in rows_of(bearing)}) > 1 and not is_self_aligning(
         bearing
     ):
@@ -276,6 +276,9 @@ def _sizes(table: Table, catalogue: FromCatalogue | None) -> dict[str, Any]:
     found = {}
     for key in ("bore", "outside_diameter", "housing_diameter"):
         own = getattr(catalogue.entry, key, None) if catalogue else None
+        if key == "housing_diameter" and key not in table:
+            problem = "is missing: the outside diameter of the housing around the seat"
+            raise table.error(key, f'{problem}, a length, such as "100 mm"')
         found[key] = table.quantity(key, "length", *([] if own is None else [own]))
     size, most = found["housing_diameter"], _THICKEST * found["outside_diameter"]
     if size > most:

@@ -17,8 +17,9 @@ from ..statics.solution import Solution
 from ..statics.sweep import Sweep
 from ..statics.sweep_table import columns
 from .cases_table import CaseTable
+from .life_run import LifeRun, life_columns, spectrum_report
 from .read import Scene
-from .report import sections
+from .report import design_sections, sections
 from .sweep_run import design_columns
 
 MOST_CASES = 200
@@ -115,7 +116,13 @@ def solve_page(
     return _page(scene.name, parts, origin)
 
 
-def sweep_page(table: CaseTable, solved: Sweep, summary: str, origin: Origin) -> str:
+def sweep_page(
+    table: CaseTable,
+    solved: Sweep,
+    summary: str,
+    origin: Origin,
+    pictures: Mapping[str, bytes] | None = None,
+) -> str:
     """Report of a sweep: its summary, its first cases, its inputs.
 
     Args:
@@ -123,6 +130,7 @@ def sweep_page(table: CaseTable, solved: Sweep, summary: str, origin: Origin) ->
         solved: What came out.
         summary: As of `sweep_report`.
         origin: Where it comes from.
+        pictures: PNG files by their titles.
 
     Returns:
         HTML, a whole document.
@@ -130,12 +138,41 @@ def sweep_page(table: CaseTable, solved: Sweep, summary: str, origin: Origin) ->
     found = columns(solved, design_columns(table))
     parts = [
         _warnings(summary),
+        *(_picture(title, png) for title, png in (pictures or {}).items()),
         _text("Cases", summary),
         _cases(found, solved.cases.count),
         _inputs(table.inputs),
         _rerun(origin),
     ]
     return _page(table.scene.name, parts, origin)
+
+
+def life_page(
+    run: LifeRun, pictures: Mapping[str, bytes], drawing: bytes, origin: Origin
+) -> str:
+    """Report of the life under the cases of a scene.
+
+    Args:
+        run: With all cases solved.
+        pictures: PNG files by their titles.
+        drawing: PNG file of the bearing, which stands with the inputs.
+        origin: Where it comes from.
+
+    Returns:
+        HTML, a whole document.
+    """
+    scene, summary = run.table.scene, spectrum_report(run)
+    parts = [
+        _warnings(summary),
+        *(_picture(title, png) for title, png in pictures.items()),
+        _text("Rating life", summary),
+        *(_text(title, text) for title, text in design_sections(scene).items()),
+        _cases(life_columns(run), run.table.cases.count),
+        _picture("Drawing", drawing),
+        _inputs(run.table.inputs),
+        _rerun(origin),
+    ]
+    return _page(scene.name, parts, origin)
 
 
 def _page(title: str, parts: Iterable[str], origin: Origin) -> str:

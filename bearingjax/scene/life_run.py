@@ -19,7 +19,7 @@ from .cases_table import CaseTable
 from .life_table import life_conditions, not_published
 from .quantity import SceneError
 from .scene_file import find_scene, parse_bearing
-from .sweep_run import listed_columns, run_cases
+from .sweep_run import design_columns, listed_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 _SHOWN = 12
@@ -49,6 +49,19 @@ class LifeRun:
     def converged(self) -> bool:
         """Whether all cases were solved: else there is no life."""
         return bool(self.solved.converged.all())
+
+    def worst(self, most: int) -> tuple[np.ndarray, np.ndarray]:
+        """The cases that use most of the life that is asked for; all are solved.
+
+        Args:
+            most: How many at most.
+
+        Returns:
+            Their numbers, the worst first, and their shares in the damage.
+        """
+        share = np.asarray(self.asked.damage_share)
+        order = np.argsort(-share, kind="stable")[:most]
+        return order, share[order]
 
 
 def has_cases(source: str | Path, settings: Any = ()) -> bool:
@@ -124,7 +137,7 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         Ratings with their sources, lives under all cases and the damage shares of the
         cases; `equivalent_load` is the constant one with the basic life, and
         `static_safety` the least of all cases. Columns of the cases; counts, warnings,
-        version. Without the lives if a case was not solved.
+        inputs, version. Without the lives if a case was not solved.
     """
     from .. import __version__
 
@@ -148,9 +161,10 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         found["damage_share"] = np.asarray(run.asked.damage_share).tolist()
     return {
         **found,
-        "columns": listed_columns(columns(run.solved)),
+        "columns": listed_columns(life_columns(run)),
         "counts": run.solved.counts(),
         "warnings": _warnings(run),
+        "inputs": run.table.inputs,
         "version": __version__,
     }
 
@@ -158,6 +172,11 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
 def _warnings(run: LifeRun) -> list[str]:
     ours = life_warnings(run.ratings, run.solved.outputs)
     return [*run.table.warnings, *run.solved.warnings, *ours]
+
+
+def life_columns(run: LifeRun) -> dict[str, np.ndarray]:
+    """The cases and their lives as columns by header, in SI, as of `columns`."""
+    return columns(run.solved, design_columns(run.table))
 
 
 def equivalent_load(run: LifeRun) -> float:
@@ -209,22 +228,30 @@ def spectrum_report(run: LifeRun) -> str:
 
 
 def _by_case(run) -> list[str]:
-    """The cases that use most of the life that is asked for."""
-    share = np.asarray(run.asked.damage_share)
-    with np.errstate(divide="ignore"):
-        alone = 1.0 / np.asarray(run.solved.damage)
-    order = np.argsort(-share, kind="stable")[:_SHOWN]
-    hours = run.table.cases.hours
-    head = f"\n{'case':>6}{'hours':>12}{'million rev alone':>20}{'damage %':>12}"
-    lines = [head]
-    for k in order:
+    """A line for each of the worst cases, as if it were alone."""
+    order, shares = run.worst(_SHOWN)
+    solved, hours = run.solved, run.table.cases.hours
+    words = [name.removesuffix("_rating_life") for name in run.lives]
+    lines = [
+        f"\n{'each case alone':<20}{'P':>10}"
+        + "".join(f"{word:>12}" for word in words)
+        + f"{'damage':>12}",
+        f"{'case':>6}{'hours':>14}{'kN':>10}"
+        + f"{'million rev':>12}" * len(words)
+        + f"{'%':>12}",
+    ]
+    for k, share in zip(order, shares, strict=True):
         spent = "-" if hours is None else f"{float(hours[k]):.5g}"
+        load = 1e-3 * float(solved.equivalent_load[k])
+        lives = (_shown(1e-6 * getattr(solved, name)[k]) for name in run.lives)
         lines.append(
-            f"{k:>6}{spent:>12}{_shown(1e-6 * alone[k]):>20}{100 * share[k]:>12.4g}"
+            f"{k:>6}{spent:>14}{load:>10.4g}"
+            + "".join(f"{life:>12}" for life in lives)
+            + f"{100 * share:>12.4g}"
         )
-    left = len(share) - len(order)
+    left = run.table.cases.count - len(order)
     if left:
-        lines.append(f"  and {left} more, {100 * (1 - share[order].sum()):.3g} %")
+        lines.append(f"  and {left} more, {100 * (1 - shares.sum()):.3g} %")
     return lines
 
 

@@ -7,11 +7,10 @@ import numpy as np
 
 from ..design import Bearing, BearingSet, Material, is_ball, rows_of
 from ..element.frame import FREEDOMS, RINGS
-from ..numerics.units import unit_of
+from ..numerics.units import display_unit, unit_of
 from ..statics.options import DEFAULT_TOLERANCE
 from ..statics.solution import Solution
 from ..statics.warning_sizes import speed_factor
-from .quantity import display_unit
 from .read import Scene
 
 

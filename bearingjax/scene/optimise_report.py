@@ -4,12 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from ..numerics.units import unit_of
+from ..numerics.units import display_unit, unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
 from .optimise_table import WARMTH, Optimisation
-from .quantity import display_unit
 
 _RULE = "-" * 78
 _CELSIUS = 273.15

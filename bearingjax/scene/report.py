@@ -10,16 +10,17 @@ from collections.abc import Callable
 import jax
 import numpy as np
 
-from ..design import BearingSet, TaperedRollerBearing, is_ball, rows_of
+from ..design import Bearing, BearingSet, TaperedRollerBearing, is_ball, rows_of
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
+from ..numerics.units import display_unit
 from ..statics.life_warning import life_warnings
 from ..statics.solution import BallSolution, Solution
 from ..statics.warning import warnings
 from .fit_report import fit_report
+from .fit_table import fitted
 from .life_report import life_report, scene_life
 from .oil_table import oil_report
 from .operation_report import operation
-from .quantity import display_unit
 from .read import Scene
 
 _RULE = "-" * 78
@@ -51,8 +52,34 @@ def sections(scene: Scene, solution: Solution) -> dict[str, str]:
     return {title: text for title, text in texts.items() if text}
 
 
+def design_sections(scene: Scene) -> dict[str, str]:
+    """The texts by their titles that need no solution: the bearing, and its fits.
+
+    Args:
+        scene: What is asked.
+    """
+    mounted = fitted(scene.fits, scene.element).bearing
+    texts = {
+        "Bearing": bearing_text(scene, jax.device_get(mounted)),
+        "Fits and clearance": _fits(scene, None),
+    }
+    return {title: text for title, text in texts.items() if text}
+
+
 def _bearing(scene, solution):
-    bearing = solution.element.bearing
+    return bearing_text(scene, solution.element.bearing, solution)
+
+
+def bearing_text(
+    scene: Scene, bearing: Bearing | BearingSet, solution: Solution | None = None
+) -> str:
+    """Kind, sizes and arrangement of a bearing.
+
+    Args:
+        scene: What was asked.
+        bearing: As it is mounted, in NumPy.
+        solution: With it, springs are told too.
+    """
     lines = []
     if isinstance(bearing, BearingSet):
         places = ", ".join(
@@ -62,7 +89,7 @@ def _bearing(scene, solution):
         lines.append(f"{scene.name}: set of {len(bearing.rows)} rows at z = {places}")
         if scene.preload_force is not None:
             lines.append(f"ground to a preload of {scene.preload_force:.5g} N")
-        lines += _springs(bearing, solution)
+        lines += [] if solution is None else _springs(bearing, solution)
     tell = ball_row if is_ball(bearing) else roller_row
     parts = [row.bearing for row in rows_of(bearing)]
     alike = len({"\n".join(tell(part, "")) for part in parts}) == 1

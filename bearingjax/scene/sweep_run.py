@@ -8,13 +8,14 @@ from typing import Any
 import jax
 import numpy as np
 
+from ..numerics.units import display_unit
 from ..statics.sweep import Sweep, sweep
 from ..statics.sweep_program import not_run
 from ..statics.sweep_table import columns
 from .cases_table import CaseTable, Structure
 from .files import write_numbers
 from .life_table import life_conditions
-from .quantity import SceneError, display_unit
+from .quantity import SceneError
 
 OUTPUTS = (
     "displacement",

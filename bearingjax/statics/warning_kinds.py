@@ -129,7 +129,8 @@ def _free_tilt_words(size, where):
     what = where or f"{size:.3g} times what makers allow for"
     return (
         f"the ring tilts freely, {what}: if shaft and housing hold it straighter,"
-        " prescribe gx and gy, or leave them out of `free`"
+        ' prescribe gx and gy (in a scene\'s [operating]: prescribed = { gx = "0 mrad",'
+        ' gy = "0 mrad" }), or leave them out of `free`'
     )
 
 

@@ -119,7 +119,10 @@ def test_solve_leaves_the_cases_alone(scene):
 def test_command_writes_a_row_per_case(run, scene, tmp_path):
     path = scene(GRID)
     csv, out, page = (tmp_path / f"t.{end}" for end in ("csv", "json", "html"))
-    ended = run("sweep", path, "--table", csv, "--json", out, "--report", page)
+    picture = tmp_path / "t.png"
+    drawn = ("--report", page, "--plot", picture)
+    ended = run("sweep", path, "--table", csv, "--json", out, *drawn)
+    assert picture.read_bytes().startswith(b"\x89PNG")
     assert ended.status == 0 and "12 converged" in ended.out
     text = unescape(page.read_text(encoding="utf-8"))
     assert all(line in text for line in ended.out.splitlines())
@@ -401,3 +404,10 @@ def test_the_echo_is_the_scene(scene, tmp_path):
 def test_wrong_outputs(run, scene):
     ended = run("sweep", scene('[cases]\noutputs = ["presure"]\n' + GRID))
     assert ended.status == 2 and "names 'presure'; there are" in ended.err
+
+
+def test_warnings_of_designs_that_differ_in_numbers_are_one():
+    told = cases_table._alike(
+        ["loose by 0.42 µm"], ["loose by 0.42 µm", "loose by 3e-1 µm", "x"]
+    )
+    assert told == ("loose by 0.42 µm (2 designs alike)", "x")

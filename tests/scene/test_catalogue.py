@@ -10,7 +10,7 @@ import pytest
 from tolerances import SOLVER
 
 import bearingjax as bj
-from bearingjax.scene import new_scene, shipped_scenes
+from bearingjax.scene import new_scene, read_cases, shipped_scenes
 from bearingjax.scene.quantity import to_si
 
 ENTRIES = bj.catalogue()
@@ -116,6 +116,23 @@ def test_every_bearing_loads_and_its_new_scene_reads(kind, tmp_path):
                 0.1 * entry.dynamic_capacity,
                 rel=0.06,  # two digits
             )
+
+
+@pytest.mark.parametrize("name", ["6205", "30205", "7208B", "51108", "NU 208"])
+def test_what_a_new_scene_offers_can_be_taken(name, tmp_path):
+    """All that may be added to it, with its # taken off, is a scene with a life."""
+    scene, _, further = new_scene(bj.scene.catalogue_entry(name)).partition(
+        "# What may"
+    )
+    lines = [line[2:] for line in further.splitlines()[1:]]
+    path = tmp_path / "new.toml"
+    path.write_text("\n".join([scene, *lines]), encoding="utf-8")
+    table = read_cases(path)
+    np.testing.assert_allclose(table.cases.load[0], table.scene.load)
+    assert table.scene.life is not None and table.scene.oil is not None
+    assert (table.scene.fits is None) == (name == "51108")
+    assert {"gx", "gy"} <= set(table.scene.prescribed)
+    assert table.scene.warnings == ()
 
 
 def test_a_new_scene_solves(run, tmp_path):

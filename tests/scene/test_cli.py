@@ -309,6 +309,15 @@ def test_wrong_usage(capsys, arguments):
     assert shown.out == "" and shown.err.startswith("usage: bearingjax")
 
 
+def test_an_unknown_option_is_told_with_the_usage_of_its_command(capsys):
+    with pytest.raises(SystemExit) as stop:
+        cli.main(["life", "life_spectrum", "--plto", "out.png"])
+    assert stop.value.code == 2
+    err = capsys.readouterr().err
+    assert "[--plot OUT]" in err
+    assert "bearingjax life: error: unrecognized arguments: --plto out.png" in err
+
+
 def test_help_tells_the_exit_status(capsys):
     with pytest.raises(SystemExit) as stop:
         cli.main(["solve", "--help"])

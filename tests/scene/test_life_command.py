@@ -1,6 +1,7 @@
 """`bearingjax life`, and the rating life in reports, files and sweeps."""
 
 import json
+from html import unescape
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,7 +10,7 @@ from tolerances import SOLVER
 
 import bearingjax as bj
 from bearingjax.lubrication import OILS
-from bearingjax.scene import run_scene, shipped_scenes
+from bearingjax.scene import read_cases, run_scene, shipped_scenes
 from bearingjax.scene.life_run import LifeRun, spectrum_as_dict, spectrum_report
 from bearingjax.statics.sweep import Sweep
 
@@ -37,7 +38,7 @@ def test_a_scene_has_the_conditions_of_its_life():
 def test_solve_tells_the_life_that_python_has(run, tmp_path, solution, untyped):
     out = tmp_path / "out.json"
     told = run("solve", SCENE, "--json", out)
-    assert told.status == 0
+    assert told.status == 0 and "[cases] are for sweep" in told.err
     found = json.loads(out.read_text(encoding="utf-8"))
     scene = bj.read_scene(SCENE)
     life = bj.rating_life(
@@ -68,10 +69,19 @@ def test_solve_tells_the_life_that_python_has(run, tmp_path, solution, untyped):
     assert told.status == 2 and "--table is for a scene with [cases]" in told.err
 
 
-def test_a_spectrum_adds_up_the_damage_of_its_cases(run, tmp_path):
+def test_a_spectrum_adds_up_the_damage_of_its_cases(run, tmp_path, untyped):
     out, table = tmp_path / "out.json", tmp_path / "cases.csv"
-    told = run("life", SCENE, "--json", out, "--table", table, "--quiet")
+    page, picture = tmp_path / "out.html", tmp_path / "out.png"
+    drawn = ("--report", page, "--plot", picture)
+    told = run("life", SCENE, "--json", out, "--table", table, *drawn, "--quiet")
     assert told.status == 0, told.err
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    text = unescape(page.read_text(encoding="utf-8"))
+    assert all(line in text for line in told.out.splitlines())
+    assert "data:image/png;base64," in text and "7 balls of 11.5 mm" in text
+    again = read_cases(out)  # the file is a scene again
+    np.testing.assert_array_equal(again.cases.hours, [700.0, 250.0, 50.0])
+    np.testing.assert_allclose(again.cases.load[:, 0], [1e3, 2e3, 4e3])
     found = json.loads(out.read_text(encoding="utf-8"))
     columns = found["columns"]
     hours = np.array([700.0, 250.0, 50.0])
@@ -86,7 +96,7 @@ def test_a_spectrum_adds_up_the_damage_of_its_cases(run, tmp_path):
     assert found["static_safety"] == min(columns["static_safety"])
     lines = table.read_text(encoding="utf-8").splitlines()
     assert len(lines) == 4 and "modified_rating_life" in lines[0]
-    assert "damage %" in told.out
+    assert "each case alone" in told.out
     # The mean load of ISO 281: powers of the loads by their revolutions.
     loads = np.array(columns["equivalent_load [N]"])
     mean = np.cbrt((turns * loads**3).sum() / turns.sum())
@@ -126,7 +136,9 @@ def test_reliability_counts_without_a_lubricant_too(untyped):
         bearing=bj.DeepGrooveBallBearing(7, 0.04, 0.008, **GROOVES)
     )
     scene = SimpleNamespace(name="two", element=element, catalogue=None)
-    table = SimpleNamespace(scene=scene, cases=cases, varied=["hours"], warnings=[])
+    table = SimpleNamespace(
+        scene=scene, cases=cases, varied=["hours"], warnings=[], inputs={}
+    )
     known = {
         name: bj.spectrum_life(cases, 1 / lives)
         for name in ("basic_rating_life", "reference_rating_life")

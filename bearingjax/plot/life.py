@@ -1,0 +1,138 @@
+"""Lives and damage of the cases of a load spectrum."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..numerics.units import display_unit
+from ..statics.sweep_table import asked
+from .style import COLOURS, GREY, ROLLER, SMALL, head, pyplot
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+
+_MOST = 16
+"""Cases that are drawn."""
+_NAMED = 5
+"""Cases up to which their loads and speeds stand below."""
+
+_COLOURS = {
+    "basic_rating_life": GREY,
+    "reference_rating_life": COLOURS["outer"],
+    "modified_rating_life": ROLLER,
+}
+
+
+def life_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
+    """Life of every case if it were alone, and its share in time and damage.
+
+    Of many cases those that use most of the life.
+
+    Args:
+        run: From `scene.run_life`, with all cases solved.
+        title: Head of the page; "Rating life" if empty.
+
+    Returns:
+        The figure, 12 by 6 inches.
+    """
+    figure = pyplot().figure(figsize=(12.0, 6.0))
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    parts: Any = figure.subfigures(2, 1, height_ratios=[5.4, 0.6])
+    upper, foot = parts
+    left, right = upper.subplots(1, 2)
+    order = np.sort(run.worst(_MOST)[0])
+    _lives(run, order, left)
+    _shares(run, order, right)
+    foot.text(
+        0.5, 0.5, _results(run), ha="center", va="center", fontsize=10, linespacing=1.5
+    )
+    head(figure, title or "Rating life")
+    return figure
+
+
+def _lives(run, order, ax):
+    """Life of each case alone, in million revolutions."""
+    width = 0.8 / len(run.lives)
+    for k, name in enumerate(run.lives):
+        alone = 1e-6 * np.asarray(getattr(run.solved, name), dtype=float)[order]
+        ax.bar(
+            np.arange(len(order)) + (k - 0.5 * (len(run.lives) - 1)) * width,
+            np.where(np.isfinite(alone), alone, np.nan),
+            width,
+            color=_COLOURS[name],
+            label=_word(name),
+        )
+    ax.set_yscale("log")
+    ax.set_ylabel("life [million revolutions]")
+    ax.set_title("Life of each case, if it were alone")
+    _finish(run, order, ax)
+
+
+def _shares(run, order, ax):
+    """Shares of the cases in time, and in damage, in percent."""
+    hours, damage = run.table.cases.hours, run.asked.damage_share
+    count = run.table.cases.count
+    time = np.ones(count) if hours is None else np.asarray(hours, dtype=float)
+    bars = (
+        ("time", time / time.sum(), GREY),
+        ("damage", np.asarray(damage), COLOURS["inner"]),
+    )
+    for side, (label, share, colour) in zip((-0.2, 0.2), bars, strict=True):
+        drawn = ax.bar(
+            np.arange(len(order)) + side,
+            100.0 * share[order],
+            0.38,
+            color=colour,
+            label=label,
+        )
+        if len(order) <= 8:
+            ax.bar_label(drawn, fmt="%.3g", fontsize=SMALL, padding=2)
+    ax.margins(y=0.12)
+    ax.set_ylabel("share [%]")
+    ax.set_title("Shares of the cases")
+    _finish(run, order, ax)
+
+
+def _finish(run, order, ax):
+    left = run.table.cases.count - len(order)
+    names = [str(k) for k in order]
+    if len(order) <= _NAMED:
+        names = [f"{k}{_setting(run, k)}" for k in order]
+    ax.set_xticks(np.arange(len(order)), names, fontsize=SMALL)
+    ax.set_xlabel(f"case (the worst; {left} more are not drawn)" if left else "case")
+    ax.grid(axis="y", color="0.9")
+    ax.set_axisbelow(True)
+    ax.legend(fontsize=SMALL)
+
+
+def _setting(run, case) -> str:
+    """Loads and speeds of a case, a line each, those that differ over the cases."""
+    lines = []
+    for header, values in asked(run.table.cases).items():
+        if header in ("design", "hours [h]") or len(np.unique(values)) < 2:
+            continue
+        name, _, unit = header.partition(" [")
+        scale, shown = display_unit(unit.rstrip("]"))
+        value = f"{scale * float(values[case]):.4g} {shown}"
+        lines.append(f"\n{name.replace('_', ' ')} {value}")
+    return "".join(lines)
+
+
+def _results(run: Any) -> str:
+    """Two lines: the lives under all cases; load and static safety."""
+    lives = []
+    for name, life in run.lives.items():
+        words = f"{_word(name)} {1e-6 * float(life.rating_life):.4g} million rev"
+        if life.life_hours is not None:
+            words += f" = {float(life.life_hours):.5g} h"
+        lives.append(words)
+    rated = run.ratings
+    return (
+        f"under all cases:  {';  '.join(lives)}\n"
+        f"C {1e-3 * float(rated.dynamic_capacity):.4g} kN ({rated.dynamic_source}),  "
+        f"least static safety {float(np.min(run.solved.static_safety)):.3g}"
+    )
+
+
+def _word(name):
+    return name.removesuffix("_rating_life")

@@ -1,0 +1,167 @@
+"""The results of a sweep over what its cases vary."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..numerics.units import display_unit
+from ..statics.sweep import Sweep
+from ..statics.sweep_table import columns
+from .style import CURVES, SMALL, head, pyplot, without_offset
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+
+_MOST_RESULTS = 9
+_NO_RESULTS = ("design", "iterations", "residual", "hours [h]")
+_NUMBER = "case"
+
+
+class _Curve(NamedTuple):
+    """Abscissae, cases, number of the colour, and name ("": none) of a curve."""
+
+    along: np.ndarray
+    cases: np.ndarray
+    colour: int
+    name: str
+
+
+def sweep_overview(
+    solved: Sweep,
+    beside: Mapping[str, np.ndarray] | None = None,
+    title: str = "",
+) -> "matplotlib.figure.Figure":
+    """Every result that differs from case to case, the first nine.
+
+    Of a grid over the input with most values, a curve for each setting of the others;
+    its colour tells the first of them that has six values at most. Of other cases over
+    their number. Cases that were not solved are left out, and so is what a case
+    prescribes.
+
+    Args:
+        solved: From `sweep`, with a case solved.
+        beside: What makes the designs, as in `columns`.
+        title: Head of the page; "Sweep" if empty.
+
+    Returns:
+        The figure, 5 inches wide for each of at most three columns.
+    """
+    found = columns(solved, beside)
+    names = list(found)
+    split = names.index("result")
+    good = solved.converged
+    inputs = _varying({name: found[name] for name in names[:split]}, good)
+    results = _varying({name: found[name] for name in names[split + 1 :]}, good)
+    results = {
+        name: values
+        for name, values in results.items()
+        if not any(
+            np.allclose(values, x, atol=0.0, equal_nan=True) for x in inputs.values()
+        )
+    }
+    shown = list(results.items())[:_MOST_RESULTS]
+    across = max(1, min(3, len(shown)))
+    down = max(1, -(-len(shown) // across))
+    figure = pyplot().figure(figsize=(5.0 * across, 0.8 + 3.4 * down))
+    figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.1)
+    label, curves = _curves(inputs, good)
+    for k, (header, values) in enumerate(shown):
+        ax = without_offset(figure.add_subplot(down, across, k + 1))
+        words, scale = _shown(header, values)
+        for curve in curves:
+            ax.plot(
+                curve.along,
+                scale * values[curve.cases],
+                "." if label == _NUMBER else ".-",
+                color=CURVES[curve.colour],
+                label=curve.name,
+                linewidth=1.0,
+                markersize=3.0 if len(good) > 60 else 7.0,
+            )
+        ax.set_title(words, fontsize=11)
+        ax.set_xlabel(label)
+        if label == _NUMBER:
+            ax.locator_params(axis="x", integer=True)
+        ax.grid(color="0.9")
+        if k == 0 and any(curve.name for curve in curves):
+            # Curves of one colour are told once.
+            told = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
+            place, across = "outside lower center", min(3, len(told))
+            figure.legend(
+                told.values(), told.keys(), loc=place, ncols=across, fontsize=SMALL
+            )
+    if not shown:
+        figure.text(0.5, 0.5, "no result differs from case to case", ha="center")
+    head(figure, title or "Sweep")
+    return figure
+
+
+def _varying(found, good) -> dict[str, np.ndarray]:
+    """Columns of numbers that differ over the cases by more than round-off, which is
+    told from the largest number of their unit."""
+    kept, largest = {}, {}
+    for header, column in found.items():
+        values = np.asarray(column)
+        if values.dtype.kind not in "fi" or header in _NO_RESULTS:
+            continue
+        values = np.where(good & np.isfinite(values), values.astype(float), np.nan)
+        if np.isfinite(values).any():
+            kept[header] = values
+            unit = _unit(header)
+            size = float(np.nanmax(np.abs(values)))
+            largest[unit] = max(largest.get(unit, 0.0), size)
+    return {
+        header: values
+        for header, values in kept.items()
+        if np.nanmax(values) - np.nanmin(values) > 1e-9 * largest[_unit(header)]
+    }
+
+
+def _curves(inputs, good) -> tuple[str, list[_Curve]]:
+    """Label of the abscissa, and the curves."""
+    solved = np.flatnonzero(good)
+    by_number = _NUMBER, [_Curve(solved, solved, 0, "")]
+    if not inputs:
+        return by_number
+    along = max(inputs, key=lambda name: len(np.unique(inputs[name][solved])))
+    x = inputs[along]
+    others = [pair for pair in inputs.items() if pair[0] != along]
+    settings = np.array([values[solved] for _, values in others])
+    _, kind = np.unique(
+        settings.reshape(len(others), -1).T, axis=0, return_inverse=True
+    )
+    kind = kind.reshape(-1)
+    groups = [solved[kind == k] for k in range(kind.max() + 1)]
+    if not all(len(set(x[mine])) == len(mine) > 1 for mine in groups):
+        return by_number
+    words, scale = _shown(along, x)
+    name, values, kinds = _colouring(others, solved)
+    curves = []
+    for mine in groups:
+        rising = mine[np.argsort(x[mine])]
+        colour = int(np.searchsorted(kinds, values[mine[0]])) if name else 0
+        text, factor = _shown(name, values) if name else ("", 0.0)
+        told = f"{text}: {factor * values[mine[0]]:.4g}" if name else ""
+        curves.append(_Curve(scale * x[rising], rising, colour, told))
+    return words, curves
+
+
+def _colouring(others, solved):
+    """Header, values and kinds of the input that colours tell; "" if there is none."""
+    for header, values in others:
+        kinds = np.unique(values[solved])
+        if len(kinds) <= len(CURVES):
+            return header, values, kinds
+    return "", np.zeros(0), np.zeros(0)
+
+
+def _unit(header):
+    return header.partition(" [")[2].rstrip("]")
+
+
+def _shown(header, values) -> tuple[str, float]:
+    """Header with the unit for people, and the factor to it."""
+    name = header.partition(" [")[0]
+    scale, shown = display_unit(_unit(header), float(np.nanmax(np.abs(values))))
+    return (f"{name} [{shown}]" if shown else name), scale

@@ -1,0 +1,67 @@
+"""Pictures of many cases, of sweeps written by hand."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import bearingjax as bj
+from bearingjax.numerics import Result
+from bearingjax.statics.cases import Cases
+from bearingjax.statics.sweep import Sweep
+
+plt = pytest.importorskip("matplotlib.pyplot")
+FY = np.tile(-1e3 * np.arange(1.0, 9.0), 2)
+PLAY = np.repeat([0.0, 20e-6], 8)
+LARGEST = 0.3 * np.abs(FY) + 1e7 * PLAY
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    plt.close("all")
+
+
+def swept(fy=FY, lost=()):
+    load = np.zeros((len(fy), 6))
+    load[:, 1] = fy
+    result = np.full(len(fy), int(Result.CONVERGED))
+    result[list(lost)] = int(Result.STEP_LIMIT)
+    displacement = np.zeros((len(fy), 12))
+    displacement[:, 6] = 1e-20 * np.arange(len(fy))  # round-off
+    displacement[:, 7] = 1e-9 * fy - PLAY / 2
+    outputs = {
+        "result": result,
+        "largest_load": LARGEST,
+        "displacement": displacement,
+        "iterations": np.arange(len(fy)),
+    }
+    nothing = dict.fromkeys(field.name for field in dataclasses.fields(Cases))
+    cases = Cases(**{**nothing, "load": load, "prescribed": {}})
+    return Sweep(cases, outputs, "inner", ())
+
+
+def test_a_grid_is_drawn_over_the_input_with_most_values():
+    """A curve for each clearance, without the case that failed; no round-off."""
+    beside = {"bearing.radial_internal_clearance [m]": PLAY}
+    figure = bj.plot.sweep_overview(swept(lost=(3,)), beside, "map")
+    titles = [ax.get_title() for ax in figure.axes]
+    assert titles == ["largest_load [kN]", "displacement_inner_uy [µm]"]
+    first, second = figure.axes
+    assert first.get_xlabel() == "Fy [kN]"
+    loads = np.delete(np.arange(8), 3)
+    for line, mine in zip(first.get_lines(), (loads, np.arange(8, 16)), strict=True):
+        order = mine[::-1]
+        np.testing.assert_allclose(np.asarray(line.get_xdata()), 1e-3 * FY[order])
+        np.testing.assert_allclose(np.asarray(line.get_ydata()), 1e-3 * LARGEST[order])
+    (legend,) = figure.legends
+    names = [text.get_text() for text in legend.get_texts()]
+    assert [name.partition("[µm]: ")[2] for name in names] == ["0", "20"]
+
+
+def test_other_cases_are_drawn_over_their_number():
+    fy = np.where(np.arange(16) == 5, FY[4], FY)  # one load twice
+    figure = bj.plot.sweep_overview(swept(fy), {"play [m]": PLAY})
+    ax = figure.axes[0]
+    assert ax.get_xlabel() == "case" and not figure.legends
+    np.testing.assert_array_equal(ax.get_lines()[0].get_xdata(), np.arange(16))
