@@ -56,7 +56,7 @@ def ball_section(
         outlines.append(ball_row(ax, part, place, reach))
     corners = np.concatenate(outlines)
     first = min(rows_of(bearing), key=row_position)
-    _dimensions(ax, first, corners.min(axis=0), corners.max(axis=0))
+    _dimensions(ax, first, corners.min(axis=0), corners.max(axis=0), len(places) == 1)
     ax.set_title("Axial section, to scale; ring bodies schematic")
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.05)
@@ -69,7 +69,7 @@ def ball_section(
     return ax
 
 
-def _dimensions(ax, row, low, high):
+def _dimensions(ax, row, low, high, alone):
     """Ball, pitch circle and free contact angle, of the row at the left."""
     part = row.bearing
     sign = -1.0 if row.mirrored else 1.0
@@ -94,7 +94,7 @@ def _dimensions(ax, row, low, high):
     pitch_arrow(ax, beyond, part.pitch_diameter)
     if 0.0 < angle < _STEEP:
         top = high[1] + 0.07 * tall, high[1] + 0.14 * tall
-        contact_angle(ax, centre, angle, top, sign, "free contact angle")
+        contact_angle(ax, centre, angle, top, sign, "free contact angle", alone)
     left = low - np.array([0.35 * diameter, 0.0])
     ax.update_datalim([left, high + np.array([0.5 * diameter, 0.18 * tall])])
 

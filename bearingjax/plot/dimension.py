@@ -315,6 +315,7 @@ def contact_angle(
     top,
     sense: float = 1.0,
     name: str = "contact angle",
+    alone: bool = True,
 ) -> None:
     """The angle of a contact normal to the radial direction, above a section.
 
@@ -325,6 +326,7 @@ def contact_angle(
         top: Radial place of the arc, and of the end of the lines.
         sense: -1 if the row is mirrored.
         name: What it is.
+        alone: Whether no other row stands beside it.
     """
     centre = np.asarray(centre, dtype=float)
     arc, end = (place - centre[1] for place in top)
@@ -334,7 +336,7 @@ def contact_angle(
     turn = 0.5 * np.pi - sense * np.linspace(0.0, contact, 30)
     ax.plot(*(centre + arc * _way(turn)).T, **THIN)
     # A steep line leans far out: there is more room on the other side of the angle.
-    left = sense > 0.0 and contact > _LEANING
+    left = alone and contact > _LEANING
     ax.annotate(
         f"{name} α = {np.rad2deg(contact):.4g}°",
         (centre[0] if left else max(tip[0], centre[0]), tip[1]),

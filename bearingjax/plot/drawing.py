@@ -1,5 +1,6 @@
 """Drawings: every number of a design where it is measured, to scale."""
 
+import dataclasses
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -30,7 +31,8 @@ from .style import head, pyplot
 if TYPE_CHECKING:
     import matplotlib.figure
 
-IN_WORDS = "material", "ring_material"
+MATERIALS = "material", "ring_material"
+IN_WORDS = (*MATERIALS, "rated_contact_angle")
 """Fields of a bearing that have no place on a drawing: they stand below it."""
 _WIDTH = 13.2
 _SECTION, _FACE = (8.8, 5.2), (4.4, 5.2)
@@ -245,21 +247,18 @@ def _like_ribs(ribs):
 
 
 def _in_words(bearing):
-    """What has no place on a drawing: materials, and deviations that there are not."""
-    materials = [f"{name}: {_of_material(getattr(bearing, name))}" for name in IN_WORDS]
-    lacking = [
-        label(bearing, name)
-        for name in DEVIATIONS
-        if hasattr(bearing, name) and getattr(bearing, name) is None
+    """What has no place on a drawing, and deviations that there are not."""
+    materials = [
+        f"{name}: {_of_material(getattr(bearing, name))}" for name in MATERIALS
     ]
-    return "\n".join(",   ".join(line) for line in (materials, lacking))
+    numbers = [name for name in IN_WORDS[len(MATERIALS) :] if hasattr(bearing, name)]
+    lacking = [name for name in DEVIATIONS if getattr(bearing, name, ()) is None]
+    others = [label(bearing, name) for name in (*numbers, *lacking)]
+    return "\n".join(",   ".join(line) for line in (materials, others))
 
 
 def _of_material(material: Material | None):
     if material is None:
         return "as the rolling elements"
-    return (
-        f"E = {1e-9 * float(material.elastic_modulus):.4g} GPa,"
-        f" ν = {float(material.poisson_ratio):.3g},"
-        f" ρ = {float(material.density):.5g} kg/m³"
-    )
+    fields = (field.name for field in dataclasses.fields(material))
+    return ", ".join(label(material, name) for name in fields)

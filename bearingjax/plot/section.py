@@ -186,7 +186,8 @@ def _set_section(ax, rows):
     angle = float(part.axis_angle) + float(part.half_angle)
     if angle > 0.0:
         top = high[1] + 0.07 * tall, high[1] + 0.14 * tall
-        contact_angle(ax, centre, angle, top, -1.0 if row.mirrored else 1.0)
+        sense = -1.0 if row.mirrored else 1.0
+        contact_angle(ax, centre, angle, top, sense, alone=False)
     ax.set_aspect("equal", adjustable="datalim")
     room = np.array([0.5 * diameter, 0.2 * tall])
     ax.update_datalim([low, high + room])

@@ -58,7 +58,8 @@ td.number { font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
 @media print {
   body { max-width: none; padding: 0; font-size: 9pt; line-height: 1.35 }
   h1 { font-size: 16pt } h2 { font-size: 11pt; margin: 5mm 0 2mm; break-after: avoid }
-  pre { font-size: 7.2pt; line-height: 1.3 } pre.columns { overflow: visible }
+  pre { font-size: 7.2pt; line-height: 1.3; orphans: 6; widows: 6 }
+  pre.columns { overflow: visible } pre + pre.columns { break-before: avoid }
   table { font-size: 8pt } th, td { padding: .3mm 3mm .3mm 0 }
   figure, .warnings, tr { break-inside: avoid } p { break-after: avoid }
   tr:has(th[scope=colgroup]) { break-after: avoid }

@@ -36,6 +36,8 @@ DESIGNS = {
         outer_shoulder=0.003,
         inner_shoulder=0.002,
         ball_deviation=np.arange(5) * 1e-7,
+        material=bj.Material.silicon_nitride(),
+        ring_material=bj.Material.steel(),
     ),
     "four-point": balls(
         5, bj.FourPointBallBearing, shim_angle=0.35, radial_internal_clearance=-3e-6
@@ -104,9 +106,13 @@ def test_every_field_of_a_bearing_is_drawn_once(name):
     for field in dataclasses.fields(bearing):
         missing = field.name in DEVIATIONS and getattr(bearing, field.name) is None
         if field.name in IN_WORDS or missing:
-            assert sum(w.startswith(f"{field.name}: ") for w in words) == 1
+            pattern = rf"{field.name}(: | = )"
+            assert sum(bool(re.match(pattern, word)) for word in words) == 1
         elif field.name != "ribs":
             assert count(drawn, field.name) == 1, field.name
+    materials = [m for m in (bearing.material, bearing.ring_material) if m is not None]
+    for field in dataclasses.fields(bj.Material):
+        assert sum(f"{field.name} = " in word for word in words) == len(materials)
     if isinstance(bearing, bj.design.AbstractRollerBearing):
         _ribs_and_profiles(page(name), bearing, drawn)
 
