@@ -6,6 +6,7 @@ from typing import Any
 import jax
 import numpy as np
 
+from ..design import CylindricalRollerBearing, NeedleRollerBearing, rows_of
 from ..element.frame import RINGS
 from ..statics.life import LIFE_OUTPUTS, Life, life_of
 from ..statics.solution import RollerSolution, Solution
@@ -112,6 +113,7 @@ def life_report(scene: Scene, solution: Solution, life: Life) -> str:
         *not_published(scene),
         f"equivalent load: P {_kilo(life.equivalent_load)} kN, of the reference life"
         f" {_kilo(life.reference_load)} kN",
+        *_through_ribs(solution),
         f"static safety C0/P0 {_number(life.static_safety)}, P0"
         f" {_kilo(life.static_equivalent_load)} kN (ISO 76)",
     ]
@@ -146,6 +148,17 @@ def limits(solution: Solution, life: Life) -> list[str]:
     elif tracks > 1:
         words += f", most in arc {track + 1}"
     return [words]
+
+
+def _through_ribs(solution) -> list[str]:
+    """That P leaves out an axial load, of cylindrical rollers, whose ribs bear it."""
+    bearing = rows_of(solution.element.bearing)[0].bearing
+    first = 6 * RINGS.index(solution.moving_ring)
+    x, y, axial = np.abs(solution.force[first : first + 3])
+    straight = isinstance(bearing, CylindricalRollerBearing | NeedleRollerBearing)
+    if not straight or axial < 1e-6 * (x + y):
+        return []
+    return [f"  (P has no part of the axial load, {_kilo(axial)} kN, which ribs bear)"]
 
 
 def _turning(life) -> str:

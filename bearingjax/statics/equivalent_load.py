@@ -101,7 +101,8 @@ def equivalent_load(
         bearing: The design. A set whose rows carry axial load in both directions
             counts as a double-row bearing, one of rows in tandem as single rows side
             by side.
-        load: On the moving ring [N, N m]; the moments do not count.
+        load: On the moving ring [N, N m]; the moments do not count, nor does axial load
+            of cylindrical rollers, which their ribs bear.
 
     Returns:
         P and P0: axial loads of thrust bearings, else radial ones.

@@ -22,7 +22,7 @@ from ..element.inertia import Speed
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .equivalent_load import equivalent_load
+from .equivalent_load import EquivalentLoad, equivalent_load
 from .life_factor import (
     LARGEST_FACTOR,
     Cleanliness,
@@ -404,7 +404,7 @@ def _life(bearing, solution, conditions, speed, lamina_load) -> Life:
     loaded = total > 0
     same = share / jnp.where(loaded, total, 1.0)
     life = _lifetime(damage)
-    equivalent = equivalent_load(bearing, force)
+    equivalent = _above_round_off(equivalent_load(bearing, force), rated)
     # ISO 281 rates rollers with 10/3, ISO/TS 16281 with 4 and a part of C.
     exponent = (3, 1) if kind is BALLS else (10, 3)
     ratio = equivalent.dynamic / rated.dynamic_capacity
@@ -528,6 +528,12 @@ def _modified(fatigue, limit, thrust, kappa, clean, kind):
     factor = life_factor(kappa, ratio, balls, thrust)
     n, d = kind.spread
     return jnp.sum(jnp.sum(fatigue.share, axis=0) * factor ** -(n / d))
+
+
+def _above_round_off(load, rated):
+    """Equivalent loads, zero where they are what the solver leaves of no load."""
+    least = 1e-12 * rated.static_capacity
+    return EquivalentLoad(*(jnp.where(p <= least, 0.0, p) for p in load))
 
 
 def _lifetime(damage):

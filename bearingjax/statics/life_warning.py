@@ -7,6 +7,15 @@ import numpy as np
 
 from .life_factor import KAPPA
 from .rating import Ratings
+from .reference_life import LEAST_LAMINAE
+
+MOST_AT_ENDS = 0.25
+"""Share of the fatigue in the laminae at the ends of rollers above which it is told.
+
+With the standard's concentration of stress straight rollers have 0.74, 0.62 and 0.27
+there with 30, 50 and 200 laminae, and with them lives of 0.75, 1 and 1.62; logarithmic
+profiles have a twentieth, and lives that agree to 1 %.
+"""
 
 
 def life_warnings(ratings: Ratings, numbers: Mapping[str, Any]) -> list[str]:
@@ -16,12 +25,17 @@ def life_warnings(ratings: Ratings, numbers: Mapping[str, Any]) -> list[str]:
         ratings: Load ratings, concrete.
         numbers: Of a `Life` by name, concrete, in many cases (case,): `equivalent_load`
             and `reference_load`; of those that are known `viscosity_ratio`, and
-            `life_hours` with `damage`.
+            `life_hours` with `damage`; of one load `damage_share`.
 
     Source: ISO 281:2007, which doubts its lives of loads above C0 or C/2, and has no
         a_ISO below κ = 0.1.
     """
-    return [*_heavy(ratings, numbers), *_thin(numbers), *_still(numbers)]
+    return [
+        *_heavy(ratings, numbers),
+        *_thin(numbers),
+        *_at_ends(numbers),
+        *_still(numbers),
+    ]
 
 
 def _heavy(ratings, numbers):
@@ -48,6 +62,20 @@ def _thin(numbers):
         f"viscosity ratio of {kappa[thin].min():.3g}: ISO 281 has no a_ISO below"
         f" {KAPPA[0]:g}; the one at {KAPPA[0]:g} is taken"
         f"{_where(thin, np.where(thin, -kappa, -np.inf))}"
+    ]
+
+
+def _at_ends(numbers):
+    share = numbers.get("damage_share")
+    if share is None or np.ndim(share) != 3 or np.shape(share)[2] < LEAST_LAMINAE:
+        return []
+    ends = float(np.sum(np.asarray(share)[:, :, [0, -1]]))
+    if not ends > MOST_AT_ENDS:
+        return []
+    return [
+        f"{100 * ends:.3g} % of the fatigue is in the laminae at the ends of the"
+        " rollers: at sharp ends the life depends on the number of laminae,"
+        f" {np.shape(share)[2]} here; with a profile that runs out it does not"
     ]
 
 

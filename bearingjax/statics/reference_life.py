@@ -182,7 +182,9 @@ def edge_stress(n_laminae: int) -> np.ndarray:
     """Concentration of stress of every lamina of a roller (lamina,) [1].
 
     Near 1 but for the laminae at the ends, 2.3 there, whatever the profile: the
-    standard's stand-in for a solution of the contact, as `refine` gives one.
+    standard's stand-in for a solution of the contact, as `refine` gives one. The fewer
+    laminae, the longer these ends: at sharp ends under load the life then depends on
+    their number, by a quarter between 30 and 50.
 
     Args:
         n_laminae: Number of laminae.

@@ -472,6 +472,7 @@ def test_without_load_damage_and_slopes_are_zero(balls, rollers):
         assert float(life.damage) == 0.0
         assert np.isinf(life.basic_rating_life) and np.isinf(life.life_hours)
         assert np.isinf(life.static_safety) and float(life.a_iso) == 50.0
+        assert float(life.equivalent_load) == 0.0
     np.testing.assert_array_equal(slopes["damage"], 0.0)
 
 
@@ -795,6 +796,12 @@ def test_what_is_doubtful_about_a_life_is_told(untyped):
         assert text in only and "case" not in only
     assert told(viscosity_ratio=None, life_hours=None) == []
     assert told(life_hours=np.array(np.inf), damage=np.array(0.0)) == []
+    # Of rollers, of two rows and 50 laminae.
+    share = np.full((2, 2, 50), 0.7 / 192)
+    share[:, :, [0, -1]] = 0.3 / 8
+    (only,) = told(damage_share=share)
+    assert only.startswith("30 % of the fatigue") and ", 50 here" in only
+    assert told(damage_share=np.full((2, 2, 50), 0.005)) == []
     # Of many cases, one at a standstill and one that was not solved.
     cases = {name: np.array([x, x, x, np.nan]) for name, x in sound.items()}
     cases["reference_load"][1] = 15e3
@@ -810,6 +817,17 @@ def test_numbers_of_what_did_not_converge_are_nan(balls):
     for name in (*LIFE_OUTPUTS, "a_iso"):
         if name not in ("viscosity_ratio", "contamination_factor"):
             assert np.isnan(getattr(life, name)).all(), name
+
+
+def test_straight_rollers_live_as_many_laminae_as_they_have():
+    """What `MOST_AT_ENDS` says of evenly loaded straight rollers."""
+    shares, lives = [], []
+    for n in (30, 50, 200):
+        tired = edge_stress(n) ** 4.5
+        shares.append(2 * tired[0] / tired.sum())
+        lives.append(np.mean(tired) ** (-8 / 9))
+    np.testing.assert_allclose(shares, [0.74, 0.62, 0.27], atol=0.005)
+    np.testing.assert_allclose(np.array(lives) / lives[1], [0.75, 1, 1.62], atol=0.005)
 
 
 def test_single_precision_has_the_usual_reliability():
