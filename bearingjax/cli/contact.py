@@ -1,8 +1,8 @@
 """`bearingjax contact`."""
 
 from . import jax_settings
-from .options import add_plot, add_scene
-from .outputs import check_outputs, save, write
+from .options import add_plot, add_report, add_scene
+from .outputs import Reporter, check_outputs, save, write
 from .status import NOT_SOLVED, SOLVED, complain, tell_unsolved
 
 
@@ -30,6 +30,7 @@ def add(commands):
         help="likewise: the roller's end faces bear no stress",
     )
     add_plot(command)
+    add_report(command, "pictures")
     return command
 
 
@@ -50,6 +51,7 @@ def run(options) -> int:
     )
 
     check_outputs(options)
+    page = Reporter(options)
     if is_bearing(options.scene, options.set):
         bearing = read_scene(options.scene, options.set)
         solution = run_scene(bearing, jax_settings.programs())
@@ -57,6 +59,7 @@ def run(options) -> int:
             write(
                 (options.json, lambda path: write_json(path, bearing, solution)),
                 (options.plot, None),
+                (options.report, None),
             )
             return tell_unsolved(bearing, solution)
         scene, cases = run_refined(
@@ -72,7 +75,10 @@ def run(options) -> int:
         cases = run_contact(scene)
     lost = [case.solution for case in cases if not case.solution.converged]
 
-    def draw(path):
+    warned = contact_warnings(scene, cases)
+    text = contact_report(scene, cases) if len(lost) < len(cases) else ""
+
+    def draw(path, **format):
         from ..plot import contact_overview
 
         figure = contact_overview(
@@ -80,16 +86,21 @@ def run(options) -> int:
             [case.slices for case in cases],
             title=scene.name,
         )
-        save(figure, path)
+        save(figure, path, **format)
+
+    def tell(path):
+        texts, draws = {"Contact": text}, {"Pressures": draw}
+        page(path, scene.name, texts, scene.inputs, draws, warnings=warned)
 
     write(
         (options.json, lambda path: write_contact_json(path, scene, cases)),
         (options.plot, None if lost else draw),
+        (options.report, None if lost else tell),
     )
-    if len(lost) < len(cases):
-        print(contact_report(scene, cases), flush=True)
-    for text in contact_warnings(scene, cases):
-        complain(f"warning: {text}")
+    if text:
+        print(text, flush=True)
+    for one in warned:
+        complain(f"warning: {one}")
     return _tell_lost(scene, cases)
 
 

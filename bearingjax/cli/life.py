@@ -7,12 +7,11 @@ from pathlib import Path
 from . import jax_settings
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
 from .outputs import (
+    Reporter,
     check_outputs,
     check_table,
     draws_bearing,
     draws_solution,
-    origin,
-    png,
     save,
     tells_solution,
     write,
@@ -69,7 +68,7 @@ def _life_of_load(options) -> int:
     scene = read_scene(options.scene, options.set)
     if scene.life is None:
         scene = dataclasses.replace(scene, life=LifeConditions())
-    begun = origin(options)
+    page = Reporter(options)
     solution = run_scene(scene, jax_settings.programs())
     solved = Result(int(solution.result)) is Result.CONVERGED
     life = scene_life(scene, solution) if solved else None
@@ -79,7 +78,7 @@ def _life_of_load(options) -> int:
     write(
         (options.json, lambda path: write_numbers(path, numbers)),
         (options.plot, draws_solution(scene, solution) if solved else None),
-        (options.report, tells_solution(scene, solution, begun) if solved else None),
+        (options.report, tells_solution(scene, solution, page) if solved else None),
     )
     if life is None:
         return tell_unsolved(scene, solution)
@@ -92,8 +91,8 @@ def _life_of_load(options) -> int:
 
 def _life_of_cases(options) -> int:
     from ..scene import (
+        design_sections,
         life_columns,
-        life_page,
         read_cases,
         run_life,
         spectrum_as_dict,
@@ -104,7 +103,7 @@ def _life_of_cases(options) -> int:
     from ..statics.sweep_table import write_columns
 
     table = read_cases(options.scene, options.set)
-    begun = origin(options)
+    page = Reporter(options)
     done = run_life(table, is_shown(options))
 
     def draw(path, **format):
@@ -112,11 +111,19 @@ def _life_of_cases(options) -> int:
 
         save(life_overview(done, title=table.scene.name), path, **format)
 
+    text = spectrum_report(done) if done.converged else ""
+
     def tell(path: Path):
-        pictures = {"Lives and damage of the cases": png(draw)}
-        drawing = png(draws_bearing(table.scene, table.scene.element))
-        page = life_page(done, pictures, drawing, begun)
-        path.write_text(page, encoding="utf-8")
+        scene, draws = table.scene, {"Lives and damage of the cases": draw}
+        page(
+            path,
+            scene.name,
+            {"Rating life": text} | design_sections(scene),
+            table.inputs,
+            draws,
+            life_columns(done),
+            drawing=draws_bearing(scene, scene.element),
+        )
 
     write(
         (options.table, lambda path: write_columns(life_columns(done), path)),
@@ -127,5 +134,5 @@ def _life_of_cases(options) -> int:
     if not done.converged:
         complain(unsolved(done))
         return NOT_SOLVED
-    print(spectrum_report(done), flush=True)
+    print(text, flush=True)
     return SOLVED

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from .options import add_plot, add_quiet, add_scene, add_table
-from .outputs import check_outputs, check_table, save, write
+from .options import add_plot, add_quiet, add_report, add_scene, add_table
+from .outputs import Reporter, check_outputs, check_table, save, write
 from .progress import stages
 from .status import NOT_SOLVED, SOLVED, complain
 
@@ -33,6 +33,7 @@ def add(commands):
     )
     add_table(command, "time")
     add_plot(command)
+    add_report(command, "pictures")
     add_quiet(command, "progress")
     return command
 
@@ -58,14 +59,21 @@ def run(options) -> int:
         allowed = "it must be at least 1 and at most 100000"
         raise SceneError(f"--monte-carlo is {count}; {allowed}")
     task = read_noise(options.scene, options.set, bearings=count or 0)
+    page = Reporter(options)
     with stages(options) as show:
         done = run_noise(task, show)
     full = []
 
-    def draw(path):
+    def draw(path, **format):
         from ..plot import noise_overview
 
-        save(noise_overview(done, title=task.name), path)
+        save(noise_overview(done, title=task.name), path, **format)
+
+    text = noise_report(done) if done.converged else ""
+
+    def tell(path):
+        texts, draws = {"Vibration and noise": text}, {"Overview": draw}
+        page(path, task.name, texts, task.inputs, draws)
 
     def tabulate(path):
         write_columns(noise_columns(done), path)
@@ -79,11 +87,12 @@ def run(options) -> int:
         (options.table, tabulate if solved else None),
         (options.wav, sound if solved else None),
         (options.plot, draw if solved else None),
+        (options.report, tell if solved else None),
     )
     if not solved:
         complain(f"{done.result.label}: {done.message}")
         return NOT_SOLVED
-    print(noise_report(done), flush=True)
+    print(text, flush=True)
     if full:
         print(f"{options.wav}: full scale is {full[0]:.4g} m/s²", flush=True)
     return SOLVED

@@ -1,7 +1,7 @@
 """`bearingjax optimise`."""
 
-from .options import add_plot, add_scene
-from .outputs import check_outputs, save, write
+from .options import add_plot, add_report, add_scene
+from .outputs import Reporter, check_outputs, save, write
 from .status import NOT_SOLVED, SOLVED, complain
 
 
@@ -16,6 +16,7 @@ def add(commands):
     )
     add_scene(command)
     add_plot(command)
+    add_report(command, "pictures")
     command.add_argument("--progress", action="store_true", help="show progress")
     return command
 
@@ -34,6 +35,7 @@ def run(options) -> int:
 
     check_outputs(options)
     task = read_optimisation(options.scene, options.set)
+    page = Reporter(options)
     try:
         found = run_optimisation(task, progress=options.progress)
     except SolveError as error:
@@ -41,24 +43,32 @@ def run(options) -> int:
         write(
             (options.json, lambda path: write_numbers(path, numbers)),
             (options.plot, None),
+            (options.report, None),
         )
         complain(error)
         return NOT_SOLVED
 
-    def draw(path):
+    text = optimisation_report(task, found) if found.converged else ""
+
+    def draw(path, **format):
         from ..plot import optimised
 
-        save(optimised(found, title=task.scene.name), path)
+        save(optimised(found, title=task.scene.name), path, **format)
 
     def tell(path):
-        write_numbers(path, optimisation_as_dict(task, found))
+        texts, draws = {"Optimised design": text}, {"Before and after": draw}
+        page(path, task.scene.name, texts, task.inputs, draws)
 
     write(
-        (options.json, tell),
+        (
+            options.json,
+            lambda path: write_numbers(path, optimisation_as_dict(task, found)),
+        ),
         (options.plot, draw if found.converged else None),
+        (options.report, tell if found.converged else None),
     )
     if not found.converged:
         complain(f"{found.result}: {found.message}")
         return NOT_SOLVED
-    print(optimisation_report(task, found), flush=True)
+    print(text, flush=True)
     return SOLVED

@@ -1,8 +1,12 @@
 """Files that commands write: refused before anything is solved, written at its end."""
 
 import io
+import json
 import shlex
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from .status import complain
 
@@ -99,23 +103,21 @@ def draws_bearing(scene, element):
     return draw
 
 
-def tells_solution(scene, solution, begun):
+def tells_solution(scene, solution, page: "Reporter"):
     """What writes the report of a solved bearing.
 
     Args:
         scene, solution: What was solved.
-        begun: Its `origin`.
+        page: Begun before that.
     """
 
     def tell(path: Path):
-        from ..scene import solve_page
+        from ..scene import sections
 
-        pictures = {
-            "Section, load zone, contacts": png(draws_solution(scene, solution))
-        }
-        drawing = png(draws_bearing(scene, solution.element))
-        page = solve_page(scene, solution, pictures, drawing, begun)
-        path.write_text(page, encoding="utf-8")
+        draws = {"Section, load zone, contacts": draws_solution(scene, solution)}
+        drawing = draws_bearing(scene, solution.element)
+        texts = sections(scene, solution)
+        page(path, scene.name, texts, scene.inputs, draws, drawing=drawing)
 
     return tell
 
@@ -139,17 +141,61 @@ def write(*outputs) -> None:
         complain(f"{path}: of an earlier run, removed")
 
 
-def origin(options):
-    """Where a report comes from; read before anything is solved."""
+def _origin(options):
+    """Where a report comes from."""
     import datetime
 
     from ..scene import Origin
     from ..scene.scene_file import find_scene
 
     now = datetime.datetime.now().astimezone()
+    path = find_scene(options.scene)
+    text = path.read_text(encoding="utf-8-sig")
+    if path.suffix.lower() == ".json":  # of an earlier run: without its results
+        inputs = json.loads(text).get("inputs")
+        text = json.dumps({"inputs": inputs}, indent=1, ensure_ascii=False)
     return Origin(
         shlex.join(["bearingjax", *options.given]),
-        find_scene(options.scene).read_text(encoding="utf-8-sig"),
+        text,
         tuple(options.set),
         now.strftime("%Y-%m-%d %H:%M %z"),
     )
+
+
+class Reporter:
+    """Writes `--report`; made before anything is solved, so that it tells the scene
+    that was read.
+
+    Args:
+        options: Of the command line.
+    """
+
+    def __init__(self, options):
+        self._origin = _origin(options)
+
+    def __call__(
+        self,
+        path: Path,
+        title: str,
+        texts: Mapping[str, str],
+        inputs: Mapping[str, Any],
+        draws: Mapping[str, Callable] = MappingProxyType({}),
+        table: Mapping[str, Any] | None = None,
+        warnings: Sequence[str] = (),
+        drawing: Callable | None = None,
+    ) -> None:
+        """Write the page of a run; arguments as of `report_page`, but that `draws` and
+        `drawing` are what writes the pictures."""
+        from ..scene import report_page
+
+        page = report_page(
+            title,
+            texts,
+            inputs,
+            self._origin,
+            {name: png(draw) for name, draw in draws.items()},
+            table,
+            warnings,
+            None if drawing is None else png(drawing),
+        )
+        path.write_text(page, encoding="utf-8")

@@ -1,7 +1,7 @@
 """`bearingjax rotor`."""
 
-from .options import add_plot, add_quiet, add_scene, add_table
-from .outputs import check_outputs, check_table, save, write
+from .options import add_plot, add_quiet, add_report, add_scene, add_table
+from .outputs import Reporter, check_outputs, check_table, save, write
 from .progress import stages
 from .status import NOT_SOLVED, SOLVED, complain
 
@@ -25,6 +25,7 @@ def add(commands):
         help="which of them --table has, if the scene has both",
     )
     add_plot(command)
+    add_report(command, "pictures")
     add_quiet(command, "progress")
     return command
 
@@ -45,16 +46,27 @@ def run(options) -> int:
     check_table(options)
     check_outputs(options)
     task = read_rotor(options.scene, options.set)
+    page = Reporter(options)
     if options.table is None and options.series is not None:
         raise SceneError("--series is for a table; name it with --table")
     series = None if options.table is None else rotor_series(task, options.series)
     with stages(options) as show:
         done = run_rotor(task, show)
 
-    def draw(path):
+    def draw(path, **format):
         from ..plot import rotor_overview
 
-        save(rotor_overview(done, title=task.name), path)
+        save(rotor_overview(done, title=task.name), path, **format)
+
+    lost = [
+        f"{failure.result.label}: {failure.part}: {failure.message}"
+        for failure in done.failures
+    ]
+    text = "" if done.settled is None else rotor_report(done)
+
+    def tell(path):
+        texts, draws = {"Rotor": text}, {"Overview": draw}
+        page(path, task.name, texts, task.inputs, draws, warnings=lost)
 
     columns = {} if series is None else rotor_columns(done, series)
 
@@ -65,9 +77,10 @@ def run(options) -> int:
         (options.json, lambda path: write_rotor_json(path, done)),
         (options.table, tabulate if columns else None),
         (options.plot, None if done.settled is None else draw),
+        (options.report, None if done.settled is None else tell),
     )
-    if done.settled is not None:
-        print(rotor_report(done), flush=True)
-    for failure in done.failures:
-        complain(f"{failure.result.label}: {failure.part}: {failure.message}")
+    if text:
+        print(text, flush=True)
+    for one in lost:
+        complain(one)
     return SOLVED if done.converged else NOT_SOLVED

@@ -1,7 +1,7 @@
 """`bearingjax skid`."""
 
-from .options import add_plot, add_quiet, add_scene, add_table
-from .outputs import check_outputs, check_table, save, write
+from .options import add_plot, add_quiet, add_report, add_scene, add_table
+from .outputs import Reporter, check_outputs, check_table, save, write
 from .progress import is_shown
 from .status import NOT_SOLVED, SOLVED, complain
 
@@ -21,6 +21,7 @@ def add(commands):
     )
     add_table(command, "time, or per place along the orbit")
     add_plot(command)
+    add_report(command, "pictures")
     add_quiet(command)
     return command
 
@@ -40,12 +41,23 @@ def run(options) -> int:
     check_table(options)
     check_outputs(options)
     task = read_skid(options.scene, options.set, steady=options.steady)
+    page = Reporter(options)
     done = run_skid(task, shown=is_shown(options))
 
-    def draw(path):
+    def draw(path, **format):
         from ..plot import skid_overview
 
-        save(skid_overview(task.model, done.found, done.state, title=task.name), path)
+        save(
+            skid_overview(task.model, done.found, done.state, title=task.name),
+            path,
+            **format,
+        )
+
+    text = skid_report(done) if done.converged else ""
+
+    def tell(path):
+        texts, draws = {"Motion of the rolling elements": text}, {"Overview": draw}
+        page(path, task.name, texts, task.inputs, draws)
 
     def tabulate(path):
         write_columns(skid_columns(done), path)
@@ -54,9 +66,10 @@ def run(options) -> int:
         (options.json, lambda path: write_skid_json(path, done)),
         (options.table, tabulate if done.has_numbers else None),
         (options.plot, draw if done.converged else None),
+        (options.report, tell if done.converged else None),
     )
     if not done.converged:
         complain(f"{done.result.label}: {skid_message(done)}")
         return NOT_SOLVED
-    print(skid_report(done), flush=True)
+    print(text, flush=True)
     return SOLVED

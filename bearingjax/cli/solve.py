@@ -3,10 +3,10 @@
 from . import jax_settings
 from .options import add_drawing, add_plot, add_report, add_scene
 from .outputs import (
+    Reporter,
     check_outputs,
     draws_bearing,
     draws_solution,
-    origin,
     tells_solution,
     write,
 )
@@ -35,7 +35,7 @@ def run(options) -> int:
 
     check_outputs(options)
     scene = read_scene(options.scene, options.set)
-    begun = origin(options)
+    page = Reporter(options)
     if has_cases(options.scene, options.set):
         complain("one load, that of [operating]; [cases] are for sweep, life, optimise")
     solution = run_scene(scene, jax_settings.programs())
@@ -46,7 +46,7 @@ def run(options) -> int:
         (options.json, lambda path: write_json(path, scene, solution)),
         (options.plot, draws_solution(scene, solution) if solved else None),
         (options.drawing, draws_bearing(scene, element)),
-        (options.report, tells_solution(scene, solution, begun) if solved else None),
+        (options.report, tells_solution(scene, solution, page) if solved else None),
     )
     if not solved:
         return tell_unsolved(scene, solution)

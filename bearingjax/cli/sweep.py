@@ -9,7 +9,7 @@ import numpy as np
 
 from .jax_settings import devices
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
-from .outputs import check_outputs, check_table, origin, png, save, write
+from .outputs import Reporter, check_outputs, check_table, save, write
 from .progress import is_shown
 from .status import NOT_SOLVED, SOLVED, complain
 
@@ -53,7 +53,6 @@ def run(options) -> int:
         read_cases,
         resume_cases,
         run_cases,
-        sweep_page,
         sweep_report,
         write_sweep_json,
     )
@@ -67,7 +66,7 @@ def run(options) -> int:
     begin = time.perf_counter()
     table = read_cases(options.scene, options.set)
     check_table(options, table.cases.count)
-    begun = origin(options)
+    page = Reporter(options)
     shown = is_shown(options)
     with Interrupt() as interrupt:
         done = options.table if options.resume else None
@@ -89,9 +88,10 @@ def run(options) -> int:
         drawn = bool(solved.converged.any())
 
         def tell(path: Path):
-            pictures = {"Results over the cases": png(draw)} if drawn else {}
-            page = sweep_page(table, solved, summary, begun, pictures)
-            path.write_text(page, encoding="utf-8")
+            draws = {"Results over the cases": draw} if drawn else {}
+            found = sweep_table.columns(solved, design_columns(table))
+            name, texts = table.scene.name, {"Cases": summary}
+            page(path, name, texts, table.inputs, draws, found)
 
         write(
             (options.table, tabulate),

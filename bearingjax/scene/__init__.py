@@ -26,9 +26,7 @@ from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers
 from .files import write_outputs as write_outputs
 from .html_report import Origin as Origin
-from .html_report import life_page as life_page
-from .html_report import solve_page as solve_page
-from .html_report import sweep_page as sweep_page
+from .html_report import report_page as report_page
 from .interrupt import Interrupt as Interrupt
 from .life_report import life_as_dict as life_as_dict
 from .life_report import life_report as life_report
@@ -61,7 +59,9 @@ from .quantity import SceneError as SceneError
 from .read import Scene as Scene
 from .read import load_bearing as load_bearing
 from .read import read_scene as read_scene
+from .report import design_sections as design_sections
 from .report import report as report
+from .report import sections as sections
 from .resume import resume_cases as resume_cases
 from .rotor_output import rotor_as_dict as rotor_as_dict
 from .rotor_output import rotor_columns as rotor_columns

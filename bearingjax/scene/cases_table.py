@@ -159,7 +159,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         outputs=None if outputs is None else tuple(outputs),
         neighbours=neighbours,
         warnings=_alike(scene.warnings, odd),
-        inputs=_inputs(scene, columns, data["cases"]),
+        inputs=_inputs(scene, columns, _placed(data["cases"], path)),
     )
 
 
@@ -182,6 +182,12 @@ def _inputs(scene, columns, cases) -> dict[str, Any]:
     operating = dict(scene.inputs["operating"])
     operating["free"] = [f for f in operating["free"] if f not in given]
     return {**scene.inputs, "operating": operating, "cases": cases}
+
+
+def _placed(cases, path) -> dict[str, Any]:
+    """The cases as they are written, their file found from anywhere."""
+    name = cases.get("file")
+    return {**cases, "file": str((path.parent / name).resolve())} if name else cases
 
 
 def _check_outputs(table, outputs, structures) -> None:

@@ -92,9 +92,11 @@ def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any
 
     Returns:
         position and cell_length along the roller, end_cell_length, what `_numbers`
-        lists, result, message, residual, iterations, warnings and version. If the scene
-        lists its loads, each but the first three and last two is a list over them, null
-        where a load was not solved. If nothing was solved the numbers are left out.
+        lists, result, message, residual, iterations, warnings, inputs (the file is a
+        scene again; of a roller of a bearing that of the bearing) and version. If the
+        scene lists its loads, each but the first three and last three is a list over
+        them, null where a load was not solved. If nothing was solved the numbers are
+        left out.
     """
     from .. import __version__
 
@@ -118,6 +120,7 @@ def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any
     return {
         **found,
         "warnings": contact_warnings(scene, cases),
+        "inputs": scene.inputs,
         "version": __version__,
     }
 

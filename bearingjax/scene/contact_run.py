@@ -96,6 +96,7 @@ def run_refined(
         max_steps=ConjugateGradients().max_steps,
         field=False,
         warnings=(*scene.warnings, *warnings(solution)),
+        inputs=scene.inputs,
     )
     return contact, [found]
 

@@ -4,6 +4,7 @@ import dataclasses
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from ..design import Material
 from .bearing_table import read_material, read_profile
 from .choices_table import read_line_law
 from .scene_file import find_scene, parse_scene
-from .table import Table
+from .table import Table, written_numbers
 
 LAWS = ("palmgren", "iso16281")
 """Line laws of slices that know nothing of their neighbours."""
@@ -46,6 +47,7 @@ class ContactScene:
         max_steps: Step limit.
         field: Whether the pressure of every cell is written.
         warnings: What the validation found odd but possible.
+        inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 
     name: str
@@ -64,6 +66,7 @@ class ContactScene:
     max_steps: int
     field: bool
     warnings: tuple[str, ...]
+    inputs: dict[str, Any]
 
     @property
     def cases(self) -> list[dict[str, float]]:
@@ -106,7 +109,7 @@ def read_contact(source: str | Path, settings: Iterable[str] = ()) -> ContactSce
         contact = _contact(top)
     scene = _scene(top, path.stem, contact, tuple(str(w.message) for w in caught))
     top.finish()
-    return scene
+    return dataclasses.replace(scene, inputs=top.echo())
 
 
 def _contact(top: Table) -> RollerContact:
@@ -118,6 +121,8 @@ def _contact(top: Table) -> RollerContact:
     radius, widening = _raceway(raceway, max(small, large))
     ring_profile = read_profile(raceway.table("profile"))
     ring_material = read_material(raceway, "material") or material
+    for table, given in ((roller, material), (raceway, ring_material)):
+        table.fill("material", written_numbers(given))
     with roller.building():
         return RollerContact(
             length,
@@ -201,6 +206,7 @@ def _scene(top: Table, name, contact: RollerContact, odd) -> ContactScene:
         max_steps=numerics.integer("max_steps", 500),
         field=top.table("output").flag("field", False),
         warnings=odd,
+        inputs={},
     )
 
 

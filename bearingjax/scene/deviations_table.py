@@ -13,7 +13,7 @@ from ..design.form_error import (
     Spall,
 )
 from .cases_list import read_list
-from .table import Table
+from .table import Table, written
 
 RACEWAYS = {"outer raceway": "outer", "inner raceway": "inner"}
 ELEMENTS = "elements"
@@ -147,6 +147,8 @@ def _profile(table: Table, count, which, folder) -> Harmonics:
             problem = 'must have one column, headed such as "height [um]"'
             raise table.error("file", problem)
         heights = found["height"]
+        table.fill("file", None)  # in the echo its heights
+        table.fill("points", [written(height, "m") for height in heights])
     most = MOST_ORDER["raceway" if count is None else "element"]
     shown = min(most, max(1, (len(heights) - 1) // 2))
     highest = _order(table, "highest", table.raw("highest", shown), count)

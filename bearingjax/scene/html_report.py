@@ -1,29 +1,20 @@
 """A report as one HTML file that opens anywhere and prints well.
 
-Nothing in it is fetched: pictures are part of the file, so is the style. Its sections
-are the texts of the report on the terminal (`report.SECTIONS`); so whatever that tells
-stands here too.
+Nothing in it is fetched: pictures are part of the file, so is the style. Its texts are
+those of the report on the terminal; so whatever that tells stands here too.
 """
 
 import base64
 import dataclasses
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from ..statics.solution import Solution
-from ..statics.sweep import Sweep
-from ..statics.sweep_table import columns
-from .cases_table import CaseTable
-from .life_run import LifeRun, life_columns, spectrum_report
-from .read import Scene
-from .report import design_sections, sections
-from .sweep_run import design_columns
-
-MOST_CASES = 200
-"""Most cases of a sweep that a page shows; a table has them all."""
+MOST_ROWS = 200
+"""Most rows of a table that a page shows; `--table` writes them all."""
 
 _STYLE = """
 :root { color-scheme: light }
@@ -36,6 +27,7 @@ header p { margin: 0; color: #57606a }
 pre { font: 12.5px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace;
   margin: 0; white-space: pre-wrap; overflow-wrap: break-word }
 pre.columns { white-space: pre; overflow-x: auto }
+hr { border: 0; border-top: 1px solid #d0d7de; margin: .5rem 0 }
 figure { margin: 0 } figure img { width: 100%; height: auto }
 .warnings { border-left: 5px solid #c77700; background: #fff6e5; padding: .6rem 1rem;
   margin: 1rem 0 }
@@ -86,94 +78,42 @@ class Origin:
     date: str
 
 
-def solve_page(
-    scene: Scene,
-    solution: Solution,
-    pictures: Mapping[str, bytes],
-    drawing: bytes,
+def report_page(
+    title: str,
+    texts: Mapping[str, str],
+    inputs: Mapping[str, Any],
     origin: Origin,
+    pictures: Mapping[str, bytes] = MappingProxyType({}),
+    table: Mapping[str, np.ndarray] | None = None,
+    warnings: Sequence[str] = (),
+    drawing: bytes | None = None,
 ) -> str:
-    """Report of a solved scene.
+    """The report of a run, of any command.
 
     Args:
-        scene: What was solved.
-        solution: Its solution, converged.
+        title: Of the page.
+        texts: As on the terminal, by their titles; lines that begin with "warning: "
+            stand at the top of the page too.
+        inputs: All that was read, as a scene writes it.
+        origin: Where the report comes from.
         pictures: PNG files by their titles.
+        table: Columns by header, "name [unit]"; its first rows are shown.
+        warnings: Those that are not in the texts.
         drawing: PNG file of the bearing, which stands with the inputs.
-        origin: Where it comes from.
 
     Returns:
         HTML, a whole document.
     """
-    texts = sections(scene, solution)
     parts = [
-        _warnings("\n".join(texts.values())),
-        *(_picture(title, png) for title, png in pictures.items()),
-        *(_text(title, text) for title, text in texts.items()),
-        _picture("Drawing", drawing),
-        _inputs(scene.inputs),
+        _warnings("\n".join(texts.values()), warnings),
+        *(_picture(name, png) for name, png in pictures.items()),
+        *(_text(name, text) for name, text in texts.items()),
+        "" if table is None else _table(table),
+        "" if drawing is None else _picture("Drawing", drawing),
+        _inputs(inputs),
         _rerun(origin),
     ]
-    return _page(scene.name, parts, origin)
-
-
-def sweep_page(
-    table: CaseTable,
-    solved: Sweep,
-    summary: str,
-    origin: Origin,
-    pictures: Mapping[str, bytes] | None = None,
-) -> str:
-    """Report of a sweep: its summary, its first cases, its inputs.
-
-    Args:
-        table: What was asked.
-        solved: What came out.
-        summary: As of `sweep_report`.
-        origin: Where it comes from.
-        pictures: PNG files by their titles.
-
-    Returns:
-        HTML, a whole document.
-    """
-    found = columns(solved, design_columns(table))
-    parts = [
-        _warnings(summary),
-        *(_picture(title, png) for title, png in (pictures or {}).items()),
-        _text("Cases", summary),
-        _cases(found, solved.cases.count),
-        _inputs(table.inputs),
-        _rerun(origin),
-    ]
-    return _page(table.scene.name, parts, origin)
-
-
-def life_page(
-    run: LifeRun, pictures: Mapping[str, bytes], drawing: bytes, origin: Origin
-) -> str:
-    """Report of the life under the cases of a scene.
-
-    Args:
-        run: With all cases solved.
-        pictures: PNG files by their titles.
-        drawing: PNG file of the bearing, which stands with the inputs.
-        origin: Where it comes from.
-
-    Returns:
-        HTML, a whole document.
-    """
-    scene, summary = run.table.scene, spectrum_report(run)
-    parts = [
-        _warnings(summary),
-        *(_picture(title, png) for title, png in pictures.items()),
-        _text("Rating life", summary),
-        *(_text(title, text) for title, text in design_sections(scene).items()),
-        _cases(life_columns(run), run.table.cases.count),
-        _picture("Drawing", drawing),
-        _inputs(run.table.inputs),
-        _rerun(origin),
-    ]
-    return _page(scene.name, parts, origin)
+    return _page(title, parts, origin)
 
 
 def _page(title: str, parts: Iterable[str], origin: Origin) -> str:
@@ -208,26 +148,33 @@ def _section(title: str, content: str, kind: str = "") -> str:
 
 def _text(title: str, text: str) -> str:
     """A text of the terminal; lines of columns keep them, others may be broken."""
-    blocks: list[tuple[bool, list[str]]] = []
+    blocks: list[tuple[str, list[str]]] = []
     for line in text.splitlines():
+        ruled = len(line) > 9 and not line.strip("-")
         aligned = "  " in line.strip() or line.startswith("  ")
-        if not blocks or blocks[-1][0] != aligned:
-            blocks.append((aligned, []))
+        kind = "rule" if ruled else "columns" if aligned else "lines"
+        if not blocks or blocks[-1][0] != kind:
+            blocks.append((kind, []))
         blocks[-1][1].append(line)
-    return _section(title, "\n".join(_pre(lines, kind) for kind, lines in blocks))
+    return _section(title, "\n".join(_block(kind, lines) for kind, lines in blocks))
 
 
-def _pre(lines: Iterable[str], aligned: bool) -> str:
-    kind = ' class="columns"' if aligned else ""
-    return f"<pre{kind}>{escape(chr(10).join(lines))}</pre>"
+def _block(kind: str, lines: Iterable[str]) -> str:
+    if kind == "rule":
+        return "<hr>"
+    named = ' class="columns"' if kind == "columns" else ""
+    return f"<pre{named}>{escape(chr(10).join(lines))}</pre>"
 
 
-def _warnings(text: str) -> str:
-    """Lines of a text that begin with "warning: ", where nobody overlooks them."""
-    told = [line for line in text.splitlines() if line.startswith("warning: ")]
+def _warnings(text: str, others: Sequence[str]) -> str:
+    """Lines of a text that begin with "warning: ", and others, where nobody overlooks
+    them."""
+    mark = "warning: "
+    told = [t.removeprefix(mark) for t in text.splitlines() if t.startswith(mark)]
+    told = list(dict.fromkeys([*told, *others]))
     if not told:
         return ""
-    items = "\n".join(f"<li>{escape(t.removeprefix('warning: '))}</li>" for t in told)
+    items = "\n".join(f"<li>{escape(one)}</li>" for one in told)
     return _section("Warnings", f"<ul>\n{items}\n</ul>", "warnings")
 
 
@@ -271,6 +218,8 @@ def _shown(value: Any) -> str:
     """A value as people read it: numbers with twelve digits at most."""
     if isinstance(value, Sequence) and not isinstance(value, str):
         return ", ".join(map(_shown, value))
+    if isinstance(value, bool):
+        return str(value).lower()  # as in TOML
     if isinstance(value, float):
         return f"{value:.12g}"
     number, space, unit = str(value).partition(" ")
@@ -280,15 +229,16 @@ def _shown(value: Any) -> str:
         return str(value)
 
 
-def _cases(found: Mapping[str, np.ndarray], count: int) -> str:
-    """The first cases as a table."""
+def _table(found: Mapping[str, np.ndarray]) -> str:
+    """The first rows of a table."""
+    count = max(map(len, found.values()), default=0)
     head = "".join(f'<th scope="col">{_breakable(header)}</th>' for header in found)
     rows = [
         "<tr>" + "".join(f"<td>{escape(_cell(x))}</td>" for x in row) + "</tr>"
-        for row in zip(*(v[:MOST_CASES] for v in found.values()), strict=True)
+        for row in zip(*(v[:MOST_ROWS] for v in found.values()), strict=True)
     ]
     left = count - len(rows)
-    note = f"<p>The first {len(rows)} of {count} cases.</p>\n" if left > 0 else ""
+    note = f"<p>The first {len(rows)} of {count} rows.</p>\n" if left > 0 else ""
     body = "\n".join(rows)
     head = f"<thead>\n<tr>{head}</tr>\n</thead>"
     table = f'<table class="cases">\n{head}\n<tbody>\n{body}\n</tbody>\n</table>'

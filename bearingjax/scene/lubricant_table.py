@@ -76,6 +76,7 @@ def read_traction(table: Table) -> AbstractTraction:
     """
     given = table.table_or_word("traction", tuple(TRACTIONS))
     if given is None:
+        table.fill("traction", "newtonian")
         return Newtonian()
     if isinstance(given, Table):
         kind, own = TRACTIONS[given.choice("type", tuple(TRACTIONS))], given

@@ -30,7 +30,8 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
         (bearing, band, direction), null of those that were not solved; `percentile`:
         `share` [%] and `level` (share, direction); `sources` of the scatter with the
         `part` of the mean square of the acceleration that goes without each [1].
-        And result, message, warnings and version. What was not solved is left out.
+        And result, message, warnings, inputs (the file is a scene again) and version.
+        What was not solved is left out.
     """
     from .. import __version__
 
@@ -48,6 +49,7 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
         "result": run.result.label,
         "message": run.message,
         "warnings": list(run.warnings),
+        "inputs": run.task.inputs,
         "version": __version__,
     }
 

@@ -1,6 +1,7 @@
 """What a scene asks for of the noise of a bearing."""
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +29,7 @@ class NoiseScene:
         seed: Of the random bearings.
         bearings: How many random bearings are wanted.
         warnings: What is odd but possible.
+        inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 
     scene: Scene
@@ -44,6 +46,7 @@ class NoiseScene:
     seed: int
     bearings: int
     warnings: tuple[str, ...]
+    inputs: dict[str, Any]
 
     @property
     def name(self) -> str:

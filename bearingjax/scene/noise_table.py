@@ -1,5 +1,6 @@
 """The [vibration] table of a scene: a bearing on its rig, and how it is listened to."""
 
+import dataclasses
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from .fit_table import fitted
 from .noise_scene import DIRECTIONS, NoiseScene
 from .read import Scene, scene_of
 from .scene_file import find_scene, parse_bearing
-from .table import Table
+from .table import Table, written
 from .tolerance_table import read_tolerance
 
 BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}
@@ -86,9 +87,22 @@ def read_noise(
         seed=seed,
         bearings=bearings,
         warnings=scene.warnings,
+        inputs={},
     )
     vibration.finish()
-    return found
+    vibration.fill("moving_ring", model.moving_ring)
+    vibration.fill("retardation", written(float(model.retardation), "s"))
+    own = {"deviations": deviations.echo(), "vibration": vibration.echo()}
+    inputs = {**scene.inputs, "operating": _held(scene, model.moving_ring), **own}
+    return dataclasses.replace(found, inputs=inputs)
+
+
+def _held(scene: Scene, moving: str) -> dict[str, Any]:
+    """The echo of [operating], without supports, which are the rig's."""
+    kept = dict(scene.inputs["operating"])
+    for key in ("free", "prescribed"):
+        kept.pop(key, None)
+    return {**kept, "fixed_ring": RINGS[1 - RINGS.index(moving)]}
 
 
 def _check_bearing(top: Table, operating: Table, scene: Scene) -> None:

@@ -49,7 +49,8 @@ def optimisation_as_dict(task: Optimisation, found: Optimised) -> dict[str, Any]
 
     Returns:
         result, message, optimality, history, evaluations, gradients, rejected,
-        warnings (of the best design), warnings_before (of the start), version; if it
+        warnings (of the best design), warnings_before (of the start), inputs (as of
+        `Optimisation`: the file is a scene again), version; if it
         converged also variables, objective, constraints and peak_pressure.
     """
     from .. import __version__
@@ -70,6 +71,7 @@ def optimisation_as_dict(task: Optimisation, found: Optimised) -> dict[str, Any]
         "rejected": list(found.rejected),
         "warnings": [*task.scene.warnings, *found.after.warnings],
         "warnings_before": found.before.warnings,
+        "inputs": task.inputs,
         "version": __version__,
     }
 
@@ -82,7 +84,7 @@ def unsolved_start_as_dict(task: Optimisation, error: Exception) -> dict[str, An
         error: Why not.
 
     Returns:
-        result ("start_not_solved"), message, warnings and version.
+        result ("start_not_solved"), message, warnings, inputs and version.
     """
     from .. import __version__
 
@@ -90,6 +92,7 @@ def unsolved_start_as_dict(task: Optimisation, error: Exception) -> dict[str, An
         "result": "start_not_solved",
         "message": str(error),
         "warnings": list(task.scene.warnings),
+        "inputs": task.inputs,
         "version": __version__,
     }
 

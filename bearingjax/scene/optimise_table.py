@@ -67,6 +67,7 @@ class Optimisation:
         method: Search, or `None` for the default.
         max_steps: Step limit.
         tolerance: Gradient at which the search ends.
+        inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 
     scene: Scene
@@ -77,6 +78,7 @@ class Optimisation:
     method: str | None
     max_steps: int
     tolerance: float
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
 
 
 def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optimisation:
@@ -98,16 +100,18 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
         )
     top = Table(data, path.name)
     scene = scene_of(data, path)
-    cases = _operating(scene)
+    cases, inputs = _operating(scene), scene.inputs
     if "cases" in data:
-        cases = read_cases(source, settings).cases
+        listed = read_cases(source, settings)
+        cases, inputs = listed.cases, listed.inputs
         if cases.design is not None:
             problem = "vary the design, which [optimise] is to find"
             raise top.error("cases", problem)
     table = top.table("optimise")
     task = _optimisation(top, table, scene, cases)
     table.finish()
-    return task
+    inputs = {**inputs, "optimise": table.echo()}
+    return dataclasses.replace(task, inputs=inputs)
 
 
 def _operating(scene: Scene) -> Cases:

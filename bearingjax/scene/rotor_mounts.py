@@ -12,7 +12,7 @@ from ..element import BearingElement, Speed
 from ..rotor import Housing, Shaft
 from ..rotor.vibration import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
-from .bearing_table import designated, read_bearing
+from .bearing_table import BESIDE, designated, read_bearing
 from .fit_table import Fits, fit_facts, fit_warnings, read_fits, turning
 from .quantity import SceneError
 from .read import read_element, scene_of
@@ -72,7 +72,7 @@ def read_mounts(
         if "stiffness" in table:
             mounts.append(_springs(table, station))
             continue
-        bearing = _bearing(table, named, speed, path)
+        bearing = _bearing(table, tables, named, speed, path)
         used.add(bearing.name)
         _check_seat(bearing, shaft, station)
         mounts.append(_mount(table, station, bearing))
@@ -123,7 +123,7 @@ def _check_seat(bearing: _Bearing, shaft: Shaft, station: int) -> None:
 
 
 def _bearing(
-    table: Table, named: dict[str, _Bearing], speed: float, path: Path
+    table: Table, tables: Table, named: dict[str, _Bearing], speed: float, path: Path
 ) -> _Bearing:
     name = table.word("bearing")
     if table.raw("bearing") != name or name is None:
@@ -140,8 +140,21 @@ def _bearing(
         scene = scene_of(parse_bearing(found, ()), found)
     except SceneError as error:
         raise table.error("bearing", error) from error
+    # In the echo it is one of [bearings.NAME].
+    own = name if scene.name in named else scene.name
+    table.fill("bearing", own)
+    tables.fill(own, _echoed(scene.inputs))
     fits = turning(scene.fits, speed)
     return _told(_Bearing(scene.name, scene.element, fits, scene.preload_force))
+
+
+def _echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """The inputs of a scene as those of one bearing of a rotor."""
+    beside = {key: dict(inputs[key]) for key in BESIDE if key in inputs}
+    beside.get("numerics", {}).pop("tolerance", None)  # of its own load solve
+    operating = inputs.get("operating", {})
+    chosen = {key: operating[key] for key in BESIDE if key in operating}
+    return {**inputs["bearing"], **beside, **chosen}
 
 
 def _mount(table: Table, station: int, bearing: _Bearing) -> Mount:

@@ -44,7 +44,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         (time, coordinate). Parts that were not asked for or not solved are left out.
         With fits `fit`, a list: `bearing`, its `stations`, the `speed` [rad/s] at which
         its inner ring turns, and what `fit_as_dict` has.
-        And result, message, warnings and version.
+        And result, message, warnings, inputs (the file is a scene again) and version.
     """
     from .. import __version__
 
@@ -69,6 +69,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         "result": worst.label,
         "message": rotor_message(run),
         "warnings": rotor_warnings(run),
+        "inputs": run.task.inputs,
         "version": __version__,
     }
 

@@ -119,6 +119,8 @@ class RotorScene:
         campbell: Speeds of the Campbell diagram (speed,) [rad/s], or `None`.
         response, transient: Or `None`.
         warnings: What is odd but possible.
+        inputs: The scene as it was read, all quantities in SI (`Scene.inputs`);
+            bearings of other scenes are in it.
     """
 
     name: str
@@ -135,6 +137,7 @@ class RotorScene:
     response: ResponseTask | None
     transient: TransientTask | None
     warnings: tuple[str, ...]
+    inputs: dict[str, Any]
 
     @property
     def seats(self) -> tuple[tuple[Mount, tuple[int, ...]], ...]:

@@ -30,7 +30,7 @@ from .rotor_scene import RotorScene
 from .rotor_tasks import read_campbell, read_response, read_transient
 from .scene_file import find_scene, is_rotor, parse_scene
 from .stations import read_station
-from .table import Table
+from .table import Table, written_numbers
 
 AXES = {
     "horizontal": (0.0, -GRAVITY, 0.0),
@@ -63,7 +63,7 @@ def read_rotor(source: str | Path, settings: Iterable[str] = ()) -> RotorScene:
         scene = _scene(top, path)
     top.finish()
     odd = tuple(dict.fromkeys(str(w.message) for w in caught))
-    return dataclasses.replace(scene, warnings=odd)
+    return dataclasses.replace(scene, warnings=odd, inputs=top.echo())
 
 
 def _scene(top: Table, path: Path) -> RotorScene:
@@ -91,6 +91,7 @@ def _scene(top: Table, path: Path) -> RotorScene:
         response=read_response(rotor, shaft, loads, shown),
         transient=read_transient(rotor, shaft, shown),
         warnings=(),
+        inputs={},
     )
 
 
@@ -104,7 +105,7 @@ def _shaft(rotor: Table) -> Shaft:
         outer.append(segment.quantity("outer_diameter", "length"))
         bore.append(segment.quantity("bore", "length", 0.0))
         divisions.append(segment.integer("divisions", 1))
-        materials.append(read_material(segment, "material") or Material())
+        materials.append(_material(segment))
         if sum(divisions) > MOST_ELEMENTS:
             problem = f"{sum(divisions)} elements are too many; at most {MOST_ELEMENTS}"
             raise segment.error("divisions", problem)
@@ -117,6 +118,13 @@ def _shaft(rotor: Table) -> Shaft:
     stations = np.concatenate([[0.0], np.cumsum(lengths)])
     with rotor.building():
         return Shaft(stations, outer, bore, tuple(materials), tuple(divisions))
+
+
+def _material(table: Table) -> Material:
+    """A material, steel if none is named; its numbers stand in the echo."""
+    material = read_material(table, "material") or Material()
+    table.fill("material", written_numbers(material))
+    return material
 
 
 def _discs(rotor: Table, shaft: Shaft) -> tuple[AbstractPart, ...]:
@@ -136,7 +144,7 @@ def _disc(table: Table, shaft: Shaft) -> AbstractPart:
             table.quantity(k, "length") for k in ("outer_diameter", "width")
         )
         bore = table.quantity("bore", "length", 0.0)
-        material = read_material(table, "material")
+        material = _material(table)
         with table.building():
             return Disc.of_size(station, outer, width, bore, material)
     for name in ("outer_diameter", "width", "bore", "material"):

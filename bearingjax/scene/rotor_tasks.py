@@ -82,6 +82,9 @@ def read_response(
     scale = table.quantity("scale", "length", None)
     if scale is not None and not scale > 0.0:
         raise table.error("scale", f"{scale:g} m is not allowed; above 0 m")
+    for key, users in _FOR.items():
+        if method not in users:
+            table.fill(key, None)
     linear, speed = method == "linear", table.quantity("speed", "speed", None)
     if speed is not None and loads.unbalances:
         warnings.warn(

@@ -69,7 +69,8 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
         `wander`. Of a
         motion in time all have a leading axis `time`; besides there are what `OF_TIME`
         lists and `work`; null stands at times that were not reached. And result,
-        message, residual, iterations, warnings and version. Without a solution numbers
+        message, residual, iterations, warnings, inputs (the file is a scene again) and
+        version. Without a solution numbers
         are left out.
     """
     from .. import __version__
@@ -83,6 +84,7 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
         "residual": residual if np.isfinite(residual) else None,
         "iterations": int(run.found.steps),
         "warnings": list(run.warnings),
+        "inputs": run.task.inputs,
         "version": __version__,
     }
 

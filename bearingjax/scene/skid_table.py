@@ -32,7 +32,7 @@ from .oil_table import OWN
 from .quantity import kind_of
 from .read import Scene, scene_of
 from .scene_file import find_scene, parse_bearing
-from .table import Table
+from .table import Table, written
 
 AXES = ("vertical", "horizontal")
 STARTS = ("rolling", "rest")
@@ -61,6 +61,7 @@ class SkidScene:
         tolerance: Of the integration in time.
         max_steps: Step limit of it.
         warnings: What was assumed, or is odd but possible.
+        inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 
     scene: Scene
@@ -77,6 +78,7 @@ class SkidScene:
     tolerance: float
     max_steps: int
     warnings: tuple[str, ...]
+    inputs: dict[str, Any]
 
     @property
     def name(self) -> str:
@@ -138,10 +140,15 @@ def read_skid(
         **_time(dynamics, steady),
         places=_places(dynamics, steady, n_elements(model.bearing)),
         warnings=tuple(dict.fromkeys((*scene.warnings, *odd))),
+        inputs={},
     )
     for table in (lubricant, cage, dynamics):
         table.finish()
-    return found
+    dynamics.fill("drag_coefficient", float(model.drag.coefficient))
+    dynamics.fill("fill", float(model.drag.fill))
+    dynamics.fill("least_film", written(float(model.least_film), "m"))
+    own = {"cage": cage.echo(), "dynamics": dynamics.echo()}
+    return dataclasses.replace(found, inputs={**scene.inputs, **own})
 
 
 def _built(table, kind, values):

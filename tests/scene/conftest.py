@@ -1,5 +1,8 @@
 """The command line in this process, without touching JAX's settings."""
 
+import json
+from collections.abc import Callable
+from html import unescape
 from typing import NamedTuple
 
 import pytest
@@ -14,6 +17,36 @@ class Run(NamedTuple):
     status: int
     out: str
     err: str
+
+
+@pytest.fixture
+def rerun(run, tmp_path) -> Callable:
+    """Run a command on the JSON that it wrote: the same numbers, and its report.
+
+    What is static and filled in by the echo (free freedoms, the tolerance) the scene
+    had better say itself, so that the programs are compiled already.
+    """
+
+    def call(command, out, *options, pictures=1):
+        again, page = tmp_path / "again.json", tmp_path / "again.html"
+        files = ("--json", again, "--report", page)
+        done = run(command, out, *options, *files)
+        assert done.status == 0, done.err
+        first, second = (json.loads(path.read_text("utf-8")) for path in (out, again))
+        assert second["inputs"] == first["inputs"] and second == first
+        text = unescape(page.read_text(encoding="utf-8"))
+        for (
+            line
+        ) in done.out.splitlines():  # but for the name, which is that of the file
+            assert set(line) == {"-"} or line in text
+        assert text.count("data:image/png;base64,") == pictures
+        for title in ("Inputs", "How to run it again"):
+            assert f"<h2>{title}</h2>" in text
+        assert all(f"[{table}]" in text for table in first["inputs"])
+        assert all(f"<li>{one}</li>" in text for one in second["warnings"])
+        return text
+
+    return call
 
 
 @pytest.fixture

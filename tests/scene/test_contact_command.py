@@ -16,7 +16,9 @@ from bearingjax.scene import read_contact
 SMALL = ("--set", "numerics.across=9", "--set", "numerics.along=12")
 TAPER = ("contact", "taper_contact", *SMALL)
 ONE = (*TAPER, "--set", "operating.load=3 kN")
-WORDS = {"result", "message", "residual", "iterations", "warnings", "version"}
+WORDS = {
+    *("result", "message", "residual", "iterations", "warnings", "inputs", "version"),
+}
 
 # Settings of the shipped scene, and the message after "taper_contact.toml: ".
 WRONG = {
@@ -208,7 +210,7 @@ def test_no_roller(tmp_path):
         read_contact("none.toml")
 
 
-def test_solved(run, tmp_path):
+def test_solved(run, rerun, tmp_path):
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     done = run(*TAPER, "--json", out, "--plot", picture)
     assert done.status == 0
@@ -223,6 +225,7 @@ def test_solved(run, tmp_path):
     assert len(said) == 2 and "make 3.814 deg" in said[0] and "end cell" in said[1]
     assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
     assert picture.stat().st_size > 50_000
+    rerun("contact", out)
 
 
 @pytest.mark.parametrize(

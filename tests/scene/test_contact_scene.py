@@ -31,7 +31,7 @@ PAPER = (
     "numerics.half_width=0.1764 mm",
     "operating.load=3 kN",
 )
-SHARED = {"position", "cell_length", "end_cell_length", "warnings", "version"}
+SHARED = {"position", "cell_length", "end_cell_length", "warnings", "inputs", "version"}
 STATUS = {"result", "message", "residual", "iterations"}
 NUMBERS = {
     "load",

@@ -3,12 +3,23 @@
 import dataclasses
 import json
 
+import equinox as eqx
 import jax
 import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import SceneError, as_dict, read_scene
+from bearingjax.scene import (
+    SceneError,
+    as_dict,
+    read_cases,
+    read_contact,
+    read_noise,
+    read_optimisation,
+    read_rotor,
+    read_scene,
+    read_skid,
+)
 from bearingjax.scene.quantity import KINDS, to_si
 
 SCENES = (
@@ -49,6 +60,106 @@ def test_the_echo_is_the_scene(tmp_path, name):
         if field.name not in chosen:
             assert getattr(again, field.name) == getattr(scene, field.name)
     assert again.tolerance == (scene.tolerance or 1e-11)
+
+
+# Readers of other commands, scenes, settings.
+OTHERS = {
+    "optimise": (read_optimisation, "fujiwara_kawase", ()),
+    "spectrum": (read_cases, "life_spectrum", ()),
+    "grid": (read_cases, "load_map", ()),
+    "contact": (read_contact, "taper_contact", ()),
+    "contact by approach": (
+        read_contact,
+        "taper_contact",
+        ("operating={approach='5 um', tilt='1 mrad'}", "roller.material=steel"),
+    ),
+    "balls that skid": (read_skid, "skid_combined", ()),
+    "rollers that skid": (read_skid, "skid_roller", ("dynamics.duration=1 ms",)),
+    "load over time": (
+        read_skid,
+        "skid_axial",
+        (
+            "dynamics={duration='1 s', load={amplitude={Fy='80 N'}, speed='20 rpm'},"
+            " speed={time=['0 s', '1 s'], inner=['0 rpm', '9 rpm']}}",
+            "lubricant={law='roelands', coefficient='20 1/GPa', grade=68,"
+            " temperature='60 °C', traction={type='eyring', stress_scale='5 MPa'}}",
+        ),
+    ),
+    "noise": (read_noise, "noise_cylindrical", ()),
+    "noise of a moving outer ring": (read_noise, "noise_four_point", ()),
+    "rotor": (read_rotor, "rotor_flexible", ()),
+    "rotor in time": (
+        read_rotor,
+        "rotor_spindle",
+        (
+            "rotor.transient={duration='1 s', speed_to='9000 rpm'}",
+            "rotor.response={from='1 Hz', to='9 Hz', method='linear'}",
+        ),
+    ),
+    "bearing of another scene": (
+        read_rotor,
+        "rotor_flexible",
+        (
+            "rotor.bearings.1.bearing=needle",
+            "bearings={locating={designation='6208', contact={point_law='zero_angle'},"
+            " fit={shaft='k5', housing='H7', housing_diameter='99 mm'}}}",
+        ),
+    ),
+}
+
+
+def leaves(task):
+    """Numbers and choices of what was read; not what is static in a load solve."""
+    plain = dataclasses.is_dataclass(task) and not isinstance(task, eqx.Module)
+    if plain and not isinstance(task, type):
+        names = {field.name for field in dataclasses.fields(task)}
+        parts = [getattr(task, name) for name in sorted(names - {"tolerance", "free"})]
+        return [leaf for part in parts for leaf in leaves(part)]
+    if isinstance(task, tuple | list):
+        return [leaf for part in task for leaf in leaves(part)]
+    found, shape = jax.tree.flatten(task)
+    return [str(shape), *found]
+
+
+def check_same(one, other):
+    for first, second in zip(leaves(one), leaves(other), strict=True):
+        np.testing.assert_array_equal(first, second)
+
+
+@pytest.mark.parametrize("what", OTHERS)
+def test_the_echo_of_every_command_is_its_scene(tmp_path, what):
+    reader, name, settings = OTHERS[what]
+    task = reader(name, settings)
+    path = tmp_path / f"{name}.json"
+    path.write_text(json.dumps({"inputs": task.inputs}), encoding="utf-8")
+    again = reader(path)
+    assert again.inputs == task.inputs
+    check_same(task, again)
+
+
+def test_what_stands_in_files_stands_in_the_echo(tmp_path):
+    """Or where the file is, so that the echo is read from anywhere."""
+    folder, away = tmp_path / "here", tmp_path / "away"
+    folder.mkdir()
+    away.mkdir()
+    heights = "\n".join(["height [um]", *(f"{0.1 * k}" for k in (0, 1, 0, -1))])
+    (folder / "ring.csv").write_text(f"{heights}\n", encoding="utf-8")
+    (folder / "list.csv").write_text("operating.load.Fy [kN]\n1\n2\n")
+    shipped = bj.scene.shipped_scenes()
+    for reader, name, more in (
+        (
+            read_noise,
+            "noise_deep_groove",
+            '[[deviations.profile]]\npart = "inner raceway"\nfile = "ring.csv"\n',
+        ),
+        (read_cases, "cylindrical_ribs", '[cases]\nfile = "list.csv"\n'),
+    ):
+        path = folder / f"{name}.toml"
+        path.write_text(f"{shipped[name].read_text(encoding='utf-8')}\n{more}")
+        task = reader(path)
+        out = away / f"{name}.json"
+        out.write_text(json.dumps({"inputs": task.inputs}), encoding="utf-8")
+        check_same(task, reader(out))
 
 
 def test_defaults_are_filled_in():

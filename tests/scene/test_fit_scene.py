@@ -571,6 +571,13 @@ def test_a_rotor_turns_on_its_fits(scene):
     left = 12.5e-6 - fit - raceway - f * rise
     assert clearance(two.element) == pytest.approx(left, rel=1e-9)
     assert type(two.element.point_law) is bj.ZeroAngle
+    # The echo has the bearing of the other scene, with its fits.
+    out = path.with_name("away") / "rotor.json"
+    out.parent.mkdir()
+    out.write_text(json.dumps({"inputs": task.inputs}), encoding="utf-8")
+    again: list[Any] = [support_of(mount) for mount in read_rotor(out).mounts]
+    for support, other in zip(supports, again, strict=True):
+        assert clearance(support.element) == clearance(other.element)
 
 
 def test_what_a_rotor_tells_of_its_fits(scene):

@@ -16,12 +16,15 @@ from bearingjax.statics.sweep import Sweep
 
 GROOVES = {"inner_osculation": 0.52, "outer_osculation": 0.53}
 SCENE = "life_spectrum"
+# What is static in the echo, said: so that one program serves.
+SAID = ("operating.free=['ux', 'uy', 'uz']", "numerics.tolerance=1e-11")
+SETTINGS = tuple(word for text in SAID for word in ("--set", text))
 NAMES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 
 
 @pytest.fixture(scope="module")
 def solution():
-    return run_scene(bj.read_scene(SCENE))
+    return run_scene(bj.read_scene(SCENE, SAID))
 
 
 def test_a_scene_has_the_conditions_of_its_life():
@@ -35,9 +38,9 @@ def test_a_scene_has_the_conditions_of_its_life():
     assert isinstance(still, bj.LifeConditions) and still.viscosity is None
 
 
-def test_solve_tells_the_life_that_python_has(run, tmp_path, solution, untyped):
+def test_solve_tells_the_life_that_python_has(run, rerun, tmp_path, solution, untyped):
     out = tmp_path / "out.json"
-    told = run("solve", SCENE, "--json", out)
+    told = run("solve", SCENE, *SETTINGS, "--json", out)
     assert told.status == 0 and "[cases] are for sweep" in told.err
     found = json.loads(out.read_text(encoding="utf-8"))
     scene = bj.read_scene(SCENE)
@@ -60,20 +63,22 @@ def test_solve_tells_the_life_that_python_has(run, tmp_path, solution, untyped):
     path = tmp_path / "one.toml"
     text = shipped_scenes()[SCENE].read_text(encoding="utf-8")
     path.write_text(text.partition("[[cases")[0], encoding="utf-8")
-    told = run("life", path, "--json", out)
+    told = run("life", path, *SETTINGS, "--json", out)
     assert told.status == 0 and "turning against the load: inner ring" in told.out
     alone = json.loads(out.read_text(encoding="utf-8"))
     assert all(alone[name] == found[name] for name in NAMES)
     assert alone["result"] == "converged" and "displacement" not in alone
+    rerun("life", out, pictures=2)
     told = run("life", path, "--table", tmp_path / "t.csv")
     assert told.status == 2 and "--table is for a scene with [cases]" in told.err
 
 
-def test_a_spectrum_adds_up_the_damage_of_its_cases(run, tmp_path, untyped):
+def test_a_spectrum_adds_up_the_damage_of_its_cases(run, rerun, tmp_path, untyped):
     out, table = tmp_path / "out.json", tmp_path / "cases.csv"
     page, picture = tmp_path / "out.html", tmp_path / "out.png"
     drawn = ("--report", page, "--plot", picture)
-    told = run("life", SCENE, "--json", out, "--table", table, *drawn, "--quiet")
+    files = ("--json", out, "--table", table, *drawn)
+    told = run("life", SCENE, *SETTINGS, *files, "--quiet")
     assert told.status == 0, told.err
     assert picture.read_bytes().startswith(b"\x89PNG")
     text = unescape(page.read_text(encoding="utf-8"))
@@ -101,6 +106,8 @@ def test_a_spectrum_adds_up_the_damage_of_its_cases(run, tmp_path, untyped):
     loads = np.array(columns["equivalent_load [N]"])
     mean = np.cbrt((turns * loads**3).sum() / turns.sum())
     np.testing.assert_allclose(found["equivalent_load"], mean, rtol=1e-9)
+    page = rerun("life", out, "--quiet", pictures=2)
+    assert page.count("<td>converged</td>") == 3
 
 
 def test_a_case_that_is_not_solved_leaves_no_life(run, tmp_path):
@@ -109,7 +116,7 @@ def test_a_case_that_is_not_solved_leaves_no_life(run, tmp_path):
     text = shipped_scenes()[SCENE].read_text(encoding="utf-8")
     text = text.replace('Fx = "4 kN"', 'Fx = "4e30 N"')
     path.write_text(text, encoding="utf-8")
-    told = run("life", path, "--json", out, "--quiet")
+    told = run("life", path, *SETTINGS, "--json", out, "--quiet")
     assert told.status == 3 and "1 of 3 cases not solved (case 2: " in told.err
     assert told.out == ""
     found = json.loads(out.read_text(encoding="utf-8"))

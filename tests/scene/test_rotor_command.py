@@ -61,7 +61,7 @@ PARTS = {
     "campbell",
     "response",
 }
-WORDS = {"result", "message", "warnings", "version"}
+WORDS = {"result", "message", "warnings", "inputs", "version"}
 
 
 def settings(*given):
@@ -160,7 +160,7 @@ def _same_as_the_library(found):
     )
 
 
-def test_what_is_not_asked_for_is_not_there(run, tmp_path):
+def test_what_is_not_asked_for_is_not_there(run, rerun, tmp_path):
     out = tmp_path / "a.json"
     text = _without("campbell", "response")
     path = tmp_path / "plain.toml"
@@ -169,6 +169,7 @@ def test_what_is_not_asked_for_is_not_there(run, tmp_path):
     assert done.status == 0
     assert set(read(out)) == (PARTS | WORDS) - {"campbell", "response"}
     assert "Campbell" not in done.out and "response" not in done.out
+    rerun("rotor", out)
     for more, words in (
         (["--table", tmp_path / "a.csv"], "no [rotor.response] nor [rotor.transient]"),
         (["--series", "response"], "name it with --table"),
