@@ -160,6 +160,9 @@ _SEATS = {"shaft_interference": "bore", "housing_interference": "outside_diamete
 _LARGEST = 0.01
 """Share of a diameter that no fit reaches: steel would yield at a fifth of it."""
 
+_WIDEST = 0.01
+"""Beyond all clearances and deviations of bearings up to 1 m; micrometres meant? [m]"""
+
 _DIAMETERS = (
     "bore",
     "inner_raceway",
@@ -250,6 +253,8 @@ def smoothing(seat: Any, ring: Any) -> Any:
     Source: DIN 7190-1 (2017), as the manual of the bearing program of MESYS states it;
         earlier editions took twice as much.
     """
+    for name, value in (("seat", seat), ("ring", ring)):
+        non_negative("smoothing", name, value, "m")
     return 0.4 * (seat + ring)
 
 
@@ -293,6 +298,10 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
     Source: Lamé's thick cylinders and rotating discs, Timoshenko & Goodier, Theory of
         Elasticity (1970), articles 28 and 32.
     """
+    if not isinstance(mounting, Mounting):
+        raise _not_a("mounting", mounting, "Mounting")
+    if not isinstance(conditions, FitConditions | None):
+        raise _not_a("conditions", conditions, "FitConditions or None")
     _check_sized(mounting)
     m: Any = mounting
     c: Any = _REST if conditions is None else conditions
@@ -345,6 +354,11 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
         shaft_pressure * _ratio(m.bore, m.inner_raceway)
         + _hoop(m.inner_ring.material, m.bore, m.inner_raceway, c.speed),
     )
+
+
+def _not_a(name, value, wanted):
+    found = type(value).__name__
+    return TypeError(f"fit_state: `{name}` is a {found}; it must be {wanted}.")
 
 
 def _check_sized(mounting):
@@ -518,8 +532,15 @@ def _given(clearance, shaft, bore, housing, outside_diameter):
         "housing": housing,
         "outside_diameter": outside_diameter,
     }
-    for name, (lower, upper) in given.items():
-        known = concrete(lower, upper)
+    for name, pair in given.items():
+        if not isinstance(pair, tuple) or len(pair) != 2:
+            raise TypeError(
+                f"clearance_range: `{name}` is {pair!r}; it must be Limits, two numbers"
+                " in m."
+            )
+        for end in pair:
+            in_range("clearance_range", name, -_WIDEST, _WIDEST, end, "m")
+        known = concrete(*pair)
         if known is not None and known[0] > known[1]:
             raise ValueError(
                 f"clearance_range: `{name}` is {known[0]:.6g} to {known[1]:.6g} m; its"

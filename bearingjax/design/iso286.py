@@ -119,7 +119,8 @@ def standard_tolerance(grade: int, diameter: Any) -> float:
 
     Source: as of `limits`.
     """
-    if grade not in range(1, len(_GRADES) + 1):
+    whole = isinstance(grade, int) and not isinstance(grade, bool)
+    if not whole or grade not in range(1, len(_GRADES) + 1):
         raise ValueError(
             f"standard_tolerance: `grade` is {grade!r}; it must be a whole number"
             f" from 1 to {len(_GRADES)}."
@@ -194,7 +195,7 @@ def _above(letter, size, fine):
 
 def _split(name):
     """Letter and grade of a class, or an error that names all classes."""
-    found = re.fullmatch(r"([A-Za-z]+)(\d+)", name)
+    found = re.fullmatch(r"([A-Za-z]+)(\d+)", str(name))
     if name not in LIMIT_CLASSES or found is None:
         known = f"{limit_classes(True)}, {limit_classes(False)}"
         raise ValueError(f"limits: `name` is {name!r}; it must be one of {known}.")

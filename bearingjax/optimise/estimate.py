@@ -33,7 +33,7 @@ from ..design import (
     n_elements,
     rows_of,
 )
-from ..design.checks import check, in_range, positive
+from ..design.checks import check, in_range, is_traced, positive
 from ..numerics.types import as_real
 from ..statics import row_rating
 from ..statics.row_rating import BallKind, BallRow, RollerRow, Rows
@@ -440,6 +440,9 @@ def _checked(numbers, kind, contact_angle) -> Proportions:
     owner = "estimate_geometry"
     for name, value in numbers.items():
         positive(owner, name, value, "N" if "capacity" in name else "m")
+        if is_traced(value):
+            problem = "is traced; numbers must be known, as whole elements are counted"
+            raise TypeError(f"{owner}: `{name}` {problem}.")
     bore, outside = numbers["bore"], numbers["outside_diameter"]
     allowed = f"below the outside diameter, {outside:.6g} m"
     check(owner, "bore", bore < outside, allowed, bore, "m")

@@ -147,7 +147,13 @@ def catalogue_entry(designation: str) -> CatalogueEntry:
 
     Raises:
         SceneError: If there is no such bearing; names those near it.
+        TypeError: If it is no text.
     """
+    if not isinstance(designation, str):
+        problem = 'it must be a text such as "6205"'
+        raise TypeError(
+            f"catalogue_entry: `designation` is {designation!r}; {problem}."
+        )
     listed = _names()
     name, suffixes = split_designation(designation, listed)
     kind, key, changes, odd = listed[name]
@@ -330,13 +336,30 @@ def taken_from(
         if isinstance(own, Mapping) and isinstance(value, Mapping):
             value = value if "type" in value else {**own, **value}
         merged[key] = value
-        if not _same(value, own):
+        if not (_same(value, own) or _same(value, _filled(entry).get(key))):
             changed.append(key)
     return merged, FromCatalogue(entry, tuple(changed))
 
 
+_FILLED: dict[str, dict[str, Any]] = {}
+
+
+def _filled(entry: CatalogueEntry) -> dict[str, Any]:
+    """Keys of a bearing with all defaults, as the JSON of a solve echoes them."""
+    from .bearing_table import read_bearing  # which reads designations in turn
+    from .table import Table
+
+    if entry.designation not in _FILLED:
+        table = Table(entry.table, entry.designation)
+        read_bearing(table, Table({}, entry.designation))
+        _FILLED[entry.designation] = table.echo()
+    return _FILLED[entry.designation]
+
+
 def _same(value: Any, own: Any) -> bool:
     """Whether two entries of a scene mean the same: "7.94 mm" and "0.00794 m" do."""
+    if isinstance(value, Mapping) and isinstance(own, Mapping):
+        return set(value) == set(own) and all(_same(value[k], own[k]) for k in value)
     if value == own or not (isinstance(value, str) and isinstance(own, str)):
         return value == own
     for kind in ("length", "angle"):

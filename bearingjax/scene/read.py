@@ -98,7 +98,11 @@ def load_bearing(source: str | Path) -> Any:
 
     Raises:
         SceneError: If the scene cannot be read, or nothing has this name.
+        TypeError: For a number in place of a text.
     """
+    if not isinstance(source, str | Path):
+        problem = 'it must be a text such as "6205", or a path'
+        raise TypeError(f"load_bearing: `source` is {source!r}; {problem}.")
     if is_scene(source):
         return read_scene(source).element.bearing
     need_float64()

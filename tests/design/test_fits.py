@@ -379,5 +379,14 @@ def test_what_is_not_allowed():
         ValueError, match="`shaft` is 0 K; it must be from -280 to 1500 K above `refer"
     ):
         FitConditions(inner_ring=320.0, reference=293.0)
+    with pytest.raises(ValueError, match="smoothing: `ring` is -1e-06 m"):
+        smoothing(1e-6, -1e-6)
+    for clearance, wanted in (
+        (Limits(5, 20), "`clearance` is 5 m; it must be above -0.01 and below 0.01 m"),
+        (Limits(np.nan, 1e-6), "`clearance` is nan m; it must be a finite number"),
+        (Limits("5", "20"), "`clearance` is '5'; it must be a number in m"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=wanted):
+            clearance_range(mounting(), **{**sizes(), "clearance": clearance})
     with pytest.raises(ValueError, match="`bore` is 1e-06 to 0 m.*lower limit"):
         clearance_range(mounting(), **{**sizes(), "bore": Limits(1e-6, 0.0)})

@@ -95,8 +95,9 @@ def test_what_is_not_known():
         limits("H7", 0.6)
     with pytest.raises(ValueError, match="`diameter` is 0 m"):
         limits("H7", 0.0)
-    with pytest.raises(ValueError, match="`grade` is 12.*1 to 11"):
-        standard_tolerance(12, 0.05)
+    for grade in (12, True):
+        with pytest.raises(ValueError, match=f"`grade` is {grade!r}.*1 to 11"):
+            standard_tolerance(grade, 0.05)
 
 
 @pytest.mark.parametrize(

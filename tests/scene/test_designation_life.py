@@ -146,3 +146,15 @@ def test_ratings_come_back_from_the_json(read, tmp_path):
     path.write_text(json.dumps({"inputs": scene.inputs}), encoding="utf-8")
     again = bj.read_scene(path)
     assert rated(life_conditions(again)) == rated(life_conditions(scene))
+    # Defaults that the JSON has filled in override nothing.
+    assert again.catalogue.overridden == ()
+
+
+@pytest.mark.parametrize("name", ["NJ 206 EC", "30205 J2", "1205 E/C3", "51108"])
+def test_an_echo_overrides_nothing(read, tmp_path, name):
+    scene = read(f'designation = "{name}"', settings=["operating.load.Fz=1 N"])
+    path = tmp_path / "again.json"
+    path.write_text(json.dumps({"inputs": scene.inputs}), encoding="utf-8")
+    assert bj.read_scene(path).catalogue.overridden == ()
+    changed = bj.read_scene(path, ["bearing.first_azimuth=5 deg"])
+    assert changed.catalogue.overridden == ("first_azimuth",)
