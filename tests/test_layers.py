@@ -3,6 +3,7 @@
 import ast
 import importlib
 import inspect
+import json
 import pkgutil
 import subprocess
 import sys
@@ -81,34 +82,44 @@ def test_no_star_imports():
                 assert all(alias.name != "*" for alias in node.names), path
 
 
-def test_import_leaves_jax_and_matplotlib_alone():
-    code = (
-        "import sys, jax; before = dict(jax.config.values); import bearingjax;"
-        "assert all(jax.config.values[k] == v for k, v in before.items());"
-        "assert 'matplotlib' not in sys.modules and 'pint' not in sys.modules"
+FRESH = """
+import importlib, json, pkgutil, sys, warnings
+import jax
+before = dict(jax.config.values)
+import bearingjax as bj
+told = {"settings": [k for k, v in before.items() if jax.config.values[k] != v]}
+told["modules"] = list(sys.modules)
+for info in pkgutil.walk_packages(bj.__path__, "bearingjax."):
+    if not info.name.endswith("__main__"):
+        importlib.import_module(info.name)
+jax.config.update("jax_num_cpu_devices", 2)
+told["devices"] = len(jax.devices("cpu"))
+with warnings.catch_warnings(record=True) as seen:
+    warnings.simplefilter("always")
+    bj.BearingElement(bj.CylindricalRollerBearing(9, 0.06, 0.01, 0.01))
+told["warnings"] = [str(w.message) for w in seen]
+print(json.dumps(told))
+"""
+
+
+@pytest.fixture(scope="module")
+def fresh():
+    """What a process of its own says after importing the package."""
+    done = subprocess.run(
+        [sys.executable, "-c", FRESH], capture_output=True, check=True, timeout=120
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+    return json.loads(done.stdout)
 
 
-def test_import_makes_no_array():
+def test_import_leaves_jax_and_matplotlib_alone(fresh):
+    assert fresh["settings"] == []
+    assert {"matplotlib", "pint"}.isdisjoint(fresh["modules"])
+
+
+def test_import_makes_no_array(fresh):
     # An array would fix the number of devices, and the precision of a default value.
-    code = (
-        "import importlib, pkgutil, jax, bearingjax\n"
-        "for info in pkgutil.walk_packages(bearingjax.__path__, 'bearingjax.'):\n"
-        "    if not info.name.endswith('__main__'):\n"
-        "        importlib.import_module(info.name)\n"
-        "jax.config.update('jax_num_cpu_devices', 2)\n"
-        "assert len(jax.devices('cpu')) == 2\n"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+    assert fresh["devices"] == 2
 
 
-def test_float64_is_asked_for():
-    code = (
-        "import warnings, bearingjax as bj\n"
-        "with warnings.catch_warnings(record=True) as seen:\n"
-        "    warnings.simplefilter('always')\n"
-        "    bj.BearingElement(bj.CylindricalRollerBearing(9, 0.06, 0.01, 0.01))\n"
-        "assert any('jax_enable_x64' in str(w.message) for w in seen)\n"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+def test_float64_is_asked_for(fresh):
+    assert any("jax_enable_x64" in text for text in fresh["warnings"])

@@ -15,7 +15,6 @@ from .bearing_set import Bearing as Bearing
 from .bearing_set import BearingSet as BearingSet
 from .bearing_set import PreloadSpring as PreloadSpring
 from .bearing_set import SetRow as SetRow
-from .bearing_set import has_sphere as has_sphere
 from .bearing_set import is_ball as is_ball
 from .bearing_set import is_self_aligning as is_self_aligning
 from .bearing_set import n_elements as n_elements

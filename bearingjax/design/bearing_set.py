@@ -256,12 +256,6 @@ def is_self_aligning(bearing: Bearing | BearingSet) -> bool:
     return all(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
 
 
-def has_sphere(bearing: Bearing | BearingSet) -> bool:
-    """Whether an outer raceway is a sphere, which needs finite rotations."""
-    rows = rows_of(bearing)
-    return any(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
-
-
 def pitch_radius(bearing: Bearing | BearingSet) -> Scalar:
     """Largest pitch radius of the rows [m]."""
     radii = [0.5 * row.bearing.pitch_diameter for row in rows_of(bearing)]

@@ -64,15 +64,15 @@ class AbstractProfile(eqx.Module):
             return
         self._check_against(float(length), float(diameter))
         ends = 0.5 * np.asarray(length) * np.array([-1.0, -0.999, 0.999, 1.0])
-        drops = np.asarray(_drop(self, ends, length, diameter))
-        fits = (drops >= 0) & (drops < 0.5 * float(diameter))
+        found = np.asarray(drops(self, ends, length, diameter))
+        fits = (found >= 0) & (found < 0.5 * float(diameter))
         check(
             self,
             "crown_drop",
             fits,
             "at least 0 and below half the roller diameter,"
             f" {0.5 * float(diameter):.6g} m",
-            drops.max(),
+            found.max(),
             "m",
         )
 
@@ -81,8 +81,14 @@ class AbstractProfile(eqx.Module):
 
 
 @eqx.filter_jit
-def _drop(profile, position, length, diameter):
-    return profile.drop(position, length, diameter)
+def drops(
+    profile: AbstractProfile,
+    position: Array | np.ndarray,
+    length: Scalar,
+    diameter: Scalar,
+) -> Array:
+    """`AbstractProfile.drop`, compiled as a whole."""
+    return profile.drop(jnp.asarray(position), length, diameter)
 
 
 class Straight(AbstractProfile):

@@ -8,9 +8,9 @@ import numpy as np
 
 from ..contact import Palmgren
 from ..design.bearing import AbstractRollerBearing
+from ..design.profile import drops
 from ..element.constants import contact_constants
 from ..numerics import Midpoint
-from .profiles import drops
 from .style import RACEWAYS
 
 _BODY = 0.35  # thickness of the schematic rings, roller diameters

@@ -12,8 +12,8 @@ from ..design import (
     FujiwaraKawase,
     Tabulated,
 )
+from ..design.profile import drops
 from .dimension import ARROW, label
-from .profiles import drops
 from .style import COLOURS, GREY, ROLLER, SMALL, axes_or_new
 
 if TYPE_CHECKING:

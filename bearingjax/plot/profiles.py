@@ -2,25 +2,15 @@
 
 from typing import TYPE_CHECKING
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
 
-from ..design import AbstractProfile, AbstractRollerBearing
-from ..numerics.types import Scalar
+from ..design import AbstractRollerBearing
+from ..design.profile import drops
 from .style import COLOURS, ROLLER, SMALL, axes_or_new
 
 if TYPE_CHECKING:
     import matplotlib.axes
-
-
-@eqx.filter_jit
-def drops(
-    profile: AbstractProfile, position: Array, length: Scalar, diameter: Scalar
-) -> Array:
-    """`AbstractProfile.drop`, compiled as a whole."""
-    return profile.drop(position, length, diameter)
 
 
 def profile(

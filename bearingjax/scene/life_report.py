@@ -114,7 +114,7 @@ def life_report(scene: Scene, solution: Solution, life: Life) -> str:
         f"equivalent load: P {_kilo(life.equivalent_load)} kN, of the reference life"
         f" {_kilo(life.reference_load)} kN",
         *_through_ribs(solution),
-        f"static safety C0/P0 {_number(life.static_safety)}, P0"
+        f"static safety C0/P0 {life_number(life.static_safety)}, P0"
         f" {_kilo(life.static_equivalent_load)} kN (ISO 76)",
     ]
     lines += limits(solution, life)
@@ -177,11 +177,12 @@ def _hours_per_turn(solution) -> float | None:
 
 
 def _line(name, life, hours) -> str:
-    line = f"  {name:<24}{_number(1e-6 * life):>13}"
-    return line if hours is None else line + f"{_number(hours * life):>17}"
+    line = f"  {name:<24}{life_number(1e-6 * life):>13}"
+    return line if hours is None else line + f"{life_number(hours * life):>17}"
 
 
-def _number(value) -> str:
+def life_number(value: Any) -> str:
+    """A life or a safety in digits, or that it has no end."""
     return f"{float(value):.5g}" if np.isfinite(value) else "infinite"
 
 

@@ -16,6 +16,7 @@ from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ..statics.sweep import Sweep
 from ..statics.sweep_table import columns
 from .cases_table import CaseTable
+from .life_report import life_number
 from .life_table import life_conditions, not_published
 from .quantity import SceneError
 from .scene_file import find_scene, parse_bearing
@@ -214,13 +215,13 @@ def spectrum_report(run: LifeRun) -> str:
     if "modified" not in lives and a1 < 0.999999:
         lives[f"reference, a1 {a1:.4g}"] = run.asked
     for words, life in lives.items():
-        line = f"{words:<24}{_shown(1e-6 * life.rating_life):>14}"
+        line = f"{words:<24}{life_number(1e-6 * life.rating_life):>14}"
         if life.life_hours is not None:
-            line += f"{_shown(life.life_hours):>14}"
+            line += f"{life_number(life.life_hours):>14}"
         lines.append(line)
     lines.append(
         f"equivalent load of the spectrum {1e-3 * equivalent_load(run):.5g} kN; least"
-        f" static safety {_shown(np.min(run.solved.static_safety))}"
+        f" static safety {life_number(np.min(run.solved.static_safety))}"
     )
     lines += _by_case(run)
     lines += [f"warning: {text}" for text in _warnings(run)]
@@ -243,7 +244,7 @@ def _by_case(run) -> list[str]:
     for k, share in zip(order, shares, strict=True):
         spent = "-" if hours is None else f"{float(hours[k]):.5g}"
         load = 1e-3 * float(solved.equivalent_load[k])
-        lives = (_shown(1e-6 * getattr(solved, name)[k]) for name in run.lives)
+        lives = (life_number(1e-6 * getattr(solved, name)[k]) for name in run.lives)
         lines.append(
             f"{k:>6}{spent:>14}{load:>10.4g}"
             + "".join(f"{life:>12}" for life in lives)
@@ -253,10 +254,6 @@ def _by_case(run) -> list[str]:
     if left:
         lines.append(f"  and {left} more, {100 * (1 - shares.sum()):.3g} %")
     return lines
-
-
-def _shown(value) -> str:
-    return f"{float(value):.5g}" if np.isfinite(value) else "infinite"
 
 
 def unsolved(run: LifeRun) -> str:

@@ -10,6 +10,7 @@ from ..dynamics import by_raceway
 from ..element import RINGS
 from ..numerics.result import Result
 from ..statics.solution import message
+from ..statics.sweep_table import column_header
 from .files import write_numbers
 from .skid_run import SkidRun
 
@@ -113,7 +114,7 @@ def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
         reached = np.isfinite(run.found.cage_speed)
         powers = {f"power_{n}": np.asarray(v) for n, v in _powers(run).items()}
         whole, units = _of_time(run) | powers, OF_TIME | dict.fromkeys(powers, "W")
-        columns = {_header(name, units[name]): v for name, v in whole.items()}
+        columns = {column_header(name, units[name]): v for name, v in whole.items()}
         columns = {header: v[reached] for header, v in columns.items()}
         balls = {name: values[reached] for name, values in balls.items()}
     for name, values in balls.items():
@@ -131,13 +132,9 @@ def _spread(name, values, steady):
     parts = values.reshape(len(values), -1).T
     ends = itertools.product(*axes)
     return {
-        _header("_".join([name, *map(str, end)]), UNITS[name]): part
+        column_header("_".join([name, *map(str, end)]), UNITS[name]): part
         for end, part in zip(ends, parts, strict=True)
     }
-
-
-def _header(name, unit):
-    return f"{name} [{unit}]" if unit else name
 
 
 def each_ball(run: SkidRun) -> dict[str, np.ndarray]:

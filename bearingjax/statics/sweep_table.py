@@ -327,20 +327,22 @@ def asked(cases: Cases) -> dict[str, np.ndarray]:
     out: dict[str, np.ndarray] = {}
     for k, name in enumerate(LOADS):
         if np.any(np.nan_to_num(np.asarray(cases.load)[:, k]) != 0):
-            head = _header(name, unit_of(cases, "load", (k,)))
+            head = column_header(name, unit_of(cases, "load", (k,)))
             out[head] = np.asarray(cases.load)[:, k]
     for name, values in cases.prescribed.items():
         if not np.any(np.asarray(values)):
             continue
         unit = unit_of(cases, "prescribed", (FREEDOMS.index(name),))
-        out[_header(f"prescribed_{name}", unit)] = np.asarray(values)
+        out[column_header(f"prescribed_{name}", unit)] = np.asarray(values)
     if cases.fixed_displacement is not None:
         for k, name in enumerate(FREEDOMS):
-            head = _header(f"fixed_{name}", unit_of(cases, "fixed_displacement", (k,)))
+            head = column_header(
+                f"fixed_{name}", unit_of(cases, "fixed_displacement", (k,))
+            )
             out[head] = np.asarray(cases.fixed_displacement)[:, k]
     for name in ("inner_speed", "outer_speed", "hours"):
         if getattr(cases, name) is not None:
-            head = _header(name, unit_of(cases, name))
+            head = column_header(name, unit_of(cases, name))
             out[head] = np.asarray(getattr(cases, name))
     if cases.design is not None:
         out["design"] = np.asarray(cases.design)
@@ -354,13 +356,14 @@ def _spread(name, values, zeros=()):
     axes = _LAST_AXES.get(name, ())
     named = len(axes) > 0 and values.shape[-len(axes) :] == tuple(map(len, axes))
     for index in itertools.product(*(range(n) for n in values.shape[1:])):
-        label = _header(*_label(name, index, values.shape[1:]))
+        label = column_header(*_label(name, index, values.shape[1:]))
         last = zip(axes, index[-len(axes) :], strict=True) if named else ()
         left_out = any(axis[k] in none for axis, k in last)
         yield label, None if left_out else values[(slice(None), *index)]
 
 
-def _header(name, unit):
+def column_header(name: str, unit: str) -> str:
+    """Of a column: the unit in brackets, if there is one."""
     return f"{name} [{unit}]" if unit else name
 
 

@@ -1,6 +1,7 @@
 """The command line in this process, without touching JAX's settings."""
 
 import json
+import sys
 from collections.abc import Callable
 from html import unescape
 from typing import NamedTuple
@@ -19,6 +20,14 @@ class Run(NamedTuple):
     err: str
 
 
+@pytest.fixture(autouse=True)
+def close_figures():
+    """Figures that are written to files have been drawn."""
+    yield
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
+
+
 @pytest.fixture
 def rerun(run, tmp_path) -> Callable:
     """Run a command on the JSON that it wrote: the same numbers, and its report.
@@ -35,9 +44,8 @@ def rerun(run, tmp_path) -> Callable:
         first, second = (json.loads(path.read_text("utf-8")) for path in (out, again))
         assert second["inputs"] == first["inputs"] and second == first
         text = unescape(page.read_text(encoding="utf-8"))
-        for (
-            line
-        ) in done.out.splitlines():  # but for the name, which is that of the file
+        # But for the name, which is that of the file.
+        for line in done.out.splitlines():
             assert set(line) == {"-"} or line in text
         assert text.count("data:image/png;base64,") == pictures
         for title in ("Inputs", "How to run it again"):

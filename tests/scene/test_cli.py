@@ -62,13 +62,6 @@ def no_solve(monkeypatch):
     monkeypatch.setattr(bj.scene, "run_scene", refuse)
 
 
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    if "matplotlib.pyplot" in sys.modules:
-        sys.modules["matplotlib.pyplot"].close("all")
-
-
 def read(path):
     return json.loads(path.read_text(encoding="utf-8"))
 

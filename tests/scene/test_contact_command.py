@@ -5,7 +5,6 @@ one line that names file, key, fault and what is allowed.
 """
 
 import json
-import sys
 
 import pytest
 
@@ -177,13 +176,6 @@ def no_solve(monkeypatch):
         raise AssertionError("solved a contact")
 
     monkeypatch.setattr(bj.scene, "run_contact", refuse)
-
-
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    if "matplotlib.pyplot" in sys.modules:
-        sys.modules["matplotlib.pyplot"].close("all")
 
 
 def read(path):

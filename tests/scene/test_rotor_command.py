@@ -6,7 +6,6 @@ import json
 import warnings
 
 import jax.numpy as jnp
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from tolerances import PUBLISHED, SOLVER
@@ -75,14 +74,6 @@ def settings(*given):
 def command(*given, scene="rotor_paper_12"):
     words = (word for one in settings(*given) for word in ("--set", one))
     return ("rotor", scene, *words)
-
-
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    for number in plt.get_fignums():
-        plt.figure(number).canvas.draw()  # nothing may fail or warn while drawing
-    plt.close("all")
 
 
 def read(path):

@@ -56,11 +56,11 @@ WORDS = {
 
 
 @pytest.fixture(autouse=True)
-def close_figures():
+def draw_figures(close_figures):
+    """Nothing may fail or warn while a figure is drawn."""
     yield
     for number in plt.get_fignums():
-        plt.figure(number).canvas.draw()  # nothing may fail or warn while drawing
-    plt.close("all")
+        plt.figure(number).draw_without_rendering()
 
 
 @pytest.fixture(scope="module")
