@@ -105,7 +105,8 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
         listed = read_cases(source, settings)
         cases, inputs = listed.cases, listed.inputs
         if cases.design is not None:
-            problem = "vary the design, which [optimise] is to find"
+            makers = [key for key in listed.varied if listed.makes_designs(key)]
+            problem = f"{', '.join(makers)} make several designs; [optimise] finds one"
             raise top.error("cases", problem)
     table = top.table("optimise")
     task = _optimisation(top, table, scene, cases)

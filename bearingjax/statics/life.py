@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing, pitch_radius, rows_of
+from ..design import AbstractBallBearing, n_elements, pitch_radius, rows_of
 from ..design.checks import check, in_range, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
@@ -308,6 +308,16 @@ def life_of(
             "rating_life: `solution` holds several cases; map over them with jax.vmap,"
             " or name lives in the `outputs` of `sweep`."
         )
+    asked, solved = (_rows_in_words(e.bearing) for e in (element, solution.element))
+    if asked != solved:
+        raise ValueError(
+            f"rating_life: `element` has {asked}, but the solution is of {solved}; it"
+            " must be the bearing that was solved."
+        )
+    if not isinstance(speed, Speed | None):
+        raise TypeError(
+            f"rating_life: `speed` is a {type(speed).__name__}; it must be a Speed."
+        )
     if lamina_load is not None:
         shape = np.shape(lamina_load)
         wanted = (*solution.roller_load.shape, *shape[2:3])
@@ -317,6 +327,12 @@ def life_of(
                 " lamina), of the rollers of the solution."
             )
     return _life(element.bearing, solution, conditions, speed, lamina_load)
+
+
+def _rows_in_words(bearing) -> str:
+    """What the rows of a bearing are: all of it that is no number to be traced."""
+    rows = [row.bearing for row in rows_of(bearing)]
+    return " and ".join(f"{type(r).__name__} of {n_elements(r)}" for r in rows)
 
 
 def life_outputs(

@@ -358,7 +358,7 @@ def test_slopes_of_a_range():
     np.testing.assert_allclose(slope, difference, rtol=DIFFERENCE)
 
 
-def test_what_is_not_allowed():
+def test_what_is_not_allowed(untyped):
     with pytest.raises(
         ValueError, match="Mounting: `inner_raceway`.*above `bore`, 0.025"
     ):
@@ -381,7 +381,12 @@ def test_what_is_not_allowed():
         FitConditions(inner_ring=320.0, reference=293.0)
     with pytest.raises(ValueError, match="smoothing: `ring` is -1e-06 m"):
         smoothing(1e-6, -1e-6)
+    with pytest.raises(TypeError, match="`mounting` is a NoneType; it must be Mount"):
+        fit_state(None)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(TypeError, match="`conditions` is a float; it must be FitCond"):
+        fit_state(mounting(), 40.0)  # pyright: ignore[reportArgumentType]
     for clearance, wanted in (
+        (12e-6, "`clearance` is 1.2e-05; it must be Limits, two numbers in m"),
         (Limits(5, 20), "`clearance` is 5 m; it must be above -0.01 and below 0.01 m"),
         (Limits(np.nan, 1e-6), "`clearance` is nan m; it must be a finite number"),
         (Limits("5", "20"), "`clearance` is '5'; it must be a number in m"),

@@ -189,6 +189,11 @@ def test_what_no_bearing_attains_is_named(changed, words):
         bj.estimate_geometry(*given)
 
 
+def test_an_estimate_is_not_traced(untyped):
+    with pytest.raises(TypeError, match="`bore` is traced; numbers must be known"):
+        jax.jit(lambda bore: bj.estimate_geometry(bore, *GOOD[1:]).misfit)(GOOD[0])
+
+
 def test_only_some_types_have_a_contact_angle_to_choose():
     with pytest.raises(ValueError, match="`contact_angle` is given; a deep_groove"):
         bj.estimate_geometry(*GOOD, contact_angle=0.3)

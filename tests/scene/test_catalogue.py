@@ -232,6 +232,14 @@ def test_wrong_designations_name_what_is_near(written):
     assert WRONG[written] in str(caught.value)
 
 
+@pytest.mark.parametrize("given", [6205, None, ["6205"], b"6205"])
+def test_a_designation_is_a_text(given, untyped):
+    names = {bj.load_bearing: "source", bj.catalogue_entry: "designation"}
+    for read, name in names.items():
+        with pytest.raises(TypeError, match=f"`{name}` is .*; it must be a text such"):
+            read(given)
+
+
 def scene(tmp_path, text):
     path = tmp_path / "mine.toml"
     path.write_text(f"[bearing]\n{text}\n[operating]\nload = {{ Fy = '1 kN' }}\n")

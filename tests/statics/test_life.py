@@ -864,6 +864,11 @@ def test_a_life_of_what_is_not_solved_is_refused(balls, rollers, untyped):
     several = jax.tree.map(lambda a: a[None], solution)
     with pytest.raises(ValueError, match="several cases"):
         bj.rating_life(element, several)
+    with pytest.raises(TypeError, match="`speed` is a float; it must be a Speed"):
+        bj.rating_life(element, solution, speed=150.0)
+    other = roller_element(jnp.asarray([0.0, 1e3, 0.0, 0.0, 1e-4]))
+    with pytest.raises(ValueError, match="`element` has .*Roller.* solution is of .*B"):
+        bj.rating_life(other, solution)
     with pytest.raises(ValueError, match="no speed is known"):
         bj.rating_life(element, solution, viscosity=1e-5, contamination=0.5)
     x = jnp.asarray([0.0, 1e3, 0.0, 0.0, 1e-4])
