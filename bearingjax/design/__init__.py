@@ -28,16 +28,14 @@ from .fit_limits import ball_clearance as ball_clearance
 from .fit_limits import bore_limits as bore_limits
 from .fit_limits import outside_limits as outside_limits
 from .fit_limits import roller_clearance as roller_clearance
-from .fits import PLACES as PLACES
-from .fits import WARM_MATERIALS as WARM_MATERIALS
-from .fits import ClearanceRange as ClearanceRange
+from .fit_range import PLACES as PLACES
+from .fit_range import ClearanceRange as ClearanceRange
+from .fit_range import clearance_range as clearance_range
+from .fit_range import mounting_at as mounting_at
 from .fits import FitConditions as FitConditions
 from .fits import FitState as FitState
 from .fits import Mounting as Mounting
-from .fits import WarmMaterial as WarmMaterial
-from .fits import clearance_range as clearance_range
 from .fits import fit_state as fit_state
-from .fits import mounting_at as mounting_at
 from .fits import smoothing as smoothing
 from .form_error import FormErrors as FormErrors
 from .form_error import Harmonics as Harmonics
@@ -78,3 +76,5 @@ from .tolerance import RunningAccuracy as RunningAccuracy
 from .tolerance import ball_grade as ball_grade
 from .tolerance import roller_grade as roller_grade
 from .tolerance import running_accuracy as running_accuracy
+from .warm_material import WARM_MATERIALS as WARM_MATERIALS
+from .warm_material import WarmMaterial as WarmMaterial

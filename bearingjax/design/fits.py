@@ -5,8 +5,7 @@ as from its seat to the bottom of its raceway: without shoulders, of full sectio
 lengths are of diameters. An interference is positive where the fit is tight; a loose
 fit has no pressure.
 
-`fit_state` and the functions after it compile nothing for a mounting of NumPy numbers,
-as of `jax.device_get`.
+`fit_state` compiles nothing for a mounting of NumPy numbers, as of `jax.device_get`.
 """
 
 from types import SimpleNamespace
@@ -17,66 +16,7 @@ import equinox as eqx
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .checks import check, concrete, in_range, instance, non_negative, number, positive
-from .iso286 import Limits
-from .material import Material
-
-
-class WarmMaterial(eqx.Module):
-    """A material and its thermal expansion, by default of bearing steel.
-
-    Attributes:
-        material: Elastic constants and density.
-        expansion: Coefficient of linear thermal expansion α [1/K].
-
-    Traced: all fields.
-
-    Source: 12e-6 1/K of bearing steel: catalogue of SNH; NTN and IKO print 12.5e-6.
-        The others: usual data-sheet values, 3 to 3.3e-6 for silicon nitride.
-    """
-
-    material: Material = eqx.field(default_factory=Material)
-    expansion: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1/K"), default=12e-6
-    )
-
-    def __check_init__(self):
-        instance(self, "material", Material)
-        in_range(self, "expansion", -1e-4, 1e-3)
-
-    @classmethod
-    def steel(cls) -> "WarmMaterial":
-        """Bearing steel: 206 GPa, 0.3, 7850 kg/m³, 12e-6 1/K."""
-        return cls()
-
-    @classmethod
-    def cast_iron(cls) -> "WarmMaterial":
-        """Grey cast iron: 110 GPa, 0.26, 7200 kg/m³, 10.5e-6 1/K."""
-        return cls(Material(110e9, 0.26, 7200.0), 10.5e-6)
-
-    @classmethod
-    def aluminium(cls) -> "WarmMaterial":
-        """Aluminium alloys: 70 GPa, 0.33, 2700 kg/m³, 23e-6 1/K."""
-        return cls(Material(70e9, 0.33, 2700.0), 23e-6)
-
-    @classmethod
-    def silicon_nitride(cls) -> "WarmMaterial":
-        """Silicon nitride, as `Material.silicon_nitride`: 3.2e-6 1/K."""
-        return cls(Material.silicon_nitride(), 3.2e-6)
-
-    @classmethod
-    def zirconia(cls) -> "WarmMaterial":
-        """Zirconia, as `Material.zirconia`: 10.5e-6 1/K."""
-        return cls(Material.zirconia(), 10.5e-6)
-
-
-WARM_MATERIALS = {
-    "steel": WarmMaterial.steel,
-    "cast_iron": WarmMaterial.cast_iron,
-    "aluminium": WarmMaterial.aluminium,
-    "silicon_nitride": WarmMaterial.silicon_nitride,
-    "zirconia": WarmMaterial.zirconia,
-}
-"""Makers of the named materials."""
+from .warm_material import WarmMaterial
 
 
 class Mounting(eqx.Module):
@@ -159,9 +99,6 @@ class Mounting(eqx.Module):
 _SEATS = {"shaft_interference": "bore", "housing_interference": "outside_diameter"}
 _LARGEST = 0.01
 """Share of a diameter that no fit reaches: steel would yield at a fifth of it."""
-
-_WIDEST = 0.01
-"""Beyond all clearances and deviations of bearings up to 1 m; micrometres meant? [m]"""
 
 _DIAMETERS = (
     "bore",
@@ -321,11 +258,11 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
         + _spin(m.outer_ring.material, out, m.outer_raceway, c.outer_speed)
         - _spin(m.housing.material, out, m.housing_diameter, c.outer_speed)
     )
-    shaft_pressure = _tight(shaft_interference) / (
+    shaft_pressure = positive_part(shaft_interference) / (
         _squeeze(m.shaft.material, m.shaft_bore, m.bore)
         + _stretch(m.inner_ring.material, m.bore, m.inner_raceway)
     )
-    housing_pressure = _tight(housing_interference) / (
+    housing_pressure = positive_part(housing_interference) / (
         _squeeze(m.outer_ring.material, m.outer_raceway, out)
         + _stretch(m.housing.material, out, m.housing_diameter)
     )
@@ -371,9 +308,10 @@ def _check_sized(mounting):
             )
 
 
-def _tight(interference):
-    """An interference where it is one, 0 where the fit is loose."""
-    return 0.5 * (interference + abs(interference))
+def positive_part(number: Any) -> Any:
+    """A number where it is positive, as an interference of a tight fit, else 0; its
+    slope at 0 is the mean of both sides."""
+    return 0.5 * (number + abs(number))
 
 
 def _ratio(inside, outside):
@@ -419,183 +357,3 @@ def _hoop(material, own, other, speed):
     nu = material.poisson_ratio
     squares = (3.0 + nu) * other**2 + (1.0 - nu) * own**2
     return material.density * speed**2 / 16.0 * squares
-
-
-class ClearanceRange(NamedTuple):
-    """Radial internal clearance of many bearings whose sizes scatter.
-
-    Attributes:
-        middle: With all sizes in the middle of their limits [m].
-        worst: Least and largest of all [m].
-        probable: Root sum of squares of what each size does alone, about the middle:
-            the same share of bearings is within as of each size within its limits, if
-            sizes are normal and independent, and fits do not come loose. Where they do,
-            it is cut off at `worst` [m].
-    """
-
-    middle: Any
-    worst: Limits
-    probable: Limits
-
-
-def clearance_range(
-    mounting: Mounting,
-    clearance: Limits,
-    shaft: Limits,
-    bore: Limits,
-    housing: Limits,
-    outside_diameter: Limits,
-    conditions: FitConditions | None = None,
-) -> ClearanceRange:
-    """Radial internal clearance over the tolerances of all sizes of a mounting.
-
-    Args:
-        mounting: The bearing and its seats; its clearance and interferences do not
-            count, all else does.
-        clearance: Limits of the clearance before mounting [m].
-        shaft, bore, housing, outside_diameter: Limits of the deviations of shaft
-            diameter, bore, housing bore and outside diameter (`limits`, `bore_limits`,
-            `outside_limits`) [m].
-        conditions: As of `fit_state`.
-
-    Raises:
-        ValueError: If a lower limit is above the upper one.
-    """
-    cases = _Cases(mounting, _given(clearance, shaft, bore, housing, outside_diameter))
-    middle, half = cases.spread(conditions)[:2]
-    least, most = (cases.clearance(side, conditions) for side in (-1.0, 1.0))
-    return ClearanceRange(
-        middle,
-        Limits(least, most),
-        Limits(_larger_of(middle - half, least), -_larger_of(-middle - half, -most)),
-    )
-
-
-def _larger_of(one, other):
-    return other + _tight(one - other)
-
-
-PLACES = {
-    "middle": 0.0,
-    "tightest": -1.0,
-    "loosest": 1.0,
-    "probable_tightest": -1.0,
-    "probable_loosest": 1.0,
-}
-"""Where `mounting_at` can be, each with its side: + is much clearance."""
-
-
-def mounting_at(
-    mounting: Mounting,
-    place: str,
-    clearance: Limits,
-    shaft: Limits,
-    bore: Limits,
-    housing: Limits,
-    outside_diameter: Limits,
-    conditions: FitConditions | None = None,
-) -> Mounting:
-    """A mounting with the sizes that it has somewhere in their tolerances.
-
-    Args:
-        mounting: The bearing and its seats; its clearance and interferences do not
-            count, all else does.
-        place: "middle": all sizes in the middle of their limits. "tightest", "loosest":
-            at those that leave the least and the largest clearance.
-            "probable_tightest", "probable_loosest": at the sizes that most likely give
-            the limits of `ClearanceRange.probable` (exact as long as no fit comes
-            loose).
-        clearance, shaft, bore, housing, outside_diameter: As of `clearance_range`.
-        conditions: As of `fit_state`; the probable places depend on them.
-
-    Raises:
-        ValueError: If there is no such place, or a lower limit is above the upper one.
-    """
-    if place not in PLACES:
-        raise ValueError(
-            f"mounting_at: `place` is {place!r}; it must be one of {', '.join(PLACES)}."
-        )
-    given = _given(clearance, shaft, bore, housing, outside_diameter)
-    cases, side = _Cases(mounting, given), PLACES[place]
-    if not place.startswith("probable"):
-        return cases.mounting(dict.fromkeys(given, side))
-    _, half, effects = cases.spread(conditions)
-    whole = half + 1e-30  # 0 if all sizes are exact, and so are their effects
-    return cases.mounting({name: side * e / whole for name, e in effects.items()})
-
-
-def _given(clearance, shaft, bore, housing, outside_diameter):
-    given = {
-        "clearance": clearance,
-        "shaft": shaft,
-        "bore": bore,
-        "housing": housing,
-        "outside_diameter": outside_diameter,
-    }
-    for name, pair in given.items():
-        if not isinstance(pair, tuple) or len(pair) != 2:
-            raise TypeError(
-                f"clearance_range: `{name}` is {pair!r}; it must be Limits, two numbers"
-                " in m."
-            )
-        for end in pair:
-            in_range("clearance_range", name, -_WIDEST, _WIDEST, end, "m")
-        known = concrete(*pair)
-        if known is not None and known[0] > known[1]:
-            raise ValueError(
-                f"clearance_range: `{name}` is {known[0]:.6g} to {known[1]:.6g} m; its"
-                " lower limit must not be above its upper one."
-            )
-    return given
-
-
-class _Cases(NamedTuple):
-    """A mounting and the limits of its sizes.
-
-    A place in the limits of a size is a number from -1, where it leaves the least
-    clearance, to 1.
-    """
-
-    base: Mounting
-    limits: dict[str, Limits]
-
-    def mounting(self, places) -> Mounting:
-        """The mounting with each size at its place."""
-        sizes = {}
-        for name, (lower, upper) in self.limits.items():
-            # Large shafts and outside diameters take clearance, the others give it.
-            turned = -1.0 if name in ("shaft", "outside_diameter") else 1.0
-            shift = 0.5 * turned * places[name] * (upper - lower)
-            sizes[name] = 0.5 * (lower + upper) + shift
-        return eqx.tree_at(
-            lambda m: (
-                m.radial_clearance,
-                m.shaft_interference,
-                m.housing_interference,
-            ),
-            self.base,
-            (
-                sizes["clearance"],
-                sizes["shaft"] - sizes["bore"],
-                sizes["outside_diameter"] - sizes["housing"],
-            ),
-            is_leaf=lambda leaf: leaf is None,
-        )
-
-    def clearance(self, place, conditions, **others):
-        """Radial clearance with all sizes at one place, but for others."""
-        places = {**dict.fromkeys(self.limits, place), **others}
-        return fit_state(self.mounting(places), conditions).radial_clearance
-
-    def spread(self, conditions):
-        """Clearance in the middle, root sum of squares about it, and what each does."""
-        effects = {
-            name: 0.5
-            * (
-                self.clearance(0.0, conditions, **{name: 1.0})
-                - self.clearance(0.0, conditions, **{name: -1.0})
-            )
-            for name in self.limits
-        }
-        half = sum(effect**2 for effect in effects.values()) ** 0.5
-        return self.clearance(0.0, conditions), half, effects

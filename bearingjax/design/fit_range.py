@@ -1,0 +1,195 @@
+"""The clearance of a mounted bearing over the tolerances of its sizes.
+
+Compiles nothing for a mounting of NumPy numbers, as of `jax.device_get`.
+"""
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+
+from .checks import concrete, in_range
+from .fits import FitConditions, Mounting, fit_state, positive_part
+from .iso286 import Limits
+
+_WIDEST = 0.01
+"""Beyond all clearances and deviations of bearings up to 1 m; micrometres meant? [m]"""
+
+
+class ClearanceRange(NamedTuple):
+    """Radial internal clearance of many bearings whose sizes scatter.
+
+    Attributes:
+        middle: With all sizes in the middle of their limits [m].
+        worst: Least and largest of all [m].
+        probable: Root sum of squares of what each size does alone, about the middle:
+            the same share of bearings is within as of each size within its limits, if
+            sizes are normal and independent, and fits do not come loose. Where they do,
+            it is cut off at `worst` [m].
+    """
+
+    middle: Any
+    worst: Limits
+    probable: Limits
+
+
+def clearance_range(
+    mounting: Mounting,
+    clearance: Limits,
+    shaft: Limits,
+    bore: Limits,
+    housing: Limits,
+    outside_diameter: Limits,
+    conditions: FitConditions | None = None,
+) -> ClearanceRange:
+    """Radial internal clearance over the tolerances of all sizes of a mounting.
+
+    Args:
+        mounting: The bearing and its seats; its clearance and interferences do not
+            count, all else does.
+        clearance: Limits of the clearance before mounting [m].
+        shaft, bore, housing, outside_diameter: Limits of the deviations of shaft
+            diameter, bore, housing bore and outside diameter (`limits`, `bore_limits`,
+            `outside_limits`) [m].
+        conditions: As of `fit_state`.
+
+    Raises:
+        ValueError: If a lower limit is above the upper one.
+    """
+    cases = _Cases(mounting, _given(clearance, shaft, bore, housing, outside_diameter))
+    middle, half = cases.spread(conditions)[:2]
+    least, most = (cases.clearance(side, conditions) for side in (-1.0, 1.0))
+    return ClearanceRange(
+        middle,
+        Limits(least, most),
+        Limits(_larger_of(middle - half, least), -_larger_of(-middle - half, -most)),
+    )
+
+
+def _larger_of(one, other):
+    return other + positive_part(one - other)
+
+
+PLACES = {
+    "middle": 0.0,
+    "tightest": -1.0,
+    "loosest": 1.0,
+    "probable_tightest": -1.0,
+    "probable_loosest": 1.0,
+}
+"""Where `mounting_at` can be, each with its side: + is much clearance."""
+
+
+def mounting_at(
+    mounting: Mounting,
+    place: str,
+    clearance: Limits,
+    shaft: Limits,
+    bore: Limits,
+    housing: Limits,
+    outside_diameter: Limits,
+    conditions: FitConditions | None = None,
+) -> Mounting:
+    """A mounting with the sizes that it has somewhere in their tolerances.
+
+    Args:
+        mounting: The bearing and its seats; its clearance and interferences do not
+            count, all else does.
+        place: "middle": all sizes in the middle of their limits. "tightest", "loosest":
+            at those that leave the least and the largest clearance.
+            "probable_tightest", "probable_loosest": at the sizes that most likely give
+            the limits of `ClearanceRange.probable` (exact as long as no fit comes
+            loose).
+        clearance, shaft, bore, housing, outside_diameter: As of `clearance_range`.
+        conditions: As of `fit_state`; the probable places depend on them.
+
+    Raises:
+        ValueError: If there is no such place, or a lower limit is above the upper one.
+    """
+    if place not in PLACES:
+        raise ValueError(
+            f"mounting_at: `place` is {place!r}; it must be one of {', '.join(PLACES)}."
+        )
+    given = _given(clearance, shaft, bore, housing, outside_diameter)
+    cases, side = _Cases(mounting, given), PLACES[place]
+    if not place.startswith("probable"):
+        return cases.mounting(dict.fromkeys(given, side))
+    _, half, effects = cases.spread(conditions)
+    whole = half + 1e-30  # 0 if all sizes are exact, and so are their effects
+    return cases.mounting({name: side * e / whole for name, e in effects.items()})
+
+
+def _given(clearance, shaft, bore, housing, outside_diameter):
+    given = {
+        "clearance": clearance,
+        "shaft": shaft,
+        "bore": bore,
+        "housing": housing,
+        "outside_diameter": outside_diameter,
+    }
+    for name, pair in given.items():
+        if not isinstance(pair, tuple) or len(pair) != 2:
+            raise TypeError(
+                f"clearance_range: `{name}` is {pair!r}; it must be Limits, two numbers"
+                " in m."
+            )
+        for end in pair:
+            in_range("clearance_range", name, -_WIDEST, _WIDEST, end, "m")
+        known = concrete(*pair)
+        if known is not None and known[0] > known[1]:
+            raise ValueError(
+                f"clearance_range: `{name}` is {known[0]:.6g} to {known[1]:.6g} m; its"
+                " lower limit must not be above its upper one."
+            )
+    return given
+
+
+class _Cases(NamedTuple):
+    """A mounting and the limits of its sizes.
+
+    A place in the limits of a size is a number from -1, where it leaves the least
+    clearance, to 1.
+    """
+
+    base: Mounting
+    limits: dict[str, Limits]
+
+    def mounting(self, places) -> Mounting:
+        """The mounting with each size at its place."""
+        sizes = {}
+        for name, (lower, upper) in self.limits.items():
+            # Large shafts and outside diameters take clearance, the others give it.
+            turned = -1.0 if name in ("shaft", "outside_diameter") else 1.0
+            shift = 0.5 * turned * places[name] * (upper - lower)
+            sizes[name] = 0.5 * (lower + upper) + shift
+        return eqx.tree_at(
+            lambda m: (
+                m.radial_clearance,
+                m.shaft_interference,
+                m.housing_interference,
+            ),
+            self.base,
+            (
+                sizes["clearance"],
+                sizes["shaft"] - sizes["bore"],
+                sizes["outside_diameter"] - sizes["housing"],
+            ),
+            is_leaf=lambda leaf: leaf is None,
+        )
+
+    def clearance(self, place, conditions, **others):
+        """Radial clearance with all sizes at one place, but for others."""
+        places = {**dict.fromkeys(self.limits, place), **others}
+        return fit_state(self.mounting(places), conditions).radial_clearance
+
+    def spread(self, conditions):
+        """Clearance in the middle, root sum of squares about it, and what each does."""
+        effects = {
+            name: 0.5
+            * (
+                self.clearance(0.0, conditions, **{name: 1.0})
+                - self.clearance(0.0, conditions, **{name: -1.0})
+            )
+            for name in self.limits
+        }
+        half = sum(effect**2 for effect in effects.values()) ** 0.5
+        return self.clearance(0.0, conditions), half, effects
