@@ -35,7 +35,8 @@ from ..design import (
     smoothing,
     with_radial_clearance,
 )
-from ..design.fits import PARTS, ClearanceRange, FitState
+from ..design.fit_range import ClearanceRange
+from ..design.fits import PARTS, FitState
 from ..element import Speed
 from .catalogue_entry import CLEARANCE, CLEARANCES, FromCatalogue
 from .quantity import SceneError
@@ -159,6 +160,11 @@ def read_fits(
         if float(getattr(conditions, part)) != float(conditions.reference):
             raise no_expansion(table, part, key)
     seats = sizes | _seats(table, own, row)
+    # For `Mounting` to check by name; `mounting_at` sets them anew.
+    if not names[0]:
+        seats["shaft_interference"] = given["shaft"].lower
+    if not names[1]:
+        seats["housing_interference"] = -given["housing"].lower
     with table.building():
         whole = sized(Mounting(**seats), row)
         if not scatters:
