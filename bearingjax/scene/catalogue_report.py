@@ -261,8 +261,13 @@ def _load(entry: CatalogueEntry) -> list[str]:
         comment = f"# axial {share}, radial half of it; +z closes the bearing"
         return [comment, f'load = {{ Fy = "-{half}", Fz = "{load}" }}']
     if entry.type == "tapered_roller":
-        comment = f"# radial {share}, axial half of it; +z closes the bearing"
-        return [comment, f'load = {{ Fy = "-{load}", Fz = "{half}" }}']
+        row: Any = rows_of(bearing)[0].bearing
+        # Of steep bearings more, for some half of the rollers to bear the radial load.
+        needed = 1.3 * np.tan(float(row.axis_angle + row.half_angle))
+        axial = f"{_rounded(max(0.5, needed) * _SHARE * capacity):g} N"
+        words = "half of it" if axial == half else "as its steep rollers need"
+        comment = f"# radial {share}, axial {words}; +z closes the bearing"
+        return [comment, f'load = {{ Fy = "-{load}", Fz = "{axial}" }}']
     return [f'load = {{ Fy = "-{load}" }}  # radial, {share}']
 
 
