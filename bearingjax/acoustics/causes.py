@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..design import n_elements
-from ..design.form_error import Harmonics, RacewayErrors, Spall
+from ..design import n_elements, rows_of
+from ..design.form_error import FormErrors, Harmonics, RacewayErrors, Spall
 from .lines import Line
 from .model import NoiseModel
 from .orders import KinematicFrequencies, kinematic_frequencies, waviness_force
@@ -25,12 +25,14 @@ class _Cause(NamedTuple):
         frequency: Of the line [Hz].
         words: What it is.
         order: Of waves; 0: none.
+        row: Of a set.
     """
 
     size: float
     frequency: float
     words: str
     order: int = 0
+    row: int = 0
 
 
 def line_causes(
@@ -55,35 +57,51 @@ def line_causes(
         outer raceway, order 13, 15"; `()` where none is known.
     """
     known = sorted(_known(model), key=lambda one: -one.size)
+    rows = len(rows_of(model.element.bearing))
     return tuple(
         _told(
-            [one for one in known if abs(one.frequency - line.frequency) <= tolerance]
+            [one for one in known if abs(one.frequency - line.frequency) <= tolerance],
+            rows,
         )
         for line in lines
     )
 
 
-def _told(causes: list[_Cause]) -> tuple[str, ...]:
-    """Each cause once, with the orders of its waves."""
-    orders: dict[str, set[int]] = {}
+def _told(causes: list[_Cause], rows: int) -> tuple[str, ...]:
+    """Each cause once, with the orders of its waves and its rows in a set."""
+    found: dict[str, dict[int, set[int]]] = {}
     for one in causes:
-        orders.setdefault(one.words, set()).add(one.order)
-    return tuple(
-        words
-        if found == {0}
-        else f"{words}, order {', '.join(map(str, sorted(found)))}"
-        for words, found in orders.items()
-    )
+        found.setdefault(one.words, {}).setdefault(one.row, set()).add(one.order)
+    told = []
+    for words, by_row in found.items():
+        # Rows with the same orders are told together.
+        together: dict[tuple[int, ...], list[int]] = {}
+        for row, orders in by_row.items():
+            together.setdefault(tuple(sorted(orders)), []).append(row)
+        for orders, of in together.items():
+            numbers = " and ".join(map(str, sorted(of)))
+            where = f" of row{'s' if len(of) > 1 else ''} {numbers}" if rows > 1 else ""
+            waves = "" if orders == (0,) else f", order {', '.join(map(str, orders))}"
+            told.append(f"{words}{where}{waves}")
+    return tuple(told)
 
 
 def _known(model: NoiseModel) -> Iterator[_Cause]:
-    bearing: Any = model.element.bearing
+    parts = rows_of(model.element.bearing)
+    for k, (row, errors) in enumerate(zip(parts, model.errors_of_rows, strict=True)):
+        for cause in _of_row(row.bearing, errors, model):
+            yield cause._replace(row=k)
+
+
+def _of_row(bearing: Any, errors: FormErrors, model: NoiseModel) -> Iterator[_Cause]:
+    """Causes in one row."""
     turning = kinematic_frequencies(bearing, model.speed)
     count = n_elements(bearing)
+    row = bearing, model.speed
     for ring in ("outer", "inner"):
-        yield from _of_raceway(model, ring, turning)
-    for shape in model.errors.elements:
-        yield from _of_elements(shape, model, turning)
+        yield from _of_raceway(row, getattr(errors, ring), ring, turning)
+    for shape in errors.elements:
+        yield from _of_elements(shape, row, turning)
     kind = "ball" if hasattr(bearing, "ball_deviation") else "roller"
     cage = float(turning.cage)
     pitch = 0.5 * float(bearing.pitch_diameter)
@@ -101,9 +119,10 @@ def _known(model: NoiseModel) -> Iterator[_Cause]:
             yield _Cause(0.0, k * count * cage, f"{kind}s passing the load")
 
 
-def _of_raceway(model, ring, turning: KinematicFrequencies) -> Iterator[_Cause]:
-    errors: RacewayErrors = getattr(model.errors, ring)
-    count = n_elements(model.element.bearing)
+def _of_raceway(
+    row, errors: RacewayErrors, ring, turning: KinematicFrequencies
+) -> Iterator[_Cause]:
+    count = n_elements(row[0])
     passage, beside = (
         (turning.outer_passage, turning.outer)
         if ring == "outer"
@@ -115,26 +134,27 @@ def _of_raceway(model, ring, turning: KinematicFrequencies) -> Iterator[_Cause]:
             for order, size in zip(shape.order, sizes, strict=True):
                 if size and min(order % count, -order % count) <= 1:
                     words = f"waves of the {ring} raceway"
-                    yield from _of_wave(model, ring, order, size, words)
+                    yield from _of_wave(row, ring, order, size, words)
         elif isinstance(shape, Spall):
             words = f"spall of the {ring} raceway"
             yield from _of_spall(shape, float(passage), float(beside), words)
 
 
-def _of_elements(shape, model, turning: KinematicFrequencies) -> Iterator[_Cause]:
+def _of_elements(shape, row, turning: KinematicFrequencies) -> Iterator[_Cause]:
     if isinstance(shape, Harmonics):
         sizes = np.abs(np.asarray(shape.amplitude)).max(axis=0)
         for order, size in zip(shape.order, sizes, strict=True):
             if size and order % 2 == 0:
                 words = "waves of the rolling elements"
-                yield from _of_wave(model, "element", order, size, words)
+                yield from _of_wave(row, "element", order, size, words)
     elif isinstance(shape, Spall):
         twice, cage = float(turning.twice_rotation), float(turning.cage)
         yield from _of_spall(shape, twice, cage, "spall of a rolling element")
 
 
-def _of_wave(model, part, order, size, words) -> Iterator[_Cause]:
-    made = waviness_force(model.element.bearing, model.speed, part, order)
+def _of_wave(row, part, order, size, words) -> Iterator[_Cause]:
+    bearing, speed = row
+    made = waviness_force(bearing, speed, part, order)
     for frequency in np.concatenate([made.axial, made.radial]):
         yield _Cause(float(size), abs(float(frequency)), words, order)
 

@@ -5,6 +5,8 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from .free_row import Sites
+
 
 class Section(NamedTuple):
     """Motions of a ring in the axial sections of the elements, or forces on them.
@@ -67,12 +69,18 @@ class Encounter(NamedTuple):
             axial=axial, outwards=outwards, raised=heights if raised else None
         )
 
-    def motion(self, ring: Float[Array, " k"] | None, raceway: int) -> Section:
+    def motion(
+        self,
+        ring: Float[Array, " k"] | None,
+        raceway: int,
+        sites: Sites | None = None,
+    ) -> Section:
         """Motion of a raceway in the axial section of every element [m, rad].
 
         Args:
             ring: Motion of the ring, three freedoms or five [m, rad]; `None`: none.
             raceway: 0 for the outer one, 1 for the inner one. Static.
+            sites: Where the elements' rows stand; the motion is in the rows' own axes.
         """
         axial = outwards = jnp.zeros_like(self.azimuth)
         tilt = None
@@ -81,19 +89,33 @@ class Encounter(NamedTuple):
             outwards = ring[0] * self.cosine + ring[1] * self.sine
             if ring.shape[0] > 3:
                 tilt = ring[4] * self.cosine - ring[3] * self.sine
+            if sites is not None:
+                axial = sites.sign * axial
+                if tilt is not None:
+                    outwards = outwards + sites.position * tilt
+                    tilt = sites.sign * tilt
+        if sites is not None and raceway == 1:
+            axial = axial + sites.offset
         if self.axial is not None and self.outwards is not None:
             axial = axial + self.axial[raceway]
             outwards = outwards + self.outwards[raceway]
         return Section(axial, outwards, tilt)
 
-    def push(self, forces: Section, freedoms: int) -> Float[Array, " k"]:
+    def push(
+        self, forces: Section, freedoms: int, sites: Sites | None = None
+    ) -> Float[Array, " k"]:
         """What forces on the motions of all sections do on the ring [N, N m].
 
         Args:
             forces: On every element's section [N, N m].
             freedoms: Of the ring, three or five. Static.
+            sites: As of `motion`.
         """
         axial, outwards, moment = forces
+        if sites is not None:
+            axial = sites.sign * axial
+            if moment is not None:
+                moment = sites.sign * moment + sites.position * outwards
         along = [outwards * self.cosine, outwards * self.sine, axial]
         if moment is not None and freedoms > 3:
             along = [*along, -moment * self.sine, moment * self.cosine]

@@ -68,10 +68,6 @@ class FreeElement(eqx.Module):
         """
         return (place - rings.mean[: place.shape[0]]) * self.scale
 
-    def place(self, rings: RingMotion, x: Float[Array, " n"]) -> Float[Array, " n"]:
-        """p of own unknowns; the inverse of `unknowns`."""
-        return rings.mean[: x.shape[0]] + x / self.scale
-
     def raised(self, heights: Float[Array, "2"]) -> "FreeElement":
         """The same with material added in its contacts [m]."""
         return dataclasses.replace(self, element=self.element.raised(heights))

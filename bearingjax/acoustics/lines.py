@@ -5,12 +5,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..design import Bearing
+from ..design import Bearing, BearingSet, rows_of
 from ..design.checks import count, non_negative, positive
 from ..element.inertia import Speed
 from .orders import KinematicFrequencies, kinematic_frequencies
 from .spectrum import Spectrum
 
+_FIRST = 10
+"""Most multiples of a passage whose sidebands by the other ring have names."""
 UNNAMED = "unnamed"
 """Name of a line that nothing known makes."""
 
@@ -34,7 +36,7 @@ class Line(NamedTuple):
 
 def name_lines(
     spectrum: Spectrum,
-    bearing: Bearing,
+    bearing: Bearing | BearingSet,
     speed: Speed,
     contact_angle: Any = None,
     *,
@@ -53,16 +55,19 @@ def name_lines(
     and amplitude are those of a lone line between the bins.
 
     Names are sought among, with k up to `harmonics` and m up to `sidebands` in size:
-    k shaft, k cage, k BPFO, k BPFI ± m shaft, 2k BSF ± m cage. Where both rings turn,
-    "inner ring" and "outer ring" stand for the shaft; sidebands of a raceway's passage
-    are those of its own ring, and there are none if it stands. Of all that lie within
-    the tolerance the simplest is taken, with the least k + m, then the nearest, then
-    the first as they are listed here; a natural frequency only if there is no other.
+    k shaft, k cage, k BPFO, k BPFI ± m shaft, 2k BSF ± m cage, k BPFO ± m shaft. Where
+    both rings turn, "inner ring" and "outer ring" stand for the shaft, and both
+    raceways have the sidebands of both. Of all that lie within the tolerance the
+    simplest is taken, with the least k + m (of sidebands by the other ring one more),
+    then the nearest, then the first as they are listed here; a natural frequency only
+    if there is no other.
 
     Args:
         spectrum: Amplitudes (line, ...); further axes, such as directions, are taken
             together. Concrete: this is no function for `jit`.
-        bearing, speed, contact_angle: As in `kinematic_frequencies`.
+        bearing: A single row, or a set; rows that roll at other speeds than the first
+            have their number in the names of their lines.
+        speed, contact_angle: As in `kinematic_frequencies`.
         natural: Natural frequencies by their names [Hz].
         harmonics: Largest multiple of a frequency.
         sidebands: Most sidebands to either side.
@@ -85,11 +90,13 @@ def name_lines(
     count("name_lines", "sidebands", sidebands + 1)
     non_negative("name_lines", "factor", factor, "")
     non_negative("name_lines", "least", least, "")
-    kinematic = kinematic_frequencies(bearing, speed, contact_angle)
+    kinematic = [
+        kinematic_frequencies(one, speed, contact_angle) for one in _single(bearing)
+    ]
     if tolerance is None:
         tolerance = 0.5 * float(spectrum.resolution)
     non_negative("name_lines", "tolerance", tolerance, "Hz")
-    known = list(_combinations(kinematic, harmonics, sidebands))
+    known = list(_of_all(kinematic, harmonics, sidebands))
     for name, frequency in (natural or {}).items():
         positive("name_lines", f"natural[{name!r}]", frequency, "Hz")
     own = [(float(frequency), name) for name, frequency in (natural or {}).items()]
@@ -125,6 +132,27 @@ def _peaks(
     yield from zip(frequencies.tolist(), (gain * size[at]).tolist(), strict=True)
 
 
+def _single(bearing):
+    """The rows of a set; what is no bearing is left as it is, to be refused."""
+    if not isinstance(bearing, BearingSet):
+        return [bearing]
+    return [row.bearing for row in rows_of(bearing)]
+
+
+def _of_all(
+    kinematic: list[KinematicFrequencies], harmonics: int, sidebands: int
+) -> Iterator[tuple[int, float, str]]:
+    """As `_combinations`, of all rows; of rows that roll alike, once."""
+    of_rows = np.array([[float(one) for one in row] for row in kinematic])
+    seen: list[np.ndarray] = []
+    for k, (row, numbers) in enumerate(zip(kinematic, of_rows, strict=True)):
+        if any(np.allclose(numbers, other, rtol=1e-9, atol=0.0) for other in seen):
+            continue
+        seen.append(numbers)
+        for cost, frequency, name in _combinations(row, harmonics, sidebands):
+            yield cost, frequency, f"{name} of row {k}" if k else name
+
+
 def _combinations(
     kinematic: KinematicFrequencies, harmonics: int, sidebands: int
 ) -> Iterator[tuple[int, float, str]]:
@@ -135,15 +163,19 @@ def _combinations(
     side = range(-sidebands, sidebands + 1)
     # Frequency and name of the carrier, its multiples, frequency and name of sidebands.
     kinds = (
-        (inner, names[0], 1, 0.0, ""),
-        (outer, names[1], 1, 0.0, ""),
-        (cage, "cage", 1, 0.0, ""),
-        (over_outer, "BPFO", 1, outer, names[1]),
-        (over_inner, "BPFI", 1, inner, names[0]),
-        (turned, "BSF", 2, cage, "cage"),
+        (inner, names[0], 1, 0.0, "", 0),
+        (outer, names[1], 1, 0.0, "", 0),
+        (cage, "cage", 1, 0.0, "", 0),
+        (over_outer, "BPFO", 1, outer, names[1], 0),
+        (over_inner, "BPFI", 1, inner, names[0], 0),
+        (turned, "BSF", 2, cage, "cage", 0),
+        # A ring that is out of true shifts the load over the other raceway's waves.
+        (over_outer, "BPFO", 1, inner, names[0], 1),
+        (over_inner, "BPFI", 1, outer, names[1], 1),
     )
-    for carrier, name, step, beside, beside_name in kinds:
-        for k in range(1, harmonics + 1):
+    for carrier, name, step, beside, beside_name, extra in kinds:
+        # Of products of waves on both rings only the first are worth a name.
+        for k in range(1, (min(harmonics, _FIRST) if extra else harmonics) + 1):
             for m in side if beside > 0 else (0,):
                 frequency = k * step * carrier + m * beside
                 if frequency > 0 and carrier > 0:
@@ -151,7 +183,7 @@ def _combinations(
                     if m:
                         words += f" {'+' if m > 0 else '-'} "
                         words += _times(abs(m), beside_name)
-                    yield k + abs(m), frequency, words
+                    yield k + abs(m) + extra, frequency, words
 
 
 def _times(k: int, name: str) -> str:

@@ -1,7 +1,6 @@
 """A bearing on a noise rig: one ring turns, the other one may move."""
 
 import dataclasses
-from typing import Any
 
 import equinox as eqx
 import jax
@@ -9,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing
+from ..design import AbstractBallBearing, is_self_aligning, n_elements, rows_of
 from ..design.checks import (
     check,
     concrete,
@@ -19,15 +18,15 @@ from ..design.checks import (
     non_negative,
     positive,
 )
-from ..design.form_error import FormErrors, Surfaces
+from ..design.form_error import FormErrors
 from ..element.bearing_element import BearingElement
-from ..element.frame import FREEDOMS, RINGS, orbit, rotation
+from ..element.frame import FREEDOMS, RINGS
 from ..element.inertia import Speed
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.options import SolveOptions
 from .cage import Cage
-from .free_element import FreeElement, free_element
+from .free_row import FreeRow, of_small_motions
 from .sensor import Sensor
 from .system import NoiseSystem
 
@@ -36,19 +35,22 @@ class NoiseModel(eqx.Module):
     """A bearing whose vibration from form errors is wanted.
 
     Attributes:
-        element: The bearing, a single row, with linearised kinematics.
+        element: The bearing or set, with linearised kinematics; a self-aligning one
+            with `Finite()`.
         mass: Of the moving ring, and of what moves with it [kg].
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring (6,) [N, N m]; moments only
             if it may tilt.
         speed: Of the rings.
-        errors: Form errors.
+        errors: Form errors; of a set those of each row, in that row's own axes, or one
+            that all rows have.
         tilting_inertia: Moment of inertia of the moving ring about a diameter [kg m²];
-            `None`: it does not tilt.
+            `None`: it does not tilt, nor does that of a self-aligning bearing.
         sensor: What holds the moving ring beside the bearing; `None`: nothing.
         retardation: τ of the contacts' damping [s]. Damping ratio of a mode of ω that
             is held by contacts alone: ω τ/2.
         moving_ring: "outer" or "inner". Static.
-        cage: `None`: the rolling elements go round evenly, each in its place.
+        cage: Of a single row of balls; `None`: the rolling elements go round evenly,
+            each in its place.
 
     Traced: all numbers.
     """
@@ -59,7 +61,7 @@ class NoiseModel(eqx.Module):
         converter=as_real, metadata=unit(("N", "N", "N", "N m", "N m", "N m"))
     )
     speed: Speed
-    errors: FormErrors = eqx.field(default_factory=FormErrors)
+    errors: FormErrors | tuple[FormErrors, ...] = eqx.field(default_factory=FormErrors)
     tilting_inertia: Scalar | None = eqx.field(
         converter=as_real, metadata=unit("kg m²"), default=None
     )
@@ -71,31 +73,9 @@ class NoiseModel(eqx.Module):
     def __check_init__(self):
         instance(self, "element", BearingElement)
         instance(self, "cage", Cage, None)
-        bearing = self.element.bearing
-        if not hasattr(bearing, "raceway_deviation"):
-            raise TypeError(
-                f"NoiseModel: `element` is of a {type(bearing).__name__}; it must be of"
-                " one row of balls or rollers."
-            )
-        kinematics = self.element.kinematics
-        if kinematics.turns_far:
-            raise ValueError(
-                f"NoiseModel: `element` has {type(kinematics).__name__}() kinematics;"
-                " it must have Linearised()."
-            )
-        if bearing.raceway_deviation is not None:
-            raise ValueError(
-                "NoiseModel: `element` has a `raceway_deviation`, which stands still;"
-                " form errors that turn are `errors`."
-            )
-        if self.cage is not None and not isinstance(bearing, AbstractBallBearing):
-            raise TypeError(
-                f"NoiseModel: `cage` is given for a {type(bearing).__name__}; it is for"
-                " ball bearings."
-            )
+        self._check_rows()
         positive(self, "mass")
         instance(self, "speed", Speed)
-        instance(self, "errors", FormErrors)
         instance(self, "sensor", Sensor, None)
         if self.tilting_inertia is not None:
             positive(self, "tilting_inertia")
@@ -117,6 +97,64 @@ class NoiseModel(eqx.Module):
         allowed = "zero for freedoms that the ring does not have: give tilting_inertia"
         check(self, "load", held[: 5 - len(self.freedoms)] == 0.0, allowed)
         check(self, "load", np.asarray(self.load)[5] == 0.0, "zero about the axis")
+
+    def _check_rows(self):
+        bearing, kinematics = self.element.bearing, self.element.kinematics
+        aligning = is_self_aligning(bearing)
+        if kinematics.turns_far and not aligning:
+            raise ValueError(
+                f"NoiseModel: `element` has {type(kinematics).__name__}() kinematics;"
+                " it must have Linearised()."
+            )
+        if aligning and self.tilting_inertia is not None:
+            raise ValueError(
+                "NoiseModel: `tilting_inertia` is given for a self-aligning bearing,"
+                " whose ring nothing holds from tilting; leave it out."
+            )
+        if self.cage is not None and not isinstance(bearing, AbstractBallBearing):
+            raise TypeError(
+                f"NoiseModel: `cage` is given for a {type(bearing).__name__}; it is for"
+                " ball bearings of one row."
+            )
+        for row in rows_of(bearing):
+            if row.bearing.raceway_deviation is not None:
+                raise ValueError(
+                    "NoiseModel: `element` has a `raceway_deviation`, which stands"
+                    " still; form errors that turn are `errors`."
+                )
+            if row.spring is not None:
+                raise ValueError(
+                    "NoiseModel: `element` has a row that a spring presses, whose ring"
+                    " slides on its seat; noise is of sets with a `preload_offset`."
+                )
+        if isinstance(self.errors, FormErrors):
+            return
+        count = len(rows_of(bearing))
+        of_each = isinstance(self.errors, tuple) and all(
+            isinstance(one, FormErrors) for one in self.errors
+        )
+        if not of_each:
+            raise TypeError(
+                "NoiseModel: `errors` must be FormErrors, or a tuple of them with one"
+                " for each row."
+            )
+        if len(self.errors) != count:
+            raise ValueError(
+                f"NoiseModel: `errors` are of {len(self.errors)} rows; the bearing has"
+                f" {count}."
+            )
+
+    @property
+    def errors_of_rows(self) -> tuple[FormErrors, ...]:
+        """Form errors of each row."""
+        if isinstance(self.errors, tuple):
+            return self.errors
+        return (self.errors,) * len(rows_of(self.element.bearing))
+
+    @property
+    def small(self) -> BearingElement:
+        """The bearing for the small motions that its ring may make here."""
+        return of_small_motions(self.element)
 
     @property
     def freedoms(self) -> tuple[str, ...]:
@@ -158,35 +196,27 @@ class NoiseModel(eqx.Module):
 
 @eqx.filter_jit
 def _system(model, points) -> NoiseSystem:
-    bearing: Any = model.element.bearing
-    (row,) = model.element.model().rows
-    outer, inner = model.speed.outer, model.speed.inner
-    carried = orbit(row.ratio, outer, inner)
-    surfaces = Surfaces.of(bearing)
-    diameters = 2.0 * surfaces.element.radius, 2.0 * row.pitch_radius
-    own = rotation(row.ratio, *diameters, outer, inner)
-
-    def free(element) -> FreeElement:
-        return free_element(
-            element, bearing.material, row.pitch_radius, model.speed, carried
-        )
-
-    elements = row.each(free)
-    row = eqx.tree_at(lambda r: r.element, row, elements)
+    found = FreeRow.of(model.small, model.speed)
     some = jax.tree.leaves(model.errors)
     mass = jnp.repeat(model.mass, 3)
     if model.tilting_inertia is not None:
         mass = jnp.concatenate([mass, jnp.repeat(model.tilting_inertia, 2)])
+    errors = None
+    if some:
+        both = zip(model.errors_of_rows, found.surfaces, strict=True)
+        errors = tuple(one.tabulated(surfaces, points) for one, surfaces in both)
     return NoiseSystem(
-        row=row,
-        errors=model.errors.tabulated(surfaces, points) if some else None,
-        surfaces=surfaces,
-        turning=(outer, inner, carried, own),
+        row=found.row,
+        sites=found.sites,
+        errors=errors,
+        surfaces=found.surfaces,
+        turning=(model.speed.outer, model.speed.inner, found.carried, found.own),
         mass=mass,
         load=model.load[: mass.shape[0]],
         sensor=model.sensor,
         retardation=model.retardation,
         growth=None,
         moving=RINGS.index(model.moving_ring),
+        counts=tuple(n_elements(row.bearing) for row in rows_of(model.element.bearing)),
         cage=model.cage,
     )

@@ -13,6 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..design import BearingSet, rows_of
 from ..design.checks import check, count, is_traced
 from ..design.form_error import FormErrors, RacewayErrors
 from ..numerics.result import Result
@@ -68,7 +69,24 @@ def drawn(model: NoiseModel, tolerances: Tolerances, key: Array) -> NoiseModel:
         tolerances: How bearings scatter.
         key: Of `jax.random`.
     """
-    return _with(model, draw(tolerances, model.element.bearing, key))
+    bearing: Any = model.element.bearing
+    parts = rows_of(bearing)
+    # Rows of a set are drawn on their own.
+    keys = [key] if len(parts) == 1 else jax.random.split(key, len(parts))
+    found = [
+        draw(tolerances, row.bearing, k) for row, k in zip(parts, keys, strict=True)
+    ]
+    rows = [_with(row.bearing, one) for row, one in zip(parts, found, strict=True)]
+    errors = tuple(
+        _together(own, one.errors)
+        for own, one in zip(model.errors_of_rows, found, strict=True)
+    )
+    if isinstance(bearing, BearingSet):
+        bearing = eqx.tree_at(lambda b: [row.bearing for row in b.rows], bearing, rows)
+    else:
+        (bearing,), (errors,) = rows, errors
+    changed = bearing, errors
+    return eqx.tree_at(lambda m: (m.element.bearing, m.errors), model, changed)
 
 
 def monte_carlo(
@@ -138,22 +156,21 @@ def monte_carlo(
     return MonteCarlo(total, each, jnp.asarray(bands.centre), result, keys)
 
 
-def _with(model: NoiseModel, found: Drawn) -> NoiseModel:
-    bearing: Any = model.element.bearing
+def _with(bearing: Any, found: Drawn) -> Any:
+    """A single row with differences of its rolling elements beside its own."""
     balls = hasattr(bearing, "ball_deviation")
     name = "ball_deviation" if balls else "roller_deviation"
-    more = {name: found.diameter, "azimuth_deviation": found.azimuth}
-    for field, value in more.items():
+    for field, value in ((name, found.diameter), ("azimuth_deviation", found.azimuth)):
         if value is None:
             continue
         own = getattr(bearing, field)
-        model = eqx.tree_at(
-            lambda m, field=field: getattr(m.element.bearing, field),
-            model,
+        bearing = eqx.tree_at(
+            lambda b, field=field: getattr(b, field),
+            bearing,
             value if own is None else own + value,
             is_leaf=lambda x: x is None,
         )
-    return eqx.tree_at(lambda m: m.errors, model, _together(model.errors, found.errors))
+    return bearing
 
 
 def _together(one: FormErrors, other: FormErrors) -> FormErrors:
@@ -186,7 +203,8 @@ class Records:
             )
         if any(is_traced(leaf) for leaf in jax.tree.leaves((model, tolerances))):
             raise TypeError(f"{owner}: it is a loop over batches, not for `jit`.")
-        tolerances.check(model.element.bearing)
+        for row in rows_of(model.element.bearing):
+            tolerances.check(row.bearing)
         count(owner, "n", n)
         count(owner, "samples", samples)
         shaft = model.shaft_speed

@@ -14,6 +14,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
+from ..design import BearingSet, rows_of
 from ..design.checks import check, count
 from ..design.deviation import with_raceways
 from ..element.bearing_element import BearingElement
@@ -21,6 +22,7 @@ from ..element.rolling_element import split
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.load import solve
+from .free_row import of_rows
 from .model import NoiseModel
 from .system import NoiseSystem
 
@@ -115,11 +117,22 @@ def at_instant(
         time: [s].
     """
     bearing: Any = element.bearing
-    azimuth = bearing.first_azimuth + system.turning[2] * time
-    bearing = eqx.tree_at(lambda b: b.first_azimuth, bearing, azimuth)
+    turned = system.turning[2] * time
     met = system.met(system.azimuth(time), time)
-    if met is not None:
-        bearing = with_raceways(bearing, met)
+
+    def rows(tree):
+        return [row.bearing for row in rows_of(tree)]
+
+    now = []
+    for k, row in enumerate(rows(bearing)):
+        # All elements of a row orbit alike.
+        orbit = turned if turned.ndim == 0 else of_rows(turned, bearing)[k][0]
+        row = eqx.tree_at(lambda b: b.first_azimuth, row, row.first_azimuth + orbit)
+        now.append(row if met is None else with_raceways(row, of_rows(met, bearing)[k]))
+    if isinstance(bearing, BearingSet):
+        bearing = eqx.tree_at(rows, bearing, now)
+    else:
+        (bearing,) = now
     return eqx.tree_at(lambda e: e.bearing, element, bearing)
 
 
@@ -127,13 +140,14 @@ def at_instant(
 def _excitation(model, turns, samples, held) -> Excitation:
     system = dataclasses.replace(model, cage=None).system()
     options = model.solve_options
-    standing = solve(model.element, model.load, options)
+    whole = model.small
+    standing = solve(whole, model.load, options)
     start = split(standing.displacement)[system.moving]
     frequency = model.shaft_speed / (2.0 * jnp.pi)
     time = jnp.arange(turns * samples, dtype=frequency.dtype) / (frequency * samples)
 
     def instant(time):
-        element = at_instant(model.element, system, time)
+        element = at_instant(whole, system, time)
         if held:
             found = element.evaluate(standing.displacement)
             force, moved = found.force, jnp.zeros_like(start)

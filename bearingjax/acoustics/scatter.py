@@ -16,7 +16,14 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing, AbstractRollerBearing, n_elements
+from ..design import (
+    AbstractBallBearing,
+    AbstractRollerBearing,
+    Bearing,
+    BearingSet,
+    n_elements,
+    rows_of,
+)
 from ..design.checks import check, concrete, instance, non_negative
 from ..design.form_error import FormErrors, Harmonics, RacewayErrors
 from ..design.tolerance import RunningAccuracy, ball_grade, roller_grade
@@ -163,7 +170,7 @@ class Tolerances(eqx.Module):
     def of_grade(
         cls,
         grade: str,
-        bearing: AbstractBallBearing | AbstractRollerBearing,
+        bearing: Bearing | BearingSet,
         *,
         runout: RunningAccuracy | None = None,
         waviness: Any = None,
@@ -186,7 +193,7 @@ class Tolerances(eqx.Module):
 
         Args:
             grade: "G10" of balls or "II" of rollers; see `ball_grade`, `roller_grade`.
-            bearing: Of one row.
+            bearing: The bearing; of a set the first row counts.
             runout: Of the rings, from `running_accuracy`; `None`: no eccentricity.
             waviness: Root mean square of the heights of both raceways outwards,
                 orders 2 to `highest` [m]; `None`: none.
@@ -200,15 +207,16 @@ class Tolerances(eqx.Module):
             TypeError: For another bearing.
             ValueError: If there is no such grade.
         """
-        if isinstance(bearing, AbstractBallBearing):
-            found = ball_grade(grade)
-        elif isinstance(bearing, AbstractRollerBearing):
-            found = roller_grade(grade, bearing.roller_diameter)
-        else:
+        if not isinstance(bearing, Bearing | BearingSet):
             raise TypeError(
                 f"Tolerances.of_grade: `bearing` is a {type(bearing).__name__}; it must"
-                " be of one row of balls or rollers."
+                " be of balls or rollers."
             )
+        row = rows_of(bearing)[0].bearing
+        if isinstance(row, AbstractBallBearing):
+            found = ball_grade(grade)
+        else:
+            found = roller_grade(grade, row.roller_diameter)
 
         def waves(height, low, high):
             if height is None:

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float, Int
 
 from ..element.ball_speed import CentrifugalOnly
 from ..element.choices import BallChoices
-from ..element.rolling_element import RingMotion
+from ..numerics.linear import combined
 from ..statics.load import solve
 from .model import NoiseModel
 from .system import NoiseSystem
@@ -31,7 +31,7 @@ def standing(
 
     Fails: as `solve_load`.
     """
-    element = model.element
+    element = model.small
     if orbits and isinstance(element.choices, BallChoices):
         # As here, where balls roll at the free contact angle whatever the load.
         choices = dataclasses.replace(
@@ -41,12 +41,14 @@ def standing(
     speed = model.speed if orbits else None
     solution = solve(element, model.load, model.solve_options, speed=speed)
     q = solution.displacement
-    (found,) = element.rows(q, speed)
+    rows = element.rows(q, speed)
+    u, v, tilt = jnp.concatenate([found.motions() for found in rows]).T
+    if (sites := system.sites) is not None:
+        u, v, tilt = sites.sign * u, v + sites.position * tilt, sites.sign * tilt
 
-    def place(free, azimuth, x):
-        axes = free.element.axes(azimuth)
-        return free.place(RingMotion(axes @ q[:6], axes @ q[6:]), x)
+    def place(free, *motion):
+        return combined(free.own.T, jnp.stack(motion))[: free.mass.shape[0]]
 
-    places = system.row.each(place, system.row.azimuth, found.x)
+    places = system.row.each(place, u, v, tilt)
     ring = (q[6:] if system.moving else q[:6])[: system.mass.shape[0]]
     return jnp.concatenate([ring, places.T.ravel()]), solution.result

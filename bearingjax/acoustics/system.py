@@ -23,6 +23,7 @@ Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011) for balls 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.form_error import FormErrors, Surfaces
@@ -33,6 +34,7 @@ from .cage import Cage, cage_forces
 from .encounter import Encounter, Section
 from .free_balls import ball_forces, is_written_out
 from .free_element import FreeElement, forces
+from .free_row import Sites
 from .sensor import Sensor
 
 
@@ -42,14 +44,17 @@ class NoiseSystem(eqx.Module):
     Coordinates (n,) are those of the ring, then the first of all rolling elements, the
     second of all and so on: a compiler works best on like neighbours. With a cage
     follow how far every rolling element is ahead of the even orbit, along the pitch
-    circle, and the cage's x, y and turn beyond that orbit.
+    circle, and the cage's x, y and turn beyond that orbit. Those of a rolling element
+    are in the axes of its row, which looks the other way along z if it is mirrored.
 
     Attributes:
-        row: The rolling elements, each a `FreeElement`.
-        errors: Form errors, tabulated; `None`: none.
-        surfaces: Where the contacts run.
+        row: The rolling elements, each a `FreeElement`; of a set, those of all rows.
+        sites: Where the rows of a set stand; `None`: of a single row.
+        errors: Form errors of each row, tabulated; `None`: none.
+        surfaces: Where the contacts of each row run.
         turning: Speeds of outer ring, inner ring, orbit and of the elements about
-            their own axes, against the orbit [rad/s].
+            their own axes, against the orbit [rad/s]; of a set the latter two of every
+            element.
         mass: Of the ring's freedoms (k,) [kg, kg m²].
         load: On them (k,) [N, N m].
         growth: Time in which form errors grow from nothing, so that they excite no
@@ -57,19 +62,22 @@ class NoiseSystem(eqx.Module):
         sensor: As of the model.
         retardation: As of the model [s].
         moving: 0 for the outer ring, 1 for the inner one. Static.
+        counts: Rolling elements of each row. Static.
         cage: As of the model.
     """
 
     row: Row
-    errors: FormErrors | None
-    surfaces: Surfaces
-    turning: tuple[Scalar, Scalar, Scalar, Scalar]
+    sites: Sites | None
+    errors: tuple[FormErrors, ...] | None
+    surfaces: tuple[Surfaces, ...]
+    turning: tuple[Scalar, Scalar, Float[Array, "..."], Float[Array, "..."]]
     mass: Float[Array, " k"]
     load: Float[Array, " k"]
     sensor: Sensor | None
     retardation: Scalar
     growth: Scalar | None
     moving: int = eqx.field(static=True)
+    counts: tuple[int, ...] = eqx.field(static=True)
     cage: Cage | None = None
 
     @property
@@ -131,7 +139,16 @@ class NoiseSystem(eqx.Module):
         outer, inner, _, spin = self.turning
         rolled = jnp.full_like(azimuth, 1.0) * spin * time
         turns = outer * time, inner * time
-        met = self.errors.met(self.surfaces, azimuth, *turns, rolled)
+        cut = np.cumsum(self.counts)[:-1]
+        parts = zip(
+            self.errors,
+            self.surfaces,
+            jnp.split(azimuth, cut),
+            jnp.split(rolled, cut),
+            strict=True,
+        )
+        of_rows = [one.met(s, at, *turns, roll) for one, s, at, roll in parts]
+        met = of_rows[0] if len(of_rows) == 1 else jnp.concatenate(of_rows)
         return met if self.growth is None else _grown(time / self.growth) * met
 
     def encounter(self, azimuth: Float[Array, " element"], time: Scalar) -> Encounter:
@@ -140,7 +157,7 @@ class NoiseSystem(eqx.Module):
         met = self.met(azimuth, time)
         if met is None or self.errors is None:
             return found
-        return found.meeting(met, self.errors.raise_surfaces)
+        return found.meeting(met, any(one.raise_surfaces for one in self.errors))
 
     def course(self, time: Scalar) -> tuple[Encounter, Encounter] | None:
         """Encounters at a time and their rates, as far as time alone decides on them.
@@ -171,7 +188,7 @@ class NoiseSystem(eqx.Module):
         """Motions of both rings at the elements, and these's own places."""
         ring, places = self.parted(motion)
         moved = (None, ring) if self.moving else (ring, None)
-        outer, inner = (encounter.motion(q, k) for k, q in enumerate(moved))
+        outer, inner = (encounter.motion(q, k, self.sites) for k, q in enumerate(moved))
         return outer, inner, places
 
     def _each(self, function, motion, encounter):
@@ -233,7 +250,7 @@ class NoiseSystem(eqx.Module):
         """
         on_ring, on_places = self._contacts(motion, encounter)
         on_places = on_places - self._of_each("force")
-        on_ring = encounter.push(on_ring, self.mass.shape[0])
+        on_ring = encounter.push(on_ring, self.mass.shape[0], self.sites)
         if (cage := self.cage) is None:
             return jnp.concatenate([on_ring, on_places.T.ravel()])
         arcs, place = self.caged(motion)

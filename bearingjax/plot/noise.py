@@ -28,6 +28,8 @@ _NAMED = 8
 """Lines of a spectrum that have their names."""
 _COLUMNS = 1600
 """Most columns of a map."""
+_TICKS = 18
+"""Most rolling elements whose numbers stand beside a map."""
 
 
 def acceleration_over_time(
@@ -223,7 +225,7 @@ def contact_state_map(
     if np.count_nonzero(states.samples) == 1:
         text = f"{np.argmax(states.samples)} contacts all the time"
         ax.text(0.5, 0.5, text, transform=ax.transAxes, ha="center", va="center")
-    ax.set_yticks(range(number.shape[1]))
+    ax.set_yticks(range(0, number.shape[1], -(-number.shape[1] // _TICKS)))
     ax.tick_params(axis="y", labelsize=SMALL)
     ax.set_xlabel("turns of the shaft")
     ax.set_ylabel("rolling element")

@@ -1,7 +1,7 @@
 """The [deviations] table of a scene: form errors of raceways and rolling elements."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,12 +23,14 @@ MOST_ORDER = {"raceway": 900, "element": 110}
 rolling element, err by 1 % of their amplitude there."""
 
 
-def read_deviations(table: Table, count: int, folder: Path) -> FormErrors:
-    """Form errors of a row.
+def read_deviations(
+    table: Table, counts: tuple[int, ...], folder: Path
+) -> tuple[FormErrors, ...]:
+    """Form errors of every row of a bearing.
 
     Args:
         table: `[deviations]`.
-        count: Number of rolling elements.
+        counts: Rolling elements of each row.
         folder: Of the scene, in which files of profiles stand.
 
     Raises:
@@ -40,29 +42,73 @@ def read_deviations(table: Table, count: int, folder: Path) -> FormErrors:
         "profile": _profile,
         "spalls": _spall,
     }
-    rings: dict[str, dict[str, list]] = {
-        ring: {name: [] for name in DIRECTIONS} for ring in RACEWAYS.values()
-    }
-    elements: list[AbstractShape] = []
+    found = [_Gathered(count) for count in counts]
     for kind, reader in readers.items():
         for one in table.tables(kind) if kind in table else ():
-            part = one.choice("part", (*RACEWAYS, ELEMENTS))
-            if part == ELEMENTS:
-                which = _which(one, count)
-                _no_direction(one, "is of raceways; an element has a height alone")
-                elements.append(reader(one, count, which, folder))
-                continue
-            if "element" in one:
-                raise one.error("element", f"goes with `part` = {ELEMENTS}")
-            direction = "raised"
-            if kind == "spalls":
-                _no_direction(one, "is not of spalls, which lower the surface")
-            else:
-                direction = one.choice("direction", DIRECTIONS, "outwards")
-            shape = reader(one, None, None, folder)
-            rings[RACEWAYS[part]][direction].append(shape)
-    made = {ring: RacewayErrors(**shapes) for ring, shapes in rings.items()}
-    return FormErrors(made["outer"], made["inner"], elements)
+            for k, row in enumerate(_rows(one, kind, found)):
+                row.add(one, kind, reader, folder, k)
+    return tuple(row.errors() for row in found)
+
+
+class _Gathered:
+    """Shapes of one row as they are read."""
+
+    def __init__(self, count: int):
+        self.count = count
+        self.elements: list[AbstractShape] = []
+        self.rings: dict[str, dict[str, list]] = {
+            ring: {name: [] for name in DIRECTIONS} for ring in RACEWAYS.values()
+        }
+
+    def add(self, one: Table, kind: str, reader: Any, folder: Path, row: int):
+        """Take up one table; `row`: how many rows had it before."""
+        part = one.choice("part", (*RACEWAYS, ELEMENTS))
+        given = _Given(folder, row)
+        if part == ELEMENTS:
+            which = _which(one, self.count)
+            _no_direction(one, "is of raceways; an element has a height alone")
+            self.elements.append(reader(one, self.count, which, given))
+            return
+        if "element" in one:
+            raise one.error("element", f"goes with `part` = {ELEMENTS}")
+        direction = "raised"
+        if kind == "spalls":
+            _no_direction(one, "is not of spalls, which lower the surface")
+        else:
+            direction = one.choice("direction", DIRECTIONS, "outwards")
+        self.rings[RACEWAYS[part]][direction].append(reader(one, None, None, given))
+
+    def errors(self) -> FormErrors:
+        """All of them."""
+        made = {ring: RacewayErrors(**all_) for ring, all_ in self.rings.items()}
+        return FormErrors(made["outer"], made["inner"], self.elements)
+
+
+class _Given(NamedTuple):
+    """What a reader needs to know beside its table.
+
+    Attributes:
+        folder: Of the scene.
+        row: How many rows had the same table before.
+    """
+
+    folder: Path
+    row: int
+
+
+def _rows(table: Table, kind: str, found: list[_Gathered]) -> list[_Gathered]:
+    """The rows that are meant: one by its number, or all; of a spall one."""
+    which = table.integer("row", None, least=0)
+    if which is None:
+        if kind == "spalls" and len(found) > 1:
+            raise table.error("row", "is missing; number of the row with the spall")
+        return found
+    if len(found) == 1:
+        raise table.error("row", "is of sets; the bearing has one row")
+    if which >= len(found):
+        allowed = f"the rows are 0 to {len(found) - 1}"
+        raise table.error("row", f"{which} is not there; {allowed}")
+    return [found[which]]
 
 
 def _which(table: Table, count: int) -> int | None:
@@ -98,8 +144,8 @@ def _order(table: Table, key: str, value: Any, count: int | None) -> int:
 def _listed(table: Table, key: str, kind: str, orders: list, default: Any = None):
     """One quantity for all orders, or a list with one for each."""
     if not isinstance(table.raw(key, None), list):
-        given = () if default is None else (default,)
-        return np.full(len(orders), table.quantity(key, kind, *given))
+        usual = () if default is None else (default,)
+        return np.full(len(orders), table.quantity(key, kind, *usual))
     values = table.quantities(key, kind)
     if len(values) != len(orders):
         problem = f"has {len(values)} values for {len(orders)} orders"
@@ -107,12 +153,12 @@ def _listed(table: Table, key: str, kind: str, orders: list, default: Any = None
     return np.array(values)
 
 
-def _waves(table: Table, count, which, folder) -> Harmonics:
-    given = table.raw("order")
-    listed = given if isinstance(given, list) and given else [given]
+def _waves(table: Table, count, which, given) -> Harmonics:
+    named = table.raw("order")
+    listed = named if isinstance(named, list) and named else [named]
     orders = [_order(table, "order", one, count) for one in listed]
     if len(set(orders)) < len(orders):
-        raise table.error("order", f"{given!r} names an order twice")
+        raise table.error("order", f"{named!r} names an order twice")
     amplitude = _listed(table, "amplitude", "length", orders)
     phase = _listed(table, "phase", "angle", orders, 0.0)
     with table.building():
@@ -120,7 +166,7 @@ def _waves(table: Table, count, which, folder) -> Harmonics:
         return Harmonics(orders, sizes, np.broadcast_to(phase, sizes.shape))
 
 
-def _spectrum(table: Table, count, which, folder) -> Harmonics:
+def _spectrum(table: Table, count, which, given) -> Harmonics:
     low, high = (
         _order(table, key, table.raw(key), count) for key in ("lowest", "highest")
     )
@@ -128,7 +174,9 @@ def _spectrum(table: Table, count, which, folder) -> Harmonics:
         raise table.error("highest", f"{high} is below `lowest`, {low}")
     amplitude = table.quantity("amplitude", "length")
     slope = table.number("slope")
-    draws = np.random.default_rng(table.integer("seed", 0, least=0))
+    # Rows draw on their own; the first as a single one.
+    seed = table.integer("seed", 0, least=0)
+    draws = np.random.default_rng([seed, given.row] if given.row else seed)
     shape = (high - low + 1,) if count is None else (count, high - low + 1)
     phase = draws.uniform(0.0, 2.0 * np.pi, shape)
     with table.building():
@@ -136,13 +184,13 @@ def _spectrum(table: Table, count, which, folder) -> Harmonics:
         return Harmonics.spectrum(low, high, sizes, slope, phase)
 
 
-def _profile(table: Table, count, which, folder) -> Harmonics:
+def _profile(table: Table, count, which, given) -> Harmonics:
     if ("points" in table) == ("file" in table):
         raise table.error("points", "give either heights here or a `file` of them")
     if "points" in table:
         heights = np.array(table.quantities("points", "length"))
     else:
-        found = read_list(table, folder, {"height": "length"}, "heights")
+        found = read_list(table, given.folder, {"height": "length"}, "heights")
         if list(found) != ["height"]:
             problem = 'must have one column, headed such as "height [um]"'
             raise table.error("file", problem)
@@ -158,7 +206,7 @@ def _profile(table: Table, count, which, folder) -> Harmonics:
         return Harmonics(waves.order, sizes, np.broadcast_to(waves.phase, sizes.shape))
 
 
-def _spall(table: Table, count, which, folder) -> Spall:
+def _spall(table: Table, count, which, given) -> Spall:
     angle = table.quantity("angle", "angle", 0.0)
     length, depth = (table.quantity(key, "length") for key in ("length", "depth"))
     for key, value in (("length", length), ("depth", depth)):

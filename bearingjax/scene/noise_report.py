@@ -8,7 +8,7 @@ from ..element.frame import LOADS
 from .noise_output import PERCENTILES, parts_of
 from .noise_run import NoiseRun, ring_modes
 from .noise_scene import DIRECTIONS
-from .report import ball_row, roller_row
+from .report import bearing_text
 
 _RULE = "-" * 78
 _RPM = 30.0 / np.pi
@@ -32,7 +32,6 @@ def noise_report(run: NoiseRun) -> str:
 def _bearing(run):
     model = run.task.model
     bearing = model.element.bearing
-    row = ball_row if is_ball(bearing) else roller_row
     load = ", ".join(
         f"{name} {value:.5g} {'N' if name[0] == 'F' else 'N m'}"
         for name, value in zip(LOADS, np.asarray(model.load), strict=True)
@@ -42,7 +41,7 @@ def _bearing(run):
     task, record = run.task, run.heard.record
     return "\n".join(
         [
-            *row(bearing, task.name),
+            bearing_text(task.scene, bearing),
             f"the {model.moving_ring} ring moves, {float(model.mass):.4g} kg, loaded by"
             f" {load or 'nothing'}; inner ring {inner:.5g} rpm, outer ring"
             f" {outer:.5g} rpm",
@@ -54,7 +53,10 @@ def _bearing(run):
 
 
 def _modes(run):
-    found = [f"{frequency:.5g} Hz, {name}" for name, frequency in ring_modes(run.modes)]
+    found = [
+        f"{frequency:.5g} Hz, {name}"
+        for name, frequency in ring_modes(run.modes, run.task.model)
+    ]
     return "natural modes of the ring: " + ("; ".join(found) or "none")
 
 

@@ -31,7 +31,8 @@ from ..acoustics import (
     spectrum,
     vibration,
 )
-from ..design import n_elements
+from ..acoustics.free_row import of_rows
+from ..design import n_elements, rows_of
 from ..design.form_error import Harmonics, Surfaces
 from ..numerics.result import Result
 from ..statics import solve_load
@@ -220,7 +221,7 @@ def _why(model: NoiseModel) -> str:
     """Why a bearing finds no place under its load."""
     options = model.solve_options
     solution = solve_load(
-        model.element,
+        model.small,
         model.load,
         free=options.free,
         fixed_ring=options.fixed_ring,
@@ -243,8 +244,9 @@ def listen(task: NoiseScene, record: Vibration, modes: NaturalModes) -> Heard:
     bearing = task.model.element.bearing
     speed = task.model.speed
     # Elements that differ make many multiples of the cage's turning.
-    harmonics = max(10, 6 * n_elements(bearing))
-    natural = dict(ring_modes(modes))
+    largest = max(n_elements(row.bearing) for row in rows_of(bearing))
+    harmonics = max(10, 6 * largest)
+    natural = dict(ring_modes(modes, task.model))
     lines = name_lines(found, bearing, speed, natural=natural, harmonics=harmonics)
     causes = line_causes(lines, task.model, 0.5 * float(found.resolution))
     size = acceleration.std(axis=0)
@@ -260,21 +262,26 @@ def listen(task: NoiseScene, record: Vibration, modes: NaturalModes) -> Heard:
     )
 
 
-def ring_modes(modes: NaturalModes) -> list[tuple[str, float]]:
+def ring_modes(modes: NaturalModes, model: NoiseModel) -> list[tuple[str, float]]:
     """Name and frequency [Hz] of the modes in which the moving ring moves most.
 
     Args:
         modes: As NumPy holds them.
+        model: The bearing.
     """
+    masses = np.repeat(float(model.mass), len(DIRECTIONS))
+    names = [f"along {name}" for name in DIRECTIONS]
+    if model.tilting_inertia is not None:
+        tilting = np.repeat(float(model.tilting_inertia), 2)
+        masses = np.concatenate([masses, tilting])
+        names += ["tilting about x", "tilting about y"]
     found: list[tuple[str, float]] = []
     for frequency, ring, share in zip(
         modes.frequency, modes.ring, modes.ring_share, strict=True
     ):
         if share < _RING or frequency < LOOSE:
             continue
-        across = np.abs(ring[: len(DIRECTIONS)])
-        where = DIRECTIONS[int(np.argmax(across))]
-        name = f"natural mode along {where}"
+        name = f"natural mode {names[int(np.argmax(masses * ring**2))]}"
         same = sum(one.startswith(name) for one, _ in found)
         found.append((f"{name} ({same + 1})" if same else name, float(frequency)))
     return found
@@ -288,49 +295,52 @@ def _before(task: NoiseScene, steps: int, least: int):
             " natural mode needs"
         )
     model = task.model
-    turning = kinematic_frequencies(model.element.bearing, model.speed)
-    half = 0.5 * task.samples * float(turning.shaft)
-    passing = {
-        "outer raceway": abs(float(turning.cage - turning.outer)),
-        "inner raceway": abs(float(turning.inner - turning.cage)),
-        "elements": float(turning.rotation),
-    }
-    errors = model.errors
-    shapes = {
-        "outer raceway": errors.outer,
-        "inner raceway": errors.inner,
-        "elements": errors.elements,
-    }
-    for part, given in shapes.items():
-        highest = _highest(given)
-        if highest * passing[part] > half:
-            yield (
-                f"waves of order {highest} of the {part} are met at"
-                f" {highest * passing[part]:.5g} Hz, above half of the sampling rate,"
-                f" {half:.5g} Hz, where they look like slower ones; raise"
-                " `vibration.samples`"
-            )
+    for where, bearing, errors in _of_rows(model):
+        turning = kinematic_frequencies(bearing, model.speed)
+        half = 0.5 * task.samples * float(turning.shaft)
+        passing = {
+            "outer raceway": (errors.outer, abs(float(turning.cage - turning.outer))),
+            "inner raceway": (errors.inner, abs(float(turning.inner - turning.cage))),
+            "elements": (errors.elements, float(turning.rotation)),
+        }
+        for part, (given, passes) in passing.items():
+            highest = _highest(given)
+            if highest * passes > half:
+                yield (
+                    f"waves of order {highest} of the {part}{where} are met at"
+                    f" {highest * passes:.5g} Hz, above half of the sampling rate,"
+                    f" {half:.5g} Hz, where they look like slower ones; raise"
+                    " `vibration.samples`"
+                )
+
+
+def _of_rows(model: NoiseModel):
+    """Words for each row, its design and its form errors."""
+    parts = rows_of(model.element.bearing)
+    for k, (row, errors) in enumerate(zip(parts, model.errors_of_rows, strict=True)):
+        yield "" if len(parts) == 1 else f" of row {k}", row.bearing, errors
 
 
 def _short_waves(model: NoiseModel, load: np.ndarray):
     """Waves that contacts bridge, but that elements of the model follow."""
-    bearing = model.element.bearing
-    half = contact_half_width(bearing, load)
-    surfaces = Surfaces.of(bearing)
-    errors = model.errors
-    parts = {
-        "outer raceway": (errors.outer, surfaces.outer),
-        "inner raceway": (errors.inner, surfaces.inner),
-        "elements": (errors.elements, surfaces.element),
-    }
-    for part, (given, surface) in parts.items():
-        most = int(float(surface.radius) / half) if half > 0.0 else _highest(given)
-        if _highest(given) > most:
-            yield (
-                f"waves of the {part} of order {most} and more are shorter than some"
-                f" three contacts of {2e3 * half:.2g} mm, which would bridge them:"
-                " their noise is overstated, by 10 % at that order and ever more above"
-            )
+    loads = of_rows(load, model.element.bearing, axis=1)
+    for own, (where, bearing, errors) in zip(loads, _of_rows(model), strict=True):
+        half = contact_half_width(bearing, own)
+        surfaces = Surfaces.of(bearing)
+        parts = {
+            "outer raceway": (errors.outer, surfaces.outer),
+            "inner raceway": (errors.inner, surfaces.inner),
+            "elements": (errors.elements, surfaces.element),
+        }
+        for part, (given, surface) in parts.items():
+            most = int(float(surface.radius) / half) if half > 0.0 else _highest(given)
+            if _highest(given) > most:
+                yield (
+                    f"waves of the {part}{where} of order {most} and more are shorter"
+                    f" than some three contacts of {2e3 * half:.2g} mm, which would"
+                    " bridge them: their noise is overstated, by 10 % at that order and"
+                    " ever more above"
+                )
 
 
 def _highest(errors) -> int:

@@ -17,7 +17,7 @@ from ..acoustics import (
     third_octave_bands,
 )
 from ..acoustics.reference_levels import NORM
-from ..design import BearingSet, n_elements
+from ..design import n_elements, rows_of
 from ..element import RINGS
 from .deviations_table import read_deviations
 from .fit_table import fitted
@@ -53,16 +53,17 @@ def read_noise(
     scene = scene_of(data, path)
     vibration = top.table("vibration", required=True)
     operating, deviations = top.table("operating"), top.table("deviations")
-    _check_bearing(top, operating, scene)
+    _check_operating(operating, scene)
     element = fitted(scene.fits, scene.element)
     bearing: Any = element.bearing
-    errors = read_deviations(deviations, n_elements(bearing), path.parent)
+    counts = tuple(n_elements(row.bearing) for row in rows_of(bearing))
+    errors = read_deviations(deviations, counts, path.parent)
     deviations.finish()
     values = {
         "mass": vibration.quantity("mass", "mass"),
         "load": scene.load,
         "speed": scene.speed,
-        "errors": errors,
+        "errors": errors if len(counts) > 1 else errors[0],
         "sensor": _sensor(vibration),
         "moving_ring": _moving_ring(vibration, operating),
         "tilting_inertia": vibration.quantity(
@@ -105,11 +106,8 @@ def _held(scene: Scene, moving: str) -> dict[str, Any]:
     return {**kept, "fixed_ring": RINGS[1 - RINGS.index(moving)]}
 
 
-def _check_bearing(top: Table, operating: Table, scene: Scene) -> None:
-    """One row under rings that turn, whose motions nothing else prescribes."""
-    if isinstance(scene.element.bearing, BearingSet):
-        key = "set" if "set" in top else "bearing"
-        raise top.error(key, "is of several rows; noise is that of one")
+def _check_operating(operating: Table, scene: Scene) -> None:
+    """Rings that turn, and whose motions nothing else prescribes."""
     for key in ("free", "prescribed"):
         if key in operating:
             problem = "is not for noise: the moving ring shifts, and with a"

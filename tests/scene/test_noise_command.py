@@ -135,7 +135,7 @@ def test_a_model_by_hand_vibrates_alike(scene):
     assert np.array_equal(found.modes.frequency, modes.frequency)
     assert found.heard is not None and found.steps > 1
     # Twice the wave, twice the vibration, as long as all balls bear.
-    (waves,) = task.model.errors.inner.outwards
+    (waves,) = task.model.errors_of_rows[0].inner.outwards
     assert isinstance(waves, bj.Harmonics)
     amplitude = waves.amplitude
     twice = dataclasses.replace(

@@ -15,7 +15,7 @@ from bearingjax.design.form_error import FormErrors, Harmonics, RacewayErrors, S
 from bearingjax.design.tolerance import running_accuracy
 from bearingjax.scene import read_noise, scene_files, shipped_scenes
 
-SHIPPED = ("noise_cylindrical", "noise_deep_groove", "noise_four_point")
+SHIPPED = ("noise_cylindrical", "noise_deep_groove", "noise_four_point", "noise_pair")
 WAVE = "part='outer raceway', order=3, amplitude='1 um'"
 SPECTRUM = "part='elements', lowest=2, amplitude='1 um', slope=1"
 
@@ -60,9 +60,9 @@ WRONG = {
         "operating.load.Mx=1 N m",
         "[vibration]: NoiseModel: `load` is",
     ),
-    "set of bearings": (
-        "set={arrangement='back_to_back', spacing='20 mm'}",
-        "`set`: is of several rows; noise is that of one",
+    "row of a bearing": (
+        f"deviations.waves=[{{{WAVE}, row=0}}]",
+        "`deviations.waves[0].row`: is of sets; the bearing has one row",
     ),
     "direction of the sensor": (
         "vibration.sensor_direction=up",
@@ -205,6 +205,39 @@ def test_a_wrong_scene_is_told_in_one_line(what):
     assert "\n" not in str(caught.value)
 
 
+PAIR = {
+    "row": (
+        f"deviations.waves=[{{{WAVE}, row=2}}]",
+        "`deviations.waves[0].row`: 2 is not there; the rows are 0 to 1",
+    ),
+    "spall of no row": (
+        "deviations.spalls=[{part='inner raceway', length='1 mm', depth='9 um'}]",
+        "`deviations.spalls[0].row`: is missing; number of the row with the spall",
+    ),
+    "spring": (
+        "set={arrangement='back_to_back', spacing='40 mm', spring_force='200 N'}",
+        "[vibration]: NoiseModel: `element` has a row that a spring presses",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", PAIR)
+def test_a_wrong_scene_of_a_set_is_told_in_one_line(what):
+    setting, message = PAIR[what]
+    with pytest.raises(SceneError) as caught:
+        read_noise("noise_pair", [setting])
+    assert str(caught.value).startswith(f"noise_pair.toml: {message}")
+    assert "\n" not in str(caught.value)
+
+
+def test_rows_of_a_set_have_errors_of_their_own():
+    one, other = read_noise("noise_pair").model.errors_of_rows
+    assert len(one.inner.outwards) == 1 and len(other.inner.outwards) == 2
+    waves = [row.outer.outwards[0] for row in (one, other)]
+    phases = [np.asarray(w.phase) for w in waves if isinstance(w, Harmonics)]
+    assert not np.array_equal(*phases)
+
+
 def test_a_bearing_without_a_rig_has_no_noise():
     with pytest.raises(SceneError, match="deep_groove.toml: `vibration`: is missing"):
         read_noise("deep_groove", ["operating.inner_speed=1500 rpm"])
@@ -235,7 +268,7 @@ def test_the_paper_bearing_is_that_of_its_tables():
     assert float(model.sensor.stiffness) == pytest.approx(1e4)
     assert model.moving_ring == "outer" and task.scene.moving_ring == "outer"
     assert np.array_equal(task.norm, NORM) and len(task.bands.centre) == len(NORM)
-    waves = model.errors.outer.outwards[0]
+    waves = model.errors_of_rows[0].outer.outwards[0]
     assert isinstance(waves, Harmonics)
     # Tens of nanometres at most at order 10.
     assert 5e-9 < float(waves.amplitude[waves.order.index(10)]) < 50e-9
@@ -318,7 +351,7 @@ def test_the_ring_that_moves_is_the_one_that_is_not_fixed():
 
 def test_a_seed_draws_the_same_phases_again():
     def phases(*settings):
-        errors = read_noise("noise_four_point", settings).model.errors
+        errors = read_noise("noise_four_point", settings).model.errors_of_rows[0]
         waves = errors.outer.outwards[0]
         assert isinstance(waves, Harmonics)
         return np.asarray(waves.phase)
@@ -336,7 +369,7 @@ def test_a_profile_from_a_file(tmp_path):
     heights = 3.0 + 0.5 * np.cos(2 * angle) + 0.2 * np.sin(5 * angle)
     rows = "\n".join(f"{h:.17g}" for h in heights)
     (tmp_path / "round.csv").write_text(f"height [um]\n{rows}\n", encoding="utf-8")
-    waves = read_noise(path).model.errors.inner.outwards[-1]
+    waves = read_noise(path).model.errors_of_rows[0].inner.outwards[-1]
     assert isinstance(waves, Harmonics)
     assert waves.order == (1, 2, 3, 4, 5)
     assert np.allclose(waves.amplitude, [0, 0.5e-6, 0, 0, 0.2e-6], atol=1e-15)

@@ -48,6 +48,7 @@ NOISE = {  # for `read_noise`, in the tests of the command
     "noise_cylindrical",
     "noise_deep_groove",
     "noise_four_point",
+    "noise_pair",
 }
 
 

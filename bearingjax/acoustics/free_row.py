@@ -1,0 +1,175 @@
+"""All rolling elements of a bearing as one row, each free on its own.
+
+Rows of a set differ in where they stand and which way they look; an element needs no
+more of that than three numbers. One long row costs fewer operations than several.
+"""
+
+import dataclasses
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design import n_elements, rows_of
+from ..design.form_error import Surfaces
+from ..element.bearing_element import BearingElement
+from ..element.frame import orbit, rotation
+from ..element.inertia import Speed
+from ..element.kinematics import Linearised
+from ..element.row import Row
+from .free_element import free_element
+
+
+class Untilted(Linearised):
+    """Small motions of rings that do not tilt: self-aligning bearings may have them."""
+
+    @property
+    def turns_far(self):
+        return True
+
+
+def of_small_motions(element: BearingElement) -> BearingElement:
+    """The bearing for small motions; the ring of a self-aligning one may only shift.
+
+    Args:
+        element: With `Linearised()` or, of a self-aligning bearing, `Finite()`.
+    """
+    if not element.kinematics.turns_far:
+        return element
+    choices: Any = element.choices
+    choices = dataclasses.replace(choices, kinematics=Untilted())
+    return dataclasses.replace(element, choices=choices)
+
+
+class Sites(NamedTuple):
+    """Where the rows of a set stand, for each of their elements.
+
+    Attributes:
+        position: z of the origin of its row in the set (element,) [m].
+        sign: -1 in a row that is turned round, else 1 (element,) [1].
+        offset: Axial place of the inner ring against the outer one, in the row's own
+            axes (element,) [m].
+    """
+
+    position: Float[Array, " element"]
+    sign: Float[Array, " element"]
+    offset: Float[Array, " element"]
+
+
+class FreeRow(NamedTuple):
+    """All rolling elements of a bearing.
+
+    Attributes:
+        row: Their `FreeElement`s, the rows of a set one after the other; its ratio and
+            pitch radius are those of the first.
+        sites: `None`: the row is the bearing.
+        carried: Speed of the orbit; of a set for every element [rad/s].
+        own: Speed of the elements about their own axes against the orbit, likewise.
+        surfaces: Where the contacts of each row run.
+    """
+
+    row: Row
+    sites: Sites | None
+    carried: Any
+    own: Any
+    surfaces: tuple[Surfaces, ...]
+
+    @classmethod
+    def of(cls, element: BearingElement, speed: Speed) -> "FreeRow":
+        """Of a bearing whose rings have these speeds.
+
+        Args:
+            element: The bearing, of small motions.
+            speed: Of the rings.
+
+        Raises:
+            ValueError: If its rows are of unlike structure.
+        """
+        rows = element.model().rows
+        found = [
+            _free(row, part.bearing, speed)
+            for row, part in zip(rows, rows_of(element.bearing), strict=True)
+        ]
+        if len(found) == 1 and found[0].row.place is None:
+            return found[0]
+        counts = [one.row.azimuth.shape[0] for one in found]
+        rows = [_unlike(one.row) for one in found]
+        kinds = {_structure(row.element) for row in rows}
+        if len(kinds) > 1:
+            raise ValueError(
+                "NoiseModel: `element` has rows of unlike structure (number of"
+                " contacts, kind of profile, ribs); noise is of sets of like rows."
+            )
+
+        def all_of(numbers):
+            return jnp.concatenate(
+                [jnp.full((n,), k) for n, k in zip(counts, numbers, strict=True)]
+            )
+
+        # Its rows have places: that of a set is never `None`.
+        sites = Sites(*map(all_of, zip(*(row.place for row in rows), strict=True)))
+        elements = [row.element for row in rows]
+        joined = Row(
+            element=jax.tree.map(lambda *parts: jnp.concatenate(parts), *elements),
+            azimuth=jnp.concatenate([row.azimuth for row in rows]),
+            shift=None,
+            ratio=rows[0].ratio,
+            pitch_radius=rows[0].pitch_radius,
+            place=None,
+            spring=None,
+            unlike=True,
+        )
+        carried, own = (
+            all_of([getattr(f, k) for f in found]) for k in cls._fields[2:4]
+        )
+        surfaces = tuple(s for one in found for s in one.surfaces)
+        return cls(joined, sites, carried, own, surfaces)
+
+
+def of_rows(values: Any, bearing: Any, axis: int = 0) -> list[Any]:
+    """The values of all elements parted into those of each row.
+
+    Args:
+        values: With an axis element.
+        bearing: A single row or a set.
+        axis: That axis. Static.
+    """
+    counts = [n_elements(row.bearing) for row in rows_of(bearing)]
+    cut = jnp if isinstance(values, jax.Array) else np
+    return cut.split(values, np.cumsum(counts)[:-1], axis=axis)
+
+
+def _free(row: Row, bearing: Any, speed: Speed) -> FreeRow:
+    """One row of free elements."""
+    surfaces = Surfaces.of(bearing)
+    rings = speed.outer, speed.inner
+    carried = orbit(row.ratio, *rings)
+    diameters = 2.0 * surfaces.element.radius, 2.0 * row.pitch_radius
+    own = rotation(row.ratio, *diameters, *rings)
+
+    def free(element):
+        return free_element(element, bearing.material, row.pitch_radius, speed, carried)
+
+    row = eqx.tree_at(lambda r: r.element, row, row.each(free))
+    return FreeRow(row, None, carried, own, (surfaces,))
+
+
+def _unlike(row: Row) -> Row:
+    """The same row, its elements with a leading axis."""
+    if row.unlike:
+        return row
+    count = row.azimuth.shape[0]
+    element = jax.tree.map(lambda a: _repeated(a, count), row.element)
+    return eqx.tree_at(lambda r: r.element, row, element)
+
+
+def _repeated(numbers, count):
+    return jnp.broadcast_to(numbers, (count, *jnp.shape(numbers)))
+
+
+def _structure(element):
+    leaves, structure = jax.tree.flatten(element)
+    return structure, tuple(jnp.shape(leaf)[1:] for leaf in leaves)
