@@ -74,5 +74,6 @@ from .standing import standing as standing
 from .system import NoiseSystem as NoiseSystem
 from .vibration import CageMotion as CageMotion
 from .vibration import Vibration as Vibration
+from .vibration import bandwidth as bandwidth
 from .vibration import needed_steps as needed_steps
 from .vibration import vibration as vibration

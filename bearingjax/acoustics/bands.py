@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import positive
+from ..numerics.types import as_real
 from .level import REFERENCE_ACCELERATION, level
 from .spectrum import Spectrum
 
@@ -64,7 +65,9 @@ def third_octave_bands(lowest: float = 4.0, highest: float = 10000.0) -> Bands:
     return _bands("third_octave_bands", lowest, highest, 1)
 
 
-def band_root_mean_square(spectrum: Spectrum, bands: Bands) -> Float[Array, "band ..."]:
+def band_root_mean_square(
+    spectrum: Spectrum, bands: Bands, highest: Any = None
+) -> Float[Array, "band ..."]:
     """Root mean square of what a record has in each band.
 
     A line belongs to the band that its frequency lies in; of a windowed record it
@@ -73,30 +76,36 @@ def band_root_mean_square(spectrum: Spectrum, bands: Bands) -> Float[Array, "ban
     Args:
         spectrum: Of the record, amplitudes (line, ...).
         bands: From `octave_bands` or `third_octave_bands`.
+        highest: Frequency up to which the record is true, such as
+            `Vibration.bandwidth` [Hz]; `None`: half of the sampling rate.
 
     Returns:
         (band, ...) [unit of the record]. NaN for a band that the record does not hold:
-        one whose upper edge lies above half of the sampling rate, or that is narrower
+        one whose upper edge lies above that frequency, or that is narrower
         than a line (its `noise_bandwidth`), so that it holds one by chance. A band
         that is held and has nothing in it is 0, with a derivative of 0.
     """
-    return _by_band(spectrum, *_edges(spectrum, bands))
+    lower, upper = _edges(spectrum, bands)
+    return _by_band(spectrum, lower, upper, _highest(spectrum, highest))
 
 
 def band_levels(
-    spectrum: Spectrum, bands: Bands, reference: Any = REFERENCE_ACCELERATION
+    spectrum: Spectrum,
+    bands: Bands,
+    reference: Any = REFERENCE_ACCELERATION,
+    highest: Any = None,
 ) -> Float[Array, "band ..."]:
     """Level of a record of acceleration in each band [dB].
 
     Args:
         spectrum: Of the record, amplitudes (line, ...) [m/s²].
-        bands: As in `band_root_mean_square`.
+        bands, highest: As in `band_root_mean_square`.
         reference: Acceleration of 0 dB [m/s²].
 
     Returns:
         Levels (band, ...); NaN for bands that the record does not hold.
     """
-    return level(band_root_mean_square(spectrum, bands), reference)
+    return level(band_root_mean_square(spectrum, bands, highest), reference)
 
 
 def total_root_mean_square(spectrum: Spectrum) -> Float[Array, "..."]:
@@ -107,23 +116,28 @@ def total_root_mean_square(spectrum: Spectrum) -> Float[Array, "..."]:
     return _root(jnp.sum(spectrum.power[1:], axis=0))
 
 
-def is_held(spectrum: Spectrum, bands: Bands) -> np.ndarray:
+def is_held(spectrum: Spectrum, bands: Bands, highest: Any = None) -> np.ndarray:
     """Which bands a record holds, as `band_root_mean_square` has it (band,)."""
-    return np.asarray(_held(spectrum, *_edges(spectrum, bands)))
+    lower, upper = _edges(spectrum, bands)
+    return np.asarray(_held(spectrum, lower, upper, _highest(spectrum, highest)))
 
 
 @eqx.filter_jit
-def _by_band(spectrum, lower, upper):
+def _by_band(spectrum, lower, upper, highest):
     frequency, power = spectrum.frequency[None], spectrum.power
     inside = (frequency >= lower[:, None]) & (frequency < upper[:, None])
     sums = jnp.tensordot(inside.astype(power.dtype), power, axes=1)
-    held = _held(spectrum, lower, upper).reshape(-1, *[1] * (sums.ndim - 1))
+    held = _held(spectrum, lower, upper, highest).reshape(-1, *[1] * (sums.ndim - 1))
     return jnp.where(held, _root(sums), jnp.nan)
 
 
-def _held(spectrum, lower, upper):
-    highest, least = spectrum.frequency[-1], spectrum.noise_bandwidth
-    return (upper <= highest) & (upper - lower >= least)
+def _held(spectrum, lower, upper, highest):
+    return (upper <= highest) & (upper - lower >= spectrum.noise_bandwidth)
+
+
+def _highest(spectrum, highest):
+    half = spectrum.frequency[-1]
+    return half if highest is None else jnp.minimum(half, as_real(highest))
 
 
 def _edges(spectrum, bands):

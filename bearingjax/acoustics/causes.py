@@ -11,7 +11,6 @@ from .lines import Line
 from .model import NoiseModel
 from .orders import KinematicFrequencies, kinematic_frequencies, waviness_force
 
-_MULTIPLES = 10
 _SIDEBANDS = 2
 _PASSAGES = 6
 """Multiples of the cage's turning, in passages of the elements."""
@@ -56,7 +55,9 @@ def line_causes(
         Causes of each line, that of the largest error first, such as "waves of the
         outer raceway, order 13, 15"; `()` where none is known.
     """
-    known = sorted(_known(model), key=lambda one: -one.size)
+    lines = tuple(lines)
+    highest = max((line.frequency for line in lines), default=0.0) + tolerance
+    known = sorted(_known(model, highest), key=lambda one: -one.size)
     rows = len(rows_of(model.element.bearing))
     return tuple(
         _told(
@@ -86,22 +87,24 @@ def _told(causes: list[_Cause], rows: int) -> tuple[str, ...]:
     return tuple(told)
 
 
-def _known(model: NoiseModel) -> Iterator[_Cause]:
+def _known(model: NoiseModel, highest: float) -> Iterator[_Cause]:
     parts = rows_of(model.element.bearing)
     for k, (row, errors) in enumerate(zip(parts, model.errors_of_rows, strict=True)):
-        for cause in _of_row(row.bearing, errors, model):
+        for cause in _of_row(row.bearing, errors, model, highest):
             yield cause._replace(row=k)
 
 
-def _of_row(bearing: Any, errors: FormErrors, model: NoiseModel) -> Iterator[_Cause]:
-    """Causes in one row."""
+def _of_row(
+    bearing: Any, errors: FormErrors, model: NoiseModel, highest: float
+) -> Iterator[_Cause]:
+    """Causes in one row, of lines up to a frequency [Hz]."""
     turning = kinematic_frequencies(bearing, model.speed)
     count = n_elements(bearing)
     row = bearing, model.speed
     for ring in ("outer", "inner"):
-        yield from _of_raceway(row, getattr(errors, ring), ring, turning)
+        yield from _of_raceway(row, getattr(errors, ring), ring, turning, highest)
     for shape in errors.elements:
-        yield from _of_elements(shape, row, turning)
+        yield from _of_elements(shape, row, turning, highest)
     kind = "ball" if hasattr(bearing, "ball_deviation") else "roller"
     cage = float(turning.cage)
     pitch = 0.5 * float(bearing.pitch_diameter)
@@ -115,12 +118,12 @@ def _of_row(bearing: Any, errors: FormErrors, model: NoiseModel) -> Iterator[_Ca
             yield _Cause(size, k * cage, words)
     load = np.asarray(model.load)
     if load[[0, 1, 3, 4]].any():
-        for k in range(1, _MULTIPLES + 1):
+        for k in _multiples(count * cage, highest):
             yield _Cause(0.0, k * count * cage, f"{kind}s passing the load")
 
 
 def _of_raceway(
-    row, errors: RacewayErrors, ring, turning: KinematicFrequencies
+    row, errors: RacewayErrors, ring, turning: KinematicFrequencies, highest: float
 ) -> Iterator[_Cause]:
     count = n_elements(row[0])
     passage, beside = (
@@ -137,10 +140,12 @@ def _of_raceway(
                     yield from _of_wave(row, ring, order, size, words)
         elif isinstance(shape, Spall):
             words = f"spall of the {ring} raceway"
-            yield from _of_spall(shape, float(passage), float(beside), words)
+            yield from _of_spall(shape, float(passage), float(beside), words, highest)
 
 
-def _of_elements(shape, row, turning: KinematicFrequencies) -> Iterator[_Cause]:
+def _of_elements(
+    shape, row, turning: KinematicFrequencies, highest: float
+) -> Iterator[_Cause]:
     if isinstance(shape, Harmonics):
         sizes = np.abs(np.asarray(shape.amplitude)).max(axis=0)
         for order, size in zip(shape.order, sizes, strict=True):
@@ -149,7 +154,8 @@ def _of_elements(shape, row, turning: KinematicFrequencies) -> Iterator[_Cause]:
                 yield from _of_wave(row, "element", order, size, words)
     elif isinstance(shape, Spall):
         twice, cage = float(turning.twice_rotation), float(turning.cage)
-        yield from _of_spall(shape, twice, cage, "spall of a rolling element")
+        words = "spall of a rolling element"
+        yield from _of_spall(shape, twice, cage, words, highest)
 
 
 def _of_wave(row, part, order, size, words) -> Iterator[_Cause]:
@@ -159,9 +165,14 @@ def _of_wave(row, part, order, size, words) -> Iterator[_Cause]:
         yield _Cause(float(size), abs(float(frequency)), words, order)
 
 
-def _of_spall(shape, passage, beside, words) -> Iterator[_Cause]:
+def _multiples(frequency: float, highest: float) -> range:
+    """Numbers of all multiples of a frequency up to another one."""
+    return range(1, int(highest / frequency) + 1 if frequency > 0.0 else 0)
+
+
+def _of_spall(shape, passage, beside, words, highest) -> Iterator[_Cause]:
     depth = float(np.abs(np.asarray(shape.depth)).max())
     sides = range(-_SIDEBANDS, _SIDEBANDS + 1) if beside else (0,)
-    for k in range(1, _MULTIPLES + 1) if depth else ():
+    for k in _multiples(passage, highest + _SIDEBANDS * beside) if depth else ():
         for m in sides:
             yield _Cause(depth, k * passage + m * beside, words)

@@ -13,6 +13,8 @@ from .spectrum import Spectrum
 
 _FIRST = 10
 """Most multiples of a passage whose sidebands by the other ring have names."""
+_APART = 12.0
+"""What the tolerance counts, beside multiples and sidebands, where a name is chosen."""
 UNNAMED = "unnamed"
 """Name of a line that nothing known makes."""
 
@@ -47,20 +49,24 @@ def name_lines(
     factor: float = 5.0,
     neighbours: int = 25,
     least: float = 1e-3,
+    largest: int = 0,
 ) -> tuple[Line, ...]:
     """Lines that stand out of a spectrum, with names from the kinematics.
 
     A line is a local maximum that is both `factor` times the median of its neighbours
-    and `least` times the largest line. In a spectrum with Hann's window its frequency
+    and `least` times the largest line; the `largest` maxima count whatever is beside
+    them: where lines stand close, as multiples of the cage do, none is far above its
+    neighbours. In a spectrum with Hann's window its frequency
     and amplitude are those of a lone line between the bins.
 
     Names are sought among, with k up to `harmonics` and m up to `sidebands` in size:
     k shaft, k cage, k BPFO, k BPFI ± m shaft, 2k BSF ± m cage, k BPFO ± m shaft. Where
     both rings turn, "inner ring" and "outer ring" stand for the shaft, and both
-    raceways have the sidebands of both. Of all that lie within the tolerance the
-    simplest is taken, with the least k + m (of sidebands by the other ring one more),
-    then the nearest, then the first as they are listed here; a natural frequency only
-    if there is no other.
+    raceways have the sidebands of both. Of all that lie within the tolerance that is
+    taken whose k + m (of sidebands by the other ring one more) and square of the
+    distance, the tolerance counting 12, are least together, then the first as they are
+    listed here; a natural frequency only if there is no other. With many harmonics
+    much of a spectrum lies near some name: a name alone is no proof.
 
     Args:
         spectrum: Amplitudes (line, ...); further axes, such as directions, are taken
@@ -77,6 +83,7 @@ def name_lines(
             lines of noise passes: of 4 one in 65 thousand, of 5 one in 30 million.
         neighbours: How many to either side.
         least: Of a line over the largest one [1].
+        largest: How many maxima, above `least`, are taken for their size alone.
 
     Returns:
         Lines by their frequency; of none that fits the name is `UNNAMED`.
@@ -88,6 +95,7 @@ def name_lines(
     count("name_lines", "harmonics", harmonics)
     count("name_lines", "neighbours", neighbours)
     count("name_lines", "sidebands", sidebands + 1)
+    count("name_lines", "largest", largest + 1)
     non_negative("name_lines", "factor", factor, "")
     non_negative("name_lines", "least", least, "")
     kinematic = [
@@ -108,12 +116,12 @@ def name_lines(
             amplitude,
             _name(frequency, known, own, float(tolerance)),
         )
-        for frequency, amplitude in _peaks(spectrum, factor, neighbours, least)
+        for frequency, amplitude in _peaks(spectrum, factor, neighbours, least, largest)
     )
 
 
 def _peaks(
-    spectrum: Spectrum, factor: float, neighbours: int, least: float
+    spectrum: Spectrum, factor: float, neighbours: int, least: float, largest: int
 ) -> Iterator[tuple[float, float]]:
     """Frequency and amplitude of the local maxima above the floor."""
     amplitude = np.asarray(spectrum.amplitude)
@@ -125,8 +133,11 @@ def _peaks(
     )
     floor = np.maximum(factor * np.median(around, axis=1), least * size.max())
     left, middle, right = size[:-2], size[1:-1], size[2:]
-    stands = (middle > left) & (middle >= right) & (middle > floor[1:-1])
-    at = 1 + np.flatnonzero(stands)
+    maxima = 1 + np.flatnonzero((middle > left) & (middle >= right))
+    chosen = size[maxima] > floor[maxima]
+    for k in np.argsort(-size[maxima])[:largest]:
+        chosen[k] = size[maxima[k]] > least * size.max()
+    at = maxima[chosen]
     away, gain = spectrum.window.peak(size[at - 1], size[at], size[at + 1])
     frequencies = (at + away) * float(spectrum.resolution)
     yield from zip(frequencies.tolist(), (gain * size[at]).tolist(), strict=True)
@@ -193,12 +204,12 @@ def _times(k: int, name: str) -> str:
 def _name(frequency, known, own, tolerance) -> str:
     """Name of a line: of the simplest combination that is near enough."""
     near = [
-        (cost, abs(one - frequency), place)
+        (cost + _APART * ((one - frequency) / tolerance) ** 2, place)
         for place, (cost, one, _) in enumerate(known)
         if abs(one - frequency) <= tolerance
     ]
     if near:
-        return known[min(near)[2]][2]
+        return known[min(near)[1]][2]
     near = [(abs(one - frequency), name) for one, name in own]
     near = [one for one in near if one[0] <= tolerance]
     return min(near)[1] if near else UNNAMED

@@ -127,22 +127,25 @@ class NoiseModel(eqx.Module):
                     "NoiseModel: `element` has a row that a spring presses, whose ring"
                     " slides on its seat; noise is of sets with a `preload_offset`."
                 )
-        if isinstance(self.errors, FormErrors):
-            return
+        self._check_errors()
+
+    def _check_errors(self):
+        bearing = self.element.bearing
         count = len(rows_of(bearing))
-        of_each = isinstance(self.errors, tuple) and all(
-            isinstance(one, FormErrors) for one in self.errors
-        )
+        given = self.errors if isinstance(self.errors, tuple) else (self.errors,)
+        of_each = all(isinstance(one, FormErrors) for one in given)
         if not of_each:
             raise TypeError(
                 "NoiseModel: `errors` must be FormErrors, or a tuple of them with one"
                 " for each row."
             )
-        if len(self.errors) != count:
+        if isinstance(self.errors, tuple) and len(given) != count:
             raise ValueError(
-                f"NoiseModel: `errors` are of {len(self.errors)} rows; the bearing has"
+                f"NoiseModel: `errors` are of {len(given)} rows; the bearing has"
                 f" {count}."
             )
+        for row, errors in zip(rows_of(bearing), self.errors_of_rows, strict=True):
+            errors.check(row.bearing)
 
     @property
     def errors_of_rows(self) -> tuple[FormErrors, ...]:

@@ -22,7 +22,7 @@ from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
 from .scatter import Drawn, Tolerances, draw
 from .spectrum import AbstractWindow, Hann, spectrum
-from .vibration import needed_steps, vibration
+from .vibration import bandwidth, needed_steps, vibration
 
 _DIRECTIONS = 3
 Progress = Callable[[int, int], Any]
@@ -138,7 +138,8 @@ def monte_carlo(
     def levels(acceleration, failed):
         lines = spectrum(acceleration, turns / shaft, shaft, window=window)
         total = level(total_root_mean_square(lines), reference)
-        each = jnp.moveaxis(band_levels(lines, bands, reference), 0, 1)
+        highest = bandwidth(samples, shaft)
+        each = jnp.moveaxis(band_levels(lines, bands, reference, highest), 0, 1)
         return (
             jnp.where(failed[:, None], jnp.nan, total),
             jnp.where(failed[:, None, None], jnp.nan, each),

@@ -34,6 +34,18 @@ PEAKS_IN_RMS = 6.0
 """Peak to valley of random waves over their root mean square [1]: ±3 of the latter."""
 
 
+SOURCES = {
+    "diameter": "diameters of the rolling elements",
+    "spacing": "spacing of the rolling elements",
+    "outer_eccentricity": "eccentricity of the outer raceway",
+    "inner_eccentricity": "eccentricity of the inner raceway",
+    "outer_axial": "axial waves of the outer raceway",
+    "outer_outwards": "radial waves of the outer raceway",
+    "inner_axial": "axial waves of the inner raceway",
+    "inner_outwards": "radial waves of the inner raceway",
+    "elements": "form of the rolling elements",
+}
+"""Sources of `Tolerances` by their names, in words."""
 _WAVES = "outer_axial", "outer_outwards", "inner_axial", "inner_outwards", "elements"
 
 

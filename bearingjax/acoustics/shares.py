@@ -7,6 +7,7 @@ is found in two ways that agree for small errors: from the same bearings with th
 smaller or switched off, and from the derivative, P = (s/2) ∂/∂s.
 """
 
+from collections.abc import Mapping
 from typing import Any
 
 import equinox as eqx
@@ -18,11 +19,13 @@ from jaxtyping import Array, Float
 from ..design.checks import check
 from ..numerics.result import Result
 from ..numerics.types import Scalar
+from .bands import Bands, band_root_mean_square
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
 from .monte_carlo import Progress, Records, drawn
 from .scatter import Tolerances
-from .vibration import vibration
+from .spectrum import Hann, spectrum
+from .vibration import bandwidth, vibration
 
 
 class Shares(eqx.Module):
@@ -31,6 +34,10 @@ class Shares(eqx.Module):
     Attributes:
         mean_square: With all sources [m²/s⁴].
         smaller: With one source `factor` times as large (source,) [m²/s⁴].
+        error: Standard error of each `share`, by its scatter over the bearings
+            (source,) [m²/s⁴]; NaN of a single bearing.
+        by_band: Part of each band's mean square that a source makes (source, band)
+            [1]; NaN for bands that the record does not hold. `None`: not asked for.
         by_gradient: Half of the derivative by the logarithm of a source's scale
             (source,) [m²/s⁴]; `None`: not asked for.
         factor: By which sources were made smaller [1].
@@ -40,6 +47,8 @@ class Shares(eqx.Module):
 
     mean_square: Scalar
     smaller: Float[Array, " source"]
+    error: Float[Array, " source"]
+    by_band: Float[Array, "source band"] | None
     by_gradient: Float[Array, " source"] | None
     factor: Scalar
     used: int = eqx.field(static=True)
@@ -72,9 +81,21 @@ class Shares(eqx.Module):
         Args:
             factor: To which part of what it was [1].
         """
-        left = self.mean_square - (1.0 - factor**2) * self.share
+        return self._fall((1.0 - factor**2) * self.share)
+
+    def gain_together(self, factors: Mapping[str, Any]) -> Scalar:
+        """By how much the level falls if some sources are tightened together [dB].
+
+        Args:
+            factors: By the names of sources, to which part of what they were [1].
+        """
+        named = [factors.get(name, 1.0) for name in self.sources]
+        less = 1.0 - jnp.asarray(named, self.share.dtype) ** 2
+        return self._fall(jnp.sum(less * self.share))
+
+    def _fall(self, less):
+        root = jnp.sqrt(jnp.maximum(self.mean_square - less, 0.0))
         one = REFERENCE_ACCELERATION
-        root = jnp.sqrt(jnp.maximum(left, 0.0))
         return level(jnp.sqrt(self.mean_square), one) - level(root, one)
 
     def _ranked(self, values):
@@ -87,7 +108,8 @@ def shares(
     n: int,
     key: Array,
     *,
-    direction: int | None = None,
+    direction: Any = None,
+    bands: Bands | None = None,
     factor: float = 0.0,
     gradient: bool = True,
     turns: int = 8,
@@ -105,7 +127,9 @@ def shares(
     Args:
         model, tolerances, n, key, turns, settle, samples, steps, batch: As in
             `monte_carlo`.
-        direction: 0, 1, 2 along x, y, z; `None`: all together.
+        direction: 0, 1, 2 along x, y, z, or a vector along which the rig listens (3,);
+            `None`: all directions together.
+        bands: Of which the parts are wanted too; `None`: none.
         factor: By which a source is made smaller, from 0 (off) to below 1 [1]: 0.5
             tells exactly what halving brings.
         gradient: Whether shares by derivatives are wanted: about the time of five more
@@ -121,32 +145,45 @@ def shares(
     sources = tolerances.sources
     if not sources:
         raise ValueError("shares: `tolerances` is without a source; give at least one.")
-    allowed = "0, 1, 2 or None"
-    check("shares", "direction", direction in (None, 0, 1, 2), allowed, direction, "")
+    along = _directions(direction)
     check("shares", "factor", 0.0 <= factor < 1.0, "from 0 to below 1", factor, "")
     keys = jax.random.split(key, n)
     runs = [{}, *({name: factor} for name in sources)]
     whole = len(runs) + gradient
     done = 0
+    shaft = float(model.shaft_speed) / (2.0 * np.pi)
 
     def told(count, _):
         if progress is not None:
             progress(done + count, whole * n)
 
-    squares, fine = [], np.ones(n, bool)
+    def of_bands(acceleration, result):
+        """Mean square of each band (bearing, band)."""
+        if bands is None:
+            return np.zeros((len(result), 0))
+        solved = (result == int(Result.CONVERGED))[:, None, None]
+        heard = jnp.where(solved, acceleration @ along, 0.0)
+        lines = spectrum(jnp.moveaxis(heard, 0, 1), turns / shaft, shaft, window=Hann())
+        highest = bandwidth(samples, shaft)
+        square = band_root_mean_square(lines, bands, highest) ** 2
+        return np.asarray(jnp.sum(square, axis=-1).T)
+
+    squares, in_bands, fine = [], [], np.ones(n, bool)
     for change in runs:
         found = [
-            (np.asarray(_mean_square(a, direction))[:part], np.asarray(r)[:part])
+            (np.asarray(_mean_square(a, along)), of_bands(a, r), np.asarray(r), part)
             for part, a, r in records.batches(keys, batch, told, change)
         ]
-        square, result = (np.concatenate(a) for a in zip(*found, strict=True))
+        parts = ([a[:part] for a in one] for *one, part in found)
+        square, of_each, result = (np.concatenate(a) for a in zip(*parts, strict=True))
         fine &= result == int(Result.CONVERGED)
         squares.append(square)
+        in_bands.append(of_each)
         done += n
     slopes = []
     if gradient:
         for part, at in records.parts(n, batch):
-            slope = _slopes(*records.given, keys[at], records.counts, direction)
+            slope = _slopes(*records.given, keys[at], records.counts, along)
             slopes.append([slope[name][:part] for name in sources])
             told(min(len(slopes) * batch, n), n)
     if not fine.any():
@@ -154,29 +191,54 @@ def shares(
             f"shares: of {n} bearings none has a result in all runs; see the codes of"
             " `monte_carlo`."
         )
-    mean = jnp.asarray(np.mean(np.array(squares)[:, fine], axis=1))
+    each = np.array(squares)[:, fine]
+    mean = jnp.asarray(np.mean(each, axis=1))
     by_gradient = None
     if gradient:
         every = np.concatenate(slopes, axis=1)
         by_gradient = jnp.asarray(0.5 * np.mean(every[:, fine], axis=1))
+    less = (each[0] - each[1:]) / (1.0 - factor**2)
+    count = each.shape[1]
+    error = np.full(len(sources), np.nan)
+    if count > 1:
+        error = np.std(less, axis=1, ddof=1) / np.sqrt(count)
+    by_band = None
+    if bands is not None:
+        bands_mean = np.mean(np.array(in_bands)[:, fine], axis=1)
+        whole_band = np.where(bands_mean[0] > 0.0, bands_mean[0], np.nan)
+        by_band = (1.0 - bands_mean[1:] / whole_band) / (1.0 - factor**2)
     return Shares(
         mean[0],
         mean[1:],
+        jnp.asarray(error),
+        None if by_band is None else jnp.asarray(by_band),
         by_gradient,
         jnp.asarray(factor, mean.dtype),
-        int(fine.sum()),
+        count,
         sources,
     )
 
 
-def _mean_square(acceleration, direction):
-    """Of records (..., time, 3) about their means (...)."""
-    each = jnp.var(acceleration, axis=-2)
-    return jnp.sum(each, axis=-1) if direction is None else each[..., direction]
+def _directions(direction: Any) -> np.ndarray:
+    """Unit vectors along which accelerations count, (3, n)."""
+    three = np.eye(3)
+    if direction is None:
+        return three
+    if isinstance(direction, int) and direction in (0, 1, 2):
+        return three[:, direction, None]
+    vector = np.asarray(direction, dtype=float)
+    right = vector.shape == (3,) and np.isfinite(vector).all() and vector.any()
+    check("shares", "direction", right, "0, 1, 2, a vector or None", direction, "")
+    return (vector / np.linalg.norm(vector))[:, None]
+
+
+def _mean_square(acceleration, along):
+    """Of records (..., time, 3) along some directions about their means (...)."""
+    return jnp.sum(jnp.var(acceleration @ along, axis=-2), axis=-1)
 
 
 @eqx.filter_jit
-def _slopes(model, tolerances, keys, counts, direction):
+def _slopes(model, tolerances, keys, counts, along):
     """Derivatives of every bearing's mean square by the sources' scales."""
     turns, settle, samples, steps = counts
     one = jnp.ones((), model.mass.dtype)
@@ -191,6 +253,6 @@ def _slopes(model, tolerances, keys, counts, direction):
             steps=steps,
             throw=False,
         )
-        return _mean_square(found.acceleration[:, :3], direction)
+        return _mean_square(found.acceleration[:, :3], along)
 
     return jax.vmap(jax.grad(square), in_axes=(None, 0))(factors, keys)

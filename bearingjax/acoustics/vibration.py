@@ -6,7 +6,7 @@ a cage's contacts add.
 
 import dataclasses
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -23,7 +23,7 @@ from .cage import fastest_of_cage
 from .model import NoiseModel
 from .natural import natural_modes
 from .standing import standing
-from .stepping import stepped
+from .stepping import HELD, stepped
 
 _STABLE = 2.5
 """Steps at which the method is stable, of a radian of the fastest mode: 2.78 [rad]."""
@@ -56,7 +56,8 @@ class Vibration(eqx.Module):
         time: (time,) [s].
         displacement: Of the moving ring from where it stands without form errors, its
             freedoms (time, k) [m, rad].
-        acceleration: Likewise (time, k) [m/s², rad/s²].
+        acceleration: Likewise, of frequencies up to `bandwidth` (time, k)
+            [m/s², rad/s²].
         contact_load: Of every contact (time, element, contact) [N].
         azimuth: Of every rolling element (time, element) [rad].
         shaft_frequency: Of the ring that turns faster [Hz].
@@ -83,6 +84,21 @@ class Vibration(eqx.Module):
     def duration(self) -> Scalar:
         """[s]."""
         return self.turns / self.shaft_frequency
+
+    @property
+    def bandwidth(self) -> Scalar:
+        """Frequency up to which the acceleration is told; what is above is cut [Hz]."""
+        return bandwidth(self.time.shape[0] // self.turns, self.shaft_frequency)
+
+
+def bandwidth(samples: int, shaft_frequency: Any) -> Any:
+    """Frequency up to which a record tells the vibration [Hz].
+
+    Args:
+        samples: Per turn of the shaft.
+        shaft_frequency: [Hz].
+    """
+    return HELD * 0.5 * samples * shaft_frequency
 
 
 def vibration(

@@ -54,6 +54,20 @@ def with_raceways(bearing: Any, deviation: Float[Array, "element 2 3"]) -> Any:
     )
 
 
+def largest_deviation(bearing: Any) -> float | None:
+    """What deviations of raceways must stay below in size [m]; `None`: not known.
+
+    The distance of ball centre and groove centre, or half of a roller's diameter.
+
+    Args:
+        bearing: A single row.
+    """
+    balls = hasattr(bearing, "centre_distances")
+    sizes = bearing.centre_distances if balls else (0.5 * bearing.roller_diameter,)
+    numbers = concrete(*sizes)
+    return None if numbers is None else min(numbers)
+
+
 def check_deviation(owner: Any, name: str, count: int, what: str) -> np.ndarray | None:
     """Raise unless a deviation is one finite number for each rolling element.
 

@@ -19,6 +19,7 @@ from ..numerics.units import unit
 from .ball import AbstractBallBearing
 from .bearing import AbstractRollerBearing
 from .checks import check, instance, is_real, is_traced
+from .deviation import largest_deviation
 
 
 class Surface(NamedTuple):
@@ -198,7 +199,8 @@ class Table(AbstractShape):
     """Heights and slopes at evenly spaced angles, for errors asked for very often.
 
     Between the points a cubic; for waves of order k it errs by (2πk/n)⁴/384 of their
-    amplitude.
+    amplitude. Spalls, which may be shorter than the distance of two points, stand
+    beside it as they are.
 
     Attributes:
         rows: Of every interval: height at its begin and its rise [m], slopes there and
@@ -212,16 +214,18 @@ class Table(AbstractShape):
     @classmethod
     def of(
         cls, shapes: tuple[AbstractShape, ...], surface: Surface, points: int
-    ) -> "tuple[Table, ...]":
-        """One table in place of several shapes; of none, none.
+    ) -> tuple[AbstractShape, ...]:
+        """One table in place of several shapes, but for spalls; of none, none.
 
         Args:
             shapes: What is summed.
             surface: Where the contact runs.
             points: Number of angles. Static.
         """
+        spalls = tuple(shape for shape in shapes if isinstance(shape, Spall))
+        shapes = tuple(shape for shape in shapes if not isinstance(shape, Spall))
         if not shapes:
-            return ()
+            return spalls
         angle = 2.0 * jnp.pi / points * jnp.arange(points, dtype=surface.radius.dtype)
 
         def one(angle):
@@ -232,7 +236,7 @@ class Table(AbstractShape):
         slope = 2.0 * jnp.pi / points * slope
         rise, end = jnp.roll(height, -1) - height, jnp.roll(slope, -1)
         number = jnp.arange(points, dtype=height.dtype)
-        return (cls(jnp.stack([height, rise, slope, end, number], axis=1)),)
+        return (cls(jnp.stack([height, rise, slope, end, number], axis=1)), *spalls)
 
     def height(self, angle, surface):
         n = self.rows.shape[0]
@@ -284,6 +288,11 @@ class RacewayErrors(eqx.Module):
                         " must hold Harmonics or Spall."
                     )
 
+    @property
+    def shapes(self) -> tuple[AbstractShape, ...]:
+        """All of them."""
+        return (*self.axial, *self.outwards, *self.raised)
+
     def at(self, angle: Float[Array, "..."], surface: Surface) -> Float[Array, "... 3"]:
         """Axial, outwards and raised at angles around the ring (..., 3) [m]."""
         all_three = self.axial, self.outwards, self.raised
@@ -322,6 +331,36 @@ class FormErrors(eqx.Module):
     def raise_surfaces(self) -> bool:
         """Whether a surface stands out or in anywhere. Static."""
         return bool(self.outer.raised or self.inner.raised or self.elements)
+
+    def check(self, bearing: Any) -> None:
+        """Raise if an error is larger than the bearing allows; what is traced is not.
+
+        Args:
+            bearing: A single row.
+
+        Raises:
+            ValueError: For heights beyond `largest_deviation`, or a spall longer than
+                the way around its part.
+        """
+        most, surfaces = largest_deviation(bearing), Surfaces.of(bearing)
+        parts = {
+            "outer raceway": (self.outer.shapes, surfaces.outer),
+            "inner raceway": (self.inner.shapes, surfaces.inner),
+            "elements": (self.elements, surfaces.element),
+        }
+        for part, (shapes, surface) in parts.items():
+            for shape in shapes:
+                numbers = jax.tree.leaves(shape)
+                if most is None or any(is_traced(n) for n in (*numbers, surface[0])):
+                    continue
+                if isinstance(shape, Spall):
+                    around, long = 2.0 * np.pi * surface.radius, np.max(shape.length)
+                    allowed = f"below {around:.4g} m, the way around the {part}"
+                    check("Spall", "length", long < around, allowed, long, "m")
+                elif isinstance(shape, Harmonics):
+                    high = np.max(np.sum(np.abs(shape.amplitude), axis=-1))
+                    allowed = f"below {most:.4g} m in size together on the {part}"
+                    check("Harmonics", "amplitude", high < most, allowed, high, "m")
 
     def met(
         self,

@@ -16,6 +16,7 @@ from ..acoustics import (
     Vibration,
 )
 from ..acoustics.level import LOWEST_LEVEL
+from ..acoustics.scatter import SOURCES
 from .style import CURVES, GREY, SMALL, axes_or_new
 
 if TYPE_CHECKING:
@@ -293,13 +294,17 @@ def source_bars(
         ax: Axes; a new figure if `None`.
 
     Returns:
-        The axes; the largest source is at the top.
+        The axes; the largest source is at the top. Thin lines are standard errors.
     """
     ax = axes_or_new(ax)
     part = 100.0 * np.asarray(shares.share) / float(shares.mean_square)
     order = np.argsort(part)
-    names = [shares.sources[k].replace("_", " ") for k in order]
-    bars = ax.barh(names, part[order], color=CURVES[0])
+    names = [SOURCES[shares.sources[k]].replace(" of the ", "\nof the ") for k in order]
+    error = 100.0 * np.asarray(shares.error)[order] / float(shares.mean_square)
+    bars = ax.barh(
+        names, part[order], color=CURVES[0], xerr=np.nan_to_num(error), ecolor=GREY
+    )
+    ax.tick_params(axis="y", labelsize=SMALL)
     ax.bar_label(bars, fmt="%.3g", fontsize=SMALL, padding=3)
     ax.margins(x=0.15)
     ax.grid(axis="x", color="0.93")

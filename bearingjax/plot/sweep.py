@@ -87,9 +87,12 @@ def sweep_overview(
         if k == 0 and any(curve.name for curve in curves):
             # Curves of one colour are told once.
             told = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
-            place, across = "outside lower center", min(3, len(told))
             figure.legend(
-                told.values(), told.keys(), loc=place, ncols=across, fontsize=SMALL
+                told.values(),
+                told.keys(),
+                loc="outside lower center",
+                ncols=min(3, len(told)),
+                fontsize=SMALL,
             )
     if not shown:
         figure.text(0.5, 0.5, "no result differs from case to case", ha="center")
@@ -127,11 +130,11 @@ def _curves(inputs, good) -> tuple[str, list[_Curve]]:
     along = max(inputs, key=lambda name: len(np.unique(inputs[name][solved])))
     x = inputs[along]
     others = [pair for pair in inputs.items() if pair[0] != along]
-    settings = np.array([values[solved] for _, values in others])
-    _, kind = np.unique(
-        settings.reshape(len(others), -1).T, axis=0, return_inverse=True
-    )
-    kind = kind.reshape(-1)
+    kind = np.zeros(len(solved), int)
+    if others:
+        settings = np.array([values[solved] for _, values in others])
+        _, kind = np.unique(settings.T, axis=0, return_inverse=True)
+        kind = kind.reshape(-1)
     groups = [solved[kind == k] for k in range(kind.max() + 1)]
     if not all(len(set(x[mine])) == len(mine) > 1 for mine in groups):
         return by_number

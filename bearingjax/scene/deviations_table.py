@@ -23,10 +23,14 @@ MOST_ORDER = {"raceway": 900, "element": 110}
 rolling element, err by 1 % of their amplitude there."""
 
 
+COMMON = ("waves", "spalls")
+"""Kinds of errors that all bearings of a line have, not the one of the scene alone."""
+
+
 def read_deviations(
     table: Table, counts: tuple[int, ...], folder: Path
-) -> tuple[FormErrors, ...]:
-    """Form errors of every row of a bearing.
+) -> tuple[tuple[FormErrors, ...], tuple[FormErrors, ...]]:
+    """Form errors of every row of a bearing, and those that all of its line have.
 
     Args:
         table: `[deviations]`.
@@ -43,11 +47,16 @@ def read_deviations(
         "spalls": _spall,
     }
     found = [_Gathered(count) for count in counts]
+    common = [_Gathered(count) for count in counts]
     for kind, reader in readers.items():
         for one in table.tables(kind) if kind in table else ():
             for k, row in enumerate(_rows(one, kind, found)):
                 row.add(one, kind, reader, folder, k)
-    return tuple(row.errors() for row in found)
+            for k, row in enumerate(_rows(one, kind, common)):
+                if kind in COMMON:
+                    row.add(one, kind, reader, folder, k)
+    both = [tuple(row.errors() for row in rows) for rows in (found, common)]
+    return both[0], both[1]
 
 
 class _Gathered:
@@ -160,6 +169,9 @@ def _waves(table: Table, count, which, given) -> Harmonics:
     if len(set(orders)) < len(orders):
         raise table.error("order", f"{named!r} names an order twice")
     amplitude = _listed(table, "amplitude", "length", orders)
+    if np.any(amplitude < 0.0):
+        problem = "is negative; turn the `phase` by 180 deg in its place"
+        raise table.error("amplitude", problem)
     phase = _listed(table, "phase", "angle", orders, 0.0)
     with table.building():
         sizes = _each(amplitude, count, which)
@@ -173,6 +185,8 @@ def _spectrum(table: Table, count, which, given) -> Harmonics:
     if high < low:
         raise table.error("highest", f"{high} is below `lowest`, {low}")
     amplitude = table.quantity("amplitude", "length")
+    if amplitude < 0.0:
+        raise table.error("amplitude", f"{amplitude:g} m is negative")
     slope = table.number("slope")
     # Rows draw on their own; the first as a single one.
     seed = table.integer("seed", 0, least=0)

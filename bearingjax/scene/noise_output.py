@@ -9,6 +9,7 @@ from ..acoustics import Shares, write_sound
 from .files import write_numbers
 from .noise_run import LOOSE, Many, NoiseRun
 from .noise_scene import DIRECTIONS
+from .tolerance_table import Tighter
 
 
 def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
@@ -29,7 +30,10 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
         Of random bearings `monte_carlo`: `level` (bearing, direction), `band_level`
         (bearing, band, direction), null of those that were not solved; `percentile`:
         `share` [%] and `level` (share, direction); `sources` of the scatter with the
-        `part` of the mean square of the acceleration that goes without each [1].
+        `part` of the mean square of the acceleration along the sensor (without one in
+        all directions) that goes without each, its standard `part_error`, and
+        `part_by_band` (source, band) [1]; `tighter`: the next better grade and class
+        with their `gain` [dB].
         And result, message, warnings, inputs (the file is a scene again) and version.
         What was not solved is left out.
     """
@@ -43,7 +47,7 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
     if run.heard is not None:
         parts |= _heard(run)
     if run.many is not None:
-        parts["monte_carlo"] = _many(run.many)
+        parts["monte_carlo"] = _many(run.many, run.task.tighter)
     return {
         **parts,
         "result": run.result.label,
@@ -86,7 +90,7 @@ PERCENTILES = (5.0, 50.0, 95.0)
 """Shares of random bearings whose levels are told [%]."""
 
 
-def _many(many: Many) -> dict[str, Any]:
+def _many(many: Many, tighter: Tighter) -> dict[str, Any]:
     levels = many.levels
     told: dict[str, Any] = {
         "level": np.asarray(levels.level).tolist(),
@@ -99,6 +103,13 @@ def _many(many: Many) -> dict[str, Any]:
     if many.shares is not None:
         told["sources"] = list(many.shares.sources)
         told["part"] = parts_of(many.shares).tolist()
+        total = float(many.shares.mean_square)
+        told["part_error"] = (np.asarray(many.shares.error) / total).tolist()
+        told["part_by_band"] = np.asarray(many.shares.by_band).tolist()
+        told["tighter"] = [
+            {"name": name, "gain": float(many.shares.gain_together(ratio))}
+            for name, ratio in tighter
+        ]
     return told
 
 

@@ -3,17 +3,18 @@
 import numpy as np
 
 from ..acoustics.level import LOWEST_LEVEL
+from ..acoustics.scatter import SOURCES
 from ..design import is_ball
 from ..element.frame import LOADS
 from .noise_output import PERCENTILES, parts_of
-from .noise_run import NoiseRun, ring_modes
+from .noise_run import LARGEST_LINES, NoiseRun, ring_modes
 from .noise_scene import DIRECTIONS
 from .report import bearing_text
 
 _RULE = "-" * 78
 _RPM = 30.0 / np.pi
-_LINES = 12
-"""Lines that are told, the largest ones."""
+_WORTH = 0.1
+"""Part of a band from which its largest source is named [1]."""
 
 
 def noise_report(run: NoiseRun) -> str:
@@ -90,9 +91,12 @@ def _lines(run):
     pairs = list(zip(run.heard.lines, run.heard.causes, strict=True))
     if not pairs:
         return "no line stands out of the spectrum"
-    largest = sorted(pairs, key=lambda pair: -pair[0].amplitude)[:_LINES]
+    largest = sorted(pairs, key=lambda pair: -pair[0].amplitude)[:LARGEST_LINES]
+    total = np.sum(np.asarray(run.heard.spectrum.power)[1:])
+    part = sum(0.5 * line.amplitude**2 for line, _ in largest) / total
     lines = [
-        f"largest {len(largest)} of {len(pairs)} lines",
+        f"largest {len(largest)} of {len(pairs)} lines, together {100.0 * part:.2g} %"
+        " of the mean square in all directions",
         f"{'Hz':>10}{'order':>9}{'m/s²':>11}  {'line':<24}made by, to first order",
     ]
     for line, causes in largest:
@@ -127,15 +131,55 @@ def _many(run):
         lines.append(f"{name:>{len(head)}}" + "".join(map(_level, row)))
     if many.shares is None:
         return "\n".join(lines)
-    found = many.shares
-    parts = sorted(zip(-parts_of(found), found.sources, strict=True))
-    gains = dict(zip(found.sources, np.asarray(found.gain()), strict=True))
-    for part, name in parts:
-        words = name.replace("_", " ")
-        number = f"{-100.0 * part:.3g} %"
-        lines.append(
-            f"  {words:<19}{number:>8} of the mean square; tightened to a half"
-            f" {-gains[name]:.2g} dB"
-        )
-    lines.append("  the rest is of what all bearings have in common")
-    return "\n".join(lines)
+    return "\n".join([*lines, *_sources(task, many.shares)])
+
+
+def _sources(task, found):
+    """What makes the noise of random bearings, and what tightening it brings."""
+    sensor = task.line.sensor
+    where = "in all directions"
+    if sensor is not None:
+        along = np.asarray(sensor.direction) / np.linalg.norm(sensor.direction)
+        named = [
+            k for k, d in enumerate(np.eye(len(DIRECTIONS))) if np.allclose(d, along)
+        ]
+        told = DIRECTIONS[named[0]] if named else ", ".join(f"{a:.3g}" for a in along)
+        where = f"along the sensor ({told})"
+    total = float(found.mean_square)
+    parts, errors = parts_of(found), np.asarray(found.error) / total
+    gains, factors = np.asarray(found.gain()), dict(task.tighter)
+    head = f"what makes the noise {where}, of {found.used} bearings"
+    yield f"{head}"
+    yield f"{'part':>56}{'halved':>12}"
+    unsure = False
+    for k in np.argsort(-parts):
+        name = SOURCES[found.sources[k]]
+        # Twice its standard error, or a single bearing: it may be nothing.
+        doubt = not parts[k] > 2.0 * errors[k]
+        unsure |= doubt
+        spread = f" ± {100.0 * errors[k]:.2g}" if errors[k] == errors[k] else ""
+        number = f"{100.0 * parts[k]:.3g}{spread} %"
+        gain = "-" if doubt else f"{-gains[k]:.2g} dB"
+        yield f"  {name:<38}{number:>16}{gain:>12}"
+    yield "  the rest is what all bearings of the scene have: load, `waves`, `spalls`"
+    if unsure:
+        yield "  no gain is told (-) where the part may be chance: take more bearings"
+    for name, ratio in factors.items():
+        much = ", ".join(f"{SOURCES[k]} x {v:.2g}" for k, v in ratio.items())
+        yield f"  {name}: {-float(found.gain_together(ratio)):.2g} dB ({much})"
+    yield from _in_bands(task, found)
+
+
+def _in_bands(task, found):
+    """The largest source of each band."""
+    parts = np.asarray(found.by_band)
+    told = []
+    for centre, column in zip(task.bands.centre, parts.T, strict=True):
+        if np.isfinite(column).all() and column.max() > _WORTH:
+            k = int(np.argmax(column))
+            told.append((f"{centre:g}", SOURCES[found.sources[k]], column[k]))
+    by_source: dict[str, list[str]] = {}
+    for centre, name, part in told:
+        by_source.setdefault(name, []).append(f"{centre} ({100.0 * part:.0f} %)")
+    for name, bands in by_source.items():
+        yield f"  {name} make most of the bands, Hz: {', '.join(bands)}"

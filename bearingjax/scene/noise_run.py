@@ -17,6 +17,7 @@ from ..acoustics import (
     Spectrum,
     Vibration,
     band_levels,
+    bandwidth,
     contact_half_width,
     contact_states,
     is_held,
@@ -29,6 +30,7 @@ from ..acoustics import (
     needed_steps,
     shares,
     spectrum,
+    total_root_mean_square,
     vibration,
 )
 from ..acoustics.free_row import of_rows
@@ -39,6 +41,8 @@ from ..statics import solve_load
 from ..statics.solution import message
 from .noise_scene import DIRECTIONS, NoiseScene
 
+LARGEST_LINES = 12
+"""Lines that are told for their size, whatever is beside them."""
 LOOSE = 1.0
 """Frequency below which a mode is that of an element that nothing holds [Hz]."""
 _RING = 0.5
@@ -55,7 +59,8 @@ class Heard:
     Attributes:
         record: The vibration.
         spectrum: Of the acceleration, amplitudes (line, direction) [m/s²].
-        level: Of the acceleration about its mean (direction,) [dB].
+        level: Of the acceleration about its mean, by the spectrum as the bands
+            (direction,) [dB].
         band_level: (band, direction) [dB]; NaN for bands that the record does not hold.
         held: Bands that it holds (band,).
         lines: Those that stand out.
@@ -150,7 +155,7 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
         throw=False,
     )
     result, steps = Result(int(record.result)), record.steps
-    told_so_far = (*task.warnings, *_before(task, steps, least))
+    told_so_far = (*task.warnings, *_before(task, modes, steps, least))
     if result is not Result.CONVERGED:
         grew = result is Result.NON_FINITE
         words = (
@@ -184,7 +189,7 @@ def _many(task: NoiseScene, steps: int, told) -> Many:
         "samples": task.samples,
         "steps": steps,
     }
-    given = task.model, tolerances
+    given = task.line, tolerances
     key = jax.random.key(task.seed)
 
     def progress(words):
@@ -203,12 +208,16 @@ def _many(task: NoiseScene, steps: int, told) -> Many:
     # Each source is switched off once: about as long as the levels took.
     fewer = -(-task.bearings // len(tolerances.sources))
     batch = min(16, task.bearings)
+    sensor = task.line.sensor
+    along = None if sensor is None else np.asarray(sensor.direction)
     with contextlib.suppress(FloatingPointError):
         made = shares(
             *given,
             max(fewer, batch),
             key,
             **counts,
+            direction=along,
+            bands=task.bands,
             gradient=False,
             batch=batch,
             progress=progress("sources of noise"),
@@ -247,15 +256,23 @@ def listen(task: NoiseScene, record: Vibration, modes: NaturalModes) -> Heard:
     largest = max(n_elements(row.bearing) for row in rows_of(bearing))
     harmonics = max(10, 6 * largest)
     natural = dict(ring_modes(modes, task.model))
-    lines = name_lines(found, bearing, speed, natural=natural, harmonics=harmonics)
+    lines = name_lines(
+        found,
+        bearing,
+        speed,
+        natural=natural,
+        harmonics=harmonics,
+        largest=LARGEST_LINES,
+    )
     causes = line_causes(lines, task.model, 0.5 * float(found.resolution))
-    size = acceleration.std(axis=0)
+    highest = float(record.bandwidth)
+    of_bands = band_levels(found, task.bands, task.reference, highest)
     return Heard(
         record=record,
         spectrum=found,
-        level=np.asarray(level(size, task.reference)),
-        band_level=np.asarray(band_levels(found, task.bands, task.reference)),
-        held=is_held(found, task.bands),
+        level=np.asarray(level(total_root_mean_square(found), task.reference)),
+        band_level=np.asarray(of_bands),
+        held=is_held(found, task.bands, highest),
         lines=lines,
         causes=causes,
         states=contact_states(record),
@@ -287,7 +304,7 @@ def ring_modes(modes: NaturalModes, model: NoiseModel) -> list[tuple[str, float]
     return found
 
 
-def _before(task: NoiseScene, steps: int, least: int):
+def _before(task: NoiseScene, modes: NaturalModes, steps: int, least: int):
     """What is doubtful in what is asked."""
     if steps < least:
         yield (
@@ -295,23 +312,50 @@ def _before(task: NoiseScene, steps: int, least: int):
             " natural mode needs"
         )
     model = task.model
+    shaft = float(model.shaft_speed) / (2.0 * np.pi)
+    told = bandwidth(task.samples, shaft)
+    cut = (
+        f"above {told:.5g} Hz, up to which {task.samples} samples per turn tell the"
+        " vibration; raise `vibration.samples` to hear what they make there"
+    )
+    for name, frequency in ring_modes(modes, model):
+        if frequency > told:
+            yield f"the {name} at {frequency:.5g} Hz lies {cut}"
     for where, bearing, errors in _of_rows(model):
         turning = kinematic_frequencies(bearing, model.speed)
-        half = 0.5 * task.samples * float(turning.shaft)
+        drawn = _highest_drawn(task)
         passing = {
             "outer raceway": (errors.outer, abs(float(turning.cage - turning.outer))),
             "inner raceway": (errors.inner, abs(float(turning.inner - turning.cage))),
             "elements": (errors.elements, float(turning.rotation)),
         }
         for part, (given, passes) in passing.items():
-            highest = _highest(given)
-            if highest * passes > half:
+            highest = max(_highest(given), drawn[part])
+            if highest * passes > told:
                 yield (
                     f"waves of order {highest} of the {part}{where} are met at"
-                    f" {highest * passes:.5g} Hz, above half of the sampling rate,"
-                    f" {half:.5g} Hz, where they look like slower ones; raise"
-                    " `vibration.samples`"
+                    f" {highest * passes:.5g} Hz, {cut}"
                 )
+
+
+def _highest_drawn(task: NoiseScene) -> dict[str, int]:
+    """Highest order of waves that random bearings have, by part."""
+    found: dict[str, int] = {
+        k: 0 for k in ("outer raceway", "inner raceway", "elements")
+    }
+    if task.tolerances is None or not task.bearings:
+        return found
+    for name, part in (
+        ("outer_axial", "outer raceway"),
+        ("outer_outwards", "outer raceway"),
+        ("inner_axial", "inner raceway"),
+        ("inner_outwards", "inner raceway"),
+        ("elements", "elements"),
+    ):
+        waves = getattr(task.tolerances, name)
+        if waves is not None:
+            found[part] = max(found[part], waves.high)
+    return found
 
 
 def _of_rows(model: NoiseModel):
@@ -321,8 +365,9 @@ def _of_rows(model: NoiseModel):
         yield "" if len(parts) == 1 else f" of row {k}", row.bearing, errors
 
 
-def _short_waves(model: NoiseModel, load: np.ndarray):
+def _short_waves(task: NoiseScene, load: np.ndarray):
     """Waves that contacts bridge, but that elements of the model follow."""
+    model, drawn = task.model, _highest_drawn(task)
     loads = of_rows(load, model.element.bearing, axis=1)
     for own, (where, bearing, errors) in zip(loads, _of_rows(model), strict=True):
         half = contact_half_width(bearing, own)
@@ -333,8 +378,9 @@ def _short_waves(model: NoiseModel, load: np.ndarray):
             "elements": (errors.elements, surfaces.element),
         }
         for part, (given, surface) in parts.items():
-            most = int(float(surface.radius) / half) if half > 0.0 else _highest(given)
-            if _highest(given) > most:
+            highest = max(_highest(given), drawn[part])
+            most = int(float(surface.radius) / half) if half > 0.0 else highest
+            if highest > most:
                 yield (
                     f"waves of the {part}{where} of order {most} and more are shorter"
                     f" than some three contacts of {2e3 * half:.2g} mm, which would"
@@ -365,7 +411,7 @@ def _after(task: NoiseScene, heard: Heard):
             f"{duration} has too few samples for the bands from {centre[-high]:g} Hz"
             " on; raise `vibration.samples`"
         )
-    yield from _short_waves(task.model, np.asarray(heard.record.contact_load))
+    yield from _short_waves(task, np.asarray(heard.record.contact_load))
     half = len(heard.acceleration) // 2
     first, second = (
         np.sqrt(np.sum(part.var(axis=0)))

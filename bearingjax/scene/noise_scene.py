@@ -19,6 +19,9 @@ class NoiseScene:
     Attributes:
         scene: The scene without it.
         model: The bearing on its rig, with its form errors.
+        line: What all bearings of its line have in common: `waves` and `spalls`, but
+            no spectra, profiles and differences of the rolling elements, which are of
+            this one bearing.
         turns, settle, samples: As of `vibration`.
         steps: As of `vibration`; `None`: as many as are needed.
         reference: Acceleration of 0 dB [m/s²].
@@ -26,6 +29,8 @@ class NoiseScene:
         norm: Largest allowed level of each band (band,) [dB], or `None`.
         window: Of the spectrum.
         tolerances: How bearings scatter, or `None`.
+        tighter: Names of the next tighter grade and class, and what they make of the
+            sources [1].
         seed: Of the random bearings.
         bearings: How many random bearings are wanted.
         warnings: What is odd but possible.
@@ -34,6 +39,7 @@ class NoiseScene:
 
     scene: Scene
     model: NoiseModel
+    line: NoiseModel
     turns: int
     settle: int
     samples: int
@@ -43,6 +49,7 @@ class NoiseScene:
     norm: np.ndarray | None
     window: AbstractWindow
     tolerances: Tolerances | None
+    tighter: tuple[tuple[str, dict[str, float]], ...]
     seed: int
     bearings: int
     warnings: tuple[str, ...]

@@ -17,8 +17,9 @@ from ..acoustics import (
     third_octave_bands,
 )
 from ..acoustics.reference_levels import NORM
-from ..design import n_elements, rows_of
+from ..design import BearingSet, FormErrors, n_elements, rows_of
 from ..element import RINGS
+from ..element.bearing_element import BearingElement
 from .deviations_table import read_deviations
 from .fit_table import fitted
 from .noise_scene import DIRECTIONS, NoiseScene
@@ -57,13 +58,13 @@ def read_noise(
     element = fitted(scene.fits, scene.element)
     bearing: Any = element.bearing
     counts = tuple(n_elements(row.bearing) for row in rows_of(bearing))
-    errors = read_deviations(deviations, counts, path.parent)
+    errors, common = read_deviations(deviations, counts, path.parent)
     deviations.finish()
     values = {
         "mass": vibration.quantity("mass", "mass"),
         "load": scene.load,
         "speed": scene.speed,
-        "errors": errors if len(counts) > 1 else errors[0],
+        "errors": _of_rows(errors),
         "sensor": _sensor(vibration),
         "moving_ring": _moving_ring(vibration, operating),
         "tilting_inertia": vibration.quantity(
@@ -75,16 +76,22 @@ def read_noise(
         values["retardation"] = retardation
     with vibration.building():
         model = NoiseModel(element, **values)
-    tolerances, seed = None, 0
+        # Its program is that of bearings whose rolling elements differ.
+        line = dataclasses.replace(
+            model, element=_nominal(element), errors=_of_rows(common)
+        )
+    tolerances, tighter, seed = None, (), 0
     if "tolerance" in vibration or bearings:
         table = vibration.table("tolerance", required=True)
-        tolerances, seed = read_tolerance(table, bearing)
+        tolerances, tighter, seed = read_tolerance(table, bearing)
     found = NoiseScene(
         scene=scene,
         model=model,
+        line=line,
         **_record(vibration),
         **_levels(vibration),
         tolerances=tolerances,
+        tighter=tighter,
         seed=seed,
         bearings=bearings,
         warnings=scene.warnings,
@@ -96,6 +103,28 @@ def read_noise(
     own = {"deviations": deviations.echo(), "vibration": vibration.echo()}
     inputs = {**scene.inputs, "operating": _held(scene, model.moving_ring), **own}
     return dataclasses.replace(found, inputs=inputs)
+
+
+def _of_rows(errors: tuple[FormErrors, ...]) -> FormErrors | tuple[FormErrors, ...]:
+    first, *more = errors
+    return errors if more else first
+
+
+def _nominal(element: BearingElement) -> BearingElement:
+    """The bearing with rolling elements that do not differ from each other."""
+    fields = "ball_deviation", "roller_deviation", "azimuth_deviation"
+
+    def even(bearing):
+        mine = {k: None for k in fields if getattr(bearing, k, None) is not None}
+        return dataclasses.replace(bearing, **mine) if mine else bearing
+
+    bearing: Any = element.bearing
+    if isinstance(bearing, BearingSet):
+        rows = [
+            dataclasses.replace(row, bearing=even(row.bearing)) for row in bearing.rows
+        ]
+        return dataclasses.replace(element, bearing=BearingSet(tuple(rows)))
+    return dataclasses.replace(element, bearing=even(bearing))
 
 
 def _held(scene: Scene, moving: str) -> dict[str, Any]:
@@ -114,8 +143,9 @@ def _check_operating(operating: Table, scene: Scene) -> None:
             cure = "`vibration.tilting_inertia` it tilts"
             raise operating.error(key, f"{problem} {cure}")
     if scene.speed is None:
-        problem = "is missing, and so is `outer_speed`; nothing vibrates at rest"
-        raise operating.error("inner_speed", problem)
+        problem = "is zero" if "inner_speed" in operating else "is missing"
+        rest = "and so is `outer_speed`; nothing vibrates at rest"
+        raise operating.error("inner_speed", f"{problem}, {rest}")
 
 
 def _moving_ring(vibration: Table, operating: Table) -> str:

@@ -144,9 +144,34 @@ def test_shares_by_switching_off_and_by_gradient_agree_for_small_errors():
     share, slope = np.asarray(found.share), np.asarray(found.by_gradient)
     np.testing.assert_allclose(share, slope, atol=0.03 * np.max(share))
     assert np.argmax(found.gain(0.5)) == SMALL.sources.index(found.ranking[0])
+    np.testing.assert_allclose(found.gain_together({}), 0.0, atol=1e-12)
+    first = found.ranking[0]
+    np.testing.assert_allclose(
+        found.gain_together({first: 0.5}), np.max(found.gain(0.5)), rtol=ROUNDING
+    )
     half = shares(MODEL, SMALL, 6, KEY, factor=0.5, gradient=False, **HOW)
     assert half.ranking == found.ranking
     assert half.by_gradient is None
+
+
+def test_shares_along_a_line_and_by_band():
+    bands = octave_bands()
+    found = shares(
+        MODEL, SMALL, 3, KEY, direction=(0, 0, 2.0), bands=bands, gradient=False, **HOW
+    )
+    axial = shares(MODEL, SMALL, 3, KEY, direction=2, gradient=False, **HOW)
+    np.testing.assert_allclose(found.share, axial.share, rtol=ROUNDING)
+    assert axial.by_band is None
+    every = [drawn(MODEL, SMALL, k) for k in jax.random.split(KEY, 3)]
+    counts = {"turns": 1, "settle": 3, "samples": 128, "steps": 6}
+    square = [np.var(vibration(m, **counts).acceleration[:, 2]) for m in every]
+    np.testing.assert_allclose(found.mean_square, np.mean(square), rtol=1e-9)
+    parts = np.asarray(found.by_band)
+    assert parts.shape == (len(found.sources), len(bands.centre))
+    held = np.isfinite(parts[0])
+    assert held.any() and not held.all() and np.all(parts[:, held] <= 1.0)
+    with pytest.raises(ValueError, match="a vector or None"):
+        shares(MODEL, SMALL, 3, KEY, direction=3, **HOW)
 
 
 def test_what_makes_no_sense_is_refused():

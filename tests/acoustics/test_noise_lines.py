@@ -104,14 +104,17 @@ def test_the_simplest_name_wins():
     assert only(OUTER, harmonics=20) == "BPFO"
     # All balls over both raceways: a harmonic of the shaft, or sidebands of BPFI.
     assert only(2 * SHAFT) == "2 shaft"
-    # Coarse lines: within the tolerance of many, the one with the least k + m; and of
-    # equally simple ones the nearest.
+    # Of equally simple ones the nearest.
     near = 0.5 * (SHAFT + CAGE)
-    assert only(near - 0.3, tolerance=10.0) == "cage"
-    assert only(near + 0.3, tolerance=10.0) == "shaft"
+    few = {"tolerance": 10.0, "harmonics": 1, "sidebands": 0}
+    assert only(near - 0.3, **few) == "cage"
+    assert only(near + 0.3, **few) == "shaft"
     assert only(near, tolerance=1.0) == "unnamed"
-    # A sideband counts as a harmonic does.
-    assert only(INNER - 2 * SHAFT, tolerance=20.0) == "BPFO"
+    # Coarse lines: what is met exactly before what is simpler and far, but not before
+    # what is simpler and as near.
+    assert only(INNER - 2 * SHAFT, tolerance=20.0) == "BPFI - 2 shaft"
+    assert only(3 * OUTER, tolerance=2 * abs(2 * INNER - 3 * OUTER)) == "3 BPFO"
+    assert only(OUTER + 0.1, tolerance=20.0, harmonics=20) == "BPFO"
     # A natural frequency gives way to what the rolling makes.
     own = {"low mode": OUTER + 0.01, "high mode": 900.0}
     assert only(OUTER, natural=own) == "BPFO"

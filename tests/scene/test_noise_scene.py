@@ -54,7 +54,7 @@ WRONG = {
     ),
     "at rest": (
         "operating.inner_speed=0 rpm",
-        "`operating.inner_speed`: is missing, and so is `outer_speed`; nothing",
+        "`operating.inner_speed`: is zero, and so is `outer_speed`; nothing",
     ),
     "moment without tilt": (
         "operating.load.Mx=1 N m",
@@ -147,6 +147,18 @@ WRONG = {
     "amplitudes": (
         "deviations.waves=[{part='outer raceway', order=[2, 3], amplitude=['1 um']}]",
         "`deviations.waves[0].amplitude`: has 1 values for 2 orders",
+    ),
+    "negative amplitude": (
+        "deviations.waves=[{part='outer raceway', order=2, amplitude='-1 um'}]",
+        "`deviations.waves[0].amplitude`: is negative; turn the `phase` by 180 deg",
+    ),
+    "waves as high as the groove is open": (
+        "deviations.waves=[{part='outer raceway', order=2, amplitude='1 mm'}]",
+        "[vibration]: Harmonics: `amplitude` is 0.001 m; it must be below",
+    ),
+    "spall all around": (
+        "deviations.spalls=[{part='inner raceway', length='1 m', depth='9 um'}]",
+        "[vibration]: Spall: `length` is 1 m; it must be below",
     ),
     "amplitude as an angle": (
         "deviations.waves=[{part='inner raceway', order=2, amplitude='1 deg'}]",
@@ -338,6 +350,37 @@ def test_tolerances_by_grade_and_by_number():
     pairs = zip(jax.tree.leaves(task.tolerances), jax.tree.leaves(wanted), strict=True)
     assert all(np.allclose(a, b, rtol=ROUNDING) for a, b in pairs)
     assert (task.seed, task.bearings) == (4, 5)
+
+
+def test_random_bearings_have_what_all_of_the_line_have():
+    """Waves and spalls; spectra, profiles and unlike balls are of one bearing alone."""
+    task = read_noise("noise_deep_groove", bearings=2)
+    one, line = (model.errors_of_rows[0] for model in (task.model, task.line))
+    assert len(one.outer.outwards) == 2 and len(one.elements) == 1
+    assert line.outer.outwards == one.outer.outwards[:1]
+    assert line.elements == ()
+    assert task.model.element.bearing.ball_deviation is not None
+    assert task.line.element.bearing.ball_deviation is None
+
+
+def test_tighter_grades_and_classes_make_less_of_their_sources():
+    table = (
+        "vibration.tolerance={grade='G10', class='P6', bore='25 mm',"
+        " outside_diameter='52 mm', outer_eccentricity='3 um'}"
+    )
+    task = read_noise("noise_deep_groove", [table], bearings=2)
+    (grade, balls), (rings, runout) = task.tighter
+    assert grade == "grade G5 in place of G10" and rings == "class P5 in place of P6"
+    # ISO 3290-1: lots of 0.25 and 0.13 um, form 0.25 and 0.13 um.
+    assert balls.keys() == {"diameter", "elements"}
+    assert all(0.4 < ratio < 0.6 for ratio in balls.values())
+    # What is given by its number follows from no class.
+    assert (
+        runout.keys() == {"inner_eccentricity"}
+        and 0.3 < runout["inner_eccentricity"] < 1
+    )
+    best = "vibration.tolerance={grade='G3'}"
+    assert read_noise("noise_deep_groove", [best], bearings=2).tighter == ()
 
 
 def test_the_ring_that_moves_is_the_one_that_is_not_fixed():
