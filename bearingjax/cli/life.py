@@ -53,6 +53,8 @@ def _life_of_load(options) -> int:
     from ..numerics import Result
     from ..scene import (
         SceneError,
+        fit_report,
+        fits_as_dict,
         life_as_dict,
         life_report,
         read_scene,
@@ -74,7 +76,7 @@ def _life_of_load(options) -> int:
     life = scene_life(scene, solution) if solved else None
     numbers = solved_as_dict(scene, solution, life)
     if life is not None:
-        numbers = {**life_as_dict(life), **numbers}
+        numbers = {**life_as_dict(life), **fits_as_dict(scene), **numbers}
     write(
         (options.json, lambda path: write_numbers(path, numbers)),
         (options.plot, draws_solution(scene, solution) if solved else None),
@@ -83,6 +85,8 @@ def _life_of_load(options) -> int:
     if life is None:
         return tell_unsolved(scene, solution)
     print(f"{scene.name}\n{life_report(scene, solution, life)}")
+    if scene.fits is not None:
+        print(fit_report(scene.fits, scene.element.bearing))
     for text in numbers["warnings"]:
         print(f"warning: {text}")
     sys.stdout.flush()
@@ -92,6 +96,7 @@ def _life_of_load(options) -> int:
 def _life_of_cases(options) -> int:
     from ..scene import (
         design_sections,
+        fitted,
         life_columns,
         read_cases,
         run_life,
@@ -122,7 +127,7 @@ def _life_of_cases(options) -> int:
             table.inputs,
             draws,
             life_columns(done),
-            drawing=draws_bearing(scene, scene.element),
+            drawing=draws_bearing(scene, fitted(scene.fits, scene.element)),
         )
 
     write(

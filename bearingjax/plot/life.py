@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 _MOST = 16
 """Cases that are drawn."""
+_RANGE = 1e5
+"""Life over the shortest one up to which bars have their true height [1]."""
 _NAMED = 5
 """Cases up to which their loads and speeds stand below."""
 
@@ -53,16 +55,30 @@ def life_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
 def _lives(run, order, ax):
     """Life of each case alone, in million revolutions."""
     width = 0.8 / len(run.lives)
-    for k, name in enumerate(run.lives):
-        alone = 1e-6 * np.asarray(getattr(run.solved, name), dtype=float)[order]
-        ax.bar(
+    every = {
+        name: 1e-6 * np.asarray(getattr(run.solved, name), dtype=float)[order]
+        for name in run.lives
+    }
+    known = np.concatenate(list(every.values()))
+    known = known[np.isfinite(known)]
+    # A case that hardly loads the bearing would squash all others.
+    most = known[known <= _RANGE * known.min(initial=np.inf)].max(initial=0.0)
+    top = 10.0 * most if most > 0.0 else 1.0
+    for k, (name, alone) in enumerate(every.items()):
+        beyond = ~(alone <= top)
+        drawn = ax.bar(
             np.arange(len(order)) + (k - 0.5 * (len(run.lives) - 1)) * width,
-            np.where(np.isfinite(alone), alone, np.nan),
+            np.where(beyond, top, alone),
             width,
             color=_COLOURS[name],
             label=_word(name),
         )
+        words = [f"{x:.1e}" if np.isfinite(x) else "no end" for x in alone]
+        told = [word if far else "" for word, far in zip(words, beyond, strict=True)]
+        ax.bar_label(drawn, told, fontsize=SMALL, rotation=90, padding=2)
     ax.set_yscale("log")
+    if known.size:
+        ax.set_ylim(0.3 * known.min(), 10.0 * top)
     ax.set_ylabel("life [million revolutions]")
     ax.set_title("Life of each case, if it were alone")
     _finish(run, order, ax)

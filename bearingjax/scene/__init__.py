@@ -25,6 +25,8 @@ from .files import check_outputs as check_outputs
 from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers
 from .files import write_outputs as write_outputs
+from .fit_report import fit_report as fit_report
+from .fit_table import fitted as fitted
 from .html_report import Origin as Origin
 from .html_report import report_page as report_page
 from .interrupt import Interrupt as Interrupt
@@ -53,6 +55,7 @@ from .optimise_report import unsolved_start_as_dict as unsolved_start_as_dict
 from .optimise_table import Optimisation as Optimisation
 from .optimise_table import read_optimisation as read_optimisation
 from .output import as_dict as as_dict
+from .output import fits_as_dict as fits_as_dict
 from .output import solved_as_dict as solved_as_dict
 from .output import write_json as write_json
 from .quantity import SceneError as SceneError

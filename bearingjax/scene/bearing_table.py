@@ -123,6 +123,8 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
     name = given.pop("designation")
     if not isinstance(name, str):
         problem = 'is not a designation, a text such as "6205-2RS1/C3"'
+        if isinstance(name, int):
+            problem = f'is a number; a designation is a text in quotes, "{name}"'
         raise table.error("designation", f"{name!r} {problem}")
     try:
         entry = catalogue_entry(name)

@@ -80,7 +80,7 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     life = scene_life(scene, solution) if solved and scene.life is not None else None
     return {
         **({**_numbers(solution), **_oil(scene, solution)} if solved else {}),
-        **_fits(scene),
+        **fits_as_dict(scene),
         **_catalogue(scene),
         **({} if life is None else life_as_dict(life)),
         **solved_as_dict(scene, solution, life),
@@ -124,7 +124,12 @@ def _oil(scene, solution):
     return oil_as_dict(scene.oil, solution, scene.catalogue)
 
 
-def _fits(scene):
+def fits_as_dict(scene: Scene) -> dict[str, Any]:
+    """Under `fit` what `fit_as_dict` has; of a scene without fits nothing.
+
+    Args:
+        scene: What was solved.
+    """
     if scene.fits is None:
         return {}
     return {"fit": fit_as_dict(scene.fits, scene.element.bearing)}

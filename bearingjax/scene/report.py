@@ -88,7 +88,8 @@ def bearing_text(
         )
         lines.append(f"{scene.name}: set of {len(bearing.rows)} rows at z = {places}")
         if scene.preload_force is not None:
-            lines.append(f"ground to a preload of {scene.preload_force:.5g} N")
+            mounted = "" if scene.fits is None else ", which fits and warmth change"
+            lines.append(f"ground to a preload of {scene.preload_force:.5g} N{mounted}")
         lines += [] if solution is None else _springs(bearing, solution)
     tell = ball_row if is_ball(bearing) else roller_row
     parts = [row.bearing for row in rows_of(bearing)]

@@ -65,3 +65,32 @@ def test_other_cases_are_drawn_over_their_number():
     ax = figure.axes[0]
     assert ax.get_xlabel() == "case" and not figure.legends
     np.testing.assert_array_equal(ax.get_lines()[0].get_xdata(), np.arange(16))
+
+
+def few_settings(results):
+    """Two curves, and as many results."""
+    fine = swept()
+    more = {f"force_{k}": LARGEST + k for k in range(results - 2)}
+    return dataclasses.replace(fine, outputs={**fine.outputs, **more})
+
+
+@pytest.mark.parametrize("results", [2, 3, 4])
+def test_few_settings_beside_many_results(results):
+    beside = {"bearing.radial_internal_clearance [m]": PLAY}
+    figure = bj.plot.sweep_overview(few_settings(results), beside)
+    assert len(figure.axes) == results
+
+
+def test_one_input_alone_is_one_curve():
+    whole = swept()
+    one = dataclasses.replace(
+        whole,
+        cases=dataclasses.replace(whole.cases, load=whole.cases.load[:8]),
+        outputs={name: values[:8] for name, values in whole.outputs.items()},
+    )
+    figure = bj.plot.sweep_overview(one)
+    assert not figure.legends
+    for ax in figure.axes:
+        (line,) = ax.get_lines()
+        assert ax.get_xlabel() == "Fy [kN]"
+        np.testing.assert_allclose(np.asarray(line.get_xdata()), 1e-3 * FY[7::-1])

@@ -279,7 +279,10 @@ def test_single_dimensions_override(tmp_path):
             'designation = "6206X"',
             "`bearing.designation`: '6206X' has letters after 6206",
         ),
-        ("designation = 6205", "`bearing.designation`: 6205 is not a designation"),
+        (
+            "designation = 6205",
+            "`bearing.designation`: 6205 is a number; a designation is",
+        ),
         (
             'designation = "6205"\ntype = "thrust_ball"',
             "`bearing.type`: is 'thrust_ball', but 6205 is 'deep_groove_ball'",
