@@ -157,7 +157,7 @@ def _sources(task, found):
         # Twice its standard error, or a single bearing: it may be nothing.
         doubt = not parts[k] > 2.0 * errors[k]
         unsure |= doubt
-        spread = f" ± {100.0 * errors[k]:.2g}" if errors[k] == errors[k] else ""
+        spread = f" ± {100.0 * errors[k]:.2g}" if np.isfinite(errors[k]) else ""
         number = f"{100.0 * parts[k]:.3g}{spread} %"
         gain = "-" if doubt else f"{-gains[k]:.2g} dB"
         yield f"  {name:<38}{number:>16}{gain:>12}"
