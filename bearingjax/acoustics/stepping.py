@@ -35,7 +35,7 @@ _KAISER = 14.5
 """Shape of Kaiser's window for 140 dB."""
 
 
-def _weights(steps: int) -> np.ndarray:
+def step_weights(steps: int) -> np.ndarray:
     """What a step counts, by the block of steps that it is in (2 REACH, step) [1].
 
     Source: Kaiser's window 0.1102 (A - 8.7) of A dB, whose transition is A/14.36 over
@@ -98,7 +98,7 @@ def stepped(
     def flat(time):
         return ravel_pytree(given(time))[0]
 
-    weights = jnp.asarray(_weights(steps), dtype)
+    weights = jnp.asarray(step_weights(steps), dtype)
 
     def one(state, known):
         x, v1 = state
