@@ -342,6 +342,8 @@ class FormErrors(eqx.Module):
             ValueError: For heights beyond `largest_deviation`, or a spall longer than
                 the way around its part.
         """
+        if not (self.outer.shapes or self.inner.shapes or self.elements):
+            return
         most, surfaces = largest_deviation(bearing), Surfaces.of(bearing)
         parts = {
             "outer raceway": (self.outer.shapes, surfaces.outer),

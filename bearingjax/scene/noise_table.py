@@ -76,7 +76,6 @@ def read_noise(
         values["retardation"] = retardation
     with vibration.building():
         model = NoiseModel(element, **values)
-        # Its program is that of bearings whose rolling elements differ.
         line = dataclasses.replace(
             model, element=_nominal(element), errors=_of_rows(common)
         )
