@@ -188,6 +188,7 @@ from .statics import preload as preload
 from .statics import rating_life as rating_life
 from .statics import ratings as ratings
 from .statics import refine as refine
+from .statics import remaining_preload as remaining_preload
 from .statics import restrained_freedoms as restrained_freedoms
 from .statics import skf_friction_torque as skf_friction_torque
 from .statics import solve_load as solve_load

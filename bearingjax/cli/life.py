@@ -53,14 +53,15 @@ def _life_of_load(options) -> int:
     from ..numerics import Result
     from ..scene import (
         SceneError,
-        fit_report,
         fits_as_dict,
+        fits_text,
         life_as_dict,
         life_report,
         read_scene,
         run_scene,
         scene_life,
         solved_as_dict,
+        with_set_preload,
         write_numbers,
     )
     from ..statics import LifeConditions
@@ -73,6 +74,8 @@ def _life_of_load(options) -> int:
     page = Reporter(options)
     solution = run_scene(scene, jax_settings.programs())
     solved = Result(int(solution.result)) is Result.CONVERGED
+    if solved:
+        scene = with_set_preload(scene, jax_settings.programs())
     life = scene_life(scene, solution) if solved else None
     numbers = solved_as_dict(scene, solution, life)
     if life is not None:
@@ -86,7 +89,7 @@ def _life_of_load(options) -> int:
         return tell_unsolved(scene, solution)
     print(f"{scene.name}\n{life_report(scene, solution, life)}")
     if scene.fits is not None:
-        print(fit_report(scene.fits, scene.element.bearing))
+        print(fits_text(scene))
     for text in numbers["warnings"]:
         print(f"warning: {text}")
     sys.stdout.flush()

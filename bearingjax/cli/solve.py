@@ -31,7 +31,14 @@ def add(commands):
 def run(options) -> int:
     """Solve the bearing of a scene."""
     from ..numerics import Result
-    from ..scene import has_cases, read_scene, report, run_scene, write_json
+    from ..scene import (
+        has_cases,
+        read_scene,
+        report,
+        run_scene,
+        with_set_preload,
+        write_json,
+    )
 
     check_outputs(options)
     scene = read_scene(options.scene, options.set)
@@ -40,6 +47,8 @@ def run(options) -> int:
         complain("one load, that of [operating]; [cases] are for sweep, life, optimise")
     solution = run_scene(scene, jax_settings.programs())
     solved = Result(int(solution.result)) is Result.CONVERGED
+    if solved:
+        scene = with_set_preload(scene, jax_settings.programs())
     # Mounted and preloaded where the scene says so.
     element = solution.element if solved else scene.element
     write(

@@ -56,6 +56,7 @@ from .material import contact_modulus as contact_modulus
 from .mounted import mounted as mounted
 from .mounted import raceway_diameters as raceway_diameters
 from .mounted import radial_clearance as radial_clearance
+from .mounted import row_shifts as row_shifts
 from .mounted import sized as sized
 from .mounted import with_radial_clearance as with_radial_clearance
 from .profile import AbstractProfile as AbstractProfile

@@ -40,6 +40,9 @@ class Mounting(eqx.Module):
         shaft_smoothing: Interference that the smoothed surfaces take away, on the shaft
             (`smoothing`) [m].
         housing_smoothing: Likewise in the housing [m].
+        ring_width: Width of a ring, B, or T of a tapered roller bearing [m]. A set
+            needs it: between its rows the rings grow along the axis over this length,
+            beyond it shaft and housing (or spacers as warm as these); `None` elsewhere.
         shaft, inner_ring, outer_ring, housing, elements: Materials; of the rolling
             elements only their expansion counts.
 
@@ -67,6 +70,9 @@ class Mounting(eqx.Module):
     housing_smoothing: Scalar = eqx.field(
         converter=as_real, metadata=unit("m"), default=0.0
     )
+    ring_width: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("m"), default=None
+    )
     shaft: WarmMaterial = eqx.field(default_factory=WarmMaterial)
     inner_ring: WarmMaterial = eqx.field(default_factory=WarmMaterial)
     outer_ring: WarmMaterial = eqx.field(default_factory=WarmMaterial)
@@ -83,6 +89,8 @@ class Mounting(eqx.Module):
         in_range(self, "shaft_bore", 0.0, self.bore, include_low=True)
         if self.radial_clearance is not None:
             number(self, "radial_clearance")
+        if self.ring_width is not None:
+            in_range(self, "ring_width", 0.0, 2.0 * self.outside_diameter)
         for name, seat in _SEATS.items():
             number(self, name)
             known = concrete(getattr(self, name), getattr(self, seat))
@@ -195,6 +203,15 @@ def smoothing(seat: Any, ring: Any) -> Any:
     return 0.4 * (seat + ring)
 
 
+class AxialStrains(NamedTuple):
+    """Mean axial strains [1], of a seat where no ring stands on it."""
+
+    shaft: Any
+    inner_ring: Any
+    outer_ring: Any
+    housing: Any
+
+
 class FitState(NamedTuple):
     """What fits, temperatures and speed do to a bearing.
 
@@ -209,6 +226,8 @@ class FitState(NamedTuple):
         radial_clearance: Radial internal clearance in these conditions [m].
         ring_stress: Hoop stress of the inner ring at its bore, its largest, from fit
             and speed [Pa].
+        strains: Axial strains of shaft, inner ring, outer ring and housing: mean of
+            each part, from warmth, speed and, of the rings, their fits [1].
     """
 
     shaft_interference: Any
@@ -219,6 +238,7 @@ class FitState(NamedTuple):
     outer_raceway_growth: Any
     radial_clearance: Any
     ring_stress: Any
+    strains: AxialStrains
 
 
 def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> FitState:
@@ -277,6 +297,23 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
         + _spin(m.outer_ring.material, m.outer_raceway, out, c.outer_speed)
         - housing_pressure * _across(m.outer_ring.material, m.outer_raceway, out, out)
     )
+    strains = AxialStrains(
+        warm["shaft"] - _shortened(m.shaft.material, m.shaft_bore, m.bore, c.speed),
+        warm["inner_ring"]
+        - _shortened(
+            m.inner_ring.material, m.bore, m.inner_raceway, c.speed, shaft_pressure
+        ),
+        warm["outer_ring"]
+        - _shortened(
+            m.outer_ring.material,
+            m.outer_raceway,
+            out,
+            c.outer_speed,
+            outside=housing_pressure,
+        ),
+        warm["housing"]
+        - _shortened(m.housing.material, out, m.housing_diameter, c.outer_speed),
+    )
     # Two rolling elements and the clearance fill the room between the raceways.
     room = m.outer_raceway - m.inner_raceway - m.radial_clearance
     elements = room * warm["elements"]
@@ -290,6 +327,7 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
         m.radial_clearance + outer - inner - elements,
         shaft_pressure * _ratio(m.bore, m.inner_raceway)
         + _hoop(m.inner_ring.material, m.bore, m.inner_raceway, c.speed),
+        strains,
     )
 
 
@@ -357,3 +395,16 @@ def _hoop(material, own, other, speed):
     nu = material.poisson_ratio
     squares = (3.0 + nu) * other**2 + (1.0 - nu) * own**2
     return material.density * speed**2 / 16.0 * squares
+
+
+def _shortened(material, inner, outer, speed, inside=0.0, outside=0.0):
+    """Axial strain that a ring loses to the stresses in its plane, ν/E (σr + σθ) [1].
+
+    Their sum over the ring is that of Lamé, 2 (p_i a² - p_o b²)/(b² - a²), the same
+    everywhere, and of the speed on average ρ ω²(a² + b²)/2, in radii: the virial of
+    the centrifugal forces.
+    """
+    squares = outer**2 + inner**2
+    fit = 2.0 * (inside * inner**2 - outside * outer**2) / (outer**2 - inner**2)
+    turning = material.density * speed**2 * squares / 8.0
+    return material.poisson_ratio / material.elastic_modulus * (fit + turning)

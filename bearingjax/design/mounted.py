@@ -1,8 +1,8 @@
 """A bearing as it is mounted: with the radial clearance that its fits leave.
 
-Fits, temperatures and speed change the radial distance of the raceways. What else they
-change is left as on the drawing: pitch and ball diameters, by a ten thousandth, and
-axial distances, such as between the rows of a set.
+Fits, temperatures and speed change the radial distance of the raceways, and in a set
+the axial distances of the inner and of the outer rings. What else they change is left
+as on the drawing: pitch and ball diameters, by a ten thousandth.
 """
 
 from dataclasses import replace
@@ -19,9 +19,9 @@ from .ball_types import (
     FourPointBallBearing,
     ThrustBallBearing,
 )
-from .bearing_set import Bearing, BearingSet, SetRow, rows_of
+from .bearing_set import Bearing, BearingSet, SetRow, is_self_aligning, rows_of
 from .checks import check, concrete, number
-from .fits import FitConditions, Mounting, fit_state
+from .fits import AxialStrains, FitConditions, Mounting, fit_state
 
 
 def raceway_diameters(bearing: Bearing) -> tuple[Scalar, Scalar]:
@@ -158,9 +158,10 @@ def mounted(
 
     In a set the rows of angular contact are preloaded more, or less: the balls touch
     elsewhere, and the rings stay where they are on shaft and in housing (`inner_offset`
-    takes the difference of A sin α0). Set its preload first, `preload` being that of
-    the bearings as they are ground. Of one row, displacements count from where the
-    mounted balls touch.
+    takes the difference of A sin α0). And what grows between the rows, on the shaft
+    and in the housing, moves their rings against each other (`row_shifts`). Set its
+    preload first, `preload` being that of the bearings as they are ground. Of one row,
+    displacements count from where the mounted balls touch.
 
     Args:
         bearing: One row or a set, of a radial type.
@@ -175,11 +176,16 @@ def mounted(
     Raises:
         TypeError: For thrust bearings and what is no bearing.
         ValueError: If the rings are not thicker than the raceways, or as
-            `with_radial_clearance`.
+            `with_radial_clearance` and `row_shifts`.
     """
     if isinstance(bearing, BearingSet):
-        rows = tuple(_mounted_row(row, mounting, conditions) for row in bearing.rows)
-        return BearingSet(rows)
+        shifts = row_shifts(bearing, mounting, conditions)
+        return BearingSet(
+            tuple(
+                _mounted_row(row, shift, mounting, conditions)
+                for row, shift in zip(bearing.rows, shifts, strict=True)
+            )
+        )
     left = fit_state(sized(mounting, bearing), conditions).radial_clearance
     new = with_radial_clearance(bearing, left)
     if not isinstance(new, AngularContactBallBearing | FourPointBallBearing):
@@ -192,16 +198,69 @@ def mounted(
     return replace(new, rated_contact_angle=drawn)
 
 
-def _mounted_row(row: SetRow, mounting, conditions) -> SetRow:
+def _mounted_row(row: SetRow, shift, mounting, conditions) -> SetRow:
     new = mounted(row.bearing, mounting, conditions)
-    if not isinstance(new, AngularContactBallBearing):
-        return replace(row, bearing=new)
-    before: Any = row.bearing
-    sines = jnp.sin(before.free_contact_angle) - jnp.sin(new.free_contact_angle)
-    nearer = new.centre_distance * sines
-    # A row is pressed by its inner ring moving along +z; mirrored, along -z.
-    offset = row.inner_offset + (-nearer if row.mirrored else nearer)
+    offset = row.inner_offset + shift
+    if isinstance(new, AngularContactBallBearing):
+        before: Any = row.bearing
+        sines = jnp.sin(before.free_contact_angle) - jnp.sin(new.free_contact_angle)
+        nearer = new.centre_distance * sines
+        # A row is pressed by its inner ring moving along +z; mirrored, along -z.
+        offset = offset + (-nearer if row.mirrored else nearer)
     return replace(row, bearing=new, inner_offset=offset)
+
+
+def row_shifts(
+    bearing: BearingSet,
+    mounting: Mounting,
+    conditions: FitConditions | None = None,
+) -> list[Any]:
+    """Shift of each inner ring against its outer ring, as the parts between rows grow.
+
+    From the middle of a row rings reach half of their width; on what is between them
+    is shaft, or housing. Inner rings keep their places on the shaft and outer ones
+    theirs in the housing, whether against shoulders or clamped one against the other.
+    The mean of all places stays where it is: only differences press rows.
+
+    Args:
+        bearing: A set.
+        mounting, conditions: As of `mounted`.
+
+    Returns:
+        Of each row, along +z of the set [m]; 0 of a self-aligning bearing, whose rows
+        share both rings.
+
+    Raises:
+        ValueError: If `mounting.ring_width` is `None`.
+    """
+    if is_self_aligning(bearing):
+        return [0.0] * len(bearing.rows)
+    width = mounting.ring_width
+    if width is None:
+        raise ValueError(
+            "Mounting: `ring_width` is None; a set needs it: between its rows the rings"
+            " grow over this length, beyond it shaft and housing."
+        )
+    strains = [
+        fit_state(sized(mounting, row.bearing), conditions).strains
+        for row in bearing.rows
+    ]
+    places = jnp.stack([row.position for row in bearing.rows])
+    parts = AxialStrains(*(jnp.stack(values) for values in zip(*strains, strict=True)))
+    inner = _grown(places, width, parts.inner_ring, parts.shaft)
+    outer = _grown(places, width, parts.outer_ring, parts.housing)
+    return list(inner - outer)
+
+
+def _grown(places, width, rings, seats):
+    """Shift of rows as what is between neighbours grows, their mean at rest [m]."""
+    order = jnp.argsort(places)
+    gaps = jnp.diff(places[order])
+    rings, seats = (0.5 * (x[order][1:] + x[order][:-1]) for x in (rings, seats))
+    within = jnp.minimum(gaps, width)
+    steps = rings * within + seats * (gaps - within)
+    grown = jnp.concatenate([jnp.zeros(1, places.dtype), jnp.cumsum(steps)])
+    return (grown - jnp.mean(grown))[jnp.argsort(order)]
 
 
 def check_radial(owner: str, bearing: Any) -> None:

@@ -25,7 +25,6 @@ from .files import check_outputs as check_outputs
 from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers
 from .files import write_outputs as write_outputs
-from .fit_report import fit_report as fit_report
 from .fit_table import fitted as fitted
 from .html_report import Origin as Origin
 from .html_report import report_page as report_page
@@ -63,6 +62,7 @@ from .read import Scene as Scene
 from .read import load_bearing as load_bearing
 from .read import read_scene as read_scene
 from .report import design_sections as design_sections
+from .report import fits_text as fits_text
 from .report import report as report
 from .report import sections as sections
 from .resume import resume_cases as resume_cases
@@ -78,6 +78,7 @@ from .rotor_scene import RotorScene as RotorScene
 from .rotor_table import read_rotor as read_rotor
 from .run import run_optimisation as run_optimisation
 from .run import run_scene as run_scene
+from .run import with_set_preload as with_set_preload
 from .scene_file import shipped_scenes as shipped_scenes
 from .skid_output import skid_as_dict as skid_as_dict
 from .skid_output import skid_columns as skid_columns

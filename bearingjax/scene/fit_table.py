@@ -159,7 +159,7 @@ def read_fits(
     for part, key in unknown.items():
         if float(getattr(conditions, part)) != float(conditions.reference):
             raise no_expansion(table, part, key)
-    seats = sizes | _seats(table, own, row)
+    seats = sizes | _seats(table, own, row) | _width(table, bearing, catalogue)
     # For `Mounting` to check by name; `mounting_at` sets them anew.
     if not names[0]:
         seats["shaft_interference"] = given["shaft"].lower
@@ -291,6 +291,19 @@ def _sizes(table: Table, catalogue: FromCatalogue | None) -> dict[str, Any]:
         problem = f"{size:.5g} m is not allowed; at most {most:.4g} m (metres meant?)"
         raise table.error("housing_diameter", problem)
     return found
+
+
+def _width(table: Table, bearing, catalogue) -> dict[str, Any]:
+    """Width of a ring, of a set whose rows have rings of their own."""
+    if not isinstance(bearing, BearingSet) or is_self_aligning(bearing):
+        return {}
+    key, own = "ring_width", catalogue.entry.width if catalogue else None
+    if key not in table and own is None:
+        problem = "is missing: the width of a ring, B; between the rows of a set rings"
+        cure = "grow over this length, beyond it shaft and housing"
+        raise table.error(key, f"{problem} {cure}")
+    width = table.quantity(key, "length", *([] if own is None else [own]))
+    return {key: width}
 
 
 def _limits(table: Table, row, sizes) -> tuple[dict[str, Any], tuple[str, str]]:

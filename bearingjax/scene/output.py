@@ -16,6 +16,7 @@ from .fit_report import fit_as_dict
 from .life_report import life_as_dict, scene_life
 from .oil_table import oil_as_dict
 from .read import Scene
+from .set_preload import preload_as_dict
 
 OF_ROLLERS = (
     "displacement",
@@ -125,14 +126,18 @@ def _oil(scene, solution):
 
 
 def fits_as_dict(scene: Scene) -> dict[str, Any]:
-    """Under `fit` what `fit_as_dict` has; of a scene without fits nothing.
+    """Under `fit` what `fit_as_dict` has, and `preload` of a set, as of
+    `preload_as_dict`, if it was worked out; of a scene without fits nothing.
 
     Args:
         scene: What was solved.
     """
     if scene.fits is None:
         return {}
-    return {"fit": fit_as_dict(scene.fits, scene.element.bearing)}
+    found = fit_as_dict(scene.fits, scene.element.bearing)
+    if scene.set_preload is not None:
+        found["preload"] = preload_as_dict(scene.set_preload)
+    return {"fit": found}
 
 
 def _catalogue(scene):

@@ -90,6 +90,18 @@ def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
         return _filled(outputs[0], compiled(*arrays))
 
 
+def called(programs: Path | None, function: Callable, *arguments: Any) -> Any:
+    """Call a function as it is, or by `call_once`.
+
+    Args:
+        programs: Folder in which compiled programs are kept; `None`: as it is.
+        function, arguments: As of `call_once`.
+    """
+    if programs is None:
+        return function(*arguments)
+    return call_once(function, *arguments, folder=programs)
+
+
 def _flattened(
     function: Callable, arguments: tuple
 ) -> tuple[Callable, list[jax.Array], list]:

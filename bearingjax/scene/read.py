@@ -34,6 +34,7 @@ from .scene_file import (
     parse_bearing,
     shipped_scenes,
 )
+from .set_preload import SetPreload
 from .table import Table
 
 MOST_POINTS = 10_000
@@ -64,6 +65,8 @@ class Scene:
         catalogue: What its `designation` stands for, or `None` without one.
         inputs: The scene as it was read, all quantities in SI, defaults filled in: as
             a file of scenes may write it.
+        set_preload: What fits make of the preload of a set, or `None`: not worked out
+            (`with_set_preload`).
     """
 
     name: str
@@ -82,6 +85,7 @@ class Scene:
     warnings: tuple[str, ...]
     catalogue: FromCatalogue | None = None
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
+    set_preload: SetPreload | None = None
 
     @property
     def moving_ring(self) -> str:

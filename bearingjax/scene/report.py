@@ -22,6 +22,7 @@ from .life_report import life_report, scene_life
 from .oil_table import oil_report
 from .operation_report import operation
 from .read import Scene
+from .set_preload import preload_report
 
 _RULE = "-" * 78
 
@@ -103,8 +104,19 @@ def bearing_text(
 
 
 def _fits(scene, solution):
-    fits = scene.fits
-    return "" if fits is None else fit_report(fits, scene.element.bearing)
+    return "" if scene.fits is None else fits_text(scene)
+
+
+def fits_text(scene: Scene) -> str:
+    """Fits of a scene, and what they make of the preload of a set.
+
+    Args:
+        scene: With fits.
+    """
+    text = fit_report(scene.fits, scene.element.bearing)
+    if scene.set_preload is None:
+        return text
+    return f"{text}\n{preload_report(scene.set_preload)}"
 
 
 def _oil(scene, solution):

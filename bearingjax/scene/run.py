@@ -1,5 +1,6 @@
 """Running what a scene asks for."""
 
+import dataclasses
 import functools
 from pathlib import Path
 
@@ -13,9 +14,10 @@ from ..statics.preload import preload
 from ..statics.solution import Solution
 from .fit_table import fitted
 from .optimise_table import Optimisation, design_of
-from .programs import call_once
+from .programs import called
 from .quantity import SceneError
 from .read import Scene
+from .set_preload import preload_warnings, set_preload
 
 
 def run_scene(scene: Scene, programs: Path | None = None) -> Solution:
@@ -40,10 +42,10 @@ def run_scene(scene: Scene, programs: Path | None = None) -> Solution:
             f"run_scene: `scene` is a {type(scene).__name__}; it must be a Scene, as of"
             " read_scene."
         )
-    return _called(
+    return called(
         programs,
         _solved,
-        _element(scene, programs),
+        fitted(scene.fits, _ground_element(scene, programs)),
         as_array(scene.load, float),
         {name: as_array(value, float) for name, value in scene.prescribed.items()},
         scene.free,
@@ -54,19 +56,32 @@ def run_scene(scene: Scene, programs: Path | None = None) -> Solution:
     )
 
 
-def _element(scene, programs) -> BearingElement:
-    """The bearing of a scene, with its preload set, mounted."""
-    element = scene.element
-    if scene.preload_force is not None:
-        force = as_array(scene.preload_force, float)
-        element = _called(programs, _preloaded, element, force)
-    return fitted(scene.fits, element)
+def with_set_preload(scene: Scene, programs: Path | None = None) -> Scene:
+    """The scene with what its fits make of the preload of a set, and what is odd.
+
+    A scene without fits, or whose rows do not press each other, stays as it is:
+    nothing is compiled.
+
+    Args:
+        scene: From `read_scene`.
+        programs: As of `run_scene`.
+    """
+    if scene.fits is None:
+        return scene
+    ground = _ground_element(scene, programs)
+    found = set_preload(scene.fits, ground, scene.speed, programs)
+    if found is None:
+        return scene
+    told = (*scene.warnings, *preload_warnings(found))
+    return dataclasses.replace(scene, set_preload=found, warnings=told)
 
 
-def _called(programs, function, *arguments):
-    if programs is None:
-        return function(*arguments)
-    return call_once(function, *arguments, folder=programs)
+def _ground_element(scene, programs) -> BearingElement:
+    """The bearing of a scene, with its preload set, before it is mounted."""
+    if scene.preload_force is None:
+        return scene.element
+    force = as_array(scene.preload_force, float)
+    return called(programs, _preloaded, scene.element, force)
 
 
 def _solved(element, load, prescribed, free, fixed_ring, speed, points, tolerance):

@@ -82,6 +82,7 @@ from .linearise import linearise as linearise
 from .load import solve_load as solve_load
 from .options import SolveOptions as SolveOptions
 from .preload import preload as preload
+from .preload import remaining_preload as remaining_preload
 from .rating import Ratings as Ratings
 from .rating import dynamic_capacity as dynamic_capacity
 from .rating import fatigue_load_limit as fatigue_load_limit

@@ -1,13 +1,15 @@
-"""Preload by force: the ring offsets that give a set a wanted axial preload."""
+"""Preload by force: the ring offsets that give a set an axial preload, and what there
+is of it."""
 
 from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..design import Bearing, BearingSet, SetRow, is_self_aligning
+from ..design import Bearing, BearingSet, SetRow, is_self_aligning, rows_of
 from ..design.checks import positive
 from ..element.bearing_element import BearingElement, check_element
+from ..element.inertia import Speed
 from ..numerics.types import Scalar, as_real
 from .load import solve_load
 from .support import restrained_freedoms
@@ -70,6 +72,39 @@ def preload(
     )
 
 
+def remaining_preload(
+    element: BearingElement[Any], speed: Speed | None = None, *, throw: bool = True
+) -> Scalar:
+    """Axial force with which the rows of a set press each other, unloaded [N].
+
+    Of a set as it is: ground, or mounted and warm. Its rings are coaxial, and its inner
+    rings stand where the rows of both sides press alike; 0 where there is play.
+
+    Args:
+        element: A set with rows of both sides.
+        speed: Of the rings, which moves balls outwards; `None`: at rest.
+        throw: Raise if the solve fails; otherwise the force is then NaN.
+
+    Returns:
+        What the rows that carry load along +z bear together, on their inner rings;
+        differentiable.
+
+    Raises:
+        TypeError: If `element` is no BearingElement.
+        ValueError: As `check_opposed`.
+        SolveError: If the solve fails and `throw` is set.
+    """
+    check_element("remaining_preload", element)
+    bearing = element.bearing
+    check_opposed("remaining_preload", bearing)
+    still = jnp.zeros(6, bearing.rows[0].position.dtype)
+    solution = solve_load(element, still, free=["uz"], speed=speed, throw=throw)
+    mine = BearingSet(tuple(row for row in bearing.rows if not row.mirrored))
+    alone = eqx.tree_at(lambda e: e.bearing, element, mine)
+    force = alone.force(solution.displacement, speed)[8]
+    return jnp.where(solution.converged, force, jnp.nan)
+
+
 def check_preload(bearing: Bearing | BearingSet, force: Scalar | float) -> None:
     """Raise unless `preload` can preload this bearing.
 
@@ -83,17 +118,43 @@ def check_preload(bearing: Bearing | BearingSet, force: Scalar | float) -> None:
             inner ring, a row holds no axial load or has a spring, or the force is not
             positive.
     """
-    problem = None
-    if not isinstance(bearing, BearingSet):
-        problem = "a bearing alone is preloaded by its clearance or by a load"
-    elif {row.mirrored for row in bearing.rows} != {False, True}:
-        problem = "no rows face each other"
-    elif is_self_aligning(bearing):
-        problem = "the rows of a self-aligning bearing share one inner ring"
-    elif any(row.spring is not None for row in bearing.rows):
-        problem = "a row has a spring, which presses it"
-    elif any("uz" not in restrained_freedoms(row.bearing) for row in bearing.rows):
-        problem = "a row holds no axial load"
-    if problem:
-        raise ValueError(f"preload: not by force: {problem}.")
+    check_opposed("preload", bearing)
+    if any(row.spring is not None for row in rows_of(bearing)):
+        raise ValueError("preload: a row has a spring, which presses it.")
     positive("preload", "force", as_real(force), "N")
+
+
+def check_opposed(owner: str, bearing: Bearing | BearingSet) -> None:
+    """Raise unless rows of a set can press each other along the axis.
+
+    Args:
+        owner: Function that was called.
+        bearing: The design.
+
+    Raises:
+        ValueError: If `is_opposed` is false, with the reason.
+    """
+    problem = _not_opposed(bearing)
+    if problem:
+        raise ValueError(f"{owner}: {problem}.")
+
+
+def is_opposed(bearing: Bearing | BearingSet) -> bool:
+    """Whether a bearing is a set whose rows press each other along the axis.
+
+    Args:
+        bearing: The design.
+    """
+    return _not_opposed(bearing) is None
+
+
+def _not_opposed(bearing) -> str | None:
+    if not isinstance(bearing, BearingSet):
+        return "a bearing alone is preloaded by its clearance or by a load"
+    if {row.mirrored for row in bearing.rows} != {False, True}:
+        return "no rows face each other"
+    if is_self_aligning(bearing):
+        return "the rows of a self-aligning bearing share one inner ring"
+    if any("uz" not in restrained_freedoms(row.bearing) for row in bearing.rows):
+        return "a row holds no axial load"
+    return None

@@ -13,13 +13,16 @@ from tolerances import DIFFERENCE
 import bearingjax as bj
 from bearingjax.design import (
     Limits,
+    Material,
     Rib,
     Ribs,
+    WarmMaterial,
     clearance_range,
     fit_state,
     mounting_at,
     raceway_diameters,
     radial_clearance,
+    row_shifts,
     sized,
     with_radial_clearance,
 )
@@ -59,6 +62,7 @@ SEATS = bj.Mounting(
     housing_diameter=0.080,
     shaft_interference=10 * MICRON,
     housing_interference=-10 * MICRON,
+    ring_width=0.015,
 )
 WARM = bj.FitConditions(40.0, 38.0, 35.0, 25.0, 20.0, 800.0)
 
@@ -119,10 +123,76 @@ def test_angular_contact_meets_at_a_smaller_angle():
     pair = bj.BearingSet.back_to_back(ANGULAR, 0.02, 4 * MICRON)
     rows = bj.mounted(pair, SEATS, WARM).rows
     assert [float(r.bearing.contact_angle) for r in rows] == near(2 * [angle])
-    # What the groove centres come nearer along the axis presses both rows.
-    pressed = 2 * MICRON + A * np.sin(0.4) - axial
+    # What the groove centres come nearer along the axis presses both rows; what grows
+    # between them moves the row at +z along +z.
+    lower, upper = (float(x) for x in row_shifts(pair, SEATS, WARM))
+    assert upper == near(-lower)
+    pressed = 2 * MICRON + A * np.sin(0.4) - axial + lower
     assert [float(r.inner_offset) for r in rows] == pytest.approx(
         [pressed, -pressed], rel=1e-7
+    )
+
+
+ALUMINIUM = WarmMaterial(Material(70e9, 0.33, 2700.0), 23e-6)
+
+
+def test_what_grows_between_the_rows():
+    """Middles 0.1 m apart: rings on 15 mm of it, on the rest shaft and housing."""
+    pair = bj.BearingSet.back_to_back(ANGULAR, 0.1)
+    seats = replace(SEATS, shaft_interference=-1 * MICRON, housing=ALUMINIUM)
+    warm = bj.FitConditions(shaft=40.0, inner_ring=30.0, outer_ring=20.0, housing=10.0)
+    loose = float(fit_state(sized(seats, ANGULAR), warm).shaft_interference)
+    seats = replace(seats, shaft_interference=-1 * MICRON - loose)
+    inner = 12e-6 * (30.0 * 0.015 + 40.0 * 0.085)
+    outer = 12e-6 * 20.0 * 0.015 + 23e-6 * 10.0 * 0.085
+    shifts = [float(x) for x in row_shifts(pair, seats, warm)]
+    assert shifts == near([-0.5 * (inner - outer), 0.5 * (inner - outer)])
+    # Rows that touch have rings alone between them, in whatever order they are told.
+    near_by = bj.BearingSet.tandem(ANGULAR, 0.015, 3)
+    turned = bj.BearingSet(near_by.rows[::-1])
+    step = 12e-6 * (30.0 - 20.0) * 0.015
+    assert [float(x) for x in row_shifts(near_by, seats, warm)] == pytest.approx(
+        [-step, 0.0, step], rel=1e-9, abs=1e-18
+    )
+    assert [float(x) for x in row_shifts(turned, seats, warm)] == pytest.approx(
+        [step, 0.0, -step], rel=1e-9, abs=1e-18
+    )
+
+
+def test_a_tight_ring_is_shorter():
+    """Poisson's contraction: ν/E (σr + σθ), at the bore p (k - 1), k of thick rings."""
+    state = fit_state(sized(SEATS, DEEP))
+    d, f = 0.025, 0.03056
+    hoop, radial = float(state.ring_stress), -float(state.shaft_pressure)
+    shorter = 0.3 / 206e9 * (hoop + radial)
+    assert float(state.strains.inner_ring) == near(-shorter)
+    assert hoop / -radial == near((f**2 + d**2) / (f**2 - d**2))
+    assert float(state.strains.outer_ring) == 0.0  # loose
+    tight = fit_state(sized(replace(SEATS, housing_interference=10 * MICRON), DEEP))
+    assert float(tight.strains.outer_ring) > 0.0
+
+
+def test_a_turning_ring_is_shorter():
+    """The stresses of a rotating ring (Timoshenko & Goodier), integrated over it."""
+    speed, a, b, nu = 3000.0, 0.0125, 0.01528, 0.3
+    still = replace(SEATS, shaft_interference=-100 * MICRON)
+    found = fit_state(sized(still, DEEP), bj.FitConditions(speed=speed)).strains
+    x, weight = np.polynomial.legendre.leggauss(20)
+    r = 0.5 * (a + b) + 0.5 * (b - a) * x
+    k = 7850.0 * speed**2 * (3 + nu) / 8
+    radial = k * (a**2 + b**2 - (a * b / r) ** 2 - r**2)
+    hoop = k * (a**2 + b**2 + (a * b / r) ** 2 - (1 + 3 * nu) / (3 + nu) * r**2)
+    total = 0.5 * (b - a) * np.sum(weight * (radial + hoop) * 2 * np.pi * r)
+    mean = total / (np.pi * (b**2 - a**2))
+    assert float(found.inner_ring) == near(-nu / 206e9 * mean)
+
+
+def test_uniform_warmth_of_one_steel_presses_nothing():
+    pair = bj.BearingSet.face_to_face(ANGULAR, 0.1)
+    warm = bj.FitConditions(*5 * [60.0])
+    alike = replace(SEATS, shaft_interference=0.0)
+    assert [float(x) for x in row_shifts(pair, alike, warm)] == pytest.approx(
+        [0.0, 0.0], abs=1e-15
     )
 
 
@@ -189,10 +259,25 @@ def test_slopes_by_interference_and_temperature():
         conditions = replace(WARM, inner_ring=x[1], elements=x[2], speed=x[3])
         return bj.mounted(ANGULAR, seats, conditions).contact_angle
 
-    one = with_slopes(angle)
+    check_slopes(angle, sign=-1)  # all of them take clearance
+
+
+def test_slopes_of_what_grows_between_rows():
+    pair = bj.BearingSet.back_to_back(ANGULAR, 0.02)
+
+    def shift(x):
+        seats = replace(SEATS, shaft_interference=x[0])
+        conditions = replace(WARM, inner_ring=x[1], shaft=x[2], speed=x[3])
+        return 1e6 * row_shifts(pair, seats, conditions)[1]
+
+    check_slopes(shift)
+
+
+def check_slopes(function, sign=0):
+    one = with_slopes(function)
     x = np.array([10 * MICRON, 38.0, 35.0, 800.0])
     slopes = np.array(one(jnp.array(x))[0])
-    assert (slopes < 0).all()  # all of them take clearance
+    assert not sign or (sign * slopes > 0).all()
     for i, step in enumerate(1e-3 * x):
         shift = step * np.eye(4)[i]
         ends = [float(one(jnp.array(x + s * shift))[1]) for s in (1, -1)]
@@ -268,5 +353,10 @@ def test_what_is_not_allowed():
         bj.mounted(DEEP, replace(SEATS, bore=0.031))
     with pytest.raises(ValueError, match="`shaft_interference`.*1 % of `bore`"):
         replace(SEATS, shaft_interference=0.01)
+    pair = bj.BearingSet.back_to_back(ANGULAR, 0.02)
+    with pytest.raises(ValueError, match="`ring_width` is None; a set needs it"):
+        bj.mounted(pair, replace(SEATS, ring_width=None))
+    with pytest.raises(ValueError, match="`ring_width` is 15 m; it must be above 0"):
+        replace(SEATS, ring_width=15.0)
     with pytest.raises(ValueError, match="`place` is 'middel'; it must be one of mid"):
         mounting_at(SEATS, "middel", **sizes())

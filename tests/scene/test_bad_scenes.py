@@ -500,7 +500,7 @@ SETTINGS = {
     "preload of a sprung pair": (
         "sprung_pair",
         "set.preload_force=300 N",
-        "[set]: preload: not by force: a row has a spring, which presses it.",
+        "[set]: preload: a row has a spring, which presses it.",
     ),
     "preload that pulls": (
         "ball_pair",

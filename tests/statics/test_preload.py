@@ -172,6 +172,61 @@ def test_load_solve_with_a_spring():
     assert float(opened.stiffness[8, 8]) == pytest.approx(8e4, rel=0.01)
 
 
+def test_what_is_left_of_a_preload(pair):
+    ground = bj.preload(pair, 400.0)
+    left = remaining(ground)
+    assert float(left) == pytest.approx(400.0, rel=1e-9)
+    # Two rows against another one: the inner rings stand where both sides press alike.
+    one, other = balls(), balls(8, contact_angle=0.3)
+    uneven = bj.BearingSet(
+        (
+            bj.SetRow(one, -0.03, inner_offset=3e-6),
+            bj.SetRow(one, -0.01, inner_offset=5e-6),
+            bj.SetRow(other, 0.02, mirrored=True),
+        )
+    )
+    element = bj.BearingElement(uneven)
+    q = bj.solve_load(element, np.zeros(6), free=["uz"]).displacement
+    _, axial, _ = evaluate(element, q)
+    assert float(axial[0] + axial[1]) == pytest.approx(-float(axial[2]), rel=1e-9)
+    assert float(remaining(element)) == pytest.approx(-float(axial[2]), rel=1e-9)
+    # With play there is none, and no slope.
+    loose = bj.BearingElement(bj.BearingSet.back_to_back(balls(), 0.02, -4e-6))
+    assert float(remaining(loose)) == 0.0
+
+
+@eqx.filter_jit
+def remaining(element):
+    return bj.remaining_preload(element, throw=False)
+
+
+def test_slope_of_what_is_left():
+    """Of a pair it is the stiffness of one row, for half of the approach."""
+
+    @eqx.filter_jit
+    def both(offset):
+        def force(offset):
+            pair = bj.BearingSet.back_to_back(balls(), 0.02, offset)
+            return bj.remaining_preload(bj.BearingElement(pair))
+
+        return jax.value_and_grad(force)(offset)
+
+    for offset in (8e-6, -4e-6):
+        slope = float(both(offset)[1])
+        ends = [float(both(offset + sign * 1e-9)[0]) for sign in (1, -1)]
+        difference = (ends[0] - ends[1]) / 2e-9
+        assert slope == pytest.approx(difference, rel=1e-6, abs=1e-9)
+    assert slope == 0.0
+
+
+def test_a_spring_leaves_its_force(sprung):
+    element, spring = sprung
+    left = float(bj.remaining_preload(element))
+    q = bj.solve_load(element, np.zeros(6), free=["uz"]).displacement
+    travel = float(evaluate(element, q)[2][1].travel)
+    assert left == pytest.approx(push(spring, travel), rel=1e-9)
+
+
 ALIGNING = bj.SelfAligningBallRow(
     9, 0.046, 0.0087, inner_osculation=0.52, row_offset=0.006
 )
@@ -190,6 +245,9 @@ def test_bad_input(pair):
     ):
         with pytest.raises(ValueError, match=problem):
             bj.preload(element, 100.0)
+        if "spring" not in problem:
+            with pytest.raises(ValueError, match=f"remaining_preload: .*{problem}"):
+                bj.remaining_preload(element)
     loose = bj.BearingSet.back_to_back(roller, 0.02, spring=bj.PreloadSpring(10.0))
     with pytest.raises(ValueError, match="row 1 has a spring, but holds no axial"):
         bj.solve_load(bj.BearingElement(loose), [0, -10.0, 0, 0, 0, 0])

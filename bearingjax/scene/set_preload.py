@@ -1,0 +1,212 @@
+"""Preload of a set on its seats: as it is ground, mounted, and in operation."""
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import equinox as eqx
+import jax
+import numpy as np
+
+from ..design import Limits, Mounting, mounted, mounting_at, sized
+from ..element import BearingElement, Speed
+from ..numerics.types import as_array
+from ..statics.preload import is_opposed, remaining_preload
+from ..statics.sweep import stack_designs
+from .fit_table import Fits
+from .programs import called
+
+_MUCH = 2.0
+"""Times the preload of the bearings as ground from which its change is warned of."""
+
+
+@dataclasses.dataclass(frozen=True)
+class SetPreload:
+    """Axial force with which the rows of a set press each other, unloaded [N].
+
+    Attributes:
+        ground: Before they are mounted.
+        mounted: At rest, at the temperature of the measured sizes; at the sizes of the
+            solve.
+        operating: In operation, likewise.
+        mounted_range: Least and largest over the tolerances of shaft, housing and
+            rings; `None` where all sizes are exact. NaN: with that fit the balls have
+            no contact angle, or no equilibrium was found.
+        operating_range: Likewise in operation.
+    """
+
+    ground: float
+    mounted: float
+    operating: float
+    mounted_range: tuple[float, float] | None
+    operating_range: tuple[float, float] | None
+
+
+def set_preload(
+    fits: Fits,
+    ground: BearingElement[Any],
+    speed: Speed | None,
+    programs: Path | None = None,
+) -> SetPreload | None:
+    """Preload of a set on its seats; `None` if its rows do not press each other.
+
+    Args:
+        fits: Its seats.
+        ground: The bearing before it is mounted, ground to its preload.
+        speed: Of the rings in operation; `None`: at rest.
+        programs: As of `called`.
+    """
+    if not is_opposed(ground.bearing):
+        return None
+    # On seats that do not touch the set is as it is ground, and of one structure with
+    # the others.
+    loose = -1e-3 * fits.mounting.bore
+    states = {
+        "ground": (_on(_fitting(fits.mounting, loose, loose), None, ground), None),
+        "mounted": (_on(fits.mounting, None, ground), None),
+        "operating": (_on(fits.mounting, fits.conditions, ground), speed),
+    }
+    scatters = _scatters(fits)
+    for place in ("tightest", "loosest") if scatters else ():
+        seats = _seats(fits, ground, place)
+        states[f"{place} mounted"] = _on(seats, None, ground), None
+        states[f"{place} operating"] = _on(seats, fits.conditions, ground), speed
+    possible = {k: state for k, state in states.items() if state[0] is not None}
+    elements = stack_designs([element for element, _ in possible.values()])
+    speeds = None
+    if speed is not None:
+        given = [Speed(0.0, 0.0) if s is None else s for _, s in possible.values()]
+        speeds = jax.tree.map(lambda *x: as_array(np.stack(x), float), *given)
+    found = np.asarray(called(programs, _preloads, elements, speeds))
+    force = dict.fromkeys(states, np.nan)
+    force |= {k: float(x) for k, x in zip(possible, found, strict=True)}
+
+    def ends(state):
+        pair = [force[f"{place} {state}"] for place in ("loosest", "tightest")]
+        return (min(pair), max(pair))
+
+    return SetPreload(
+        force["ground"],
+        force["mounted"],
+        force["operating"],
+        ends("mounted") if scatters else None,
+        ends("operating") if scatters else None,
+    )
+
+
+def _preloads(elements, speeds):
+    def one(element, speed):
+        return remaining_preload(element, speed, throw=False)
+
+    return eqx.filter_vmap(one)(elements, speeds)
+
+
+def _scatters(fits: Fits) -> bool:
+    """Whether the sizes of the seats do; the clearance is what the set is ground at."""
+    return any(
+        float(ends.lower) != float(ends.upper)
+        for name, ends in fits.limits.items()
+        if name != "clearance"
+    )
+
+
+def _seats(fits, ground, place) -> Mounting:
+    """The seats somewhere in their tolerances."""
+    whole = jax.device_get(sized(fits.mounting, ground.bearing))
+    own = float(whole.radial_clearance)
+    limits = {**fits.limits, "clearance": Limits(own, own)}
+    there = mounting_at(whole, place, **limits)
+    return _fitting(fits.mounting, there.shaft_interference, there.housing_interference)
+
+
+def _fitting(mounting, shaft, housing) -> Mounting:
+    """The seats with other interferences [m]."""
+    return eqx.tree_at(
+        lambda m: (m.shaft_interference, m.housing_interference),
+        mounting,
+        (as_array(shaft, float), as_array(housing, float)),
+    )
+
+
+def _on(mounting, conditions, ground) -> BearingElement | None:
+    """The set on its seats; `None` if its balls have no contact angle left."""
+    try:
+        there = mounted(ground.bearing, mounting, conditions)
+    except ValueError:
+        return None
+    return eqx.tree_at(lambda e: e.bearing, ground, there)
+
+
+def preload_warnings(found: SetPreload) -> list[str]:
+    """What is odd about the preload of a set on its seats, a sentence each.
+
+    Args:
+        found: What there is of it.
+    """
+    ground, operating = found.ground, found.operating
+    least, most = found.operating_range or (operating, operating)
+    ends = ""
+    if found.operating_range is not None:
+        ends = f" ({_newtons(least)} to {_newtons(most)} over the tolerances)"
+    if operating == 0.0 < ground:
+        return [
+            f"preload: the set, ground to {_newtons(ground)}, has none left in"
+            f" operation{ends}: fits, warmth and speed take it"
+        ]
+    if ground > 0.0 and not 1.0 / _MUCH < operating / ground < _MUCH:
+        return [
+            f"preload: {_newtons(ground)} as ground are {_newtons(operating)} in"
+            f" operation{ends}, by fits, warmth and speed"
+        ]
+    if least == 0.0 < ground:
+        return [
+            "preload: at the loosest sizes of the tolerances the set has none left in"
+            " operation"
+        ]
+    return []
+
+
+def preload_as_dict(found: SetPreload) -> dict[str, Any]:
+    """The preload of a set as plain numbers [N]; what is not possible is null.
+
+    Args:
+        found: What there is of it.
+
+    Returns:
+        ground, mounted, operating; where sizes scatter also worst: mounted, operating,
+        each least and largest.
+    """
+    numbers: dict[str, Any] = {
+        name: _plain(getattr(found, name))
+        for name in ("ground", "mounted", "operating")
+    }
+    ranges = {"mounted": found.mounted_range, "operating": found.operating_range}
+    worst = {k: [_plain(x) for x in ends] for k, ends in ranges.items() if ends}
+    return {**numbers, "worst": worst} if worst else numbers
+
+
+def _plain(force: float) -> float | None:
+    return force if np.isfinite(force) else None
+
+
+def preload_report(found: SetPreload) -> str:
+    """Readable report of the preload of a set.
+
+    Args:
+        found: What there is of it.
+    """
+    text = (
+        f"preload of the set, unloaded: ground {_newtons(found.ground)}, mounted"
+        f" {_newtons(found.mounted)}, operating {_newtons(found.operating)}"
+    )
+    for words, ends in (
+        ("mounted", found.mounted_range),
+        ("operating", found.operating_range),
+    ):
+        if ends is not None:
+            text += f"\n  {words:<17}{_newtons(ends[0])} to {_newtons(ends[1])}"
+    return text
+
+
+def _newtons(force: float) -> str:
+    return f"{force:.4g} N" if np.isfinite(force) else "not possible"
