@@ -1,7 +1,8 @@
 """`bearingjax optimise`."""
 
+from . import jax_settings
 from .options import add_plot, add_report, add_scene
-from .outputs import Reporter, check_outputs, save, write
+from .outputs import Reporter, check_outputs, draws_bearing, save, write
 from .status import NOT_SOLVED, SOLVED, complain
 
 
@@ -24,12 +25,15 @@ def add(commands):
 def run(options) -> int:
     """Optimise the bearing of a scene."""
     from ..numerics import SolveError
+    from ..optimise.system import element_of
     from ..scene import (
         optimisation_as_dict,
         optimisation_report,
         read_optimisation,
         run_optimisation,
+        scene_of_design,
         unsolved_start_as_dict,
+        with_set_preload,
         write_numbers,
     )
 
@@ -48,7 +52,10 @@ def run(options) -> int:
         complain(error)
         return NOT_SOLVED
 
-    text = optimisation_report(task, found) if found.converged else ""
+    best = scene_of_design(task, found.element)
+    if found.converged:
+        best = with_set_preload(best, jax_settings.programs())
+    text = optimisation_report(task, found, best) if found.converged else ""
 
     def draw(path, **format):
         from ..plot import optimised
@@ -57,12 +64,13 @@ def run(options) -> int:
 
     def tell(path):
         texts, draws = {"Optimised design": text}, {"Before and after": draw}
-        page(path, task.scene.name, texts, task.inputs, draws)
+        drawing = draws_bearing(task.scene, element_of(found.element))
+        page(path, task.scene.name, texts, task.inputs, draws, drawing=drawing)
 
     write(
         (
             options.json,
-            lambda path: write_numbers(path, optimisation_as_dict(task, found)),
+            lambda path: write_numbers(path, optimisation_as_dict(task, found, best)),
         ),
         (options.plot, draw if found.converged else None),
         (options.report, tell if found.converged else None),

@@ -4,6 +4,7 @@ from typing import Any
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 
 from ..element.bearing_element import BearingElement
 from ..statics.cases import Cases
@@ -61,6 +62,24 @@ class _OfCases(AbstractMeasure):
             )
         return found.life_hours
 
+    @eqx.filter_jit
+    def of_each_case(self, element: BearingElement, solution: Any) -> Any:
+        """Life under each case, as if it were alone (case,) [1, h]; infinite without
+        load.
+
+        Args:
+            element, solution: As of `life`.
+        """
+
+        def one(solution):
+            found = life_of(element, solution, self.conditions)
+            if self.hours:
+                return found.life_hours
+            none = found.damage == 0
+            return jnp.where(none, jnp.inf, 1.0 / jnp.where(none, 1.0, found.damage))
+
+        return jax.vmap(one)(loads_of(solution))
+
 
 class RatingLife(_OfCases):
     """Rating life under all cases [1, h].
@@ -101,6 +120,13 @@ class Damage(_OfCases):
 
     def __call__(self, element, cases, solution):
         return 1.0 / self.life(element_of(element), cases, solution)
+
+    @property
+    def as_told(self):
+        return RatingLife(self.conditions, self.hours)
+
+    def told(self, value):
+        return 1.0 / value
 
     @property
     def label(self):

@@ -54,6 +54,15 @@ class AbstractMeasure(eqx.Module):
         return self
 
     @property
+    def as_told(self) -> "AbstractMeasure":
+        """What reports show in its place: itself, or what a designer asks for."""
+        return self
+
+    def told(self, value: Any) -> Any:
+        """The value of `as_told` where this measure has a value."""
+        return value
+
+    @property
     def least_size(self) -> float:
         """Least number by which an optimisation divides it as an objective."""
         return 0.0

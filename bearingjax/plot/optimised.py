@@ -8,7 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design import AbstractRollerBearing, rows_of
-from ..optimise.measure import label_of
+from ..optimise.life import Damage
+from ..optimise.measure import AbstractMeasure, AbstractSmooth, label_of
 from ..optimise.optimise import Optimised
 from ..optimise.system import element_of, loads_of
 from .style import (
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
     import matplotlib.axes
     import matplotlib.figure
 
+_FAR = 50.0
+"""Longest over shortest life of cases from which their axis is logarithmic."""
+
 _SIDES = {"before": (GREY, "--"), "after": (ROLLER, "-")}
 
 
@@ -36,8 +40,9 @@ def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
 
     Top left the profile, roller and the busier raceway together; top right the
     pressure along the roller with the highest pressure, of the case where that was
-    before; bottom left the peak pressure of every case; bottom right the objective
-    over the steps of the search. Balls have no profile and no pressure along it.
+    before; bottom left the peak pressure of every case, or its life where lives are
+    made largest; bottom right the objective over the steps of the search. Balls have no
+    profile and no pressure along it.
 
     Args:
         found: From `optimise`.
@@ -150,37 +155,59 @@ def _pressures(found, case, ax):
 
 
 def _cases(found, ax):
-    """Peak pressure [MPa] of every case."""
-    for shift, side in ((-0.2, "before"), (0.2, "after")):
-        pressure = np.asarray(getattr(found, side).solution.roller_pressure)
-        peaks = 1e-6 * pressure.max(axis=(1, 2))
+    """Peak pressure [MPa] of every case, or its life if that is the objective."""
+    wanted = found.objective
+    lives = isinstance(wanted, Damage)
+    sides = {"before": (-0.2, found.initial), "after": (0.2, found.element)}
+    for side, (shift, element) in sides.items():
+        solution = getattr(found, side).solution
+        if lives:
+            values = np.asarray(wanted.of_each_case(element, solution))
+            values = np.where(np.isfinite(values), values, np.nan)
+        else:
+            pressure = np.asarray(solution.roller_pressure)
+            values = 1e-6 * pressure.max(axis=(1, 2))
         colour, _ = _SIDES[side]
-        bars = ax.bar(
-            np.arange(len(peaks)) + shift, peaks, 0.38, color=colour, label=side
-        )
-        if len(peaks) <= 8:
-            ax.bar_label(bars, fmt="%.0f", fontsize=SMALL, padding=2)
-    if len(peaks) <= 12:
-        ax.set_xticks(np.arange(len(peaks)))
-    ax.margins(y=0.16)
+        places = np.arange(len(values)) + shift
+        bars = ax.bar(places, values, 0.38, color=colour, label=side)
+        if len(values) <= 8:
+            fmt = _life_label if lives else "%.0f"
+            ax.bar_label(bars, fmt=fmt, fontsize=SMALL, padding=2)
+    if len(values) <= 12:
+        ax.set_xticks(np.arange(len(values)))
     ax.set_xlabel("operating case")
-    ax.set_ylabel("peak pressure [MPa]")
-    ax.set_title("Peak pressure of the cases")
+    ax.margins(y=0.16)
+    if lives:
+        if np.nanmax(values) > _FAR * np.nanmin(values):
+            ax.set_yscale("log")
+        without_offset(ax)
+        ax.set_ylabel(f"life [{'h' if wanted.hours else 'revolutions'}]")
+        ax.set_title("Life under each case alone")
+    else:
+        ax.set_ylabel("peak pressure [MPa]")
+        ax.set_title("Peak pressure of the cases")
     ax.legend(fontsize=SMALL, ncols=2, loc="upper right")
+
+
+def _life_label(value):
+    if not np.isfinite(value):
+        return "no end"
+    return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
 
 
 def _history(found, ax):
     """Objective over its start and, where there are constraints, their miss."""
     without_offset(ax)
-    history = found.history
-    steps = np.arange(len(history.objective))
-    size = abs(history.objective[0]) or 1.0
-    name = label_of(found.objective)
-    ax.plot(
-        steps, history.objective / size, "o-", color=ROLLER, markersize=4, label=name
-    )
+    history, measure = found.history, found.objective
+    steps, values = np.arange(len(history.objective)), history.objective
+    if isinstance(measure, AbstractMeasure):
+        measure, values = measure.as_told, measure.told(values)
+    size = abs(values[0]) or 1.0
+    name = label_of(measure)
+    ax.plot(steps, values / size, "o-", color=ROLLER, markersize=4, label=name)
     ax.set_xlabel("step of the search")
-    ax.set_ylabel(f"smooth {name} over its start")
+    smooth = "smooth " if isinstance(measure, AbstractSmooth) else ""
+    ax.set_ylabel(f"{smooth}{name} over its start")
     title = f"{found.n_evaluations} designs evaluated"
     ax.set_title(f"The search: {title}")
     ax.xaxis.get_major_locator().set_params(integer=True)

@@ -48,6 +48,7 @@ from .noise_run import NoiseRun as NoiseRun
 from .noise_run import run_noise as run_noise
 from .noise_scene import NoiseScene as NoiseScene
 from .noise_table import read_noise as read_noise
+from .optimise_design import scene_of_design as scene_of_design
 from .optimise_report import optimisation_as_dict as optimisation_as_dict
 from .optimise_report import optimisation_report as optimisation_report
 from .optimise_report import unsolved_start_as_dict as unsolved_start_as_dict

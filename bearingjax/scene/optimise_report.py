@@ -8,7 +8,11 @@ from ..numerics.units import display_unit, unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
+from .optimise_design import scene_of_design
 from .optimise_table import WARMTH, Optimisation
+from .output import fits_as_dict
+from .read import Scene
+from .report import fits_text
 
 _RULE = "-" * 78
 _CELSIUS = 273.15
@@ -16,13 +20,17 @@ _CELSIUS = 273.15
 _STIFFNESSES = {"N/m": (1e-6, "kN/mm"), "N m": (1e-3, "N m/mrad")}
 
 
-def optimisation_report(task: Optimisation, found: Optimised) -> str:
+def optimisation_report(
+    task: Optimisation, found: Optimised, best: Scene | None = None
+) -> str:
     """Readable report, before and after.
 
     Args:
         task: What was asked.
         found: What came of it, converged.
+        best: The scene of the best design, `None`: as of `scene_of_design`.
     """
+    best = scene_of_design(task, found.element) if best is None else best
     cases = len(found.after.solution.result)
     plural = "s" * (cases != 1)
     head = (
@@ -31,30 +39,44 @@ def optimisation_report(task: Optimisation, found: Optimised) -> str:
         f" evaluated, {found.n_gradients} with gradient, {len(found.rejected)} rejected"
     )
     parts = [head, _variables(found), _measures(found), _pressures(found)]
+    if best.fits is not None:
+        parts.append(f"the best design\n{fits_text(best)}")
     warned = [f"warning: rejected: {why}" for why in dict.fromkeys(found.rejected)]
-    told = (*task.scene.warnings, *found.after.warnings)
-    warned += [f"warning: {text}" for text in told]
-    warned += [f"warning: before: {text}" for text in found.before.warnings]
+    warned += [f"warning: {text}" for text in (*best.warnings, *found.after.warnings)]
+    warned += [f"warning: before: {text}" for text in _warned_before(task, found)]
     left = f"gradient left {found.optimality:.1e}, tolerance {task.tolerance:.1e}"
     ending = f"converged: {found.message}; {left}"
     return f"\n{_RULE}\n".join([*parts, "\n".join([ending, *warned])])
 
 
-def optimisation_as_dict(task: Optimisation, found: Optimised) -> dict[str, Any]:
+def _warned_before(task, found) -> list[str]:
+    """What was odd about the start, that is not odd about the best design too."""
+    first = scene_of_design(task, found.initial)
+    kept = set(scene_of_design(task, found.element).warnings)
+    return [*(w for w in first.warnings if w not in kept), *found.before.warnings]
+
+
+def optimisation_as_dict(
+    task: Optimisation, found: Optimised, best: Scene | None = None
+) -> dict[str, Any]:
     """An optimised scene as plain numbers and lists, in SI.
 
     Args:
         task: What was asked.
         found: What came of it.
+        best: As of `optimisation_report`.
 
     Returns:
         result, message, optimality, history, evaluations, gradients, rejected,
         warnings (of the best design), warnings_before (of the start), inputs (as of
-        `Optimisation`: the file is a scene again), version; if it
-        converged also variables, objective, constraints and peak_pressure.
+        `Optimisation`: the file is a scene again), version; with fits `fit`, as of
+        `fits_as_dict`, of the best design; if it converged also variables, objective,
+        constraints and peak_pressure, and rating_life (before, after) if it is made
+        largest.
     """
     from .. import __version__
 
+    best = scene_of_design(task, found.element) if best is None else best
     history = {
         name: np.asarray(values).tolist()
         for name, values in found.history._asdict().items()
@@ -69,8 +91,9 @@ def optimisation_as_dict(task: Optimisation, found: Optimised) -> dict[str, Any]
         "evaluations": found.n_evaluations,
         "gradients": found.n_gradients,
         "rejected": list(found.rejected),
-        "warnings": [*task.scene.warnings, *found.after.warnings],
-        "warnings_before": found.before.warnings,
+        **fits_as_dict(best),
+        "warnings": [*best.warnings, *found.after.warnings],
+        "warnings_before": _warned_before(task, found),
         "inputs": task.inputs,
         "version": __version__,
     }
@@ -126,12 +149,24 @@ def _numbers(found):
     return {
         "variables": variables,
         "objective": {"measure": label_of(found.objective), **sides(0)},
+        **_shown(found),
         "constraints": constraints,
         "peak_pressure": {
             "before": _peaks(before).tolist(),
             "after": _peaks(after).tolist(),
         },
     }
+
+
+def _shown(found):
+    """What the objective is told as, by its name, if that is another number."""
+    pair = [_measured(side)[0] for side in (found.before, found.after)]
+    measure, ((_, before), (_, after)) = _told(found.objective, pair)
+    if measure is found.objective:
+        return {}
+    ends = {"before": before, "after": after}
+    finite = {k: float(x) if np.isfinite(x) else None for k, x in ends.items()}
+    return {label_of(measure).replace(" ", "_"): finite}
 
 
 def _measured(outcome: Outcome):
@@ -174,15 +209,25 @@ def _measures(found):
     measures = [found.objective, *(c.measure for c in found.constraints)]
     lines = [f"{'':29}       before        after"]
     pairs = zip(_measured(found.before), _measured(found.after), strict=True)
-    for k, (measure, (first, last)) in enumerate(zip(measures, pairs, strict=True)):
-        scale, unit = _unit(measure)
-        what = f"{label_of(measure)} {f'[{unit}]' if unit else ''}"
+    for k, (measure, values) in enumerate(zip(measures, pairs, strict=True)):
+        shown, (first, last) = _told(measure, values)
+        scale, unit = _unit(shown)
+        what = f"{label_of(shown)} {f'[{unit}]' if unit else ''}"
         line = f"{what:29} {scale * first[1]:12.5g} {scale * last[1]:12.5g}"
-        lines.append(line + ("   made least" if k == 0 else _kept(found, k - 1, scale)))
+        made = "   made least" if shown is measure else "   made largest"
+        lines.append(line + (made if k == 0 else _kept(found, k - 1, scale)))
         if first[0] != first[1]:
             smooth = f"{'  smooth':29} {scale * first[0]:12.5g} {scale * last[0]:12.5g}"
             lines.append(smooth)
     return "\n".join(lines)
+
+
+def _told(measure, values):
+    """What is shown of a measure, and its (smooth, exact) before and after."""
+    if not isinstance(measure, AbstractMeasure) or measure.as_told is measure:
+        return measure, values
+    shown = [tuple(measure.told(x) for x in pair) for pair in values]
+    return measure.as_told, shown
 
 
 def _kept(found, k, scale):

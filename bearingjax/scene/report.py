@@ -104,15 +104,20 @@ def bearing_text(
 
 
 def _fits(scene, solution):
-    return "" if scene.fits is None else fits_text(scene)
+    return fits_text(scene)
 
 
 def fits_text(scene: Scene) -> str:
     """Fits of a scene, and what they make of the preload of a set.
 
     Args:
-        scene: With fits.
+        scene: What was asked.
+
+    Returns:
+        Text, empty without fits.
     """
+    if scene.fits is None:
+        return ""
     text = fit_report(scene.fits, scene.element.bearing)
     if scene.set_preload is None:
         return text

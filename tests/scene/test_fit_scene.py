@@ -198,7 +198,7 @@ def test_hybrid_balls_expand_less(scene):
 
 def test_a_pair_is_pressed_by_its_fits(scene):
     settings = ["fit.at=tightest", "fit.shaft=j5"]
-    fit = FIT.replace('clearance = "CN"', "")
+    fit = FIT.replace('clearance = "CN"', 'ring_width = "15 mm"')
     read = bj.read_scene(scene(PAIR + fit), settings)
     before, after = read.element.bearing.rows, fitted(read.fits, read.element).bearing
     assert float(before[0].inner_offset) == pytest.approx(2 * MICRON)
@@ -521,7 +521,9 @@ def test_bearings_that_need_numbers(scene):
         bj.read_scene(scene(TAPER + fit))
     with pytest.raises(SceneError, match="`fit.clearance`: is for bearings with cl"):
         bj.read_scene(scene(PAIR + FIT))
-    tight = ["fit.shaft=s6", "bearing.contact_angle=12 deg"]
+    with pytest.raises(SceneError, match="`fit.ring_width`: is missing: the width of"):
+        bj.read_scene(scene(PAIR + fit))
+    tight = ["fit.shaft=s6", "bearing.contact_angle=12 deg", "fit.ring_width=15 mm"]
     with pytest.raises(
         SceneError, match=r"\[fit\]: with_radial_clearance: `clearance`"
     ):
@@ -679,3 +681,37 @@ def test_skidding_and_noise_are_of_the_mounted_bearing(name):
     left = float(radial_clearance(task.model.element.bearing))
     taken = float(radial_clearance(row)) - left
     assert 3 * MICRON < taken < 4 * MICRON
+
+
+LONGEST = """
+[life]
+[optimise]
+objective = "rating_life"
+[optimise.variables]
+"fit.shaft_interference" = { from = "0 um", to = "30 um", start = "5 um" }
+"""
+
+
+def test_command_optimises_a_life_by_its_fit(run, scene, tmp_path):
+    """It tells hours, and warns of the seats of the best design, not of the start."""
+    turning = BEARING.replace("[operating]", '[operating]\ninner_speed = "1500 rpm"')
+    seats = FIT.replace('shaft = "k5"', 'shaft_interference = "20 um"')
+    path = scene(turning + seats + LONGEST)
+    out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    done = run("optimise", path, "--json", out, "--plot", picture)
+    assert done.status == 0 and done.err == "" and picture.exists()
+    found = json.loads(out.read_text())
+    hours, (best,) = found["rating_life"], found["variables"]
+    assert hours["after"] > 1.02 * hours["before"] and "made largest" in done.out
+    damage = found["objective"]["after"]["exact"]
+    assert hours["after"] == pytest.approx(1.0 / damage, rel=1e-12)
+    # As the life of a scene with this interference.
+    own = f"fit.shaft_interference={best['after']} m"
+    alone = run("life", path, "--set", own, "--json", out)
+    assert alone.status == 0
+    told = json.loads(out.read_text())
+    assert told["life_hours"] == pytest.approx(hours["after"], rel=1e-8)
+    assert found["fit"] == told["fit"]
+    stressed = [text for text in found["warnings"] if "hoop stress" in text]
+    assert (found["fit"]["mounted"]["ring_stress"] > 127e6) == bool(stressed)
+    assert stressed == [text for text in told["warnings"] if "hoop stress" in text]

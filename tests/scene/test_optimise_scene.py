@@ -88,7 +88,7 @@ def test_command_finds_the_clearance_of_a_stiffness(run, rerun, scene, tmp_path)
         done.out
     )
     assert "optimised over 1 operating case in" in done.out
-    rerun("optimise", out)
+    rerun("optimise", out, pictures=2)
     # Not converged: no numbers that could be taken for results.
     hasty = table.replace("[optimise.v", 'method="adam"\nmax_steps=1\n[optimise.v')
     done = run("optimise", scene(hasty), "--json", out)

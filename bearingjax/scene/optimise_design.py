@@ -1,0 +1,79 @@
+"""An optimised design as a scene: its fits, and what is odd about them."""
+
+import dataclasses
+from typing import Any
+
+import equinox as eqx
+import jax
+import numpy as np
+
+from ..design import Limits, radial_clearance, rows_of
+from ..numerics.types import as_array
+from ..optimise.mounted_bearing import MountedBearing
+from .fit_table import Fits, fit_facts, fit_warnings
+from .optimise_table import Optimisation
+from .read import Scene
+
+
+def scene_of_design(task: Optimisation, design: Any) -> Scene:
+    """The scene with a design that was found in place of its own.
+
+    Args:
+        task: What was asked.
+        design: Best or first design: `Optimised.element`, `initial`.
+
+    Returns:
+        Its bearing, seats and temperatures, at the highest speed of the cases; warnings
+        are of these seats.
+    """
+    scene = task.scene
+    if scene.fits is None or not isinstance(design, MountedBearing):
+        return dataclasses.replace(scene, element=design)
+    bearing = design.unmounted.bearing
+    fits = _fits(scene.fits, design, {v.name for v in task.variables})
+    fits = _turning(fits, task)
+    old = fit_warnings(fit_facts(scene.fits, scene.element.bearing))
+    kept = [text for text in scene.warnings if text not in old]
+    told = (*kept, *fit_warnings(fit_facts(fits, bearing)))
+    return dataclasses.replace(
+        scene, element=design.unmounted, fits=fits, warnings=told
+    )
+
+
+def _fits(fits: Fits, design: MountedBearing, varied: set[str]) -> Fits:
+    """The fits of a design; a number that was free has no tolerance."""
+    exact = Limits(0.0, 0.0)
+    limits, names = dict(fits.limits), list(fits.names)
+    mounting: Any = jax.device_get(design.mounting)
+    for k, (seat, ring) in enumerate(
+        (("shaft", "bore"), ("housing", "outside_diameter"))
+    ):
+        if f"fit.{seat}_interference" in varied:
+            own = float(getattr(mounting, f"{seat}_interference"))
+            # As a deviation: a housing that is small is tight.
+            own = own if seat == "shaft" else -own
+            limits |= {seat: Limits(own, own), ring: exact}
+            names[k] = ""
+    if any(name.startswith("bearing.") for name in varied):
+        row = rows_of(jax.device_get(design.unmounted.bearing))[0].bearing
+        free = float(radial_clearance(row))
+        limits["clearance"] = Limits(free, free)
+    return dataclasses.replace(
+        fits,
+        mounting=design.mounting,
+        conditions=design.conditions,
+        limits=limits,
+        names=(names[0], names[1]),
+    )
+
+
+def _turning(fits: Fits, task: Optimisation) -> Fits:
+    """The fits at the highest speed of the inner ring among the cases."""
+    speeds = task.cases.inner_speed
+    if speeds is None:
+        return fits
+    fastest = np.asarray(speeds)[np.argmax(np.abs(speeds))]
+    conditions = eqx.tree_at(
+        lambda c: c.speed, fits.conditions, as_array(fastest, float)
+    )
+    return dataclasses.replace(fits, conditions=conditions)

@@ -1,0 +1,112 @@
+"""The preload of a set on its seats, as solve and life tell it."""
+
+import json
+
+import numpy as np
+import pytest
+
+import bearingjax as bj
+from bearingjax.scene.fit_table import fitted
+from bearingjax.scene.set_preload import SetPreload, preload_report, preload_warnings
+
+PAIR = """
+[bearing]
+type = "angular_contact_ball"
+n_balls = 9
+pitch_diameter = "38.5 mm"
+ball_diameter = "7.94 mm"
+contact_angle = "25 deg"
+outer_osculation = 0.53
+inner_osculation = 0.52
+
+[set]
+arrangement = "back_to_back"
+spacing = "40 mm"
+preload_force = "200 N"
+
+[operating]
+load = { Fz = "500 N" }
+free = ["uz"]
+
+[fit]
+bore = "25 mm"
+outside_diameter = "52 mm"
+housing_diameter = "80 mm"
+ring_width = "15 mm"
+shaft = "j5"
+housing = "H7"
+
+[temperature]
+inner_ring = "45 °C"
+shaft = "45 °C"
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    path = tmp_path / "pair.toml"
+    path.write_text(PAIR, encoding="utf-8")
+    return path
+
+
+def left(read, at):
+    """What `remaining_preload` says of the set ground by hand and put on its seats."""
+    ground = bj.preload(read.element, 200.0)
+    return float(bj.remaining_preload(fitted(at.fits, ground)))
+
+
+def test_solve_tells_it(run, scene, tmp_path):
+    out = tmp_path / "out.json"
+    done = run("solve", scene, "--json", out)
+    assert done.status == 0 and done.err == ""
+    numbers = json.loads(out.read_text())
+    found = numbers["fit"]["preload"]
+    assert found["ground"] == pytest.approx(200.0, rel=1e-8)
+    read = bj.read_scene(scene)
+    assert found["operating"] == pytest.approx(left(read, read), rel=1e-8)
+    ends = [
+        left(read, bj.read_scene(scene, [f"fit.at={place}"]))
+        for place in ("loosest", "tightest")
+    ]
+    np.testing.assert_allclose(found["worst"]["operating"], ends, rtol=1e-8)
+    assert ends[0] < found["operating"] < ends[1]
+    assert f"operating {found['operating']:.4g} N" in done.out
+    # (Its first warning is of the loosest fit on the shaft.)
+    # A shaft of 45 °C in a cold housing: O arrangement, its rows come loose axially,
+    # while the inner rings grow into them.
+    shorter = bj.read_scene(scene, ["set.spacing=16 mm"])
+    assert left(shorter, shorter) > 1.05 * found["operating"]
+    assert numbers["warnings"][1:] == preload_warnings(
+        SetPreload(
+            found["ground"],
+            found["mounted"],
+            found["operating"],
+            tuple(found["worst"]["mounted"]),
+            tuple(found["worst"]["operating"]),
+        )
+    )
+
+
+def test_what_is_warned_of():
+    def told(*numbers):
+        return preload_warnings(SetPreload(*numbers))
+
+    assert told(200.0, 250.0, 300.0, None, None) == []
+    assert told(200.0, 250.0, 300.0, (50.0, 400.0), (40.0, 500.0)) == []
+    assert (
+        "200 N as ground are 500 N in operation, by"
+        in told(200.0, 300.0, 500.0, None, None)[0]
+    )
+    (text,) = told(200.0, 150.0, 0.0, (100.0, 200.0), (0.0, 60.0))
+    assert "none left in operation (0 N to 60 N over the tolerances)" in text
+    (text,) = told(200.0, 250.0, 300.0, (50.0, 400.0), (0.0, 500.0))
+    assert "at the loosest sizes" in text
+    # Pressed together by nothing, or not to be had.
+    assert told(0.0, 0.0, 0.0, None, None) == []
+    nan = float("nan")
+    assert (
+        "1000 N in operation (100 N to not possible over"
+        in told(200.0, 250.0, 1000.0, (50.0, nan), (100.0, nan))[0]
+    )
+    text = preload_report(SetPreload(200.0, 250.0, 300.0, (50.0, nan), (40.0, nan)))
+    assert text.endswith("operating        40 N to not possible")
