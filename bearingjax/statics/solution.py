@@ -29,6 +29,11 @@ from .balls import BallResults, ball_results
 from .rollers import RollerResults, roller_results
 
 
+_BALANCED, _ROUND_OFF = 1e-10, 1e-7
+"""Residuals of a load solve, and of its rolling elements, that are out of balance by no
+more than what round-off leaves of large loads [1]."""
+
+
 class Stats(eqx.Module):
     """Statistics of a load solve.
 
@@ -165,13 +170,23 @@ def message(solution: Solution, moving_ring: str) -> str:
             " kinematics): use linearised kinematics, or more load or length of"
             " contact."
         )
-    cure = "raise the step limit, or check clearance, preload and dimensions"
+    residual, local = float(stats.residual), float(stats.roller_residual)
+    if residual < _BALANCED and local < _ROUND_OFF:
+        return (
+            f"The rolling elements balance to {local:.1e} of their load and no closer,"
+            " in round-off: loads so large press steep roller ends or the smallest gaps"
+            " beyond what numbers resolve. Check the load and its unit; the contact"
+            f" pressure is {1e-9 * float(solution.roller_pressure.max()):.3g} GPa."
+        )
+    cure = (
+        "check load, clearance, preload and dimensions, or raise the step limit"
+        " (`max_steps` of solve_load)"
+    )
     if not isinstance(solution.element.equilibrium, TrustRegionNewton):
         cure += ", or use TrustRegionNewton() for the rolling elements"
     return (
         f"Step limit reached after {int(stats.iterations)} steps, relative residual"
-        f" {float(stats.residual):.1e}, rolling elements"
-        f" {float(stats.roller_residual):.1e}: {cure}."
+        f" {residual:.1e}, rolling elements {local:.1e}: {cure}."
     )
 
 

@@ -13,6 +13,7 @@ from tolerances import DIFFERENCE, SOLVER
 import bearingjax as bj
 from bearingjax.element import azimuths
 from bearingjax.statics import load_result
+from bearingjax.statics.solution import message
 
 RADIAL = [0.0, -4000.0, 0.0, 1.0, 0.0, 0.0]
 FREE = ["ux", "uy", "gx", "gy"]
@@ -146,6 +147,21 @@ def test_axial_load_on_nu_and_moment_about_the_axis(crowned):
 def test_step_limit_says_so(tapered):
     with pytest.raises(bj.SolveError, match="Step limit reached after 2 steps"):
         bj.solve_load(tapered, [0, 0, 6000.0, 0, 0, 0], max_steps=2)
+
+
+def test_round_off_of_rolling_elements_says_so(tapered):
+    """Rings in balance, rolling elements nearly so: more steps would not help."""
+    s = bj.solve_load(tapered, [0, 0, 6000.0, 0, 0, 0])
+    for local, words in (
+        (5e-10, "balance to 5.0e-10 of their load"),
+        (1e-3, "Step li"),
+    ):
+        late = eqx.tree_at(
+            lambda s: (s.result, s.stats.roller_residual),
+            s,
+            (jnp.int32(bj.Result.STEP_LIMIT), jnp.asarray(local)),
+        )
+        assert words in message(late, "inner")
 
 
 def test_a_failed_solve_has_no_derivative(tapered):
