@@ -28,7 +28,6 @@ from ..numerics.units import unit
 from .balls import BallResults, ball_results
 from .rollers import RollerResults, roller_results
 
-
 _BALANCED, _ROUND_OFF = 1e-10, 1e-7
 """Residuals of a load solve, and of its rolling elements, that are out of balance by no
 more than what round-off leaves of large loads [1]."""
