@@ -336,9 +336,20 @@ def taken_from(
         if isinstance(own, Mapping) and isinstance(value, Mapping):
             value = value if "type" in value else {**own, **value}
         merged[key] = value
-        if not (_same(value, own) or _same(value, _filled(entry).get(key))):
+        if not same_key(entry, key, value):
             changed.append(key)
     return merged, FromCatalogue(entry, tuple(changed))
+
+
+def same_key(entry: CatalogueEntry, key: str, value: Any) -> bool:
+    """Whether a key of a scene's [bearing] means what it is in the catalogue.
+
+    Args:
+        entry: Of the catalogue.
+        key: Key of [bearing].
+        value: As the scene writes it.
+    """
+    return _same(value, entry.table.get(key)) or _same(value, _filled(entry).get(key))
 
 
 _FILLED: dict[str, dict[str, Any]] = {}

@@ -21,6 +21,7 @@ from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
 from ..statics.support import restrained_freedoms
 from .bearing_table import designated, read_bearing
+from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import KINEMATICS, read_choices
 from .fit_table import Fits, fit_facts, fit_warnings, read_fits
@@ -155,6 +156,8 @@ def scene_of(data: dict[str, Any], path: Path, varied: Iterable[str] = ()) -> Sc
     found = designated(table)
     catalogue = None if found is None else found[1].varied(varied)
     odd = tuple(str(w.message) for w in caught)
+    if found is not None:
+        odd += catalogue_doubts(*found, varied)
     scene = _scene(top, path.stem, bearing, preload, catalogue, odd)
     top.finish()
     return dataclasses.replace(scene, inputs=top.echo())

@@ -268,6 +268,90 @@ def test_single_dimensions_override(tmp_path):
     assert read.catalogue.overridden == ("rib",)
 
 
+OLD = "the lines beside `designation` are those of {}, not of {}; leave out the lines"
+# Scene of `new`, its designation afterwards, lines changed, and what is told.
+EDITED = {
+    "another bearing": ("6205", "6206", {}, OLD.format("6205", "6206")),
+    "another kind of ribs": (
+        "NU 206",
+        "NJ 206",
+        {},
+        OLD.format("NU 206 EC", "NJ 206 EC"),
+    ),
+    "another angle": ("7208 B", "7208 C", {}, OLD.format("7208 BE", "7208 C")),
+    "another bearing, one line its own": (
+        "6205",
+        "6206",
+        {"n_balls": 8},
+        "`pitch_diameter` and `ball_diameter` are not those of 6206, but those of 6205",
+    ),
+    "another bearing, its balls changed": (
+        "6205",
+        "6206",
+        {"ball_diameter": '"8 mm"'},
+        "`pitch_diameter` and `ball_diameter` are far from those of 6206; leave out",
+    ),
+    "another class": (
+        "6205",
+        "6205/C3",
+        {},
+        "`radial_internal_clearance` (12.5 um), the middle of class CN, counts in place"
+        " of class C3 of 6205/C3 (13 to 28 µm); a [fit] takes it as exact",
+    ),
+    "no class": ("6205/C3", "6205", {}, "(20.5 um), the middle of class C3, counts"),
+    "a class beside a clearance": (
+        "6205/C3",
+        "6205/C3",
+        {"radial_internal_clearance": '"9 um"'},
+        "`radial_internal_clearance` (9 um) counts in place of class C3 of 6205/C3",
+    ),
+    "nothing changed": ("6205/C3", "6205/C3", {}, None),
+    "a measured clearance": (
+        "6205",
+        "6205",
+        {"radial_internal_clearance": '"9 um"'},
+        None,
+    ),
+    "a measured inside": (
+        "6205",
+        "6205",
+        {"pitch_diameter": '"38.5 mm"', "ball_diameter": '"7.938 mm"', "n_balls": 8},
+        None,
+    ),
+    "one line far off": ("6205", "6205", {"pitch_diameter": '"42 mm"'}, None),
+}
+
+
+@pytest.mark.parametrize("name", EDITED)
+def test_lines_left_over_from_another_designation_are_told(name, tmp_path):
+    first, then, changed, told = EDITED[name]
+    entry = bj.catalogue_entry(first)
+    text = new_scene(entry).replace(
+        f'designation = "{entry.designation}"', f'designation = "{then}"'
+    )
+    path = tmp_path / "new.toml"
+    path.write_text(text, encoding="utf-8")
+    settings = [f"bearing.{key}={value}" for key, value in changed.items()]
+    found = bj.read_scene(path, settings).warnings
+    assert len(found) == (told is not None)
+    assert told is None or found[0].startswith("bearing: ") and told in found[0]
+
+
+def test_designs_of_a_sweep_are_told_once_and_what_varies_is_meant(tmp_path):
+    path = tmp_path / "new.toml"
+
+    def told(grid):
+        text = f"{new_scene(ENTRIES[NAMES.index('6205')])}[cases.grid]\n{grid}"
+        path.write_text(text, encoding="utf-8")
+        return read_cases(path).warnings
+
+    (one,) = told('bearing.designation = ["6205", "6206", "6207"]')
+    assert OLD.format("6205", "6206") in one and one.endswith("(2 designs alike)")
+    sizes = {"pitch": '["39 mm", "45 mm"]', "ball": '["8 mm", "9.5 mm"]'}
+    grid = "".join(f"bearing.{k}_diameter = {v}\n" for k, v in sizes.items())
+    assert told(grid) == ()
+
+
 @pytest.mark.parametrize(
     "text, message",
     [
