@@ -291,7 +291,7 @@ def _sizes(entry: CatalogueEntry) -> str:
 
 def _loads(entry: CatalogueEntry) -> str:
     if entry.dynamic_capacity is None:
-        return "C, C0 not known"
+        return f"C, C0 {entry.sources['capacity']}"
     loads = {
         "C": entry.dynamic_capacity,
         "C0": entry.static_capacity,

@@ -155,11 +155,20 @@ def not_published(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
     Args:
         scene, varied: As of `life_conditions`.
     """
-    changed = rated_otherwise(scene, varied)
-    if scene.catalogue is None or not changed:
+    if scene.catalogue is None:
         return []
-    name = scene.catalogue.entry.designation
-    return [f"  (not the published ones of {name}: {', '.join(changed)} differs)"]
+    entry, changed = scene.catalogue.entry, rated_otherwise(scene, varied)
+    if entry.dynamic_capacity is None:
+        if scene.life is not None and scene.life.dynamic_capacity is not None:
+            return []
+        return [
+            f"  (those of {entry.designation} are {entry.sources['capacity']}; from the"
+            " balls of another one they may be some 20 % too high)"
+        ]
+    if not changed:
+        return []
+    words = f"{entry.designation}: {', '.join(changed)} differs"
+    return [f"  (not the published ones of {words})"]
 
 
 def _turns(speed) -> bool:

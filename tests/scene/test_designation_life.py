@@ -55,6 +55,15 @@ def test_another_geometry_is_rated_by_the_standards(read):
     assert not_published(scene, harmless) == []
 
 
+def test_ratings_that_nobody_prints_are_told_so(read):
+    scene = read('designation = "7208 C"', "[life]\n")
+    assert rated(life_conditions(scene)) == (None, None, None)
+    (line,) = not_published(scene)
+    assert "those of 7208 C are not known for this contact angle; from the" in line
+    given = read('designation = "7208 C"', '[life]\ndynamic_capacity = "32 kN"\n')
+    assert not_published(given) == []
+
+
 def test_a_pair_is_rated_as_two_rows(read):
     entry = bj.catalogue_entry("7208B")
     own = entry.dynamic_capacity, entry.static_capacity, entry.fatigue_load_limit
