@@ -113,27 +113,60 @@ def life_conditions(scene: "Scene", varied: Iterable[str] = ()) -> LifeCondition
         varied: Keys that its cases vary.
     """
     own = LifeConditions() if scene.life is None else scene.life
+    published = _published(scene, varied)
+    return dataclasses.replace(own, **{name: c for name, (c, _) in published.items()})
+
+
+def rating_origins(scene: "Scene", varied: Iterable[str] = ()) -> dict[str, str]:
+    """Where ratings that are given come from, in words, by their name.
+
+    Args:
+        scene, varied: As of `life_conditions`.
+
+    Returns:
+        The [life] of the scene, or whom they are published for and what was made of
+        them; without those that are worked out from the geometry.
+    """
+    own = LifeConditions() if scene.life is None else scene.life
+    found = {
+        name: "given in [life]" for name in _RATINGS if getattr(own, name) is not None
+    }
+    return found | {name: w for name, (_, w) in _published(scene, varied).items()}
+
+
+_OF_ROWS = ("by ISO 281", "by ISO 76", "in proportion to C0")
+"""How ratings of several rows follow from those of one."""
+
+
+def _published(scene, varied) -> dict[str, tuple[float, str]]:
+    """Ratings of the designation that count [N], and where each comes from."""
+    own = LifeConditions() if scene.life is None else scene.life
     taken = scene.catalogue
     if taken is None or rated_otherwise(scene, varied):
-        return own
+        return {}
     if any("bearing" in row for row in scene.inputs.get("set", {}).get("rows", ())):
-        return own  # rows with bearings of their own
+        return {}  # rows with bearings of their own
     entry, bearing = taken.entry, scene.element.bearing
     more = {"dynamic_capacity": 1.0, "static_capacity": 1.0}
     alone = entry.bearing
-    if isinstance(bearing, BearingSet) and not isinstance(alone, BearingSet):
+    several = isinstance(bearing, BearingSet) and not isinstance(alone, BearingSet)
+    if several:
         for name, rate in (
             ("dynamic_capacity", dynamic_capacity),
             ("static_capacity", static_capacity),
         ):
             more[name] = float(rate(bearing)) / float(rate(alone))
     more["fatigue_load_limit"] = more["static_capacity"]
-    published = {
-        name: getattr(entry, name) * more[name]
-        for name in _RATINGS
+    words = f"published for {entry.designation}"
+    rows = f", of one row; for {len(rows_of(bearing))} rows"
+    return {
+        name: (
+            getattr(entry, name) * more[name],
+            f"{words}{rows} {how}" if several else words,
+        )
+        for name, how in zip(_RATINGS, _OF_ROWS, strict=True)
         if getattr(own, name) is None and getattr(entry, name) is not None
     }
-    return dataclasses.replace(own, **published)
 
 
 def rated_otherwise(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
