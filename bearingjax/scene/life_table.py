@@ -11,7 +11,7 @@ from ..statics.life_factor import CLEANLINESS
 from ..statics.rating import dynamic_capacity, rated_axially, static_capacity
 from ..statics.reference_life import LEAST_LAMINAE
 from .lubricant_table import read_lubricant
-from .oil_table import OWN
+from .oil_table import OWN, Oil
 from .table import Table
 
 if TYPE_CHECKING:
@@ -232,6 +232,9 @@ def _lubrication(top: Table, table: Table) -> dict[str, Any]:
     if viscosity is not None and not 0 < viscosity < 1.0:
         problem = f"{1e6 * viscosity:g} mm²/s is not allowed; above 0, below 10^6 mm²/s"
         raise table.error("viscosity", problem)
+    if viscosity is not None and "lubricant" in top:
+        problem = "stands beside [lubricant], whose oil has a viscosity; choose one"
+        raise table.error("viscosity", problem)
     if "contamination" not in table:
         if viscosity is not None:
             problem = "is missing; the modified life needs it beside `viscosity`"
@@ -255,6 +258,29 @@ def _lubrication(top: Table, table: Table) -> dict[str, Any]:
         problem = f"{share:g} is not allowed; e_C from 0 to 1, or a class of ISO 281"
         raise table.error("contamination", problem)
     return {"viscosity": viscosity, "contamination": share}
+
+
+def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[str, ...]:
+    """That dirt is counted as in a grease, friction as in an oil, or the reverse.
+
+    Args:
+        top: The scene.
+        oil: From `read_oil`.
+    """
+    dirt = top.table("life").word("contamination") if "life" in top else None
+    greased = dirt is not None and dirt.startswith("grease")
+    if oil is None or dirt is None or greased == (oil.supply == "grease"):
+        return ()
+    given = "" if "supply" in top.table("lubricant") else ", the default"
+    cure = (
+        'write `supply = "grease"`, or choose a class of oil'
+        if greased
+        else "choose a class of grease, or another supply"
+    )
+    return (
+        f'life: `contamination` is "{dirt}", but `lubricant.supply` is "{oil.supply}"'
+        f"{given}: {cure}",
+    )
 
 
 def _check_points(top: Table, bearing: Bearing | BearingSet, points: int) -> None:

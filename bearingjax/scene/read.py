@@ -25,7 +25,7 @@ from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import KINEMATICS, read_choices
 from .fit_table import Fits, fit_facts, fit_warnings, read_fits
-from .life_table import rating_warnings, read_life
+from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
 from .quantity import SceneError
 from .scene_file import (
@@ -223,6 +223,7 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
         problem = "constant_angle is for balls at rest; leave out the speeds"
         raise numerics.error("kinematics", problem)
     life = read_life(top, bearing, speed, points)
+    odd += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
     return Scene(
         name=name,
         element=element,
@@ -237,7 +238,7 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
         tolerance=tolerance,
         points=points,
         life=life,
-        warnings=(*odd, *rating_warnings(life, bearing)),
+        warnings=odd,
         catalogue=catalogue,
     )
 

@@ -225,6 +225,7 @@ def test_capacities_from_the_balls_of_another_angle_are_as_far_off_as_told():
     for name in ("7205 C", "7205 AC"):
         entry = bj.catalogue_entry(name)
         other = dataclasses.replace(ball, contact_angle=angle(entry, "contact_angle"))
+        assert entry.dynamic_capacity and entry.static_capacity
         over.append(float(bj.dynamic_capacity(other)) / entry.dynamic_capacity - 1)
         over.append(float(bj.static_capacity(other)) / entry.static_capacity - 1)
     assert (round(100 * min(over)), round(100 * max(over))) == (5, 22)

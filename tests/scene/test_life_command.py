@@ -39,6 +39,26 @@ def test_a_scene_has_the_conditions_of_its_life():
     assert isinstance(still, bj.LifeConditions) and still.viscosity is None
 
 
+@pytest.mark.parametrize(
+    "supply, dirt, told",
+    [
+        ("grease", "grease, high", None),
+        ("oil_jet", "oil bath -/17/14", None),
+        ("oil_bath", "0.5", None),
+        ("oil_bath", "grease, high", 'supply` is "oil_bath": write `supply'),
+        ("grease", "oil bath -/17/14", 'supply` is "grease": choose a class of grease'),
+    ],
+)
+def test_dirt_of_a_grease_goes_with_a_supply_of_grease(supply, dirt, told):
+    settings = [f"lubricant.supply={supply}", f"life.contamination={dirt}"]
+    found = bj.read_scene(SCENE, settings).warnings
+    assert len(found) == (told is not None)
+    assert told is None or found[0].startswith(
+        f'life: `contamination` is "{dirt}", but'
+    )
+    assert told is None or told in found[0]
+
+
 def test_solve_tells_the_life_that_python_has(run, rerun, tmp_path, solution, untyped):
     out = tmp_path / "out.json"
     told = run("solve", SCENE, *SETTINGS, "--json", out)
