@@ -433,8 +433,7 @@ def of_catalogue(every):
         kind = entry.type.removesuffix("_roller")
         kind = kind if kind == "thrust_ball" else kind.removesuffix("_ball")
         row = bj.design.rows_of(entry.bearing)[0].bearing
-        sizes = (1e3 * v for v in (entry.bore, entry.outside_diameter, entry.width))
-        outside = (kind, *sizes)
+        d, big, b = (1e3 * v for v in (entry.bore, entry.outside_diameter, entry.width))
         rated = {"as printed": (entry.dynamic_capacity, entry.static_capacity)}
         if entry.other is not None:
             c, c0, _ = entry.other
@@ -442,7 +441,8 @@ def of_catalogue(every):
         for name, (c, c0) in rated.items():
             if c is None:
                 continue
-            made = estimate(*outside, c, c0, known_angle(kind, row)).bearing
+            angle = known_angle(kind, row)
+            made = estimate(kind, d, big, b, c, c0, angle).bearing
             (count, size, _), (real, own, _) = inside(made), inside(entry.bearing)
             key = kind, entry.geometry, name
             found.setdefault(key, []).append((count - real, size / own - 1))
