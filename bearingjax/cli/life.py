@@ -57,6 +57,7 @@ def _life_of_load(options) -> int:
         fits_text,
         life_as_dict,
         life_report,
+        rating_origins,
         read_scene,
         run_scene,
         scene_life,
@@ -79,7 +80,8 @@ def _life_of_load(options) -> int:
     life = scene_life(scene, solution) if solved else None
     numbers = solved_as_dict(scene, solution, life)
     if life is not None:
-        numbers = {**life_as_dict(life), **fits_as_dict(scene), **numbers}
+        told = life_as_dict(life, rating_origins(scene))
+        numbers = {**told, **fits_as_dict(scene), **numbers}
     write(
         (options.json, lambda path: write_numbers(path, numbers)),
         (options.plot, draws_solution(scene, solution) if solved else None),

@@ -1,8 +1,9 @@
 """`bearingjax optimise`."""
 
 from . import jax_settings
-from .options import add_plot, add_report, add_scene
+from .options import add_plot, add_quiet, add_report, add_scene
 from .outputs import Reporter, check_outputs, draws_bearing, save, write
+from .progress import is_shown
 from .status import NOT_SOLVED, SOLVED, complain
 
 
@@ -18,7 +19,7 @@ def add(commands):
     add_scene(command)
     add_plot(command)
     add_report(command, "pictures")
-    command.add_argument("--progress", action="store_true", help="show progress")
+    add_quiet(command)
     return command
 
 
@@ -41,7 +42,7 @@ def run(options) -> int:
     task = read_optimisation(options.scene, options.set)
     page = Reporter(options)
     try:
-        found = run_optimisation(task, progress=options.progress)
+        found = run_optimisation(task, progress=is_shown(options))
     except SolveError as error:
         numbers = unsolved_start_as_dict(task, error)
         write(

@@ -143,9 +143,10 @@ def _results(run: Any) -> str:
             words += f" = {float(life.life_hours):.5g} h"
         lives.append(words)
     rated = run.ratings
+    source = run.origins.get("dynamic_capacity", rated.dynamic_source)
     return (
         f"under all cases:  {';  '.join(lives)}\n"
-        f"C {1e-3 * float(rated.dynamic_capacity):.4g} kN ({rated.dynamic_source}),  "
+        f"C {1e-3 * float(rated.dynamic_capacity):.4g} kN ({source}),  "
         f"least static safety {float(np.min(run.solved.static_safety)):.3g}"
     )
 

@@ -39,6 +39,7 @@ from .life_run import run_life as run_life
 from .life_run import spectrum_as_dict as spectrum_as_dict
 from .life_run import spectrum_report as spectrum_report
 from .life_run import unsolved as unsolved
+from .life_table import rating_origins as rating_origins
 from .noise_output import noise_as_dict as noise_as_dict
 from .noise_output import noise_columns as noise_columns
 from .noise_output import write_noise_json as write_noise_json

@@ -33,6 +33,13 @@ CLEARANCES = {
 
 CLEARANCE = "radial_internal_clearance"
 
+_OTHER_BALLS = (
+    "bearings of other contact angles often have other balls; C, C0 worked out from"
+    " these may be some 20 % too high (so those of 7205 C and AC, from the balls of the"
+    " 7205 BE, are 5 to 22 % above the printed ones)"
+)
+"""Note of a bearing with the balls of another contact angle."""
+
 _QUANTITIES = {
     "bore": "length",
     "outside_diameter": "length",
@@ -206,7 +213,7 @@ def _names() -> dict[str, tuple[str, str, dict[str, Any], tuple[str, ...]]]:
             for letter, angle in data.get("letters", {}).items():
                 name = f"{key.split()[0]} {letter}"
                 changes = {"contact_angle": angle}
-                odd = (f"{name}: balls and pitch circle of {key}; capacities unknown",)
+                odd = (f"{name}: {_OTHER_BALLS}",)
                 if values["letter"] == "B":
                     found.setdefault(compact(name), (kind, key, changes, odd))
     return found
@@ -221,8 +228,16 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
     }
     shown = key
     table = {"type": kind, **values["bearing"], **changes}
+    sources = {
+        part: data["sources"][values[f"{part}_source"]]
+        for part in ("capacity", "geometry")
+    }
     if "contact_angle" in changes:
         shown = odd[0].partition(":")[0]
+        sources["capacity"] = "not known for this contact angle"
+        sources["geometry"] = (
+            f"balls and pitch circle of {key} (of that one: {sources['geometry']})"
+        )
         for name in _RATINGS:
             si[name] = None
         for name in ("outer_shoulder", "inner_shoulder"):
@@ -239,10 +254,6 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         raise SceneError(f"{shown}/{suffixes.clearance}: {problem}")
     if suffixes.clearance not in (None, "CN"):
         shown = f"{shown}/{suffixes.clearance}"
-    sources = {
-        part: data["sources"][values[f"{part}_source"]]
-        for part in ("capacity", "geometry")
-    }
     return CatalogueEntry(
         designation=shown,
         type=kind,
@@ -336,9 +347,20 @@ def taken_from(
         if isinstance(own, Mapping) and isinstance(value, Mapping):
             value = value if "type" in value else {**own, **value}
         merged[key] = value
-        if not (_same(value, own) or _same(value, _filled(entry).get(key))):
+        if not same_key(entry, key, value):
             changed.append(key)
     return merged, FromCatalogue(entry, tuple(changed))
+
+
+def same_key(entry: CatalogueEntry, key: str, value: Any) -> bool:
+    """Whether a key of a scene's [bearing] means what it is in the catalogue.
+
+    Args:
+        entry: Of the catalogue.
+        key: Key of [bearing].
+        value: As the scene writes it.
+    """
+    return _same(value, entry.table.get(key)) or _same(value, _filled(entry).get(key))
 
 
 _FILLED: dict[str, dict[str, Any]] = {}

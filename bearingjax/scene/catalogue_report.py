@@ -225,9 +225,10 @@ def _further(entry: CatalogueEntry) -> list[str]:
         "[lubricant]",
         'name = "ISO VG 68"',
         'temperature = "60 °C"',
+        'supply = "grease"  # whose base oil is named; or "oil_bath", "oil_jet", …',
         "",
         "[life]  # bearingjax life my.toml",
-        'contamination = "grease, normal"',
+        'contamination = "grease, normal"  # of an oil "oil bath -/17/14" and the like',
         "",
         "[[cases.spectrum]]  # its loads, a table for each",
         'hours = "1000 h"',
@@ -291,7 +292,7 @@ def _sizes(entry: CatalogueEntry) -> str:
 
 def _loads(entry: CatalogueEntry) -> str:
     if entry.dynamic_capacity is None:
-        return "C, C0 not known"
+        return f"C, C0 {entry.sources['capacity']}"
     loads = {
         "C": entry.dynamic_capacity,
         "C0": entry.static_capacity,

@@ -2,8 +2,23 @@
 
 from typing import Any
 
-from ..design import Bearing, BearingSet
+import numpy as np
+
+from ..design import Bearing, BearingSet, TaperedRollerBearing, rows_of
 from .fit_table import Fits, fit_facts
+
+ACROSS_TAPERS = "normal to the outer raceway"
+"""Along what the clearance of a taper is a number of its design."""
+
+
+def outer_cosine(taper: TaperedRollerBearing) -> float:
+    """Clearance normal to the outer raceway over the radial one [1].
+
+    Args:
+        taper: In numbers that are known.
+    """
+    angle = float(taper.roller_axis_angle) + float(taper.roller_half_angle)
+    return float(np.cos(angle))
 
 
 def fit_report(fits: Fits, bearing: Bearing | BearingSet) -> str:
@@ -13,14 +28,21 @@ def fit_report(fits: Fits, bearing: Bearing | BearingSet) -> str:
         fits, bearing: As of `fit_facts`.
     """
     facts = fit_facts(fits, bearing)
+    left = facts.operating.radial_clearance
     shaft, housing = (name or "as given" for name in fits.names)
     lines = [
         f"fits: shaft {shaft}, housing {housing}; sizes of the solve:"
         f" {fits.place.replace('_', ' ')}",
         f"radial clearance   free {_micron(facts.free)}, mounted"
-        f" {_micron(facts.mounted.radial_clearance)}, operating"
-        f" {_micron(facts.operating.radial_clearance)} µm",
+        f" {_micron(facts.mounted.radial_clearance)}, operating {_micron(left)} µm",
     ]
+    row = rows_of(bearing)[0].bearing
+    if isinstance(row, TaperedRollerBearing):
+        states = facts.free, facts.mounted.radial_clearance, left
+        free, cold, warm = (_micron(float(c) * outer_cosine(row)) for c in states)
+        lines.append(
+            f"  {ACROSS_TAPERS}: free {free}, mounted {cold}, operating {warm} µm"
+        )
     for words, found in (
         ("mounted", facts.mounted_range),
         ("operating", facts.operating_range),

@@ -1,6 +1,7 @@
 """Rating life of a scene as text for people, and as numbers in SI for programs."""
 
 import dataclasses
+from collections.abc import Mapping
 from typing import Any
 
 import jax
@@ -15,7 +16,7 @@ from ..design import (
 from ..element.frame import RINGS
 from ..statics.life import LIFE_OUTPUTS, Life, life_of
 from ..statics.solution import RollerSolution, Solution
-from .life_table import life_conditions, not_published
+from .life_table import life_conditions, not_published, rating_origins
 from .quantity import SceneError
 from .read import Scene
 
@@ -24,6 +25,7 @@ _SOURCES = {
     "static_capacity": "static_source",
     "fatigue_load_limit": "limit_source",
 }
+_SHOWN = ("C", "C0", "C_u")
 
 
 def scene_life(scene: Scene, solution: Solution) -> Life:
@@ -49,27 +51,54 @@ def scene_life(scene: Scene, solution: Solution) -> Life:
     return jax.device_get(life)
 
 
-def life_as_dict(life: Life) -> dict[str, Any]:
+def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:
     """Numbers of a rating life in SI, by name; what is infinite is null.
 
     Args:
         life: In NumPy.
+        origins: Of the ratings that are given, as of `rating_origins`.
 
     Returns:
-        The numbers of `LIFE_OUTPUTS` that there are, the ratings each with its
-        `..._source`, `reliability_factor`, `weakest` (row, ring, track), and the
+        The numbers of `LIFE_OUTPUTS` that there are, the ratings as of
+        `ratings_as_dict`, `reliability_factor`, `weakest` (row, ring, track), and the
         `standards` that results follow.
     """
-    found: dict[str, Any] = {}
-    for name, source in _SOURCES.items():
-        found[name] = _plain(getattr(life.ratings, name))
-        found[f"{name}_source"] = getattr(life.ratings, source)
+    found = ratings_as_dict(life.ratings, origins)
     for name in (*LIFE_OUTPUTS, "reliability_factor"):
         value = getattr(life, name)
         found[name] = None if value is None else _plain(value)
     row, ring, track = life.weakest
     found["weakest"] = {"row": row, "ring": ring, "track": track}
     return {**found, "standards": dict(life.standards)}
+
+
+def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
+    """Ratings [N] by name, each with its `..._source`, "given" or the standard, and its
+    `..._origin`, who has given it or `None`.
+
+    Args:
+        ratings: `Ratings`, in NumPy.
+        origins: As of `rating_origins`.
+    """
+    found: dict[str, Any] = {}
+    for name, source in _SOURCES.items():
+        found[name] = _plain(getattr(ratings, name))
+        found[f"{name}_source"] = getattr(ratings, source)
+        found[f"{name}_origin"] = origins.get(name)
+    return found
+
+
+def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]:
+    """C, C0 and C_u in kN, each with where it comes from.
+
+    Args:
+        ratings, origins: As of `ratings_as_dict`.
+    """
+    return {
+        shown: f"{shown} {_kilo(getattr(ratings, name))} kN"
+        f" ({origins.get(name, getattr(ratings, source))})"
+        for shown, (name, source) in zip(_SHOWN, _SOURCES.items(), strict=True)
+    }
 
 
 def _plain(value) -> Any:
@@ -112,9 +141,11 @@ def life_report(scene: Scene, solution: Solution, life: Life) -> str:
         asked = a1 * life.reference_rating_life
         lines.append(_line(f"reference, a1 {a1:.4g}", asked, hours))
     lines += [
-        f"{axially} ratings: C {_kilo(r.dynamic_capacity)} kN ({r.dynamic_source}),"
-        f" C0 {_kilo(r.static_capacity)} kN ({r.static_source}),",
-        f"  C_u {_kilo(r.fatigue_load_limit)} kN ({r.limit_source})",
+        f"{axially} ratings",
+        *(
+            f"  {words}"
+            for words in ratings_in_words(r, rating_origins(scene)).values()
+        ),
         *not_published(scene),
         f"equivalent load: P {_kilo(life.equivalent_load)} kN, of the reference life"
         f" {_kilo(life.reference_load)} kN",
@@ -124,7 +155,7 @@ def life_report(scene: Scene, solution: Solution, life: Life) -> str:
         f" {_kilo(life.static_equivalent_load)} kN (ISO 76)",
     ]
     lines += limits(solution, life)
-    lines.append(_turning(life))
+    lines.append(turning(life.turns_against_load, solution.speed is None))
     return "\n".join(lines)
 
 
@@ -181,12 +212,21 @@ def _across_thrust(solution) -> list[str]:
     ]
 
 
-def _turning(life) -> str:
-    turning = [
-        ring for ring, t in zip(RINGS, life.turns_against_load, strict=True) if t
-    ]
-    rings = " and ".join(turning)
-    return f"turning against the load: {rings} ring{'s' if len(turning) > 1 else ''}"
+def turning(turns: Any, at_rest: bool) -> str:
+    """Which rings turn against the load; at rest, what is taken in place of that.
+
+    Args:
+        turns: As `Life.turns_against_load`.
+        at_rest: Whether there is no speed.
+    """
+    rings = [ring for ring, t in zip(RINGS, np.asarray(turns), strict=True) if t]
+    words = f"{' and '.join(rings)} ring{'s' if len(rings) > 1 else ''}"
+    if at_rest:
+        return (
+            f"at rest: no life in hours; the {words} is taken as the one that turns"
+            " against the load"
+        )
+    return f"turning against the load: {words}"
 
 
 def _hours_per_turn(solution) -> float | None:

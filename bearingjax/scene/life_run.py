@@ -9,15 +9,15 @@ import numpy as np
 
 from ..design import is_ball
 from ..numerics.result import Result
-from ..statics.life import LIFE_OUTPUTS
+from ..statics.life import LIFE_OUTPUTS, turns_against_load
 from ..statics.life_warning import life_warnings
 from ..statics.rating import Ratings, ratings
 from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ..statics.sweep import Sweep
 from ..statics.sweep_table import columns
 from .cases_table import CaseTable
-from .life_report import life_number
-from .life_table import life_conditions, not_published
+from .life_report import life_number, ratings_as_dict, ratings_in_words, turning
+from .life_table import life_conditions, not_published, rating_origins
 from .quantity import SceneError
 from .scene_file import find_scene, parse_bearing
 from .sweep_run import design_columns, listed_columns, run_cases
@@ -50,6 +50,11 @@ class LifeRun:
     def converged(self) -> bool:
         """Whether all cases were solved: else there is no life."""
         return bool(self.solved.converged.all())
+
+    @property
+    def origins(self) -> dict[str, str]:
+        """Where ratings that are given come from, as of `rating_origins`."""
+        return rating_origins(self.table.scene, self.table.varied)
 
     def worst(self, most: int) -> tuple[np.ndarray, np.ndarray]:
         """The cases that use most of the life that is asked for; all are solved.
@@ -135,22 +140,14 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
     """Life under the cases as plain numbers and lists, in SI; infinite is null.
 
     Returns:
-        Ratings with their sources, lives under all cases and the damage shares of the
-        cases; `equivalent_load` is the constant one with the basic life, and
+        Ratings as of `ratings_as_dict`, lives under all cases and the damage shares of
+        the cases; `equivalent_load` is the constant one with the basic life, and
         `static_safety` the least of all cases. Columns of the cases; counts, warnings,
         inputs, version. Without the lives if a case was not solved.
     """
     from .. import __version__
 
-    rated = run.ratings
-    found: dict[str, Any] = {
-        "dynamic_capacity": float(rated.dynamic_capacity),
-        "dynamic_capacity_source": rated.dynamic_source,
-        "static_capacity": float(rated.static_capacity),
-        "static_capacity_source": rated.static_source,
-        "fatigue_load_limit": float(rated.fatigue_load_limit),
-        "fatigue_load_limit_source": rated.limit_source,
-    }
+    found = ratings_as_dict(run.ratings, run.origins)
     if run.converged:
         for name, life in run.lives.items():
             found[name] = _finite(life.rating_life)
@@ -201,14 +198,16 @@ def spectrum_report(run: LifeRun) -> str:
     Args:
         run: With all cases solved.
     """
-    table, rated = run.table, run.ratings
+    table = run.table
     count = table.cases.count
+    rated = ratings_in_words(run.ratings, run.origins)
     lines = [
         f"{table.scene.name}: life under {count} cases over {', '.join(table.varied)}",
-        f"C {1e-3 * float(rated.dynamic_capacity):.5g} kN ({rated.dynamic_source}),"
-        f" C0 {1e-3 * float(rated.static_capacity):.5g} kN ({rated.static_source})",
+        rated["C"],
+        rated["C0"],
         *not_published(table.scene, table.varied),
-        f"\n{'':<24}{'million rev':>14}{'hours':>14}",
+        f"\n{'':<24}{'million rev':>14}"
+        + ("" if run.asked.life_hours is None else f"{'hours':>14}"),
     ]
     lives = {name.removesuffix("_rating_life"): x for name, x in run.lives.items()}
     a1 = float(run.asked.rating_life) / float(lives["reference"].rating_life)
@@ -223,6 +222,9 @@ def spectrum_report(run: LifeRun) -> str:
         f"equivalent load of the spectrum {1e-3 * equivalent_load(run):.5g} kN; least"
         f" static safety {life_number(np.min(run.solved.static_safety))}"
     )
+    if run.asked.life_hours is None:
+        fixed_to = life_conditions(table.scene).load_fixed_to
+        lines.append(turning(turns_against_load(None, fixed_to), True))
     lines += _by_case(run)
     lines += [f"warning: {text}" for text in _warnings(run)]
     return "\n".join(lines)

@@ -11,7 +11,7 @@ from ..statics.life_factor import CLEANLINESS
 from ..statics.rating import dynamic_capacity, rated_axially, static_capacity
 from ..statics.reference_life import LEAST_LAMINAE
 from .lubricant_table import read_lubricant
-from .oil_table import OWN
+from .oil_table import OWN, Oil
 from .table import Table
 
 if TYPE_CHECKING:
@@ -113,27 +113,60 @@ def life_conditions(scene: "Scene", varied: Iterable[str] = ()) -> LifeCondition
         varied: Keys that its cases vary.
     """
     own = LifeConditions() if scene.life is None else scene.life
+    published = _published(scene, varied)
+    return dataclasses.replace(own, **{name: c for name, (c, _) in published.items()})
+
+
+def rating_origins(scene: "Scene", varied: Iterable[str] = ()) -> dict[str, str]:
+    """Where ratings that are given come from, in words, by their name.
+
+    Args:
+        scene, varied: As of `life_conditions`.
+
+    Returns:
+        The [life] of the scene, or whom they are published for and what was made of
+        them; without those that are worked out from the geometry.
+    """
+    own = LifeConditions() if scene.life is None else scene.life
+    found = {
+        name: "given in [life]" for name in _RATINGS if getattr(own, name) is not None
+    }
+    return found | {name: w for name, (_, w) in _published(scene, varied).items()}
+
+
+_OF_ROWS = ("by ISO 281", "by ISO 76", "in proportion to C0")
+"""How ratings of several rows follow from those of one."""
+
+
+def _published(scene, varied) -> dict[str, tuple[float, str]]:
+    """Ratings of the designation that count [N], and where each comes from."""
+    own = LifeConditions() if scene.life is None else scene.life
     taken = scene.catalogue
     if taken is None or rated_otherwise(scene, varied):
-        return own
+        return {}
     if any("bearing" in row for row in scene.inputs.get("set", {}).get("rows", ())):
-        return own  # rows with bearings of their own
+        return {}  # rows with bearings of their own
     entry, bearing = taken.entry, scene.element.bearing
     more = {"dynamic_capacity": 1.0, "static_capacity": 1.0}
     alone = entry.bearing
-    if isinstance(bearing, BearingSet) and not isinstance(alone, BearingSet):
+    several = isinstance(bearing, BearingSet) and not isinstance(alone, BearingSet)
+    if several:
         for name, rate in (
             ("dynamic_capacity", dynamic_capacity),
             ("static_capacity", static_capacity),
         ):
             more[name] = float(rate(bearing)) / float(rate(alone))
     more["fatigue_load_limit"] = more["static_capacity"]
-    published = {
-        name: getattr(entry, name) * more[name]
-        for name in _RATINGS
+    words = f"published for {entry.designation}"
+    rows = f", of one row; for {len(rows_of(bearing))} rows"
+    return {
+        name: (
+            getattr(entry, name) * more[name],
+            f"{words}{rows} {how}" if several else words,
+        )
+        for name, how in zip(_RATINGS, _OF_ROWS, strict=True)
         if getattr(own, name) is None and getattr(entry, name) is not None
     }
-    return dataclasses.replace(own, **published)
 
 
 def rated_otherwise(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
@@ -155,11 +188,20 @@ def not_published(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
     Args:
         scene, varied: As of `life_conditions`.
     """
-    changed = rated_otherwise(scene, varied)
-    if scene.catalogue is None or not changed:
+    if scene.catalogue is None:
         return []
-    name = scene.catalogue.entry.designation
-    return [f"  (not the published ones of {name}: {', '.join(changed)} differs)"]
+    entry, changed = scene.catalogue.entry, rated_otherwise(scene, varied)
+    if entry.dynamic_capacity is None:
+        if scene.life is not None and scene.life.dynamic_capacity is not None:
+            return []
+        return [
+            f"  (those of {entry.designation} are {entry.sources['capacity']}; from the"
+            " balls of another one they may be some 20 % too high)"
+        ]
+    if not changed:
+        return []
+    words = f"{entry.designation}: {', '.join(changed)} differs"
+    return [f"  (not the published ones of {words})"]
 
 
 def _turns(speed) -> bool:
@@ -190,6 +232,9 @@ def _lubrication(top: Table, table: Table) -> dict[str, Any]:
     if viscosity is not None and not 0 < viscosity < 1.0:
         problem = f"{1e6 * viscosity:g} mm²/s is not allowed; above 0, below 10^6 mm²/s"
         raise table.error("viscosity", problem)
+    if viscosity is not None and "lubricant" in top:
+        problem = "stands beside [lubricant], whose oil has a viscosity; choose one"
+        raise table.error("viscosity", problem)
     if "contamination" not in table:
         if viscosity is not None:
             problem = "is missing; the modified life needs it beside `viscosity`"
@@ -213,6 +258,29 @@ def _lubrication(top: Table, table: Table) -> dict[str, Any]:
         problem = f"{share:g} is not allowed; e_C from 0 to 1, or a class of ISO 281"
         raise table.error("contamination", problem)
     return {"viscosity": viscosity, "contamination": share}
+
+
+def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[str, ...]:
+    """That dirt is counted as in a grease, friction as in an oil, or the reverse.
+
+    Args:
+        top: The scene.
+        oil: From `read_oil`.
+    """
+    dirt = top.table("life").word("contamination") if "life" in top else None
+    greased = dirt is not None and dirt.startswith("grease")
+    if oil is None or dirt is None or greased == (oil.supply == "grease"):
+        return ()
+    given = "" if "supply" in top.table("lubricant") else ", the default"
+    cure = (
+        'write `supply = "grease"`, or choose a class of oil'
+        if greased
+        else "choose a class of grease, or another supply"
+    )
+    return (
+        f'life: `contamination` is "{dirt}", but `lubricant.supply` is "{oil.supply}"'
+        f"{given}: {cure}",
+    )
 
 
 def _check_points(top: Table, bearing: Bearing | BearingSet, points: int) -> None:

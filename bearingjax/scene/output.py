@@ -14,6 +14,7 @@ from ..statics.warning import warnings
 from .files import write_numbers
 from .fit_report import fit_as_dict
 from .life_report import life_as_dict, scene_life
+from .life_table import rating_origins
 from .oil_table import oil_as_dict
 from .read import Scene
 from .set_preload import preload_as_dict
@@ -83,7 +84,7 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         **({**_numbers(solution), **_oil(scene, solution)} if solved else {}),
         **fits_as_dict(scene),
         **_catalogue(scene),
-        **({} if life is None else life_as_dict(life)),
+        **({} if life is None else life_as_dict(life, rating_origins(scene))),
         **solved_as_dict(scene, solution, life),
     }
 

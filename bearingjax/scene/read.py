@@ -21,10 +21,11 @@ from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
 from ..statics.support import restrained_freedoms
 from .bearing_table import designated, read_bearing
+from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import KINEMATICS, read_choices
 from .fit_table import Fits, fit_facts, fit_warnings, read_fits
-from .life_table import rating_warnings, read_life
+from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
 from .quantity import SceneError
 from .scene_file import (
@@ -159,6 +160,8 @@ def scene_of(data: dict[str, Any], path: Path, varied: Iterable[str] = ()) -> Sc
     found = designated(table)
     catalogue = None if found is None else found[1].varied(varied)
     odd = tuple(str(w.message) for w in caught)
+    if found is not None:
+        odd += catalogue_doubts(*found, varied)
     scene = _scene(top, path.stem, bearing, preload, catalogue, odd)
     top.finish()
     return dataclasses.replace(scene, inputs=top.echo())
@@ -224,6 +227,7 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
         problem = "constant_angle is for balls at rest; leave out the speeds"
         raise numerics.error("kinematics", problem)
     life = read_life(top, bearing, speed, points)
+    odd += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
     return Scene(
         name=name,
         element=element,
@@ -238,7 +242,7 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
         tolerance=tolerance,
         points=points,
         life=life,
-        warnings=(*odd, *rating_warnings(life, bearing)),
+        warnings=odd,
         catalogue=catalogue,
     )
 

@@ -16,7 +16,7 @@ from ..numerics.units import display_unit
 from ..statics.life_warning import life_warnings
 from ..statics.solution import BallSolution, Solution
 from ..statics.warning import warnings
-from .fit_report import fit_report
+from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
 from .fit_table import fitted
 from .life_report import life_report, scene_life
 from .oil_table import oil_report
@@ -181,12 +181,11 @@ def roller_row(bearing, head) -> list[str]:
     size = [bearing.pitch_diameter, bearing.roller_diameter, bearing.roller_length]
     pitch, diameter, length = (1e3 * float(x) for x in size)
     kind = type(bearing).__name__.removesuffix("RollerBearing").lower()
-    clearance = 1e6 * float(bearing.radial_internal_clearance)
     ribs = ", ".join(bearing.ribs.present) or "none"
     lines = [
         f"{head}: {kind} roller bearing, {bearing.n_rollers} rollers"
         f" {diameter:.4g} x {length:.4g} mm on a pitch circle of {pitch:.4g} mm",
-        f"radial internal clearance {clearance:.4g} µm; ribs: {ribs};"
+        f"{_roller_clearance(bearing)}; ribs: {ribs};"
         f" roller profile: {type(bearing.roller_profile).__name__}",
     ]
     if isinstance(bearing, TaperedRollerBearing):
@@ -197,6 +196,17 @@ def roller_row(bearing, head) -> list[str]:
             f"contact angle: outer {raceways[0]:.4g}, inner {raceways[1]:.4g} deg"
         )
     return lines
+
+
+def _roller_clearance(bearing):
+    """The clearance of rollers, of tapers along both ways that it is measured."""
+    clearance = 1e6 * float(bearing.radial_internal_clearance)
+    if not isinstance(bearing, TaperedRollerBearing):
+        return f"radial internal clearance {clearance:.4g} µm"
+    return (
+        f"internal clearance {clearance:.4g} µm {ACROSS_TAPERS}, radially"
+        f" {clearance / outer_cosine(bearing):.4g} µm"
+    )
 
 
 def _ring(scene):

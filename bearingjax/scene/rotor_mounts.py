@@ -13,6 +13,7 @@ from ..rotor import Housing, Shaft
 from ..rotor.vibration import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
 from .bearing_table import BESIDE, designated, read_bearing
+from .catalogue_doubts import catalogue_doubts
 from .fit_table import Fits, fit_facts, fit_warnings, read_fits, turning
 from .quantity import SceneError
 from .read import read_element, scene_of
@@ -87,6 +88,8 @@ def _own(table: Table, name: str, speed: float) -> _Bearing:
     design, force = read_bearing(table, table)
     found = designated(table)
     catalogue = None if found is None else found[1]
+    for text in () if found is None else catalogue_doubts(*found):
+        warnings.warn(f"{name}: {text}", stacklevel=2)
     design, fits = read_fits(table, table, design, Speed(speed, 0.0), catalogue)
     contact, numerics = table.table("contact"), table.table("numerics")
     element = read_element(design, contact, table, numerics)

@@ -157,7 +157,7 @@ class Table:
             default: If absent; without a default the key is required.
             words: The choices as an error tells them, where they are too many to list.
         """
-        value = self._get(key, default, f"one of {words or ', '.join(choices)}")
+        value = self._get(key, default, f"one of {words or listed(choices)}")
         if key in self._data and value not in choices:
             raise self.error(key, not_among(value, choices, words))
         return value
@@ -183,8 +183,8 @@ class Table:
         if value is None:
             return None
         if not isinstance(value, list):
-            words = ", ".join(choices)
-            raise self.error(key, f"{value!r} is not a list of words out of {words}")
+            problem = f"{value!r} is not a list of words out of {listed(choices)}"
+            raise self.error(key, problem)
         for word in value:
             if word not in choices:
                 raise self.error(key, not_among(word, choices))
@@ -248,7 +248,7 @@ class Table:
         if self.word(key) is not None:
             return self.choice(key, choices)
         if key in self and not isinstance(self._data[key], Mapping):
-            names = ", ".join(choices)
+            names = listed(choices)
             problem = f"{self._data[key]!r} is not a table, nor one of {names}"
             raise self.error(key, problem)
         return self.table(key) if key in self else None
@@ -361,9 +361,17 @@ def not_among(value: object, choices: Sequence[str], words: str = "") -> str:
         words: The choices as they are told, if not one by one.
     """
     hint = _suggest(value, choices) if isinstance(value, str) else ""
-    return (
-        f"{value!r} is not known{hint}; it must be one of {words or ', '.join(choices)}"
-    )
+    return f"{value!r} is not known{hint}; it must be one of {words or listed(choices)}"
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names one by one, in quotes if a comma in one of them would part it.
+
+    Args:
+        names: As a scene writes them.
+    """
+    apart = any("," in name for name in names)
+    return ", ".join(f'"{name}"' if apart else name for name in names)
 
 
 def _suggest(word, known):

@@ -175,6 +175,9 @@ GOOD = (0.025, 0.052, 0.015, "deep_groove", 14.0e3, 7.85e3)
 @pytest.mark.parametrize(
     "changed, words",
     (
+        ({0: 25.0, 1: 52.0, 2: 15.0}, r"`outside_diameter` is 52 m.*metres meant"),
+        ({2: 15.0}, r"`width` is 15 m; it must be at most 10 m \(metres meant"),
+        ({0: 3.0, 1: 10.0, 2: 4.0, 4: 633.0, 5: 217.0}, "size attain .*metres meant"),
         ({3: "magneto"}, "`kind` is 'magneto'; it must be one of deep_groove"),
         ({0: 0.06}, "`bore` is 0.06 m; it must be below the outside diameter, 0.052 m"),
         ({2: -0.01}, "`width` is -0.01 m"),
@@ -187,6 +190,17 @@ def test_what_no_bearing_attains_is_named(changed, words):
     given = [changed.get(k, value) for k, value in enumerate(GOOD)]
     with pytest.raises(ValueError, match=words):
         bj.estimate_geometry(*given)
+
+
+def test_an_estimate_prints_its_numbers():
+    found = bj.estimate_geometry(*GOOD)
+    words = str(found)
+    assert words == repr(found) == found.report()
+    size, pitch = inside(found.bearing)[1:]
+    assert words.startswith(
+        f"Estimate: 9 balls of {1e3 * size:.4g} mm a row, pitch diameter"
+        f" {1e3 * pitch:.5g} mm, contact angle 0°. C {100 * found.dynamic_error:+.1f} %"
+    )
 
 
 def test_an_estimate_is_not_traced(untyped):

@@ -63,7 +63,13 @@ SETTINGS = {
     "contamination of no class": (
         "life_spectrum",
         "life.contamination=grease, hihg",
-        "`life.contamination`: 'grease, hihg' is not known (did you mean",
+        "`life.contamination`: 'grease, hihg' is not known (did you mean `grease, high`"
+        '?); it must be one of "circulating oil -/13/10", "circulating oil',
+    ),
+    "two oils of a life": (
+        "life_spectrum",
+        "life.viscosity=20 mm^2/s",
+        "`life.viscosity`: stands beside [lubricant], whose oil has a viscosity",
     ),
     "dynamic viscosity of a life": (
         "life_spectrum",

@@ -8,7 +8,11 @@ import pytest
 
 import bearingjax as bj
 from bearingjax.scene import read_cases
-from bearingjax.scene.life_table import life_conditions, not_published
+from bearingjax.scene.life_table import (
+    life_conditions,
+    not_published,
+    rating_origins,
+)
 
 LOAD = '[operating]\nload = { Fy = "-1 kN" }\n'
 
@@ -55,6 +59,15 @@ def test_another_geometry_is_rated_by_the_standards(read):
     assert not_published(scene, harmless) == []
 
 
+def test_ratings_that_nobody_prints_are_told_so(read):
+    scene = read('designation = "7208 C"', "[life]\n")
+    assert rated(life_conditions(scene)) == (None, None, None)
+    (line,) = not_published(scene)
+    assert "those of 7208 C are not known for this contact angle; from the" in line
+    given = read('designation = "7208 C"', '[life]\ndynamic_capacity = "32 kN"\n')
+    assert not_published(given) == []
+
+
 def test_a_pair_is_rated_as_two_rows(read):
     entry = bj.catalogue_entry("7208B")
     own = entry.dynamic_capacity, entry.static_capacity, entry.fatigue_load_limit
@@ -63,6 +76,24 @@ def test_a_pair_is_rated_as_two_rows(read):
     # ISO 281, 5.1.2.2: two rows bear 2^0.7 of what one bears.
     wanted = [f * v for f, v in zip((2**0.7, 2, 2), own, strict=True) if v is not None]
     assert rated(life_conditions(scene)) == pytest.approx(wanted, rel=1e-12)
+    words = "published for 7208 BE, of one row; for 2 rows "
+    assert rating_origins(scene) == {
+        "dynamic_capacity": f"{words}by ISO 281",
+        "static_capacity": f"{words}by ISO 76",
+        "fatigue_load_limit": f"{words}in proportion to C0",
+    }
+
+
+def test_who_gave_a_rating_is_told(read):
+    given = '[life]\ndynamic_capacity = "15 kN"\n'
+    assert rating_origins(read('designation = "6205/C3"', given)) == {
+        "dynamic_capacity": "given in [life]",
+        "static_capacity": "published for 6205/C3",
+        "fatigue_load_limit": "published for 6205/C3",
+    }
+    # Worked out from the geometry, what is not given in [life].
+    other = read('designation = "6205"\nn_balls = 8', given)
+    assert list(rating_origins(other)) == ["dynamic_capacity"]
 
 
 def test_both_rows_of_a_self_aligning_bearing_are_in_its_ratings(read):

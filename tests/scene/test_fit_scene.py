@@ -26,6 +26,7 @@ from bearingjax.scene.fit_report import fit_as_dict
 from bearingjax.scene.fit_table import fit_facts, fitted
 from bearingjax.scene.optimise_report import _variables
 from bearingjax.scene.optimise_table import design_of
+from bearingjax.scene.report import design_sections
 from bearingjax.scene.rotor_run import RotorRun
 from bearingjax.scene.rotor_supports import support_of
 from bearingjax.scene.rotor_warnings import rotor_warnings
@@ -231,6 +232,31 @@ def test_command_solves_the_mounted_bearing(run, scene, tmp_path):
     assert "fits: shaft k5, housing H7; sizes of the solve: middle" in done.out
     # The bearing of the solve is the one that is left.
     assert "radial internal clearance 13.93 µm" in done.out
+
+
+def test_both_clearances_of_a_taper_are_told(scene):
+    """As its rollers have it, and as the rings move."""
+    seats = """
+[bearing]
+designation = "30205"
+[operating]
+load = { Fy = "-2 kN" }
+[fit]
+shaft_interference = "10 um"
+housing_interference = "-10 um"
+housing_diameter = "80 mm"
+"""
+    read = bj.read_scene(scene(seats))
+    texts = design_sections(read)
+    row = fitted(read.fits, read.element).bearing
+    own, radial = float(row.radial_internal_clearance), float(radial_clearance(row))
+    assert own < -5 * MICRON and radial / own > 1.02
+    words = "internal clearance {:.4g} µm normal to the outer raceway, radially {:.4g}"
+    assert words.format(own / MICRON, radial / MICRON) in texts["Bearing"]
+    own, radial = round(own / MICRON, 2), round(radial / MICRON, 2)
+    fits = texts["Fits and clearance"]
+    assert f"radial clearance   free 0, mounted {radial}, " in fits
+    assert f"  normal to the outer raceway: free 0, mounted {own}, operating" in fits
 
 
 def test_cases_vary_fits_temperatures_and_speed(scene):

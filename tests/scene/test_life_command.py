@@ -1,5 +1,6 @@
 """`bearingjax life`, and the rating life in reports, files and sweeps."""
 
+import dataclasses
 import json
 from html import unescape
 from types import SimpleNamespace
@@ -38,6 +39,26 @@ def test_a_scene_has_the_conditions_of_its_life():
     assert isinstance(still, bj.LifeConditions) and still.viscosity is None
 
 
+@pytest.mark.parametrize(
+    "supply, dirt, told",
+    [
+        ("grease", "grease, high", None),
+        ("oil_jet", "oil bath -/17/14", None),
+        ("oil_bath", "0.5", None),
+        ("oil_bath", "grease, high", 'supply` is "oil_bath": write `supply'),
+        ("grease", "oil bath -/17/14", 'supply` is "grease": choose a class of grease'),
+    ],
+)
+def test_dirt_of_a_grease_goes_with_a_supply_of_grease(supply, dirt, told):
+    settings = [f"lubricant.supply={supply}", f"life.contamination={dirt}"]
+    found = bj.read_scene(SCENE, settings).warnings
+    assert len(found) == (told is not None)
+    assert told is None or found[0].startswith(
+        f'life: `contamination` is "{dirt}", but'
+    )
+    assert told is None or told in found[0]
+
+
 def test_solve_tells_the_life_that_python_has(run, rerun, tmp_path, solution, untyped):
     out = tmp_path / "out.json"
     told = run("solve", SCENE, *SETTINGS, "--json", out)
@@ -55,7 +76,9 @@ def test_solve_tells_the_life_that_python_has(run, rerun, tmp_path, solution, un
         np.testing.assert_allclose(found[name], float(getattr(life, name)), rtol=SOLVER)
     assert found["dynamic_capacity"] == 23400.0
     assert found["dynamic_capacity_source"] == "given"
+    assert found["dynamic_capacity_origin"] == "given in [life]"
     assert found["static_capacity_source"] == "ISO 76 from geometry"
+    assert found["static_capacity_origin"] is None
     assert found["weakest"] == {"row": 0, "ring": "inner", "track": 0}
     assert "limited by the inner raceway" in told.out
     assert f"{1e-6 * float(life.reference_rating_life):.5g}" in told.out
@@ -65,10 +88,15 @@ def test_solve_tells_the_life_that_python_has(run, rerun, tmp_path, solution, un
     path.write_text(text.partition("[[cases")[0], encoding="utf-8")
     told = run("life", path, *SETTINGS, "--json", out)
     assert told.status == 0 and "turning against the load: inner ring" in told.out
+    assert "\n  C 23.4 kN (given in [life])\n" in told.out
     alone = json.loads(out.read_text(encoding="utf-8"))
     assert all(alone[name] == found[name] for name in NAMES)
     assert alone["result"] == "converged" and "displacement" not in alone
     rerun("life", out, pictures=2)
+    still = ("operating.inner_speed=0 rpm", "life={reliability=0.95}")
+    told = run("life", path, *SETTINGS, *(w for s in still for w in ("--set", s)))
+    assert told.status == 0 and "hours  " not in told.out
+    assert "\nat rest: no life in hours; the inner ring is taken as the" in told.out
     told = run("life", path, "--table", tmp_path / "t.csv")
     assert told.status == 2 and "--table is for a scene with [cases]" in told.err
 
@@ -102,6 +130,9 @@ def test_a_spectrum_adds_up_the_damage_of_its_cases(run, rerun, tmp_path, untype
     lines = table.read_text(encoding="utf-8").splitlines()
     assert len(lines) == 4 and "modified_rating_life" in lines[0]
     assert "each case alone" in told.out
+    assert "\nC 23.4 kN (given in [life])\n" in told.out and "at rest" not in told.out
+    assert found["dynamic_capacity_source"] == "given"
+    assert found["dynamic_capacity_origin"] == "given in [life]"
     # The mean load of ISO 281: powers of the loads by their revolutions.
     loads = np.array(columns["equivalent_load [N]"])
     mean = np.cbrt((turns * loads**3).sum() / turns.sum())
@@ -142,7 +173,7 @@ def test_reliability_counts_without_a_lubricant_too(untyped):
     element = SimpleNamespace(
         bearing=bj.DeepGrooveBallBearing(7, 0.04, 0.008, **GROOVES)
     )
-    scene = SimpleNamespace(name="two", element=element, catalogue=None)
+    scene = SimpleNamespace(name="two", element=element, catalogue=None, life=None)
     table = SimpleNamespace(
         scene=scene, cases=cases, varied=["hours"], warnings=[], inputs={}
     )
@@ -169,3 +200,14 @@ def test_reliability_counts_without_a_lubricant_too(untyped):
     lines = spectrum_report(run).splitlines()
     (line,) = [line for line in lines if line.startswith("reference, a1 0.64")]
     assert f"{a1 * 4 / used.sum():.5g}" in line
+    # Without a speed there are no hours, and it is said.
+    still = bj.Cases(np.zeros((2, 6)), hours=hours)
+    used = {name: bj.spectrum_life(still, 1 / lives) for name in known}
+    gone = bj.spectrum_life(still, outputs["damage"])
+    lines = spectrum_report(
+        dataclasses.replace(run, lives=used, asked=gone)
+    ).splitlines()
+    assert any(
+        line.startswith("at rest: no life in hours; the inner") for line in lines
+    )
+    assert not any(line.endswith("hours") for line in lines[1:])

@@ -2,6 +2,7 @@
 
 import json
 import re
+from types import SimpleNamespace
 
 import jax.numpy as jnp
 import numpy as np
@@ -118,6 +119,22 @@ def test_measure_that_does_not_fit_is_an_error_of_the_scene(run, scene, monkeypa
     done = run("optimise", scene(GOOD))
     assert done.status == 2 and done.out == ""
     assert "free: Displacement: `freedom` is 'ux'" in done.err
+
+
+def test_progress_is_shown_to_who_watches_and_wants_it(run, scene, monkeypatch):
+    asked = []
+
+    def note(*_, progress, **__):
+        asked.append(progress)
+        raise ValueError("enough")
+
+    monkeypatch.setattr("bearingjax.scene.run.optimise", note)
+    run("optimise", scene(GOOD))
+    watched = SimpleNamespace(stderr=SimpleNamespace(isatty=lambda: True))
+    monkeypatch.setattr("bearingjax.cli.progress.sys", watched)
+    run("optimise", scene(GOOD))
+    run("optimise", scene(GOOD), "--quiet")
+    assert asked == [False, True, False]
 
 
 def test_shipped_scene_says_what_it_wants():

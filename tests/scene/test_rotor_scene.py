@@ -348,6 +348,12 @@ def test_unbalance_at_a_speed_of_its_own_is_odd():
     assert "unbalance turns at another speed" in warning
 
 
+def test_a_clearance_beside_its_class_is_odd():
+    task = read_rotor("rotor_flexible", ["bearings.locating.designation=6208/C3"])
+    (warning,) = task.warnings
+    assert warning.startswith("locating: bearing: `radial_internal_clearance` (6 um)")
+
+
 def test_rolling_elements_pass_where_there_are_some():
     element = bj.BearingElement(bj.load_bearing("deep_groove"))
     rotor = bj.Rotor(
