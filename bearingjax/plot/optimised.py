@@ -180,6 +180,7 @@ def _cases(found, ax):
     if lives:
         if np.nanmax(values) > _FAR * np.nanmin(values):
             ax.set_yscale("log")
+            ax.set_ylim(top=20.0 * np.nanmax(values))  # room for the legend
         without_offset(ax)
         ax.set_ylabel(f"life [{'h' if wanted.hours else 'revolutions'}]")
         ax.set_title("Life under each case alone")
@@ -192,6 +193,8 @@ def _cases(found, ax):
 def _life_label(value):
     if not np.isfinite(value):
         return "no end"
+    if value >= 1e5:
+        return f"{1e-3 * value:,.0f}k"
     return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
 
 
