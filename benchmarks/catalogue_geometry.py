@@ -68,18 +68,6 @@ KINDS = {
 }
 """What balls are rated by: kind, osculations, rows."""
 
-NAMES = {
-    "deep_groove_ball": "deep_groove",
-    "angular_contact_ball": "angular_contact",
-    "four_point_ball": "four_point",
-    "self_aligning_ball": "self_aligning",
-    "thrust_ball": "thrust_ball",
-    "cylindrical_roller": "cylindrical",
-    "needle_roller": "needle",
-    "tapered_roller": "tapered",
-}
-"""Types as `estimate_geometry` calls them."""
-
 
 def listed() -> dict[str, list[tuple[str, dict]]]:
     """Bearings with estimated geometry, as their files have them, by type."""
@@ -246,7 +234,7 @@ def blind(kind, values, size) -> float | None:
     known = kind in ("angular_contact_ball", "four_point_ball", "tapered_roller")
     given = {"contact_angle": contact_angle(kind, values)} if known else {}
     try:
-        found = bj.estimate_geometry(bore, outside, width, NAMES[kind], c, c0, **given)
+        found = bj.estimate_geometry(bore, outside, width, kind, c, c0, **given)
     except ValueError:
         return None
     row = bj.design.rows_of(found.bearing)[0].bearing

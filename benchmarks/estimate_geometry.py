@@ -91,39 +91,39 @@ GROOVES = dict(outer_osculation=0.53, inner_osculation=0.52)
 # Name, type, d, D, B [mm], C, C0 [kN], contact angle [deg]; number and diameter of the
 # elements, pitch diameter, roller length [mm]; where geometry and ratings are from.
 PUBLISHED = (
-    ("6203", "deep_groove", 17, 40, 12, 9.55, 4.8, None, 8, 6.746, 28.5, None,
+    ("6203", "deep_groove_ball", 17, 40, 12, 9.55, 4.8, None, 8, 6.746, 28.5, None,
      "CWRU bearing data center", NSK),
-    ("6205", "deep_groove", 25, 52, 15, 14.0, 7.85, None, 9, 7.938, 39.04, None,
+    ("6205", "deep_groove_ball", 25, 52, 15, 14.0, 7.85, None, 9, 7.938, 39.04, None,
      "CWRU bearing data center", NSK),
-    ("UER204", "deep_groove", 20, 47, 17, 12.82, 6.65, None, 8, 7.92, 34.55, None,
+    ("UER204", "deep_groove_ball", 20, 47, 17, 12.82, 6.65, None, 8, 7.92, 34.55, None,
      "XJTU-SY data", "XJTU-SY data"),
-    ("6804", "deep_groove", 20, 32, 7, 4.0, 2.47, None, 13, 3.5, 25.6, None,
+    ("6804", "deep_groove_ball", 20, 32, 7, 4.0, 2.47, None, 13, 3.5, 25.6, None,
      "PRONOSTIA data", "PRONOSTIA data"),
-    ("6305 (SKF)", "deep_groove", 25, 62, 17, 23.4, 11.6, None, 7, 11.5, 43.5, None,
-     "MASTA case, ISO16281", "SKF"),
-    ("6306", "deep_groove", 30, 72, 19, 26.7, 15.0, None, 8, 11.9062, 52.0, None,
+    ("6305 (SKF)", "deep_groove_ball", 25, 62, 17, 23.4, 11.6, None, 7, 11.5, 43.5,
+     None, "MASTA case, ISO16281", "SKF"),
+    ("6306", "deep_groove_ball", 30, 72, 19, 26.7, 15.0, None, 8, 11.9062, 52.0, None,
      "Fukata (1985), Tiwari", NSK),
-    ("6206", "deep_groove", 30, 62, 16, 19.5, 11.3, None, 9, 9.525, 46.0, None,
+    ("6206", "deep_groove_ball", 30, 62, 16, 19.5, 11.3, None, 9, 9.525, 46.0, None,
      "vibration tests", NSK),
-    ("6207", "deep_groove", 35, 72, 17, 25.7, 15.3, None, 9, 11.112, 53.5, None,
+    ("6207", "deep_groove_ball", 35, 72, 17, 25.7, 15.3, None, 9, 11.112, 53.5, None,
      "vibration tests", NSK),
-    ("6208", "deep_groove", 40, 80, 18, 29.1, 17.9, None, 9, 11.906, 60.0, None,
+    ("6208", "deep_groove_ball", 40, 80, 18, 29.1, 17.9, None, 9, 11.906, 60.0, None,
      "vibration tests", NSK),
-    ("6308", "deep_groove", 40, 90, 23, 40.5, 24.0, None, 8, 15.081, 65.0, None,
+    ("6308", "deep_groove_ball", 40, 90, 23, 40.5, 24.0, None, 8, 15.081, 65.0, None,
      "vibration tests", NSK),
-    ("608", "deep_groove", 8, 22, 7, 3.3, 1.37, None, 7, 3.969, 15.0, None,
+    ("608", "deep_groove_ball", 8, 22, 7, 3.3, 1.37, None, 7, 3.969, 15.0, None,
      "vibration tests", NSK),
-    ("209", "deep_groove", 45, 85, 19, 31.5, 20.4, None, 9, 12.7, 65.0, None,
+    ("209", "deep_groove_ball", 45, 85, 19, 31.5, 20.4, None, 9, 12.7, 65.0, None,
      "Harris, 209", NSK + " 6209"),
-    ("218", "angular_contact", 90, 160, 30, 116.0, 104.0, 40, 16, 22.225, 125.26, None,
-     "Harris, 218", "SKF 7218 BECBP"),
+    ("218", "angular_contact_ball", 90, 160, 30, 116.0, 104.0, 40, 16, 22.225, 125.26,
+     None, "Harris, 218", "SKF 7218 BECBP"),
     # EPK's 50.3 and 31.5 kN are of one row; four points count as two.
-    ("176211", "four_point", 55, 100, 21, 81.7, 63.0, 26, 14, 14.288, 77.5, None,
+    ("176211", "four_point_ball", 55, 100, 21, 81.7, 63.0, 26, 14, 14.288, 77.5, None,
      "Kurushin", "EPK"),
-    ("N 209", "cylindrical", 45, 85, 19, 46.0, 47.0, None, 14, 10.0, 65.0, 9.6,
+    ("N 209", "cylindrical_roller", 45, 85, 19, 46.0, 47.0, None, 14, 10.0, 65.0, 9.6,
      "Harris, 209", NSK),
-    ("NU 215", "cylindrical", 75, 130, 25, 130.0, 156.0, None, 18, 15.0, 103.5, 17.0,
-     "Yan (2025)", NSK),
+    ("NU 215", "cylindrical_roller", 75, 130, 25, 130.0, 156.0, None, 18, 15.0, 103.5,
+     17.0, "Yan (2025)", NSK),
 )  # fmt: skip
 
 # d, D, B [mm], C, C0 [N], f_0: NSK E1102, pages B8 to B14, f_0 of 16.3 and less.
@@ -313,12 +313,12 @@ def inside(bearing):
 def design(kind, angle, count, size, pitch, length):
     """The published bearing."""
     row = count, 1e-3 * pitch, 1e-3 * size
-    if kind == "cylindrical":
+    if kind == "cylindrical_roller":
         return bj.CylindricalRollerBearing(*row, 1e-3 * length)
-    if kind == "deep_groove":
+    if kind == "deep_groove_ball":
         return bj.DeepGrooveBallBearing(*row, **GROOVES)
     angle = np.deg2rad(angle)
-    if kind == "four_point":
+    if kind == "four_point_ball":
         return bj.FourPointBallBearing(*row, **GROOVES, shim_angle=angle)
     return bj.AngularContactBallBearing(*row, **GROOVES, contact_angle=angle)
 
@@ -381,19 +381,19 @@ def blind(every):
     """
     rows = numbers(DEEP_GROOVE, every)
     ratio = factor_ratio([row[5] for row in rows])
-    found = [estimate("deep_groove", *row[:5]) for row in rows]
+    found = [estimate("deep_groove_ball", *row[:5]) for row in rows]
     parts = np.array([inside(one.bearing) for one in found])
     balls = parts[:, 1] / parts[:, 2] / ratio - 1
     raised = {}
     for by in (1.03, 1.06):
         other = [
-            inside(estimate("deep_groove", d, big, b, by * c, c0).bearing)[0]
+            inside(estimate("deep_groove_ball", d, big, b, by * c, c0).bearing)[0]
             for d, big, b, c, c0, _ in rows
         ]
         raised[by] = float(np.mean(np.abs(np.array(other) - parts[:, 0]) <= 1))
     inch = {
         "angular contact": [
-            inside(estimate("angular_contact", d, big, b, c, c0, angle).bearing)[1]
+            inside(estimate("angular_contact_ball", d, big, b, c, c0, angle).bearing)[1]
             for d, big, b, angle, c, c0 in numbers(ANGULAR, every)
         ],
         "thrust": [
@@ -404,18 +404,20 @@ def blind(every):
     rows = numbers(CYLINDRICAL, every)
     rollers = []
     for d, big, b, under, over, c, c0 in rows:
-        _, diameter, pitch = inside(estimate("cylindrical", d, big, b, c, c0).bearing)
+        _, diameter, pitch = inside(
+            estimate("cylindrical_roller", d, big, b, c, c0).bearing
+        )
         real = 0.5 * (over - under), 0.5 * (over + under)
         rollers.append((diameter / real[0] - 1, pitch / real[1] - 1))
     return balls, np.array(rollers), raised, inch
 
 
-ANGLES = {"angular_contact": "contact_angle", "four_point": "shim_angle"}
+ANGLES = {"angular_contact_ball": "contact_angle", "four_point_ball": "shim_angle"}
 
 
 def known_angle(kind, row):
     """The contact angle that a catalogue names [deg]; `None` of types without."""
-    if kind == "tapered":
+    if kind == "tapered_roller":
         return np.rad2deg(float(row.roller_axis_angle + row.roller_half_angle))
     return np.rad2deg(float(getattr(row, ANGLES[kind]))) if kind in ANGLES else None
 
@@ -430,8 +432,7 @@ def of_catalogue(every):
     for entry in bj.catalogue()[::every]:
         if entry.table.get("arrangement", "NU") != "NU":
             continue  # of the same inside
-        kind = entry.type.removesuffix("_roller")
-        kind = kind if kind == "thrust_ball" else kind.removesuffix("_ball")
+        kind = entry.type
         row = bj.design.rows_of(entry.bearing)[0].bearing
         d, big, b = (1e3 * v for v in (entry.bore, entry.outside_diameter, entry.width))
         rated = {"as printed": (entry.dynamic_capacity, entry.static_capacity)}

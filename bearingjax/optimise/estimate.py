@@ -88,14 +88,14 @@ class _Rated(NamedTuple):
 
 
 _KINDS = {
-    "deep_groove": _Rated(row_rating.ANGULAR_CONTACT),
-    "angular_contact": _Rated(row_rating.ANGULAR_CONTACT),
-    "four_point": _Rated(row_rating.ANGULAR_CONTACT, rows=2),
-    "self_aligning": _Rated(row_rating.SELF_ALIGNING, rows=2),
+    "deep_groove_ball": _Rated(row_rating.ANGULAR_CONTACT),
+    "angular_contact_ball": _Rated(row_rating.ANGULAR_CONTACT),
+    "four_point_ball": _Rated(row_rating.ANGULAR_CONTACT, rows=2),
+    "self_aligning_ball": _Rated(row_rating.SELF_ALIGNING, rows=2),
     "thrust_ball": _Rated(row_rating.THRUST, is_thrust=True),
-    "cylindrical": _Rated(None),
-    "needle": _Rated(None),
-    "tapered": _Rated(None),
+    "cylindrical_roller": _Rated(None),
+    "needle_roller": _Rated(None),
+    "tapered_roller": _Rated(None),
 }
 
 
@@ -185,8 +185,9 @@ def estimate_geometry(
         bore: Bore diameter d [m].
         outside_diameter: Outside diameter D [m].
         width: Width B; height of thrust bearings, total width of tapers [m].
-        kind: "deep_groove", "angular_contact", "four_point", "self_aligning" (of two
-            rows), "thrust_ball", "cylindrical", "needle" or "tapered".
+        kind: Type as in a scene: "deep_groove_ball", "angular_contact_ball",
+            "four_point_ball", "self_aligning_ball" (of two rows), "thrust_ball",
+            "cylindrical_roller", "needle_roller" or "tapered_roller".
         dynamic_capacity: Basic dynamic load rating C [N]. Ratings that a maker has
             raised by a factor of his own should be divided by it; those of four-point
             bearings are of two rows (`rating.arc_rows`).
@@ -381,7 +382,7 @@ def _envelope(numbers, kind, typical: Proportions) -> _Envelope:
         _RATINGS,
         [part.middle for part in parts],
         [part.spread for part in parts],
-        2.5 if kind == "needle" else 0.0,
+        2.5 if kind == "needle_roller" else 0.0,
         typical.by_arc,
     )
     return _Envelope(*(np.asarray(value, float) for value in values))
@@ -484,9 +485,10 @@ def _checked(numbers, kind, contact_angle) -> Proportions:
     typical = PROPORTIONS[kind]
     if contact_angle is None:
         return typical
-    if kind not in ("angular_contact", "four_point", "tapered"):
+    if kind not in ("angular_contact_ball", "four_point_ball", "tapered_roller"):
         raise ValueError(
-            f"{owner}: `contact_angle` is given; a {kind} bearing has none to choose."
+            f"{owner}: `contact_angle` is given; a {kind.replace('_', ' ')} bearing has"
+            " none to choose."
         )
     in_range(owner, "contact_angle", 0.0, 0.25 * np.pi, contact_angle, "rad")
     return typical._replace(angle=Typical(float(contact_angle), 1e-4))
@@ -496,24 +498,24 @@ def _design(kind, known, fit) -> Bearing | BearingSet:
     sizes = _sizes(_KINDS[kind], known, fit.sizes)
     balls = _KINDS[kind].balls
     diameter, pitch, length, angle = (float(size) for size in sizes)
-    if kind == "tapered":
+    if kind == "tapered_roller":
         return _taper(fit.count, pitch, diameter, length, angle)
     if balls is None:
         types = CylindricalRollerBearing, NeedleRollerBearing
         profile = Logarithmic()
-        make = types[kind == "needle"]
+        make = types[kind == "needle_roller"]
         return make(fit.count, pitch, diameter, length, roller_profile=profile)
     outer, inner = balls.open
     row = fit.count, pitch, diameter
-    if kind == "self_aligning":
+    if kind == "self_aligning_ball":
         offset = 0.5 * pitch * np.tan(angle)
         return BearingSet.self_aligning(
             SelfAligningBallRow(*row, inner_osculation=inner, row_offset=offset)
         )
     grooves: dict[str, Any] = dict(outer_osculation=outer, inner_osculation=inner)
-    if kind == "angular_contact":
+    if kind == "angular_contact_ball":
         return AngularContactBallBearing(*row, **grooves, contact_angle=angle)
-    if kind == "four_point":
+    if kind == "four_point_ball":
         return FourPointBallBearing(*row, **grooves, shim_angle=angle)
     types = DeepGrooveBallBearing, ThrustBallBearing
     return types[kind == "thrust_ball"](*row, **grooves)

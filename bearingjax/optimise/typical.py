@@ -46,7 +46,7 @@ _CENTRED = Typical(1.0, 0.012)
 
 PROPORTIONS = {
     # As many balls as go in between eccentric rings: half of the circle and a little.
-    "deep_groove": Proportions(
+    "deep_groove_ball": Proportions(
         Typical(0.58, 0.055),
         _CENTRED,
         Typical(187 * _DEG, 4 * _DEG),
@@ -54,21 +54,21 @@ PROPORTIONS = {
         _NONE,
         by_arc=True,
     ),
-    "angular_contact": Proportions(
+    "angular_contact_ball": Proportions(
         Typical(0.59, 0.05),
         _CENTRED,
         Typical(0.84, 0.07),
         None,
         Typical(35 * _DEG, 8 * _DEG),
     ),
-    "four_point": Proportions(
+    "four_point_ball": Proportions(
         Typical(0.62, 0.04),
         _CENTRED,
         Typical(0.86, 0.05),
         None,
         Typical(35 * _DEG, 5 * _DEG),
     ),
-    "self_aligning": Proportions(
+    "self_aligning_ball": Proportions(
         Typical(0.52, 0.05),
         _CENTRED,
         Typical(0.80, 0.06),
@@ -82,21 +82,21 @@ PROPORTIONS = {
         None,
         Typical(90 * _DEG, 1e-4),
     ),
-    "cylindrical": Proportions(
+    "cylindrical_roller": Proportions(
         Typical(0.51, 0.04),
         Typical(1.0, 0.015),
         Typical(0.76, 0.06),
         Typical(0.57, 0.06),
         _NONE,
     ),
-    "needle": Proportions(
+    "needle_roller": Proportions(
         Typical(0.35, 0.08),
         Typical(0.99, 0.03),
         Typical(0.82, 0.07),
         Typical(0.75, 0.08),
         _NONE,
     ),
-    "tapered": Proportions(
+    "tapered_roller": Proportions(
         Typical(0.42, 0.04),
         Typical(1.0, 0.015),
         Typical(0.88, 0.05),

@@ -247,7 +247,11 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
     notes = [*odd, *(f"{word}: no effect" for word in suffixes.without_effect)]
     assumed = list(values.get("assumed", data.get("assumed", ())))
     if kind in CLEARANCES:
-        table[CLEARANCE], note = _clearance(kind, shown, si["bore"], suffixes)
+        name = suffixes.clearance or "CN"
+        try:
+            table[CLEARANCE], note = class_clearance(kind, name, si["bore"])
+        except ValueError as error:
+            raise SceneError(f"{shown}/{name}: {error}") from error
         notes.append(note)
     elif suffixes.clearance is not None:
         problem = f"{kind} has no classes of clearance here; leave the class out"
@@ -279,13 +283,18 @@ def _other(values, sources) -> OtherRating | None:
     )
 
 
-def _clearance(kind, shown, bore, suffixes) -> tuple[str, str]:
-    """Clearance as in a scene, and where it is from."""
-    name = suffixes.clearance or "CN"
-    try:
-        low, high = CLEARANCES[kind](name, bore)
-    except ValueError as error:
-        raise SceneError(f"{shown}/{name}: {error}") from error
+def class_clearance(kind: str, name: str, bore: float) -> tuple[str, str]:
+    """Clearance in the middle of a class, as in a scene, and where it is from.
+
+    Args:
+        kind: Type that has classes, one of `CLEARANCES`.
+        name: Class, "C3".
+        bore: Bore diameter d [m].
+
+    Raises:
+        ValueError: If the class has no limits for this bore.
+    """
+    low, high = CLEARANCES[kind](name, bore)
     middle = f"{0.5e6 * (low + high):.4g} um"
     words = f"middle of class {name}, ISO 5753-1: {1e6 * low:.3g} to"
     return middle, f"clearance: {words} {1e6 * high:.3g} µm, not mounted"

@@ -19,6 +19,11 @@ _SHARE = 0.1
 
 _SPEED = "1500 rpm"
 
+_DIRT = 'contamination = "grease, normal"  # of an oil "oil bath -/17/14" and the like'
+
+_PAIRED = ("angular_contact_ball", "tapered_roller")
+"""Types that are often used as pairs."""
+
 _WARM = {
     "shaft": 60,
     "inner_ring": 60,
@@ -122,7 +127,8 @@ def catalogue_title(entry: CatalogueEntry) -> str:
 
 
 def _what(entry):
-    return f"{entry.designation}: {_words(entry.type)} bearing, {_sizes(entry)}"
+    what = f"{_words(entry.type)} bearing, {_sizes(entry)}"
+    return f"{entry.designation}: {what}" if entry.designation else what.capitalize()
 
 
 def catalogue_details(entry: CatalogueEntry) -> str:
@@ -166,7 +172,8 @@ def new_scene(entry: CatalogueEntry) -> str:
     """A scene of a bearing under a load of a tenth of its capacity, to be edited.
 
     Args:
-        entry: The bearing; every key is written out, so that it can be changed.
+        entry: The bearing, of the catalogue or of `estimated_entry`; every key is
+            written out, so that it can be changed.
     """
     lines = [
         f"# {_what(entry)}.",
@@ -176,13 +183,11 @@ def new_scene(entry: CatalogueEntry) -> str:
     if entry.assumed:
         lines += _comment(f"Assumed, as usual: {', '.join(entry.assumed)}.")
     for note in entry.notes:
-        lines += _comment(f"{note[0].upper()}{note[1:]}.")
+        lines += _comment(f"{note[0].upper()}{note[1:].rstrip('.')}.")
     lines += [
         "",
         "[bearing]",
-        f'designation = "{entry.designation}"',
-        "# What it stands for. A line that is changed counts; one that is left out is",
-        "# as in the catalogue.",
+        *_designation(entry),
         *(f"{key} = {_toml(value)}" for key, value in entry.table.items()),
         "",
         "[operating]",
@@ -192,6 +197,7 @@ def new_scene(entry: CatalogueEntry) -> str:
         "# Shaft and housing hold the ring straight; without this line it tilts.",
         'prescribed = { gx = "0 mrad", gy = "0 mrad" }',
         "",
+        *_ratings(entry),
         "# What may be added; a # less at the beginning of its lines:",
         *(f"# {line}".rstrip() for line in _further(entry)),
         "",
@@ -199,10 +205,20 @@ def new_scene(entry: CatalogueEntry) -> str:
     return "\n".join(lines)
 
 
+def _designation(entry: CatalogueEntry) -> list[str]:
+    if not entry.designation:
+        return []
+    return [
+        f'designation = "{entry.designation}"',
+        "# What it stands for. A line that is changed counts; one that is left out is",
+        "# as in the catalogue.",
+    ]
+
+
 def _further(entry: CatalogueEntry) -> list[str]:
     """Lines of the tables that a life in operation needs."""
     lines = []
-    if entry.type in ("angular_contact_ball", "tapered_roller"):
+    if entry.type in _PAIRED:
         lines += [
             "",
             "[set]  # two of them",
@@ -227,13 +243,32 @@ def _further(entry: CatalogueEntry) -> list[str]:
         'temperature = "60 °C"',
         'supply = "grease"  # whose base oil is named; or "oil_bath", "oil_jet", …',
         "",
-        "[life]  # bearingjax life my.toml",
-        'contamination = "grease, normal"  # of an oil "oil bath -/17/14" and the like',
-        "",
+        *(
+            ["[life]  # bearingjax life my.toml", _DIRT, ""]
+            if entry.designation
+            else []
+        ),
         "[[cases.spectrum]]  # its loads, a table for each",
         'hours = "1000 h"',
         f'operating.inner_speed = "{_SPEED}"',
         *(f"operating.load.{part}" for part in share.split(", ")),
+    ]
+
+
+def _ratings(entry: CatalogueEntry) -> list[str]:
+    """Lines of the [life] that a designation stands for otherwise."""
+    if entry.designation:
+        return []
+    ratings = {
+        "dynamic_capacity": entry.dynamic_capacity,
+        "static_capacity": entry.static_capacity,
+    }
+    known = {name: value for name, value in ratings.items() if value is not None}
+    return [
+        "[life]",
+        *(f'{name} = "{1e-3 * value:.6g} kN"' for name, value in known.items()),
+        f"# {_DIRT}",
+        "",
     ]
 
 
@@ -243,7 +278,14 @@ def _seats(entry: CatalogueEntry) -> list[str]:
     if entry.type == "tapered_roller":
         classes = ['shaft_interference = "10 um"', 'housing_interference = "-10 um"']
     outside = 5.0 * round(1.5e3 * entry.outside_diameter / 5.0)
-    return [*classes, f'housing_diameter = "{outside:g} mm"']
+    lines = [*classes, f'housing_diameter = "{outside:g} mm"']
+    if entry.designation:
+        return lines
+    sizes = {"bore": entry.bore, "outside_diameter": entry.outside_diameter}
+    lines += [f'{k} = "{1e3 * size:.5g} mm"' for k, size in sizes.items()]
+    if entry.type in _PAIRED:
+        lines.append(f'# ring_width = "{1e3 * entry.width:.5g} mm"  # of a set')
+    return lines
 
 
 def _load(entry: CatalogueEntry) -> list[str]:

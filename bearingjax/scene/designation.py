@@ -124,4 +124,5 @@ def _unknown(text: str, squeezed: str, names: tuple[str, ...]) -> str:
     begun = [name for name in names if name.startswith(squeezed)]
     near = begun or difflib.get_close_matches(squeezed, names, 4, 0.7)
     hint = f"; near it: {', '.join(sorted(near)[:6])}" if near else ""
-    return f"{text!r} is not a bearing of the catalogue{hint}"
+    cure = "; of an unlisted one `bearingjax new --type …` estimates the inside"
+    return f"{text!r} is not a bearing of the catalogue{hint}{cure}"

@@ -19,15 +19,15 @@ from bearingjax.optimise import estimate
 _DEG = np.pi / 180
 # d, D, B [mm], C, C0 [kN]; number of elements, their diameter [mm].
 PUBLISHED = {
-    "6203": ("deep_groove", 17, 40, 12, 9.55, 4.8, 8, 6.746),
-    "6205": ("deep_groove", 25, 52, 15, 14.0, 7.85, 9, 7.938),
-    "6208": ("deep_groove", 40, 80, 18, 29.1, 17.9, 9, 11.906),
-    "6308": ("deep_groove", 40, 90, 23, 40.5, 24.0, 8, 15.081),
-    "6804": ("deep_groove", 20, 32, 7, 4.0, 2.47, 13, 3.5),
-    "N 209": ("cylindrical", 45, 85, 19, 46.0, 47.0, 14, 10.0),
-    "NU 215": ("cylindrical", 75, 130, 25, 130.0, 156.0, 18, 15.0),
-    "NU 1008": ("cylindrical", 40, 68, 15, 27.3, 29.0, None, 7.0),
-    "NU 1018": ("cylindrical", 90, 140, 24, 88.0, 114.0, None, 12.0),
+    "6203": ("deep_groove_ball", 17, 40, 12, 9.55, 4.8, 8, 6.746),
+    "6205": ("deep_groove_ball", 25, 52, 15, 14.0, 7.85, 9, 7.938),
+    "6208": ("deep_groove_ball", 40, 80, 18, 29.1, 17.9, 9, 11.906),
+    "6308": ("deep_groove_ball", 40, 90, 23, 40.5, 24.0, 8, 15.081),
+    "6804": ("deep_groove_ball", 20, 32, 7, 4.0, 2.47, 13, 3.5),
+    "N 209": ("cylindrical_roller", 45, 85, 19, 46.0, 47.0, 14, 10.0),
+    "NU 215": ("cylindrical_roller", 75, 130, 25, 130.0, 156.0, 18, 15.0),
+    "NU 1008": ("cylindrical_roller", 40, 68, 15, 27.3, 29.0, None, 7.0),
+    "NU 1018": ("cylindrical_roller", 90, 140, 24, 88.0, 114.0, None, 12.0),
 }
 
 
@@ -63,21 +63,21 @@ def designs():
     pitch, diameter, half = 0.060, 0.0099, 2.0 * _DEG
     axis = float(np.arcsin(np.tan(half) * pitch / diameter))
     return {
-        "angular_contact": (
+        "angular_contact_ball": (
             (0.04, 0.08, 0.018),
             40 * _DEG,
             bj.AngularContactBallBearing(
                 14, 0.060, 0.0119, **grooves, contact_angle=40 * _DEG
             ),
         ),
-        "four_point": (
+        "four_point_ball": (
             (0.055, 0.1, 0.021),
             35 * _DEG,
             bj.FourPointBallBearing(
                 15, 0.0775, 0.0142, **grooves, shim_angle=35 * _DEG
             ),
         ),
-        "self_aligning": (
+        "self_aligning_ball": (
             (0.025, 0.052, 0.015),
             None,
             bj.BearingSet.self_aligning(row),
@@ -89,12 +89,12 @@ def designs():
                 14, 0.041, 0.0079, outer_osculation=0.54, inner_osculation=0.54
             ),
         ),
-        "needle": (
+        "needle_roller": (
             (0.025, 0.042, 0.017),
             None,
             bj.NeedleRollerBearing(26, 0.0335, 0.0032, 0.0128),
         ),
-        "tapered": (
+        "tapered_roller": (
             (0.04, 0.08, 0.01975),
             axis + half,
             bj.TaperedRollerBearing(
@@ -129,10 +129,10 @@ def test_designs_are_found_from_their_own_ratings(kind):
 @pytest.mark.parametrize(
     "kind, size, ratings, angle, count, diameter",
     [
-        ("self_aligning", (25, 52, 15), (14.3, 4.0), None, 13, 7.541),
-        ("self_aligning", (20, 47, 14), (12.7, 3.4), None, 12, 7.144),
+        ("self_aligning_ball", (25, 52, 15), (14.3, 4.0), None, 13, 7.541),
+        ("self_aligning_ball", (20, 47, 14), (12.7, 3.4), None, 12, 7.144),
         # C of the improved class, 6 % above ISO 281.
-        ("four_point", (50, 90, 20), (65.5 / 1.06, 61.0), 35, 17, 11.906),
+        ("four_point_ball", (50, 90, 20), (65.5 / 1.06, 61.0), 35, 17, 11.906),
     ],
 )
 def test_ratings_of_two_rows_are_understood(
@@ -169,7 +169,7 @@ def test_slopes_of_the_least_squares_are_those_of_differences():
         assert np.allclose(slopes[:, k], difference, rtol=DIFFERENCE, atol=1e-5)
 
 
-GOOD = (0.025, 0.052, 0.015, "deep_groove", 14.0e3, 7.85e3)
+GOOD = (0.025, 0.052, 0.015, "deep_groove_ball", 14.0e3, 7.85e3)
 
 
 @pytest.mark.parametrize(
@@ -209,5 +209,5 @@ def test_an_estimate_is_not_traced(untyped):
 
 
 def test_only_some_types_have_a_contact_angle_to_choose():
-    with pytest.raises(ValueError, match="`contact_angle` is given; a deep_groove"):
+    with pytest.raises(ValueError, match="`contact_angle` is given; a deep groove"):
         bj.estimate_geometry(*GOOD, contact_angle=0.3)

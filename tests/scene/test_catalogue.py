@@ -462,9 +462,81 @@ def test_catalogue_command(run, tmp_path):
     assert "shim_angle = " in drawn
 
 
+UNLISTED = {
+    "deep_groove_ball": (85, 150, 28, 87.1, 64),
+    "angular_contact_ball": (60, 130, 31, 96, 71),
+    "four_point_ball": (55, 100, 21, 85, 83),
+    "self_aligning_ball": (50, 90, 20, 26.5, 9.15),
+    "thrust_ball": (90, 120, 22, 59.2, 190),
+    "cylindrical_roller": (45, 85, 19, 46.0, 47.0),
+    "needle_roller": (40, 62, 22, 42.9, 71),
+    "tapered_roller": (55, 100, 26.75, 107, 134),
+}
+"""d, D, B [mm], C, C0 [kN]."""
+
+
+def asked(kind, numbers):
+    options = ("--bore", "--outside", "--width", "--capacity", "--static-capacity")
+    units = 3 * ["mm"] + 2 * ["kN"]
+    given = zip(options, numbers, units, strict=True)
+    words = [text for key, x, unit in given for text in (key, f"{x} {unit}")]
+    return ("new", "--type", kind, *words)
+
+
+@pytest.mark.parametrize("kind", UNLISTED)
+def test_a_scene_of_an_unlisted_bearing(run, tmp_path, kind):
+    """It is that of `estimate_geometry`, with the ratings given."""
+    numbers = UNLISTED[kind]
+    done = run(*asked(kind, numbers))
+    assert done.status == 0 and done.err == "" and ".." not in done.out
+    path = tmp_path / "unlisted.toml"
+    path.write_text(done.out, encoding="utf-8")
+    read = bj.read_scene(path)
+    *sizes, c, c0 = numbers
+    d, outside, width = (1e-3 * size for size in sizes)
+    found = bj.estimate_geometry(d, outside, width, kind, 1e3 * c, 1e3 * c0)
+    made, wanted = (
+        rows_of(bearing)[0].bearing for bearing in (read.element.bearing, found.bearing)
+    )
+    assert type(made) is type(wanted)
+    for rate in (bj.dynamic_capacity, bj.static_capacity):
+        rated = (float(rate(b)) for b in (read.element.bearing, found.bearing))
+        assert next(rated) == pytest.approx(next(rated), rel=1e-3)
+    assert float(made.pitch_diameter) == pytest.approx(
+        float(wanted.pitch_diameter), rel=1e-4
+    )
+    assert float(read.life.dynamic_capacity) == pytest.approx(1e3 * c)
+    assert float(read.life.static_capacity) == pytest.approx(1e3 * c0)
+    assert found.report()[:20] in done.out
+
+
 @pytest.mark.parametrize(
     "given, message",
     [
+        (("new",), "new: give a designation, or --type and sizes"),
+        (("new", "6205", "--bore", "25 mm"), "new 6205: sizes and ratings go with"),
+        (("new", "6205", "--type", "thrust_ball"), "a designation or --type, not both"),
+        (("new", "--type", "ball"), "--type: 'ball' is not known"),
+        (
+            ("new", "--type", "thrust_ball", "--bore", "9 mm"),
+            "needs its sizes and ratings; --outside, --width, --capacity, --static-",
+        ),
+        (
+            (*asked("thrust_ball", UNLISTED["thrust_ball"]), "--bore", "90"),
+            "--bore: '90' has no unit",
+        ),
+        (
+            asked("deep_groove_ball", (85, 150, 28, 871, 64)),
+            "`dynamic_capacity` is 871000 N; it must be between",
+        ),
+        (
+            (
+                *asked("thrust_ball", UNLISTED["thrust_ball"]),
+                "--contact-angle",
+                "9 deg",
+            ),
+            "`contact_angle` is given; a thrust ball bearing has none to choose",
+        ),
         (("catalogue", "--type", "ball"), "--type: 'ball' is not known"),
         (("catalogue", "--bore", "25"), "--bore: '25' has no unit"),
         (("catalogue", "--bore", "9 mm:2 mm"), "--bore: '9 mm:2 mm' ends below"),

@@ -1,0 +1,147 @@
+"""A bearing that no catalogue here lists, from what is printed of it anywhere."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ..design import rows_of
+from ..optimise.estimate import estimate_geometry
+from .catalogue_entry import CLEARANCE, CLEARANCES, CatalogueEntry, class_clearance
+from .quantity import SceneError, to_si
+from .table import not_among
+
+SIZES = {
+    "bore": "length",
+    "outside": "length",
+    "width": "length",
+    "capacity": "force",
+    "static_capacity": "force",
+}
+"""What has to be known beside the type, and its kind."""
+
+_LENGTHS = ("pitch_diameter", "ball_diameter", "roller_diameter", "roller_length")
+_ANGLES = ("contact_angle", "shim_angle", "roller_axis_angle", "roller_half_angle")
+_PARTS = {
+    "deep_groove_ball": (),
+    "angular_contact_ball": ("contact_angle",),
+    "four_point_ball": ("shim_angle",),
+    "self_aligning_ball": ("row_offset",),
+    "thrust_ball": (),
+    "cylindrical_roller": (),
+    "needle_roller": (),
+    "tapered_roller": ("roller_axis_angle", "roller_half_angle"),
+}
+"""Keys of each type beside number and sizes of the rolling elements."""
+
+
+def estimated_entry(
+    kind: str, given: Mapping[str, str | None], contact_angle: str | None = None
+) -> CatalogueEntry:
+    """An entry of a bearing whose inside is worked out by `estimate_geometry`.
+
+    Args:
+        kind: Type, as in a scene.
+        given: Texts with units by the names in `SIZES`; `None` is missing.
+        contact_angle: Likewise; `None`: estimated too.
+
+    Returns:
+        Entry without a designation.
+
+    Raises:
+        SceneError: For what is missing, wrong, or has no such inside.
+    """
+    if kind not in _PARTS:
+        raise SceneError(f"--type: {not_among(kind, tuple(_PARTS))}")
+    missing = [f"--{name.replace('_', '-')}" for name in SIZES if not given.get(name)]
+    if missing:
+        problem = "an unlisted bearing needs its sizes and ratings;"
+        raise SceneError(f"--type {kind}: {problem} {', '.join(missing)} missing")
+    numbers = {
+        name: _read(name, str(given[name]), unit) for name, unit in SIZES.items()
+    }
+    angle = None
+    if contact_angle is not None:
+        angle = _read("contact_angle", contact_angle, "angle")
+    try:
+        found = estimate_geometry(
+            numbers["bore"],
+            numbers["outside"],
+            numbers["width"],
+            kind,
+            numbers["capacity"],
+            numbers["static_capacity"],
+            contact_angle=angle,
+        )
+    except ValueError as error:
+        raise SceneError(str(error)) from error
+    table, notes = _table(kind, rows_of(found.bearing)[0].bearing), [found.report()]
+    if kind in CLEARANCES:
+        table[CLEARANCE], note = class_clearance(kind, "CN", numbers["bore"])
+        notes.append(note)
+    if kind == "cylindrical_roller":
+        notes.append("no ribs: `arrangement` and `rib` of [bearing] give them")
+    return CatalogueEntry(
+        designation="",
+        type=kind,
+        bore=numbers["bore"],
+        outside_diameter=numbers["outside"],
+        width=numbers["width"],
+        inner_width=None,
+        outer_width=None,
+        dynamic_capacity=numbers["capacity"],
+        static_capacity=numbers["static_capacity"],
+        fatigue_load_limit=None,
+        reference_speed=None,
+        limiting_speed=None,
+        other=None,
+        geometry="estimated",
+        assumed=tuple(k for k in _USUAL if k in table),
+        sources={"capacity": "as given", "geometry": "estimate_geometry, from these"},
+        notes=tuple(notes),
+        table=table,
+    )
+
+
+_USUAL = ("outer_osculation", "inner_osculation", "roller_profile", "ribs")
+
+
+def _read(name, text, unit) -> float:
+    try:
+        return to_si(text, unit)
+    except SceneError as error:
+        raise SceneError(f"--{name.replace('_', '-')}: {error}") from error
+
+
+def _table(kind: str, row: Any) -> dict[str, Any]:
+    """Keys of [bearing] of an estimated row."""
+    element = "balls" if kind.endswith("ball") else "rollers"
+    names = [f"n_{element}", *_LENGTHS, "outer_osculation", "inner_osculation"]
+    table: dict[str, Any] = {"type": kind}
+    for name in (*names, *_PARTS[kind]):
+        # The outer raceway of a self-aligning bearing is a sphere.
+        if hasattr(row, name) and (kind, name) != _SPHERE:
+            table[name] = _written(name, getattr(row, name))
+    if element == "rollers":
+        table["roller_profile"] = {"type": "logarithmic"}
+    if kind == "tapered_roller":
+        rib = row.ribs.inner_minus
+        ends = {"end_radius": rib.end_radius, "contact_height": rib.contact_height}
+        table["ribs"] = {
+            "inner_minus": {k: f"{1e3 * float(x):.4g} mm" for k, x in ends.items()}
+        }
+        table[CLEARANCE] = "0 um"
+    return table
+
+
+_SPHERE = ("self_aligning_ball", "outer_osculation")
+
+
+def _written(name: str, value: Any) -> Any:
+    if name.startswith("n_"):
+        return int(value)
+    if name in _ANGLES:
+        return f"{np.rad2deg(float(value)):.6g} deg"
+    if name.endswith("osculation"):
+        return round(float(value), 6)
+    return f"{1e3 * float(value):.5g} mm"
