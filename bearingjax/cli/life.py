@@ -95,13 +95,13 @@ def _life_of_load(options) -> int:
 
 def _life_of_cases(options) -> int:
     from ..scene import (
-        design_sections,
         fitted,
         life_columns,
         read_cases,
         run_life,
         spectrum_as_dict,
         spectrum_report,
+        spectrum_sections,
         unsolved,
         write_numbers,
     )
@@ -123,7 +123,7 @@ def _life_of_cases(options) -> int:
         page(
             path,
             scene.name,
-            {"Rating life": text} | design_sections(scene),
+            spectrum_sections(done),
             table.inputs,
             draws,
             life_columns(done),

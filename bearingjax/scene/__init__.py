@@ -39,6 +39,7 @@ from .life_run import life_columns as life_columns
 from .life_run import run_life as run_life
 from .life_run import spectrum_as_dict as spectrum_as_dict
 from .life_run import spectrum_report as spectrum_report
+from .life_run import spectrum_sections as spectrum_sections
 from .life_run import unsolved as unsolved
 from .noise_output import noise_as_dict as noise_as_dict
 from .noise_output import noise_columns as noise_columns
@@ -62,7 +63,6 @@ from .quantity import SceneError as SceneError
 from .read import Scene as Scene
 from .read import load_bearing as load_bearing
 from .read import read_scene as read_scene
-from .report import design_sections as design_sections
 from .report import report as report
 from .report import sections as sections
 from .resume import resume_cases as resume_cases

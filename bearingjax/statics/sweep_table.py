@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..design.fits import Mounting
 from ..design.rib import RIB_NAMES
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..numerics.result import Result
@@ -42,7 +43,15 @@ _LAST_AXES = {
 }
 """Names along the last axes of an output; other axes are counted."""
 
-_LARGEST_OF = {"peak_pressure": "roller_pressure", "largest_load": "roller_load"}
+OPERATING_CLEARANCE = "operating_radial_clearance"
+"""Output of sweeps of bearings on their seats: the clearance with which they run."""
+
+_FIELD_OF = {
+    "peak_pressure": "roller_pressure",
+    "largest_load": "roller_load",
+    OPERATING_CLEARANCE: "radial_clearance",
+}
+"""Fields that have the units of outputs of other names."""
 
 
 def columns(
@@ -371,13 +380,13 @@ def _label(name, index, shape):
     """Name and unit of one entry of an output."""
     axes = _LAST_AXES.get(name, ())
     first = len(shape) - len(axes)
-    field, entry = _LARGEST_OF.get(name, name), index
+    field, entry = _FIELD_OF.get(name, name), index
     if shape[max(first, 0) :] != tuple(map(len, axes)):
         # A user's own array under the name of a field: its axes are unknown.
         axes, first, entry = (), len(shape), ()
     last = [axis[k] for axis, k in zip(axes, index[first:], strict=True)]
     label = "_".join([name, *map(str, index[:first]), *last])
-    for kind in (RollerSolution, BallSolution, Life):
+    for kind in (RollerSolution, BallSolution, Life, Mounting):
         if field in kind.__dataclass_fields__:
             return label, unit_of(kind, field, entry)
     return label, ""

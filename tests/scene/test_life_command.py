@@ -125,10 +125,13 @@ def test_a_case_that_is_not_solved_leaves_no_life(run, tmp_path):
     assert found["dynamic_capacity"] == 23400.0
 
 
-def test_reliability_counts_without_a_lubricant_too(untyped):
-    """A spectrum of two cases whose lives are known."""
-    a1, hours, speed = 0.64, np.array([3.0, 1.0]), np.array([100.0, 50.0])
-    cases = bj.Cases(np.zeros((2, 6)), inner_speed=speed, hours=hours)
+def two_cases():
+    """A spectrum of two cases whose lives are known, the second one warmer and on a
+    tighter shaft; its a1, and lives by name."""
+    a1, hours, speed = 0.64, np.array([3.0, 0.0]), np.array([100.0, 50.0])
+    cases = bj.Cases(
+        np.zeros((2, 6)), inner_speed=speed, hours=hours, design=np.arange(2)
+    )
     lives = np.array([1e9, 1e8])
     outputs = {
         "result": np.zeros(2, int),
@@ -138,13 +141,23 @@ def test_reliability_counts_without_a_lubricant_too(untyped):
         "static_safety": np.array([9.0, 3.0]),
         "equivalent_load": np.array([1e3, 2e3]),
         "reference_load": np.array([1e3, 2e3]),
+        "operating_radial_clearance": np.array([8e-6, -3.5e-6]),
     }
     element = SimpleNamespace(
         bearing=bj.DeepGrooveBallBearing(7, 0.04, 0.008, **GROOVES)
     )
     scene = SimpleNamespace(name="two", element=element, catalogue=None)
+    settings = (
+        {"temperature.inner_ring [K]": 333.15, "fit.shaft": "k5", "fit.housing": "H7"},
+        {"temperature.inner_ring [K]": 363.15, "fit.shaft": "m5", "fit.housing": "H7"},
+    )
     table = SimpleNamespace(
-        scene=scene, cases=cases, varied=["hours"], warnings=[], inputs={}
+        scene=scene,
+        cases=cases,
+        varied=["hours"],
+        warnings=[],
+        inputs={},
+        settings=settings,
     )
     known = {
         name: bj.spectrum_life(cases, 1 / lives)
@@ -161,11 +174,48 @@ def test_reliability_counts_without_a_lubricant_too(untyped):
     )
     solved = Sweep(cases, outputs, "inner", ())
     run = LifeRun(table, solved, known, asked, ratings)  # pyright: ignore[reportArgumentType]
+    return run, a1, lives
+
+
+def test_reliability_counts_without_a_lubricant_too(untyped):
+    run, a1, lives = two_cases()
     found = spectrum_as_dict(run)
+    hours, speed = np.array([3.0, 0.0]), np.array([100.0, 50.0])
     used = hours * speed * 3600 / (2 * np.pi) / lives
-    np.testing.assert_allclose(found["life_hours"], a1 * 4 / used.sum(), rtol=1e-12)
+    np.testing.assert_allclose(found["life_hours"], a1 * 3 / used.sum(), rtol=1e-12)
     np.testing.assert_allclose(found["damage_share"], used / used.sum(), rtol=1e-12)
     assert found["modified_rating_life"] is None
     lines = spectrum_report(run).splitlines()
     (line,) = [line for line in lines if line.startswith("reference, a1 0.64")]
-    assert f"{a1 * 4 / used.sum():.5g}" in line
+    assert f"{a1 * 3 / used.sum():.5g}" in line
+
+
+def test_cases_are_told_by_what_differs(untyped):
+    """Whatever the key; and how each runs, the least safe one by its number."""
+    run = two_cases()[0]
+    text = spectrum_report(run)
+    assert "least static safety 3 (case 1, of 0 h)" in text
+    assert "over the cases the operating radial clearance is -3.5 to 8 µm" in text
+    lines = text.splitlines()
+    (k,) = [k for k, line in enumerate(lines) if line.startswith("each case alone")]
+    first, second, warm = (lines[k + i].split() for i in (0, 1, 3))
+    assert first[-2:] == ["damage", "%"] and second[-1] == "(reference)"
+    assert warm[:4] == ["1", "0", "2", "-3.5"]  # case, hours, kN, µm
+    told = "inner speed 477.5 rpm, inner ring 90 °C, shaft m5"
+    assert f"     1  {told}" in lines and max(map(len, lines)) <= 88
+    columns = spectrum_as_dict(run)["columns"]
+    assert columns["operating_radial_clearance [m]"][1] == -3.5e-6
+    below = bj.plot.life_overview(run).subfigs[0].axes
+    for ax in below:
+        label = ax.get_xticklabels()[1].get_text()
+        assert label == "\n".join(["1", *told.split(", ")])
+
+
+def test_labels_of_many_settings_say_how_many_are_left_out():
+    from bearingjax.plot.life import _named
+
+    words = [f"number {k} of many 12 mm" for k in range(9)]
+    lines = _named(3, words, 13).splitlines()
+    assert max(map(len, lines)) <= 13 and len(lines) <= 8
+    assert lines[:3] == ["3", "number 0 of", "many 12 mm"] and lines[-1] == "and 6 more"
+    assert _named(3, words[:3], 30).splitlines() == ["3", *words[:3]]
