@@ -17,7 +17,7 @@ from .outputs import (
     write,
 )
 from .progress import is_shown
-from .status import NOT_SOLVED, SOLVED, complain, tell_unsolved
+from .status import NOT_SOLVED, complain, tell_unsolved
 
 
 def add(commands):
@@ -77,7 +77,7 @@ def _life_of_load(options) -> int:
     numbers = solved_as_dict(scene, solution, life)
     if life is not None:
         numbers = {**life_as_dict(life), **fits_as_dict(scene), **numbers}
-    write(
+    drawn = write(
         (options.json, lambda path: write_numbers(path, numbers)),
         (options.plot, draws_solution(scene, solution) if solved else None),
         (options.report, tells_solution(scene, solution, page) if solved else None),
@@ -90,7 +90,7 @@ def _life_of_load(options) -> int:
     for text in numbers["warnings"]:
         print(f"warning: {text}")
     sys.stdout.flush()
-    return SOLVED
+    return drawn
 
 
 def _life_of_cases(options) -> int:
@@ -130,7 +130,7 @@ def _life_of_cases(options) -> int:
             drawing=draws_bearing(scene, fitted(scene.fits, scene.element)),
         )
 
-    write(
+    drawn = write(
         (options.table, lambda path: write_columns(life_columns(done), path)),
         (options.json, lambda path: write_numbers(path, spectrum_as_dict(done))),
         (options.plot, draw if done.converged else None),
@@ -140,4 +140,4 @@ def _life_of_cases(options) -> int:
         complain(unsolved(done))
         return NOT_SOLVED
     print(text, flush=True)
-    return SOLVED
+    return drawn

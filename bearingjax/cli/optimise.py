@@ -2,7 +2,7 @@
 
 from .options import add_plot, add_report, add_scene
 from .outputs import Reporter, check_outputs, save, write
-from .status import NOT_SOLVED, SOLVED, complain
+from .status import NOT_SOLVED, complain
 
 
 def add(commands):
@@ -59,7 +59,7 @@ def run(options) -> int:
         texts, draws = {"Optimised design": text}, {"Before and after": draw}
         page(path, task.scene.name, texts, task.inputs, draws)
 
-    write(
+    drawn = write(
         (
             options.json,
             lambda path: write_numbers(path, optimisation_as_dict(task, found)),
@@ -71,4 +71,4 @@ def run(options) -> int:
         complain(f"{found.result}: {found.message}")
         return NOT_SOLVED
     print(text, flush=True)
-    return SOLVED
+    return drawn

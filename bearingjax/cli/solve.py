@@ -10,7 +10,7 @@ from .outputs import (
     tells_solution,
     write,
 )
-from .status import SOLVED, complain, tell_unsolved
+from .status import complain, tell_unsolved
 
 
 def add(commands):
@@ -42,7 +42,7 @@ def run(options) -> int:
     solved = Result(int(solution.result)) is Result.CONVERGED
     # Mounted and preloaded where the scene says so.
     element = solution.element if solved else scene.element
-    write(
+    drawn = write(
         (options.json, lambda path: write_json(path, scene, solution)),
         (options.plot, draws_solution(scene, solution) if solved else None),
         (options.drawing, draws_bearing(scene, element)),
@@ -51,4 +51,4 @@ def run(options) -> int:
     if not solved:
         return tell_unsolved(scene, solution)
     print(report(scene, solution), flush=True)
-    return SOLVED
+    return drawn

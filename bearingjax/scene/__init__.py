@@ -21,6 +21,7 @@ from .contact_run import run_refined as run_refined
 from .contact_table import ContactScene as ContactScene
 from .contact_table import is_bearing as is_bearing
 from .contact_table import read_contact as read_contact
+from .files import Incomplete as Incomplete
 from .files import check_outputs as check_outputs
 from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers

@@ -73,7 +73,9 @@ def test_solve_tells_the_life_that_python_has(run, rerun, tmp_path, solution, un
     assert told.status == 2 and "--table is for a scene with [cases]" in told.err
 
 
-def test_a_spectrum_adds_up_the_damage_of_its_cases(run, rerun, tmp_path, untyped):
+def test_a_spectrum_adds_up_the_damage_of_its_cases(
+    run, rerun, undrawn, tmp_path, untyped
+):
     out, table = tmp_path / "out.json", tmp_path / "cases.csv"
     page, picture = tmp_path / "out.html", tmp_path / "out.png"
     drawn = ("--report", page, "--plot", picture)
@@ -108,6 +110,8 @@ def test_a_spectrum_adds_up_the_damage_of_its_cases(run, rerun, tmp_path, untype
     np.testing.assert_allclose(found["equivalent_load"], mean, rtol=1e-9)
     page = rerun("life", out, "--quiet", pictures=2)
     assert page.count("<td>converged</td>") == 3
+    again = ("life", SCENE, *SETTINGS, "--table", table, "--quiet")
+    undrawn("life_overview", out, *again, others=[table])
 
 
 def test_a_case_that_is_not_solved_leaves_no_life(run, tmp_path):
