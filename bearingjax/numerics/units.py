@@ -53,6 +53,8 @@ _SHOWN = {
     "Pa": (1e-6, "MPa"),
     "N": (1e-3, "kN"),
     "rad/s": (30.0 / np.pi, "rpm"),
+    "rev": (1e-6, "million rev"),
+    "1/rev": (1e6, "1/million rev"),
 }
 
 

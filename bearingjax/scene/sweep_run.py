@@ -163,14 +163,15 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
 
 def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
     """What makes the design of each case, by "key [unit]": numbers in SI, and texts as
-    the scene writes them."""
+    the scene writes them; without numbers that are zero in all cases."""
     if table.cases.design is None:
         return {}
     design = np.asarray(table.cases.design)
-    return {
+    found = {
         key: np.array([made.get(key) for made in table.settings])[design]
         for key in table.settings[0]
     }
+    return {k: v for k, v in found.items() if v.dtype.kind not in "fi" or v.any()}
 
 
 def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
