@@ -275,6 +275,23 @@ def test_cases_vary_fits_temperatures_and_speed(scene):
     assert _with_clearance(table.structures[0], solved) is solved
 
 
+def test_what_varies_need_not_stand_in_the_scene(scene):
+    """The first value is the scene's own then; each case has its own all the same."""
+    fit = FIT.replace('shaft = "k5"\n', "")
+    grid = '[cases.grid]\nfit.shaft_interference = ["4 um", "9 um"]\n'
+    table = read_cases(scene(BEARING + fit + grid))
+    assert table.scene.inputs["fit"]["shaft_interference"] == "4e-06 m"
+    of_scene = fitted(table.scene.fits, table.scene.element).bearing
+    left = table.structures[0].element.bearing.radial_internal_clearance
+    assert float(of_scene.radial_internal_clearance) == float(left[0])
+    assert left[0] - left[1] == pytest.approx(5 * MICRON * 25 / 31, rel=0.1)
+    given = read_cases(scene(BEARING + fit + grid), ["fit.shaft_interference=7 um"])
+    assert given.scene.inputs["fit"]["shaft_interference"] == "7e-06 m"
+    np.testing.assert_array_equal(
+        given.structures[0].element.bearing.radial_internal_clearance, left
+    )
+
+
 def test_interferences_are_variables(scene):
     text = BEARING + FIT + '[optimise]\nobjective = "peak_pressure"\n'
     text += (
