@@ -250,7 +250,8 @@ def spectrum_report(run: LifeRun) -> str:
         f"equivalent load of the spectrum {1e-3 * equivalent_load(run):.5g} kN; least"
         f" static safety {run.least_safety()}"
     )
-    lines += [] if run.clearance is None else [f"over the cases {_clearances(run)}"]
+    play = run.clearance
+    lines += [] if play is None else [f"over the cases {_clearances(play)}"]
     lines += _by_case(run)
     lines += [f"warning: {text}" for text in _warnings(run)]
     return "\n".join(lines)
@@ -267,14 +268,14 @@ def spectrum_sections(run: LifeRun) -> dict[str, str]:
     if run.clearance is not None:
         texts[fits] = (
             "These are the fits as [operating], [fit] and [temperature] of the scene"
-            f" have them; over the cases\n{_clearances(run)}.\n{texts[fits]}"
+            f" have them; over the cases\n{_clearances(run.clearance)}.\n{texts[fits]}"
         )
     return texts
 
 
-def _clearances(run: LifeRun) -> str:
+def _clearances(clearance: np.ndarray) -> str:
     """Least and largest radial clearance of the cases in operation."""
-    ends = (f"{1e6 * end(run.clearance):.4g}" for end in (np.min, np.max))
+    ends = (f"{1e6 * end(clearance):.4g}" for end in (np.min, np.max))
     words = " to ".join(dict.fromkeys(ends))
     return f"the operating radial clearance is {words} µm"
 

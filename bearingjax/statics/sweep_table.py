@@ -317,8 +317,10 @@ def restored(
             nothing = np.where(solved, 0.0, not_run(name, values.dtype))
             parts = []
             for header, column in _spread(name, values, zeros):
-                there = nothing if column is None else table.get(header)
-                if there is None:
+                there = table.get(header)
+                if column is None:
+                    there = nothing
+                elif there is None:
                     if np.abs(np.nan_to_num(column)).max(initial=0.0) > NOTHING:
                         raise ValueError(f"has no column {header!r}")
                     there = nothing

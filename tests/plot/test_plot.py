@@ -100,7 +100,7 @@ def test_labels_of_the_load_zone_find_room_or_the_title_tells_them(count, told):
     ax = plot.load_zone(even)
     assert ("; circles every 40 N" in ax.get_title()) is not told
     assert bool(ax.texts) is told
-    ax.figure.draw_without_rendering()
+    plt.gcf().draw_without_rendering()
     for text in ax.texts:
         box = text.get_window_extent()
         bars = [bar for bars in ax.containers for bar in bars]

@@ -11,7 +11,12 @@ from tolerances import SOLVER
 import bearingjax as bj
 from bearingjax.lubrication import OILS
 from bearingjax.scene import read_cases, run_scene, shipped_scenes
-from bearingjax.scene.life_run import LifeRun, spectrum_as_dict, spectrum_report
+from bearingjax.scene.life_run import (
+    LifeRun,
+    spectrum_as_dict,
+    spectrum_report,
+    spectrum_sections,
+)
 from bearingjax.statics.sweep import Sweep
 
 GROOVES = {"inner_osculation": 0.52, "outer_osculation": 0.53}
@@ -213,6 +218,24 @@ def test_cases_are_told_by_what_differs(untyped):
     for ax in below:
         label = ax.get_xticklabels()[1].get_text()
         assert label == "\n".join(["1", *told.split(", ")])
+
+
+def test_a_page_says_whose_fits_it_shows(untyped):
+    """Those of the scene, beside the clearances of its cases."""
+    fit = "bore=25 mm", "outside_diameter=62 mm", "housing_diameter=90 mm"
+    seats = [f"fit.{one}" for one in (*fit, "shaft=k5", "housing=H7")]
+    table = read_cases(SCENE, seats)
+    run = two_cases()[0]
+    outputs = {name: np.resize(x, 3) for name, x in run.solved.outputs.items()}
+    solved = Sweep(table.cases, outputs, "inner", ())
+    asked = bj.spectrum_life(table.cases, outputs["damage"])
+    run = LifeRun(table, solved, run.lives, asked, run.ratings)
+    texts = spectrum_sections(run)
+    assert texts["Rating life"] == spectrum_report(run)
+    told = " ".join(texts["Fits and clearance"].split())
+    assert "[fit] and [temperature] of the scene have them" in told
+    assert "over the cases the operating radial clearance is -3.5 to 8 µm." in told
+    assert "fits: shaft k5, housing H7" in told
 
 
 def test_labels_of_many_settings_say_how_many_are_left_out():
