@@ -2,7 +2,6 @@
 
 from .options import add_drawing, add_json, add_plot
 from .outputs import check_plot, save, save_drawing, write
-from .status import SOLVED
 
 
 def add(commands):
@@ -77,7 +76,7 @@ def run(options) -> int:
     def draw_all_of_it(path):
         save_drawing(chosen[0].bearing, catalogue_title(chosen[0]), path)
 
-    write(
+    drawn = write(
         (options.json, lambda path: write_numbers(path, catalogue_as_dict(chosen))),
         (options.plot, draw if chosen else None),
         (options.drawing, draw_all_of_it if chosen else None),
@@ -86,4 +85,4 @@ def run(options) -> int:
         print("\n\n".join(catalogue_details(entry) for entry in chosen), flush=True)
     else:
         print(catalogue_table(chosen), flush=True)
-    return SOLVED
+    return drawn

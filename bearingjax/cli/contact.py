@@ -92,7 +92,7 @@ def run(options) -> int:
         texts, draws = {"Contact": text}, {"Pressures": draw}
         page(path, scene.name, texts, scene.inputs, draws, warnings=warned)
 
-    write(
+    drawn = write(
         (options.json, lambda path: write_contact_json(path, scene, cases)),
         (options.plot, None if lost else draw),
         (options.report, None if lost else tell),
@@ -101,7 +101,7 @@ def run(options) -> int:
         print(text, flush=True)
     for one in warned:
         complain(f"warning: {one}")
-    return _tell_lost(scene, cases)
+    return _tell_lost(scene, cases) or drawn
 
 
 def _tell_lost(scene, cases) -> int:

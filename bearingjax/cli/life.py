@@ -17,7 +17,7 @@ from .outputs import (
     write,
 )
 from .progress import is_shown
-from .status import NOT_SOLVED, SOLVED, complain, tell_unsolved
+from .status import NOT_SOLVED, complain, tell_unsolved
 
 
 def add(commands):
@@ -82,7 +82,7 @@ def _life_of_load(options) -> int:
     if life is not None:
         told = life_as_dict(life, rating_origins(scene))
         numbers = {**told, **fits_as_dict(scene), **numbers}
-    write(
+    drawn = write(
         (options.json, lambda path: write_numbers(path, numbers)),
         (options.plot, draws_solution(scene, solution) if solved else None),
         (options.report, tells_solution(scene, solution, page) if solved else None),
@@ -95,18 +95,18 @@ def _life_of_load(options) -> int:
     for text in numbers["warnings"]:
         print(f"warning: {text}")
     sys.stdout.flush()
-    return SOLVED
+    return drawn
 
 
 def _life_of_cases(options) -> int:
     from ..scene import (
-        design_sections,
         fitted,
         life_columns,
         read_cases,
         run_life,
         spectrum_as_dict,
         spectrum_report,
+        spectrum_sections,
         unsolved,
         write_numbers,
     )
@@ -128,14 +128,14 @@ def _life_of_cases(options) -> int:
         page(
             path,
             scene.name,
-            {"Rating life": text} | design_sections(scene),
+            spectrum_sections(done),
             table.inputs,
             draws,
             life_columns(done),
             drawing=draws_bearing(scene, fitted(scene.fits, scene.element)),
         )
 
-    write(
+    drawn = write(
         (options.table, lambda path: write_columns(life_columns(done), path)),
         (options.json, lambda path: write_numbers(path, spectrum_as_dict(done))),
         (options.plot, draw if done.converged else None),
@@ -145,4 +145,4 @@ def _life_of_cases(options) -> int:
         complain(unsolved(done))
         return NOT_SOLVED
     print(text, flush=True)
-    return SOLVED
+    return drawn

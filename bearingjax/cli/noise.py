@@ -5,7 +5,7 @@ from pathlib import Path
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
 from .outputs import Reporter, check_outputs, check_table, save, write
 from .progress import stages
-from .status import NOT_SOLVED, SOLVED, complain
+from .status import NOT_SOLVED, complain
 
 
 def add(commands):
@@ -82,7 +82,7 @@ def run(options) -> int:
         full.append(write_noise_sound(path, done))
 
     solved = done.converged
-    write(
+    drawn = write(
         (options.json, lambda path: write_noise_json(path, done)),
         (options.table, tabulate if solved else None),
         (options.wav, sound if solved else None),
@@ -95,7 +95,7 @@ def run(options) -> int:
     print(text, flush=True)
     if full:
         print(f"{options.wav}: full scale is {full[0]:.4g} m/s²", flush=True)
-    return SOLVED
+    return drawn
 
 
 def _check_sound(path: Path | None) -> None:

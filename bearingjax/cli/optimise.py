@@ -4,7 +4,7 @@ from . import jax_settings
 from .options import add_plot, add_quiet, add_report, add_scene
 from .outputs import Reporter, check_outputs, draws_bearing, save, write
 from .progress import is_shown
-from .status import NOT_SOLVED, SOLVED, complain
+from .status import NOT_SOLVED, complain
 
 
 def add(commands):
@@ -68,7 +68,7 @@ def run(options) -> int:
         drawing = draws_bearing(task.scene, element_of(found.element))
         page(path, task.scene.name, texts, task.inputs, draws, drawing=drawing)
 
-    write(
+    drawn = write(
         (
             options.json,
             lambda path: write_numbers(path, optimisation_as_dict(task, found, best)),
@@ -80,4 +80,4 @@ def run(options) -> int:
         complain(f"{found.result}: {found.message}")
         return NOT_SOLVED
     print(text, flush=True)
-    return SOLVED
+    return drawn

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from .status import complain
+from .status import BAD_INPUT, SOLVED, complain
 
 
 def check_outputs(options) -> None:
@@ -129,16 +129,33 @@ def png(draw) -> bytes:
     return picture.getvalue()
 
 
-def write(*outputs) -> None:
+def write(*outputs) -> int:
     """Write the outputs of a run, pairs of a path and what writes there.
 
     What cannot be told of an unsolved run has `None` as its second. Says which files of
-    an earlier run were removed.
+    an earlier run were removed, and what could not be made: a picture that fails costs
+    neither tables nor numbers.
+
+    Returns:
+        Exit status of a run that is solved.
     """
     from ..scene import write_outputs
 
-    for path in write_outputs(outputs):
+    written = write_outputs(outputs)
+    for path in written.removed:
         complain(f"{path}: of an earlier run, removed")
+    for path, error in written.failed:
+        complain(f"{path}: {_in_words(error)}")
+    return BAD_INPUT if written.failed else SOLVED
+
+
+def _in_words(error: Exception) -> str:
+    """Why an output, or a part of one, is missing."""
+    from ..scene import Incomplete
+
+    if isinstance(error, Incomplete):
+        return str(error)
+    return f"could not be made: {type(error).__name__}: {error}"
 
 
 def _origin(options):
@@ -185,17 +202,34 @@ class Reporter:
         drawing: Callable | None = None,
     ) -> None:
         """Write the page of a run; arguments as of `report_page`, but that `draws` and
-        `drawing` are what writes the pictures."""
-        from ..scene import report_page
+        `drawing` are what writes the pictures.
+
+        Raises:
+            Incomplete: If a picture failed; a line stands in its place.
+        """
+        from ..scene import Incomplete, report_page
+
+        missing: list[str] = []
+
+        def shown(name: str, draw: Callable) -> bytes | str:
+            try:
+                return png(draw)
+            except OSError:
+                raise
+            except Exception as error:
+                missing.append(f"{name}: {_in_words(error)}")
+                return f"This picture {_in_words(error)}"
 
         page = report_page(
             title,
             texts,
             inputs,
             self._origin,
-            {name: png(draw) for name, draw in draws.items()},
+            {name: shown(name, draw) for name, draw in draws.items()},
             table,
             warnings,
-            None if drawing is None else png(drawing),
+            None if drawing is None else shown("Drawing", drawing),
         )
         path.write_text(page, encoding="utf-8")
+        if missing:
+            raise Incomplete("; ".join(missing))

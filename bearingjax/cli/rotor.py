@@ -3,7 +3,7 @@
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
 from .outputs import Reporter, check_outputs, check_table, save, write
 from .progress import stages
-from .status import NOT_SOLVED, SOLVED, complain
+from .status import NOT_SOLVED, complain
 
 
 def add(commands):
@@ -73,7 +73,7 @@ def run(options) -> int:
     def tabulate(path):
         write_columns(columns, path)
 
-    write(
+    drawn = write(
         (options.json, lambda path: write_rotor_json(path, done)),
         (options.table, tabulate if columns else None),
         (options.plot, None if done.settled is None else draw),
@@ -83,4 +83,4 @@ def run(options) -> int:
         print(text, flush=True)
     for one in lost:
         complain(one)
-    return SOLVED if done.converged else NOT_SOLVED
+    return drawn if done.converged else NOT_SOLVED

@@ -3,7 +3,7 @@
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
 from .outputs import Reporter, check_outputs, check_table, save, write
 from .progress import is_shown
-from .status import NOT_SOLVED, SOLVED, complain
+from .status import NOT_SOLVED, complain
 
 
 def add(commands):
@@ -62,7 +62,7 @@ def run(options) -> int:
     def tabulate(path):
         write_columns(skid_columns(done), path)
 
-    write(
+    drawn = write(
         (options.json, lambda path: write_skid_json(path, done)),
         (options.table, tabulate if done.has_numbers else None),
         (options.plot, draw if done.converged else None),
@@ -72,4 +72,4 @@ def run(options) -> int:
         complain(f"{done.result.label}: {skid_message(done)}")
         return NOT_SOLVED
     print(text, flush=True)
-    return SOLVED
+    return drawn

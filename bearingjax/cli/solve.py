@@ -10,7 +10,7 @@ from .outputs import (
     tells_solution,
     write,
 )
-from .status import SOLVED, complain, tell_unsolved
+from .status import complain, tell_unsolved
 
 
 def add(commands):
@@ -51,7 +51,7 @@ def run(options) -> int:
         scene = with_set_preload(scene, jax_settings.programs())
     # Mounted and preloaded where the scene says so.
     element = solution.element if solved else scene.element
-    write(
+    drawn = write(
         (options.json, lambda path: write_json(path, scene, solution)),
         (options.plot, draws_solution(scene, solution) if solved else None),
         (options.drawing, draws_bearing(scene, element)),
@@ -60,4 +60,4 @@ def run(options) -> int:
     if not solved:
         return tell_unsolved(scene, solution)
     print(report(scene, solution), flush=True)
-    return SOLVED
+    return drawn

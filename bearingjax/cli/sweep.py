@@ -11,7 +11,7 @@ from .jax_settings import devices
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
 from .outputs import Reporter, check_outputs, check_table, save, write
 from .progress import is_shown
-from .status import NOT_SOLVED, SOLVED, complain
+from .status import NOT_SOLVED, complain
 
 
 def add(commands):
@@ -85,18 +85,18 @@ def run(options) -> int:
             figure = sweep_overview(solved, design_columns(table), table.scene.name)
             save(figure, path, **format)
 
-        drawn = bool(solved.converged.any())
+        any_solved = bool(solved.converged.any())
 
         def tell(path: Path):
-            draws = {"Results over the cases": draw} if drawn else {}
+            draws = {"Results over the cases": draw} if any_solved else {}
             found = sweep_table.columns(solved, design_columns(table))
             name, texts = table.scene.name, {"Cases": summary}
             page(path, name, texts, table.inputs, draws, found)
 
-        write(
+        drawn = write(
             (options.table, tabulate),
             (options.json, lambda path: write_sweep_json(path, table, solved)),
-            (options.plot, draw if drawn else None),
+            (options.plot, draw if any_solved else None),
             (options.report, tell),
         )
     print(summary, flush=True)
@@ -105,7 +105,7 @@ def run(options) -> int:
         _tell_interrupted(options, left, solved.cases.count)
         return 128 + (interrupt.number or signal.SIGINT)
     if solved.converged.all():
-        return SOLVED
+        return drawn
     lost = int((~solved.converged).sum())
     complain(f"{lost} of {solved.cases.count} cases not solved")
     return NOT_SOLVED

@@ -53,6 +53,8 @@ _SHOWN = {
     "Pa": (1e-6, "MPa"),
     "N": (1e-3, "kN"),
     "rad/s": (30.0 / np.pi, "rpm"),
+    "rev": (1e-6, "million rev"),
+    "1/rev": (1e6, "1/million rev"),
 }
 
 
@@ -69,3 +71,20 @@ def display_unit(unit: str, largest: float = 0.0) -> tuple[float, str]:
     if unit == "Pa" and largest >= 1e10:
         return 1e-9, "GPa"
     return _SHOWN.get(unit, (1.0, unit))
+
+
+CELSIUS = 273.15
+"""0 °C [K]."""
+
+
+def shown_number(value: float, unit: str) -> str:
+    """A number with its unit, as it is shown to people: "25 µm", "60 °C".
+
+    Args:
+        value: In SI; temperatures, not their differences, in K.
+        unit: SI unit; empty for a pure number.
+    """
+    if unit == "K":
+        return f"{value - CELSIUS:.4g} °C"
+    factor, shown = display_unit(unit, abs(value))
+    return f"{factor * value:.4g} {shown}".rstrip()

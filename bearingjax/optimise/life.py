@@ -82,7 +82,7 @@ class _OfCases(AbstractMeasure):
 
 
 class RatingLife(_OfCases):
-    """Rating life under all cases [1, h].
+    """Rating life under all cases [rev, h].
 
     By ISO/TS 16281, of the cases one after the other for their hours (Palmgren, Miner):
     of a bearing with a lubricant in its conditions modified by a_ISO. As an objective
@@ -107,11 +107,11 @@ class RatingLife(_OfCases):
 
     @property
     def unit(self):
-        return "h" if self.hours else ""
+        return "h" if self.hours else "rev"
 
 
 class Damage(_OfCases):
-    """Part of the rating life that a revolution or an hour uses [1, 1/h].
+    """Part of the rating life that a revolution or an hour uses [1/rev, 1/h].
 
     The inverse of `RatingLife`, with its attributes; finite without load.
 
@@ -134,4 +134,4 @@ class Damage(_OfCases):
 
     @property
     def unit(self):
-        return "1/h" if self.hours else ""
+        return "1/h" if self.hours else "1/rev"

@@ -74,6 +74,14 @@ def label(owner: Any, name: str, prefix: str = "") -> str:
     return f"{prefix}{name} = {quantity(value, unit_of(owner, name))}"
 
 
+def width(text: str) -> float:
+    """Width of a label, of its longest line [inch]."""
+    from matplotlib.textpath import TextPath
+
+    lines = (TextPath((0.0, 0.0), line, size=SMALL) for line in text.splitlines())
+    return max(line.get_extents().width for line in lines) / 72.0
+
+
 def fit(ax: "matplotlib.axes.Axes", points, size, middle=(0.48, 0.86)) -> None:
     """Set the limits of a view, to scale: its parts stand in the middle.
 

@@ -1,11 +1,10 @@
 """Lives and damage of the cases of a load spectrum."""
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..numerics.units import display_unit
-from ..statics.sweep_table import asked
 from .style import COLOURS, GREY, ROLLER, SMALL, head, pyplot
 
 if TYPE_CHECKING:
@@ -16,7 +15,9 @@ _MOST = 16
 _RANGE = 1e5
 """Life over the shortest one up to which bars have their true height [1]."""
 _NAMED = 5
-"""Cases up to which their loads and speeds stand below."""
+"""Cases up to which what tells them apart stands below."""
+_ACROSS, _DOWN = 65, 7
+"""Letters that fit under a plot, and lines of the settings of a case."""
 
 _COLOURS = {
     "basic_rating_life": GREY,
@@ -91,7 +92,7 @@ def _shares(run, order, ax):
     time = np.ones(count) if hours is None else np.asarray(hours, dtype=float)
     bars = (
         ("time", time / time.sum(), GREY),
-        ("damage", np.asarray(damage), COLOURS["inner"]),
+        (f"damage ({run.asked_name} life)", np.asarray(damage), COLOURS["inner"]),
     )
     for side, (label, share, colour) in zip((-0.2, 0.2), bars, strict=True):
         drawn = ax.bar(
@@ -113,7 +114,8 @@ def _finish(run, order, ax):
     left = run.table.cases.count - len(order)
     names = [str(k) for k in order]
     if len(order) <= _NAMED:
-        names = [f"{k}{_setting(run, k)}" for k in order]
+        across = _ACROSS // len(order)
+        names = [_named(k, run.words(int(k)), across) for k in order]
     ax.set_xticks(np.arange(len(order)), names, fontsize=SMALL)
     ax.set_xlabel(f"case (the worst; {left} more are not drawn)" if left else "case")
     ax.grid(axis="y", color="0.9")
@@ -121,17 +123,16 @@ def _finish(run, order, ax):
     ax.legend(fontsize=SMALL)
 
 
-def _setting(run, case) -> str:
-    """Loads and speeds of a case, a line each, those that differ over the cases."""
+def _named(case, words, across: int) -> str:
+    """Number of a case and what tells it apart, in lines of so many letters."""
     lines = []
-    for header, values in asked(run.table.cases).items():
-        if header in ("design", "hours [h]") or len(np.unique(values)) < 2:
-            continue
-        name, _, unit = header.partition(" [")
-        scale, shown = display_unit(unit.rstrip("]"))
-        value = f"{scale * float(values[case]):.4g} {shown}"
-        lines.append(f"\n{name.replace('_', ' ')} {value}")
-    return "".join(lines)
+    for k, word in enumerate(words):
+        new = textwrap.wrap(word, across, break_on_hyphens=False)
+        if len(lines) + len(new) + (k < len(words) - 1) > _DOWN:
+            lines.append(f"and {len(words) - k} more")
+            break
+        lines += new
+    return "\n".join([str(case), *lines])
 
 
 def _results(run: Any) -> str:
@@ -147,7 +148,7 @@ def _results(run: Any) -> str:
     return (
         f"under all cases:  {';  '.join(lives)}\n"
         f"C {1e-3 * float(rated.dynamic_capacity):.4g} kN ({source}),  "
-        f"least static safety {float(np.min(run.solved.static_safety)):.3g}"
+        f"least static safety {run.least_safety()}"
     )
 
 

@@ -20,6 +20,9 @@ from .style import (
 if TYPE_CHECKING:
     import matplotlib.axes
 
+_RADIUS, _TICK_LABEL = 1.6, (0.3, 0.15)
+"""Of a load zone on a page; width and height of the label of a tick [inch]."""
+
 
 def load_zone(
     solution: Solution, ax: "matplotlib.axes.Axes | None" = None
@@ -82,9 +85,10 @@ def load_zone(
     ax.tick_params(labelsize=SMALL)
     ax.grid(color="0.85")
     ax.set_axisbelow(True)
-    _radial_labels(polar, azimuth, load.sum(axis=1), top, limit)
+    every = _radial_labels(polar, azimuth, load, limit, 2 * len(rows) * width)
     balls = isinstance(solution, BallSolution)
-    ax.set_title(f"{'Ball' if balls else 'Roller'} loads [{unit}]")
+    told = f"; circles every {every:g} {unit}" if every else ""
+    ax.set_title(f"{'Ball' if balls else 'Roller'} loads [{unit}]{told}")
     ax.legend(
         handles=handles if zone.all() else [*handles, unloaded],
         loc="center left",
@@ -103,22 +107,44 @@ def _step(azimuth, count):
     return min([even, *gaps[gaps > 0.3 * even]])
 
 
-def _radial_labels(ax, azimuth, load, top, limit):
-    """Tick labels between two rollers, where the least load stands in the way."""
+def _radial_labels(ax, azimuth, loads, limit, bars) -> float:
+    """Tick labels between two rollers, where the least load stands in the way.
+
+    Args:
+        ax: Polar axes.
+        azimuth: Of the rollers [rad].
+        loads: Of each on both raceways (roller, 2), in the unit of the axes.
+        limit: End of the radial axis.
+        bars: Angle that the bars of a roller take [rad].
+
+    Returns:
+        Distance of the ticks if their labels find no room, as between many rollers
+        that are all loaded; else 0.
+    """
     from matplotlib.ticker import MaxNLocator
 
     ticks = np.asarray(MaxNLocator(4).tick_values(0.0, limit))
     ticks = ticks[(ticks > 0.0) & (ticks <= limit)]
     ax.set_rticks(ticks, [""] * len(ticks))
-    order = np.argsort(azimuth % (2.0 * np.pi))
-    angle = azimuth[order] % (2.0 * np.pi)
-    between = angle + 0.5 * np.diff(angle, append=angle[0] + 2.0 * np.pi)
-    beside = load[order] + np.roll(load[order], -1)
+    # Rows whose rollers stand at one azimuth share it.
+    angle, place = np.unique(np.round(azimuth, 9) % (2.0 * np.pi), return_inverse=True)
+    load, most = np.zeros(len(angle)), np.zeros(len(angle))
+    np.add.at(load, place, loads.sum(axis=1))
+    np.maximum.at(most, place, loads.max(axis=1))
+    gaps = np.diff(angle, append=angle[0] + 2.0 * np.pi)
+    between = angle + 0.5 * gaps
     # Text is wide and low: it fits best between rollers to the right or to the left.
-    score = beside / (top or 1.0) + 0.3 * np.abs(np.sin(between))
-    where = between[np.argmin(score)]
+    beside = (load + np.roll(load, -1)) / (loads.max() or 1.0)
+    k = int(np.argmin(beside + 0.3 * np.abs(np.sin(between))))
+    where, reach = between[k], max(most[k], most[(k + 1) % len(angle)])
     # The outermost would meet the labels of the azimuth.
-    for tick in ticks[ticks <= 0.88 * limit]:
+    told = ticks[ticks <= 0.88 * limit]
+    room = (gaps[k] - bars) * _RADIUS * (told + 0.3 * limit) / (1.3 * limit)
+    wide, low = _TICK_LABEL
+    needed = low * abs(np.cos(where)) + wide * abs(np.sin(where))
+    if np.any((room < needed) & (told < reach)):
+        return float(ticks[0])
+    for tick in told:
         ax.text(
             where,
             tick,
@@ -129,6 +155,7 @@ def _radial_labels(ax, azimuth, load, top, limit):
             zorder=4,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.8},
         )
+    return 0.0
 
 
 def load_displacement(

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..design import AbstractBallBearing, BearingSet, is_self_aligning
 from .ball_section import ball_row, row_position
-from .dimension import AXIS, LINE, between, fit, label, quantity, spread
+from .dimension import AXIS, LINE, between, fit, label, quantity, spread, width
 from .outline import section
 from .roller_section import roller_row
 from .style import INNER, SMALL
@@ -14,8 +14,8 @@ from .style import INNER, SMALL
 if TYPE_CHECKING:
     import matplotlib.axes
 
-_BLOCK = 3.27
-"""Width of the words on a row [inch]."""
+_APART = 0.25
+"""Between the words on two rows that stand side by side [inch]."""
 
 
 def arrangement_view(
@@ -49,7 +49,8 @@ def arrangement_view(
     ax.plot([0.0, 0.0], [depth, high + 0.1 * tall], **AXIS)
     # The words stand below the view.
     texts = [_words(row, k, k in turned) for k, row in enumerate(bearing.rows)]
-    across = int(size[0] // _BLOCK)
+    block = _APART + max(width(text) for text in texts)
+    across = max(1, int(size[0] // block))
     lines = 1 + max(text.count("\n") for text in texts)
     deep = LINE * (lines + 1)
     below = deep * -(-len(texts) // across)
@@ -63,7 +64,7 @@ def arrangement_view(
     for m in range(0, len(order), across):
         part = order[m : m + across]
         wanted = [(outlines[k].mean(axis=0)[0] - start) / (stop - start) for k in part]
-        places = spread(wanted, np.full(len(part), _BLOCK / size[0]))
+        places = spread(wanted, np.full(len(part), block / size[0]))
         up = (below - deep * (m // across) - 0.5 * LINE) / size[1]
         for k, place in zip(part, places, strict=True):
             ax.text(

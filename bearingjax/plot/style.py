@@ -73,6 +73,24 @@ def without_offset(ax: "matplotlib.axes.Axes") -> "matplotlib.axes.Axes":
     return ax
 
 
+_POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def power_of_ten(largest: float) -> tuple[float, str]:
+    """Factor that leaves numbers of at most five digits, and what they are counted in.
+
+    Args:
+        largest: The largest number, without a sign.
+
+    Returns:
+        1 and "" for numbers from 0.0001 to 100 000; else such as 1e-6 and "10⁶".
+    """
+    if largest == 0.0 or not np.isfinite(largest) or 1e-4 <= largest < 1e5:
+        return 1.0, ""
+    power = 3 * int(np.floor(np.log10(largest) / 3.0))
+    return 10.0**-power, f"10{str(power).translate(_POWERS)}"
+
+
 def widened(values, least: float, share: float = 0.08) -> tuple[float, float]:
     """Limits of an axis around values, so far apart that round-off does not fill it.
 

@@ -8,7 +8,7 @@ import numpy as np
 from ..numerics.units import display_unit
 from ..statics.sweep import Sweep
 from ..statics.sweep_table import columns
-from .style import CURVES, SMALL, head, pyplot, without_offset
+from .style import CURVES, SMALL, head, power_of_ten, pyplot, without_offset
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -166,5 +166,8 @@ def _unit(header):
 def _shown(header, values) -> tuple[str, float]:
     """Header with the unit for people, and the factor to it."""
     name = header.partition(" [")[0]
-    scale, shown = display_unit(_unit(header), float(np.nanmax(np.abs(values))))
-    return (f"{name} [{shown}]" if shown else name), scale
+    largest = float(np.nanmax(np.abs(values)))
+    scale, shown = display_unit(_unit(header), largest)
+    factor, power = power_of_ten(scale * largest)
+    unit = " ".join(word for word in (power, shown) if word)
+    return (f"{name} [{unit}]" if unit else name), scale * factor

@@ -22,6 +22,7 @@ from .contact_table import ContactScene as ContactScene
 from .contact_table import is_bearing as is_bearing
 from .contact_table import read_contact as read_contact
 from .estimated_entry import estimated_entry as estimated_entry
+from .files import Incomplete as Incomplete
 from .files import check_outputs as check_outputs
 from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers
@@ -39,6 +40,7 @@ from .life_run import life_columns as life_columns
 from .life_run import run_life as run_life
 from .life_run import spectrum_as_dict as spectrum_as_dict
 from .life_run import spectrum_report as spectrum_report
+from .life_run import spectrum_sections as spectrum_sections
 from .life_run import unsolved as unsolved
 from .life_table import rating_origins as rating_origins
 from .noise_output import noise_as_dict as noise_as_dict
@@ -64,7 +66,6 @@ from .quantity import SceneError as SceneError
 from .read import Scene as Scene
 from .read import load_bearing as load_bearing
 from .read import read_scene as read_scene
-from .report import design_sections as design_sections
 from .report import fits_text as fits_text
 from .report import report as report
 from .report import sections as sections

@@ -149,6 +149,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     ):
         raise table.error("outputs", f"{outputs!r} is not a list of names")
     table.finish()
+    data = _begun(data, columns, path.name)
     scene = scene_of(data, path)
     for column in columns:
         _check_key(table, column.key, scene)
@@ -165,6 +166,34 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         warnings=_alike(scene.warnings, odd),
         inputs=_inputs(scene, columns, _placed(data["cases"], path)),
     )
+
+
+def _begun(data: dict[str, Any], columns: list[_Column], file: str) -> dict[str, Any]:
+    """The scene with the first value of what its cases vary where it has none itself:
+    an interference that varies needs no other one in [fit]."""
+    begun = copy.deepcopy(data)
+    for column in columns:
+        if _makes_design(column.key) and not _stands(data, column.key):
+            assign(begun, column.key, column.values[column.index[0]], file)
+    return begun
+
+
+def _stands(data: dict[str, Any], key: str) -> bool:
+    """Whether there is something at a dotted key."""
+    inner: Any = data
+    for part in key.split("."):
+        if isinstance(inner, list) and part.isdecimal() and int(part) < len(inner):
+            inner = inner[int(part)]
+        elif isinstance(inner, dict) and part in inner:
+            inner = inner[part]
+        else:
+            return False
+    return True
+
+
+def _makes_design(key: str) -> bool:
+    """Whether a key is of a table that makes a design."""
+    return "." in key and key.partition(".")[0] in DESIGN
 
 
 def _alike(first: Iterable[str], odd: Sequence[str]) -> tuple[str, ...]:
@@ -223,7 +252,7 @@ def _check_key(table, key, scene):
             problem = f"{name} acts on {freedom}, which is prescribed; choose one"
             raise table.error(key, problem)
         return
-    if key.partition(".")[0] in DESIGN and "." in key:
+    if _makes_design(key):
         return
     allowed = ", ".join(
         ["operating.load.Fx", "operating.prescribed.ux", "operating.inner_speed"]

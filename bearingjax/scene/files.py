@@ -10,13 +10,30 @@ import os
 import shutil
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from .quantity import SceneError
 from .scene_file import bearing_files, find_scene, parse_scene, profile_files
 
 Writer = Callable[[Path], None]
 """Writes a file at a path."""
+
+
+class Incomplete(Exception):
+    """Raised by a writer whose file is written, but for a part of it; says which."""
+
+
+class Written(NamedTuple):
+    """What became of files besides those that are written.
+
+    Attributes:
+        removed: Of an earlier run, for which this one has nothing.
+        failed: What could not be made, or not all of it, with its error.
+    """
+
+    removed: list[Path]
+    failed: list[tuple[Path, Exception]]
+
 
 _STREAMS = ("/dev/std", "/dev/fd/", "/proc/self/fd/")
 
@@ -61,43 +78,30 @@ def check_outputs(
         seen.append((option, target))
 
 
-def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> list[Path]:
+def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> Written:
     """Write files beside their places, and move them there once all are complete.
 
     A file of an earlier run at a place for which this run has nothing is removed: it
-    would be taken for this run's.
+    would be taken for this run's. A writer that fails, as a picture of odd numbers may,
+    costs its own file and no other.
 
     Args:
         outputs: Place (`None`: not wanted) and what writes it (`None`: nothing to
             write).
 
-    Returns:
-        What was removed.
-
     Raises:
-        SceneError: If a file cannot be written; then no file has changed.
+        SceneError: If a file cannot be written (a full disk); then none has changed.
     """
     moves: list[tuple[Path, Path, Path]] = []
+    written = Written([], [])
     stale = []
     try:
         for path, writer in outputs:
             if path is None:
                 continue
-            if writer is None:
-                stale += [path] if path.is_file() else []
-                continue
-            with _naming(path):
-                if _is_stream(path):
-                    writer(path)
-                    continue
-                target = _target(path)
-                # The ending tells the format.
-                name = f".bearingjax-{os.getpid()}-{len(moves)}{target.suffix.lower()}"
-                beside = target.with_name(name)
-                moves.append((path, beside, target))
-                writer(beside)
-                if target.exists():
-                    shutil.copymode(target, beside)
+            made = writer is not None and _made(path, writer, moves, written)
+            if not made and path.is_file():
+                stale.append(path)
         for path, beside, target in moves:
             with _naming(path):
                 os.replace(beside, target)
@@ -107,7 +111,34 @@ def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> list[
     for path in stale:
         with _naming(path):
             path.unlink()
-    return stale
+        written.removed.append(path)
+    return written
+
+
+def _made(path: Path, writer: Writer, moves, written: Written) -> bool:
+    """Write a file beside its place; whether there is one."""
+    stream, target = _is_stream(path), _target(path)
+    # The ending tells the format.
+    name = f".bearingjax-{os.getpid()}-{len(moves)}{target.suffix.lower()}"
+    beside = path if stream else target.with_name(name)
+    if not stream:
+        moves.append((path, beside, target))
+    with _naming(path):
+        try:
+            writer(beside)
+        except Incomplete as error:
+            written.failed.append((path, error))
+        except (OSError, SceneError):
+            raise
+        except Exception as error:
+            written.failed.append((path, error))
+            if not stream:
+                moves.pop()
+                beside.unlink(missing_ok=True)
+            return False
+        if not stream and target.exists():
+            shutil.copymode(target, beside)
+    return True
 
 
 @contextlib.contextmanager

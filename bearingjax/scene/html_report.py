@@ -83,10 +83,10 @@ def report_page(
     texts: Mapping[str, str],
     inputs: Mapping[str, Any],
     origin: Origin,
-    pictures: Mapping[str, bytes] = MappingProxyType({}),
+    pictures: Mapping[str, bytes | str] = MappingProxyType({}),
     table: Mapping[str, np.ndarray] | None = None,
     warnings: Sequence[str] = (),
-    drawing: bytes | None = None,
+    drawing: bytes | str | None = None,
 ) -> str:
     """The report of a run, of any command.
 
@@ -96,10 +96,10 @@ def report_page(
             stand at the top of the page too.
         inputs: All that was read, as a scene writes it.
         origin: Where the report comes from.
-        pictures: PNG files by their titles.
+        pictures: PNG files by their titles, or why one is missing.
         table: Columns by header, "name [unit]"; its first rows are shown.
         warnings: Those that are not in the texts.
-        drawing: PNG file of the bearing, which stands with the inputs.
+        drawing: Likewise that of the bearing, which stands with the inputs.
 
     Returns:
         HTML, a whole document.
@@ -178,7 +178,9 @@ def _warnings(text: str, others: Sequence[str]) -> str:
     return _section("Warnings", f"<ul>\n{items}\n</ul>", "warnings")
 
 
-def _picture(title: str, png: bytes) -> str:
+def _picture(title: str, png: bytes | str) -> str:
+    if isinstance(png, str):
+        return _section(title, f"<p>{escape(png)}</p>")
     data = base64.b64encode(png).decode("ascii")
     image = f'<img alt="{escape(title)}" src="data:image/png;base64,{data}">'
     return _section(title, f"<figure>{image}</figure>")

@@ -1,6 +1,7 @@
 """Rating life under the cases of a scene, a load spectrum: running and telling."""
 
 import dataclasses
+import textwrap
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,17 +15,21 @@ from ..statics.life_warning import life_warnings
 from ..statics.rating import Ratings, ratings
 from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ..statics.sweep import Sweep
-from ..statics.sweep_table import columns
+from ..statics.sweep_table import OPERATING_CLEARANCE, columns
+from .case_words import case_words, differing
 from .cases_table import CaseTable
 from .life_report import life_number, ratings_as_dict, ratings_in_words, turning
 from .life_table import life_conditions, not_published, rating_origins
 from .quantity import SceneError
+from .report import design_sections
 from .scene_file import find_scene, parse_bearing
 from .sweep_run import design_columns, listed_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 _SHOWN = 12
 """Cases that a report lists."""
+_WIDTH = 88
+"""Letters of a line."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -55,6 +60,28 @@ class LifeRun:
     def origins(self) -> dict[str, str]:
         """Where ratings that are given come from, as of `rating_origins`."""
         return rating_origins(self.table.scene, self.table.varied)
+
+    @property
+    def asked_name(self) -> str:
+        """The life whose damage is told, "modified" or "reference"."""
+        return "modified" if "modified_rating_life" in self.lives else "reference"
+
+    @property
+    def clearance(self) -> np.ndarray | None:
+        """Radial clearance of each case in operation [m]; `None` without [fit]."""
+        return self.solved.outputs.get(OPERATING_CLEARANCE)
+
+    def words(self, case: int) -> list[str]:
+        """What a case has that others have not, such as "Fy -2.5 kN"."""
+        return case_words(differing(self.table), case)
+
+    def least_safety(self) -> str:
+        """The least static safety of all cases, and which case has it, in words."""
+        safety = np.asarray(self.solved.static_safety)
+        case, hours = int(np.argmin(safety)), self.table.cases.hours
+        spent = hours is not None and float(hours[case]) == 0.0
+        which = f"case {case}{', of 0 h' if spent else ''}"
+        return f"{life_number(safety[case])} ({which})"
 
     def worst(self, most: int) -> tuple[np.ndarray, np.ndarray]:
         """The cases that use most of the life that is asked for; all are solved.
@@ -220,41 +247,91 @@ def spectrum_report(run: LifeRun) -> str:
         lines.append(line)
     lines.append(
         f"equivalent load of the spectrum {1e-3 * equivalent_load(run):.5g} kN; least"
-        f" static safety {life_number(np.min(run.solved.static_safety))}"
+        f" static safety {run.least_safety()}"
     )
     if run.asked.life_hours is None:
         fixed_to = life_conditions(table.scene).load_fixed_to
         lines.append(turning(turns_against_load(None, fixed_to), True))
+    play = run.clearance
+    lines += [] if play is None else [f"over the cases {_clearances(play)}"]
     lines += _by_case(run)
     lines += [f"warning: {text}" for text in _warnings(run)]
     return "\n".join(lines)
 
 
+def spectrum_sections(run: LifeRun) -> dict[str, str]:
+    """The texts of a page on the life under the cases, by their titles.
+
+    Args:
+        run: With all cases solved.
+    """
+    texts = {"Rating life": spectrum_report(run)} | design_sections(run.table.scene)
+    fits = "Fits and clearance"
+    if run.clearance is not None:
+        texts[fits] = (
+            "These are the fits as [operating], [fit] and [temperature] of the scene"
+            f" have them; over the cases\n{_clearances(run.clearance)}.\n{texts[fits]}"
+        )
+    return texts
+
+
+def _clearances(clearance: np.ndarray) -> str:
+    """Least and largest radial clearance of the cases in operation."""
+    ends = (f"{1e6 * end(clearance):.4g}" for end in (np.min, np.max))
+    words = " to ".join(dict.fromkeys(ends))
+    return f"the operating radial clearance is {words} µm"
+
+
 def _by_case(run) -> list[str]:
-    """A line for each of the worst cases, as if it were alone."""
+    """A line for each of the worst cases, as if it were alone; what tells them apart
+    below."""
     order, shares = run.worst(_SHOWN)
     solved, hours = run.solved, run.table.cases.hours
     words = [name.removesuffix("_rating_life") for name in run.lives]
+    play = run.clearance
     lines = [
-        f"\n{'each case alone':<20}{'P':>10}"
+        f"\n{'each case alone':<18}{'P':>10}"
+        + ("" if play is None else f"{'clearance':>12}")
         + "".join(f"{word:>12}" for word in words)
-        + f"{'damage':>12}",
-        f"{'case':>6}{'hours':>14}{'kN':>10}"
+        + f"{'damage %':>12}",
+        f"{'case':>6}{'hours':>12}{'kN':>10}"
+        + ("" if play is None else f"{'µm':>12}")
         + f"{'million rev':>12}" * len(words)
-        + f"{'%':>12}",
+        + f"{f'({run.asked_name})':>12}",
     ]
     for k, share in zip(order, shares, strict=True):
         spent = "-" if hours is None else f"{float(hours[k]):.5g}"
         load = 1e-3 * float(solved.equivalent_load[k])
         lives = (life_number(1e-6 * getattr(solved, name)[k]) for name in run.lives)
         lines.append(
-            f"{k:>6}{spent:>14}{load:>10.4g}"
+            f"{k:>6}{spent:>12}{load:>10.4g}"
+            + ("" if play is None else f"{1e6 * float(play[k]):>12.4g}")
             + "".join(f"{life:>12}" for life in lives)
             + f"{100 * share:>12.4g}"
         )
     left = run.table.cases.count - len(order)
     if left:
         lines.append(f"  and {left} more, {100 * (1 - shares.sum()):.3g} %")
+    return lines + _apart(run, order)
+
+
+def _apart(run, order) -> list[str]:
+    """What tells cases apart, a line each."""
+    found = differing(run.table)
+    if not found:
+        return []
+    lines = [f"\n{'case':>6}  what differs"]
+    for k in order:
+        # Spaces that do not break keep a setting in one line.
+        told = ", ".join(w.replace(" ", "\xa0") for w in case_words(found, int(k)))
+        parts = textwrap.wrap(
+            told,
+            _WIDTH,
+            initial_indent=f"{k:>6}  ",
+            subsequent_indent=" " * 8,
+            break_on_hyphens=False,
+        )
+        lines += [part.replace("\xa0", " ") for part in parts]
     return lines
 
 

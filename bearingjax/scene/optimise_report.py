@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..numerics.units import display_unit, unit_of
+from ..numerics.units import CELSIUS, display_unit, unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
@@ -15,8 +15,6 @@ from .read import Scene
 from .report import fits_text
 
 _RULE = "-" * 78
-_CELSIUS = 273.15
-"""0 °C [K]."""
 _STIFFNESSES = {"N/m": (1e-6, "kN/mm"), "N m": (1e-3, "N m/mrad")}
 
 
@@ -192,7 +190,7 @@ def _variables(found):
         scale, unit = display_unit(unit_of(found.element, v.path[0]), v.upper)
         zero = 0.0
         if v.name in WARMTH:
-            zero, unit = _CELSIUS, "°C"
+            zero, unit = CELSIUS, "°C"
         low, high, before, after = (
             scale * (x - zero) for x in (v.lower, v.upper, first, last)
         )

@@ -10,7 +10,7 @@ import numpy as np
 from ..numerics.result import Result
 from ..statics.sweep import Sweep
 from ..statics.sweep_program import WARNED
-from ..statics.sweep_table import asked, left_out, read, restored
+from ..statics.sweep_table import NOTHING, asked, left_out, read, restored
 from .cases_table import CaseTable
 from .quantity import SceneError
 from .sweep_run import design_columns, run_cases
@@ -20,8 +20,8 @@ CHECKED = 64
 
 _CURE = "name the table of this scene, or begin anew without --resume"
 
-_SAME, _NOTHING = 1e-4, 1e-12
-"""Share of the largest number of an output, and size, below which a change is none."""
+_SAME = 1e-4
+"""Share of the largest number of an output below which a change is none."""
 
 
 def resume_cases(
@@ -128,7 +128,7 @@ def _check_same(path, new: Mapping[str, np.ndarray], old: Mapping[str, np.ndarra
         a, b = (np.nan_to_num(v).reshape(flat) for v in (values, old[name]))
         largest = np.abs(a).max(axis=1, initial=0.0)
         miss = np.abs(a - b).max(axis=1, initial=0.0)
-        same = same & (miss <= _SAME * largest + _NOTHING)
+        same = same & (miss <= _SAME * largest + NOTHING)
     if same.mean() < 0.5:
         problem = (
             f"{len(same)} of its cases, solved again, end otherwise: of another bearing"

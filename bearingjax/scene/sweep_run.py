@@ -8,10 +8,11 @@ from typing import Any
 import jax
 import numpy as np
 
+from ..design import radial_clearance, rows_of
 from ..numerics.units import display_unit
 from ..statics.sweep import Sweep, sweep
 from ..statics.sweep_program import not_run
-from ..statics.sweep_table import columns
+from ..statics.sweep_table import OPERATING_CLEARANCE, columns
 from .cases_table import CaseTable, Structure
 from .files import write_numbers
 from .life_table import life_conditions
@@ -39,7 +40,8 @@ def run_cases(
         stop: As in `sweep`.
 
     Returns:
-        Sweep with a result code for each case.
+        Sweep with a result code for each case; of a scene with [fit] with the output
+        `OPERATING_CLEARANCE` too.
 
     Raises:
         SceneError: For outputs that do not exist or would not fit memory.
@@ -70,7 +72,7 @@ def _run(table, part, mine, progress, stop) -> Sweep:
         number = np.searchsorted(part.designs, np.asarray(cases.design))
         cases = dataclasses.replace(cases, design=number)
     try:
-        return sweep(
+        solved = sweep(
             part.element,
             cases,
             outputs=OUTPUTS if table.outputs is None else table.outputs,
@@ -85,6 +87,24 @@ def _run(table, part, mine, progress, stop) -> Sweep:
         )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
+    return _with_clearance(part, solved)
+
+
+def _with_clearance(part: Structure, solved: Sweep) -> Sweep:
+    """The sweep of a structure with the radial clearance of each case in operation [m],
+    if the bearing is on its seats."""
+    if part.scene.fits is None:
+        return solved
+    row = rows_of(part.element.bearing)[0].bearing
+    if part.designs is None:
+        clearance = np.asarray(radial_clearance(row))
+    else:
+        of_designs = np.asarray(jax.vmap(radial_clearance)(row))
+        clearance = of_designs[np.asarray(solved.cases.design)]
+    found = np.where(solved.converged, clearance, np.nan)
+    return dataclasses.replace(
+        solved, outputs={**solved.outputs, OPERATING_CLEARANCE: found}
+    )
 
 
 def _merged(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:
@@ -143,14 +163,15 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
 
 def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
     """What makes the design of each case, by "key [unit]": numbers in SI, and texts as
-    the scene writes them."""
+    the scene writes them; without numbers that are zero in all cases."""
     if table.cases.design is None:
         return {}
     design = np.asarray(table.cases.design)
-    return {
+    found = {
         key: np.array([made.get(key) for made in table.settings])[design]
         for key in table.settings[0]
     }
+    return {k: v for k, v in found.items() if v.dtype.kind not in "fi" or v.any()}
 
 
 def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:

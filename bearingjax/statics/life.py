@@ -170,11 +170,11 @@ class Life(eqx.Module):
         static_equivalent_load: P0 of ISO 76 [N].
         reference_load: Load with which C gives the reference life [N].
         static_safety: C0/P0 [1].
-        basic_rating_life: L10 = (C/P)^p of ISO 281 [1].
-        reference_rating_life: L10r of ISO/TS 16281 [1].
-        modified_rating_life: L_nmr [1], or `None` without a lubricant.
+        basic_rating_life: L10 = (C/P)^p of ISO 281 [rev].
+        reference_rating_life: L10r of ISO/TS 16281 [rev].
+        modified_rating_life: L_nmr [rev], or `None` without a lubricant.
         damage: Part of the modified life, or without a lubricant of the reference life
-            times a1, that one revolution uses [1].
+            times a1, that one revolution uses [1/rev].
         life_hours: The same life in hours [h]; `None` if no speed is known.
         viscosity_ratio: κ [1], or `None`.
         contamination_factor: e_C [1], or `None`.
@@ -192,10 +192,10 @@ class Life(eqx.Module):
     static_equivalent_load: Scalar = eqx.field(metadata=unit("N"))
     reference_load: Scalar = eqx.field(metadata=unit("N"))
     static_safety: Scalar = eqx.field(metadata=unit("1"))
-    basic_rating_life: Scalar = eqx.field(metadata=unit("1"))
-    reference_rating_life: Scalar = eqx.field(metadata=unit("1"))
-    modified_rating_life: Scalar | None = eqx.field(metadata=unit("1"))
-    damage: Scalar = eqx.field(metadata=unit("1"))
+    basic_rating_life: Scalar = eqx.field(metadata=unit("rev"))
+    reference_rating_life: Scalar = eqx.field(metadata=unit("rev"))
+    modified_rating_life: Scalar | None = eqx.field(metadata=unit("rev"))
+    damage: Scalar = eqx.field(metadata=unit("1/rev"))
     life_hours: Scalar | None = eqx.field(metadata=unit("h"))
     viscosity_ratio: Scalar | None = eqx.field(metadata=unit("1"))
     contamination_factor: Scalar | None = eqx.field(metadata=unit("1"))

@@ -16,13 +16,13 @@ class SpectrumLife(eqx.Module):
     """Life under all cases of a spectrum, one after the other again and again.
 
     Attributes:
-        rating_life: In revolutions of one ring against the other [1].
+        rating_life: In revolutions of one ring against the other [rev].
         life_hours: In hours [h]; `None` if the cases have no speeds.
         damage_share: Share of each case in the damage (case,) [1]; zero if there is
             none at all.
     """
 
-    rating_life: Float[Array | np.ndarray, ""] = eqx.field(metadata=unit("1"))
+    rating_life: Float[Array | np.ndarray, ""] = eqx.field(metadata=unit("rev"))
     life_hours: Float[Array | np.ndarray, ""] | None = eqx.field(metadata=unit("h"))
     damage_share: Float[Array | np.ndarray, " case"] = eqx.field(metadata=unit("1"))
 
@@ -35,7 +35,7 @@ def spectrum_life(
     Args:
         cases: With `hours` and speeds. Without hours all cases take the same time;
             without speeds all turn alike, and there is no life in hours.
-        damage: Part of the life that one revolution uses in each case (case,) [1]:
+        damage: Part of the life that one revolution uses in each case (case,) [1/rev]:
             `Life.damage`, as the output "damage" of a sweep.
 
     Returns:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..design.fits import Mounting
 from ..design.rib import RIB_NAMES
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..numerics.result import Result
@@ -19,13 +20,16 @@ from .cases import Cases
 from .life import Life
 from .solution import BallSolution, RollerSolution
 from .sweep import Sweep
-from .sweep_program import WARNED
+from .sweep_program import WARNED, not_run
 from .warning import given
 
 ENDINGS = (".csv", ".parquet", ".xlsx")
 
 MOST_ROWS = 2**20 - 1
 """Most rows of a sheet of Excel beside its header."""
+
+NOTHING = 1e-12
+"""Size of a result below which it is as good as none."""
 
 WARNINGS = "warnings"
 """Header of the column of warnings."""
@@ -42,7 +46,15 @@ _LAST_AXES = {
 }
 """Names along the last axes of an output; other axes are counted."""
 
-_LARGEST_OF = {"peak_pressure": "roller_pressure", "largest_load": "roller_load"}
+OPERATING_CLEARANCE = "operating_radial_clearance"
+"""Output of sweeps of bearings on their seats: the clearance with which they run."""
+
+_FIELD_OF = {
+    "peak_pressure": "roller_pressure",
+    "largest_load": "roller_load",
+    OPERATING_CLEARANCE: "radial_clearance",
+}
+"""Fields that have the units of outputs of other names."""
 
 
 def columns(
@@ -50,10 +62,10 @@ def columns(
 ) -> dict[str, np.ndarray]:
     """A sweep as columns by header, "name [unit]": first the cases, then the results.
 
-    Arrays are spread over columns, `displacement_inner_uy [m]`, without those that are
-    zero whatever the case (`left_out`). The result is the
-    code's label; where it is not "converged", numbers are NaN. `warnings` holds the
-    kinds of warning that are given for a case, each with its size.
+    Arrays are spread over columns, `displacement_inner_uy [m]`. What is zero in every
+    case has no column, be it by construction (`left_out`) or by the loads. The result
+    is the code's label; where it is not "converged", numbers are NaN. `warnings` holds
+    the kinds of warning that are given for a case, each with its size.
 
     Args:
         sweep: From `sweep`.
@@ -67,7 +79,7 @@ def columns(
         for name, values in sweep.outputs.items()
         if name not in ("result", "unrestrained") and not name.startswith(WARNED)
         for header, column in _spread(name, values, left_out(sweep))
-        if column is not None
+        if column is not None and not _is_nothing(sweep, column)
     }
     labels = np.array([code.label for code in Result])
     return {
@@ -77,6 +89,13 @@ def columns(
         **({WARNINGS: _warned(sweep)} if sweep.warned else {}),
         **found,
     }
+
+
+def _is_nothing(sweep, column) -> bool:
+    """Whether a result is exactly zero in all cases that were solved."""
+    if column.dtype.kind == "f":  # of the others NaN
+        column = column[sweep.converged]
+    return column.dtype.kind in "fi" and column.size > 0 and not column.any()
 
 
 def left_out(sweep: Sweep) -> tuple[tuple[str, tuple[str, ...]], ...]:
@@ -268,8 +287,9 @@ def restored(
 
     Args:
         table: From `read`.
-        like: Outputs of a sweep of the same kind, with any number of cases: their
-            names, shapes and dtypes are taken.
+        like: Outputs of a sweep of the same kind, such as of some of its cases: their
+            names, shapes and dtypes are taken; a column that they do not have, but for
+            zeros, may be missing.
         zeros: As of `left_out`.
 
     Returns:
@@ -294,12 +314,16 @@ def restored(
             plain = _sizes(table, name.removeprefix(WARNED), count)
         else:
             solved = np.asarray(table["result"]) == Result.CONVERGED.label
-            nothing = np.where(solved, 0.0, np.nan)
+            nothing = np.where(solved, 0.0, not_run(name, values.dtype))
             parts = []
             for header, column in _spread(name, values, zeros):
-                if column is not None and header not in table:
-                    raise ValueError(f"has no column {header!r}")
-                there = nothing if column is None else table[header]
+                there = table.get(header)
+                if column is None:
+                    there = nothing
+                elif there is None:
+                    if np.abs(np.nan_to_num(column)).max(initial=0.0) > NOTHING:
+                        raise ValueError(f"has no column {header!r}")
+                    there = nothing
                 parts.append(np.asarray(there, dtype=values.dtype))
             plain = np.stack(parts, axis=-1) if parts else np.empty(0)
         shape = (count, *values.shape[1:])
@@ -319,7 +343,8 @@ def _sizes(table, kind, count):
 
 
 def asked(cases: Cases) -> dict[str, np.ndarray]:
-    """Columns of the cases (loads, displacements, speeds, hours), in SI, by header.
+    """Columns of the cases (loads, displacements, speeds, hours), in SI, by header,
+    without those that are zero in all of them.
 
     Args:
         cases: Of the sweep.
@@ -335,16 +360,16 @@ def asked(cases: Cases) -> dict[str, np.ndarray]:
         unit = unit_of(cases, "prescribed", (FREEDOMS.index(name),))
         out[column_header(f"prescribed_{name}", unit)] = np.asarray(values)
     if cases.fixed_displacement is not None:
+        fixed = np.asarray(cases.fixed_displacement)
         for k, name in enumerate(FREEDOMS):
-            head = column_header(
-                f"fixed_{name}", unit_of(cases, "fixed_displacement", (k,))
-            )
-            out[head] = np.asarray(cases.fixed_displacement)[:, k]
+            if np.any(fixed[:, k]):
+                unit = unit_of(cases, "fixed_displacement", (k,))
+                out[column_header(f"fixed_{name}", unit)] = fixed[:, k]
     for name in ("inner_speed", "outer_speed", "hours"):
-        if getattr(cases, name) is not None:
-            head = column_header(name, unit_of(cases, name))
-            out[head] = np.asarray(getattr(cases, name))
-    if cases.design is not None:
+        values = getattr(cases, name)
+        if values is not None and np.any(np.asarray(values)):
+            out[column_header(name, unit_of(cases, name))] = np.asarray(values)
+    if cases.design is not None and np.any(np.asarray(cases.design)):
         out["design"] = np.asarray(cases.design)
     return out
 
@@ -371,13 +396,13 @@ def _label(name, index, shape):
     """Name and unit of one entry of an output."""
     axes = _LAST_AXES.get(name, ())
     first = len(shape) - len(axes)
-    field, entry = _LARGEST_OF.get(name, name), index
+    field, entry = _FIELD_OF.get(name, name), index
     if shape[max(first, 0) :] != tuple(map(len, axes)):
         # A user's own array under the name of a field: its axes are unknown.
         axes, first, entry = (), len(shape), ()
     last = [axis[k] for axis, k in zip(axes, index[first:], strict=True)]
     label = "_".join([name, *map(str, index[:first]), *last])
-    for kind in (RollerSolution, BallSolution, Life):
+    for kind in (RollerSolution, BallSolution, Life, Mounting):
         if field in kind.__dataclass_fields__:
             return label, unit_of(kind, field, entry)
     return label, ""

@@ -159,8 +159,9 @@ def _truncated_words(size, where):
 
 def _lifted_words(size, where):
     return (
-        f"lifted off the inner raceway by centrifugal force: {where or f'{size:.0f}'}"
-        f"{'' if where else ' balls'}"
+        "lifted off the inner raceway by centrifugal force, more than"
+        f" {100.0 * of.SMALLEST_LIFT:g} % of the largest load: "
+        f"{where or f'{size:.0f} balls'}"
     )
 
 

@@ -67,6 +67,11 @@ LARGEST_ANGLE = math.radians(75.0)
 """Largest angle of a contact from the middle of its raceway [rad]. A shoulder that
 reaches so far is 0.39 ball diameters high: twice the usual, and more than any."""
 
+SMALLEST_LIFT = 0.05
+"""Centrifugal force of a lifted ball over the largest load of a contact up to which it
+does not matter [1]: what such balls would carry at rest is less than that, and their
+share in the fatigue of the outer raceway, by the cube of their load, about 1e-4."""
+
 _PLAUSIBLE = {
     "pitch_diameter": (1e-3, 15.0, "m"),
     "ball_diameter": (1e-4, 0.5, "m"),
@@ -374,14 +379,21 @@ def truncated_balls(solution: Solution) -> str:
 
 
 def lifted(solution: Solution) -> Any:
-    """Which balls run on the outer raceway alone (ball,)."""
-    load = _of_balls(solution).contact_load
+    """Which balls run on the outer raceway alone, pressed there by a centrifugal force
+    that is not small beside the loads (ball,).
+
+    Outside the load zone balls lie on the outer raceway at any speed.
+    """
+    balls = _of_balls(solution)
+    load, force = balls.contact_load, balls.centrifugal_force
+    assert force is not None  # this warning arises at a speed alone
     carrying = (load > 1e-9 * load.max()).reshape(load.shape[0], 2, -1).any(axis=2)
-    return carrying[:, 0] & ~carrying[:, 1]
+    matters = force > SMALLEST_LIFT * load.max()
+    return carrying[:, 0] & ~carrying[:, 1] & matters
 
 
 def lifted_count(solution: Solution) -> Any:
-    """How many balls run on the outer raceway alone."""
+    """How many balls `lifted` counts."""
     return _one(solution, lifted(solution)).sum()
 
 

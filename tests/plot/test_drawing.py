@@ -80,6 +80,14 @@ THREE = bj.BearingSet(
 )
 
 
+PAIR = bj.BearingSet(
+    [
+        bj.SetRow(balls(5), -0.009, inner_offset=-23.269e-6),
+        bj.SetRow(balls(5), 0.009, True, inner_offset=-13.269e-6),
+    ]
+)
+
+
 @functools.cache
 def page(name):
     return plot.drawing(DESIGNS[name])
@@ -202,10 +210,11 @@ def test_sections_are_to_scale(name):
     assert np.isclose(across, 1e3 * float(bearing.pitch_diameter)).any()
 
 
-@pytest.mark.parametrize("name", [*DESIGNS, "set"])
+@pytest.mark.parametrize("name", [*DESIGNS, "set", "pair"])
 def test_words_stand_on_the_page_and_not_on_each_other(name):
     """Those of all views: a label that is cut or covered tells nothing."""
-    figure = page(name) if name in DESIGNS else plot.drawing(THREE)
+    sets = {"set": THREE, "pair": PAIR}
+    figure = plot.drawing(sets[name]) if name in sets else page(name)
     words = list(figure.texts)
     for ax in figure.axes:
         words += [ax.title, *ax.texts]

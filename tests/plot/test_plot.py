@@ -89,6 +89,27 @@ def test_load_zone_bars_are_the_roller_loads_in_kilonewton(solution):
     assert words == ["outer raceway", "inner raceway", "outside the load zone"]
 
 
+@pytest.mark.parametrize(("count", "told"), [(9, True), (17, False)])
+def test_labels_of_the_load_zone_find_room_or_the_title_tells_them(count, told):
+    """Of balls that are all loaded; of both rows of a pair at one azimuth."""
+    pair = bj.BearingSet.back_to_back(balls(count, contact_angle=0.4), spacing=0.02)
+    made_up = made.solution(pair, (0.25, 0.25))
+    even = eqx.tree_at(
+        lambda s: s.roller_load, made_up, jnp.full_like(made_up.roller_load, 130.0)
+    )
+    ax = plot.load_zone(even)
+    assert ("; circles every 40 N" in ax.get_title()) is not told
+    assert bool(ax.texts) is told
+    plt.gcf().draw_without_rendering()
+    for text in ax.texts:
+        box = text.get_window_extent()
+        bars = [bar for bars in ax.containers for bar in bars]
+        for bar in bars:
+            corners = bar.get_path().interpolated(20).vertices
+            edge = bar.get_transform().transform(corners)
+            assert not any(box.contains(*point) for point in edge)
+
+
 def test_load_zone_refuses_axes_that_are_not_polar(solution):
     with pytest.raises(ValueError, match="polar"):
         plot.load_zone(solution, plt.figure().add_subplot())

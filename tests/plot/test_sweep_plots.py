@@ -7,6 +7,7 @@ import pytest
 
 import bearingjax as bj
 from bearingjax.numerics import Result
+from bearingjax.plot.style import power_of_ten
 from bearingjax.statics.cases import Cases
 from bearingjax.statics.sweep import Sweep
 
@@ -94,3 +95,28 @@ def test_one_input_alone_is_one_curve():
         (line,) = ax.get_lines()
         assert ax.get_xlabel() == "Fy [kN]"
         np.testing.assert_allclose(np.asarray(line.get_xdata()), 1e-3 * FY[7::-1])
+
+
+def test_large_and_small_numbers_are_counted_in_powers_of_ten():
+    """No power of ten stands in a corner: it is part of the unit, and lives are in
+    millions of revolutions."""
+    fine = swept()
+    lives = np.linspace(1e8, 3e11, len(FY))
+    more = {"reference_rating_life": lives, "damage": 1 / lives, "life_hours": lives}
+    figure = bj.plot.sweep_overview(
+        dataclasses.replace(fine, outputs={"result": fine.result, **more})
+    )
+    figure.draw_without_rendering()
+    titles = [ax.get_title() for ax in figure.axes]
+    assert titles == [
+        "reference_rating_life [10³ million rev]",
+        "damage [1/million rev]",
+        "life_hours [10⁹ h]",
+    ]
+    drawn = (1e-9 * lives, 1e6 / lives, 1e-9 * lives)
+    for ax, values in zip(figure.axes, drawn, strict=True):
+        (line,) = ax.get_lines()
+        np.testing.assert_allclose(np.asarray(line.get_ydata()), values)
+        assert ax.yaxis.get_offset_text().get_text() == ""
+    assert power_of_ten(2e-8) == (1e9, "10⁻⁹")
+    assert power_of_ten(0.0) == power_of_ten(np.inf) == (1.0, "")

@@ -68,3 +68,35 @@ def run(monkeypatch, capsys):
         return Run(status, *capsys.readouterr())
 
     return call
+
+
+@pytest.fixture
+def undrawn(run, monkeypatch, tmp_path) -> Callable:
+    """Run a solved command again, whose picture now fails: nothing else is lost."""
+
+    def call(figure, out, *arguments, others=()):
+        def refuse(*_, **__):
+            raise ZeroDivisionError("no scale")
+
+        first = out.read_bytes()
+        picture, page = tmp_path / "lost.png", tmp_path / "lost.html"
+        picture.write_text("of an earlier run", encoding="utf-8")
+        told = [one.read_bytes() for one in others]
+        monkeypatch.setattr(f"bearingjax.plot.{figure}", refuse)
+        files = ("--json", out, "--plot", picture, "--report", page)
+        done = run(*arguments, *files)
+        monkeypatch.undo()
+        assert done.status == 2 and not picture.exists()
+        lines = done.err.splitlines()
+        why = "could not be made: ZeroDivisionError: no scale"
+        assert f"bearingjax: {picture}: {why}" in lines
+        assert f"bearingjax: {picture}: of an earlier run, removed" in lines
+        assert lines[-1].startswith(f"bearingjax: {page}: ")
+        assert lines[-1].endswith(why)
+        assert out.read_bytes() == first
+        assert [one.read_bytes() for one in others] == told
+        text = unescape(page.read_text(encoding="utf-8"))
+        assert f"<p>This picture {why}</p>" in text
+        assert "<h2>Inputs</h2>" in text and done.out.splitlines()[0] in text
+
+    return call

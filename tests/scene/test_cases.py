@@ -116,7 +116,7 @@ def test_solve_leaves_the_cases_alone(scene):
     assert with_cases.load == without.load
 
 
-def test_command_writes_a_row_per_case(run, scene, tmp_path):
+def test_command_writes_a_row_per_case(run, undrawn, scene, tmp_path):
     path = scene(GRID)
     csv, out, page = (tmp_path / f"t.{end}" for end in ("csv", "json", "html"))
     picture = tmp_path / "t.png"
@@ -159,6 +159,7 @@ def test_command_writes_a_row_per_case(run, scene, tmp_path):
     numbers = json.loads(out.read_text())
     assert numbers["counts"] == {"converged": 12}
     assert numbers["columns"]["largest_load [N]"] == table["largest_load [N]"]
+    undrawn("sweep_overview", out, "sweep", path, "--table", csv, others=[csv])
 
 
 def test_command_tells_of_cases_that_fail(run, scene, tmp_path):

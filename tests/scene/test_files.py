@@ -7,7 +7,13 @@ import os
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import SceneError, check_outputs, write_numbers, write_outputs
+from bearingjax.scene import (
+    Incomplete,
+    SceneError,
+    check_outputs,
+    write_numbers,
+    write_outputs,
+)
 
 LIST = "operating.load.Fy [kN]\n-1\n"
 
@@ -107,9 +113,34 @@ def test_files_come_together_or_not_at_all(tmp_path):
     assert str(caught.value) == f"{two}: cannot be written: No space left on device"
     assert one.read_text(encoding="utf-8") == "old"
     assert os.listdir(tmp_path) == ["one.json"]
-    assert write_outputs([(one, text("new")), (two, text("2")), (None, None)]) == []
+    assert write_outputs([(one, text("new")), (two, text("2")), (None, None)]) == (
+        [],
+        [],
+    )
     assert one.read_text(encoding="utf-8") == "new"
     assert sorted(os.listdir(tmp_path)) == ["one.json", "two.png"]
+
+
+def test_a_picture_that_fails_costs_itself_alone(tmp_path):
+    error, part = ValueError("no scale"), Incomplete("without its drawing")
+
+    def wrong(path):
+        path.write_text("half", encoding="utf-8")
+        raise error
+
+    def partly(path):
+        path.write_text("whole", encoding="utf-8")
+        raise part
+
+    names = ("old.png", "a.json", "new.png", "page.html")
+    old, numbers, new, page = (tmp_path / name for name in names)
+    old.write_text("old", encoding="utf-8")
+    outputs = ((old, wrong), (numbers, text("1")), (new, wrong), (page, partly))
+    removed, failed = write_outputs(outputs)
+    assert removed == [old]
+    assert failed == [(old, error), (new, error), (page, part)]
+    assert sorted(os.listdir(tmp_path)) == ["a.json", "page.html"]
+    assert page.read_text(encoding="utf-8") == "whole"
 
 
 def test_an_interrupted_writer_leaves_nothing(tmp_path):
@@ -125,7 +156,7 @@ def test_an_interrupted_writer_leaves_nothing(tmp_path):
 def test_what_this_run_does_not_have_is_removed(tmp_path):
     stale = tmp_path / "old.png"
     stale.write_text("old", encoding="utf-8")
-    assert write_outputs([(stale, None), (tmp_path / "none.png", None)]) == [stale]
+    assert write_outputs([(stale, None), (tmp_path / "none.png", None)])[0] == [stale]
     assert os.listdir(tmp_path) == []
 
 

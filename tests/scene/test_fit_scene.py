@@ -30,7 +30,10 @@ from bearingjax.scene.report import design_sections
 from bearingjax.scene.rotor_run import RotorRun
 from bearingjax.scene.rotor_supports import support_of
 from bearingjax.scene.rotor_warnings import rotor_warnings
+from bearingjax.scene.sweep_run import _with_clearance
 from bearingjax.statics.options import SolveOptions
+from bearingjax.statics.sweep import Sweep
+from bearingjax.statics.sweep_table import columns
 
 MICRON = 1e-6
 BEARING = """
@@ -275,12 +278,44 @@ def test_cases_vary_fits_temperatures_and_speed(scene):
     by_speed = left[design].reshape(4, 2)
     assert (by_speed[:, 1] < by_speed[:, 0]).all()
     assert (speed.reshape(4, 2)[:, 1] > 2000).all()
-    # Without fits speeds make no designs.
+    # What each case runs with is told, as its own scene tells it.
+    count = table.cases.count
+    result = {"result": np.where(np.arange(count) == 2, 1, 0)}
+    solved = _with_clearance(structure, Sweep(table.cases, result, "inner", ()))
+    told = columns(solved)["operating_radial_clearance [m]"]
+    assert np.isnan(told[2]) and np.isfinite(np.delete(told, 2)).all()
+    settings = ["fit.shaft=k5", "temperature.inner_ring=40 degC"]
+    fast = bj.read_scene(
+        scene(BEARING + FIT), [*settings, "operating.inner_speed=20000 rpm"]
+    )
+    facts = fit_facts(fast.fits, fast.element.bearing)
+    assert told[7] == pytest.approx(float(facts.operating.radial_clearance), rel=1e-12)
+    # Without fits speeds make no designs, and there is no other clearance.
     plain = BEARING + grid.replace(
         'fit.shaft = ["j5", "k5"], temperature.inner_ring = ["20 degC", "40 degC"], ',
         "",
     )
-    assert read_cases(scene(plain)).cases.design is None
+    table = read_cases(scene(plain))
+    assert table.cases.design is None
+    solved = Sweep(table.cases, {"result": np.zeros(2, int)}, "inner", ())
+    assert _with_clearance(table.structures[0], solved) is solved
+
+
+def test_what_varies_need_not_stand_in_the_scene(scene):
+    """The first value is the scene's own then; each case has its own all the same."""
+    fit = FIT.replace('shaft = "k5"\n', "")
+    grid = '[cases.grid]\nfit.shaft_interference = ["4 um", "9 um"]\n'
+    table = read_cases(scene(BEARING + fit + grid))
+    assert table.scene.inputs["fit"]["shaft_interference"] == "4e-06 m"
+    of_scene = fitted(table.scene.fits, table.scene.element).bearing
+    left = table.structures[0].element.bearing.radial_internal_clearance
+    assert float(of_scene.radial_internal_clearance) == float(left[0])
+    assert left[0] - left[1] == pytest.approx(5 * MICRON * 25 / 31, rel=0.1)
+    given = read_cases(scene(BEARING + fit + grid), ["fit.shaft_interference=7 um"])
+    assert given.scene.inputs["fit"]["shaft_interference"] == "7e-06 m"
+    np.testing.assert_array_equal(
+        given.structures[0].element.bearing.radial_internal_clearance, left
+    )
 
 
 def test_interferences_are_variables(scene):

@@ -12,7 +12,12 @@ from tolerances import SOLVER
 import bearingjax as bj
 from bearingjax.lubrication import OILS
 from bearingjax.scene import read_cases, run_scene, shipped_scenes
-from bearingjax.scene.life_run import LifeRun, spectrum_as_dict, spectrum_report
+from bearingjax.scene.life_run import (
+    LifeRun,
+    spectrum_as_dict,
+    spectrum_report,
+    spectrum_sections,
+)
 from bearingjax.statics.sweep import Sweep
 
 GROOVES = {"inner_osculation": 0.52, "outer_osculation": 0.53}
@@ -101,7 +106,9 @@ def test_solve_tells_the_life_that_python_has(run, rerun, tmp_path, solution, un
     assert told.status == 2 and "--table is for a scene with [cases]" in told.err
 
 
-def test_a_spectrum_adds_up_the_damage_of_its_cases(run, rerun, tmp_path, untyped):
+def test_a_spectrum_adds_up_the_damage_of_its_cases(
+    run, rerun, undrawn, tmp_path, untyped
+):
     out, table = tmp_path / "out.json", tmp_path / "cases.csv"
     page, picture = tmp_path / "out.html", tmp_path / "out.png"
     drawn = ("--report", page, "--plot", picture)
@@ -120,7 +127,7 @@ def test_a_spectrum_adds_up_the_damage_of_its_cases(run, rerun, tmp_path, untype
     hours = np.array([700.0, 250.0, 50.0])
     turns = hours * 60 * np.array([3000.0, 1500.0, 800.0])
     for name in NAMES:
-        used = turns / np.array(columns[name])
+        used = turns / np.array(columns[f"{name} [rev]"])
         np.testing.assert_allclose(found[name], turns.sum() / used.sum(), rtol=1e-10)
     np.testing.assert_allclose(found["damage_share"], used / used.sum(), rtol=1e-10)
     np.testing.assert_allclose(
@@ -128,7 +135,7 @@ def test_a_spectrum_adds_up_the_damage_of_its_cases(run, rerun, tmp_path, untype
     )
     assert found["static_safety"] == min(columns["static_safety"])
     lines = table.read_text(encoding="utf-8").splitlines()
-    assert len(lines) == 4 and "modified_rating_life" in lines[0]
+    assert len(lines) == 4 and "modified_rating_life [rev]" in lines[0]
     assert "each case alone" in told.out
     assert "\nC 23.4 kN (given in [life])\n" in told.out and "at rest" not in told.out
     assert found["dynamic_capacity_source"] == "given"
@@ -139,6 +146,8 @@ def test_a_spectrum_adds_up_the_damage_of_its_cases(run, rerun, tmp_path, untype
     np.testing.assert_allclose(found["equivalent_load"], mean, rtol=1e-9)
     page = rerun("life", out, "--quiet", pictures=2)
     assert page.count("<td>converged</td>") == 3
+    again = ("life", SCENE, *SETTINGS, "--table", table, "--quiet")
+    undrawn("life_overview", out, *again, others=[table])
 
 
 def test_a_case_that_is_not_solved_leaves_no_life(run, tmp_path):
@@ -152,14 +161,17 @@ def test_a_case_that_is_not_solved_leaves_no_life(run, tmp_path):
     assert told.out == ""
     found = json.loads(out.read_text(encoding="utf-8"))
     assert "reference_rating_life" not in found
-    assert found["columns"]["reference_rating_life"][2] is None
+    assert found["columns"]["reference_rating_life [rev]"][2] is None
     assert found["dynamic_capacity"] == 23400.0
 
 
-def test_reliability_counts_without_a_lubricant_too(untyped):
-    """A spectrum of two cases whose lives are known."""
-    a1, hours, speed = 0.64, np.array([3.0, 1.0]), np.array([100.0, 50.0])
-    cases = bj.Cases(np.zeros((2, 6)), inner_speed=speed, hours=hours)
+def two_cases():
+    """A spectrum of two cases whose lives are known, the second one warmer and on a
+    tighter shaft; its a1, and lives by name."""
+    a1, hours, speed = 0.64, np.array([3.0, 0.0]), np.array([100.0, 50.0])
+    cases = bj.Cases(
+        np.zeros((2, 6)), inner_speed=speed, hours=hours, design=np.arange(2)
+    )
     lives = np.array([1e9, 1e8])
     outputs = {
         "result": np.zeros(2, int),
@@ -169,13 +181,23 @@ def test_reliability_counts_without_a_lubricant_too(untyped):
         "static_safety": np.array([9.0, 3.0]),
         "equivalent_load": np.array([1e3, 2e3]),
         "reference_load": np.array([1e3, 2e3]),
+        "operating_radial_clearance": np.array([8e-6, -3.5e-6]),
     }
     element = SimpleNamespace(
         bearing=bj.DeepGrooveBallBearing(7, 0.04, 0.008, **GROOVES)
     )
     scene = SimpleNamespace(name="two", element=element, catalogue=None, life=None)
+    settings = (
+        {"temperature.inner_ring [K]": 333.15, "fit.shaft": "k5", "fit.housing": "H7"},
+        {"temperature.inner_ring [K]": 363.15, "fit.shaft": "m5", "fit.housing": "H7"},
+    )
     table = SimpleNamespace(
-        scene=scene, cases=cases, varied=["hours"], warnings=[], inputs={}
+        scene=scene,
+        cases=cases,
+        varied=["hours"],
+        warnings=[],
+        inputs={},
+        settings=settings,
     )
     known = {
         name: bj.spectrum_life(cases, 1 / lives)
@@ -192,18 +214,24 @@ def test_reliability_counts_without_a_lubricant_too(untyped):
     )
     solved = Sweep(cases, outputs, "inner", ())
     run = LifeRun(table, solved, known, asked, ratings)  # pyright: ignore[reportArgumentType]
+    return run, a1, lives
+
+
+def test_reliability_counts_without_a_lubricant_too(untyped):
+    run, a1, lives = two_cases()
     found = spectrum_as_dict(run)
+    hours, speed = np.array([3.0, 0.0]), np.array([100.0, 50.0])
     used = hours * speed * 3600 / (2 * np.pi) / lives
-    np.testing.assert_allclose(found["life_hours"], a1 * 4 / used.sum(), rtol=1e-12)
+    np.testing.assert_allclose(found["life_hours"], a1 * 3 / used.sum(), rtol=1e-12)
     np.testing.assert_allclose(found["damage_share"], used / used.sum(), rtol=1e-12)
     assert found["modified_rating_life"] is None
     lines = spectrum_report(run).splitlines()
     (line,) = [line for line in lines if line.startswith("reference, a1 0.64")]
-    assert f"{a1 * 4 / used.sum():.5g}" in line
+    assert f"{a1 * 3 / used.sum():.5g}" in line
     # Without a speed there are no hours, and it is said.
     still = bj.Cases(np.zeros((2, 6)), hours=hours)
-    used = {name: bj.spectrum_life(still, 1 / lives) for name in known}
-    gone = bj.spectrum_life(still, outputs["damage"])
+    used = {name: bj.spectrum_life(still, 1 / lives) for name in run.lives}
+    gone = bj.spectrum_life(still, run.solved.outputs["damage"])
     lines = spectrum_report(
         dataclasses.replace(run, lives=used, asked=gone)
     ).splitlines()
@@ -211,3 +239,52 @@ def test_reliability_counts_without_a_lubricant_too(untyped):
         line.startswith("at rest: no life in hours; the inner") for line in lines
     )
     assert not any(line.endswith("hours") for line in lines[1:])
+
+
+def test_cases_are_told_by_what_differs(untyped):
+    """Whatever the key; and how each runs, the least safe one by its number."""
+    run = two_cases()[0]
+    text = spectrum_report(run)
+    assert "least static safety 3 (case 1, of 0 h)" in text
+    assert "over the cases the operating radial clearance is -3.5 to 8 µm" in text
+    lines = text.splitlines()
+    (k,) = [k for k, line in enumerate(lines) if line.startswith("each case alone")]
+    first, second, warm = (lines[k + i].split() for i in (0, 1, 3))
+    assert first[-2:] == ["damage", "%"] and second[-1] == "(reference)"
+    assert warm[:4] == ["1", "0", "2", "-3.5"]  # case, hours, kN, µm
+    told = "inner speed 477.5 rpm, inner ring 90 °C, shaft m5"
+    assert f"     1  {told}" in lines and max(map(len, lines)) <= 88
+    columns = spectrum_as_dict(run)["columns"]
+    assert columns["operating_radial_clearance [m]"][1] == -3.5e-6
+    below = bj.plot.life_overview(run).subfigs[0].axes
+    for ax in below:
+        label = ax.get_xticklabels()[1].get_text()
+        assert label == "\n".join(["1", *told.split(", ")])
+
+
+def test_a_page_says_whose_fits_it_shows(untyped):
+    """Those of the scene, beside the clearances of its cases."""
+    fit = "bore=25 mm", "outside_diameter=62 mm", "housing_diameter=90 mm"
+    seats = [f"fit.{one}" for one in (*fit, "shaft=k5", "housing=H7")]
+    table = read_cases(SCENE, seats)
+    run = two_cases()[0]
+    outputs = {name: np.resize(x, 3) for name, x in run.solved.outputs.items()}
+    solved = Sweep(table.cases, outputs, "inner", ())
+    asked = bj.spectrum_life(table.cases, outputs["damage"])
+    run = LifeRun(table, solved, run.lives, asked, run.ratings)
+    texts = spectrum_sections(run)
+    assert texts["Rating life"] == spectrum_report(run)
+    told = " ".join(texts["Fits and clearance"].split())
+    assert "[fit] and [temperature] of the scene have them" in told
+    assert "over the cases the operating radial clearance is -3.5 to 8 µm." in told
+    assert "fits: shaft k5, housing H7" in told
+
+
+def test_labels_of_many_settings_say_how_many_are_left_out():
+    from bearingjax.plot.life import _named
+
+    words = [f"number {k} of many 12 mm" for k in range(9)]
+    lines = _named(3, words, 13).splitlines()
+    assert max(map(len, lines)) <= 13 and len(lines) <= 8
+    assert lines[:3] == ["3", "number 0 of", "many 12 mm"] and lines[-1] == "and 6 more"
+    assert _named(3, words[:3], 30).splitlines() == ["3", *words[:3]]

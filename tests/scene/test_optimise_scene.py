@@ -61,7 +61,9 @@ def scene(tmp_path):
     return write
 
 
-def test_command_finds_the_clearance_of_a_stiffness(run, rerun, scene, tmp_path):
+def test_command_finds_the_clearance_of_a_stiffness(
+    run, rerun, undrawn, scene, tmp_path
+):
     element = read_scene(scene(GOOD)).element
     wanted = bj.solve_load(
         changed(element, {"bearing.radial_internal_clearance": 15e-6}),
@@ -90,6 +92,7 @@ def test_command_finds_the_clearance_of_a_stiffness(run, rerun, scene, tmp_path)
     )
     assert "optimised over 1 operating case in" in done.out
     rerun("optimise", out, pictures=2)
+    undrawn("optimised", out, "optimise", tmp_path / "again.json")
     # Not converged: no numbers that could be taken for results.
     hasty = table.replace("[optimise.v", 'method="adam"\nmax_steps=1\n[optimise.v')
     done = run("optimise", scene(hasty), "--json", out)

@@ -152,26 +152,32 @@ operating.load.Fy = ["-0.1 kN", "-1 kN"]
         np.testing.assert_array_equal(again[name], values)
 
 
-def test_what_is_held_at_zero_has_no_column_and_comes_back(tmp_path):
-    """A tilt held at zero; one that is zero in some cases only has its column."""
+def test_what_is_zero_has_no_column_and_comes_back(tmp_path):
+    """A tilt held at zero, free motions that are, a ring that stands; a tilt that is
+    zero in some cases only has its column."""
     tilts = {"gx": [0.0, 0.0, 0.0], "gy": [0.0, 1e-3, 0.0]}
-    cases = Cases(np.tile([0, -1e3, 0, 0, 0, 0], (3, 1)), prescribed=tilts)
+    load, speeds = np.tile([0, -1e3, 0, 0, 0, 0], (3, 1)), {"outer_speed": 0.0}
+    cases = Cases(load, prescribed=tilts, inner_speed=[0.0, 5.0, 5.0], **speeds)
     q = np.zeros((3, 12))
     q[:, 7], q[:, 10] = [-1e-6, -2e-6, np.nan], tilts["gy"]
     q[2] = np.nan
     outputs = {"result": np.array([0, 0, 5]), "displacement": q}
+    outputs["n_loaded"] = np.zeros(3, int)
     outer = tuple(f"outer_{name}" for name in FREEDOMS)
     zeros = (("displacement", (*outer, "inner_gz")),)
     sweep = Sweep(cases, outputs, "inner", zeros)
     place = tmp_path / "t.csv"
     write(sweep, place)
     known = read(place)
-    moves = [name for name in known if name.startswith(("displacement", "prescribed"))]
-    ours = ["ux [m]", "uy [m]", "uz [m]", "gy [rad]"]
-    wanted = [f"displacement_inner_{name}" for name in ours]
-    assert moves == ["prescribed_gy [rad]", *wanted]
+    wanted = [f"displacement_inner_{name}" for name in ("uy [m]", "gy [rad]")]
+    given = ["Fy [N]", "prescribed_gy [rad]", "inner_speed [rad/s]"]
+    assert list(known) == [*given, "result", *wanted]
     again = restored(known, outputs, left_out(sweep))
-    np.testing.assert_array_equal(again["displacement"], q)
+    for name, values in outputs.items():
+        np.testing.assert_array_equal(again[name], values)
+    del known["displacement_inner_uy [m]"]
+    with pytest.raises(ValueError, match="no column 'displacement_inner_uy"):
+        restored(known, outputs, left_out(sweep))
 
 
 def test_interrupted_while_the_table_is_written(

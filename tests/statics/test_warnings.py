@@ -65,6 +65,22 @@ def test_pressure_beyond_the_static_limit(deep):
     assert static.endswith("ISO 76 (4200 MPa)")
 
 
+def test_balls_out_of_the_load_zone_are_not_lifted(deep):
+    """They lie on the outer raceway at any speed; it matters where they press there."""
+    slow = solved(deep, [0, -2000.0, 0, 0, 0, 0], bj.Speed(inner=157.0))
+    assert np.asarray(slow.lifted).sum() > 2 and bj.warnings(slow) == []
+    fast = solved(deep, [0, -50.0, 0, 0, 0, 0], bj.Speed(inner=2000.0))
+    (told,) = (t for t in bj.warnings(fast) if t.startswith("lifted off"))
+    lifted = np.flatnonzero(np.asarray(fast.lifted))
+    assert told.endswith(f"largest load: balls {', '.join(map(str, lifted))}")
+    # On both sides of the share that counts.
+    top = float(slow.contact_load.max())
+    for share, count in ((0.049, 0), (0.051, np.asarray(slow.lifted).sum())):
+        force = jnp.full_like(slow.centrifugal_force, share * top)
+        pressed = eqx.tree_at(lambda s: s.centrifugal_force, slow, force)
+        assert float(sizes(pressed)["lifted_ball"]) == count
+
+
 @pytest.mark.parametrize("speed", [0.0, 300.0, 2000.0])
 def test_no_stiffness_whatever_the_speed(deep, speed):
     """Against its own largest stiffness, that of nothing, nothing is soft."""

@@ -1,0 +1,58 @@
+"""What differs between the cases of a scene, in words."""
+
+from collections import Counter
+
+import numpy as np
+
+from ..numerics.units import shown_number
+from ..statics.sweep_table import asked
+from .cases_table import CaseTable
+from .sweep_run import design_columns
+
+_LONGEST = 24
+"""Letters of a setting that is text, such as a list of profiles, that are shown."""
+
+
+def differing(table: CaseTable) -> dict[str, np.ndarray]:
+    """What the cases of a scene have that is not the same in all of them, but hours.
+
+    Args:
+        table: From `read_cases`.
+
+    Returns:
+        Values (case,) by "name [unit]": loads, displacements, speeds, and settings of
+        the design, numbers in SI.
+    """
+    found = asked(table.cases) | design_columns(table)
+    return {
+        header: values
+        for header, values in found.items()
+        if header not in ("design", "hours [h]") and len(set(values.tolist())) > 1
+    }
+
+
+def case_words(found: dict[str, np.ndarray], case: int) -> list[str]:
+    """What a case has that others have not, one setting each: "Fy -2.5 kN".
+
+    Args:
+        found: From `differing`.
+        case: Number of the case.
+    """
+    names = [header.partition(" [")[0] for header in found]
+    ends = Counter(map(_end, names))
+    words = []
+    for name, (header, values) in zip(names, found.items(), strict=True):
+        short = _end(name) if ends[_end(name)] == 1 else name
+        unit = header.partition(" [")[2].rstrip("]")
+        value = values[case].item()
+        if isinstance(value, str):
+            told = value if len(value) <= _LONGEST else f"{value[: _LONGEST - 1]}…"
+        else:
+            told = shown_number(value, unit)
+        words.append(f"{short.replace('_', ' ')} {told}")
+    return words
+
+
+def _end(name: str) -> str:
+    """The last part of a key, which says what it is."""
+    return name.rpartition(".")[2].removeprefix("prescribed_")
