@@ -80,7 +80,9 @@ def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
         name = None if place is None else _name(function, arguments)
         kept = _loaded(place, name)
         if kept is not None:
-            return kept(arrays)
+            # Seen with jaxlib 0.10, seldom: a program that was loaded lacks a function.
+            with contextlib.suppress(jax.errors.JaxRuntimeError):
+                return kept(arrays)
         lowered = jax.jit(flat).lower(*arrays)
         if name is not None and _calls_out(lowered):
             name = None

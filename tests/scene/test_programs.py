@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import programs, run
+from bearingjax.scene import programs
 from bearingjax.scene.structure import UnknownStructure, structure
 
 # Every choice of a scene that is not a number, beside the choice that it replaces.
@@ -59,7 +59,7 @@ def name_of(monkeypatch):
     def name(function, *arguments, folder):
         raise Named(programs._name(function, arguments))
 
-    monkeypatch.setattr(run, "call_once", name)
+    monkeypatch.setattr(programs, "call_once", name)
 
     def call(scene, *settings):
         with pytest.raises(Named) as found:
@@ -272,6 +272,18 @@ def test_what_was_not_used_for_longest_goes(kept, monkeypatch):
     kept(word="new")
     names = set(kept.folder.iterdir())
     assert old in names and used not in names and len(names) == 2
+
+
+def test_a_kept_program_that_does_not_run_is_compiled_anew(kept, monkeypatch):
+    assert kept()
+
+    def broken(arrays):
+        raise jax.errors.JaxRuntimeError("NOT_FOUND: Function")
+
+    with monkeypatch.context() as here:
+        here.setattr(programs, "_loaded", lambda place, name: broken)
+        assert kept()
+    assert not kept()
 
 
 def test_an_option_that_xla_does_not_know(kept, monkeypatch):
