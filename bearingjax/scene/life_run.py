@@ -15,7 +15,7 @@ from ..statics.life_warning import life_warnings
 from ..statics.rating import Ratings, ratings
 from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ..statics.sweep import Sweep
-from ..statics.sweep_table import OPERATING_CLEARANCE, columns
+from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .case_words import case_words, differing
 from .cases_table import CaseTable
 from .life_report import life_number, ratings_as_dict, ratings_in_words, turning
@@ -70,6 +70,11 @@ class LifeRun:
     def clearance(self) -> np.ndarray | None:
         """Radial clearance of each case in operation [m]; `None` without [fit]."""
         return self.solved.outputs.get(OPERATING_CLEARANCE)
+
+    @property
+    def preload(self) -> np.ndarray | None:
+        """Preload of each case [N]; `None` but of sets on their seats."""
+        return self.solved.outputs.get(OPERATING_PRELOAD)
 
     def words(self, case: int) -> list[str]:
         """What a case has that others have not, such as "Fy -2.5 kN"."""
@@ -252,8 +257,7 @@ def spectrum_report(run: LifeRun) -> str:
     if run.asked.life_hours is None:
         fixed_to = life_conditions(table.scene).load_fixed_to
         lines.append(turning(turns_against_load(None, fixed_to), True))
-    play = run.clearance
-    lines += [] if play is None else [f"over the cases {_clearances(play)}"]
+    lines += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
     lines += _by_case(run)
     lines += [f"warning: {text}" for text in _warnings(run)]
     return "\n".join(lines)
@@ -270,16 +274,22 @@ def spectrum_sections(run: LifeRun) -> dict[str, str]:
     if run.clearance is not None:
         texts[fits] = (
             "These are the fits as [operating], [fit] and [temperature] of the scene"
-            f" have them; over the cases\n{_clearances(run.clearance)}.\n{texts[fits]}"
+            f" have them; over the cases\n{_on_seats(run)}.\n{texts[fits]}"
         )
     return texts
 
 
-def _clearances(clearance: np.ndarray) -> str:
-    """Least and largest radial clearance of the cases in operation."""
-    ends = (f"{1e6 * end(clearance):.4g}" for end in (np.min, np.max))
-    words = " to ".join(dict.fromkeys(ends))
-    return f"the operating radial clearance is {words} µm"
+def _on_seats(run) -> str:
+    """Least and largest radial clearance and preload of the cases in operation."""
+    text = f"the operating radial clearance is {_ends(1e6 * run.clearance)} µm"
+    if run.preload is None:
+        return text
+    return f"{text}, the preload of the set, unloaded, {_ends(run.preload)} N"
+
+
+def _ends(values: np.ndarray) -> str:
+    ends = (f"{end(values):.4g}" for end in (np.min, np.max))
+    return " to ".join(dict.fromkeys(ends))
 
 
 def _by_case(run) -> list[str]:
@@ -288,14 +298,14 @@ def _by_case(run) -> list[str]:
     order, shares = run.worst(_SHOWN)
     solved, hours = run.solved, run.table.cases.hours
     words = [name.removesuffix("_rating_life") for name in run.lives]
-    play = run.clearance
+    left = _left(run)
     lines = [
         f"\n{'each case alone':<18}{'P':>10}"
-        + ("" if play is None else f"{'clearance':>12}")
+        + "".join(f"{word:>12}" for word, _, _ in left)
         + "".join(f"{word:>12}" for word in words)
         + f"{'damage %':>12}",
         f"{'case':>6}{'hours':>12}{'kN':>10}"
-        + ("" if play is None else f"{'µm':>12}")
+        + "".join(f"{unit:>12}" for _, unit, _ in left)
         + f"{'million rev':>12}" * len(words)
         + f"{f'({run.asked_name})':>12}",
     ]
@@ -305,14 +315,24 @@ def _by_case(run) -> list[str]:
         lives = (life_number(1e-6 * getattr(solved, name)[k]) for name in run.lives)
         lines.append(
             f"{k:>6}{spent:>12}{load:>10.4g}"
-            + ("" if play is None else f"{1e6 * float(play[k]):>12.4g}")
+            + "".join(f"{float(values[k]):>12.4g}" for _, _, values in left)
             + "".join(f"{life:>12}" for life in lives)
             + f"{100 * share:>12.4g}"
         )
-    left = run.table.cases.count - len(order)
-    if left:
-        lines.append(f"  and {left} more, {100 * (1 - shares.sum()):.3g} %")
+    more = run.table.cases.count - len(order)
+    if more:
+        lines.append(f"  and {more} more, {100 * (1 - shares.sum()):.3g} %")
     return lines + _apart(run, order)
+
+
+def _left(run) -> list[tuple[str, str, np.ndarray]]:
+    """What the seats leave in each case: word, unit, values."""
+    found = []
+    if run.clearance is not None:
+        found.append(("clearance", "µm", 1e6 * run.clearance))
+    if run.preload is not None:
+        found.append(("preload", "N", run.preload))
+    return found
 
 
 def _apart(run, order) -> list[str]:

@@ -10,9 +10,11 @@ import numpy as np
 
 from ..design import radial_clearance, rows_of
 from ..numerics.units import display_unit
+from ..statics.cases import Cases
+from ..statics.preload import is_opposed, pressed
 from ..statics.sweep import Sweep, sweep
 from ..statics.sweep_program import not_run
-from ..statics.sweep_table import OPERATING_CLEARANCE, columns
+from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .cases_table import CaseTable, Structure
 from .files import write_numbers
 from .life_table import life_conditions
@@ -40,8 +42,8 @@ def run_cases(
         stop: As in `sweep`.
 
     Returns:
-        Sweep with a result code for each case; of a scene with [fit] with the output
-        `OPERATING_CLEARANCE` too.
+        Sweep with a result code for each case; of a scene with [fit] with the outputs
+        `OPERATING_CLEARANCE` and, of a set, `OPERATING_PRELOAD` too.
 
     Raises:
         SceneError: For outputs that do not exist or would not fit memory.
@@ -87,24 +89,55 @@ def _run(table, part, mine, progress, stop) -> Sweep:
         )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
-    return _with_clearance(part, solved)
+    return _on_seats(part, solved)
 
 
-def _with_clearance(part: Structure, solved: Sweep) -> Sweep:
-    """The sweep of a structure with the radial clearance of each case in operation [m],
-    if the bearing is on its seats."""
+def _on_seats(part: Structure, solved: Sweep) -> Sweep:
+    """The sweep of a structure with what its seats leave in each case: the radial
+    clearance in operation [m] and, of a set, the preload [N]."""
     if part.scene.fits is None:
         return solved
+    cases = solved.cases
+    design = np.zeros(cases.count, int)
+    if part.designs is not None:
+        design = np.asarray(cases.design)
     row = rows_of(part.element.bearing)[0].bearing
-    if part.designs is None:
-        clearance = np.asarray(radial_clearance(row))
-    else:
-        of_designs = np.asarray(jax.vmap(radial_clearance)(row))
-        clearance = of_designs[np.asarray(solved.cases.design)]
-    found = np.where(solved.converged, clearance, np.nan)
+    find = radial_clearance if part.designs is None else jax.vmap(radial_clearance)
+    left = {OPERATING_CLEARANCE: np.atleast_1d(find(row))}
+    if is_opposed(part.element.bearing):
+        left[OPERATING_PRELOAD] = _preloads(part, cases)
     return dataclasses.replace(
-        solved, outputs={**solved.outputs, OPERATING_CLEARANCE: found}
+        solved,
+        outputs=solved.outputs
+        | {k: np.where(solved.converged, v[design], np.nan) for k, v in left.items()},
     )
+
+
+def _preloads(part: Structure, cases: Cases) -> np.ndarray:
+    """Force with which the rows of each design press each other, unloaded, at the
+    speeds of its first case (design,) [N]."""
+    if part.designs is None:
+        first, design = np.zeros(1, int), None
+    else:
+        design, first = np.unique(np.asarray(cases.design), return_index=True)
+    inner, outer = (
+        None if speed is None else np.asarray(speed)[first]
+        for speed in (cases.inner_speed, cases.outer_speed)
+    )
+    unloaded = Cases(
+        np.zeros((first.size, 6)), inner_speed=inner, outer_speed=outer, design=design
+    )
+    found = sweep(part.element, unloaded, outputs=_pressed, free=["uz"])
+    force = np.asarray(found.outputs["preload"])
+    if design is None:
+        return force
+    of_all = np.full(design.max() + 1, np.nan)  # designs that no case has
+    of_all[design] = force
+    return of_all
+
+
+def _pressed(solution):
+    return {"preload": pressed(solution)}
 
 
 def _merged(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:

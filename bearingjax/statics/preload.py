@@ -12,6 +12,7 @@ from ..element.bearing_element import BearingElement, check_element
 from ..element.inertia import Speed
 from ..numerics.types import Scalar, as_real
 from .load import solve_load
+from .solution import Solution
 from .support import restrained_freedoms
 
 
@@ -99,9 +100,22 @@ def remaining_preload(
     check_opposed("remaining_preload", bearing)
     still = jnp.zeros(6, bearing.rows[0].position.dtype)
     solution = solve_load(element, still, free=["uz"], speed=speed, throw=throw)
-    mine = BearingSet(tuple(row for row in bearing.rows if not row.mirrored))
+    return pressed(solution)
+
+
+def pressed(solution: Solution) -> Scalar:
+    """Axial force that the rows which carry load along +z bear, on their inner rings.
+
+    Args:
+        solution: Of a set with rows of both sides.
+
+    Returns:
+        The force [N], NaN if the solve did not converge.
+    """
+    element, rows = solution.element, solution.element.bearing.rows
+    mine = BearingSet(tuple(row for row in rows if not row.mirrored))
     alone = eqx.tree_at(lambda e: e.bearing, element, mine)
-    force = alone.force(solution.displacement, speed)[8]
+    force = alone.force(solution.displacement, solution.speed)[8]
     return jnp.where(solution.converged, force, jnp.nan)
 
 

@@ -49,10 +49,14 @@ _LAST_AXES = {
 OPERATING_CLEARANCE = "operating_radial_clearance"
 """Output of sweeps of bearings on their seats: the clearance with which they run."""
 
+OPERATING_PRELOAD = "operating_preload"
+"""Likewise of sets: the force with which their rows press each other, unloaded."""
+
 _FIELD_OF = {
     "peak_pressure": "roller_pressure",
     "largest_load": "roller_load",
     OPERATING_CLEARANCE: "radial_clearance",
+    OPERATING_PRELOAD: "roller_load",
 }
 """Fields that have the units of outputs of other names."""
 

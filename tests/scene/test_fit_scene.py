@@ -30,7 +30,7 @@ from bearingjax.scene.report import design_sections
 from bearingjax.scene.rotor_run import RotorRun
 from bearingjax.scene.rotor_supports import support_of
 from bearingjax.scene.rotor_warnings import rotor_warnings
-from bearingjax.scene.sweep_run import _with_clearance
+from bearingjax.scene.sweep_run import _on_seats
 from bearingjax.statics.options import SolveOptions
 from bearingjax.statics.sweep import Sweep
 from bearingjax.statics.sweep_table import columns
@@ -281,7 +281,7 @@ def test_cases_vary_fits_temperatures_and_speed(scene):
     # What each case runs with is told, as its own scene tells it.
     count = table.cases.count
     result = {"result": np.where(np.arange(count) == 2, 1, 0)}
-    solved = _with_clearance(structure, Sweep(table.cases, result, "inner", ()))
+    solved = _on_seats(structure, Sweep(table.cases, result, "inner", ()))
     told = columns(solved)["operating_radial_clearance [m]"]
     assert np.isnan(told[2]) and np.isfinite(np.delete(told, 2)).all()
     settings = ["fit.shaft=k5", "temperature.inner_ring=40 degC"]
@@ -298,7 +298,7 @@ def test_cases_vary_fits_temperatures_and_speed(scene):
     table = read_cases(scene(plain))
     assert table.cases.design is None
     solved = Sweep(table.cases, {"result": np.zeros(2, int)}, "inner", ())
-    assert _with_clearance(table.structures[0], solved) is solved
+    assert _on_seats(table.structures[0], solved) is solved
 
 
 def test_what_varies_need_not_stand_in_the_scene(scene):

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.scene import read_cases, run_cases
 from bearingjax.scene.fit_table import fitted
 from bearingjax.scene.set_preload import SetPreload, preload_report, preload_warnings
+from bearingjax.statics.sweep_table import columns
 
 PAIR = """
 [bearing]
@@ -84,6 +86,24 @@ def test_solve_tells_it(run, scene, tmp_path):
             tuple(found["worst"]["mounted"]),
             tuple(found["worst"]["operating"]),
         )
+    )
+
+
+def test_a_sweep_tells_that_of_each_case(scene):
+    """Of cases of two designs at three loads, each as by hand."""
+    warmth = '"temperature.inner_ring" = ["45 °C", "30 °C"]'
+    loads = '"operating.load.Fz" = ["500 N", "0 N", "-200 N"]'
+    with scene.open("a", encoding="utf-8") as file:
+        file.write(f'[cases]\noutputs = ["n_loaded"]\ngrid = {{ {warmth}, {loads} }}\n')
+    read = bj.read_scene(scene)
+    table = columns(run_cases(read_cases(scene)))
+    wanted = [
+        left(read, bj.read_scene(scene, [f"temperature.inner_ring={x} °C"]))
+        for x in (45, 30)
+    ]
+    assert wanted[0] > 1.02 * wanted[1]
+    np.testing.assert_allclose(
+        table["operating_preload [N]"], np.repeat(wanted, 3), rtol=1e-8
     )
 
 
