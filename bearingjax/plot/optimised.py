@@ -178,9 +178,10 @@ def _cases(found, ax):
     ax.set_xlabel("operating case")
     ax.margins(y=0.16)
     if lives:
-        if np.nanmax(values) > _FAR * np.nanmin(values):
+        known = values[np.isfinite(values)]
+        if known.size and known.max() > _FAR * known.min():
             ax.set_yscale("log")
-            ax.set_ylim(top=20.0 * np.nanmax(values))  # room for the legend
+            ax.set_ylim(top=20.0 * known.max())  # room for the legend
         without_offset(ax)
         ax.set_ylabel(f"life [{'h' if wanted.hours else 'revolutions'}]")
         ax.set_title("Life under each case alone")
