@@ -284,7 +284,9 @@ def _on_seats(run) -> str:
     text = f"the operating radial clearance is {_ends(1e6 * run.clearance)} µm"
     if run.preload is None:
         return text
-    return f"{text}, the preload of the set, unloaded, {_ends(run.preload)} N"
+    text += f", the preload of the set, unloaded, {_ends(run.preload)} N"
+    ground = run.table.scene.preload_force
+    return text if ground is None else f"{text} (ground to {ground:.4g} N)"
 
 
 def _ends(values: np.ndarray) -> str:

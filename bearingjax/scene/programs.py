@@ -80,7 +80,7 @@ def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
         name = None if place is None else _name(function, arguments)
         kept = _loaded(place, name)
         if kept is not None:
-            # Seen with jaxlib 0.10, seldom: a program that was loaded lacks a function.
+            # A program of another jaxlib may lack a function.
             with contextlib.suppress(jax.errors.JaxRuntimeError):
                 return kept(arrays)
         lowered = jax.jit(flat).lower(*arrays)
@@ -158,19 +158,27 @@ def _filled(outputs: Any, values: list) -> Any:
     )
 
 
+_ANEW = {
+    "jax_persistent_cache_min_compile_time_secs": float("inf"),
+    "jax_compilation_cache_include_metadata_in_key": True,
+}
+"""Settings with which JAX's own cache neither takes up a program nor has it: what comes
+from there lacks functions when it is kept once more (jaxlib 0.10)."""
+
+
 def _compiled(lowered, keep: bool):
-    """Compile, once in this process; not also for JAX's own cache if kept here."""
-    least = "jax_persistent_cache_min_compile_time_secs"
-    before = jax.config.values[least]
-    if keep:
-        jax.config.update(least, float("inf"))
+    """Compile, once in this process; of what is kept here, past JAX's own cache."""
+    before = {name: jax.config.values[name] for name in _ANEW}
+    for name, value in _ANEW.items() if keep else ():
+        jax.config.update(name, value)
     try:
         return lowered.compile(compiler_options=OPTIONS)
     except jax.errors.JaxRuntimeError:
         # Another version of XLA, which does not know an option.
         return lowered.compile()
     finally:
-        jax.config.update(least, before)
+        for name, value in before.items():
+            jax.config.update(name, value)
 
 
 def _name(function: Callable, arguments: tuple) -> str | None:

@@ -1,6 +1,8 @@
 """Programs that the command line keeps: told apart, read from safe places only."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import equinox as eqx
@@ -183,6 +185,48 @@ def test_a_program_that_calls_a_library_is_not_kept(kept, monkeypatch):
     found = programs.call_once(factor, 4.0 * jnp.eye(2), folder=kept.folder)
     assert np.array_equal(found, 2.0 * np.eye(2))
     assert list(kept.folder.iterdir()) == before
+
+
+BESIDE_JAX = """
+import pathlib
+import sys
+
+import jax
+
+here = pathlib.Path(sys.argv[1])
+jax.config.update("jax_compilation_cache_dir", str(here / "jax"))
+jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
+jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)
+
+import jax.numpy as jnp
+
+from bearingjax.scene import programs
+
+def doubled(a, b):
+    print("traced")
+    return 2.0 * a + b
+
+doubled.__module__, doubled.__qualname__ = programs.__name__, "doubled"
+programs.doubled = doubled
+(here / "no folder").write_text("")
+for name in ("no folder", "folder", "folder"):
+    given = jnp.array([1.0, 2.0]), jnp.array(0.5)
+    print(programs.call_once(doubled, *given, folder=here / name))
+"""
+
+
+def test_a_program_that_jax_keeps_too_is_kept_whole(tmp_path):
+    """What JAX's own cache has of it would lack its functions when kept once more."""
+    done = subprocess.run(
+        [sys.executable, "-c", BESIDE_JAX, tmp_path],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert list((tmp_path / "jax").iterdir())
+    lines = done.stdout.splitlines()
+    assert [line for line in lines if line != "traced"] == 3 * ["[2.5 4.5]"]
+    assert lines.count("traced") == 2  # the last call is that of the kept program
 
 
 def spoil(path, how):
