@@ -104,10 +104,11 @@ def _shares(run, order, ax):
         )
         if len(order) <= 8:
             ax.bar_label(drawn, fmt="%.3g", fontsize=SMALL, padding=2)
-    ax.margins(y=0.12)
+    ax.margins(y=0.25)  # room for the legend above all bars
     ax.set_ylabel("share [%]")
     ax.set_title("Shares of the cases")
     _finish(run, order, ax)
+    ax.legend(fontsize=SMALL, ncols=2, loc="upper center")
 
 
 def _finish(run, order, ax):
