@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import equinox as eqx
 
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Scalar, as_real, namespace
 from ..numerics.units import unit
 from .checks import check, concrete, in_range, instance, non_negative, number, positive
 from .warm_material import WarmMaterial
@@ -36,6 +36,9 @@ class Mounting(eqx.Module):
             `None`: that of the bearing.
         radial_clearance: Radial internal clearance before mounting [m]; `None`: that
             of the bearing.
+        contact_angle: Angle from the radial plane at which rolling elements touch,
+            along which what they grow takes clearance [rad]; `None`: that of the
+            bearing (`sized`), 0 if there is none.
         shaft_bore: Bore of a hollow shaft; 0 of a solid one [m].
         shaft_smoothing: Interference that the smoothed surfaces take away, on the shaft
             (`smoothing`) [m].
@@ -63,6 +66,9 @@ class Mounting(eqx.Module):
     radial_clearance: Scalar | None = eqx.field(
         converter=as_real, metadata=unit("m"), default=None
     )
+    contact_angle: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None
+    )
     shaft_bore: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
     shaft_smoothing: Scalar = eqx.field(
         converter=as_real, metadata=unit("m"), default=0.0
@@ -89,6 +95,8 @@ class Mounting(eqx.Module):
         in_range(self, "shaft_bore", 0.0, self.bore, include_low=True)
         if self.radial_clearance is not None:
             number(self, "radial_clearance")
+        if self.contact_angle is not None:
+            in_range(self, "contact_angle", 0.0, 1.5, include_low=True)
         if self.ring_width is not None:
             in_range(self, "ring_width", 0.0, 2.0 * self.outside_diameter)
         for name, seat in _SEATS.items():
@@ -226,6 +234,8 @@ class FitState(NamedTuple):
         radial_clearance: Radial internal clearance in these conditions [m].
         ring_stress: Hoop stress of the inner ring at its bore, its largest, from fit
             and speed [Pa].
+        element_strain: Thermal strain of the rolling elements beyond the mean of both
+            rings [1].
         strains: Axial strains of shaft, inner ring, outer ring and housing: mean of
             each part, from warmth, speed and, of the rings, their fits [1].
     """
@@ -238,6 +248,7 @@ class FitState(NamedTuple):
     outer_raceway_growth: Any
     radial_clearance: Any
     ring_stress: Any
+    element_strain: Any
     strains: AxialStrains
 
 
@@ -314,9 +325,14 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
         warm["housing"]
         - _shortened(m.housing.material, out, m.housing_diameter, c.outer_speed),
     )
-    # Two rolling elements and the clearance fill the room between the raceways.
-    room = m.outer_raceway - m.inner_raceway - m.radial_clearance
-    elements = room * warm["elements"]
+    # Two rolling elements and the clearance fill the room between the raceways. What
+    # elements grow beyond the rings closes contacts along their normals, and so by
+    # 1/cos² of the angle more than the room, which is measured radially.
+    apart = m.outer_raceway - m.inner_raceway
+    angle = m.contact_angle
+    steep = 0.0 if angle is None else namespace(angle).tan(angle) ** 2
+    beyond = warm["elements"] - 0.5 * (warm["inner_ring"] + warm["outer_ring"])
+    elements = (apart - m.radial_clearance) * warm["elements"] + apart * steep * beyond
     return FitState(
         shaft_interference,
         housing_interference,
@@ -327,6 +343,7 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
         m.radial_clearance + outer - inner - elements,
         shaft_pressure * _ratio(m.bore, m.inner_raceway)
         + _hoop(m.inner_ring.material, m.bore, m.inner_raceway, c.speed),
+        beyond,
         strains,
     )
 

@@ -1,8 +1,9 @@
 """A bearing as it is mounted: with the radial clearance that its fits leave.
 
 Fits, temperatures and speed change the radial distance of the raceways, and in a set
-the axial distances of the inner and of the outer rings. What else they change is left
-as on the drawing: pitch and ball diameters, by a ten thousandth.
+the axial distances of the inner and of the outer rings. What rolling elements grow
+beyond their rings takes clearance along the normals of the contacts. What else they
+change is left as on the drawing: pitch and ball diameters, by a ten thousandth.
 """
 
 from dataclasses import replace
@@ -139,9 +140,23 @@ def sized(mounting: Mounting, bearing: Bearing | BearingSet) -> Mounting:
         "inner_raceway": inner,
         "outer_raceway": outer,
         "radial_clearance": radial_clearance(row),
+        "contact_angle": _touching_angle(row),
     }
     missing = {k: v for k, v in own.items() if getattr(mounting, k) is None}
     return replace(mounting, **missing)
+
+
+def _touching_angle(row: Bearing) -> Scalar:
+    """Angle from the radial plane at which elements touch the outer ring [rad].
+
+    0 where balls touch at the bottom; and of angular contact, where what balls grow
+    along the axis takes no clearance, but moves the ring that touches them.
+    """
+    if isinstance(row, DeepGrooveBallBearing | AngularContactBallBearing):
+        return jnp.zeros_like(row.pitch_diameter)
+    if isinstance(row, AbstractBallBearing):
+        return row.free_contact_angle
+    return row.axis_angle + row.half_angle
 
 
 def mounted(
@@ -158,10 +173,11 @@ def mounted(
 
     In a set the rows of angular contact are preloaded more, or less: the balls touch
     elsewhere, and the rings stay where they are on shaft and in housing (`inner_offset`
-    takes the difference of A sin α0). And what grows between the rows, on the shaft
-    and in the housing, moves their rings against each other (`row_shifts`). Set its
-    preload first, `preload` being that of the bearings as they are ground. Of one row,
-    displacements count from where the mounted balls touch.
+    takes the difference of A sin α0, and what warm balls grow along the axis). And what
+    grows between the rows, on the shaft and in the housing, moves their rings against
+    each other (`row_shifts`). Set its preload first, `preload` being that of the
+    bearings as they are ground. Of one row, displacements count from where the mounted
+    balls touch.
 
     Args:
         bearing: One row or a set, of a radial type.
@@ -203,8 +219,14 @@ def _mounted_row(row: SetRow, shift, mounting, conditions) -> SetRow:
     offset = row.inner_offset + shift
     if isinstance(new, AngularContactBallBearing):
         before: Any = row.bearing
-        sines = jnp.sin(before.free_contact_angle) - jnp.sin(new.free_contact_angle)
-        nearer = new.centre_distance * sines
+        left = fit_state(sized(mounting, row.bearing), conditions)
+        # Balls that grow bring the groove centres nearer: by what is radial of it the
+        # free angle has changed, the rest is axial.
+        nearer = new.ball_diameter * left.element_strain
+        sine = jnp.sin(new.free_contact_angle)
+        nearer = nearer * sine + new.centre_distance * (
+            jnp.sin(before.free_contact_angle) - sine
+        )
         # A row is pressed by its inner ring moving along +z; mirrored, along -z.
         offset = offset + (-nearer if row.mirrored else nearer)
     return replace(row, bearing=new, inner_offset=offset)

@@ -100,10 +100,6 @@ class CaseTable:
     warnings: tuple[str, ...]
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
 
-    def makes_designs(self, key: str) -> bool:
-        """Whether cases that differ in a key are of different designs."""
-        return key not in OPERATING or _fits(self.inputs, key)
-
 
 @dataclasses.dataclass(frozen=True)
 class _Column:

@@ -284,7 +284,7 @@ def _seats(entry: CatalogueEntry) -> list[str]:
     sizes = {"bore": entry.bore, "outside_diameter": entry.outside_diameter}
     lines += [f'{k} = "{1e3 * size:.5g} mm"' for k, size in sizes.items()]
     if entry.type in _PAIRED:
-        lines.append(f'# ring_width = "{1e3 * entry.width:.5g} mm"  # of a set')
+        lines.append(f'ring_width = "{1e3 * entry.width:.5g} mm"')
     return lines
 
 

@@ -74,10 +74,13 @@ def estimated_entry(
             contact_angle=angle,
         )
     except ValueError as error:
-        raise SceneError(str(error)) from error
+        raise SceneError(_by_options(str(error))) from error
     table, notes = _table(kind, rows_of(found.bearing)[0].bearing), [found.report()]
     if kind in CLEARANCES:
-        table[CLEARANCE], note = class_clearance(kind, "CN", numbers["bore"])
+        try:
+            table[CLEARANCE], note = class_clearance(kind, "CN", numbers["bore"])
+        except ValueError:
+            table[CLEARANCE], note = "0 um", "no class of clearance has limits here"
         notes.append(note)
     if kind == "cylindrical_roller":
         notes.append("no ribs: `arrangement` and `rib` of [bearing] give them")
@@ -111,6 +114,22 @@ def _read(name, text, unit) -> float:
         return to_si(text, unit)
     except SceneError as error:
         raise SceneError(f"--{name.replace('_', '-')}: {error}") from error
+
+
+def _by_options(text: str) -> str:
+    """An error of `estimate_geometry` that names the options of the command."""
+    names = {
+        "`outside_diameter`": "--outside",
+        "`dynamic_capacity`": "--capacity",
+        **{f"`{name}`": f"--{name.replace('_', '-')}" for name in (*SIZES, _ANGLE)},
+    }
+    text = text.removeprefix("estimate_geometry: ")
+    for name, option in names.items():
+        text = text.replace(name, option)
+    return text
+
+
+_ANGLE = "contact_angle"
 
 
 def _table(kind: str, row: Any) -> dict[str, Any]:

@@ -294,16 +294,16 @@ def _sizes(table: Table, catalogue: FromCatalogue | None) -> dict[str, Any]:
 
 
 def _width(table: Table, bearing, catalogue) -> dict[str, Any]:
-    """Width of a ring, of a set whose rows have rings of their own."""
-    if not isinstance(bearing, BearingSet) or is_self_aligning(bearing):
-        return {}
+    """Width of a ring, which a set needs whose rows have rings of their own."""
     key, own = "ring_width", catalogue.entry.width if catalogue else None
+    apart = isinstance(bearing, BearingSet) and not is_self_aligning(bearing)
+    if not apart and key not in table:
+        return {}
     if key not in table and own is None:
         problem = "is missing: the width of a ring, B; between the rows of a set rings"
         cure = "grow over this length, beyond it shaft and housing"
         raise table.error(key, f"{problem} {cure}")
-    width = table.quantity(key, "length", *([] if own is None else [own]))
-    return {key: width}
+    return {key: table.quantity(key, "length", *([] if own is None else [own]))}
 
 
 def _limits(table: Table, row, sizes) -> tuple[dict[str, Any], tuple[str, str]]:

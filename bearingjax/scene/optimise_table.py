@@ -24,7 +24,7 @@ from ..optimise.search import METHODS
 from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
-from .cases_table import read_cases
+from .cases_table import DESIGN, read_cases
 from .fit_table import no_expansion, read_temperature
 from .life_table import life_conditions
 from .quantity import SceneError, kind_of
@@ -104,10 +104,12 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
     if "cases" in data:
         listed = read_cases(source, settings)
         cases, inputs = listed.cases, listed.inputs
-        if cases.design is not None:
-            makers = [key for key in listed.varied if listed.makes_designs(key)]
-            problem = f"{', '.join(makers)} make several designs; [optimise] finds one"
+        makers = [key for key in listed.varied if key.partition(".")[0] in DESIGN]
+        if makers:
+            problem = f"{', '.join(makers)} vary the design; [optimise] finds one"
             raise top.error("cases", problem)
+        # On its seats a bearing has the clearance of the speeds of each case.
+        cases = dataclasses.replace(cases, design=None)
     table = top.table("optimise")
     task = _optimisation(top, table, scene, cases)
     table.finish()

@@ -16,6 +16,9 @@ from ..statics.sweep import stack_designs
 from .fit_table import Fits
 from .programs import called
 
+_LEAST = 1e-6
+"""Force below which there is none [N]."""
+
 _MUCH = 2.0
 """Times the preload of the bearings as ground from which its change is warned of."""
 
@@ -29,7 +32,7 @@ class SetPreload:
         mounted: At rest, at the temperature of the measured sizes; at the sizes of the
             solve.
         operating: In operation, likewise.
-        mounted_range: Least and largest over the tolerances of shaft, housing and
+        mounted_range: At the loosest and the tightest sizes of shaft, housing and
             rings; `None` where all sizes are exact. NaN: with that fit the balls have
             no contact angle, or no equilibrium was found.
         operating_range: Likewise in operation.
@@ -79,11 +82,13 @@ def set_preload(
         speeds = jax.tree.map(lambda *x: as_array(np.stack(x), float), *given)
     found = np.asarray(called(programs, _preloads, elements, speeds))
     force = dict.fromkeys(states, np.nan)
+    # Of round-off there is no preload.
+    found = np.where(np.abs(found) < _LEAST, 0.0, found)
     force |= {k: float(x) for k, x in zip(possible, found, strict=True)}
 
     def ends(state):
         pair = [force[f"{place} {state}"] for place in ("loosest", "tightest")]
-        return (min(pair), max(pair))
+        return (pair[0], pair[1])
 
     return SetPreload(
         force["ground"],
@@ -174,7 +179,7 @@ def preload_as_dict(found: SetPreload) -> dict[str, Any]:
 
     Returns:
         ground, mounted, operating; where sizes scatter also worst: mounted, operating,
-        each least and largest.
+        each at the loosest and the tightest sizes.
     """
     numbers: dict[str, Any] = {
         name: _plain(getattr(found, name))

@@ -510,6 +510,13 @@ def test_a_scene_of_an_unlisted_bearing(run, tmp_path, kind):
     assert found.report()[:20] in done.out
 
 
+def test_an_unlisted_bearing_beyond_the_classes_of_clearance(run):
+    done = run(*asked("deep_groove_ball", (600, 870, 118, 728, 1500)))
+    assert done.status == 0
+    assert 'radial_internal_clearance = "0 um"' in done.out
+    assert "# No class of clearance has limits here." in done.out
+
+
 @pytest.mark.parametrize(
     "given, message",
     [
@@ -527,7 +534,7 @@ def test_a_scene_of_an_unlisted_bearing(run, tmp_path, kind):
         ),
         (
             asked("deep_groove_ball", (85, 150, 28, 871, 64)),
-            "`dynamic_capacity` is 871000 N; it must be between",
+            "--capacity is 871000 N; it must be between",
         ),
         (
             (
@@ -535,7 +542,7 @@ def test_a_scene_of_an_unlisted_bearing(run, tmp_path, kind):
                 "--contact-angle",
                 "9 deg",
             ),
-            "`contact_angle` is given; a thrust ball bearing has none to choose",
+            "--contact-angle is given; a thrust ball bearing has none to choose",
         ),
         (("catalogue", "--type", "ball"), "--type: 'ball' is not known"),
         (("catalogue", "--bore", "25"), "--bore: '25' has no unit"),

@@ -21,6 +21,7 @@ from bearingjax.scene import (
     read_skid,
     rotor_as_dict,
     rotor_report,
+    scene_of_design,
 )
 from bearingjax.scene.fit_report import fit_as_dict
 from bearingjax.scene.fit_table import fit_facts, fitted
@@ -332,6 +333,21 @@ def test_interferences_are_variables(scene):
     system: Any = design_of(task.scene)
     left = (12.5 - 11.5 * 25 / 30.56) * MICRON
     assert clearance(system.element) == pytest.approx(left, rel=1e-9)
+
+
+def test_a_design_on_seats_at_several_speeds(scene):
+    """Each case has the clearance of its own speed; the warnings that of the highest."""
+    speeds = '"operating.inner_speed" = ["1000 rpm", "30000 rpm", "-40000 rpm"]'
+    text = f"{BEARING}{FIT}[cases]\ngrid = {{ {speeds} }}\n"
+    text += '[optimise]\nobjective = "peak_pressure"\n[optimise.variables]\n'
+    text += '"fit.shaft_interference" = { from = "2 um", to = "20 um" }\n'
+    task = read_optimisation(scene(text))
+    assert task.cases.count == 3 and task.cases.design is None
+    best: Any = scene_of_design(task, design_of(task.scene)).fits
+    assert float(best.conditions.speed) == pytest.approx(-40000 * np.pi / 30)
+    with pytest.raises(SceneError, match="temperature.shaft vary the design"):
+        warm = text.replace(speeds, f'{speeds}, "temperature.shaft" = ["40 °C"]')
+        read_optimisation(scene(warm))
 
 
 def free(scene, settings=(), **bounds):

@@ -335,7 +335,7 @@ def test_edge_load_of_balls():
 
 def test_cases_of_several_designs(scene):
     grid = 'bearing.radial_internal_clearance = ["0 um", "5 um"]'
-    with pytest.raises(SceneError, match="`cases`: bearing.*make several designs"):
+    with pytest.raises(SceneError, match="`cases`: bearing.*vary the design"):
         read_optimisation(scene(f"{GOOD}\n[cases.grid]\n{grid}"))
 
 
