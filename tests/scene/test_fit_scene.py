@@ -336,7 +336,7 @@ def test_interferences_are_variables(scene):
 
 
 def test_a_design_on_seats_at_several_speeds(scene):
-    """Each case has the clearance of its own speed; the warnings that of the highest."""
+    """Each case has the clearance of its speed; warnings are those of the highest."""
     speeds = '"operating.inner_speed" = ["1000 rpm", "30000 rpm", "-40000 rpm"]'
     text = f"{BEARING}{FIT}[cases]\ngrid = {{ {speeds} }}\n"
     text += '[optimise]\nobjective = "peak_pressure"\n[optimise.variables]\n'
