@@ -1,5 +1,7 @@
 """Elliptic Hertz contact: exact tables, limits, derivatives, brute-force stresses."""
 
+import functools
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -262,12 +264,17 @@ def test_greatest_shear():
     np.testing.assert_allclose(shear.depth[0], 0.786, atol=5e-4)
 
 
+@functools.cache
+def _nodes():
+    return np.polynomial.legendre.leggauss(240)
+
+
 def _orthogonal(ratio, x, z):
     """τ_xz/p0 at (x, 0, z) by Boussinesq's τ = -3 P z² x/(2π r⁵), brute force.
 
     Semi-axes: `ratio` along x (the rolling direction), 1 along y.
     """
-    u, w = np.polynomial.legendre.leggauss(240)
+    u, w = _nodes()
     # s = sin v: the edge of the ellipse, a square root, becomes smooth.
     v = 0.5 * np.pi * u
     s, weight = np.sin(v), 0.5 * np.pi * w * np.cos(v)
