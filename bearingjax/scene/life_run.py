@@ -23,7 +23,7 @@ from .life_table import life_conditions, not_published, rating_origins
 from .quantity import SceneError
 from .report import design_sections
 from .scene_file import find_scene, parse_bearing
-from .sweep_run import design_columns, listed_columns, run_cases
+from .sweep_run import design_columns, listed_columns, run_cases, seat_warnings
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 _SHOWN = 12
@@ -201,7 +201,8 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
 
 def _warnings(run: LifeRun) -> list[str]:
     ours = life_warnings(run.ratings, run.solved.outputs)
-    return [*run.table.warnings, *run.solved.warnings, *ours]
+    seats = seat_warnings(run.table, run.solved)
+    return [*run.table.warnings, *seats, *run.solved.warnings, *ours]
 
 
 def life_columns(run: LifeRun) -> dict[str, np.ndarray]:

@@ -171,6 +171,25 @@ def preload_warnings(found: SetPreload) -> list[str]:
     return []
 
 
+def range_warnings(ground: float, least: float, most: float) -> list[str]:
+    """What is odd about the preload of a set over cases, a sentence each.
+
+    Args:
+        ground: Before the set is mounted [N].
+        least, most: In operation, over the cases [N].
+    """
+    if least == 0.0:
+        words = "has none left in operation in some of the cases"
+        return [f"preload: the set, ground to {_newtons(ground)}, {words}"]
+    if ground / _MUCH < least and most < _MUCH * ground:
+        return []
+    ends = " to ".join(dict.fromkeys(map(_newtons, (least, most))))
+    return [
+        f"preload: {_newtons(ground)} as ground are {ends} in operation over the cases,"
+        " by fits, warmth and speed"
+    ]
+
+
 def preload_as_dict(found: SetPreload) -> dict[str, Any]:
     """The preload of a set as plain numbers [N]; what is not possible is null.
 

@@ -19,6 +19,7 @@ from .cases_table import CaseTable, Structure
 from .files import write_numbers
 from .life_table import life_conditions
 from .quantity import SceneError
+from .set_preload import range_warnings
 
 OUTPUTS = (
     "displacement",
@@ -189,9 +190,21 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
         factor, shown = display_unit(unit.rstrip("]"))
         ends = "".join(f"{factor * x:>14.5g}" for x in (values.min(), values.max()))
         lines.append(f"{name:<38}{ends}  {shown}".rstrip())
-    told = (*table.warnings, *solved.warnings)
+    told = (*table.warnings, *seat_warnings(table, solved), *solved.warnings)
     lines += [f"warning: {text}" for text in told]
     return "\n".join(lines)
+
+
+def seat_warnings(table: CaseTable, solved: Sweep) -> list[str]:
+    """What is odd about the preload that seats leave in the cases, a sentence each."""
+    preload = solved.outputs.get(OPERATING_PRELOAD)
+    if preload is None or not np.isfinite(preload).any():
+        return []
+    ground = table.scene.preload_force
+    if ground is None:
+        return []
+    ends = float(np.nanmin(preload)), float(np.nanmax(preload))
+    return range_warnings(ground, *ends)
 
 
 def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
@@ -214,7 +227,11 @@ def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
     return {
         "columns": listed_columns(columns(solved, design_columns(table))),
         "counts": solved.counts(),
-        "warnings": [*table.warnings, *solved.warnings],
+        "warnings": [
+            *table.warnings,
+            *seat_warnings(table, solved),
+            *solved.warnings,
+        ],
         "inputs": table.inputs,
         "version": __version__,
     }

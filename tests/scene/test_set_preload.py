@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import read_cases, run_cases
+from bearingjax.scene import read_cases, run_cases, sweep_report
 from bearingjax.scene.fit_table import fitted
 from bearingjax.scene.set_preload import (
     SetPreload,
     preload_report,
     preload_warnings,
+    range_warnings,
     set_preload,
 )
+from bearingjax.scene.sweep_run import seat_warnings
 from bearingjax.statics.sweep_table import columns
 
 PAIR = """
@@ -107,7 +109,9 @@ def test_a_sweep_tells_that_of_each_case(scene):
     with scene.open("a", encoding="utf-8") as file:
         file.write(f'[cases]\noutputs = ["n_loaded"]\ngrid = {{ {warmth}, {loads} }}\n')
     read = bj.read_scene(scene)
-    table = columns(run_cases(read_cases(scene)))
+    cases = read_cases(scene)
+    solved = run_cases(cases)
+    table = columns(solved)
     wanted = [
         left(read, bj.read_scene(scene, [f"temperature.inner_ring={x} °C"]))
         for x in (45, 30)
@@ -116,6 +120,9 @@ def test_a_sweep_tells_that_of_each_case(scene):
     np.testing.assert_allclose(
         table["operating_preload [N]"], np.repeat(wanted, 3), rtol=1e-8
     )
+    (text,) = seat_warnings(cases, solved)
+    assert f"200 N as ground are {wanted[1]:.4g} N to {wanted[0]:.4g} N in op" in text
+    assert f"warning: {text}" in sweep_report(cases, solved, 1.0)
 
 
 def test_what_is_warned_of():
@@ -132,6 +139,11 @@ def test_what_is_warned_of():
     assert "none left in operation (0 N to 60 N over the tolerances)" in text
     (text,) = told(200.0, 250.0, 300.0, (50.0, 400.0), (0.0, 500.0))
     assert "at the loosest sizes" in text
+    assert range_warnings(200.0, 101.0, 399.0) == []
+    assert (
+        "200 N as ground are 150 N to 401 N" in range_warnings(200.0, 150.0, 401.0)[0]
+    )
+    assert "has none left" in range_warnings(200.0, 0.0, 300.0)[0]
     # Pressed together by nothing, or not to be had.
     assert told(0.0, 0.0, 0.0, None, None) == []
     nan = float("nan")
