@@ -22,7 +22,7 @@ from .ball_types import (
 )
 from .bearing_set import Bearing, BearingSet, SetRow, is_self_aligning, rows_of
 from .checks import check, concrete, number
-from .fits import AxialStrains, FitConditions, Mounting, fit_state
+from .fits import AxialStrains, FitConditions, FitState, Mounting, fit_state
 
 
 def raceway_diameters(bearing: Bearing) -> tuple[Scalar, Scalar]:
@@ -70,8 +70,13 @@ def radial_clearance(bearing: Bearing) -> Scalar:
     return bearing.radial_internal_clearance / _outer_cosine(bearing)
 
 
+def _outer_angle(rollers):
+    """Angle of the outer raceway of rollers to the axis [rad]."""
+    return rollers.axis_angle + rollers.half_angle
+
+
 def _outer_cosine(rollers):
-    return jnp.cos(rollers.axis_angle + rollers.half_angle)
+    return jnp.cos(_outer_angle(rollers))
 
 
 def with_radial_clearance(bearing: Bearing, clearance: Any) -> Any:
@@ -156,7 +161,7 @@ def _touching_angle(row: Bearing) -> Scalar:
         return jnp.zeros_like(row.pitch_diameter)
     if isinstance(row, AbstractBallBearing):
         return row.free_contact_angle
-    return row.axis_angle + row.half_angle
+    return _outer_angle(row)
 
 
 def mounted(
@@ -194,16 +199,22 @@ def mounted(
         ValueError: If the rings are not thicker than the raceways, or as
             `with_radial_clearance` and `row_shifts`.
     """
-    if isinstance(bearing, BearingSet):
-        shifts = row_shifts(bearing, mounting, conditions)
-        return BearingSet(
-            tuple(
-                _mounted_row(row, shift, mounting, conditions)
-                for row, shift in zip(bearing.rows, shifts, strict=True)
-            )
-        )
-    left = fit_state(sized(mounting, bearing), conditions).radial_clearance
-    new = with_radial_clearance(bearing, left)
+    if not isinstance(bearing, BearingSet):
+        return _on_seats(bearing, fit_state(sized(mounting, bearing), conditions))
+    states = _states(bearing, mounting, conditions)
+    shifts = _shifts(bearing, mounting, states)
+    parts = zip(bearing.rows, states, shifts, strict=True)
+    return BearingSet(tuple(_mounted_row(*part) for part in parts))
+
+
+def _states(bearing: BearingSet, mounting, conditions) -> list[FitState]:
+    """What fits do to each row of a set."""
+    return [fit_state(sized(mounting, row.bearing), conditions) for row in bearing.rows]
+
+
+def _on_seats(bearing: Bearing, state: FitState) -> Any:
+    """A row with the clearance that fits leave."""
+    new = with_radial_clearance(bearing, state.radial_clearance)
     if not isinstance(new, AngularContactBallBearing | FourPointBallBearing):
         return new
     # Load ratings are made with the angle of the drawing, whatever the fits.
@@ -214,15 +225,14 @@ def mounted(
     return replace(new, rated_contact_angle=drawn)
 
 
-def _mounted_row(row: SetRow, shift, mounting, conditions) -> SetRow:
-    new = mounted(row.bearing, mounting, conditions)
+def _mounted_row(row: SetRow, state: FitState, shift) -> SetRow:
+    new = _on_seats(row.bearing, state)
     offset = row.inner_offset + shift
     if isinstance(new, AngularContactBallBearing):
         before: Any = row.bearing
-        left = fit_state(sized(mounting, row.bearing), conditions)
         # Balls that grow bring the groove centres nearer: by what is radial of it the
         # free angle has changed, the rest is axial.
-        nearer = new.ball_diameter * left.element_strain
+        nearer = new.ball_diameter * state.element_strain
         sine = jnp.sin(new.free_contact_angle)
         nearer = nearer * sine + new.centre_distance * (
             jnp.sin(before.free_contact_angle) - sine
@@ -255,6 +265,11 @@ def row_shifts(
     Raises:
         ValueError: If `mounting.ring_width` is `None`.
     """
+    return _shifts(bearing, mounting, _states(bearing, mounting, conditions))
+
+
+def _shifts(bearing: BearingSet, mounting, states: list[FitState]) -> list[Any]:
+    """As of `row_shifts`, of what fits do to each row."""
     if is_self_aligning(bearing):
         return [0.0] * len(bearing.rows)
     width = mounting.ring_width
@@ -263,12 +278,9 @@ def row_shifts(
             "Mounting: `ring_width` is None; a set needs it: between its rows the rings"
             " grow over this length, beyond it shaft and housing."
         )
-    strains = [
-        fit_state(sized(mounting, row.bearing), conditions).strains
-        for row in bearing.rows
-    ]
     places = jnp.stack([row.position for row in bearing.rows])
-    parts = AxialStrains(*(jnp.stack(values) for values in zip(*strains, strict=True)))
+    strains = zip(*(state.strains for state in states), strict=True)
+    parts = AxialStrains(*(jnp.stack(values) for values in strains))
     inner = _grown(places, width, parts.inner_ring, parts.shaft)
     outer = _grown(places, width, parts.outer_ring, parts.housing)
     return list(inner - outer)

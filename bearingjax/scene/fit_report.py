@@ -15,7 +15,7 @@ def outer_cosine(taper: TaperedRollerBearing) -> float:
     """Clearance normal to the outer raceway over the radial one [1].
 
     Args:
-        taper: In numbers that are known.
+        taper: In NumPy's numbers too, of which `radial_clearance` would compile.
     """
     angle = float(taper.roller_axis_angle) + float(taper.roller_half_angle)
     return float(np.cos(angle))
