@@ -171,6 +171,7 @@ from .scene import run_scene as run_scene
 from .statics import BallSolution as BallSolution
 from .statics import Cases as Cases
 from .statics import Friction as Friction
+from .statics import Installed as Installed
 from .statics import Life as Life
 from .statics import LifeConditions as LifeConditions
 from .statics import OperatingPoint as OperatingPoint

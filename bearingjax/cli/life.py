@@ -100,7 +100,6 @@ def _life_of_load(options) -> int:
 
 def _life_of_cases(options) -> int:
     from ..scene import (
-        fitted,
         life_columns,
         read_cases,
         run_life,
@@ -132,7 +131,7 @@ def _life_of_cases(options) -> int:
             table.inputs,
             draws,
             life_columns(done),
-            drawing=draws_bearing(scene, fitted(scene.fits, scene.element)),
+            drawing=draws_bearing(scene, scene.running()),
         )
 
     drawn = write(

@@ -1,7 +1,8 @@
 """Design optimisation: variables, measures, constraints and the searches.
 
-`bearingjax.optimise` is the function of that name. Everything else is imported by `from
-bearingjax.optimise import ...`.
+`bearingjax.optimise` is the function of that name. It takes a `BearingElement`, a
+bearing on its seats (`Installed`), or a system such as a skidding bearing. Everything
+else is imported by `from bearingjax.optimise import ...`.
 
 Any number on the drawing may be free between bounds (`Variable`). One compiled program
 solves all operating cases and pulls the gradient back through them (reverse mode,
@@ -38,7 +39,6 @@ from .measure import MeanPressure as MeanPressure
 from .measure import PeakPressure as PeakPressure
 from .measure import Stiffness as Stiffness
 from .measure import StiffnessTarget as StiffnessTarget
-from .mounted_bearing import MountedBearing as MountedBearing
 from .optimise import History as History
 from .optimise import Optimised as Optimised
 from .optimise import optimise as optimise

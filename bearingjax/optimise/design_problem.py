@@ -15,7 +15,7 @@ from ..statics.options import SolveOptions
 from ..statics.warning import warnings as warnings_of
 from .constraint import Constraint
 from .measure import exact_of, least_size_of
-from .system import Design, failure, loads_of, solved_case
+from .system import Design, failure, loads_of, ready, solved_case
 from .trials import Trial
 from .variable import Variable, with_values
 
@@ -117,9 +117,7 @@ class Problem:
     def outcome(self, trial: Trial) -> tuple[Any, Outcome]:
         """The design of a trial and its results, by the program already compiled."""
         values = self.values(trial.unit)
-        element = with_values(self.element, self.paths, values)
-        if self.build is not None:
-            element = self.build(element)
+        element = ready(with_values(self.element, self.paths, values), self.build)
         found = self.run(trial.unit, trial.slope is not None)
         smooth, exact = np.asarray(found.measures), np.asarray(found.exact)
         return element, Outcome(
@@ -200,9 +198,7 @@ def _program(
 ) -> Run:
 
     def outputs(unit):
-        design = with_values(element, paths, lower + width * unit)
-        if build is not None:
-            design = build(design)
+        design = ready(with_values(element, paths, lower + width * unit), build)
 
         def one(case):
             return solved_case(design, case, options)

@@ -259,7 +259,10 @@ def verdict(
     if left <= allowed:
         return "converged", said + "; nothing changed" * stood
     if ending.limited or n >= max_steps:
-        return "step_limit", f"step limit reached after {n} steps: raise `max_steps`"
+        # Steps that are rejected, or end where they began at a bound, count too.
+        moved = f", {n} of which changed the design" if n < max_steps else ""
+        text = f"step limit reached after {max(n, max_steps)} steps{moved}"
+        return "step_limit", f"{text}: raise `max_steps`"
     text = f"the search could not go on: {said}"
     if np.isfinite(left):
         text += f"; gradient left {left:.1e}, above {allowed:.1e}"

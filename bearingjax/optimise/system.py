@@ -1,12 +1,14 @@
-"""What can be optimised: a bearing alone, or one with more about it, such as oil."""
+"""What can be optimised: a bearing alone, on its seats, or with more, such as oil."""
 
 import abc
+from collections.abc import Callable
 from typing import Any
 
 import equinox as eqx
 
 from ..element.bearing_element import BearingElement, check_element
-from ..statics.cases import Cases, solve_case
+from ..statics.cases import Cases, case_speed, solve_case
+from ..statics.installed import Installed
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution, message
 
@@ -52,7 +54,7 @@ class AbstractSystem(eqx.Module):
         """
 
 
-Design = BearingElement[Any] | AbstractSystem
+Design = BearingElement[Any] | Installed | AbstractSystem
 
 
 def check_design(owner: str, design: Any, cases: Any) -> None:
@@ -64,32 +66,50 @@ def check_design(owner: str, design: Any, cases: Any) -> None:
         cases: Operating cases.
 
     Raises:
-        TypeError: If it is neither an element nor a system.
+        TypeError: If it is neither an element, nor installed, nor a system.
         ValueError: If the cases lack something.
     """
     if isinstance(design, AbstractSystem):
         design.check(cases)
-    else:
+    elif not isinstance(design, Installed):
         check_element(owner, design)
 
 
 def solved_case(design: Design, case: Cases, options: SolveOptions) -> Any:
     """What is solved in one case of a design; of an element its load.
 
+    An installed bearing is mounted at the speeds of the case, if it has any.
+
     Args:
         design, case, options: As of `AbstractSystem.solve_case`.
     """
     if isinstance(design, AbstractSystem):
         return design.solve_case(case, options)
+    if isinstance(design, Installed):
+        design = design.at(case_speed(case), throw=False)
     return solve_case(design, case, options)
+
+
+def ready(design: Design, build: Callable[[Any], Any] | None) -> Design:
+    """A changed design as its cases are solved: the rows of a set are ground once.
+
+    Args:
+        design: The design with the values of its variables.
+        build: As of `optimise`.
+    """
+    if build is not None:
+        design = build(design)
+    return design.ground(throw=False) if isinstance(design, Installed) else design
 
 
 def element_of(design: Design) -> BearingElement[Any]:
     """The bearing of a design.
 
     Args:
-        design: An element or a system.
+        design: An element, an installed bearing or a system.
     """
+    if isinstance(design, Installed):
+        return design.at()
     return design.element if isinstance(design, AbstractSystem) else design
 
 

@@ -27,7 +27,6 @@ from .files import check_outputs as check_outputs
 from .files import scene_files as scene_files
 from .files import write_numbers as write_numbers
 from .files import write_outputs as write_outputs
-from .fit_table import fitted as fitted
 from .html_report import Origin as Origin
 from .html_report import report_page as report_page
 from .interrupt import Interrupt as Interrupt

@@ -22,10 +22,8 @@ from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit_of
 from ..statics.cases import Cases
 from ..statics.life import LIFE_OUTPUTS
-from ..statics.preload import preload
 from ..statics.sweep import SUMMARIES, stack_designs
 from .cases_list import LARGEST, read_list
-from .fit_table import fitted
 from .quantity import KINDS, SceneError, kind_of, to_si
 from .read import Scene, scene_of
 from .scene_file import assign, find_scene, parse_bearing
@@ -355,7 +353,7 @@ def _designs(data, path, columns):
     varied = [c for c in columns if c.key not in OPERATING or _fits(data, c.key)]
     if not varied:
         scene = scene_of(data, path)
-        return (Structure(_preloaded(scene), None, scene),), None, ({},), ()
+        return (Structure(scene.running(), None, scene),), None, ({},), ()
     # Values that repeat are one value; designs that repeat are one design.
     codes = []
     for column in varied:
@@ -383,7 +381,7 @@ def _designs(data, path, columns):
             if key not in OPERATING
         ]
         made.append(dict(pairs))
-        elements.append(_preloaded(scene))
+        elements.append(scene.running())
         scenes.append(scene)
         odd += scene.warnings
     alike: dict[Any, list[int]] = {}
@@ -433,13 +431,6 @@ def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
 def _fits(data, key) -> bool:
     """Whether a key of [operating] changes the mounted bearing, by its speed."""
     return "fit" in data and key.endswith("_speed")
-
-
-def _preloaded(scene):
-    element = scene.element
-    if scene.preload_force is not None:
-        element = preload(element, scene.preload_force, throw=False)
-    return fitted(scene.fits, element)
 
 
 def _cases(table, scene, columns, design) -> Cases:

@@ -3,7 +3,6 @@
 import dataclasses
 from typing import Any
 
-import equinox as eqx
 import jax
 
 from ..design import (
@@ -37,7 +36,8 @@ from ..design import (
 )
 from ..design.fit_range import ClearanceRange
 from ..design.fits import PARTS, FitState
-from ..element import Speed
+from ..element import BearingElement, Speed
+from ..statics.installed import Installed
 from .catalogue_entry import CLEARANCE, CLEARANCES, FromCatalogue
 from .quantity import SceneError
 from .table import Table, written
@@ -251,17 +251,19 @@ def turning(fits: Fits | None, speed: float) -> Fits | None:
     return dataclasses.replace(fits, conditions=given)
 
 
-def fitted(fits: Fits | None, element: Any) -> Any:
-    """The element with its bearing mounted.
+def installed(
+    drawing: BearingElement[Any], preload: float | None, fits: Fits | None
+) -> Installed:
+    """A bearing with the preload and the seats of its scene.
 
     Args:
+        drawing: The bearing with its laws and numerics.
+        preload: Force to which its rows are ground [N], or `None`.
         fits: From `read_fits`.
-        element: With the bearing unmounted, its preload set.
     """
     if fits is None:
-        return element
-    new = mounted(element.bearing, fits.mounting, fits.conditions)
-    return eqx.tree_at(lambda e: e.bearing, element, new)
+        return Installed(drawing, preload)
+    return Installed(drawing, preload, fits.mounting, fits.conditions)
 
 
 def _with_clearance(bearing, clearance):

@@ -21,7 +21,6 @@ from ..design import BearingSet, FormErrors, n_elements, rows_of
 from ..element import RINGS
 from ..element.bearing_element import BearingElement
 from .deviations_table import read_deviations
-from .fit_table import fitted
 from .noise_scene import DIRECTIONS, NoiseScene
 from .read import Scene, scene_of
 from .scene_file import find_scene, parse_bearing
@@ -55,7 +54,7 @@ def read_noise(
     vibration = top.table("vibration", required=True)
     operating, deviations = top.table("operating"), top.table("deviations")
     _check_operating(operating, scene)
-    element = fitted(scene.fits, scene.element)
+    element = scene.running()
     bearing: Any = element.bearing
     counts = tuple(n_elements(row.bearing) for row in rows_of(bearing))
     errors, common = read_deviations(deviations, counts, path.parent)

@@ -9,13 +9,13 @@ import numpy as np
 
 from ..design import Limits, radial_clearance, rows_of
 from ..numerics.types import as_array
-from ..optimise.mounted_bearing import MountedBearing
+from ..statics.installed import Installed
 from .fit_table import Fits, fit_facts, fit_warnings
 from .optimise_table import Optimisation
 from .read import Scene
 
 
-def scene_of_design(task: Optimisation, design: Any) -> Scene:
+def scene_of_design(task: Optimisation, design: Installed) -> Scene:
     """The scene with a design that was found in place of its own.
 
     Args:
@@ -27,20 +27,18 @@ def scene_of_design(task: Optimisation, design: Any) -> Scene:
         are of these seats.
     """
     scene = task.scene
-    if scene.fits is None or not isinstance(design, MountedBearing):
-        return dataclasses.replace(scene, element=design)
-    bearing = design.unmounted.bearing
+    if scene.fits is None:
+        return dataclasses.replace(scene, element=design.drawing)
+    bearing = design.drawing.bearing
     fits = _fits(scene.fits, design, {v.name for v in task.variables})
     fits = _turning(fits, task)
     old = fit_warnings(fit_facts(scene.fits, scene.element.bearing))
     kept = [text for text in scene.warnings if text not in old]
     told = (*kept, *fit_warnings(fit_facts(fits, bearing)))
-    return dataclasses.replace(
-        scene, element=design.unmounted, fits=fits, warnings=told
-    )
+    return dataclasses.replace(scene, element=design.drawing, fits=fits, warnings=told)
 
 
-def _fits(fits: Fits, design: MountedBearing, varied: set[str]) -> Fits:
+def _fits(fits: Fits, design: Installed, varied: set[str]) -> Fits:
     """The fits of a design; a number that was free has no tolerance."""
     exact = Limits(0.0, 0.0)
     limits, names = dict(fits.limits), list(fits.names)
@@ -55,7 +53,7 @@ def _fits(fits: Fits, design: MountedBearing, varied: set[str]) -> Fits:
             limits |= {seat: Limits(own, own), ring: exact}
             names[k] = ""
     if any(name.startswith("bearing.") for name in varied):
-        row = rows_of(jax.device_get(design.unmounted.bearing))[0].bearing
+        row = rows_of(jax.device_get(design.drawing.bearing))[0].bearing
         free = float(radial_clearance(row))
         limits["clearance"] = Limits(free, free)
     return dataclasses.replace(

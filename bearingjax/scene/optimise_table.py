@@ -19,7 +19,6 @@ from ..optimise.measure import (
     Stiffness,
     StiffnessTarget,
 )
-from ..optimise.mounted_bearing import MountedBearing
 from ..optimise.search import METHODS
 from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
@@ -185,24 +184,13 @@ def scene_numbers(element: BearingElement[Any]) -> dict[str, tuple[str, ...]]:
     return found
 
 
-def design_of(scene: Scene) -> BearingElement[Any] | MountedBearing:
-    """What is optimised: the bearing of a scene, on its seats if it has any.
-
-    Args:
-        scene: From `read_scene`.
-    """
-    if scene.fits is None:
-        return scene.element
-    return MountedBearing(scene.element, scene.fits.mounting, scene.fits.conditions)
-
-
 def _variables(table: Table, fit: Table, scene: Scene) -> tuple[Variable, ...]:
-    element, numbers = design_of(scene), scene_numbers(scene.element)
+    design = scene.installed
+    numbers = {
+        key: tuple(f"drawing.{path}" for path in paths)
+        for key, paths in scene_numbers(scene.element).items()
+    }
     if scene.fits is not None:
-        numbers = {
-            key: tuple(f"unmounted.{path}" for path in paths)
-            for key, paths in numbers.items()
-        }
         numbers |= {f"fit.{name}": (f"mounting.{name}",) for name in OF_FITS}
         numbers |= {key: (f"conditions.{part}",) for key, part in WARMTH.items()}
     variables = []
@@ -217,13 +205,13 @@ def _variables(table: Table, fit: Table, scene: Scene) -> tuple[Variable, ...]:
             low, high = (read_temperature(part, word) for word in ("from", "to"))
             start = read_temperature(part, "start", None)
         else:
-            unit = unit_of(element, numbers[key][0])
+            unit = unit_of(design, numbers[key][0])
             low, high = (part.real(word, unit) for word in ("from", "to"))
             start = part.real("start", unit, None)
         with part.building():
             variables.append(Variable(numbers[key], low, high, start, key))
     with table.building():
-        check_variables(element, variables)
+        check_variables(design, variables)
     return tuple(variables)
 
 

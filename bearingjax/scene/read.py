@@ -17,6 +17,7 @@ from ..element import (
 )
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit_of
+from ..statics.installed import Installed
 from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
 from ..statics.support import restrained_freedoms
@@ -24,9 +25,10 @@ from .bearing_table import designated, read_bearing
 from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import KINEMATICS, read_choices
-from .fit_table import Fits, fit_facts, fit_warnings, read_fits
+from .fit_table import Fits, fit_facts, fit_warnings, installed, read_fits
 from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
+from .programs import called
 from .quantity import SceneError
 from .scene_file import (
     find_scene,
@@ -92,6 +94,36 @@ class Scene:
     def moving_ring(self) -> str:
         """The ring that is loaded."""
         return RINGS[1 - RINGS.index(self.fixed_ring)]
+
+    @property
+    def installed(self) -> Installed:
+        """The bearing with its preload, seats and temperatures."""
+        return installed(self.element, self.preload_force, self.fits)
+
+    def ground(self, programs: Path | None = None) -> Installed:
+        """As `installed`, its rows ground to their preload.
+
+        Args:
+            programs: Folder in which compiled programs are kept from one run to the
+                next; `None`: compiled as any JAX function.
+
+        Fails: offsets are NaN where the preload was not reached.
+        """
+        if self.preload_force is None:
+            return self.installed
+        return called(programs, _ground, self.installed)
+
+    def running(self, programs: Path | None = None) -> BearingElement[Any]:
+        """The element that every command solves: ground, mounted, warm and turning.
+
+        Args:
+            programs: As of `ground`.
+        """
+        return self.ground(programs).at()
+
+
+def _ground(bearing: Installed) -> Installed:
+    return bearing.ground(throw=False)
 
 
 def load_bearing(source: str | Path) -> Any:

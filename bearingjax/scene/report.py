@@ -17,7 +17,6 @@ from ..statics.life_warning import life_warnings
 from ..statics.solution import BallSolution, Solution
 from ..statics.warning import warnings
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
-from .fit_table import fitted
 from .life_report import life_report, scene_life
 from .oil_table import oil_report
 from .operation_report import operation
@@ -59,9 +58,8 @@ def design_sections(scene: Scene) -> dict[str, str]:
     Args:
         scene: What is asked.
     """
-    mounted = fitted(scene.fits, scene.element).bearing
     texts = {
-        "Bearing": bearing_text(scene, jax.device_get(mounted)),
+        "Bearing": bearing_text(scene, jax.device_get(scene.running().bearing)),
         "Fits and clearance": _fits(scene, None),
     }
     return {title: text for title, text in texts.items() if text}

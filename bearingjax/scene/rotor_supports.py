@@ -14,8 +14,7 @@ from ..rotor import (
     preload_offset,
 )
 from ..rotor.vibration import LawSupport
-from ..statics.preload import preload
-from .fit_table import fitted
+from .fit_table import installed
 from .rotor_mounts import LAWS
 from .rotor_scene import Mount
 
@@ -37,10 +36,8 @@ def support_of(mount: Mount) -> AbstractSupport:
         return LinearSupport(
             mount.station, mount.stiffness, mount.damping, housing=housing
         )
-    element, offset = mount.element, as_array(mount.offset, float)
-    if mount.set_force is not None:
-        element = preload(element, as_array(mount.set_force, float))
-    element = fitted(mount.fits, element)
+    element = installed(mount.element, mount.set_force, mount.fits).at()
+    offset = as_array(mount.offset, float)
     if mount.preload is not None:
         offset = preload_offset(element, as_array(mount.preload, float))
     if mount.law is not None:

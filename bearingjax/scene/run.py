@@ -1,19 +1,13 @@
 """Running what a scene asks for."""
 
 import dataclasses
-import functools
 from pathlib import Path
 
-import equinox as eqx
-
-from ..element import BearingElement
 from ..numerics.types import as_array
 from ..optimise.optimise import Optimised, optimise
 from ..statics.load import solve_load
-from ..statics.preload import preload
 from ..statics.solution import Solution
-from .fit_table import fitted
-from .optimise_table import Optimisation, design_of
+from .optimise_table import Optimisation
 from .programs import called
 from .quantity import SceneError
 from .read import Scene
@@ -45,7 +39,7 @@ def run_scene(scene: Scene, programs: Path | None = None) -> Solution:
     return called(
         programs,
         _solved,
-        fitted(scene.fits, _ground_element(scene, programs)),
+        scene.running(programs),
         as_array(scene.load, float),
         {name: as_array(value, float) for name, value in scene.prescribed.items()},
         scene.free,
@@ -68,20 +62,12 @@ def with_set_preload(scene: Scene, programs: Path | None = None) -> Scene:
     """
     if scene.fits is None:
         return scene
-    ground = _ground_element(scene, programs)
+    ground = scene.ground(programs).drawing
     found = set_preload(scene.fits, ground, scene.speed, programs)
     if found is None:
         return scene
     told = (*scene.warnings, *preload_warnings(found))
     return dataclasses.replace(scene, set_preload=found, warnings=told)
-
-
-def _ground_element(scene, programs) -> BearingElement:
-    """The bearing of a scene, with its preload set, before it is mounted."""
-    if scene.preload_force is None:
-        return scene.element
-    force = as_array(scene.preload_force, float)
-    return called(programs, _preloaded, scene.element, force)
 
 
 def _solved(element, load, prescribed, free, fixed_ring, speed, points, tolerance):
@@ -96,10 +82,6 @@ def _solved(element, load, prescribed, free, fixed_ring, speed, points, toleranc
         tolerance=tolerance,
         throw=False,
     )
-
-
-def _preloaded(element, force):
-    return preload(element, force, throw=False)
 
 
 def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
@@ -117,38 +99,21 @@ def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
         SceneError: For choices that contradict each other.
     """
     scene = task.scene
-    build = None
-    if scene.preload_force is not None:
-        build = functools.partial(_ground, force=scene.preload_force)
     try:
-        return _optimised(task, build, progress)
+        return optimise(
+            scene.installed,
+            task.cases,
+            task.variables,
+            task.objective,
+            task.constraints,
+            task.method,
+            max_steps=task.max_steps,
+            tolerance=task.tolerance,
+            points=scene.points,
+            free=scene.free,
+            fixed_ring=scene.fixed_ring,
+            solve_tolerance=scene.tolerance,
+            progress=progress,
+        )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
-
-
-def _ground(design, force):
-    """A design, its rows ground to their preload before it is mounted."""
-    if isinstance(design, BearingElement):
-        return preload(design, force, throw=False)
-    ground = preload(design.unmounted, force, throw=False)
-    return eqx.tree_at(lambda d: d.unmounted, design, ground)
-
-
-def _optimised(task, build, progress) -> Optimised:
-    scene = task.scene
-    return optimise(
-        design_of(scene),
-        task.cases,
-        task.variables,
-        task.objective,
-        task.constraints,
-        task.method,
-        max_steps=task.max_steps,
-        tolerance=task.tolerance,
-        points=scene.points,
-        free=scene.free,
-        fixed_ring=scene.fixed_ring,
-        solve_tolerance=scene.tolerance,
-        build=build,
-        progress=progress,
-    )

@@ -8,9 +8,10 @@ import equinox as eqx
 import jax
 import numpy as np
 
-from ..design import Limits, Mounting, mounted, mounting_at, sized
+from ..design import Limits, Mounting, mounting_at, sized
 from ..element import BearingElement, Speed
 from ..numerics.types import as_array
+from ..statics.installed import Installed
 from ..statics.preload import is_opposed, remaining_preload
 from ..statics.sweep import stack_designs
 from .fit_table import Fits
@@ -136,10 +137,9 @@ def _fitting(mounting, shaft, housing) -> Mounting:
 def _on(mounting, conditions, ground) -> BearingElement | None:
     """The set on its seats; `None` if its balls have no contact angle left."""
     try:
-        there = mounted(ground.bearing, mounting, conditions)
+        return Installed(ground, None, mounting, conditions).at()
     except ValueError:
         return None
-    return eqx.tree_at(lambda e: e.bearing, ground, there)
 
 
 def preload_warnings(found: SetPreload) -> list[str]:

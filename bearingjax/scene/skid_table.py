@@ -26,7 +26,6 @@ from ..dynamics import (
 )
 from ..element import Speed
 from ..element.frame import LOAD_UNITS, LOADS
-from .fit_table import fitted
 from .lubricant_table import read_lubricant, read_traction
 from .oil_table import OWN
 from .quantity import kind_of
@@ -129,8 +128,7 @@ def read_skid(
         values["least_film"] = film
     values["inlet_heating"] = dynamics.flag("inlet_heating", False)
     with dynamics.building():
-        element = fitted(scene.fits, scene.element)
-        model = SkidModel(element, oil, temperature, traction, **values)
+        model = SkidModel(scene.running(), oil, temperature, traction, **values)
     found = SkidScene(
         scene=scene,
         model=model,

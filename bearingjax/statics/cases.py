@@ -188,17 +188,25 @@ def solve_case(
     Returns:
         Solution with its result code; nothing is raised for a failed solve.
     """
-    speed = None
-    if case.inner_speed is not None or case.outer_speed is not None:
-        still = jnp.zeros((), case.load.dtype)
-        speeds = (case.inner_speed, case.outer_speed)
-        speed = Speed(*(still if s is None else s for s in speeds))
     return solve(
         element,
         case.load,
         SolveOptions() if options is None else options,
         prescribed=case.prescribed,
         fixed_displacement=case.fixed_displacement,
-        speed=speed,
+        speed=case_speed(case),
         start=start,
     )
+
+
+def case_speed(case: Cases) -> Speed | None:
+    """Ring speeds of one case; `None` if it has none.
+
+    Args:
+        case: Cases without their leading axis; a ring without a speed stands still.
+    """
+    if case.inner_speed is None and case.outer_speed is None:
+        return None
+    still = jnp.zeros((), case.load.dtype)
+    speeds = (case.inner_speed, case.outer_speed)
+    return Speed(*(still if s is None else s for s in speeds))

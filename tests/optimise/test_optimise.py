@@ -510,3 +510,15 @@ def test_wrong_calls(straight, one_case, name):
 def test_wrong_parts(make, text):
     with pytest.raises((ValueError, TypeError), match=text):
         make()
+
+
+def test_step_limit_counts_steps_that_did_not_move():
+    """A search that stands at a bound has used its steps all the same."""
+    sloped = Trial(
+        np.array([0.0]), 1.0, np.array([-1.0]), np.zeros(0), np.zeros((0, 1))
+    )
+    start = Trials(lambda unit, slopes: sloped, sloped)
+    ending = Ending(sloped.unit, False, "", True)
+    result, text = verdict(start, ending, sloped, True, 100, 1e-5)
+    assert result == "step_limit"
+    assert text.startswith("step limit reached after 100 steps, 0 of which changed")

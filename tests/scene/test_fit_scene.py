@@ -24,9 +24,8 @@ from bearingjax.scene import (
     scene_of_design,
 )
 from bearingjax.scene.fit_report import fit_as_dict
-from bearingjax.scene.fit_table import fit_facts, fitted
+from bearingjax.scene.fit_table import fit_facts
 from bearingjax.scene.optimise_report import _variables
-from bearingjax.scene.optimise_table import design_of
 from bearingjax.scene.report import design_sections
 from bearingjax.scene.rotor_run import RotorRun
 from bearingjax.scene.rotor_supports import support_of
@@ -124,7 +123,7 @@ def test_the_usual_fits_of_a_6205(scene):
     np.testing.assert_allclose(found.mounted_range.worst, worst, rtol=1e-9)
     np.testing.assert_allclose(found.operating_range.worst, worst, rtol=1e-9)
     left = (12.5 - 11.5 * share) * MICRON
-    assert clearance(fitted(read.fits, read.element)) == pytest.approx(left, rel=1e-9)
+    assert clearance(read.running()) == pytest.approx(left, rel=1e-9)
 
 
 def test_a_bearing_of_the_catalogue_brings_its_sizes(scene):
@@ -151,7 +150,7 @@ def test_a_bearing_of_the_catalogue_brings_its_sizes(scene):
 def test_ends_of_the_tolerances(scene, place, left):
     read = bj.read_scene(scene(BEARING + FIT), [f"fit.at={place}"])
     found = fit_facts(read.fits, read.element.bearing)
-    mounted = clearance(fitted(read.fits, read.element))
+    mounted = clearance(read.running())
     assert mounted == pytest.approx(found.mounted_range.worst[left], rel=1e-9)
 
 
@@ -205,7 +204,7 @@ def test_a_pair_is_pressed_by_its_fits(scene):
     settings = ["fit.at=tightest", "fit.shaft=j5"]
     fit = FIT.replace('clearance = "CN"', 'ring_width = "15 mm"')
     read = bj.read_scene(scene(PAIR + fit), settings)
-    before, after = read.element.bearing.rows, fitted(read.fits, read.element).bearing
+    before, after = read.element.bearing.rows, read.running().bearing
     assert float(before[0].inner_offset) == pytest.approx(2 * MICRON)
     first, second = (float(row.inner_offset) for row in after.rows)
     assert first == -second and first > 8 * MICRON
@@ -252,7 +251,7 @@ housing_diameter = "80 mm"
 """
     read = bj.read_scene(scene(seats))
     texts = design_sections(read)
-    row = fitted(read.fits, read.element).bearing
+    row = read.running().bearing
     own, radial = float(row.radial_internal_clearance), float(radial_clearance(row))
     assert own < -5 * MICRON and radial / own > 1.02
     words = "internal clearance {:.4g} µm normal to the outer raceway, radially {:.4g}"
@@ -308,7 +307,7 @@ def test_what_varies_need_not_stand_in_the_scene(scene):
     grid = '[cases.grid]\nfit.shaft_interference = ["4 um", "9 um"]\n'
     table = read_cases(scene(BEARING + fit + grid))
     assert table.scene.inputs["fit"]["shaft_interference"] == "4e-06 m"
-    of_scene = fitted(table.scene.fits, table.scene.element).bearing
+    of_scene = table.scene.running().bearing
     left = table.structures[0].element.bearing.radial_internal_clearance
     assert float(of_scene.radial_internal_clearance) == float(left[0])
     assert left[0] - left[1] == pytest.approx(5 * MICRON * 25 / 31, rel=0.1)
@@ -328,11 +327,10 @@ def test_interferences_are_variables(scene):
     task = read_optimisation(scene(text))
     assert [v.path for v in task.variables] == [
         ("mounting.shaft_interference",),
-        ("unmounted.bearing.ball_diameter",),
+        ("drawing.bearing.ball_diameter",),
     ]
-    system: Any = design_of(task.scene)
     left = (12.5 - 11.5 * 25 / 30.56) * MICRON
-    assert clearance(system.element) == pytest.approx(left, rel=1e-9)
+    assert clearance(task.scene.running()) == pytest.approx(left, rel=1e-9)
 
 
 def test_a_design_on_seats_at_several_speeds(scene):
@@ -343,7 +341,7 @@ def test_a_design_on_seats_at_several_speeds(scene):
     text += '"fit.shaft_interference" = { from = "2 um", to = "20 um" }\n'
     task = read_optimisation(scene(text))
     assert task.cases.count == 3 and task.cases.design is None
-    best: Any = scene_of_design(task, design_of(task.scene)).fits
+    best: Any = scene_of_design(task, task.scene.installed).fits
     assert float(best.conditions.speed) == pytest.approx(-40000 * np.pi / 30)
     with pytest.raises(SceneError, match="temperature.shaft vary the design"):
         warm = text.replace(speeds, f'{speeds}, "temperature.shaft" = ["40 °C"]')
@@ -372,7 +370,7 @@ def test_slopes_by_temperature_interference_and_clearance(scene):
     }
     task = free(scene, **bounds)
     problem = Problem(
-        design_of(task.scene),
+        task.scene.installed,
         task.cases,
         task.variables,
         task.objective,
@@ -417,7 +415,7 @@ def test_a_temperature_is_found(scene):
     after = SimpleNamespace(values=np.array([293.15]))
     found: Any = SimpleNamespace(
         variables=task.variables,
-        element=design_of(task.scene),
+        element=task.scene.installed,
         before=before,
         after=after,
     )
@@ -637,7 +635,7 @@ def test_a_rotor_turns_on_its_fits(scene):
     alone = bj.read_scene(other, ["operating.inner_speed=30000 rpm"])
     supports: list[Any] = [support_of(mount) for mount in task.mounts]
     one, two = supports
-    assert clearance(one.element) == clearance(fitted(alone.fits, alone.element))
+    assert clearance(one.element) == clearance(alone.running())
     # By hand: of 11.5 µm of interference, less what the speed takes, d/F is left.
     row: Any = task.mounts[1].element.bearing
     d, square = 0.025, 7850.0 * speed**2 / 16.0

@@ -200,7 +200,7 @@ def test_report_needs_no_unit_of_a_plain_measure(scene):
         return jnp.sum(solution.displacement[:, 7] ** 2)
 
     found = bj.optimise(
-        asked.element,
+        asked.installed,
         task.cases,
         task.variables,
         own,

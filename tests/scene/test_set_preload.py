@@ -7,7 +7,6 @@ import pytest
 
 import bearingjax as bj
 from bearingjax.scene import read_cases, run_cases, sweep_report
-from bearingjax.scene.fit_table import fitted
 from bearingjax.scene.set_preload import (
     SetPreload,
     preload_report,
@@ -61,7 +60,8 @@ def scene(tmp_path):
 def left(read, at):
     """What `remaining_preload` says of the set ground by hand and put on its seats."""
     ground = bj.preload(read.element, 200.0)
-    return float(bj.remaining_preload(fitted(at.fits, ground)))
+    seats = at.fits.mounting, at.fits.conditions
+    return float(bj.remaining_preload(bj.Installed(ground, None, *seats).at()))
 
 
 def test_solve_tells_it(run, scene, tmp_path):
