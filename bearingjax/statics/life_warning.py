@@ -28,11 +28,11 @@ def life_warnings(ratings: Ratings, numbers: Mapping[str, Any]) -> list[str]:
             `life_hours` with `damage`; of one load `damage_share`.
 
     Source: ISO 281:2007, which doubts its lives of loads above C0 or C/2, and has no
-        a_ISO below κ = 0.1.
+        a_ISO below κ = 0.1; its diagrams of a_ISO and e_C end at κ = 4.
     """
     return [
         *_heavy(ratings, numbers),
-        *_thin(numbers),
+        *_off_the_diagrams(numbers),
         *_at_ends(numbers),
         *_still(numbers),
     ]
@@ -50,19 +50,26 @@ def _heavy(ratings, numbers):
     ]
 
 
-def _thin(numbers):
+def _off_the_diagrams(numbers):
     if numbers.get("viscosity_ratio") is None:
         return []
     kappa = np.asarray(numbers["viscosity_ratio"])
     # At a standstill, where it is 0, nothing tires.
-    thin = (kappa > 0) & (kappa < KAPPA[0])
-    if not thin.any():
-        return []
-    return [
-        f"viscosity ratio of {kappa[thin].min():.3g}: ISO 281 has no a_ISO below"
-        f" {KAPPA[0]:g}; the one at {KAPPA[0]:g} is taken"
-        f"{_where(thin, np.where(thin, -kappa, -np.inf))}"
-    ]
+    thin, thick = (kappa > 0) & (kappa < KAPPA[0]), kappa > KAPPA[1]
+    found = []
+    if thin.any():
+        found.append(
+            f"viscosity ratio of {kappa[thin].min():.3g}: ISO 281 has no a_ISO below"
+            f" {KAPPA[0]:g}; the one at {KAPPA[0]:g} is taken"
+            f"{_where(thin, np.where(thin, -kappa, -np.inf))}"
+        )
+    if thick.any():
+        found.append(
+            f"viscosity ratio of {kappa[thick].max():.3g}: the diagrams of ISO 281 end"
+            f" at {KAPPA[1]:g}; a_ISO and the e_C of a class of cleanliness are those"
+            f" at {KAPPA[1]:g}{_where(thick, kappa)}"
+        )
+    return found
 
 
 def _at_ends(numbers):

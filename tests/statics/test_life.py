@@ -703,6 +703,18 @@ def test_contamination_factors_of_other_programs():
         assert (np.diff(mine) < 0).all() and 0.5 < mine[0] < 0.9 and mine[-1] < 0.3
 
 
+def test_a_thicker_oil_than_the_diagrams_have_gives_no_more(untyped):
+    """They end at κ = 4, for e_C as for a_ISO: 6205, "oil bath -/17/14". Plain numbers
+    do as arguments, and the slope beyond is zero."""
+    clean = Cleanliness(*CLEANLINESS["oil bath -/17/14"])
+    at_4 = 0.0133 * 4**0.68 * 39.04**0.55 * (1 - 1.67 / 39.04 ** (1 / 3))
+    for kappa in (4, 4.0, 35, jnp.asarray(1e3)):
+        assert float(clean.factor(kappa, 39.04e-3)) == pytest.approx(at_4, rel=1e-12)
+    assert float(clean.factor(1, 1)) == pytest.approx(0.0133 * 1e3**0.55 * 0.833)
+    assert float(jax.grad(lambda k: clean.factor(k, 39.04e-3))(35.0)) == 0.0
+    assert float(life_factor(35, 1, True, False)) == pytest.approx(50.0)
+
+
 def test_rows_in_tandem_share_the_axial_load_on_which_factors_depend():
     """ISO 281: of a set in tandem Fa/(Z D²) is that of one of its bearings."""
     load = 0.689e6 * 14 * 14.288e-3**2  # a line of the table, Y = 1.52 at 10 degrees
@@ -791,7 +803,9 @@ def test_what_is_doubtful_about_a_life_is_told(untyped):
 
     assert told() == []
     words = ["of 11 kN, above 10 kN", "viscosity ratio of 0.05", "do not turn against"]
-    for (name, value), text in zip(doubtful.items(), words, strict=True):
+    words, pairs = [*words, "of 35: the diagrams"], [*doubtful.items()]
+    pairs.append(("viscosity_ratio", np.array(35.0)))
+    for (name, value), text in zip(pairs, words, strict=True):
         (only,) = told(**{name: value})
         assert text in only and "case" not in only
     assert told(viscosity_ratio=None, life_hours=None) == []
@@ -802,13 +816,15 @@ def test_what_is_doubtful_about_a_life_is_told(untyped):
     (only,) = told(damage_share=share)
     assert only.startswith("30 % of the fatigue") and ", 50 here" in only
     assert told(damage_share=np.full((2, 2, 50), 0.005)) == []
-    # Of many cases, one at a standstill and one that was not solved.
+    assert told(viscosity_ratio=np.array(0.0)) == []  # at a standstill
+    # Of many cases, one of which was not solved.
     cases = {name: np.array([x, x, x, np.nan]) for name, x in sound.items()}
     cases["reference_load"][1] = 15e3
-    cases["viscosity_ratio"][:] = [0.08, 0.0, 0.02, np.nan]
-    heavy, thin = life_warnings(ratings, cases)  # pyright: ignore[reportArgumentType]
+    cases["viscosity_ratio"][:] = [0.08, 4.5, 0.02, np.nan]
+    heavy, thin, thick = life_warnings(ratings, cases)  # pyright: ignore[reportArgumentType]
     assert "of 15 kN" in heavy and "in 1 of 4 cases, worst case 1" in heavy
     assert "of 0.02:" in thin and "in 2 of 4 cases, worst case 2" in thin
+    assert "of 4.5:" in thick and "in 1 of 4 cases, worst case 1" in thick
 
 
 def test_numbers_of_what_did_not_converge_are_nan(balls):
