@@ -24,7 +24,7 @@ its own; then C and C0 by the standards from the published geometry, over the ca
     6205         9     9     7.938   7.935  -0.0 %   0.7 (8: 13.1)  +0.2 %  +0.2 %
     UER204       8     8     7.920   7.950  +0.4 %   1.5 (7: 15.9)  -0.2 %  +0.1 %
     6804        13    13     3.500   3.498  -0.1 %   0.4 (14: 6.9)  +0.4 %  -0.1 %
-    6305 (SKF)   7     7    11.500  11.651  +1.3 %   5.0 (6: 22.9)  -4.4 %  -0.8 %
+    6305 (SKF)   7     7    11.500  11.542  +0.4 %   1.4 (8: 11.3)  -4.4 %  -0.8 %
     6306         8     8    11.906  11.933  +0.2 %   1.4 (7: 15.5)  -0.2 %  +0.3 %
     6206         9     9     9.525   9.527  +0.0 %   0.9 (8: 12.2)  -0.2 %  -0.4 %
     6207         9     9    11.112  11.092  -0.2 %   1.0 (8: 11.5)  -0.1 %  +0.0 %
@@ -36,7 +36,7 @@ its own; then C and C0 by the standards from the published geometry, over the ca
     176211      14    10    14.288  15.821 +10.7 %  31.8 (9: 32.5)  -0.2 % +20.5 %
     N 209       14    14    10.000   9.994  -0.1 %   4.0 (15: 4.6)  +5.3 %  +6.5 %
     NU 215      18    18    15.000  14.768  -1.5 %   2.8 (17: 2.9)  +8.0 % +10.7 %
-    67 deep groove bearings, D_w/D_pw: root mean square 2.2 %, worst 6.4 %
+    67 deep groove bearings, D_w/D_pw: root mean square 2.9 %, worst 9.1 %
     balls within one if C is raised by 3 %: 100 %, by 6 %: 100 %
     balls within 0.5 % of a 64th of an inch: angular contact 100 %, thrust 79 %
     21 cylindrical bearings, roller diameter: root mean square 1.2 %, worst 3.8 %
@@ -46,13 +46,13 @@ its own; then C and C0 by the standards from the published geometry, over the ca
     angular_contact estimated  other       11  11  +0 to +0   -0.4 to  +0.4 %
     angular_contact published  as printed   1   0  +1 to +1   +2.2 to  +2.2 %
     angular_contact published  other        1   0  +1 to +1   -1.7 to  -1.7 %
-    cylindrical     estimated  as printed  14   2  -4 to +0   -3.9 to +24.7 %
+    cylindrical     estimated  as printed  14   7  -1 to +0   -4.0 to  +0.7 %
     cylindrical     estimated  other        3   0  -1 to -1   -2.4 to  +0.2 %
-    cylindrical     published  as printed   1   0  -4 to -4  +22.8 to +22.8 %
+    cylindrical     published  as printed   1   0  -1 to -1   -0.1 to  -0.1 %
     cylindrical     published  other        1   1  +0 to +0   -1.5 to  -1.5 %
-    deep_groove     estimated  as printed  13   3  -1 to +0   +0.7 to +12.2 %
+    deep_groove     estimated  as printed  13  11  -1 to +0   -0.4 to  +9.5 %
     deep_groove     estimated  other       13  13  +0 to +0   -0.5 to  +0.2 %
-    deep_groove     published  as printed  11   4  -1 to +0   +0.7 to +13.7 %
+    deep_groove     published  as printed  11  10  -1 to +0   -0.5 to +13.7 %
     deep_groove     published  other       11  10  +0 to +1   -3.3 to  +0.6 %
     four_point      estimated  as printed   7   1  -2 to +0   -2.9 to  +6.7 %
     four_point      published  as printed   1   0  -4 to -4  +10.7 to +10.7 %
@@ -63,6 +63,11 @@ its own; then C and C0 by the standards from the published geometry, over the ca
 
 An inside that was itself estimated, partly from the same ratings, only shows by how
 much two estimates differ.
+
+C of deep groove and cylindrical bearings is read as it is and as one that its maker has
+raised, and what agrees better is taken: without the second reading 4 of the 11 insides
+behind SKF's ratings were found and rollers were up to 25 % too large, but of the 67
+bearings of an unraised catalogue the spread was 2.2 %, the worst 6.4 %.
 
 Ratings that the standards do not give: SKF raises C of the 6305; the 7218 BECBP is
 another design than the 218 of the textbook, and so is NSK's 6209 (its f_0 of 14.4 means

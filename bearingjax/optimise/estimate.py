@@ -80,20 +80,24 @@ class _Rated(NamedTuple):
         balls: What the standards say of its balls; `None` of rollers.
         is_thrust: Whether its contact angle is 90 degrees.
         rows: Number of rows that the ratings are of.
+        raised: C that makers print of an improved class over that of ISO 281 [1].
     """
 
     balls: BallKind | None
     is_thrust: bool = False
     rows: int = 1
+    raised: float = 1.0
 
 
+# Raised: SKF over other makers with the same C0, 1.03 to 1.065 and 1.146 to 1.155. That
+# of angular contact bearings, 1.07, goes with C0; the ratings cannot tell it.
 _KINDS = {
-    "deep_groove_ball": _Rated(row_rating.ANGULAR_CONTACT),
+    "deep_groove_ball": _Rated(row_rating.ANGULAR_CONTACT, raised=1.05),
     "angular_contact_ball": _Rated(row_rating.ANGULAR_CONTACT),
     "four_point_ball": _Rated(row_rating.ANGULAR_CONTACT, rows=2),
     "self_aligning_ball": _Rated(row_rating.SELF_ALIGNING, rows=2),
     "thrust_ball": _Rated(row_rating.THRUST, is_thrust=True),
-    "cylindrical_roller": _Rated(None),
+    "cylindrical_roller": _Rated(None, raised=1.15),
     "needle_roller": _Rated(None),
     "tapered_roller": _Rated(None),
 }
@@ -106,13 +110,18 @@ class GeometryEstimate(eqx.Module):
         bearing: The design. Its clearance is zero, its grooves are those that the
             standards count with (0.52, outer rings 0.53), its rollers have the
             logarithmic profile: none of these shows in the ratings.
-        dynamic_error: C of the design by ISO 281 over that given, less one [1].
-        static_error: C0 by ISO 76 likewise [1].
+        dynamic_error: C of the design by ISO 281 over that taken, less one [1].
+        static_error: C0 by ISO 76 likewise, over that given [1].
+        raised: C given over C taken: above 1 where it is that of an improved class,
+            which a maker rates above ISO 281 [1].
         misfit: Sum of the squared differences from ratings and usual proportions, each
             over its spread; above 20 the bearing is an unusual one, or its ratings are
             not those of the standards.
         rivals: Other numbers of rolling elements and their misfits, the best first; one
             that is not much worse may be the true one.
+        other_reading: Number of rolling elements and misfit with C read the other way,
+            as given or as raised; `None` of types that are not known to be raised, or
+            if no geometry has those ratings.
         assumed_contact_angle: Whether the contact angle is an estimate as well.
 
     Static: all numbers but those of the bearing.
@@ -121,8 +130,10 @@ class GeometryEstimate(eqx.Module):
     bearing: Bearing | BearingSet
     dynamic_error: float = eqx.field(static=True)
     static_error: float = eqx.field(static=True)
+    raised: float = eqx.field(static=True)
     misfit: float = eqx.field(static=True)
     rivals: tuple[tuple[int, float], ...] = eqx.field(static=True)
+    other_reading: tuple[int, float] | None = eqx.field(static=True)
     assumed_contact_angle: bool = eqx.field(static=True)
 
     def __repr__(self) -> str:
@@ -141,18 +152,27 @@ class GeometryEstimate(eqx.Module):
             + f" a row, pitch diameter {1e3 * float(row.pitch_diameter):.5g} mm,"
             f" contact angle {angle:.4g}°."
             f" C {100 * self.dynamic_error:+.1f} %, C0 {100 * self.static_error:+.1f} %"
-            f" off those given; misfit {self.misfit:.1f}"
+            f" off those given{self._reading()}; misfit {self.misfit:.1f}"
         )
         if self.misfit > _UNUSUAL:
             text += " (unusual: check the ratings)"
         if self.rivals:
             others = (f"{count} ({misfit:.1f})" for count, misfit in self.rivals)
             text += f", with other numbers of {name}s {', '.join(others)}"
+        if self.other_reading is not None:
+            count, misfit = self.other_reading
+            other = "as it is" if self.raised > 1.0 else "as raised by its maker"
+            text += f"; with C {other} {count} {name}s ({misfit:.1f})"
         return text + (
             ". The contact angle is an estimate too."
             if self.assumed_contact_angle
             else "."
         )
+
+    def _reading(self):
+        if self.raised == 1.0:
+            return ""
+        return f", C taken as raised by its maker to {self.raised:g} times ISO 281"
 
 
 class _Envelope(NamedTuple):
@@ -188,9 +208,12 @@ def estimate_geometry(
         kind: Type as in a scene: "deep_groove_ball", "angular_contact_ball",
             "four_point_ball", "self_aligning_ball" (of two rows), "thrust_ball",
             "cylindrical_roller", "needle_roller" or "tapered_roller".
-        dynamic_capacity: Basic dynamic load rating C [N]. Ratings that a maker has
-            raised by a factor of his own should be divided by it; those of four-point
-            bearings are of two rows (`rating.arc_rows`).
+        dynamic_capacity: Basic dynamic load rating C [N]. Of deep groove and
+            cylindrical roller bearings it is read as it is and as one that its maker
+            has raised, to 1.05 and 1.15 times ISO 281 as improved classes are; what
+            agrees better is taken, and `raised` says which. Of other types a factor of
+            the maker should be divided out. Four-point bearings: of two rows
+            (`rating.arc_rows`).
         static_capacity: Basic static load rating C0 [N].
         contact_angle: Of angular contact, four-point and tapered (outer raceway)
             bearings [rad]; `None`: estimated as well, which the ratings hardly
@@ -201,10 +224,9 @@ def estimate_geometry(
         those of the standards. Number of rolling elements, and what their diameter is
         off, as `benchmarks/estimate_geometry.py` measures it:
 
-        - deep groove: exact in 10 of 11, else one more; -3 to +1 %. From a C that its
-          maker has raised (SKF): one too few in 7 of 11; +1 to +14 %.
-        - cylindrical: exact or one off; within 4 %. From a raised C (SKF EC): two to
-          four too few; +19 to +25 %.
+        - deep groove: exact in 10 of 11, from a C that its maker has raised as from an
+          ordinary one, else one off; -3 to +4 % (+14 % with the number missed).
+        - cylindrical: exact or one off, with a raised C too; within 4 %.
         - angular contact: one too many of the one whose inside is published; 2 %.
         - four-point: four too few of the one, from ratings older than the standard's;
           +11 %, and its misfit says so.
@@ -231,19 +253,38 @@ def estimate_geometry(
         static_capacity=static_capacity,
     )
     typical = _checked(numbers, kind, contact_angle)
+    readings, problems = [], []
+    for raised in dict.fromkeys((1.0, _KINDS[kind].raised)):
+        taken = numbers | {"dynamic_capacity": dynamic_capacity / raised}
+        try:
+            readings.append((raised, *_fits(kind, typical, taken)))
+        except ValueError as problem:
+            problems.append(problem)
+    if not readings:
+        raise problems[0]
+    readings.sort(key=lambda reading: reading[2][0].misfit)
+    raised, known, fits = readings[0]
+    best = fits[0]
+    others = [(fits[0].count, fits[0].misfit) for _, _, fits in readings[1:]]
+    return GeometryEstimate(
+        _design(kind, known, best),
+        *best.errors,
+        raised,
+        best.misfit,
+        tuple((fit.count, fit.misfit) for fit in fits[1:5]),
+        others[0] if others else None,
+        contact_angle is None and typical.angle.spread > 1e-3,
+    )
+
+
+def _fits(kind, typical, numbers) -> tuple[_Envelope, list["_Fit"]]:
+    """The envelope, and the best sizes with each number of elements, the best first."""
     rated, known = _KINDS[kind], _envelope(numbers, kind, typical)
     _check_reach(rated, known, numbers)
     fits = [_fit(rated, known, count) for count in _counts(rated, known)]
     fits.sort(key=lambda fit: fit.misfit)
-    best = fits[0]
-    _check_pair(kind, numbers, best.errors)
-    return GeometryEstimate(
-        _design(kind, known, best),
-        *best.errors,
-        best.misfit,
-        tuple((fit.count, fit.misfit) for fit in fits[1:5]),
-        contact_angle is None and typical.angle.spread > 1e-3,
-    )
+    _check_pair(kind, numbers, fits[0].errors)
+    return known, fits
 
 
 class _Fit(NamedTuple):

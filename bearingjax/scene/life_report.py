@@ -7,12 +7,6 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..design import (
-    CylindricalRollerBearing,
-    NeedleRollerBearing,
-    ThrustBallBearing,
-    rows_of,
-)
 from ..element.frame import RINGS
 from ..statics.life import LIFE_OUTPUTS, Life, life_of
 from ..statics.solution import RollerSolution, Solution
@@ -149,8 +143,6 @@ def life_report(scene: Scene, solution: Solution, life: Life) -> str:
         *not_published(scene),
         f"equivalent load: P {_kilo(life.equivalent_load)} kN, of the reference life"
         f" {_kilo(life.reference_load)} kN",
-        *_through_ribs(solution),
-        *_across_thrust(solution),
         f"static safety C0/P0 {life_number(life.static_safety)}, P0"
         f" {_kilo(life.static_equivalent_load)} kN (ISO 76)",
     ]
@@ -185,31 +177,6 @@ def limits(solution: Solution, life: Life) -> list[str]:
     elif tracks > 1:
         words += f", most in arc {track + 1}"
     return [words]
-
-
-def _through_ribs(solution) -> list[str]:
-    """That P leaves out an axial load, of cylindrical rollers, whose ribs bear it."""
-    bearing = rows_of(solution.element.bearing)[0].bearing
-    first = 6 * RINGS.index(solution.moving_ring)
-    x, y, axial = np.abs(solution.force[first : first + 3])
-    straight = isinstance(bearing, CylindricalRollerBearing | NeedleRollerBearing)
-    if not straight or axial < 1e-6 * (x + y):
-        return []
-    return [f"  (P has no part of the axial load, {_kilo(axial)} kN, which ribs bear)"]
-
-
-def _across_thrust(solution) -> list[str]:
-    """That P leaves out a radial load, of thrust bearings, for which it is not made."""
-    bearing = rows_of(solution.element.bearing)[0].bearing
-    first = 6 * RINGS.index(solution.moving_ring)
-    x, y, axial = np.abs(solution.force[first : first + 3])
-    across = np.hypot(x, y)
-    if not isinstance(bearing, ThrustBallBearing) or across < 1e-6 * axial:
-        return []
-    return [
-        f"  (P has no part of the radial load, {_kilo(across)} kN, for which ISO 281"
-        " has no factor at 90°)"
-    ]
 
 
 def turning(turns: Any, at_rest: bool) -> str:

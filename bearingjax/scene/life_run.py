@@ -200,7 +200,9 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
 
 
 def _warnings(run: LifeRun) -> list[str]:
-    ours = life_warnings(run.ratings, run.solved.outputs)
+    ours = life_warnings(
+        run.table.scene.element.bearing, run.ratings, run.solved.outputs
+    )
     seats = seat_warnings(run.table, run.solved)
     return [*run.table.warnings, *seats, *run.solved.warnings, *ours]
 

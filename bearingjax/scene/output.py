@@ -102,6 +102,7 @@ def solved_as_dict(
     from .. import __version__
 
     solution = jax.device_get(solution)
+    bearing = scene.element.bearing
     result = Result(int(solution.result))
     solved = result is Result.CONVERGED
     residual = float(solution.stats.residual)
@@ -113,7 +114,7 @@ def solved_as_dict(
         "warnings": [
             *scene.warnings,
             *(warnings(solution) if solved else []),
-            *([] if life is None else life_warnings(life.ratings, vars(life))),
+            *([] if life is None else life_warnings(bearing, life.ratings, vars(life))),
         ],
         "inputs": scene.inputs,
         "version": __version__,

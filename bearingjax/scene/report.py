@@ -342,7 +342,7 @@ def _ending(scene, solution):
     told = [*scene.warnings, *warnings(solution)]
     if scene.life is not None:
         life = scene_life(scene, solution)
-        told += life_warnings(life.ratings, vars(life))
+        told += life_warnings(scene.element.bearing, life.ratings, vars(life))
     lines += [f"warning: {w}" for w in told]
     return "\n".join(lines)
 

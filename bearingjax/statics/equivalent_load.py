@@ -5,7 +5,8 @@ which is compared with the static rating. Both are greatest values of X Fr + Y F
 ISO 281 passes from one pair of factors to the other at Fa/Fr = e, where its rounded
 factors leave a step of up to 2 %; the greatest value of both pairs has none.
 
-Moments, speeds and clearance are not in it: the reference rating life has them.
+Moments, speeds and clearance are not in it: the reference rating life has them
+(`left_out`).
 
 How far the tables are confirmed, number by number: deep groove and 10 degrees by SKF
 (normal and C3 clearance); 15, 25 and 40 degrees, single and double, dynamic and static,
@@ -113,9 +114,7 @@ def equivalent_load(
     Source: ISO 281:2007, tables 3, 4, 7 and 9; ISO 76:2006, tables 2 and 3, and its
         formulas for thrust bearings.
     """
-    square = load[0] ** 2 + load[1] ** 2
-    loaded = square > 0
-    radial = jnp.where(loaded, jnp.sqrt(jnp.where(loaded, square, 1.0)), 0.0)
+    radial = _length(load[:2])
     axial = jnp.abs(load[2])
     factors = load_factors(bearing, axial)
     both = jnp.stack([radial, axial])
@@ -123,6 +122,55 @@ def equivalent_load(
         jnp.max(jnp.sum(factors.dynamic * both[None], axis=1)),
         jnp.max(jnp.sum(factors.static * both[None], axis=1)),
     )
+
+
+class LeftOut(NamedTuple):
+    """What a load has that the equivalent loads have no part of.
+
+    Attributes:
+        radial: Of thrust ball bearings, for which ISO 281 has no factor at 90° [N].
+        axial: Of cylindrical and needle rollers, whose ribs bear it [N].
+        moment: About the pressure centre, where the contact normals of the elements
+            meet on the axis [N m].
+    """
+
+    radial: Scalar
+    axial: Scalar
+    moment: Scalar
+
+
+def left_out(bearing: Bearing | BearingSet, load: Float[Array, "6"]) -> LeftOut:
+    """What the equivalent loads of a load have no part of.
+
+    Args:
+        bearing, load: As of `equivalent_load`; moments about the centre of the bearing.
+    """
+    rows = rows_of(bearing)
+    row = rows[0].bearing
+    angle = nominal_contact_angle(row)
+    is_thrust = isinstance(row, ThrustBallBearing)
+    straight = jnp.where(angle > 0, 0.0, 1.0)
+    if isinstance(row, AbstractBallBearing):
+        straight = 0.0 * straight
+    centre = jnp.zeros_like(angle)
+    if not is_thrust:
+        reach = 0.5 * row.pitch_diameter * jnp.tan(angle)
+        places = [r.position + (reach if r.mirrored else -reach) for r in rows]
+        # Of a bearing that is rated axially it is far away.
+        centre = jnp.where(rated_axially(bearing), 0.0, sum(places) / len(rows))
+    across = load[3:5] + centre * jnp.stack([load[1], -load[0]])
+    return LeftOut(
+        _length(load[:2]) * float(is_thrust),
+        jnp.abs(load[2]) * straight,
+        _length(across),
+    )
+
+
+def _length(pair):
+    """Length of a vector of two; at zero without a slope."""
+    square = jnp.sum(pair**2)
+    some = square != 0
+    return jnp.where(some, jnp.sqrt(jnp.where(some, square, 1.0)), 0.0)
 
 
 def load_factors(bearing: Bearing | BearingSet, axial: Scalar) -> Factors:

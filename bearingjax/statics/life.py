@@ -22,7 +22,7 @@ from ..element.inertia import Speed
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .equivalent_load import EquivalentLoad, equivalent_load
+from .equivalent_load import EquivalentLoad, equivalent_load, left_out
 from .life_factor import (
     LARGEST_FACTOR,
     Cleanliness,
@@ -65,6 +65,9 @@ LIFE_OUTPUTS = (
     "equivalent_load",
     "static_equivalent_load",
     "reference_load",
+    "radial_left_out",
+    "axial_left_out",
+    "moment_left_out",
     "static_safety",
     "basic_rating_life",
     "reference_rating_life",
@@ -169,6 +172,9 @@ class Life(eqx.Module):
         equivalent_load: P of ISO 281 [N].
         static_equivalent_load: P0 of ISO 76 [N].
         reference_load: Load with which C gives the reference life [N].
+        radial_left_out, axial_left_out: Loads that P and P0 have no part of, as of
+            `equivalent_load.left_out` [N].
+        moment_left_out: The moment likewise [N m].
         static_safety: C0/P0 [1].
         basic_rating_life: L10 = (C/P)^p of ISO 281 [rev].
         reference_rating_life: L10r of ISO/TS 16281 [rev].
@@ -191,6 +197,9 @@ class Life(eqx.Module):
     equivalent_load: Scalar = eqx.field(metadata=unit("N"))
     static_equivalent_load: Scalar = eqx.field(metadata=unit("N"))
     reference_load: Scalar = eqx.field(metadata=unit("N"))
+    radial_left_out: Scalar = eqx.field(metadata=unit("N"))
+    axial_left_out: Scalar = eqx.field(metadata=unit("N"))
+    moment_left_out: Scalar = eqx.field(metadata=unit("N m"))
     static_safety: Scalar = eqx.field(metadata=unit("1"))
     basic_rating_life: Scalar = eqx.field(metadata=unit("rev"))
     reference_rating_life: Scalar = eqx.field(metadata=unit("rev"))
@@ -420,7 +429,11 @@ def _life(bearing, solution, conditions, speed, lamina_load) -> Life:
     loaded = total > 0
     same = share / jnp.where(loaded, total, 1.0)
     life = _lifetime(damage)
-    equivalent = _above_round_off(equivalent_load(bearing, force), rated)
+    least = 1e-12 * rated.static_capacity
+    equivalent = EquivalentLoad(
+        *(_above(p, least) for p in equivalent_load(bearing, force))
+    )
+    lost = left_out(bearing, force)
     # ISO 281 rates rollers with 10/3, ISO/TS 16281 with 4 and a part of C.
     exponent = (3, 1) if kind is BALLS else (10, 3)
     ratio = equivalent.dynamic / rated.dynamic_capacity
@@ -430,6 +443,9 @@ def _life(bearing, solution, conditions, speed, lamina_load) -> Life:
         "static_equivalent_load": equivalent.static,
         "reference_load": rated.dynamic_capacity
         * positive_power(_MILLION * damage, exponent[1], exponent[0]),
+        "radial_left_out": _above(lost.radial, least),
+        "axial_left_out": _above(lost.axial, least),
+        "moment_left_out": _above(lost.moment, least * pitch_radius(bearing)),
         "static_safety": _over(rated.static_capacity, equivalent.static),
         "basic_rating_life": _lifetime(positive_power(ratio, *exponent) / _MILLION),
         "reference_rating_life": life,
@@ -546,10 +562,9 @@ def _modified(fatigue, limit, thrust, kappa, clean, kind):
     return jnp.sum(jnp.sum(fatigue.share, axis=0) * factor ** -(n / d))
 
 
-def _above_round_off(load, rated):
-    """Equivalent loads, zero where they are what the solver leaves of no load."""
-    least = 1e-12 * rated.static_capacity
-    return EquivalentLoad(*(jnp.where(p <= least, 0.0, p) for p in load))
+def _above(load, least):
+    """A load, zero where it is what the solver leaves of none."""
+    return jnp.where(load <= least, 0.0, load)
 
 
 def _lifetime(damage):

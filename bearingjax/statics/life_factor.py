@@ -21,7 +21,8 @@ LARGEST_FACTOR = 50.0
 """Largest a_ISO of the standard [1]."""
 
 KAPPA = (0.1, 4.0)
-"""Viscosity ratios for which a_ISO is given; beyond them it is that at the end [1]."""
+"""Viscosity ratios of the diagrams of a_ISO and e_C [1]. Beyond them a_ISO is that at
+the end, and so is e_C above; below 0.1 its formula goes on to zero."""
 
 _FLOOR, _SPREAD = 0.05, 1.5
 """Smallest a1, and Weibull's exponent of early failures (ISO/TR 1281-2)."""
@@ -65,7 +66,10 @@ def viscosity_ratio(viscosity: Scalar, speed: Scalar, pitch_diameter: Scalar) ->
 
 
 def life_factor(
-    kappa: Scalar, load_ratio: Float[Array, "..."], balls: bool, thrust: Flag
+    kappa: Scalar | float,
+    load_ratio: Float[Array, "..."] | float,
+    balls: bool,
+    thrust: Flag | bool,
 ) -> Float[Array, "..."]:
     """a_ISO of the systems approach [1], at most 50.
 
@@ -78,7 +82,7 @@ def life_factor(
     Source: ISO 281:2007, formulas (31) to (42); all constants agree with those of an
         independent program (in C, of all four types of bearing).
     """
-    kappa = jnp.clip(kappa, *KAPPA)
+    kappa, load_ratio = jnp.clip(as_real(kappa), *KAPPA), as_real(load_ratio)
     low, high = kappa < 0.4, kappa >= 1.0
     power = jnp.where(low, 0.054381, jnp.where(high, 0.071739, 0.19087))
     film = kappa**-power
@@ -115,7 +119,8 @@ def load_ratio(
 
 
 class Cleanliness(eqx.Module):
-    """How clean the lubricant is: e_C = min(a κ^0.68 D_pw^0.55, 1) (1 - b/D_pw^(1/3)).
+    """How clean the lubricant is: e_C = min(a κ^0.68 D_pw^0.55, 1) (1 - b/D_pw^(1/3)),
+    κ at most 4.
 
     Attributes:
         film: a, with D_pw in mm [1].
@@ -139,16 +144,18 @@ class Cleanliness(eqx.Module):
         if self.large is not None:
             positive(self, "large")
 
-    def factor(self, kappa: Scalar, pitch_diameter: Scalar) -> Scalar:
+    def factor(self, kappa: Scalar | float, pitch_diameter: Scalar | float) -> Scalar:
         """Contamination factor e_C, from 0 to 1 [1].
 
         Small bearings in dirty oil have 0.
 
         Args:
-            kappa: Viscosity ratio κ [1].
+            kappa: Viscosity ratio κ, taken as 4 above that, where the diagrams of the
+                standard end [1].
             pitch_diameter: D_pw [m].
         """
-        size = 1e3 * pitch_diameter
+        kappa = jnp.minimum(as_real(kappa), KAPPA[1])
+        size = 1e3 * as_real(pitch_diameter)
         film = self.film * positive_power(kappa, 17, 25) * size**0.55
         b = self.size
         if self.large is not None:

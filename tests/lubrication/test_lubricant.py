@@ -73,10 +73,11 @@ def test_viscosity_under_pressure(pressure, want, digit):
 
 def test_free_volume_law():
     """Its limits at p = 0, α* and the fit to the correlation over temperature."""
-    viscosity, _, coefficient, star = of(PURE, 0.0)
+    viscosity, _, _, star = of(PURE, 0.0)
     np.testing.assert_allclose(viscosity, 0.0376390, rtol=ROUNDING)
     slope = 2.30134 * 0.728634 / (1 - 0.728634) ** 2 / (9e9 * np.exp(-6.5e-3 * WARM))
-    np.testing.assert_allclose(coefficient, slope, rtol=ROUNDING)
+    found = jax.grad(lambda p: jnp.log(PURE.viscosity(p, WARM)))(0.0)
+    np.testing.assert_allclose(found, slope, rtol=ROUNDING)
     assert abs(star - 15.96e-9) < 0.005e-9
     for celsius in (20.0, 40.0, 70.0, 100.0, 130.0):
         pure, oil = (of(each, 0.0, 273.15 + celsius) for each in (PURE, OIL))
@@ -84,13 +85,38 @@ def test_free_volume_law():
         assert abs(pure[3] / oil[2] - 1.0) < (0.062 if celsius <= 100 else 0.13)
 
 
-@pytest.mark.parametrize("oil", [PURE, iso_vg(100.0)], ids=["free volume", "Roelands"])
-def test_isoviscous_coefficient(oil):
+@pytest.mark.parametrize(
+    "oil",
+    [
+        PURE,
+        iso_vg(100.0),
+        bj.Lubricant(AMBIENT, Roelands(2e-8), Density(880.0)),
+        bj.Lubricant(AMBIENT, Barus(2e-8), Density(880.0)),
+    ],
+    ids=["free volume", "Roelands", "Roelands alone", "Barus"],
+)
+def test_films_take_the_isoviscous_coefficient_unless_one_is_given(oil):
     """The integral by Simpson's rule instead."""
     pressure = np.linspace(0.0, 3e9, 20_001)
     viscosity = np.asarray(oil.viscosity(jnp.asarray(pressure), WARM))
     whole = simpson(viscosity[0] / viscosity, x=pressure)
-    np.testing.assert_allclose(of(oil, 0.0)[3], 1.0 / whole, rtol=1e-8)
+    _, _, coefficient, star = of(oil, 0.0)
+    np.testing.assert_allclose(star, 1.0 / whole, rtol=1e-8)
+    assert oil.coefficient is not None or coefficient == star
+
+
+@pytest.mark.parametrize("law", [Barus, Roelands])
+def test_a_viscosity_that_does_not_grow_has_no_coefficient(law):
+    """Nor NaN in its derivative: α* is the slope, of Barus' law α, and near no growth
+    that of any law."""
+
+    def star(alpha):
+        oil = bj.Lubricant(AMBIENT, law(alpha), Density(880.0))
+        return oil.pressure_coefficient(WARM)
+
+    value, slope = jax.value_and_grad(star)(0.0)
+    assert value == 0.0
+    np.testing.assert_allclose(slope, 1.0, rtol=ROUNDING)
 
 
 def test_barus_and_roelands():
@@ -104,8 +130,7 @@ def test_barus_and_roelands():
     grown = (1 + 5.1e-9 * pressure) ** (alpha / (5.1e-9 * depth))
     want = ambient * np.exp(depth * (grown - 1))
     np.testing.assert_allclose(of(roelands, pressure)[0], want, rtol=1e-11)
-    for oil in (barus, roelands):
-        np.testing.assert_allclose(of(oil, 0.0)[2], alpha, rtol=ROUNDING)
+    np.testing.assert_allclose(of(barus, 0.0)[2], alpha, rtol=ROUNDING)
     given = bj.Lubricant(AMBIENT, Barus(alpha), Density(880.0), coefficient=1.5e-8)
     assert float(given.pressure_coefficient(WARM)) == 1.5e-8
 

@@ -54,6 +54,34 @@ def test_published_bearings_are_found(name):
     assert found.misfit < 20 and found.misfit < found.rivals[0][1]
 
 
+@pytest.mark.parametrize(
+    "kind, size, ratings, raised, count, diameter",
+    [
+        ("deep_groove_ball", (45, 100, 25), (55.3, 31.5), 1.05, 8, 17.462),
+        ("deep_groove_ball", (25, 52, 15), (14.8, 7.8), 1.05, 9, 7.938),
+        ("deep_groove_ball", (25, 52, 15), (14.0, 7.8), 1.0, 9, 7.938),
+        ("cylindrical_roller", (75, 130, 25), (150.0, 156.0), 1.15, 17, 15.0),
+        ("cylindrical_roller", (75, 130, 25), (130.0, 156.0), 1.0, 18, 15.0),
+    ],
+)
+def test_a_capacity_that_its_maker_has_raised_is_seen(
+    kind, size, ratings, raised, count, diameter
+):
+    """SKF's 6309, 6205 and NU 215 ECP beside the ordinary class of others; wanted are
+    the published balls and rollers (18 in the NU 215)."""
+    sizes, (c, c0) = [1e-3 * x for x in size], (1e3 * x for x in ratings)
+    found = bj.estimate_geometry(*sizes, kind, c, c0)
+    number, element, _ = inside(found.bearing)
+    assert (number, found.raised) == (count, raised)
+    assert element == pytest.approx(1e-3 * diameter, rel=0.02)
+    rated = float(bj.dynamic_capacity(found.bearing)) * raised / c - 1
+    assert rated == pytest.approx(found.dynamic_error, abs=1e-9)
+    assert found.other_reading is not None and found.other_reading[1] > found.misfit
+    words = found.report()
+    assert (f"raised by its maker to {raised:g} times" in words) == (raised > 1)
+    assert f"with C {'as it is' if raised > 1 else 'as raised by its maker'}" in words
+
+
 def designs():
     """Kind to d, D, B [m], its contact angle and a usual bearing of that size."""
     grooves = dict(outer_osculation=0.53, inner_osculation=0.52)

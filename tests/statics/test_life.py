@@ -35,6 +35,7 @@ from bearingjax.statics.equivalent_load import (
     _Y0,
     _Y0_DOUBLE,
     equivalent_load,
+    left_out,
     load_factors,
 )
 from bearingjax.statics.life import (
@@ -703,6 +704,73 @@ def test_contamination_factors_of_other_programs():
         assert (np.diff(mine) < 0).all() and 0.5 < mine[0] < 0.9 and mine[-1] < 0.3
 
 
+def test_a_thicker_oil_than_the_diagrams_have_gives_no_more(untyped):
+    """They end at κ = 4, for e_C as for a_ISO: 6205, "oil bath -/17/14". Plain numbers
+    do as arguments, and the slope beyond is zero."""
+    clean = Cleanliness(*CLEANLINESS["oil bath -/17/14"])
+    at_4 = 0.0133 * 4**0.68 * 39.04**0.55 * (1 - 1.67 / 39.04 ** (1 / 3))
+    for kappa in (4, 4.0, 35, jnp.asarray(1e3)):
+        assert float(clean.factor(kappa, 39.04e-3)) == pytest.approx(at_4, rel=1e-12)
+    assert float(clean.factor(1, 1)) == pytest.approx(0.0133 * 1e3**0.55 * 0.833)
+    assert float(jax.grad(lambda k: clean.factor(k, 39.04e-3))(35.0)) == 0.0
+    assert float(life_factor(35, 1, True, False)) == pytest.approx(50.0)
+
+
+def held(bearing, axial):
+    """Moment about the centre over the radial force [m], its rings kept parallel."""
+    load = [2e3, 0.0, axial, 0.0, 0.0, 0.0]
+    kept = {"gx": 0.0, "gy": 0.0}
+    return np.asarray(
+        bj.solve_load(bj.BearingElement(bearing), load, prescribed=kept).force[6:]
+    )
+
+
+def test_moments_are_counted_about_the_pressure_centre():
+    """There the forces of the contacts meet: of an angular contact bearing whose rings
+    are parallel hardly a moment is left, whichever way it faces; of a deep groove
+    bearing, a pair or straight rollers it is about the middle."""
+    single = angular(40)
+    reach = 0.5 * 77.5e-3 * np.tan(np.deg2rad(40))
+    turned = bj.BearingSet((bj.design.SetRow(single, 0.01, mirrored=True),))
+    for bearing, axial, centre in ((single, 3e3, -reach), (turned, -3e3, 0.01 + reach)):
+        force = held(bearing, axial)
+        np.testing.assert_allclose(force[4] / force[0], centre, rtol=0.03)
+        lost = left_out(bearing, jnp.asarray(force))
+        expected = force[4] - centre * force[0]
+        np.testing.assert_allclose(lost.moment, abs(expected), rtol=1e-9)
+        assert lost.moment < 0.05 * 2e3 * 0.5 * 77.5e-3
+        assert lost.radial == 0.0 == lost.axial
+    load = jnp.asarray([3e3, 4e3, -500.0, 30.0, 40.0, 0.0])
+    straight = roller_element([0.0, 0, 0, 0, 1e-4]).bearing
+    washers = bj.ThrustBallBearing(
+        14, 0.041, 0.0079, outer_osculation=0.54, inner_osculation=0.54
+    )
+    pair = bj.BearingSet.back_to_back(single, 0.03)
+    for bearing, radial, axial in (
+        (ball_element([0.0]).bearing, 0.0, 0.0),
+        (pair, 0.0, 0.0),
+        (straight, 0.0, 500.0),
+        (washers, 5e3, 0.0),
+    ):
+        found = [float(x) for x in left_out(bearing, load)]
+        np.testing.assert_allclose(found, [radial, axial, 50.0], rtol=1e-12)
+    slope = jax.jacfwd(lambda f: jnp.stack(left_out(straight, f)))(jnp.zeros(6))
+    assert np.isfinite(slope).all()
+
+
+def test_a_moment_alone_is_told_of_a_life():
+    """20 N m on a 6305: L10 has no end, the reference life has."""
+    element = ball_element([0.0])
+    solution = bj.solve_load(element, [0.0, 0, 0, 0, 20.0, 0], speed=SPEED)
+    life = bj.rating_life(element, solution)
+    assert np.isinf(life.basic_rating_life) and np.isinf(life.static_safety)
+    assert np.isfinite(life.reference_rating_life)
+    np.testing.assert_allclose(life.moment_left_out, 20.0, rtol=1e-6)
+    told = life_warnings(element.bearing, life.ratings, vars(life))
+    (only,) = [text for text in told if "moment" in text]
+    assert "moment of 20 N m" in only and "reference life of ISO/TS 16281" in only
+
+
 def test_rows_in_tandem_share_the_axial_load_on_which_factors_depend():
     """ISO 281: of a set in tandem Fa/(Z D²) is that of one of its bearings."""
     load = 0.689e6 * 14 * 14.288e-3**2  # a line of the table, Y = 1.52 at 10 degrees
@@ -773,6 +841,7 @@ def test_a_peak_at_the_end_of_a_roller_is_seen(untyped):
 
 def test_what_is_doubtful_about_a_life_is_told(untyped):
     ratings = SimpleNamespace(dynamic_capacity=20e3, static_capacity=12e3)
+    bearing = ball_element([0.0]).bearing
     sound = {
         "equivalent_load": np.array(3e3),
         "reference_load": np.array(4e3),
@@ -787,28 +856,55 @@ def test_what_is_doubtful_about_a_life_is_told(untyped):
     }
 
     def told(**others):
-        return life_warnings(ratings, sound | others)  # pyright: ignore[reportArgumentType]
+        numbers = sound | others
+        return life_warnings(bearing, ratings, numbers)  # pyright: ignore[reportArgumentType]
 
     assert told() == []
     words = ["of 11 kN, above 10 kN", "viscosity ratio of 0.05", "do not turn against"]
-    for (name, value), text in zip(doubtful.items(), words, strict=True):
+    words, pairs = [*words, "of 35: the diagrams"], [*doubtful.items()]
+    pairs.append(("viscosity_ratio", np.array(35.0)))
+    for (name, value), text in zip(pairs, words, strict=True):
         (only,) = told(**{name: value})
         assert text in only and "case" not in only
     assert told(viscosity_ratio=None, life_hours=None) == []
     assert told(life_hours=np.array(np.inf), damage=np.array(0.0)) == []
+    assert life_warnings(bearing, ratings, {}) == []  # pyright: ignore[reportArgumentType]
+    # Too little load to roll, but for preload, or at a standstill.
+    few = dict(equivalent_load=np.array(150.0), reference_load=np.array(160.0))
+    (only,) = told(**few)
+    assert "of 160 N, below 200 N, 0.01 C, which makers of ball" in only
+    assert told(**few | dict(reference_load=np.array(300.0))) == []
+    assert told(**few, life_hours=None) == []
+    still = told(**few, life_hours=np.array(np.inf))
+    assert len(still) == 1 and "skid" not in still[0]
+    nothing = dict.fromkeys(
+        ("equivalent_load", "reference_load", "damage"), np.array(0.0)
+    )
+    assert "of 0 N, below 200 N" in told(**nothing, life_hours=np.array(np.inf))[0]
+    # What P has no part of; of the moment a tenth of P times the pitch radius may be.
+    for name, size, words in (
+        ("moment", 10.0, "10 N m about the pressure centre"),
+        ("axial", 20.0, "20 N, which ribs bear"),
+        ("radial", 20.0, "20 N, for which ISO 281 has no factor"),
+    ):
+        (only,) = told(**{f"{name}_left_out": np.array(size)})
+        assert only.startswith(name) and words in only and "P and P0" in only
+    assert told(moment_left_out=np.array(0.09 * 3e3 * 21.75e-3)) == []
     # Of rollers, of two rows and 50 laminae.
     share = np.full((2, 2, 50), 0.7 / 192)
     share[:, :, [0, -1]] = 0.3 / 8
     (only,) = told(damage_share=share)
     assert only.startswith("30 % of the fatigue") and ", 50 here" in only
     assert told(damage_share=np.full((2, 2, 50), 0.005)) == []
-    # Of many cases, one at a standstill and one that was not solved.
+    assert told(viscosity_ratio=np.array(0.0)) == []  # at a standstill
+    # Of many cases, one of which was not solved.
     cases = {name: np.array([x, x, x, np.nan]) for name, x in sound.items()}
     cases["reference_load"][1] = 15e3
-    cases["viscosity_ratio"][:] = [0.08, 0.0, 0.02, np.nan]
-    heavy, thin = life_warnings(ratings, cases)  # pyright: ignore[reportArgumentType]
+    cases["viscosity_ratio"][:] = [0.08, 4.5, 0.02, np.nan]
+    heavy, thin, thick = life_warnings(bearing, ratings, cases)  # pyright: ignore[reportArgumentType]
     assert "of 15 kN" in heavy and "in 1 of 4 cases, worst case 1" in heavy
     assert "of 0.02:" in thin and "in 2 of 4 cases, worst case 2" in thin
+    assert "of 4.5:" in thick and "in 1 of 4 cases, worst case 1" in thick
 
 
 def test_numbers_of_what_did_not_converge_are_nan(balls):
