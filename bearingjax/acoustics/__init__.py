@@ -12,8 +12,10 @@ over the turn; `linear_model` and `transfer` the way from there to the sensor.
 Levels and bands of the acceleration (`level`, `band_levels`), lines that stand out with
 their names (`name_lines`: `3 BPFO`, `BPFI + shaft`, `2 cage`), the errors that make
 them to first order (`line_causes`), and how many contacts every element has
-(`contact_states`). `monte_carlo` draws bearings within tolerance classes and gives the
-distribution of their levels, and which tolerance makes how much of it.
+(`contact_states`). `model_warnings` and `record_warnings` say what is doubtful in a
+record and its levels, as the command line does. `monte_carlo` draws bearings within
+tolerance classes and gives the distribution of their levels, and which tolerance makes
+how much of it.
 
 Waves and damping are seldom known: levels compare designs and tolerances, they do not
 foretell what a rig reads. Worked: the notebook noise_from_form_errors.
@@ -22,6 +24,7 @@ foretell what a rig reads. Worked: the notebook noise_from_form_errors.
 from .bands import Bands as Bands
 from .bands import band_levels as band_levels
 from .bands import band_root_mean_square as band_root_mean_square
+from .bands import band_shift as band_shift
 from .bands import is_held as is_held
 from .bands import octave_bands as octave_bands
 from .bands import third_octave_bands as third_octave_bands
@@ -49,6 +52,8 @@ from .monte_carlo import drawn as drawn
 from .monte_carlo import monte_carlo as monte_carlo
 from .natural import NaturalModes as NaturalModes
 from .natural import natural_modes as natural_modes
+from .natural import orbited as orbited
+from .natural import ring_modes as ring_modes
 from .natural import stiffness as stiffness
 from .orders import KinematicFrequencies as KinematicFrequencies
 from .orders import WavinessForce as WavinessForce
@@ -76,4 +81,7 @@ from .vibration import CageMotion as CageMotion
 from .vibration import Vibration as Vibration
 from .vibration import bandwidth as bandwidth
 from .vibration import needed_steps as needed_steps
+from .vibration import rounding as rounding
 from .vibration import vibration as vibration
+from .warning import model_warnings as model_warnings
+from .warning import record_warnings as record_warnings

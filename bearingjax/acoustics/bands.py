@@ -5,13 +5,28 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from ..design.checks import positive
+from ..numerics.implicit import stop
 from ..numerics.types import as_real
 from .level import REFERENCE_ACCELERATION, level
 from .spectrum import Spectrum
 
+LEAST_SHIFT = 0.5
+"""Change of a band's level by skirts of lines from which it is not held [dB]."""
+_REACH = 64
+"""Bins to either side of an edge whose lines may reach over it.
+
+Of lines further off Hann's window leaves less than 2e-11 of their power beyond.
+"""
+_AROUND = np.arange(-_REACH, _REACH, dtype=np.int32)[None]
+_STRONG = 5.0
+"""Of a line over the geometric mean of its neighbours, from which it is strong [1].
+
+Of noise, whose lines have sizes by Rayleigh's distribution, one in 10^6 is."""
+_NEIGHBOURS = 25
+"""Their number to either side."""
 _R10 = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
 """Preferred numbers of the series R 10: nominal centres of third-octaves."""
 
@@ -81,9 +96,11 @@ def band_root_mean_square(
 
     Returns:
         (band, ...) [unit of the record]. NaN for a band that the record does not hold:
-        one whose upper edge lies above that frequency, or that is narrower
-        than a line (its `noise_bandwidth`), so that it holds one by chance. A band
-        that is held and has nothing in it is 0, with a derivative of 0.
+        one whose upper edge lies above that frequency; that is narrower than a line
+        (its `noise_bandwidth`), so that it holds one by chance; or whose level changes
+        by `LEAST_SHIFT` or more because the window spreads strong lines over its
+        edges (`leakage`). Longer records hold more bands. A band that is held and has
+        nothing in it is 0, with a derivative of 0.
     """
     lower, upper = _edges(spectrum, bands)
     return _by_band(spectrum, lower, upper, _highest(spectrum, highest))
@@ -116,23 +133,167 @@ def total_root_mean_square(spectrum: Spectrum) -> Float[Array, "..."]:
     return _root(jnp.sum(spectrum.power[1:], axis=0))
 
 
-def is_held(spectrum: Spectrum, bands: Bands, highest: Any = None) -> np.ndarray:
-    """Which bands a record holds, as `band_root_mean_square` has it (band,)."""
+def is_held(
+    spectrum: Spectrum, bands: Bands, highest: Any = None
+) -> Bool[Array, "band ..."]:
+    """Which bands a record holds, as `band_root_mean_square` has it (band, ...)."""
     lower, upper = _edges(spectrum, bands)
-    return np.asarray(_held(spectrum, lower, upper, _highest(spectrum, highest)))
+    return _held(spectrum, lower, upper, _highest(spectrum, highest))
+
+
+class Leakage(NamedTuple):
+    """Power of lines that a window spreads over edges between bands.
+
+    Attributes:
+        up: Of lines below each edge, above it (edge, ...) [unit of the record,
+            squared].
+        down: Of lines above each edge, below it (edge, ...).
+        need: Distance from each edge to the line that spreads most over it (edge, ...)
+            [Hz].
+    """
+
+    up: Float[Array, "edge ..."]
+    down: Float[Array, "edge ..."]
+    need: Float[Array, "edge ..."]
+
+
+@eqx.filter_jit
+def leakage(spectrum: Spectrum, edges: Any) -> Leakage:
+    """What the window of a spectrum spreads over edges.
+
+    Lines are the local maxima of the spectrum that stand out of it; each is taken for a
+    lone one, with the frequency and amplitude that its neighbours tell
+    (`AbstractWindow.peak`). Of noise as much comes over an edge as goes.
+
+    Args:
+        spectrum: Of the record, amplitudes (line, ...).
+        edges: Frequencies (edge,) [Hz].
+
+    Source: Harris, Proc. IEEE 66 (1978): transform of Hann's window.
+    """
+    window, amplitude = spectrum.window, jnp.abs(spectrum.amplitude)
+    # The mean of the record is no neighbour of the first line.
+    amplitude = amplitude.at[0].set(0.5 * amplitude[1])
+    edge = jnp.asarray(edges, amplitude.dtype) / spectrum.resolution
+    first = jnp.ceil(edge)  # bin above the edge
+    bins = first.astype(jnp.int32)[:, None] + _AROUND
+    last = len(amplitude) - 1
+    left, middle, right = (amplitude[jnp.clip(bins + k, 0, last)] for k in (-1, 0, 1))
+    axes = [1] * (amplitude.ndim - 1)
+    inside = ((bins > 0) & (bins < last)).reshape(*bins.shape, *axes)
+    strong = _strong(amplitude)[jnp.clip(bins, 0, last)]
+    line = inside & strong & (middle > left) & (middle >= right)
+    away, gain = window.peak(left, middle, right)
+    place = bins.astype(edge.dtype).reshape(*bins.shape, *axes) + away
+    power = jnp.where(line, 0.5 * (gain * middle) ** 2, 0.0)
+    edge, first = (one.reshape(-1, 1, *axes) for one in (edge, first))
+    below = place < edge
+    apart = jnp.where(below, first - place, place - (first - 1))
+    spread = power * window.beyond(jnp.where(line, apart, 1.0))
+    most = jnp.argmax(spread, axis=1, keepdims=True)
+    need = jnp.abs(jnp.take_along_axis(place - edge, most, axis=1))[:, 0]
+    up, down = (jnp.sum(jnp.where(k, spread, 0.0), axis=1) for k in (below, ~below))
+    return Leakage(up, down, need * spectrum.resolution)
+
+
+def _strong(amplitude):
+    """Which lines stand out of their neighbours (line, ...)."""
+    tiny = jnp.finfo(amplitude.dtype).tiny
+    logs = jnp.log(jnp.maximum(amplitude, tiny))
+    wide = min(_NEIGHBOURS, len(amplitude) - 1)
+    padded = jnp.pad(logs, [(wide, wide)] + [(0, 0)] * (logs.ndim - 1), "reflect")
+    sums = jnp.cumsum(jnp.pad(padded, [(1, 0)] + [(0, 0)] * (logs.ndim - 1)), axis=0)
+    count = 2 * wide + 1
+    return logs > (sums[count:] - sums[:-count]) / count + np.log(_STRONG)
+
+
+def shift(power: Any, gained: Any, lost: Any) -> Any:
+    """By how much a level is changed by power that came in and went out [dB].
+
+    Args:
+        power, gained, lost: Mean squares (...) [unit of the record, squared].
+    """
+    true = jnp.maximum(power - gained + lost, 1e-30 * power)
+    silent = power <= 0.0
+    ratio = jnp.where(silent, 1.0, power) / jnp.where(silent, 1.0, true)
+    return 10.0 * jnp.log10(ratio)
+
+
+def band_shift(
+    spectrum: Spectrum, bands: Bands
+) -> tuple[Float[Array, "band ..."], Float[Array, "band ..."]]:
+    """By how much skirts of strong lines change the level of each band.
+
+    Args:
+        spectrum: Of the record, amplitudes (line, ...).
+        bands: From `octave_bands` or `third_octave_bands`.
+
+    Returns:
+        The change (band, ...) [dB], and the distance of the line that makes most of it
+        from the edge that it reaches over (band, ...) [Hz].
+    """
+    *powers, need = band_power(spectrum, bands)
+    return shift(*powers), need
+
+
+def band_power(spectrum: Spectrum, bands: Bands) -> tuple[Any, Any, Any, Any]:
+    """Mean square in each band, and what skirts of strong lines change of it.
+
+    Args:
+        spectrum, bands: As of `band_shift`.
+
+    Returns:
+        The mean square, what came in and what went out over the edges (band, ...) [unit
+        of the record, squared], and the distance of `band_shift` [Hz].
+    """
+    return _powers(spectrum, *_edges(spectrum, bands))
+
+
+@eqx.filter_jit
+def _powers(spectrum, lower, upper):
+    below, above = leakage(spectrum, lower), leakage(spectrum, upper)
+    of_lower = below.up + below.down > above.up + above.down
+    return (
+        _sums(spectrum, lower, upper),
+        below.up + above.down,
+        below.down + above.up,
+        jnp.where(of_lower, below.need, above.need),
+    )
 
 
 @eqx.filter_jit
 def _by_band(spectrum, lower, upper, highest):
+    held = _held(spectrum, lower, upper, highest)
+    return jnp.where(held, _root(_sums(spectrum, lower, upper)), jnp.nan)
+
+
+def _sums(spectrum, lower, upper):
+    """Mean square of what lies between the edges (band, ...)."""
     frequency, power = spectrum.frequency[None], spectrum.power
     inside = (frequency >= lower[:, None]) & (frequency < upper[:, None])
-    sums = jnp.tensordot(inside.astype(power.dtype), power, axes=1)
-    held = _held(spectrum, lower, upper, highest).reshape(-1, *[1] * (sums.ndim - 1))
-    return jnp.where(held, _root(sums), jnp.nan)
+    return jnp.tensordot(inside.astype(power.dtype), power, axes=1)
 
 
+def covers(spectrum: Spectrum, bands: Bands, highest: Any = None) -> tuple[Any, Any]:
+    """Whether bands are at least as wide as a line, and within the record (band,).
+
+    Arguments as of `band_root_mean_square`.
+    """
+    lower, upper = _edges(spectrum, bands)
+    return _covers(spectrum, lower, upper, _highest(spectrum, highest))
+
+
+def _covers(spectrum, lower, upper, highest):
+    return upper - lower >= spectrum.noise_bandwidth, upper <= highest
+
+
+@eqx.filter_jit
 def _held(spectrum, lower, upper, highest):
-    return (upper <= highest) & (upper - lower >= spectrum.noise_bandwidth)
+    wide, within = _covers(spectrum, lower, upper, highest)
+    *powers, _ = _powers(stop(spectrum), lower, upper)
+    changed = shift(*powers)
+    axes = [1] * (changed.ndim - 1)
+    return (wide & within).reshape(-1, *axes) & (jnp.abs(changed) < LEAST_SHIFT)
 
 
 def _highest(spectrum, highest):

@@ -49,6 +49,7 @@ def name_lines(
     factor: float = 5.0,
     neighbours: int = 25,
     least: float = 1e-3,
+    floor: float = 0.0,
     largest: int = 0,
 ) -> tuple[Line, ...]:
     """Lines that stand out of a spectrum, with names from the kinematics.
@@ -83,6 +84,7 @@ def name_lines(
             lines of noise passes: of 4 one in 65 thousand, of 5 one in 30 million.
         neighbours: How many to either side.
         least: Of a line over the largest one [1].
+        floor: Amplitude up to which a line is round-off [unit of the record].
         largest: How many maxima, above `least`, are taken for their size alone.
 
     Returns:
@@ -98,6 +100,7 @@ def name_lines(
     count("name_lines", "largest", largest + 1)
     non_negative("name_lines", "factor", factor, "")
     non_negative("name_lines", "least", least, "")
+    non_negative("name_lines", "floor", floor, "")
     kinematic = [
         kinematic_frequencies(one, speed, contact_angle) for one in _single(bearing)
     ]
@@ -117,6 +120,7 @@ def name_lines(
             _name(frequency, known, own, float(tolerance)),
         )
         for frequency, amplitude in _peaks(spectrum, factor, neighbours, least, largest)
+        if amplitude > floor
     )
 
 

@@ -9,18 +9,25 @@ Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011), there wit
     that move radially.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..design import rows_of
 from ..numerics.eigen import eigh
 from ..numerics.implicit import stop
 from .model import NoiseModel
 from .standing import standing
 from .system import NoiseSystem
+
+LOOSE = 1.0
+"""Frequency below which a mode is that of an element that nothing holds [Hz]."""
+_RING = 0.5
+"""Share of the ring in the motion from which a mode is called its own [1]."""
 
 
 class NaturalModes(NamedTuple):
@@ -66,8 +73,25 @@ def stiffness(system: NoiseSystem, motion: Float[Array, " n"]) -> Float[Array, "
     return k.at[:3, :3].add(s.stiffness * s.projector)
 
 
+def orbited(model: NoiseModel, angle: Any) -> NoiseModel:
+    """The same, its rolling elements carried on from where they were at time zero.
+
+    Args:
+        model: The bearing.
+        angle: By which they, of a set those of each row, orbited [rad].
+    """
+
+    def places(model):
+        return [r.bearing.first_azimuth for r in rows_of(model.element.bearing)]
+
+    return eqx.tree_at(places, model, [at + angle for at in places(model)])
+
+
 def natural_modes(model: NoiseModel) -> NaturalModes:
     """Natural modes of a bearing under its load.
+
+    Rolling elements stand where they are at time zero; for another place, as modes
+    change on the way where elements differ or few of them carry, see `orbited`.
 
     Args:
         model: The bearing; its form errors do not count.
@@ -95,3 +119,28 @@ def _natural_modes(model, orbits) -> NaturalModes:
     share = jnp.sum(vectors[: system.mass.shape[0]] ** 2, axis=0)
     ring, places = jax.vmap(system.parted)(vectors.T / stop(root)[None])
     return NaturalModes(angular / (2.0 * jnp.pi), ring, places, share, result)
+
+
+def ring_modes(modes: NaturalModes, model: NoiseModel) -> list[tuple[str, float]]:
+    """Name and frequency [Hz] of the modes in which the moving ring moves most.
+
+    Args:
+        modes: As NumPy holds them.
+        model: The bearing.
+    """
+    masses = np.repeat(float(model.mass), 3)
+    names = [f"along {name}" for name in "xyz"]
+    if model.tilting_inertia is not None:
+        tilting = np.repeat(float(model.tilting_inertia), 2)
+        masses = np.concatenate([masses, tilting])
+        names += ["tilting about x", "tilting about y"]
+    found: list[tuple[str, float]] = []
+    for frequency, ring, share in zip(
+        modes.frequency, modes.ring, modes.ring_share, strict=True
+    ):
+        if share < _RING or frequency < LOOSE:
+            continue
+        name = f"natural mode {names[int(np.argmax(masses * ring**2))]}"
+        same = sum(one.startswith(name) for one, _ in found)
+        found.append((f"{name} ({same + 1})" if same else name, float(frequency)))
+    return found

@@ -19,7 +19,7 @@ from jaxtyping import Array, Float
 from ..design.checks import check
 from ..numerics.result import Result
 from ..numerics.types import Scalar
-from .bands import Bands, band_root_mean_square
+from .bands import LEAST_SHIFT, Bands, band_power, shift
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
 from .monte_carlo import Progress, Records, drawn
@@ -158,15 +158,14 @@ def shares(
             progress(done + count, whole * n)
 
     def of_bands(acceleration, result):
-        """Mean square of each band (bearing, band)."""
+        """Mean square of each band, and what came in and went out over its edges."""
         if bands is None:
-            return np.zeros((len(result), 0))
+            return np.zeros((len(result), 3, 0))
         solved = (result == int(Result.CONVERGED))[:, None, None]
         heard = jnp.where(solved, acceleration @ along, 0.0)
         lines = spectrum(jnp.moveaxis(heard, 0, 1), turns / shaft, shaft, window=Hann())
-        highest = bandwidth(samples, shaft)
-        square = band_root_mean_square(lines, bands, highest) ** 2
-        return np.asarray(jnp.sum(square, axis=-1).T)
+        *powers, _ = band_power(lines, bands)
+        return np.asarray(jnp.sum(jnp.stack(powers), axis=-1).T.swapaxes(1, 2))
 
     squares, in_bands, fine = [], [], np.ones(n, bool)
     for change in runs:
@@ -204,9 +203,11 @@ def shares(
         error = np.std(less, axis=1, ddof=1) / np.sqrt(count)
     by_band = None
     if bands is not None:
-        bands_mean = np.mean(np.array(in_bands)[:, fine], axis=1)
-        whole_band = np.where(bands_mean[0] > 0.0, bands_mean[0], np.nan)
-        by_band = (1.0 - bands_mean[1:] / whole_band) / (1.0 - factor**2)
+        means = np.mean(np.array(in_bands)[:, fine], axis=1)
+        # All runs have the same lines; what holds of the whole holds of its parts.
+        holds = _holds(bands, means[0], turns / shaft, bandwidth(samples, shaft))
+        whole_band = np.where(holds & (means[0, 0] > 0.0), means[0, 0], np.nan)
+        by_band = (1.0 - means[1:, 0] / whole_band) / (1.0 - factor**2)
     return Shares(
         mean[0],
         mean[1:],
@@ -217,6 +218,13 @@ def shares(
         count,
         sources,
     )
+
+
+def _holds(bands: Bands, powers: np.ndarray, duration: float, highest: float):
+    """Which bands records hold, by their mean powers (3, band) as of `band_power`."""
+    wide = bands.upper - bands.lower >= Hann().noise_bandwidth / duration
+    near = np.abs(np.asarray(shift(*powers))) < LEAST_SHIFT
+    return wide & (bands.upper <= highest) & near
 
 
 def _directions(direction: Any) -> np.ndarray:

@@ -22,7 +22,7 @@ import numpy as np
 from jaxtyping import Array, Complex, Float
 
 from ..design.checks import check, concrete, positive
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Scalar, as_real, namespace
 
 WHOLE_TURNS = 1e-3
 """Most that a record may differ from a whole number of turns, without a window [1].
@@ -50,9 +50,15 @@ class AbstractWindow(eqx.Module):
         """The weights (count,) [1]."""
 
     @abc.abstractmethod
-    def peak(
-        self, left: np.ndarray, middle: np.ndarray, right: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def beyond(self, distance: Any) -> Any:
+        """Share of the power of a lone line in all bins from a distance on [1].
+
+        Args:
+            distance: From the line to the first of these bins, above 0 (...) [bins].
+        """
+
+    @abc.abstractmethod
+    def peak(self, left: Any, middle: Any, right: Any) -> tuple[Any, Any]:
         """Where a lone line lies that is largest in the middle one of three bins.
 
         Args:
@@ -77,8 +83,12 @@ class Rectangular(AbstractWindow):
     def weights(self, count):
         return np.ones(count)
 
+    def beyond(self, distance):
+        return jnp.zeros_like(distance)
+
     def peak(self, left, middle, right):
-        return np.zeros_like(middle), np.ones_like(middle)
+        xp = namespace(middle)
+        return xp.zeros_like(middle), xp.ones_like(middle)
 
 
 class Hann(AbstractWindow):
@@ -96,14 +106,22 @@ class Hann(AbstractWindow):
     def weights(self, count):
         return 1.0 - np.cos(2.0 * np.pi * np.arange(count) / count)
 
+    def beyond(self, distance):
+        # The first bins one by one, the others by an integral over their middles.
+        near = jnp.stack([distance + k for k in range(4)])
+        size = jnp.sinc(near) + 0.5 * (jnp.sinc(near - 1.0) + jnp.sinc(near + 1.0))
+        far = (jnp.sin(jnp.pi * distance) / jnp.pi) ** 2 / (5.0 * (distance + 3.5) ** 5)
+        return (jnp.sum(size**2, axis=0) + far) / self.noise_bandwidth
+
     def peak(self, left, middle, right):
         # A line at the distance s has sinc(s)/(1 - s²) of its amplitude in the bin:
         # the next one has (1 + s)/(2 - s) of that.
+        xp = namespace(middle)
         above = right > left
-        some = np.where(middle > 0, middle, 1.0)
-        ratio = np.where(above, right, left) / some
-        away = np.clip((2.0 * ratio - 1.0) / (1.0 + ratio), 0.0, 0.5)
-        return np.where(above, away, -away), (1.0 - away**2) / np.sinc(away)
+        some = xp.where(middle > 0, middle, 1.0)
+        ratio = xp.where(above, right, left) / some
+        away = xp.clip((2.0 * ratio - 1.0) / (1.0 + ratio), 0.0, 0.5)
+        return xp.where(above, away, -away), (1.0 - away**2) / xp.sinc(away)
 
 
 class Spectrum(eqx.Module):

@@ -101,6 +101,18 @@ def bandwidth(samples: int, shaft_frequency: Any) -> Any:
     return HELD * 0.5 * samples * shaft_frequency
 
 
+def rounding(model: NoiseModel, record: Vibration) -> float:
+    """Acceleration that the round-off of the contacts' forces may make [m/s²].
+
+    Args:
+        model: The bearing.
+        record: Its vibration; concrete.
+    """
+    load = np.asarray(record.contact_load)
+    most = float(np.max(np.sum(load, axis=(1, 2)), initial=0.0))
+    return float(np.finfo(load.dtype).eps) * most / float(model.mass)
+
+
 def vibration(
     model: NoiseModel,
     *,

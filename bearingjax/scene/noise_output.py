@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from ..acoustics import Shares, write_sound
+from ..acoustics.natural import LOOSE
 from .files import write_numbers
-from .noise_run import LOOSE, Many, NoiseRun
+from .noise_run import Many, NoiseRun
 from .noise_scene import DIRECTIONS
 from .tolerance_table import Tighter
 

@@ -10,12 +10,14 @@ from bearingjax.acoustics import (
     Hann,
     band_levels,
     band_root_mean_square,
+    band_shift,
     is_held,
     octave_bands,
     spectrum,
     third_octave_bands,
     total_root_mean_square,
 )
+from bearingjax.acoustics.bands import LEAST_SHIFT, leakage
 from bearingjax.acoustics.reference_levels import OCTAVES
 
 SHAFT = 25.0
@@ -83,9 +85,11 @@ def test_parseval_over_bands(window):
     y = np.random.default_rng(4).normal(size=(4096, 2)) + [5.0, 0.0]
     found = spectrum(y, 1.0, SHAFT, window=window)
     bands = third_octave_bands(1.0, 1600.0)
-    sums = (np.asarray(band_root_mean_square(found, bands)) ** 2)[is_held(found, bands)]
+    held, other = np.asarray(is_held(found, bands)).T
+    np.testing.assert_array_equal(held, other)
+    sums = np.asarray(band_root_mean_square(found, bands))[held] ** 2
     rest = np.asarray(found.power)[1:]
-    first = bands.lower[is_held(found, bands)][0]
+    first = bands.lower[held][0]
     outside = (found.frequency[1:] < first) | (found.frequency[1:] >= bands.upper[-1])
     total = total_root_mean_square(found)
     whole = sums.sum(axis=0) + rest[np.asarray(outside)].sum(axis=0)
@@ -120,6 +124,47 @@ def test_bands_beyond_the_record_are_named():
     narrow = spectrum(y, 1.0, SHAFT), spectrum(y, 1.0, SHAFT, window=Hann())
     assert list(is_held(narrow[0], thirds)) == [False, True, True, True, True]
     assert list(is_held(narrow[1], thirds)) == [False, False, False, True, True]
+
+
+@pytest.mark.parametrize("place", [25.0, 24.1, 20.3, 22.5])
+def test_what_a_window_spreads_over_an_edge(place):
+    """That of a lone line is what the lines beyond the edge have, by their sum."""
+    time = 8 / SHAFT * np.arange(8192) / 8192
+    y = np.cos(2 * np.pi * place * time + 0.4)
+    found = spectrum(y, 8 / SHAFT, SHAFT, window=Hann())
+    bands = octave_bands(16.0, 31.5)
+    edge = bands.upper[:1]
+    spread = leakage(found, edge)
+    beyond = (np.asarray(found.frequency) < edge) == (place >= edge)
+    out, other = (spread.down, spread.up)[:: 1 if place >= edge else -1]
+    whole = np.asarray(found.power)[1:][beyond[1:]].sum()
+    # What is left leaks from the line's image at negative frequencies.
+    assert abs(out[0] - whole) < 1e-3 * 0.5 and other[0] == 0.0
+    np.testing.assert_allclose(spread.need, abs(place - edge), rtol=5e-3)
+
+
+def test_bands_beside_a_strong_line_are_held_where_its_skirt_ends():
+    """6205 at 1500 rpm: the shaft at 25 Hz stands 2.6 Hz beside the octave of 16 Hz."""
+    bands = octave_bands(16.0, 63.0)
+    line = acoustics.level(np.sqrt(0.5))
+    held = {}
+    for turns in (8, 16, 24):
+        time = turns / SHAFT * np.arange(turns * 256) / (turns * 256)
+        y = np.cos(2 * np.pi * 25.0 * time) + 1e-3 * np.cos(2 * np.pi * 14.3 * time)
+        found = spectrum(y, turns / SHAFT, SHAFT, window=Hann())
+        levels = np.asarray(band_levels(found, bands))
+        held[turns] = ~np.isnan(levels[:2])
+        # What is told is right, whatever is left out.
+        told = np.array([line - 60.0, line])[held[turns]]
+        np.testing.assert_allclose(levels[:2][held[turns]], told, atol=LEAST_SHIFT)
+    assert not held[8].any() and held[24].all()
+    changed, need = band_shift(
+        spectrum(y[: 8 * 256], 8 / SHAFT, SHAFT, window=Hann()), bands
+    )
+    # On a bin: a sixth of the line's power lies in the bin below, within 16 Hz.
+    np.testing.assert_allclose(changed[1], 10 * np.log10(5 / 6), atol=1e-3)
+    assert changed[0] > 30.0
+    np.testing.assert_allclose(need[:2], 25.0 - bands.upper[0], rtol=1e-3)
 
 
 def test_derivatives_of_bands():

@@ -12,7 +12,15 @@ import pytest
 from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.acoustics import Vibration, natural_modes, needed_steps
+from bearingjax.acoustics import (
+    Vibration,
+    model_warnings,
+    natural_modes,
+    needed_steps,
+    record_warnings,
+    ring_modes,
+)
+from bearingjax.acoustics.warning import _short_waves
 from bearingjax.numerics import Result
 from bearingjax.scene import noise_as_dict, noise_run, read_noise, run_noise
 
@@ -91,9 +99,10 @@ def test_every_file_holds_the_same_record(run, rerun, scene, tmp_path):
     bands = found["bands"]
     assert bands["centre"] == [4, 8, 16, 31.5, 63, 125, 250, 500, 1e3, 2e3, 4e3, 8e3]
     assert np.shape(bands["level"]) == (12, 3)
-    # One turn of 20 ms in 64 samples: lines 50 Hz apart, up to 1120 Hz.
+    # One turn of 20 ms in 64 samples: lines 50 Hz apart, up to 1120 Hz; the one line,
+    # at 264 Hz, spreads over the octaves beside its own.
     held = [row[1] is not None for row in bands["level"]]
-    assert held == [False] * 5 + [True] * 3 + [False] * 4
+    assert held == [False] * 6 + [True] + [False] * 5
     states = found["contact_states"]
     assert states["contacts"] == [0, 1, 2] and states["samples"] == [0, 0, 7 * 64]
     assert states["switches_per_turn"] == 0.0
@@ -115,6 +124,7 @@ def test_every_file_holds_the_same_record(run, rerun, scene, tmp_path):
         "2: 100 %; 0 open or close per turn of the shaft",
         "warning: the record of 0.02 s is too short for the bands up to 63 Hz; raise",
         "warning: the record of 0.02 s has too few samples for the bands from 1000 Hz",
+        "are left out for that: 125, 500 Hz; raise `vibration.turns`, to 2 ",
     ):
         assert words in done.out, words
     assert len(found["warnings"]) == done.out.count("\nwarning: ")
@@ -133,6 +143,11 @@ def _same_sound(path, acceleration, told):
 def test_a_model_by_hand_vibrates_alike(scene):
     task = read_noise(scene)
     found = run_noise(task)
+    record, lines = found.heard.record, found.heard.spectrum
+    assert list(found.warnings) == [
+        *model_warnings(task.model, task.samples, found.steps),
+        *record_warnings(task.model, record, lines, task.bands),
+    ]
     modes = natural_modes(task.model)
     assert np.array_equal(found.modes.frequency, modes.frequency)
     assert found.heard is not None and found.steps > 1
@@ -208,26 +223,26 @@ def test_a_motion_that_runs_away_is_no_result(scene):
 
 def test_what_is_doubtful_is_told(scene):
     task = read_noise(scene, ["deviations.waves.0.order=60"])
-    modes = jax.device_get(natural_modes(task.model))
-    few, *high, fast = noise_run._before(task, modes, 1, 9)
-    assert few.startswith("1 steps per sample are less than the 9 that the fastest")
+    few, *high, fast = model_warnings(task.model, 64, 1)
+    least = needed_steps(task.model, 64)
+    assert few.startswith(f"1 steps per sample are less than the {least} that the")
     # 64 samples per turn of 50 Hz tell 1120 Hz.
-    names = noise_run.ring_modes(modes, task.model)
+    names = ring_modes(jax.device_get(natural_modes(task.model)), task.model)
     above = [name for name, frequency in names if frequency > 1120.0]
     assert [text.split(" at ")[0] for text in high] == [f"the {name}" for name in above]
-    assert above and "lies above 1120 Hz, up to which 64 samples" in high[0]
+    assert above and "lies above 1120 Hz, up to which the samples tell" in high[0]
     assert "waves of order 60 of the inner raceway are met at 18" in fast
     assert "raise `vibration.samples`" in fast
     task = read_noise(scene, ["deviations.waves.0.order=900"])
     load = np.full((1, 7, 2), 30.0)
-    (short,) = noise_run._short_waves(task, load)
+    (short,) = _short_waves(task.model, load, None)
     assert short.startswith("waves of the inner raceway of order ")
     assert "three contacts of 0.1" in short
     # Random bearings have waves of their own.
     drawn = ["vibration.tolerance={waviness='50 nm', highest=900}"]
     task = read_noise(scene, drawn, bearings=2)
-    assert len(list(noise_run._short_waves(task, load))) == 2
-    *_, outer, inner = noise_run._before(task, modes, 9, 9)
+    assert len(list(_short_waves(task.model, load, task.tolerances))) == 2
+    *_, outer, inner = model_warnings(task.model, 64, 99, task.tolerances)
     assert "order 900 of the outer raceway" in outer and "inner raceway" in inner
 
 

@@ -1,0 +1,286 @@
+"""Warnings about noise: one list for the library and the command line."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import jax
+import numpy as np
+
+from ..design import rows_of
+from ..design.form_error import FormErrors, Harmonics, Surfaces
+from ..numerics.result import Result
+from .bands import LEAST_SHIFT, Bands, band_shift, covers, total_root_mean_square
+from .contact_states import contact_states
+from .contact_width import contact_half_width
+from .free_row import of_rows
+from .model import NoiseModel
+from .natural import natural_modes, orbited, ring_modes
+from .orders import kinematic_frequencies
+from .scatter import Tolerances
+from .spectrum import Spectrum
+from .vibration import Vibration, bandwidth, needed_steps, rounding
+
+UNEVEN = 3.0
+"""Difference of both halves of a record that is worth a word [dB]."""
+_PLACES = 8
+"""Places of the rolling elements on their way round at which modes are compared."""
+_WANDERING = 0.02
+"""Change of a natural frequency on that way that is worth a word [1]."""
+_LOBE = 2.0
+"""Half width of a line with Hann's window [bins]."""
+
+
+def model_warnings(
+    model: NoiseModel,
+    samples: int = 2048,
+    steps: int | None = None,
+    tolerances: Tolerances | None = None,
+) -> list[str]:
+    """What is doubtful about a bearing and the record that is asked of it.
+
+    Args:
+        model: The bearing; concrete.
+        samples: Per turn of the shaft.
+        steps: Of the integration, per sample; `None`: as many as are needed.
+        tolerances: How random bearings scatter, if they are wanted.
+
+    Returns:
+        A sentence each; empty where nothing is doubtful.
+    """
+    told = bandwidth(samples, float(model.shaft_speed) / (2.0 * np.pi))
+    return [
+        *_few_steps(model, samples, steps),
+        *_wandering_modes(model),
+        *_above(model, told, tolerances),
+    ]
+
+
+def record_warnings(
+    model: NoiseModel,
+    record: Vibration,
+    found: Spectrum,
+    bands: Bands,
+    tolerances: Tolerances | None = None,
+) -> list[str]:
+    """What is doubtful in a record and its levels.
+
+    Args:
+        model: The bearing; concrete.
+        record: From `vibration`, converged.
+        found: Spectrum of its acceleration, amplitudes (line, direction) [m/s²].
+        bands: Of the levels.
+        tolerances: How random bearings scatter, if they are wanted.
+
+    Returns:
+        A sentence each; empty where nothing is doubtful.
+    """
+    return [
+        *_silent(model, record, found),
+        *_bands(record, found, bands),
+        *_total(model, record, found),
+        *_short_waves(model, np.asarray(record.contact_load), tolerances),
+        *_halves(record),
+        *_lost(record),
+    ]
+
+
+def _few_steps(model, samples, steps) -> Iterator[str]:
+    least = needed_steps(model, samples)
+    if steps is not None and steps < least:
+        yield (
+            f"{steps} steps per sample are less than the {least} that the fastest"
+            " natural mode needs"
+        )
+
+
+def _wandering_modes(model: NoiseModel) -> Iterator[str]:
+    """Natural modes that change as the rolling elements orbit."""
+    angles = 2.0 * np.pi / _PLACES * np.arange(_PLACES)
+    every: dict[str, list[float]] = {}
+    for angle in angles if model.orbits else ():
+        modes = jax.device_get(natural_modes(orbited(model, angle)))
+        if int(modes.result) == Result.CONVERGED:
+            for name, frequency in ring_modes(modes, model):
+                every.setdefault(name, []).append(frequency)
+    for name, known in every.items():
+        low, high = min(known), max(known)
+        if high > (1.0 + _WANDERING) * low:
+            yield (
+                f"the {name} lies between {low:.5g} and {high:.5g} Hz as the rolling"
+                " elements orbit; what is told is where they stand at time zero"
+            )
+
+
+def _above(model, told, tolerances) -> Iterator[str]:
+    """Modes and waves above what the samples tell."""
+    cut = (
+        f"above {told:.5g} Hz, up to which the samples tell the vibration; raise"
+        " `vibration.samples` to hear what they make there"
+    )
+    for name, frequency in ring_modes(jax.device_get(natural_modes(model)), model):
+        if frequency > told:
+            yield f"the {name} at {frequency:.5g} Hz lies {cut}"
+    drawn = _highest_drawn(tolerances)
+    for where, bearing, errors in _rows(model):
+        turning = kinematic_frequencies(bearing, model.speed)
+        passing = {
+            "outer raceway": abs(float(turning.cage - turning.outer)),
+            "inner raceway": abs(float(turning.inner - turning.cage)),
+            "elements": float(turning.rotation),
+        }
+        for part, given in _parts(errors).items():
+            highest = max(_highest(given), drawn[part])
+            met = highest * passing[part]
+            if met > told:
+                yield (
+                    f"waves of order {highest} of the {part}{where} are met at"
+                    f" {met:.5g} Hz, {cut}"
+                )
+
+
+def _silent(model, record, found) -> Iterator[str]:
+    """A record of nothing but round-off."""
+    size = np.sqrt(np.sum(np.asarray(found.power)[1:]))
+    if not size > rounding(model, record):
+        yield (
+            f"nothing shakes the bearing: its acceleration of {size:.2g} m/s² is"
+            " round-off of the forces; give it form errors, or rolling elements that"
+            " differ"
+        )
+
+
+def _bands(record, found, bands) -> Iterator[str]:
+    """Bands that the record does not hold, and what helps."""
+    duration = f"the record of {float(record.duration):.4g} s"
+    centre = bands.centre
+    wide, within = (np.asarray(a) for a in covers(found, bands, record.bandwidth))
+    if not wide.all():
+        yield (
+            f"{duration} is too short for the bands up to {centre[~wide][-1]:g} Hz;"
+            " raise `vibration.turns`"
+        )
+    if within.any() and not within.all():
+        yield (
+            f"{duration} has too few samples for the bands from"
+            f" {centre[~within][0]:g} Hz on; raise `vibration.samples`"
+        )
+    changed, need = (np.asarray(a) for a in band_shift(found, bands))
+    over = (wide & within)[:, None] & (np.abs(changed) >= LEAST_SHIFT)
+    if over.any():
+        least = float(need[over].min())
+        turns = math.ceil(_LOBE * float(record.shaft_frequency) / max(least, 1e-9))
+        # Beyond the lobe of a line its skirt falls by 18 dB for twice the turns.
+        turns = max(turns, 2 * record.turns)
+        named = ", ".join(f"{c:g}" for c in centre[over.any(axis=1)])
+        yield (
+            f"the window spreads strong lines over the edges of bands, which are left"
+            f" out for that: {named} Hz; raise `vibration.turns`, to {turns} for lines"
+            f" as near to an edge as {least:.2g} Hz"
+        )
+
+
+def _total(model, record, found) -> Iterator[str]:
+    """A total level that the window changes."""
+    own = np.asarray(record.acceleration)[:, :3].std(axis=0)
+    heard = own > rounding(model, record)
+    if not heard.any():
+        return
+    windowed = np.asarray(total_root_mean_square(found))[heard]
+    away = 20.0 * np.log10(windowed / own[heard])
+    most = float(away[np.argmax(np.abs(away))])
+    if abs(most) >= LEAST_SHIFT:
+        yield (
+            f"with its window the total level is {abs(most):.2g} dB"
+            f" {'below' if most < 0 else 'above'} that of the record itself: the window"
+            " leans on the middle, and takes a part of lines of few periods; raise"
+            " `vibration.turns`"
+        )
+
+
+def _short_waves(model, load, tolerances) -> Iterator[str]:
+    """Waves that contacts bridge, but that elements of the model follow."""
+    drawn = _highest_drawn(tolerances)
+    loads = of_rows(load, model.element.bearing, axis=1)
+    for own, (where, bearing, errors) in zip(loads, _rows(model), strict=True):
+        half = contact_half_width(bearing, own)
+        surfaces = Surfaces.of(bearing)
+        around = {
+            "outer raceway": surfaces.outer,
+            "inner raceway": surfaces.inner,
+            "elements": surfaces.element,
+        }
+        for part, given in _parts(errors).items():
+            highest = max(_highest(given), drawn[part])
+            most = int(float(around[part].radius) / half) if half > 0.0 else highest
+            if highest > most:
+                yield (
+                    f"waves of the {part}{where} of order {most} and more are shorter"
+                    f" than some three contacts of {2e3 * half:.2g} mm, which would"
+                    " bridge them: their noise is overstated, by 10 % at that order and"
+                    " ever more above"
+                )
+
+
+def _halves(record) -> Iterator[str]:
+    acceleration = np.asarray(record.acceleration)[:, :3]
+    half = len(acceleration) // 2
+    first, second = (
+        np.sqrt(np.sum(part.var(axis=0)))
+        for part in (acceleration[:half], acceleration[half:])
+    )
+    away = 20.0 * np.log10(first / second) if first > 0 and second > 0 else 0.0
+    if abs(away) > UNEVEN:
+        yield (
+            f"the first half of the record is {abs(away):.3g} dB"
+            f" {'louder' if away > 0 else 'quieter'} than the second: raise"
+            " `vibration.settle`, or `vibration.turns` until all beats are in it"
+        )
+
+
+def _lost(record) -> Iterator[str]:
+    lost = contact_states(record).shares[0]
+    if lost > 0:
+        yield (
+            f"rolling elements are out of contact for {100.0 * lost:.3g} % of the time:"
+            " those that are hit again make noise that depends on the damping of"
+            " contacts, `vibration.retardation`"
+        )
+
+
+def _rows(model: NoiseModel) -> Iterator[tuple[str, Any, FormErrors]]:
+    """Words for each row, its design and its form errors."""
+    parts = rows_of(model.element.bearing)
+    for k, (row, errors) in enumerate(zip(parts, model.errors_of_rows, strict=True)):
+        yield "" if len(parts) == 1 else f" of row {k}", row.bearing, errors
+
+
+def _parts(errors: FormErrors) -> dict[str, Any]:
+    return {
+        "outer raceway": errors.outer,
+        "inner raceway": errors.inner,
+        "elements": errors.elements,
+    }
+
+
+def _highest_drawn(tolerances: Tolerances | None) -> dict[str, int]:
+    """Highest order of waves that random bearings have, by part."""
+    found = {"outer raceway": 0, "inner raceway": 0, "elements": 0}
+    for name, part in (
+        ("outer_axial", "outer raceway"),
+        ("outer_outwards", "outer raceway"),
+        ("inner_axial", "inner raceway"),
+        ("inner_outwards", "inner raceway"),
+        ("elements", "elements"),
+    ):
+        waves = getattr(tolerances, name, None)
+        if waves is not None:
+            found[part] = max(found[part], waves.high)
+    return found
+
+
+def _highest(errors: Any) -> int:
+    """Highest order of waves."""
+    shapes = jax.tree.leaves(errors, is_leaf=lambda x: isinstance(x, Harmonics))
+    orders = [max(one.order) for one in shapes if isinstance(one, Harmonics)]
+    return max(orders, default=0)
