@@ -24,6 +24,7 @@ from ..rotor.vibration import (
     rotor_vibration,
     simulate,
 )
+from ..rotor.vibration.orbit import amplitudes
 from .rotor_scene import RotorScene
 from .rotor_supports import unit_of_length, with_passage
 
@@ -38,13 +39,17 @@ _ENDINGS = {
     ),
     Ending.SMALL_STEP: (
         "the branch could not be followed further: no step, however small, led on;"
-        " take more `harmonics`, `samples` or `steps`"
+        " take more {finer}"
     ),
     Ending.NO_START: (
-        "no periodic vibration was found at the first frequency; begin at another one"
+        "no periodic vibration was found at the first frequency; begin farther from"
+        " the resonances, or take more {finer}"
     ),
 }
+_FINER = {"shooting": "`steps`", "harmonic_balance": "`harmonics` and `samples`"}
+"""What makes a method more accurate."""
 Stopped = tuple[Result, str]
+_amplitudes = jax.jit(amplitudes)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -146,23 +151,28 @@ def respond(
     stopped = None
     if branch.ending in _ENDINGS:
         last = branch.frequency[-1] if len(branch.frequency) else asked.begin
-        where = f"at {last / (2.0 * np.pi):.5g} Hz: {_ENDINGS[branch.ending]}"
+        why = _ENDINGS[branch.ending].format(finer=_FINER[asked.method])
+        where = f"at {last / (2.0 * np.pi):.5g} Hz: {why}"
         stopped = Result.STEP_LIMIT, where
     marked = [_at_stations(task, system, one.displacement) for one in branch.events]
+    marked = np.reshape(marked, (-1, *moved.shape[1:]))
     return RotorResponse(
         asked.method,
         branch.frequency,
-        _half_range(moved),
+        _half_ranges(moved),
         moved,
         branch,
-        np.array([_half_range(one[None])[0] for one in marked]),
+        _half_ranges(marked),
         stopped,
     )
 
 
-def _half_range(moved):
-    """Half of peak to peak (point, …) of what moves (point, sample, …)."""
-    return 0.5 * (moved.max(axis=1) - moved.min(axis=1))
+def _half_ranges(every):
+    """Half of peak to peak (point, station, 5) of motions (point, sample, station, 5),
+    between the samples too."""
+    flat = (moved.reshape(len(moved), -1) for moved in every)
+    found = [np.asarray(_amplitudes(moved)) for moved in flat]
+    return np.reshape(found, (len(every), *every.shape[2:]))
 
 
 def _linear(task: RotorScene, linear: Rotor) -> RotorResponse:

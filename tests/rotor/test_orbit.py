@@ -114,7 +114,7 @@ def test_order_of_the_flow(order):
         float(Shooting(n).flow_error(system, start, jnp.asarray(1.0))) for n in numbers
     )
     found = np.log(coarse / fine) / np.log(numbers[1] / numbers[0])
-    # 8; with a kink 2.5, but for where in a step it falls.
+    # 9; with a kink 2.5, but for where in a step it falls.
     assert found > 7.0 if order == "closed" else found > 1.5
 
 

@@ -38,6 +38,7 @@ FEW = {  # of the published rotor: little to solve, away from its resonance
     "rotor.response.samples": "8",
     "rotor.response.steps": "12",
 }
+FEW_MODES = {key: FEW[key] for key in ("rotor.modes", "rotor.campbell.count")}
 ON_SPRINGS = {  # as stiff as its bearings
     "bearings": "{}",
     "rotor.bearings.0": "{station=0, stiffness={radial='143.22 N/um',"
@@ -149,6 +150,31 @@ def _same_as_the_library(found):
     assert np.allclose(
         amplitude[:, :, :2], linear.amplitude[:, :, :2], rtol=PUBLISHED, atol=1e-13
     )
+
+
+@pytest.mark.parametrize(
+    "method", ("harmonics=3, samples=8", "method='shooting', steps=8")
+)
+def test_a_shaft_with_fast_modes_has_its_linear_response_by_every_method(method):
+    """Modes of up to 80 times the excitation, and peaks between the samples."""
+    unbalance = "[{station=1, moment='1 g mm', phase='20 deg'}]"
+    shaft = {
+        **ON_SPRINGS,
+        "rotor.rigid": "false",
+        "rotor.excitation": f"{{unbalance={unbalance}}}",
+    }
+    span = "from='500 Hz', to='505 Hz'"
+    answers = []
+    for words in (f"{span}, {method}", f"{span}, method='linear', points=2"):
+        asked = {**shaft, "rotor.response": f"{{{words}}}"}
+        done = run_rotor(read_rotor("rotor_paper_12", settings(FEW_MODES, asked)))
+        assert done.converged and not rotor_warnings(done)
+        answers.append(done.response)
+    found, linear = answers
+    for end in (0, -1):
+        assert found.frequency[end] == pytest.approx(linear.frequency[end])
+        apart = np.abs(found.amplitude[end] - linear.amplitude[end])
+        assert apart.max() < 1e-6 * linear.amplitude[end].max()
 
 
 def test_what_is_not_asked_for_is_not_there(run, rerun, tmp_path):

@@ -18,6 +18,8 @@ from .system import AbstractVibration, frequency_of
 TOLERANCE = {"float64": 1e-10, "float32": 1e-4}
 """Of the residual of a method, or of Newton's step towards the orbit, pure numbers
 [1]."""
+_ROUND_OFF = 1e3
+"""What forces that cancel may leave of their sum, in units of round-off [1]."""
 STABLE = 1e-6
 """By how much a multiplier of a stable orbit may exceed one: round-off [1]."""
 _FINE = 8
@@ -127,6 +129,7 @@ def newton(
     Fails: `STEP_LIMIT`, `NON_FINITE`.
     """
     tolerance = TOLERANCE[str(x.dtype)]
+    round_off = _ROUND_OFF * jnp.finfo(x.dtype).eps
 
     def evaluated(x):
         left, jacobian = linearised(x)
@@ -136,8 +139,10 @@ def newton(
     def solved(here):
         # Of a stiff shaft the forces that cancel leave more than the tolerance in
         # round-off; how far that is from the orbit the step tells.
-        *_, size, step = here
-        return (size <= tolerance) | (jnp.max(jnp.abs(step)) <= tolerance)
+        x, _, jacobian, size, step = here
+        cancels = round_off * jnp.max(jnp.abs(jacobian) @ jnp.abs(x))
+        near = (size <= cancels) & (jnp.max(jnp.abs(step)) <= tolerance)
+        return (size <= tolerance) | near
 
     def going(state):
         here, _, steps = state

@@ -196,6 +196,17 @@ def out_of_balance(
     return left / unit_force
 
 
+def inertia(system: AbstractVibration, ratio: Scalar) -> Float[Array, "n n"]:
+    """Slope of `out_of_balance` in the second derivatives [1].
+
+    Args:
+        system: The system.
+        ratio: ν [1].
+    """
+    weight = jnp.diagonal(system.mass) * system.scale
+    return ratio**2 * system.mass * system.scale[None, :] / weight[:, None]
+
+
 def rates(
     system: AbstractVibration, ratio: Scalar
 ) -> Callable[[Scalar, Float[Array, " state"]], Float[Array, " state"]]:
@@ -209,10 +220,7 @@ def rates(
         Function (phase [rad], state) -> derivative; the state holds the freedoms over
         `scale`, then their derivatives with respect to φ [1].
     """
-    # The mass matrix in the units of `out_of_balance`.
-    weight = jnp.diagonal(system.mass) * system.scale
-    mass = ratio**2 * system.mass * system.scale[None, :] / weight[:, None]
-    inverse = jnp.linalg.inv(mass)
+    inverse = jnp.linalg.inv(inertia(system, ratio))
 
     def rate(phase, y):
         u, rate = jnp.split(y, 2)
