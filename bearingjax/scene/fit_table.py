@@ -38,6 +38,7 @@ from ..design import (
 from ..design.fit_range import ClearanceRange
 from ..design.fits import PARTS, FitState
 from ..element import Speed
+from ..statics.service_warning import seat_warnings
 from .catalogue_entry import CLEARANCE, CLEARANCES, FromCatalogue
 from .quantity import SceneError
 from .table import Table, written
@@ -55,10 +56,6 @@ EXPANSIONS = {
     "outer_ring": "ring_expansion",
 }
 """Keys of the expansions of the parts of a bearing."""
-
-MOST_STRESS = 127e6
-"""Hoop stress above which a fit is warned of, of bearing steel [Pa]: the largest that
-catalogues of rolling bearings (JTEKT, NTN) allow a fit."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -204,38 +201,19 @@ def fit_facts(fits: Fits, bearing: Bearing | BearingSet) -> FitFacts:
     )
 
 
-def fit_warnings(facts: FitFacts) -> list[str]:
+def fit_warnings(
+    fits: Fits, bearing: Bearing | BearingSet, load_fixed_to: str = "space"
+) -> list[str]:
     """What is odd about fits, a sentence each.
 
     Args:
-        facts: From `fit_facts`.
+        fits, bearing: As of `fit_facts`.
+        load_fixed_to: As of `LifeConditions`.
     """
-    told = []
-    for name, state in (("mounted", facts.mounted), ("in operation", facts.operating)):
-        if state.ring_stress > MOST_STRESS:
-            told.append(
-                f"fit: the hoop stress of the inner ring is"
-                f" {1e-6 * float(state.ring_stress):.4g} MPa {name}, above"
-                f" {1e-6 * MOST_STRESS:g} MPa, which bearing steel bears for long"
-            )
-            break
-    seats = {"shaft": "the inner ring on its shaft", "housing": "the outer ring"}
-    for seat, words in seats.items():
-        before, after, loose = (
-            float(getattr(state, f"{seat}_interference"))
-            for state in (facts.mounted, facts.operating, facts.loosest)
-        )
-        if before > 0.0 >= after:
-            told.append(
-                f"fit: {words} is tight when mounted, but loose by"
-                f" {-1e6 * after:.3g} µm in operation: its seat has no pressure"
-            )
-        elif seat == "shaft" and after > 0.0 >= loose:
-            told.append(
-                f"fit: {words} is loose in operation, by {-1e6 * loose:.3g} µm, at the"
-                " loosest sizes of the tolerances"
-            )
-    return told
+    facts, conditions = fit_facts(fits, bearing), fits.conditions
+    speed = Speed(conditions.speed, conditions.outer_speed)
+    seats = facts.mounted, facts.operating, facts.loosest
+    return seat_warnings(*seats, speed=speed, load_fixed_to=load_fixed_to)
 
 
 def turning(fits: Fits | None, speed: float) -> Fits | None:

@@ -24,7 +24,7 @@ from ..optimise.search import METHODS
 from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
-from .cases_table import DESIGN, read_cases
+from .cases_table import DESIGN, read_cases, speeds_told
 from .fit_table import no_expansion, read_temperature
 from .life_table import life_conditions
 from .quantity import SceneError, kind_of
@@ -110,6 +110,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
             raise top.error("cases", problem)
         # On its seats a bearing has the clearance of the speeds of each case.
         cases = dataclasses.replace(cases, design=None)
+    scene = speeds_told(scene, cases)
     table = top.table("optimise")
     task = _optimisation(top, table, scene, cases)
     table.finish()

@@ -451,7 +451,17 @@ def test_warnings(scene):
     fast = ["operating.inner_speed=100000 rpm"]
     told = bj.read_scene(path, fast).warnings
     assert any("above 127 MPa" in text for text in told)
-    assert any("but loose by" in text for text in told)
+    creeps = "fit: the inner ring on its shaft turns against the load and is loose by"
+    assert any(t.startswith(creeps) and "though tight when mounted" in t for t in told)
+    loose = ["fit.shaft=g6", "operating.inner_speed=1000 rpm"]
+    (told,) = bj.read_scene(path, loose).warnings
+    assert told.startswith(creeps) and "mounted" not in told
+    # Under an unbalance the load turns with the shaft: the outer ring creeps.
+    assert not [
+        t
+        for t in bj.read_scene(path, [*loose, "life.load_fixed_to=inner"]).warnings
+        if t.startswith(creeps)
+    ]
     cold = ["temperature.inner_ring=80 degC"]
     (told,) = bj.read_scene(path, cold).warnings
     assert told.startswith("fit: the inner ring on its shaft is tight when mounted, bu")
