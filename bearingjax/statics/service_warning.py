@@ -60,14 +60,14 @@ def seat_warnings(
         )
         if turns and after <= 0.0:
             told.append(
-                f"fit: {words} turns against the load and is loose by {abs(after):.3g} µm"
-                f" in operation{', though tight when mounted' if before > 0 else ''}:"
+                f"fit: {words} turns against the load and is loose by"
+                f" {abs(after):.3g} µm in operation{', though tight when mounted' if before > 0 else ''}:"
                 " it creeps and wears its seat"
             )
         elif before > 0.0 >= after:
             told.append(
-                f"fit: {words} is tight when mounted, but loose by {abs(after):.3g} µm in"
-                " operation: its seat has no pressure"
+                f"fit: {words} is tight when mounted, but loose by"
+                f" {abs(after):.3g} µm in operation: its seat has no pressure"
             )
         elif loosest is not None and (turns or seat == "shaft"):
             left = 1e6 * float(getattr(loosest, f"{seat}_interference"))
