@@ -59,10 +59,10 @@ def seat_warnings(
             for state in (mounted, operating)
         )
         if turns and after <= 0.0:
+            once = ", though tight when mounted" if before > 0.0 else ""
             told.append(
                 f"fit: {words} turns against the load and is loose by"
-                f" {abs(after):.3g} µm in operation{', though tight when mounted' if before > 0 else ''}:"
-                " it creeps and wears its seat"
+                f" {abs(after):.3g} µm in operation{once}: it creeps and wears its seat"
             )
         elif before > 0.0 >= after:
             told.append(
