@@ -8,6 +8,7 @@ import jax
 
 from ..design import (
     CLEARANCE_CLASSES,
+    CLEARANCE_PARTS,
     LIMIT_CLASSES,
     PLACES,
     WARM_MATERIALS,
@@ -39,7 +40,7 @@ from ..design.fit_range import ClearanceRange
 from ..design.fits import PARTS, FitState
 from ..element import Speed
 from ..statics.service_warning import seat_warnings
-from .catalogue_entry import CLEARANCE, CLEARANCES, FromCatalogue
+from .catalogue_entry import CLEARANCE, FromCatalogue, class_limits
 from .quantity import SceneError
 from .table import Table, written
 
@@ -328,7 +329,8 @@ def _class(table: Table, seat: str) -> str:
 
 def _clearance(table: Table, own: Table, bore, catalogue) -> Limits | None:
     """Limits of a clearance class; `None`: the bearing's own number."""
-    name = table.choice("clearance", CLEARANCE_CLASSES, None)
+    names = [c + part for part in CLEARANCE_PARTS for c in CLEARANCE_CLASSES]
+    name = table.choice("clearance", tuple(names), None)
     drawn = own.keys_given()
     # A line that only restates the catalogue does not count.
     changed = drawn if catalogue is None else catalogue.overridden
@@ -337,7 +339,7 @@ def _clearance(table: Table, own: Table, bore, catalogue) -> Limits | None:
         name = catalogue.entry.clearance_class
     if name is None:
         return None
-    find = CLEARANCES.get(catalogue.entry.type if catalogue else drawn["type"])
+    find = catalogue.entry.class_limits if catalogue else class_limits(drawn["type"])
     if find is None:
         problem = "is for bearings with classes of radial clearance, not of this type;"
         raise table.error("clearance", f"{problem} give its own clearance or angle")
