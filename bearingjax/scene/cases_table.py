@@ -435,8 +435,7 @@ def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
     # A designation, "7208 BE", is no quantity.
     if unit not in _SI_UNITS:
         return key, str(given)
-    # "20 um" is 2e-05 m here, not the neighbour that a product of floats ends at.
-    return f"{key} [{unit}]", float(f"{float(number):.15g}")
+    return f"{key} [{unit}]", float(number)
 
 
 def _fits(data, key) -> bool:

@@ -98,6 +98,10 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
             f"{path.name}: `optimise` is missing; it must be a table that names"
             " `objective` and `variables`"
         )
+    begun = _begun(data)
+    if begun:
+        settings = (*settings, *(f"{key}={value}" for key, value in begun.items()))
+        data = parse_bearing(path, settings)
     top = Table(data, path.name)
     scene = scene_of(data, path)
     cases, inputs = _operating(scene), scene.inputs
@@ -112,10 +116,26 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
         cases = dataclasses.replace(cases, design=None)
     scene = speeds_told(scene, cases)
     table = top.table("optimise")
-    task = _optimisation(top, table, scene, cases)
+    task = _optimisation(top, table, scene, cases, set(begun))
     table.finish()
     inputs = {**inputs, "optimise": table.echo()}
     return dataclasses.replace(task, inputs=inputs)
+
+
+def _begun(data: dict[str, Any]) -> dict[str, Any]:
+    """Numbers of [fit] that are free and stand nowhere else, with a value to begin
+    with: an interference that is sought needs no other one, nor a tolerance class."""
+    fit, table = data.get("fit"), data["optimise"]
+    free = table.get("variables") if isinstance(table, dict) else None
+    found: dict[str, Any] = {}
+    if not (isinstance(fit, dict) and isinstance(free, dict)):
+        return found
+    for name in OF_FITS:
+        ends = free.get(f"fit.{name}")
+        stands = {name, name.removesuffix("_interference")} & set(fit)
+        if isinstance(ends, dict) and "from" in ends and not stands:
+            found[f"fit.{name}"] = ends.get("start", ends["from"])
+    return found
 
 
 def _operating(scene: Scene) -> Cases:
@@ -128,7 +148,9 @@ def _operating(scene: Scene) -> Cases:
     )
 
 
-def _optimisation(top: Table, table: Table, scene: Scene, cases: Cases) -> Optimisation:
+def _optimisation(
+    top: Table, table: Table, scene: Scene, cases: Cases, begun: set[str]
+) -> Optimisation:
     element = scene.element
     kind = table.choice("objective", OBJECTIVES)
     balls = is_ball(element.bearing)
@@ -144,7 +166,8 @@ def _optimisation(top: Table, table: Table, scene: Scene, cases: Cases) -> Optim
             for part in table.tables("constraints")
         )
     fit = top.table("fit")
-    variables = _variables(table.table("variables", required=True), fit, scene)
+    free = table.table("variables", required=True)
+    variables = _variables(free, fit, scene, begun)
     method = table.choice("method", METHODS, None)
     if constraints and method not in (None, "slsqp"):
         problem = f'{method!r} keeps no constraints; take "slsqp" or leave it out'
@@ -197,7 +220,9 @@ def design_of(scene: Scene) -> BearingElement[Any] | MountedBearing:
     return MountedBearing(scene.element, scene.fits.mounting, scene.fits.conditions)
 
 
-def _variables(table: Table, fit: Table, scene: Scene) -> tuple[Variable, ...]:
+def _variables(
+    table: Table, fit: Table, scene: Scene, begun: set[str]
+) -> tuple[Variable, ...]:
     element, numbers = design_of(scene), scene_numbers(scene.element)
     if scene.fits is not None:
         numbers = {
@@ -221,6 +246,8 @@ def _variables(table: Table, fit: Table, scene: Scene) -> tuple[Variable, ...]:
             unit = unit_of(element, numbers[key][0])
             low, high = (part.real(word, unit) for word in ("from", "to"))
             start = part.real("start", unit, None)
+            if start is None and key in begun:
+                start = 0.5 * (low + high)
         with part.building():
             variables.append(Variable(numbers[key], low, high, start, key))
     with table.building():

@@ -406,6 +406,29 @@ def test_slopes_by_temperature_interference_and_clearance(scene):
     np.testing.assert_allclose(each / each[-1], by_hand, rtol=1e-9)
 
 
+def test_an_interference_that_is_sought_need_not_stand_in_the_scene(scene):
+    """It begins in the middle of its bounds, or where it is told to; cases have it."""
+    text = BEARING + FIT.replace('shaft = "k5"\n', "").replace('housing = "H7"\n', "")
+    text += (
+        '[cases.grid]\noperating.load.Fy = ["-1 kN", "-2 kN"]\n[optimise]\nobjective ='
+    )
+    text += ' "peak_pressure"\n[optimise.variables]\n'
+    shaft = '"fit.shaft_interference" = { from = "4 um", to = "20 um" }\n'
+    housing = '"fit.housing_interference" = { from = "-9 um", to = "3 um", start ='
+    task = read_optimisation(scene(f'{text}{shaft}{housing} "-2 um" }}\n'))
+    assert [v.start for v in task.variables] == pytest.approx([12e-6, -2e-6])
+    assert task.cases.count == 2
+    mounting = task.scene.fits.mounting
+    assert float(mounting.housing_interference) == -2e-6
+    # One of a tolerance class begins where the class has it.
+    task = read_optimisation(
+        scene(f'{text}{shaft}{housing} "0 um" }}'), ["fit.shaft=k5"]
+    )
+    assert task.variables[0].start is None
+    with pytest.raises(SceneError, match="`fit.shaft`: is missing"):
+        read_optimisation(scene(f'{text}{housing} "0 um" }}'))
+
+
 def test_a_temperature_is_found(scene):
     """How it is read, reported, and what is wrong with wrong ones."""
     bounds: Any = {"temperature.inner_ring": ("20 °C", "80 °C")}
