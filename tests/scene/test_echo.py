@@ -183,7 +183,7 @@ def test_what_stands_in_files_stands_in_the_echo(tmp_path):
 
 def test_defaults_are_filled_in():
     inputs = read_scene("tapered").inputs
-    assert to_si(inputs["bearing"]["pitch_diameter"], "length") == 52 * 1e-3
+    assert to_si(inputs["bearing"]["pitch_diameter"], "length") == 0.052
     assert inputs["bearing"]["material"] == {
         "elastic_modulus": "206000000000.0 Pa",
         "poisson_ratio": 0.3,

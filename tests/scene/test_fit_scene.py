@@ -189,7 +189,7 @@ def test_given_numbers(scene):
     assert float(warm.shaft) == 333.15 and float(warm.reference) == 298.15
     assert float(warm.inner_ring) == float(warm.housing) == 298.15
     assert float(warm.speed) == 100.0 and float(warm.outer_speed) == 20.0
-    assert fit_facts(read.fits, read.element.bearing).free == 15 * MICRON
+    assert fit_facts(read.fits, read.element.bearing).free == 15e-6
 
 
 def test_hybrid_balls_expand_less(scene):
