@@ -57,6 +57,13 @@ def _below(owner, what, diameter, ends, lower, least=0):
 CLEARANCE_CLASSES = ("C2", "CN", "C3", "C4", "C5")
 """Names of the classes of radial internal clearance, the smallest first."""
 
+CLEARANCE_PARTS = ("", "H", "L", "M", "P")
+"""Letters after a class: upper half of its range, lower half, middle half, and upper
+half with the lower half of the next class.
+
+Source: designations of SKF.
+"""
+
 # Of each bore up to (mm), least and largest clearance of the classes in µm.
 _BALLS = {
     6: (0, 7, 2, 13, 8, 23),
@@ -121,13 +128,25 @@ _SELF_ALIGNING = {
     120: (10, 31, 25, 56, 50, 83, 75, 114),
     140: (10, 38, 30, 68, 60, 100, 90, 135),
 }
+_SELF_ALIGNING_TAPERED = {
+    24: (7, 17, 13, 26, 20, 33, 28, 42),
+    30: (9, 20, 15, 28, 23, 39, 33, 50),
+    40: (12, 24, 19, 35, 29, 46, 40, 59),
+    50: (14, 27, 22, 39, 33, 52, 45, 65),
+    65: (18, 32, 27, 47, 41, 61, 56, 80),
+    80: (23, 39, 35, 57, 50, 75, 69, 98),
+    100: (29, 47, 42, 68, 62, 90, 84, 116),
+    120: (35, 56, 50, 81, 75, 108, 100, 139),
+    140: (40, 68, 60, 98, 90, 130, 120, 165),
+}
 
 
 def ball_clearance(name: str, bore: Any) -> Limits:
     """Radial internal clearance of deep groove ball bearings before mounting [m].
 
     Args:
-        name: One of `CLEARANCE_CLASSES`; C4 and C5 only above a bore of 6 mm.
+        name: One of `CLEARANCE_CLASSES`, likewise below with one of `CLEARANCE_PARTS`
+            after it; C4 and C5 only above a bore of 6 mm.
         bore: Nominal bore diameter, above 2.5 mm up to 0.5 m [m].
 
     Raises:
@@ -155,31 +174,47 @@ def roller_clearance(name: str, bore: Any) -> Limits:
     return _clearance("roller_clearance", name, bore, _CYLINDERS, 0.0)
 
 
-def self_aligning_clearance(name: str, bore: Any) -> Limits:
+def self_aligning_clearance(name: str, bore: Any, tapered: bool = False) -> Limits:
     """Radial internal clearance of self-aligning ball bearings before mounting [m].
-
-    With cylindrical bores.
 
     Args:
         name: One of `CLEARANCE_CLASSES` but C5.
         bore: Nominal bore diameter, above 2.5 mm up to 0.14 m [m].
+        tapered: Whether the bore is tapered (K), above 18 mm: such bearings have more
+            clearance, of which driving them up their seats takes a part.
 
     Raises:
         ValueError: If there is no such class, or for other bores.
 
-    Source: ISO 5753 (1991), as the catalogue of SKF prints it.
+    Source: ISO 5753 (1991), as the catalogues of SKF and, of tapered bores, FBJ print
+        it.
     """
-    return _clearance("self_aligning_clearance", name, bore, _SELF_ALIGNING, 2.5)
+    table, least = (_SELF_ALIGNING_TAPERED, 18.0) if tapered else (_SELF_ALIGNING, 2.5)
+    return _clearance("self_aligning_clearance", name, bore, table, least)
 
 
 def _clearance(owner, name, bore, table, least):
     number = size_range(owner, "bore", bore, tuple(table), least)
     values = list(table.values())[number]
     known = CLEARANCE_CLASSES[: len(values) // 2]
-    if name not in known:
+    main, part = name[:2], name[2:]
+    follows = known[known.index(main) + 1 :] if main in known else ()
+    if (
+        main not in known
+        or part not in CLEARANCE_PARTS
+        or (part == "P" and not follows)
+    ):
         raise ValueError(
             f"{owner}: `name` is {name!r}; it must be one of {', '.join(known)} for a"
-            f" bore of {float(bore):g} m."
+            f" bore of {float(bore):g} m, or with H, L, M or P (which the last has not)"
+            " after it."
         )
-    first = 2 * known.index(name)
-    return Limits(values[first] * _MICRON, values[first + 1] * _MICRON)
+    first = 2 * known.index(main)
+    low, high = values[first : first + 2]
+    half = 0.25 * (high - low)
+    if part == "P":
+        low, high = low + 2 * half, 0.5 * sum(values[first + 2 : first + 4])
+    else:
+        lift, fall = {"": (0, 0), "H": (2, 0), "L": (0, 2), "M": (1, 1)}[part]
+        low, high = low + lift * half, high - fall * half
+    return Limits(low * _MICRON, high * _MICRON)

@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -14,6 +15,7 @@ from ..statics.cases import Cases
 from ..statics.options import SolveOptions
 from ..statics.warning import warnings as warnings_of
 from .constraint import Constraint
+from .life import OfLife
 from .measure import exact_of, least_size_of
 from .system import Design, failure, loads_of, ready, solved_case
 from .trials import Trial
@@ -36,6 +38,7 @@ class Outcome(NamedTuple):
         constraints: The measures that are bounded, smooth (constraint,).
         exact_constraints: The same with true maxima and minima (constraint,).
         solution: Of all cases, leading axis case.
+        doubts: Gives the warnings of the rating life among the measures, if one is.
     """
 
     values: np.ndarray
@@ -44,11 +47,12 @@ class Outcome(NamedTuple):
     constraints: np.ndarray
     exact_constraints: np.ndarray
     solution: Any
+    doubts: Callable[[], list[str]] = list
 
     @property
     def warnings(self) -> list[str]:
         """A sentence for each kind of warning: in how many cases, and the worst."""
-        return warnings_of(loads_of(self.solution))
+        return [*warnings_of(loads_of(self.solution)), *self.doubts()]
 
 
 class Bound(NamedTuple):
@@ -127,7 +131,14 @@ class Problem:
             smooth[1:],
             exact[1:],
             found.solution,
+            self._doubts(element, found.solution),
         )
+
+    def _doubts(self, element, solution) -> Callable[[], list[str]]:
+        for measure in self.measures:
+            if isinstance(measure, OfLife):
+                return partial(measure.warnings, element, solution)
+        return list
 
     def run(self, unit, slopes: bool) -> "Run":
         """Solve the cases of a design, with gradients or without."""

@@ -8,13 +8,15 @@ import jax.numpy as jnp
 
 from ..element.bearing_element import BearingElement
 from ..statics.cases import Cases
-from ..statics.life import LifeConditions, life_of
+from ..statics.life import LIFE_OUTPUTS, LifeConditions, life_of
+from ..statics.life_warning import life_warnings
+from ..statics.rating import ratings
 from ..statics.spectrum import spectrum_life
 from .measure import AbstractMeasure
 from .system import element_of, loads_of
 
 
-class _OfCases(AbstractMeasure):
+class OfLife(AbstractMeasure):
     """Life that the damage of the cases leaves.
 
     Attributes:
@@ -80,8 +82,34 @@ class _OfCases(AbstractMeasure):
 
         return jax.vmap(one)(loads_of(solution))
 
+    def warnings(self, element: Any, solution: Any) -> list[str]:
+        """Warnings about the lives of all cases, as of `life_warnings`.
 
-class RatingLife(_OfCases):
+        Args:
+            element, solution: As of a call, concrete.
+        """
+        bearing = element_of(element).bearing
+        given = self.conditions
+        rated = ratings(
+            bearing,
+            given.dynamic_capacity,
+            given.static_capacity,
+            given.fatigue_load_limit,
+        )
+        numbers = jax.device_get(self._numbers(element_of(element), solution))
+        return life_warnings(bearing, rated, numbers)
+
+    @eqx.filter_jit
+    def _numbers(self, element, solution):
+        def one(solution):
+            found = vars(life_of(element, solution, self.conditions))
+            kept = (name for name in LIFE_OUTPUTS if name != "damage_share")
+            return {k: found[k] for k in kept if found[k] is not None}
+
+        return jax.vmap(one)(loads_of(solution))
+
+
+class RatingLife(OfLife):
     """Rating life under all cases [rev, h].
 
     By ISO/TS 16281, of the cases one after the other for their hours (Palmgren, Miner):
@@ -110,7 +138,7 @@ class RatingLife(_OfCases):
         return "h" if self.hours else "rev"
 
 
-class Damage(_OfCases):
+class Damage(OfLife):
     """Part of the rating life that a revolution or an hour uses [1/rev, 1/h].
 
     The inverse of `RatingLife`, with its attributes; finite without load.

@@ -22,10 +22,11 @@ from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit_of
 from ..statics.cases import Cases
 from ..statics.life import LIFE_OUTPUTS
+from ..statics.spectrum import revolutions_per_hour
 from ..statics.sweep import SUMMARIES, stack_designs
 from .cases_list import LARGEST, read_list
 from .quantity import KINDS, SceneError, kind_of, to_si
-from .read import Scene, scene_of
+from .read import Scene, scene_of, with_speed_told
 from .scene_file import assign, find_scene, parse_bearing
 from .table import Table
 
@@ -149,10 +150,12 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         _check_key(table, column.key, scene)
     structures, design, made, odd = _designs(data, path, columns)
     _check_outputs(table, outputs, structures)
+    cases = _cases(table, scene, columns, design)
+    scene = speeds_told(scene, cases)
     return CaseTable(
         scene=scene,
         structures=structures,
-        cases=_cases(table, scene, columns, design),
+        cases=cases,
         varied=tuple(column.key for column in columns),
         settings=made,
         outputs=None if outputs is None else tuple(outputs),
@@ -188,6 +191,12 @@ def _stands(data: dict[str, Any], key: str) -> bool:
 def _makes_design(key: str) -> bool:
     """Whether a key is of a table that makes a design."""
     return "." in key and key.partition(".")[0] in DESIGN
+
+
+def speeds_told(scene: Scene, cases: Cases) -> Scene:
+    """The scene with warnings of speeds of its cases beyond those of the catalogue."""
+    turns = revolutions_per_hour(cases, np)
+    return scene if turns is None else with_speed_told(scene, turns * np.pi / 1800.0)
 
 
 def _alike(first: Iterable[str], odd: Sequence[str]) -> tuple[str, ...]:
@@ -424,8 +433,7 @@ def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
     # A designation, "7208 BE", is no quantity.
     if unit not in _SI_UNITS:
         return key, str(given)
-    # "20 um" is 2e-05 m here, not the neighbour that a product of floats ends at.
-    return f"{key} [{unit}]", float(f"{float(number):.15g}")
+    return f"{key} [{unit}]", float(number)
 
 
 def _fits(data, key) -> bool:

@@ -91,7 +91,7 @@ def _other_class(keys, taken) -> tuple[str, ...]:
     ]
     own = entry.clearance_class
     named = entry.designation.endswith(f"/{own}")
-    ends = limits.get(own or "")
+    ends = None if own is None else _limits(entry, own)
     if ends is None or not (named or middles):
         return ()
     is_of = f", the middle of class {middles[0]}," if middles else ""
@@ -104,8 +104,11 @@ def _other_class(keys, taken) -> tuple[str, ...]:
 
 def _limits(entry: CatalogueEntry, name: str) -> tuple[float, float] | None:
     """Limits of a class of clearance [m], `None` where the size has none."""
+    find = entry.class_limits
+    if find is None:
+        return None
     try:
-        low, high = CLEARANCES[entry.type](name, entry.bore)
+        low, high = find(name, entry.bore)
     except ValueError:
         return None
     return float(low), float(high)

@@ -9,7 +9,8 @@ import dataclasses
 import functools
 import math
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -20,6 +21,7 @@ from ..design.fit_limits import (
     roller_clearance,
     self_aligning_clearance,
 )
+from ..design.iso286 import Limits
 from .designation import Suffixes, compact, split_designation
 from .quantity import SceneError, to_si
 
@@ -30,6 +32,9 @@ CLEARANCES = {
     "self_aligning_ball": self_aligning_clearance,
 }
 """Limits of radial internal clearance by type, where classes are known."""
+
+_TAPERED = {"self_aligning_ball": partial(self_aligning_clearance, tapered=True)}
+"""Likewise with tapered bores."""
 
 CLEARANCE = "radial_internal_clearance"
 
@@ -104,6 +109,7 @@ class CatalogueEntry:
         sources: What comes from where: "capacity", "geometry".
         notes: What was read into the designation, for people.
         table: Keys of a scene's [bearing] as it would be written.
+        taper: "K" or "K30" of a tapered bore, else "".
     """
 
     designation: str
@@ -124,6 +130,7 @@ class CatalogueEntry:
     sources: dict[str, str]
     notes: tuple[str, ...]
     table: dict[str, Any]
+    taper: str = ""
 
     @property
     def clearance_class(self) -> str | None:
@@ -131,7 +138,12 @@ class CatalogueEntry:
         if self.type not in CLEARANCES:
             return None
         after = self.designation.rpartition("/")[2]
-        return after if after in CLEARANCE_CLASSES else "CN"
+        return after if after[:2] in CLEARANCE_CLASSES else "CN"
+
+    @property
+    def class_limits(self) -> Callable[..., Limits] | None:
+        """Limits of its clearance by class and bore; `None` of a type without such."""
+        return class_limits(self.type, self.taper)
 
     @property
     def bearing(self) -> Any:
@@ -246,13 +258,23 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         shown = f"{changes['arrangement']} {key.partition(' ')[2]}"
     notes = [*odd, *(f"{word}: no effect" for word in suffixes.without_effect)]
     assumed = list(values.get("assumed", data.get("assumed", ())))
+    taper = suffixes.taper
     if kind in CLEARANCES:
-        name = suffixes.clearance or "CN"
+        shown, name = f"{shown}{taper}", suffixes.clearance or "CN"
+        if class_limits(kind, taper) is None:
+            problem = (
+                f"classes of clearance of tapered bores ({taper}) are known here of"
+            )
+            cure = f"{', '.join(_TAPERED)} alone; leave it out, and give `{CLEARANCE}`"
+            raise SceneError(f"{shown}: {problem} {cure}")
         try:
-            table[CLEARANCE], note = class_clearance(kind, name, si["bore"])
+            table[CLEARANCE], note = class_clearance(kind, name, si["bore"], taper)
         except ValueError as error:
             raise SceneError(f"{shown}/{name}: {error}") from error
         notes.append(note)
+    elif taper:
+        notes.append(f"{taper} (tapered bore): no effect")
+        taper = ""
     elif suffixes.clearance is not None:
         problem = f"{kind} has no classes of clearance here; leave the class out"
         raise SceneError(f"{shown}/{suffixes.clearance}: {problem}")
@@ -268,6 +290,7 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         sources=sources,
         notes=tuple(notes),
         table=table,
+        taper=taper,
     )
 
 
@@ -283,18 +306,33 @@ def _other(values, sources) -> OtherRating | None:
     )
 
 
-def class_clearance(kind: str, name: str, bore: float) -> tuple[str, str]:
+def class_limits(kind: str, taper: str = "") -> Callable[..., Limits] | None:
+    """Limits of the clearance of a type by class and bore; `None` if none are known.
+
+    Args:
+        kind: Type, as in a scene.
+        taper: As of `CatalogueEntry`.
+    """
+    return (_TAPERED if taper else CLEARANCES).get(kind)
+
+
+def class_clearance(
+    kind: str, name: str, bore: float, taper: str = ""
+) -> tuple[str, str]:
     """Clearance in the middle of a class, as in a scene, and where it is from.
 
     Args:
         kind: Type that has classes, one of `CLEARANCES`.
         name: Class, "C3".
         bore: Bore diameter d [m].
+        taper: As of `CatalogueEntry`.
 
     Raises:
         ValueError: If the class has no limits for this bore.
     """
-    low, high = CLEARANCES[kind](name, bore)
+    find = class_limits(kind, taper)
+    assert find is not None
+    low, high = find(name, bore)
     middle = f"{0.5e6 * (low + high):.4g} um"
     words = f"middle of class {name}, ISO 5753-1: {1e6 * low:.3g} to"
     return middle, f"clearance: {words} {1e6 * high:.3g} µm, not mounted"

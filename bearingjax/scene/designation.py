@@ -11,28 +11,35 @@ from .quantity import SceneError
 MAKERS = ("SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "TIMKEN", "NACHI", "URB")
 """Names that may stand before a designation."""
 
-_CLEARANCE = "|".join(CLEARANCE_CLASSES)
 # Letters of several makers for what the library does not compute with.
 _WITHOUT_EFFECT = {
     "seals or shields": r"2?RS[RHL12]?\d?|2?RZ|2?ZZ?|LL[UBHX]|DDU?|VV",
     "cage": r"TN[9HG]?|TNP|TVP2?B?|TVPB|TVH|TV|TB|T2X?|J[12]?|M[ABLPT]?[12]?|PH[AS]*|P"
     r"|Y|L|W",
     "accuracy or steel": r"P[654]X?|P0|PN|QE[456]|VA\d+|Q|QCL7C|A",
-    "grease": r"HT|WT|MT\d+|LHT\d+|GJN",
-    "mounting": r"C[ABC]|G[ABC]?|U[ALO]|K|N[12]?|Z?NR",
+    "grease": r"HT\d*|LT\d*|WT|[MV]T\d+|LHT\d+|GJN",
+    "mounting": r"C[ABC]|G[ABC]?|U[ALO]|N[12]?|Z?NR",
+    "tapered bore": r"K(?:30)?",
 }
+# A class, and a part of its range unless the letter begins that of a grease or, before
+# a digit, of an accuracy.
+_PART = r"(?:(?!L?HT|[LMV]T)[HLMP](?!\d))?"
+_CLEARANCE = rf"(?:{'|'.join(CLEARANCE_CLASSES)})(?!\d|X){_PART}"
 
 
 class Suffixes(NamedTuple):
     """What the letters after the name of a bearing say.
 
     Attributes:
-        clearance: Class of internal clearance, or `None` if none is named.
+        clearance: Class of internal clearance, with the part of its range, "C3H", or
+            `None` if none is named.
         without_effect: Letters with what they stand for, "2RS1 (seals or shields)".
+        taper: "K" or "K30" of a tapered bore, else "".
     """
 
     clearance: str | None
     without_effect: tuple[str, ...]
+    taper: str = ""
 
 
 def compact(text: str) -> str:
@@ -84,10 +91,10 @@ def _after(whole: str, name: str) -> str:
 
 
 def _suffixes(rest: str, name: str, text: str) -> Suffixes:
-    clearance, idle = None, []
+    clearance, idle, taper = None, [], ""
     for word in re.split(r"[\s./_-]+", rest):
         while word:
-            found = re.match(rf"(?:{_CLEARANCE})(?![\dHLX])", word)
+            found = re.match(_CLEARANCE, word)
             if found:
                 if clearance not in (None, found[0]):
                     problem = f"names two classes of clearance, {clearance} and"
@@ -102,9 +109,12 @@ def _suffixes(rest: str, name: str, text: str) -> Suffixes:
                 )
                 problem = f"has letters after {name} that are not known: {word!r}"
                 raise SceneError(f"{text!r} {problem} (known are {known})")
-            idle.append(f"{taken} ({meaning})")
+            if meaning == "tapered bore":
+                taper = taken
+            else:
+                idle.append(f"{taken} ({meaning})")
             word = word[len(taken) :]
-    return Suffixes(clearance, tuple(idle))
+    return Suffixes(clearance, tuple(idle), taper)
 
 
 def _idle(word: str) -> tuple[str, str]:

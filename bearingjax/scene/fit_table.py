@@ -7,6 +7,7 @@ import jax
 
 from ..design import (
     CLEARANCE_CLASSES,
+    CLEARANCE_PARTS,
     LIMIT_CLASSES,
     PLACES,
     WARM_MATERIALS,
@@ -38,7 +39,8 @@ from ..design.fit_range import ClearanceRange
 from ..design.fits import PARTS, FitState
 from ..element import BearingElement, Speed
 from ..statics.installed import Installed
-from .catalogue_entry import CLEARANCE, CLEARANCES, FromCatalogue
+from ..statics.service_warning import seat_warnings
+from .catalogue_entry import CLEARANCE, FromCatalogue, class_limits
 from .quantity import SceneError
 from .table import Table, written
 
@@ -55,10 +57,6 @@ EXPANSIONS = {
     "outer_ring": "ring_expansion",
 }
 """Keys of the expansions of the parts of a bearing."""
-
-MOST_STRESS = 127e6
-"""Hoop stress above which a fit is warned of, of bearing steel [Pa]: the largest that
-catalogues of rolling bearings (JTEKT, NTN) allow a fit."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -204,38 +202,19 @@ def fit_facts(fits: Fits, bearing: Bearing | BearingSet) -> FitFacts:
     )
 
 
-def fit_warnings(facts: FitFacts) -> list[str]:
+def fit_warnings(
+    fits: Fits, bearing: Bearing | BearingSet, load_fixed_to: str = "space"
+) -> list[str]:
     """What is odd about fits, a sentence each.
 
     Args:
-        facts: From `fit_facts`.
+        fits, bearing: As of `fit_facts`.
+        load_fixed_to: As of `LifeConditions`.
     """
-    told = []
-    for name, state in (("mounted", facts.mounted), ("in operation", facts.operating)):
-        if state.ring_stress > MOST_STRESS:
-            told.append(
-                f"fit: the hoop stress of the inner ring is"
-                f" {1e-6 * float(state.ring_stress):.4g} MPa {name}, above"
-                f" {1e-6 * MOST_STRESS:g} MPa, which bearing steel bears for long"
-            )
-            break
-    seats = {"shaft": "the inner ring on its shaft", "housing": "the outer ring"}
-    for seat, words in seats.items():
-        before, after, loose = (
-            float(getattr(state, f"{seat}_interference"))
-            for state in (facts.mounted, facts.operating, facts.loosest)
-        )
-        if before > 0.0 >= after:
-            told.append(
-                f"fit: {words} is tight when mounted, but loose by"
-                f" {-1e6 * after:.3g} µm in operation: its seat has no pressure"
-            )
-        elif seat == "shaft" and after > 0.0 >= loose:
-            told.append(
-                f"fit: {words} is loose in operation, by {-1e6 * loose:.3g} µm, at the"
-                " loosest sizes of the tolerances"
-            )
-    return told
+    facts, conditions = fit_facts(fits, bearing), fits.conditions
+    speed = Speed(conditions.speed, conditions.outer_speed)
+    seats = facts.mounted, facts.operating, facts.loosest
+    return seat_warnings(*seats, speed=speed, load_fixed_to=load_fixed_to)
 
 
 def turning(fits: Fits | None, speed: float) -> Fits | None:
@@ -352,7 +331,8 @@ def _class(table: Table, seat: str) -> str:
 
 def _clearance(table: Table, own: Table, bore, catalogue) -> Limits | None:
     """Limits of a clearance class; `None`: the bearing's own number."""
-    name = table.choice("clearance", CLEARANCE_CLASSES, None)
+    names = [c + part for part in CLEARANCE_PARTS for c in CLEARANCE_CLASSES]
+    name = table.choice("clearance", tuple(names), None)
     drawn = own.keys_given()
     # A line that only restates the catalogue does not count.
     changed = drawn if catalogue is None else catalogue.overridden
@@ -361,7 +341,7 @@ def _clearance(table: Table, own: Table, bore, catalogue) -> Limits | None:
         name = catalogue.entry.clearance_class
     if name is None:
         return None
-    find = CLEARANCES.get(catalogue.entry.type if catalogue else drawn["type"])
+    find = catalogue.entry.class_limits if catalogue else class_limits(drawn["type"])
     if find is None:
         problem = "is for bearings with classes of radial clearance, not of this type;"
         raise table.error("clearance", f"{problem} give its own clearance or angle")

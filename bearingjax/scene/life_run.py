@@ -11,7 +11,6 @@ import numpy as np
 from ..design import is_ball
 from ..numerics.result import Result
 from ..statics.life import LIFE_OUTPUTS, turns_against_load
-from ..statics.life_warning import life_warnings
 from ..statics.rating import Ratings, ratings
 from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ..statics.sweep import Sweep
@@ -23,7 +22,7 @@ from .life_table import life_conditions, not_published, rating_origins
 from .quantity import SceneError
 from .report import design_sections
 from .scene_file import find_scene, parse_bearing
-from .sweep_run import design_columns, listed_columns, run_cases, seat_warnings
+from .sweep_run import all_warnings, design_columns, listed_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 _SHOWN = 12
@@ -193,18 +192,10 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         **found,
         "columns": listed_columns(life_columns(run)),
         "counts": run.solved.counts(),
-        "warnings": _warnings(run),
+        "warnings": all_warnings(run.table, run.solved),
         "inputs": run.table.inputs,
         "version": __version__,
     }
-
-
-def _warnings(run: LifeRun) -> list[str]:
-    ours = life_warnings(
-        run.table.scene.element.bearing, run.ratings, run.solved.outputs
-    )
-    seats = seat_warnings(run.table, run.solved)
-    return [*run.table.warnings, *seats, *run.solved.warnings, *ours]
 
 
 def life_columns(run: LifeRun) -> dict[str, np.ndarray]:
@@ -262,7 +253,7 @@ def spectrum_report(run: LifeRun) -> str:
         lines.append(turning(turns_against_load(None, fixed_to), True))
     lines += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
     lines += _by_case(run)
-    lines += [f"warning: {text}" for text in _warnings(run)]
+    lines += [f"warning: {text}" for text in all_warnings(run.table, run.solved)]
     return "\n".join(lines)
 
 

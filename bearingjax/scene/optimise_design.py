@@ -10,7 +10,7 @@ import numpy as np
 from ..design import Limits, radial_clearance, rows_of
 from ..numerics.types import as_array
 from ..statics.installed import Installed
-from .fit_table import Fits, fit_facts, fit_warnings
+from .fit_table import Fits, fit_warnings
 from .optimise_table import Optimisation
 from .read import Scene
 
@@ -32,9 +32,10 @@ def scene_of_design(task: Optimisation, design: Installed) -> Scene:
     bearing = design.drawing.bearing
     fits = _fits(scene.fits, design, {v.name for v in task.variables})
     fits = _turning(fits, task)
-    old = fit_warnings(fit_facts(scene.fits, scene.element.bearing))
+    fixed_to = "space" if scene.life is None else scene.life.load_fixed_to
+    old = fit_warnings(scene.fits, scene.element.bearing, fixed_to)
     kept = [text for text in scene.warnings if text not in old]
-    told = (*kept, *fit_warnings(fit_facts(fits, bearing)))
+    told = (*kept, *fit_warnings(fits, bearing, fixed_to))
     return dataclasses.replace(scene, element=design.drawing, fits=fits, warnings=told)
 
 

@@ -23,7 +23,7 @@ from ..optimise.search import METHODS
 from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
-from .cases_table import DESIGN, read_cases
+from .cases_table import DESIGN, read_cases, speeds_told
 from .fit_table import no_expansion, read_temperature
 from .life_table import life_conditions
 from .quantity import SceneError, kind_of
@@ -97,6 +97,10 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
             f"{path.name}: `optimise` is missing; it must be a table that names"
             " `objective` and `variables`"
         )
+    begun = _begun(data)
+    if begun:
+        settings = (*settings, *(f"{key}={value}" for key, value in begun.items()))
+        data = parse_bearing(path, settings)
     top = Table(data, path.name)
     scene = scene_of(data, path)
     cases, inputs = _operating(scene), scene.inputs
@@ -109,11 +113,28 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
             raise top.error("cases", problem)
         # On its seats a bearing has the clearance of the speeds of each case.
         cases = dataclasses.replace(cases, design=None)
+    scene = speeds_told(scene, cases)
     table = top.table("optimise")
-    task = _optimisation(top, table, scene, cases)
+    task = _optimisation(top, table, scene, cases, set(begun))
     table.finish()
     inputs = {**inputs, "optimise": table.echo()}
     return dataclasses.replace(task, inputs=inputs)
+
+
+def _begun(data: dict[str, Any]) -> dict[str, Any]:
+    """Numbers of [fit] that are free and stand nowhere else, with a value to begin
+    with: an interference that is sought needs no other one, nor a tolerance class."""
+    fit, table = data.get("fit"), data["optimise"]
+    free = table.get("variables") if isinstance(table, dict) else None
+    found: dict[str, Any] = {}
+    if not (isinstance(fit, dict) and isinstance(free, dict)):
+        return found
+    for name in OF_FITS:
+        ends = free.get(f"fit.{name}")
+        stands = {name, name.removesuffix("_interference")} & set(fit)
+        if isinstance(ends, dict) and "from" in ends and not stands:
+            found[f"fit.{name}"] = ends.get("start", ends["from"])
+    return found
 
 
 def _operating(scene: Scene) -> Cases:
@@ -126,7 +147,9 @@ def _operating(scene: Scene) -> Cases:
     )
 
 
-def _optimisation(top: Table, table: Table, scene: Scene, cases: Cases) -> Optimisation:
+def _optimisation(
+    top: Table, table: Table, scene: Scene, cases: Cases, begun: set[str]
+) -> Optimisation:
     element = scene.element
     kind = table.choice("objective", OBJECTIVES)
     balls = is_ball(element.bearing)
@@ -142,7 +165,8 @@ def _optimisation(top: Table, table: Table, scene: Scene, cases: Cases) -> Optim
             for part in table.tables("constraints")
         )
     fit = top.table("fit")
-    variables = _variables(table.table("variables", required=True), fit, scene)
+    free = table.table("variables", required=True)
+    variables = _variables(free, fit, scene, begun)
     method = table.choice("method", METHODS, None)
     if constraints and method not in (None, "slsqp"):
         problem = f'{method!r} keeps no constraints; take "slsqp" or leave it out'
@@ -184,7 +208,9 @@ def scene_numbers(element: BearingElement[Any]) -> dict[str, tuple[str, ...]]:
     return found
 
 
-def _variables(table: Table, fit: Table, scene: Scene) -> tuple[Variable, ...]:
+def _variables(
+    table: Table, fit: Table, scene: Scene, begun: set[str]
+) -> tuple[Variable, ...]:
     design = scene.installed
     numbers = {
         key: tuple(f"drawing.{path}" for path in paths)
@@ -208,6 +234,8 @@ def _variables(table: Table, fit: Table, scene: Scene) -> tuple[Variable, ...]:
             unit = unit_of(design, numbers[key][0])
             low, high = (part.real(word, unit) for word in ("from", "to"))
             start = part.real("start", unit, None)
+            if start is None and key in begun:
+                start = 0.5 * (low + high)
         with part.building():
             variables.append(Variable(numbers[key], low, high, start, key))
     with table.building():

@@ -1,5 +1,6 @@
 """Quantities as scene files write them: a number and a unit, read by pint."""
 
+import decimal
 import functools
 import math
 import re
@@ -126,7 +127,7 @@ def to_si(text: object, kind: str) -> float:
     name = _WRITTEN.get(kind, {}).get(name.replace(" ", ""), name)
     if not _UNIT.fullmatch(name):
         raise SceneError(f"{text!r} has the unknown unit {name!r}; {wanted}")
-    value = _converted(float(number), text, name, unit, kind, wanted)
+    value = _converted(number, text, name, unit, kind, wanted)
     if not math.isfinite(value):
         raise SceneError(f"{text!r} is out of range; {wanted}")
     return value
@@ -152,10 +153,19 @@ def _converted(number, text, name, unit, kind, wanted):
     if kind == "angle" and not _turns(str(given)):
         raise SceneError(f"{text!r} is not an angle; {wanted}")
     if kind == "temperature":
-        return float(registry.Quantity(number, given).to(target).magnitude)
+        return float(registry.Quantity(float(number), given).to(target).magnitude)
     # A frequency in Hz counts vibrations, one in rpm or rad/s is that of a shaft.
     per_turn = 2.0 * math.pi if kind == "frequency" and not _turns(str(given)) else 1.0
-    return number * per_turn * float(one.to(target).magnitude)
+    return _scaled(number, per_turn * float(one.to(target).magnitude))
+
+
+def _scaled(number: str, factor: float) -> float:
+    """A number times the factor of its unit; a power of ten shifts its digits, so that
+    10 µm are 1e-05 m to the last one."""
+    tens = round(math.log10(factor))
+    if math.isclose(factor, 10.0**tens, rel_tol=1e-14):
+        return float(decimal.Decimal(number).scaleb(tens))
+    return float(number) * factor
 
 
 def _article(kind: str) -> str:

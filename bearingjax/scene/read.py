@@ -20,12 +20,13 @@ from ..numerics.units import unit_of
 from ..statics.installed import Installed
 from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
+from ..statics.service_warning import speed_warnings
 from ..statics.support import restrained_freedoms
 from .bearing_table import designated, read_bearing
 from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import KINEMATICS, read_choices
-from .fit_table import Fits, fit_facts, fit_warnings, installed, read_fits
+from .fit_table import Fits, fit_warnings, installed, read_fits
 from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
 from .programs import called
@@ -166,7 +167,28 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
         SceneError: One line that names file, key, fault and what is allowed.
     """
     path = find_scene(source)
-    return scene_of(parse_bearing(path, settings), path)
+    scene = scene_of(parse_bearing(path, settings), path)
+    if scene.speed is None:
+        return scene
+    return with_speed_told(scene, scene.speed.inner - scene.speed.outer)
+
+
+def with_speed_told(scene: Scene, turns: Any) -> Scene:
+    """The scene with warnings of speeds beyond those of the catalogue.
+
+    Args:
+        scene: With a designation, else it comes back as it is.
+        turns: Speed of one ring against the other, of one or many cases [rad/s].
+    """
+    if scene.catalogue is None:
+        return scene
+    entry = scene.catalogue.entry
+    told = speed_warnings(
+        turns,
+        limiting_speed=entry.limiting_speed,
+        reference_speed=entry.reference_speed,
+    )
+    return dataclasses.replace(scene, warnings=(*scene.warnings, *told))
 
 
 def scene_of(data: dict[str, Any], path: Path, varied: Iterable[str] = ()) -> Scene:
@@ -226,8 +248,6 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
         oil, assumed = read_oil(top.table("lubricant"))
         odd += assumed
     bearing, fits = read_fits(top, top.table("bearing"), bearing, speed, catalogue)
-    if fits is not None:
-        odd += tuple(fit_warnings(fit_facts(fits, bearing)))
     element = read_element(bearing, top.table("contact"), operating, numerics)
     tolerance = numerics.number("tolerance", None)
     if tolerance is not None and not 1e-14 <= tolerance < 1e-2:
@@ -259,6 +279,9 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
         problem = "constant_angle is for balls at rest; leave out the speeds"
         raise numerics.error("kinematics", problem)
     life = read_life(top, bearing, speed, points)
+    if fits is not None:
+        fixed_to = "space" if life is None else life.load_fixed_to
+        odd += tuple(fit_warnings(fits, bearing, fixed_to))
     odd += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
     return Scene(
         name=name,

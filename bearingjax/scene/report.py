@@ -6,6 +6,7 @@ is new in a report is one more line of `SECTIONS`.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import jax
 import numpy as np
@@ -217,7 +218,7 @@ def _motion(scene, solution):
     displacement = np.asarray(solution.displacement)[moving]
     force = np.asarray(solution.force)[moving]
     lines = [f"{scene.moving_ring} ring ({scene.fixed_ring} ring fixed)"]
-    motion, loads = _clean(displacement), _clean(force)
+    motion, loads = without_round_off(displacement), without_round_off(force)
     for i in range(6):
         scale, unit = display_unit(MOTION_UNITS[i])
         load_scale, load_unit = display_unit(LOAD_UNITS[i])
@@ -239,14 +240,14 @@ def _stiffness(scene, solution):
     # N/m, N/rad and N m/rad in the units of the heading.
     scale = np.full((5, 5), 1e-6)
     scale[3:, 3:] = 1e-3
-    shown = scale * _clean(k[:5, :5])
+    shown = scale * without_round_off(k[:5, :5])
     for i in range(5):
         lines.append(f"  {FREEDOMS[i]:<3}" + "".join(f"{v:12.5g}" for v in shown[i]))
     return "\n".join(lines)
 
 
-def _clean(values):
-    """Round-off of what cancels is shown as zero."""
+def without_round_off(values: Any) -> Any:
+    """Numbers of one kind, those zero that are round-off beside the largest."""
     return np.where(np.abs(values) < 1e-11 * np.abs(values).max(), 0.0, values)
 
 

@@ -14,7 +14,7 @@ from ..rotor.vibration import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
 from .bearing_table import BESIDE, designated, read_bearing
 from .catalogue_doubts import catalogue_doubts
-from .fit_table import Fits, fit_facts, fit_warnings, read_fits, turning
+from .fit_table import Fits, fit_warnings, read_fits, turning
 from .quantity import SceneError
 from .read import read_element, scene_of
 from .rotor_scene import Mount
@@ -99,8 +99,7 @@ def _own(table: Table, name: str, speed: float) -> _Bearing:
 def _told(bearing: _Bearing) -> _Bearing:
     """The bearing; what is odd about its fits is warned of."""
     if bearing.fits is not None:
-        facts = fit_facts(bearing.fits, bearing.element.bearing)
-        for text in fit_warnings(facts):
+        for text in fit_warnings(bearing.fits, bearing.element.bearing):
             warnings.warn(f"{bearing.name}: {text}", stacklevel=2)
     return bearing
 

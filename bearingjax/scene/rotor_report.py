@@ -4,6 +4,7 @@ import numpy as np
 
 from ..rotor import STATION_FREEDOMS
 from .fit_report import fit_report
+from .report import without_round_off
 from .rotor_motion import RotorResponse, RotorTransient
 from .rotor_run import RotorRun
 from .rotor_warnings import RPM, mode_numbers, rotor_warnings, rpm
@@ -97,9 +98,9 @@ def _bearings(run):
     for mount, load, k in zip(run.task.mounts, loads, stiffness, strict=True):
         name = f"{mount.station} {mount.name}{', turned' if mount.turned else ''}"
         forces = "".join(f"{_clean(f, 1):9.1f}" for f in load[:3])
-        springs = "".join(f"{_clean(1e-6 * s):9.4g}" for s in np.diagonal(k)[:2])
-        axial = f"{_clean(1e-6 * k[2, 2]):8.4g}"
-        lines.append(f"{name[:25]:<26}{forces}{springs}{axial}")
+        # A bearing without ribs has none along z.
+        x, y, z = np.diagonal(1e-6 * without_round_off(k[:3, :3]))
+        lines.append(f"{name[:25]:<26}{forces}{x:9.4g}{y:9.4g}{z:8.4g}")
     return "\n".join(lines)
 
 

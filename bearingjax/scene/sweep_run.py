@@ -11,7 +11,10 @@ import numpy as np
 from ..design import radial_clearance, rows_of
 from ..numerics.units import display_unit
 from ..statics.cases import Cases
+from ..statics.life import LIFE_OUTPUTS
+from ..statics.life_warning import life_warnings
 from ..statics.preload import is_opposed, pressed
+from ..statics.rating import ratings
 from ..statics.sweep import Sweep, sweep
 from ..statics.sweep_program import not_run
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
@@ -190,12 +193,27 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
         factor, shown = display_unit(unit.rstrip("]"))
         ends = "".join(f"{factor * x:>14.5g}" for x in (values.min(), values.max()))
         lines.append(f"{name:<38}{ends}  {shown}".rstrip())
-    told = (*table.warnings, *seat_warnings(table, solved), *solved.warnings)
-    lines += [f"warning: {text}" for text in told]
+    lines += [f"warning: {text}" for text in all_warnings(table, solved)]
     return "\n".join(lines)
 
 
-def seat_warnings(table: CaseTable, solved: Sweep) -> list[str]:
+def all_warnings(table: CaseTable, solved: Sweep) -> list[str]:
+    """Warnings of the scene, of its cases and of the lives that were kept of them."""
+    told = [*table.warnings, *set_warnings(table, solved), *solved.warnings]
+    if not set(LIFE_OUTPUTS) & set(solved.outputs):
+        return told
+    conditions = life_conditions(table.scene, table.varied)
+    bearing = table.scene.element.bearing
+    rated = ratings(
+        bearing,
+        conditions.dynamic_capacity,
+        conditions.static_capacity,
+        conditions.fatigue_load_limit,
+    )
+    return [*told, *life_warnings(bearing, rated, solved.outputs)]
+
+
+def set_warnings(table: CaseTable, solved: Sweep) -> list[str]:
     """What is odd about the preload that seats leave in the cases, a sentence each."""
     preload = solved.outputs.get(OPERATING_PRELOAD)
     if preload is None or not np.isfinite(preload).any():
@@ -227,11 +245,7 @@ def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
     return {
         "columns": listed_columns(columns(solved, design_columns(table))),
         "counts": solved.counts(),
-        "warnings": [
-            *table.warnings,
-            *seat_warnings(table, solved),
-            *solved.warnings,
-        ],
+        "warnings": all_warnings(table, solved),
         "inputs": table.inputs,
         "version": __version__,
     }

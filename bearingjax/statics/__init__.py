@@ -93,6 +93,8 @@ from .rating import static_capacity as static_capacity
 from .refine import Refined as Refined
 from .refine import refine as refine
 from .refined_life import refined_lamina_loads as refined_lamina_loads
+from .service_warning import seat_warnings as seat_warnings
+from .service_warning import speed_warnings as speed_warnings
 from .solution import BallSolution as BallSolution
 from .solution import RollerSolution as RollerSolution
 from .solution import Solution as Solution

@@ -172,9 +172,10 @@ class Life(eqx.Module):
         equivalent_load: P of ISO 281 [N].
         static_equivalent_load: P0 of ISO 76 [N].
         reference_load: Load with which C gives the reference life [N].
-        radial_left_out, axial_left_out: Loads that P and P0 have no part of, as of
+        radial_left_out: Radial load that P and P0 have no part of, as of
             `equivalent_load.left_out` [N].
-        moment_left_out: The moment likewise [N m].
+        axial_left_out: Axial load likewise [N].
+        moment_left_out: Moment likewise [N m].
         static_safety: C0/P0 [1].
         basic_rating_life: L10 = (C/P)^p of ISO 281 [rev].
         reference_rating_life: L10r of ISO/TS 16281 [rev].

@@ -69,7 +69,7 @@ def _heavy(ratings, numbers):
     return [
         f"equivalent load of {1e-3 * np.nanmax(load):.4g} kN, above"
         f" {1e-3 * most:.4g} kN, the lesser of C0 and C/2: ISO 281 does not vouch for"
-        f" lives of such loads{_where(load > most, load)}"
+        f" lives of such loads{in_how_many(load > most, load)}"
     ]
 
 
@@ -89,7 +89,7 @@ def _light(bearing, ratings, numbers):
     return [
         f"equivalent load of {np.min(load[light]):.4g} N, below {least:.4g} N,"
         f" {share:g} C, which makers of {kind} bearings ask for: the {kind}s may skid"
-        f"{_where(light, np.where(light, -load, -np.inf))}"
+        f"{in_how_many(light, np.where(light, -load, -np.inf))}"
     ]
 
 
@@ -107,7 +107,7 @@ def _left_out(bearing, numbers):
         much = lost > share * load
         if much.any():
             size = f"{np.max(lost[much]):.4g}"
-            told.append(f"{name} {words.format(size)}{_where(much, lost)}")
+            told.append(f"{name} {words.format(size)}{in_how_many(much, lost)}")
     return told
 
 
@@ -133,13 +133,13 @@ def _off_the_diagrams(numbers):
         found.append(
             f"viscosity ratio of {kappa[thin].min():.3g}: ISO 281 has no a_ISO below"
             f" {KAPPA[0]:g}; the one at {KAPPA[0]:g} is taken"
-            f"{_where(thin, np.where(thin, -kappa, -np.inf))}"
+            f"{in_how_many(thin, np.where(thin, -kappa, -np.inf))}"
         )
     if thick.any():
         found.append(
             f"viscosity ratio of {kappa[thick].max():.3g}: the diagrams of ISO 281 end"
             f" at {KAPPA[1]:g}; a_ISO and the e_C of a class of cleanliness are those"
-            f" at {KAPPA[1]:g}{_where(thick, kappa)}"
+            f" at {KAPPA[1]:g}{in_how_many(thick, kappa)}"
         )
     return found
 
@@ -167,8 +167,13 @@ def _still(numbers):
     return ["the rings do not turn against each other: there is no life in hours"]
 
 
-def _where(flags, size) -> str:
-    """In how many of many cases, and the worst of them."""
+def in_how_many(flags: Any, size: Any) -> str:
+    """In how many of many cases, and the worst of them; "" of one case.
+
+    Args:
+        flags: Which cases (case,).
+        size: How bad they are (case,).
+    """
     if not np.ndim(flags):
         return ""
     worst = int(np.nanargmax(size))

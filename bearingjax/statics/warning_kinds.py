@@ -134,6 +134,17 @@ def _free_tilt_words(size, where):
     )
 
 
+def _prescribed_tilt_words(size, where):
+    return f"prescribed tilt of {where or f'{size:.3g} times what makers allow for'}"
+
+
+def _clearance_words(size, where):
+    return (
+        f"runs with a radial clearance of {-1e6 * size:.3g} µm: its rolling elements"
+        " are pressed whatever the load, and harder as the inner ring warms"
+    )
+
+
 def _speed_words(size, where):
     return (
         f"n·dm of {size:.3g} mm/min: most greases and oil baths end at"
@@ -217,12 +228,31 @@ KINDS: dict[str, Kind] = {
             else "the approach of the contacts, and loads err by about as much"
         ),
     ),
-    "free_tilt": Kind(_always, of.free_tilt, 1.0, _free_tilt_words, of.free_tilt_words),
+    "free_tilt": Kind(
+        _always,
+        of.free_tilt,
+        1.0,
+        _free_tilt_words,
+        lambda s: of.tilt_in_words(s, of.free_tilt(s)),
+    ),
+    "prescribed_tilt": Kind(
+        _always,
+        of.prescribed_tilt,
+        1.0,
+        _prescribed_tilt_words,
+        lambda s: of.tilt_in_words(s, of.prescribed_tilt(s)),
+    ),
     "speed": Kind(
         lambda _, speed: speed is not None,
         of.speed_factor,
         of.LARGEST_SPEED,
         _speed_words,
+    ),
+    "negative_clearance": Kind(
+        lambda element, speed: speed is not None and of.has_clearance(element.bearing),
+        of.clearance_lost,
+        0.0,
+        _clearance_words,
     ),
     "rib_interference": Kind(_has_ribs, of.interference, 0.0, _rib_words),
     "truncated_ellipse": Kind(

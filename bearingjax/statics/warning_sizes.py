@@ -14,6 +14,8 @@ from ..design import (
     AbstractBallBearing,
     Bearing,
     BearingSet,
+    CylindricalRollerBearing,
+    NeedleRollerBearing,
     SelfAligningBallRow,
     is_ball,
     is_self_aligning,
@@ -300,6 +302,15 @@ def free_tilt(solution: Solution) -> Any:
     return _one(solution, True) * square**0.5 / usual_tilt(solution.element.bearing)
 
 
+def prescribed_tilt(solution: Solution) -> Any:
+    """Tilt of ring against ring that is prescribed, over that which makers allow for
+    [1]."""
+    q = solution.displacement
+    held = [FREEDOMS.index(name) for name in ("gx", "gy") if name not in solution.free]
+    square = sum((q[6 + k] - q[k]) ** 2 for k in held)
+    return _one(solution, True) * square**0.5 / usual_tilt(solution.element.bearing)
+
+
 def usual_tilt(bearing: Bearing | BearingSet) -> float:
     """Largest tilt of ring against ring that makers allow for [rad]."""
     if is_self_aligning(bearing):
@@ -307,15 +318,40 @@ def usual_tilt(bearing: Bearing | BearingSet) -> float:
     return USUAL_TILT_OF_BALLS if is_ball(bearing) else USUAL_TILT_OF_ROLLERS
 
 
-def free_tilt_words(solution: Solution) -> str:
-    """The tilt of `free_tilt` and what makers allow for, in words."""
+def tilt_in_words(solution: Solution, share: Any) -> str:
+    """A tilt and what makers allow for.
+
+    Args:
+        solution: Concrete.
+        share: The tilt over that which they allow for [1].
+    """
     allowed = usual_tilt(solution.element.bearing)
-    tilt = float(free_tilt(solution)) * allowed
+    tilt = float(share) * allowed
     kind = "ball" if is_ball(solution.element.bearing) else "roller"
     return (
         f"{1e3 * tilt:.3g} mrad where makers of {kind} bearings allow for about"
         f" {1e3 * allowed:.2g}"
     )
+
+
+def has_clearance(bearing: Bearing | BearingSet) -> bool:
+    """Whether it has a radial clearance of its own: a single bearing, one that does not
+    need another to be set against."""
+    rows = rows_of(bearing)
+    row = rows[0].bearing
+    if len(rows) > 1 and not is_self_aligning(bearing):
+        return False
+    straight = CylindricalRollerBearing | NeedleRollerBearing
+    return not row.is_one_sided if is_ball(row) else isinstance(row, straight)
+
+
+def clearance_lost(solution: Solution) -> Any:
+    """Radial clearance below zero of a bearing that turns [m]."""
+    assert solution.speed is not None
+    row: Any = rows_of(solution.element.bearing)[0].bearing
+    clearance = row.clearance if is_ball(row) else row.radial_internal_clearance
+    turns = solution.speed.inner != solution.speed.outer
+    return -clearance * _one(solution, turns)
 
 
 def speed_factor(solution: Solution) -> Any:

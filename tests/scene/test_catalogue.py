@@ -4,6 +4,7 @@ import dataclasses
 import json
 import tomllib
 from importlib.resources import files
+from pathlib import Path
 
 import jax
 import numpy as np
@@ -14,6 +15,7 @@ import bearingjax as bj
 from bearingjax.design import rows_of
 from bearingjax.scene import new_scene, read_cases, shipped_scenes
 from bearingjax.scene.quantity import to_si
+from bearingjax.scene.read import scene_of
 
 ENTRIES = bj.catalogue()
 NAMES = [entry.designation for entry in ENTRIES]
@@ -199,10 +201,55 @@ def test_bearing_by_designation_and_by_scene():
         ("FAG 30206-A", "30206 J2"),
         ("32010 X/Q", "32010 X"),
         ("NA4905/C2", "NA 4905/C2"),
+        ("6205-2RSH/C3LHT23", "6205/C3"),
+        ("6205-2RSH/C3HVT162", "6205/C3H"),
+        ("6205/C3MT33", "6205/C3"),
+        ("6205 CNM", "6205/CNM"),
+        ("6205C3P5", "6205/C3"),
+        ("6205/C3P", "6205/C3P"),
+        ("1205 EKTN9/C3", "1205 EK/C3"),
+        ("1205EK30", "1205 EK30"),
+        ("30205 K", "30205 J2"),
     ],
 )
 def test_ways_to_write_a_designation(written, designation):
     assert bj.catalogue_entry(written).designation == designation
+
+
+@pytest.mark.parametrize(
+    "written, low, high",
+    [
+        ("1205 EK/C3", 23, 39),
+        ("1205 E/C3", 19, 35),
+        ("1205 EK", 15, 28),
+        ("1204 EK/C2", 7, 17),
+        # Of 13 to 28 µm: the upper, lower and middle half, and into C4 (23 to 41 µm).
+        ("6205/C3H", 20.5, 28),
+        ("6205/C3L", 13, 20.5),
+        ("6205/C3M", 16.75, 24.25),
+        ("6205/C3P", 20.5, 32),
+    ],
+)
+def test_clearances_of_tapered_bores_and_parts_of_a_class(written, low, high):
+    """In the catalogue and, with tolerances, in a [fit]; ISO 5753, suffixes of SKF."""
+    entry = bj.catalogue_entry(written)
+    clearance = 0.5e-6 * (low + high)
+    row = rows_of(entry.bearing)[0].bearing
+    found = float(bj.design.radial_clearance(row))
+    assert found == pytest.approx(clearance, rel=1e-3)
+    limits = entry.class_limits(entry.clearance_class, entry.bore)
+    np.testing.assert_allclose(np.array(limits) * 1e6, [low, high])
+    assert bj.catalogue_entry(entry.designation).table == entry.table
+    text = f'[bearing]\ndesignation = "{written}"\n[fit]\nshaft = "k5"\n'
+    text += 'housing = "H7"\nhousing_diameter = "90 mm"\n'
+    scene = scene_of(tomllib.loads(text), Path("fitted.toml"))
+    np.testing.assert_allclose(
+        np.array(scene.fits.limits["clearance"]) * 1e6, [low, high]
+    )
+    echoed = scene_of(scene.inputs, Path("echoed.toml"))
+    assert tuple(echoed.fits.limits["clearance"]) == tuple(
+        scene.fits.limits["clearance"]
+    )
 
 
 def test_letters_that_change_the_geometry():
@@ -243,6 +290,8 @@ WRONG = {
     "6205 C2/C3": "names two classes of clearance, C2 and C3",
     "7205": "near it: 7205A, 7205AC, 7205B, 7205BE, 7205C",
     "7205 B/C3": "7205 BE/C3: angular_contact_ball has no classes of clearance here",
+    "6205 C5P": "`name` is 'C5P'; it must be one of C2, CN, C3, C4, C5 for a bore",
+    "NU 209 ECK": "NU 209 ECK: classes of clearance of tapered bores (K) are known",
     "1205 C5": "`name` is 'C5'; it must be one of C2, CN, C3, C4",
     "N 2205": "'N 2205' is not a bearing of the catalogue; near it: 2205, N205",
     "deep_grove": "nor is it a .toml file or a shipped scene (angular_contact,",

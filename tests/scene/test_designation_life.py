@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import read_cases
+from bearingjax.scene import read_cases, read_optimisation
 from bearingjax.scene.life_table import (
     life_conditions,
     not_published,
@@ -129,6 +129,29 @@ def cases(tmp_path, text):
     path = tmp_path / "cases.toml"
     path.write_text(text, encoding="utf-8")
     return read_cases(path)
+
+
+def test_speeds_are_held_against_those_of_the_catalogue(read, tmp_path):
+    """18 000 rpm is the limiting speed of a 6205, in one load, cases and searches."""
+    bearing = 'designation = "6205"'
+    slow, fast = (
+        read(bearing, "", [f"operating.inner_speed={n} rpm"]) for n in (17990, 18010)
+    )
+    assert slow.warnings == ()
+    (told,) = fast.warnings
+    assert told.startswith("speed of 18010 rpm, above the limiting speed of the catal")
+    both = ["operating.inner_speed=17000 rpm", "operating.outer_speed=-2000 rpm"]
+    (told,) = read(bearing, "", both).warnings
+    assert told.startswith("speed of 19000 rpm")
+    text = f"[bearing]\n{bearing}\n{LOAD}[cases.grid]\n"
+    text += 'operating.inner_speed = ["1000 rpm", "20000 rpm", "19000 rpm"]\n'
+    told = cases(tmp_path, text).warnings
+    assert len(told) == 1 and told[0].endswith("in 2 of 3 cases, worst case 1")
+    text += '[optimise]\nobjective = "peak_pressure"\n[optimise.variables]\n'
+    text += '"bearing.inner_osculation" = { from = 0.51, to = 0.54 }\n'
+    path = tmp_path / "found.toml"
+    path.write_text(text, encoding="utf-8")
+    assert read_optimisation(path).scene.warnings == told
 
 
 def test_each_bearing_of_a_sweep_has_its_own_ratings(tmp_path):

@@ -45,6 +45,25 @@ def test_units_of_the_echo_are_read_as_they_are(kind):
     assert to_si(f"0.1 {KINDS[kind][0]}", kind) == 0.1
 
 
+@pytest.mark.parametrize("number", ["10", "25", "1.7e1", "-0.3", ".5", "+12.", "7e-3"])
+@pytest.mark.parametrize(
+    "unit, kind, tens",
+    [
+        ("um", "length", -6),
+        ("mm", "length", -3),
+        ("µs", "time", -6),
+        ("kN", "force", 3),
+        ("1/GPa", "pressure coefficient", -9),
+        ("mm^2/s", "kinematic viscosity", -6),
+    ],
+)
+def test_powers_of_ten_shift_the_digits(number, unit, kind, tens):
+    """As Python reads the number in SI: 10 µs are 1e-05 s, not the float below it."""
+    digits, _, exponent = number.partition("e")
+    wanted = float(f"{digits}e{int(exponent or 0) + tens}")
+    assert to_si(f"{number} {unit}", kind) == wanted
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_the_echo_is_the_scene(tmp_path, name):
     """To the last bit; what was left to defaults is said."""
@@ -164,7 +183,7 @@ def test_what_stands_in_files_stands_in_the_echo(tmp_path):
 
 def test_defaults_are_filled_in():
     inputs = read_scene("tapered").inputs
-    assert to_si(inputs["bearing"]["pitch_diameter"], "length") == 52 * 1e-3
+    assert to_si(inputs["bearing"]["pitch_diameter"], "length") == 0.052
     assert inputs["bearing"]["material"] == {
         "elastic_modulus": "206000000000.0 Pa",
         "poisson_ratio": 0.3,

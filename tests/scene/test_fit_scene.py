@@ -188,7 +188,7 @@ def test_given_numbers(scene):
     assert float(warm.shaft) == 333.15 and float(warm.reference) == 298.15
     assert float(warm.inner_ring) == float(warm.housing) == 298.15
     assert float(warm.speed) == 100.0 and float(warm.outer_speed) == 20.0
-    assert fit_facts(read.fits, read.element.bearing).free == 15 * MICRON
+    assert fit_facts(read.fits, read.element.bearing).free == 15e-6
 
 
 def test_hybrid_balls_expand_less(scene):
@@ -404,6 +404,29 @@ def test_slopes_by_temperature_interference_and_clearance(scene):
     np.testing.assert_allclose(each / each[-1], by_hand, rtol=1e-9)
 
 
+def test_an_interference_that_is_sought_need_not_stand_in_the_scene(scene):
+    """It begins in the middle of its bounds, or where it is told to; cases have it."""
+    text = BEARING + FIT.replace('shaft = "k5"\n', "").replace('housing = "H7"\n', "")
+    text += (
+        '[cases.grid]\noperating.load.Fy = ["-1 kN", "-2 kN"]\n[optimise]\nobjective ='
+    )
+    text += ' "peak_pressure"\n[optimise.variables]\n'
+    shaft = '"fit.shaft_interference" = { from = "4 um", to = "20 um" }\n'
+    housing = '"fit.housing_interference" = { from = "-9 um", to = "3 um", start ='
+    task = read_optimisation(scene(f'{text}{shaft}{housing} "-2 um" }}\n'))
+    assert [v.start for v in task.variables] == pytest.approx([12e-6, -2e-6])
+    assert task.cases.count == 2
+    mounting = task.scene.fits.mounting
+    assert float(mounting.housing_interference) == -2e-6
+    # One of a tolerance class begins where the class has it.
+    task = read_optimisation(
+        scene(f'{text}{shaft}{housing} "0 um" }}'), ["fit.shaft=k5"]
+    )
+    assert task.variables[0].start is None
+    with pytest.raises(SceneError, match="`fit.shaft`: is missing"):
+        read_optimisation(scene(f'{text}{housing} "0 um" }}'))
+
+
 def test_a_temperature_is_found(scene):
     """How it is read, reported, and what is wrong with wrong ones."""
     bounds: Any = {"temperature.inner_ring": ("20 °C", "80 °C")}
@@ -449,7 +472,17 @@ def test_warnings(scene):
     fast = ["operating.inner_speed=100000 rpm"]
     told = bj.read_scene(path, fast).warnings
     assert any("above 127 MPa" in text for text in told)
-    assert any("but loose by" in text for text in told)
+    creeps = "fit: the inner ring on its shaft turns against the load and is loose by"
+    assert any(t.startswith(creeps) and "though tight when mounted" in t for t in told)
+    loose = ["fit.shaft=g6", "operating.inner_speed=1000 rpm"]
+    (told,) = bj.read_scene(path, loose).warnings
+    assert told.startswith(creeps) and "mounted" not in told
+    # Under an unbalance the load turns with the shaft: the outer ring creeps.
+    assert not [
+        t
+        for t in bj.read_scene(path, [*loose, "life.load_fixed_to=inner"]).warnings
+        if t.startswith(creeps)
+    ]
     cold = ["temperature.inner_ring=80 degC"]
     (told,) = bj.read_scene(path, cold).warnings
     assert told.startswith("fit: the inner ring on its shaft is tight when mounted, bu")

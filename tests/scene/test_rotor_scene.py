@@ -1,6 +1,7 @@
 """Scenes of rotors: what they say, and one line for what is wrong."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from tolerances import ROUNDING
 import bearingjax as bj
 from bearingjax import SceneError
 from bearingjax.scene import read_rotor, scene_files, shipped_scenes
+from bearingjax.scene.rotor_report import _bearings
 from bearingjax.scene.rotor_supports import with_passage
 
 RPM = np.pi / 30.0
@@ -395,3 +397,14 @@ stiffness = {springs}
     assert task.station_names == ("0 mine", "1 springs")
     # What would be overwritten is known.
     assert scene_files(path) == [path, other]
+
+
+def test_round_off_of_a_bearing_without_ribs_is_no_axial_stiffness(untyped):
+    k = np.diag([4e8, 3e8, -5.7e-6, 2e3, 2e3])
+    k[2, 3] = 1e-5
+    mount = SimpleNamespace(station="left", name="nu206", turned=False)
+    run = SimpleNamespace(
+        settled=SimpleNamespace(support_load=np.zeros((1, 5)), stiffness=k[None]),
+        task=SimpleNamespace(mounts=[mount]),
+    )
+    assert _bearings(run).split()[-3:] == ["400", "300", "0"]

@@ -14,7 +14,7 @@ from bearingjax.scene.set_preload import (
     range_warnings,
     set_preload,
 )
-from bearingjax.scene.sweep_run import seat_warnings
+from bearingjax.scene.sweep_run import set_warnings
 from bearingjax.statics.sweep_table import columns
 
 PAIR = """
@@ -120,7 +120,7 @@ def test_a_sweep_tells_that_of_each_case(scene):
     np.testing.assert_allclose(
         table["operating_preload [N]"], np.repeat(wanted, 3), rtol=1e-8
     )
-    (text,) = seat_warnings(cases, solved)
+    (text,) = set_warnings(cases, solved)
     assert f"200 N as ground are {wanted[1]:.4g} N to {wanted[0]:.4g} N in op" in text
     assert f"warning: {text}" in sweep_report(cases, solved, 1.0)
 

@@ -9,6 +9,7 @@ Sources of the published numbers:
 """
 
 from types import SimpleNamespace
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -18,6 +19,7 @@ import pytest
 from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
+from bearingjax.optimise.design_problem import Problem
 from bearingjax.statics import (
     CLEANLINESS,
     Cleanliness,
@@ -769,6 +771,30 @@ def test_a_moment_alone_is_told_of_a_life():
     told = life_warnings(element.bearing, life.ratings, vars(life))
     (only,) = [text for text in told if "moment" in text]
     assert "moment of 20 N m" in only and "reference life of ISO/TS 16281" in only
+
+
+def test_a_search_tells_of_its_lives_what_life_tells():
+    """Of all cases at once, in its outcomes if a life is among its measures."""
+    element = ball_element([0.0])
+    loads = jnp.zeros((3, 6)).at[:, 1].set(jnp.asarray([-2e3, -20e3, -50.0]))
+    loads = loads.at[0, 4].set(20.0)
+    solutions = jax.vmap(lambda f: bj.solve_load(element, f, speed=SPEED, throw=False))(
+        loads
+    )
+    for measure in (bj.RatingLife(hours=True), bj.RatingLife().as_objective):
+        task: Any = SimpleNamespace(measures=(bj.PeakPressure(), measure))
+        told = Problem._doubts(task, element, solutions)()
+        heavy, light, moment = told
+        assert "in 1 of 3 cases, worst case 1" in heavy and "do not vouch" not in light
+        assert "below" in light and "worst case 2" in light
+        assert "moment of 20 N m" in moment and "worst case 0" in moment
+    none: Any = SimpleNamespace(measures=(bj.PeakPressure(),))
+    assert Problem._doubts(none, element, solutions)() == []
+    for k, text in ((1, heavy), (2, light), (0, moment)):
+        one = jax.tree.map(lambda leaf, k=k: leaf[k], solutions)
+        life = bj.rating_life(element, one)
+        (alone,) = life_warnings(element.bearing, life.ratings, vars(life))
+        assert text.startswith(alone)
 
 
 def test_rows_in_tandem_share_the_axial_load_on_which_factors_depend():

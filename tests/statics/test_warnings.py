@@ -1,6 +1,7 @@
 """What is doubtful: one list in Python, in sweeps and in optimisations."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import equinox as eqx
 import jax
@@ -11,7 +12,7 @@ from registry import balls, bearings
 from tolerances import ROUNDING
 
 import bearingjax as bj
-from bearingjax.statics import sweep_table
+from bearingjax.statics import seat_warnings, speed_warnings, sweep_table
 from bearingjax.statics.rollers import distribution
 from bearingjax.statics.warning import sizes
 from bearingjax.statics.warning_kinds import KINDS
@@ -134,13 +135,102 @@ def test_tilts_beyond_small_rotations(deep):
     assert free.startswith("the ring tilts freely, 5 mrad where makers of ball bearin")
     assert float(sizes(s)["free_tilt"]) == pytest.approx(5e-3 / np.deg2rad(10 / 60))
     s = dataclasses.replace(s, free=("ux", "uy", "uz"))
-    (text,) = bj.warnings(s)
+    text, held = bj.warnings(s)
+    assert (
+        held == "prescribed tilt of 5 mrad where makers of ball bearings allow for"
+        " about 2.9"
+    )
     assert text.startswith("tilt beyond small rotations")
     said = float(sizes(s)["tilt"])
     assert 0.5 < (ours / true - 1.0) / said < 2.0
     assert f"{100 * said:.2g} % of the approach" in text
     loose = eqx.tree_at(lambda s: s.element, s, finite)
-    assert bj.warnings(loose) == []
+    assert bj.warnings(loose) == [held]
+
+
+def test_tilts_are_those_of_ring_against_ring(deep):
+    """What is prescribed of one freedom and follows from the load in the other."""
+    s = solved(deep, [0, -2000.0, 300, 0, 0, 0])
+    q = jnp.zeros(12).at[jnp.array([3, 4, 9, 10])].set(jnp.array([1.0, 2, 4, 6]) * 1e-3)
+    s = eqx.tree_at(lambda s: s.displacement, s, q)
+    usual = np.deg2rad(10 / 60)
+    for free, held in ((("gx", "gy"), 0.0), (("gx",), 4e-3), ((), 5e-3)):
+        found = sizes(dataclasses.replace(s, free=("ux", "uy", "uz", *free)))
+        assert float(found["prescribed_tilt"]) == pytest.approx(held / usual)
+
+
+def test_a_single_bearing_that_runs_without_clearance(deep, rollers):
+    """Not one at rest, nor a set, whose rows press each other on purpose."""
+    load, running = [0, -2000.0, 300, 0, 0, 0], bj.Speed(inner=100.0)
+    for element in (deep, rollers):
+        name = "radial_internal_clearance"
+        kept = dict(prescribed={"gx": 0.0, "gy": 0.0})
+        pressed = changed(element, **{name: -5e-6})
+        (text,) = bj.warnings(solved(pressed, load, running, **kept))
+        assert text.startswith("runs with a radial clearance of -5 µm")
+        assert bj.warnings(solved(pressed, load, STILL, **kept)) == []
+        usual = changed(element, **{name: 5e-6})
+        assert bj.warnings(solved(usual, load, running, **kept)) == []
+    applies = KINDS["negative_clearance"].applies
+    single = balls(7, bj.AngularContactBallBearing, contact_angle=0.4)
+    pair = bj.BearingSet.back_to_back(single, 0.03)
+    for bearing in (single, pair, bearings()["taper, large rib"]):
+        assert not applies(bj.BearingElement(bearing), running)
+
+
+def seats(shaft, housing, stress=50e6):
+    return SimpleNamespace(
+        shaft_interference=1e-6 * shaft,
+        housing_interference=1e-6 * housing,
+        ring_stress=stress,
+    )
+
+
+@pytest.mark.parametrize(
+    "fixed_to, inner, outer, creeping",
+    [
+        ("space", 100.0, 0.0, "inner"),
+        ("space", 0.0, 100.0, "outer"),
+        ("space", -50.0, 100.0, "both"),
+        ("inner", 100.0, 0.0, "outer"),
+        ("outer", 0.0, 100.0, "inner"),
+        ("space", 0.0, 0.0, ""),
+        ("space", 100.0, 100.0, ""),
+    ],
+)
+def test_rings_that_turn_against_the_load_creep_on_loose_seats(
+    fixed_to, inner, outer, creeping, untyped
+):
+    asked = dict(speed=bj.Speed(inner, outer), load_fixed_to=fixed_to)
+    told = seat_warnings(seats(-2, -3), seats(-4, -5), seats(-8, -9), **asked)
+    expected = [
+        f"fit: the {ring} ring{seat} turns against the load and is loose by"
+        f" {size} µm in operation: it creeps and wears its seat"
+        for ring, seat, size in (("outer", "", 5), ("inner", " on its shaft", 4))
+        if creeping in (ring, "both")
+    ]
+    assert told == expected
+    (tight, *rest) = seat_warnings(seats(4, 4), seats(2, 2), seats(-1, -1), **asked)
+    assert "loose in operation, by 1 µm, at the loosest" in tight
+    assert len(rest) == (creeping in ("outer", "both"))
+    assert seat_warnings(seats(4, 4), seats(2, 2), **asked) == []
+
+
+def test_speeds_beyond_those_of_a_catalogue():
+    rpm = np.pi / 30
+    limits = dict(limiting_speed=18e3 * rpm, reference_speed=28e3 * rpm)
+    assert speed_warnings(-18e3 * rpm * 0.999, **limits) == []
+    (only,) = speed_warnings(-20e3 * rpm, **limits)
+    assert only.startswith("speed of 20000 rpm, above the limiting speed") and (
+        "18000 rpm" in only and "case" not in only
+    )
+    both = speed_warnings(np.array([1e3, 3e4, 2e4]) * rpm, **limits)
+    assert [text.partition(" of the cat")[0] for text in both] == [
+        "speed of 30000 rpm, above the limiting speed",
+        "speed of 30000 rpm, above the reference speed",
+    ]
+    assert both[0].endswith("in 2 of 3 cases, worst case 1")
+    assert speed_warnings(1e9) == []
 
 
 def test_speeds_that_no_grease_stands(deep):

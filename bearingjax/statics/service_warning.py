@@ -1,0 +1,117 @@
+"""What is doubtful about the service of a bearing, its seats and speed, in words."""
+
+from typing import Any
+
+import numpy as np
+
+from ..design.fits import FitState
+from ..element.inertia import Speed
+from .life import turns_against_load
+from .life_warning import in_how_many
+
+MOST_STRESS = 127e6
+"""Hoop stress above which a fit is warned of, of bearing steel [Pa]: the largest that
+catalogues of rolling bearings (JTEKT, NTN) allow a fit."""
+
+_SEATS = {"housing": "the outer ring", "shaft": "the inner ring on its shaft"}
+"""Seats in the order of the rings (outer, inner), and what sits there."""
+
+
+def seat_warnings(
+    mounted: FitState,
+    operating: FitState,
+    loosest: FitState | None = None,
+    *,
+    speed: Speed | None = None,
+    load_fixed_to: str = "space",
+) -> list[str]:
+    """Warnings about the seats of a bearing, a sentence each.
+
+    A ring that turns against the load creeps on a seat without interference, and wears
+    it; one against which the load stands still may be loose.
+
+    Args:
+        mounted: Mounted, at rest, at the temperature of the measured sizes; concrete,
+            likewise below.
+        operating: In operation.
+        loosest: In operation, at the sizes that leave the largest clearance; `None`:
+            not looked at.
+        speed: Of the rings; `None`: at rest, where nothing creeps.
+        load_fixed_to: As of `LifeConditions`.
+
+    Source: rule of catalogues of rolling bearings: rotating load, tight fit.
+    """
+    told = []
+    for words, state in (("mounted", mounted), ("in operation", operating)):
+        if state.ring_stress > MOST_STRESS:
+            told.append(
+                f"fit: the hoop stress of the inner ring is"
+                f" {1e-6 * float(state.ring_stress):.4g} MPa {words}, above"
+                f" {1e-6 * MOST_STRESS:g} MPa, which bearing steel bears for long"
+            )
+            break
+    turning = (False, False)
+    if speed is not None and float(speed.inner) != float(speed.outer):
+        turning = np.asarray(turns_against_load(speed, load_fixed_to)) > 0
+    for (seat, words), turns in zip(_SEATS.items(), turning, strict=True):
+        before, after = (
+            1e6 * float(getattr(state, f"{seat}_interference"))
+            for state in (mounted, operating)
+        )
+        if turns and after <= 0.0:
+            once = ", though tight when mounted" if before > 0.0 else ""
+            told.append(
+                f"fit: {words} turns against the load and is loose by"
+                f" {abs(after):.3g} µm in operation{once}: it creeps and wears its seat"
+            )
+        elif before > 0.0 >= after:
+            told.append(
+                f"fit: {words} is tight when mounted, but loose by"
+                f" {abs(after):.3g} µm in operation: its seat has no pressure"
+            )
+        elif loosest is not None and (turns or seat == "shaft"):
+            left = 1e6 * float(getattr(loosest, f"{seat}_interference"))
+            if left <= 0.0 < after:
+                told.append(
+                    f"fit: {words} is loose in operation, by {abs(left):.3g} µm, at the"
+                    " loosest sizes of the tolerances"
+                )
+    return told
+
+
+def speed_warnings(
+    turns: Any,
+    *,
+    limiting_speed: float | None = None,
+    reference_speed: float | None = None,
+) -> list[str]:
+    """Warnings about a speed beyond those that a catalogue names, a sentence each.
+
+    Args:
+        turns: Speed of one ring against the other, of one or many cases [rad/s].
+        limiting_speed: To which the maker's bearing of standard make may run [rad/s].
+        reference_speed: At which it warms by the 50 K of the reference [rad/s].
+
+    Source: ISO 15312 of the reference speed.
+    """
+    size, told = np.abs(np.asarray(turns)), []
+    for limit, words in (
+        (
+            limiting_speed,
+            "the limiting speed of the catalogue, {} rpm: cage, accuracy and"
+            " lubrication for it are needed",
+        ),
+        (
+            reference_speed,
+            "the reference speed of the catalogue, {} rpm: without cooling it runs"
+            " warmer than the 70 °C of ISO 15312, or its load must be less",
+        ),
+    ):
+        if limit is None or not (size > limit).any():
+            continue
+        top, allowed = (f"{x * 30 / np.pi:.5g}" for x in (size.max(), limit))
+        told.append(
+            f"speed of {top} rpm, above {words.format(allowed)}"
+            f"{in_how_many(size > limit, size)}"
+        )
+    return told
