@@ -22,10 +22,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import lax
-from jax.scipy.linalg import cho_factor, cho_solve
 from jaxtyping import Array, Float
 
 from ..numerics.implicit import attach_by, stop
+from ..numerics.linear import solve_any
 from ..numerics.types import Scalar
 from .line import AbstractLineLaw, Palmgren
 from .line_contact import AbstractLineContact, LineContact, Response
@@ -204,7 +204,7 @@ def _free(matrix, curvature, held):
 
 
 def _divided(matrix, right):
-    return cho_solve(cho_factor(matrix), right)
+    return solve_any(matrix, right, positive=True)
 
 
 def _rest(table, loads, given):

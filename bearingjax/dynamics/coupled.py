@@ -14,7 +14,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..numerics.linear import solve
+from ..numerics.linear import solve, solve_any
 from ..numerics.types import Scalar
 
 
@@ -170,7 +170,7 @@ def _inverse(matrix):
     """Friction makes the diagonal heavy: elimination needs no search for pivots."""
     n = matrix.shape[0]
     if n > _WRITTEN_OUT:
-        return jnp.linalg.inv(matrix)
+        return solve_any(matrix, jnp.eye(n, dtype=matrix.dtype))
     return solve(matrix, jnp.eye(n, dtype=matrix.dtype), False)
 
 

@@ -14,7 +14,7 @@ from jaxtyping import Array, Float, Int
 
 from ..numerics import lanes
 from ..numerics.implicit import attach_by, stop, unless_failed
-from ..numerics.linear import solve
+from ..numerics.linear import solve, solve_any
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from .steady_results import SteadyMotion
@@ -137,7 +137,7 @@ def _solve(matrix, right):
     if right.shape[0] <= _FEW:
         return solve(matrix, right, False)
     held = jnp.any(matrix != 0, axis=1)
-    return jnp.linalg.solve(matrix + jnp.diag(jnp.where(held, 0.0, 1.0)), right)
+    return solve_any(matrix + jnp.diag(jnp.where(held, 0.0, 1.0)), right)
 
 
 def _init(orbit):

@@ -1,16 +1,13 @@
 """Eigenvalues of symmetric matrices, one matrix after the other under `vmap`.
 
-jaxlib 0.10 divides a large batch of matrices among XLA's threads, by the thread that
-ran into it, which then waits for its share to be done by others. As soon as every
-thread waits so, for as many batches that do not depend on each other, the program
-waits for ever: on two cores two batches are enough. One matrix is never divided.
+A batch may keep a program waiting for ever, see `linear`.
 """
 
 import jax
 import jax.numpy as jnp
-from jax import lax
-from jax.custom_batching import custom_vmap
 from jaxtyping import Array, Inexact
+
+from .linear import one_by_one
 
 
 @jax.custom_jvp
@@ -42,11 +39,6 @@ def _eigh_rule(primals, tangents):
     return (values, vectors), (jnp.diagonal(inner).real, vectors @ turn)
 
 
-@custom_vmap
+@one_by_one
 def _one_by_one(matrix):
     return tuple(jnp.linalg.eigh(matrix))
-
-
-@_one_by_one.def_vmap
-def _rule(_, __, matrix):
-    return lax.map(_one_by_one, matrix), (True, True)

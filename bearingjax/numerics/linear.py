@@ -3,12 +3,23 @@
 LAPACK is called once per matrix; for 3 to 6 unknowns under `vmap` the unrolled
 factorisation is many times faster and has no foreign call in it. More than eight go to
 LAPACK: a program written out grows with their third power.
+
+jaxlib 0.10 divides a large batch of matrices among XLA's threads, by the thread that
+ran into it, which then waits for its share to be done by others. As soon as every
+thread waits so, for as many batches that do not depend on each other, the program
+waits for ever: on two cores two batches are enough. One matrix is never divided, so
+that LAPACK is given one after the other (`one_by_one`).
 """
 
+from collections.abc import Callable
 from typing import Any
 
+import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+import jax.scipy.linalg as dense
+from jax import lax
+from jax.custom_batching import custom_vmap
+from jaxtyping import Array, Float, Inexact
 
 from .types import namespace
 
@@ -109,7 +120,7 @@ def solve(
     """
     n = matrix.shape[-1]
     if n > _WRITTEN_OUT:
-        return _solve_many(matrix, rhs)
+        return _solve_scaled(matrix, rhs)
     if symmetric:
         return solve_symmetric(matrix, rhs)
     floor = 8 * jnp.finfo(matrix.dtype).eps
@@ -138,7 +149,73 @@ def solve(
     return jnp.stack([x[i] * scale[i] for i in range(n)])
 
 
-def _solve_many(matrix, rhs):
+def one_by_one(function: Callable) -> Callable:
+    """A function of arrays that `jax.vmap` calls for one member after the other.
+
+    It is not to be differentiated: give it what `lax.stop_gradient` returns.
+
+    Args:
+        function: Of arrays; returns a pytree of arrays.
+    """
+
+    @custom_vmap
+    def single(*arrays):
+        return function(*arrays)
+
+    @single.def_vmap
+    def _rule(_, mapped, *arrays):
+        def one(members):
+            member = iter(members)
+            return single(
+                *(next(member) if m else a for a, m in zip(arrays, mapped, strict=True))
+            )
+
+        members = [a for a, m in zip(arrays, mapped, strict=True) if m]
+        found = lax.map(one, members)
+        return found, jax.tree.map(lambda _: True, found)
+
+    return single
+
+
+@one_by_one
+def _by_cholesky(matrix, rhs):
+    return dense.cho_solve(dense.cho_factor(matrix), rhs)
+
+
+@one_by_one
+def _by_elimination(matrix, rhs):
+    return jnp.linalg.solve(matrix, rhs)
+
+
+def solve_any(
+    matrix: Inexact[Array, "n n"],
+    rhs: Inexact[Array, "n ..."],
+    positive: bool = False,
+) -> Inexact[Array, "n ..."]:
+    """Solve a system of any number of unknowns by LAPACK.
+
+    Under `jax.vmap` one matrix after the other; differentiable to any order.
+
+    Args:
+        matrix: Regular [any unit].
+        rhs: One or more right-hand sides.
+        positive: Whether the matrix is symmetric and positive definite. Static.
+
+    Returns:
+        Solution, shape of `rhs`; NaN if a matrix that is said to be positive is not.
+    """
+    held = lax.stop_gradient(matrix)
+    way = _by_cholesky if positive else _by_elimination
+    return lax.custom_linear_solve(
+        lambda x: matrix @ x,
+        rhs,
+        lambda _, b: way(held, b),
+        lambda _, b: way(held.T, b),
+        symmetric=positive,
+    )
+
+
+def _solve_scaled(matrix, rhs):
     """With a unit diagonal, lifted by round-off where nothing holds a direction."""
     diagonal = jnp.diagonal(matrix)
     scale = _scale(diagonal)
@@ -146,7 +223,7 @@ def _solve_many(matrix, rhs):
     lift = jnp.where(held, 8 * jnp.finfo(matrix.dtype).eps, 1.0)
     scaled = matrix * (scale[:, None] * scale[None, :]) + jnp.diag(lift)
     sizes = scale.reshape(-1, *(1,) * (rhs.ndim - 1))
-    return sizes * jnp.linalg.solve(scaled, sizes * rhs)
+    return sizes * solve_any(scaled, sizes * rhs)
 
 
 def smallest_pivot(matrix: Float[Array, "n n"]) -> Float[Array, ""]:

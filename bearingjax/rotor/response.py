@@ -9,6 +9,7 @@ from jax import lax
 from jaxtyping import Array, Complex, Float
 
 from ..design.checks import non_negative, number
+from ..numerics.linear import solve_any
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 from .modes import speed_list, to_complex
@@ -141,7 +142,7 @@ def steady(
         # What nothing holds would make it singular at rest.
         little = jnp.where(frequency == 0, _HELD, 0.0) * matrices.mass
         stiffness = stiffness + to_complex(little)
-        return motions @ jnp.linalg.solve(stiffness, force)
+        return motions @ solve_any(stiffness, force)
 
     motion = lax.map(at_frequency, (frequencies, speeds), batch_size=_BATCH)
     nodes, housing = rotor.linearised(0.0).split(motion)

@@ -1,6 +1,7 @@
 """Results of solved balls: contact angles, ellipses, pressures, spin."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -51,20 +52,26 @@ class BallResults(eqx.Module):
     centrifugal_force: Float[Array, " ball"] | None = eqx.field(metadata=unit("N"))
 
     @property
-    def n_contacts(self) -> Int[Array | np.ndarray, " ball"]:
+    def n_contacts(self) -> Int[Array | np.ndarray, "*case ball"]:
         """How many contacts of each ball carry load, more than round-off."""
-        return self._carrying.sum(axis=1)
+        return above_round_off(self.contact_load).sum(axis=-1)
 
     @property
     def lifted(self) -> Array | np.ndarray:
         """Which balls have left the inner raceway and run on the outer one alone."""
-        half = self.contact_load.shape[1] // 2
-        outer, inner = self._carrying[:, :half], self._carrying[:, half:]
-        return outer.any(axis=1) & ~inner.any(axis=1)
+        carrying = above_round_off(self.contact_load)
+        half = carrying.shape[-1] // 2
+        outer, inner = carrying[..., :half], carrying[..., half:]
+        return outer.any(axis=-1) & ~inner.any(axis=-1)
 
-    @property
-    def _carrying(self):
-        return self.contact_load > 1e-9 * self.contact_load.max()
+
+def above_round_off(load: Any) -> Any:
+    """Which loads are more than round-off of the largest one of their bearing.
+
+    Args:
+        load: (..., element, contact) [N], of NumPy or of JAX; each case is a bearing.
+    """
+    return load > 1e-9 * load.max(axis=(-2, -1), keepdims=True)
 
 
 def ball_results(

@@ -13,7 +13,7 @@ from ..lubrication import Lubricant
 from ..lubrication.film import line_film, point_film
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .solution import BallSolution, Solution
+from .solution import BallSolution, Solution, check_single
 
 _SIDES = (1.0, -1.0)
 """Outer and inner raceway: outside and inside of the pitch circle."""
@@ -58,8 +58,8 @@ def films(
 
     Raises:
         TypeError: If `solution` or `lubricant` is none.
-        ValueError: For a solution without speed, or a roughness or temperature that is
-            not positive.
+        ValueError: For several solutions at once (map over them), a solution without
+            speed, or a roughness or temperature that is not positive.
 
     Source: Hamrock & Dowson (1977) of balls, Pan & Hamrock (1989) of rollers:
         `lubrication.point_film`, `line_film`.
@@ -93,6 +93,7 @@ def _check_call(solution, lubricant, temperature, roughness):
                 f"films: `{name}` is a {type(value).__name__}; it must be a"
                 f" {kind.__name__}."
             )
+    check_single("films", solution)
     if solution.speed is None:
         raise ValueError("films: `solution` is at rest; solve it with `speed`.")
     positive("films", "temperature", as_real(temperature), "K")

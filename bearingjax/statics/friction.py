@@ -31,7 +31,7 @@ from ..numerics.units import unit
 from .equivalent_load import equivalent_load
 from .rating import nominal_contact_angle
 from .rating import static_capacity as rated
-from .solution import BallSolution, Solution
+from .solution import BallSolution, Solution, check_single
 
 SUPPLIES = ("grease", "oil_mist", "oil_bath", "oil_jet")
 """How a bearing gets its oil; a jet is as a bath about an upright shaft."""
@@ -82,7 +82,7 @@ class Friction(eqx.Module):
     def torque(self) -> Any:
         """All of it [N m]."""
         parts = self.load_torque + self.viscous_torque + self.flange_torque
-        return parts.sum()
+        return parts.sum(axis=-1)
 
     @property
     def power(self) -> Any:
@@ -114,8 +114,8 @@ def friction_torque(
 
     Raises:
         TypeError: If `solution` is none.
-        ValueError: For a solution without speed, another supply, or a viscosity that
-            is not positive.
+        ValueError: For several solutions at once (map over them), a solution without
+            speed, another supply, or a viscosity that is not positive.
 
     Valid: medium speeds and loads, two surfaces parted by the film or nearly so.
     Source: Palmgren, as Harris & Kotzalas, Rolling Bearing Analysis, print it in the
@@ -153,6 +153,7 @@ def check_call(owner: str, solution: Any, viscosity: Any, supply: Any) -> None:
             f"{owner}: `solution` is a {type(solution).__name__}; it must be a"
             " Solution, as of solve_load."
         )
+    check_single(owner, solution)
     if solution.speed is None:
         raise ValueError(f"{owner}: `solution` is at rest; solve it with `speed`.")
     if supply not in SUPPLIES:

@@ -150,7 +150,7 @@ class SkfFriction(eqx.Module):
     @property
     def torque(self) -> Any:
         """Both together [N m]."""
-        return (self.rolling_torque + self.sliding_torque).sum()
+        return (self.rolling_torque + self.sliding_torque).sum(axis=-1)
 
     @property
     def power(self) -> Any:

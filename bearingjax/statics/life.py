@@ -7,7 +7,7 @@ that a revolution uses, is finite and smooth throughout.
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -215,12 +215,12 @@ class Life(eqx.Module):
     turns_against_load: Float[Array, "2"] = eqx.field(metadata=unit("1"))
 
     @property
-    def dynamic_capacity(self) -> Scalar:
+    def dynamic_capacity(self) -> Float[Array, "*case"]:
         """C [N]."""
         return self.ratings.dynamic_capacity
 
     @property
-    def static_capacity(self) -> Scalar:
+    def static_capacity(self) -> Float[Array, "*case"]:
         """C0 [N]."""
         return self.ratings.static_capacity
 
@@ -241,8 +241,8 @@ class Life(eqx.Module):
 
 
 def rating_life(
-    element: BearingElement,
-    solution: Solution,
+    element: BearingElement | Solution,
+    solution: Solution | None = None,
     *,
     dynamic_capacity: Scalar | float | None = None,
     static_capacity: Scalar | float | None = None,
@@ -258,7 +258,7 @@ def rating_life(
     """Rating life of a solved bearing by ISO 281 and ISO/TS 16281.
 
     Args:
-        element: The bearing that was solved.
+        element: The bearing that was solved; may be left out, as the solution holds it.
         solution: Its solution. Of rollers every second position is the middle of a
             lamina: 101 `points` are 50 laminae.
         dynamic_capacity, static_capacity, fatigue_load_limit, viscosity, contamination,
@@ -280,6 +280,9 @@ def rating_life(
 
     Source: ISO 281:2007; ISO/TS 16281:2008 (`reference_life`); ISO 76:2006.
     """
+    if solution is None:
+        solution = cast(Solution, element)
+        element = getattr(element, "element", element)
     check_element("rating_life", element)
     conditions = LifeConditions(
         dynamic_capacity,
@@ -291,7 +294,8 @@ def rating_life(
         load_fixed_to,
         edge_stress,
     )
-    return life_of(element, solution, conditions, speed=speed, lamina_load=lamina_load)
+    bearing = cast(BearingElement, element)
+    return life_of(bearing, solution, conditions, speed=speed, lamina_load=lamina_load)
 
 
 def life_of(

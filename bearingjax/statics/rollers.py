@@ -53,7 +53,7 @@ class RollerResults(eqx.Module):
     edge_pressure: Float[Array, "roller 2 2"] = eqx.field(metadata=unit("Pa"))
 
     @property
-    def edge_loaded(self) -> Bool[Array | np.ndarray, "roller 2 2"]:
+    def edge_loaded(self) -> Bool[Array | np.ndarray, "*case roller 2 2"]:
         """Which roller ends bear more than `EDGE_PRESSURE`."""
         return self.edge_pressure > EDGE_PRESSURE
 

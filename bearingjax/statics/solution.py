@@ -25,7 +25,7 @@ from ..numerics.minimise import TrustRegionNewton
 from ..numerics.result import Result
 from ..numerics.types import Ring, RingStiffness, Scalar
 from ..numerics.units import unit
-from .balls import BallResults, ball_results
+from .balls import BallResults, above_round_off, ball_results
 from .rollers import RollerResults, roller_results
 
 _BALANCED, _ROUND_OFF = 1e-10, 1e-7
@@ -52,7 +52,7 @@ class Stats(eqx.Module):
 
 class Solution(eqx.Module):
     """A solved bearing. Axes: element counts the rollers or balls, in a set row by row;
-    raceway and ring are (outer, inner).
+    raceway and ring are (outer, inner). Under `jax.vmap` cases come before them.
 
     If `result` is not `CONVERGED` the numbers are those of the last step, not of an
     equilibrium.
@@ -111,13 +111,12 @@ class Solution(eqx.Module):
     moving_ring: str = eqx.field(static=True)
 
     @property
-    def load_zone(self) -> Bool[Array | np.ndarray, " element"]:
+    def load_zone(self) -> Bool[Array | np.ndarray, "*case element"]:
         """Which rolling elements carry load between the raceways, above round-off."""
-        least = 1e-9 * self.roller_load.max()
-        return (self.roller_load > least).all(axis=1)
+        return above_round_off(self.roller_load).all(axis=-1)
 
     @property
-    def converged(self) -> Bool[Array | np.ndarray, ""] | np.bool_:
+    def converged(self) -> Bool[Array | np.ndarray, "*case"] | np.bool_:
         """Whether the result code is `CONVERGED`."""
         return self.result == Result.CONVERGED
 
@@ -128,6 +127,22 @@ class RollerSolution(Solution, RollerResults):
 
 class BallSolution(Solution, BallResults):
     """Solution of a ball bearing: that of `Solution`, and `BallResults`."""
+
+
+def check_single(owner: str, solution: Solution) -> None:
+    """Raise unless a solution is of one case.
+
+    Args:
+        owner: Function that was called.
+        solution: What it was given.
+
+    Raises:
+        ValueError: For a solution with a leading case axis.
+    """
+    if jnp.ndim(solution.result):
+        raise ValueError(
+            f"{owner}: `solution` holds several cases; map over them with jax.vmap."
+        )
 
 
 def message(solution: Solution, moving_ring: str) -> str:

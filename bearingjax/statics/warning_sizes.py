@@ -24,6 +24,7 @@ from ..design import (
 from ..design.material import contact_modulus
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.types import namespace
+from .balls import above_round_off
 from .rollers import EDGE_PRESSURE
 from .solution import BallSolution, RollerSolution, Solution
 
@@ -423,7 +424,7 @@ def lifted(solution: Solution) -> Any:
     balls = _of_balls(solution)
     load, force = balls.contact_load, balls.centrifugal_force
     assert force is not None  # this warning arises at a speed alone
-    carrying = (load > 1e-9 * load.max()).reshape(load.shape[0], 2, -1).any(axis=2)
+    carrying = above_round_off(load).reshape(load.shape[0], 2, -1).any(axis=2)
     matters = force > SMALLEST_LIFT * load.max()
     return carrying[:, 0] & ~carrying[:, 1] & matters
 

@@ -32,14 +32,27 @@ CASES = [
 
 CASES += [(name, "", speed) for name, (_, speed) in ball_elements().items()]
 
+# Each design once: equal slices have no smooth stiffness, and a program costs seconds.
+DESIGNS = {c[0]: (c, c[2] == "turning") for c in CASES if c[1] != "midpoint"}
+"""Name to case, and whether its derivatives see how the turns of the rings carry the
+elements along."""
+DESIGNS["cage torque"] = DESIGNS["deep groove, clearance"][0], True
 
-@pytest.fixture(scope="module", params=CASES, ids=lambda c: " / ".join(filter(None, c)))
-def case(request):
-    name, rule, speed = request.param
+
+def named(case):
+    return " / ".join(filter(None, case))
+
+
+def made(name, rule, speed):
     if name in ball_elements():
         return ball_elements()[name][0], speeds()[speed]
     element = bj.BearingElement(bearings()[name], quadrature=quadratures()[rule])
     return element, speeds()[speed]
+
+
+@pytest.fixture(scope="module", params=CASES, ids=named)
+def case(request):
+    return made(*request.param)
 
 
 @eqx.filter_jit
@@ -267,3 +280,91 @@ def test_no_host_callback_inside():
     element = bj.BearingElement(taper(3), quadrature=bj.Midpoint(4))
     text = str(jax.make_jaxpr(jax.hessian(element.energy))(jnp.asarray(motion())))
     assert "callback" not in text
+
+
+def of_design(element, q, speed, load):
+    """What a design decides at given ring freedoms, and under a load."""
+    found = element.evaluate(q, speed)
+    solution = bj.solve_load(
+        element,
+        load,
+        prescribed={"gz": q[11]},
+        fixed_displacement=q[:6],
+        start=q[6:],
+        speed=speed,
+        # As far as round-off lets it: differences feel what is left.
+        tolerance=1e-15,
+        throw=False,
+    )
+    numbers = {
+        "force": found.force,
+        "stiffness": found.stiffness,
+        "displacement under load": solution.displacement[6:11],
+        "force under load": solution.force,
+        "stiffness under load": solution.stiffness,
+    }
+    # Without a potential the force is no derivative of the energy.
+    return numbers | ({"energy": found.energy} if element.has_potential(speed) else {})
+
+
+@eqx.filter_jit
+def along_design(element, change, *given):
+    """`of_design`, and its derivative along a change of the design."""
+    numbers, rest = eqx.partition(element, eqx.is_inexact_array)
+
+    def of_numbers(numbers):
+        return of_design(eqx.combine(numbers, rest), *given)
+
+    return jax.jvp(of_numbers, (numbers,), (change,))
+
+
+def numbers_of(element, rng):
+    """Name of every real number or list of a design, and a change of it alone."""
+    numbers = eqx.filter(element, eqx.is_inexact_array)
+    leaves, structure = jax.tree.flatten(numbers)
+    paths, _ = zip(*jax.tree_util.tree_leaves_with_path(numbers), strict=True)
+    for k, path in enumerate(paths):
+        name = jax.tree_util.keystr(path)
+        size = np.abs(leaves[k]).max() or (0.1 if "azimuth" in name else 1e-5)
+        changes = [jnp.zeros_like(leaf) for leaf in leaves]
+        changes[k] = jnp.asarray(size * rng.uniform(0.5, 1.0, leaves[k].shape))
+        yield name, jax.tree.unflatten(structure, changes)
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_derivative_by_every_number_of_the_design(name):
+    case, cage_torque = DESIGNS[name]
+    element, speed = made(*case)
+    element = bj.BearingElement(
+        element.bearing, choices=element.choices, cage_torque=cage_torque
+    )
+    # Rings that have turned carry the elements along, by a ratio of the design.
+    q = motion()
+    q[[5, 11]] = 0.02, -0.05
+    q = jnp.asarray(q)
+    load = np.array(evaluate(element, q, speed).force[6:])
+    load[np.abs(load) < 1e-6 * np.abs(load).max()] = 0.0
+    load[5] = 0.0
+    given = q, speed, jnp.asarray(load)
+    for number, change in numbers_of(element, np.random.default_rng(2)):
+
+        def at(step, change=change):
+            moved = eqx.apply_updates(element, jax.tree.map(lambda d: step * d, change))
+            return along_design(moved, change, *given)
+
+        values, slopes = at(0.0)
+        errors = []
+        for step in (1e-3, 1e-4, 1e-5, 1e-6):
+            ends = at(step)[0], at(-step)[0]
+            errors.append(
+                {
+                    what: np.abs((ends[0][what] - ends[1][what]) / (2 * step) - slope)
+                    for what, slope in slopes.items()
+                }
+            )
+        for what, slope in slopes.items():
+            error = min(e[what].max() for e in errors)
+            # The round-off of a solve, over the largest step.
+            noise = 10 * SOLVER * np.abs(values[what]).max()
+            allowed = DIFFERENCE * np.abs(slope).max() + noise
+            assert error < allowed, (number, what)

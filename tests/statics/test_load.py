@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 import robust_loads
 import robust_sweep
-from registry import bearings, taper
+from registry import balls, bearings, taper
 from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
 from bearingjax.element import azimuths
-from bearingjax.statics import load_result
+from bearingjax.lubrication import iso_vg
+from bearingjax.statics import load_result, warnings
 from bearingjax.statics.solution import message
+from bearingjax.statics.warning import counted, sizes
 
 RADIAL = [0.0, -4000.0, 0.0, 1.0, 0.0, 0.0]
 FREE = ["ux", "uy", "gx", "gy"]
@@ -199,6 +201,69 @@ def test_bad_case_stays_alone_in_a_batch(tapered):
     assert codes == ["converged", "no_load_path", "non_finite", "converged"]
     alone = bj.solve_load(tapered, loads[3])
     assert np.allclose(s.displacement[3], alone.displacement, rtol=1e-7, atol=1e-14)
+
+
+def numbers_of(thing):
+    """Name and value of every array, and of every property that its class defines."""
+    if isinstance(thing, dict):
+        return thing
+    kinds = [kind for kind in type(thing).__mro__ if "bearingjax" in kind.__module__]
+    names = {n for k in kinds for n, v in vars(k).items() if isinstance(v, property)}
+    found = vars(thing) | {name: getattr(thing, name) for name in names - {"weakest"}}
+    return {n: v for n, v in found.items() if isinstance(v, jax.Array | np.ndarray)}
+
+
+def of_solution(solution):
+    """What follows from a solution, its life, torques and films."""
+    oil = iso_vg(68.0)
+    return {
+        "solution": solution,
+        "life": bj.rating_life(solution, viscosity=2e-5, contamination=0.5),
+        "torque": bj.friction_torque(solution, 2e-5),
+        "skf": bj.skf_friction_torque(solution, 2e-5),
+        "films": bj.films(solution, oil, 340.0, 2e-7),
+        "warnings": sizes(solution),
+    }
+
+
+@pytest.mark.parametrize(
+    "bearing",
+    [
+        balls(8, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6),
+        bearings()["cylindrical, crowned ends"],
+    ],
+    ids=["balls", "rollers"],
+)
+def test_a_batch_is_its_single_solutions_stacked(bearing):
+    element = bj.BearingElement(bearing)
+    # The third is so light that what it carries is round-off beside the others.
+    down = jnp.asarray([300.0, 5e3, 1e-6, 9e3])
+    loads = jnp.outer(down, jnp.asarray([0.0, -1.0, 0.0, 1e-4, 2e-4, 0.0]))
+    speed = bj.Speed(inner=1200.0)
+
+    @jax.jit
+    def solve(load):
+        return bj.solve_load(element, load, speed=speed, throw=False)
+
+    batch, singles = jax.vmap(solve)(loads), [solve(load) for load in loads]
+    follows = jax.jit(of_solution)
+    together, apart = jax.vmap(follows)(batch), [follows(one) for one in singles]
+    for what, thing in together.items():
+        wanted = [numbers_of(one[what]) for one in apart]
+        for name, value in numbers_of(thing).items():
+            stacked = np.stack([one[name] for one in wanted])
+            assert value.shape == stacked.shape, (what, name)
+            size = np.abs(np.where(np.isfinite(stacked), stacked, 0.0)).max()
+            close = np.allclose(value, stacked, 1e-6, 1e-7 * size, equal_nan=True)
+            assert close, (what, name)
+    assert warnings(batch) == counted(jax.tree.map(np.asarray, together["warnings"]))
+    for function in (
+        lambda s: bj.friction_torque(s, 2e-5),
+        lambda s: bj.films(s, iso_vg(68.0), 340.0),
+        bj.rating_life,
+    ):
+        with pytest.raises(ValueError, match="several cases; map over them"):
+            function(batch)
 
 
 @pytest.mark.parametrize(

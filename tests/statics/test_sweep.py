@@ -1,5 +1,6 @@
 """Sweeps against single solves, over devices and processes, and as tables."""
 
+import os
 import socket
 import subprocess
 import sys
@@ -20,6 +21,16 @@ from bearingjax.numerics import lanes
 from bearingjax.statics import SolveOptions, load_search, sweep_program, sweep_table
 from bearingjax.statics.sweep import n_designs
 
+COUPLED = """
+import jax, numpy as np, bearingjax as bj
+jax.config.update("jax_enable_x64", True)
+jax.config.update("jax_num_cpu_devices", 2)
+bearing = bj.CylindricalRollerBearing(14, 0.065, 0.010, 0.010)
+loads = np.outer(np.linspace(100.0, 5000.0, 64), [0.0, -1.0, 0.0, 1e-3, 0.0, 0.0])
+element = bj.BearingElement(bearing, bj.CoupledSlices(30))
+solved = bj.sweep(element, loads, outputs=["displacement"], chunk=32)
+assert len(jax.devices()) == 2 and not solved.result.any()
+"""
 SCRIPT = Path(__file__).with_name("sweep_in_process.py")
 ELEMENT = small_element()
 BAD = {5: "non_finite", 7: "no_load_path"}
@@ -291,3 +302,11 @@ def test_bad_designs(swept):
         bj.stack_designs([])
     with pytest.raises(ValueError, match="ends in .csv, .parquet, .xlsx"):
         sweep_table.write(swept, "table.xls")
+
+
+def test_coupled_slices_on_two_devices_come_to_an_end():
+    """A batch of their matrices is no LAPACK call whose parts wait for each other."""
+    threads = {k: v for k, v in os.environ.items() if k != "PJRT_NPROC"}
+    subprocess.run(
+        [sys.executable, "-c", COUPLED], env=threads, timeout=300, check=True
+    )

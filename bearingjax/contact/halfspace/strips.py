@@ -8,6 +8,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array
 
+from ...numerics.linear import solve_any
 from ...numerics.result import Result
 from .gradients import AbstractPressureSolver
 from .influence import EvenInfluence, cosine_sums, padded_size
@@ -110,7 +111,7 @@ class Strips(AbstractPressureSolver):
         return _State(new, approach, change, state.steps + 1)
 
     def _clipped(self, matrix):
-        inverse = jnp.linalg.inv(matrix)
+        inverse = solve_any(matrix, jnp.eye(matrix.shape[0], dtype=matrix.dtype))
         return lambda right: jnp.maximum(inverse @ right, 0.0)
 
     def _complementary(self, matrix):
@@ -119,7 +120,7 @@ class Strips(AbstractPressureSolver):
         def again(carry):
             inside, _, _, count, right = carry
             system = jnp.where(inside[:, None], matrix, identity)
-            pressure = jnp.linalg.solve(system, jnp.where(inside, right, 0.0))
+            pressure = solve_any(system, jnp.where(inside, right, 0.0))
             new = jnp.where(inside, pressure > 0, matrix @ pressure < right)
             return new, pressure, jnp.any(new != inside), count + 1, right
 
