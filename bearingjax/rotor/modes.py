@@ -34,6 +34,10 @@ _PLANAR = 1e-6
 _STILL = 7.0
 """In roots of the round-off: the share of the largest frequency of the model below
 which a mode counts as still, since round-off hides whether it oscillates [1]."""
+_GROWS = 1e-9
+"""Growth over the frequency above which a mode is unstable, not by round-off [1]."""
+_ALONE = 0.01
+"""Share of a growth that another cause than the main one may have [1]."""
 _ALIKE = 0.7
 """Overlap of a mode with itself at the next speed, below which the step is halved."""
 _HALVINGS = 10
@@ -104,16 +108,58 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
         Modes, with first derivatives with respect to all numbers of the rotor and to
         the speed. Where modes coincide the derivative of each is that of a mixture;
         their sum is right, and each is if they stay together.
+
+    Warns:
+        UserWarning: If a mode grows, and whether the unsymmetric part of the stiffness
+            of supports does it.
     """
     speed = as_real(speed)
     number("modes", "speed", speed, "rad/s")
-    return _modes(rotor, speed, _counted("modes", count))
+    found, driven = _modes(rotor, speed, _counted("modes", count))
+    if not is_traced(driven) and not is_traced(found.eigenvalue):
+        _warn_of_growth(found, float(speed), np.asarray(driven))
+    return found
 
 
 @eqx.filter_jit
 def _modes(rotor, speed, count):
+    """Modes, and by how much unsymmetric stiffness raises Re λ of each [rad/s]."""
     matrices = rotor.linearised(speed)
-    return shown(eigenpairs(matrices, count), matrices, speed)
+    pairs = eigenpairs(matrices, count)
+    fixed, known = stop(matrices), stop(pairs)
+    own = jnp.diagonal(_products(known, known, fixed))
+    unsymmetric = to_complex(0.5 * (fixed.stiffness - fixed.stiffness.T))
+    work = jnp.sum((known.left.conj() @ unsymmetric) * known.right, axis=1)
+    driven = jnp.where(own == 0, 0.0, -work / jnp.where(own == 0, 1.0, own)).real
+    return shown(pairs, matrices, speed), driven
+
+
+def _warn_of_growth(found, speed, driven):
+    """Warn of the first mode that grows.
+
+    Args:
+        found: Modes at the speed.
+        speed: [rad/s].
+        driven: Growth by unsymmetric stiffness (mode,) [rad/s].
+    """
+    value = np.asarray(found.eigenvalue)
+    grows = np.flatnonzero((value.imag > 0) & (value.real > _GROWS * np.abs(value)))
+    if not len(grows):
+        return
+    k = grows[0]
+    ratio = value[k].real / np.abs(value[k])
+    cause = ""
+    if driven[k] >= (1.0 - _ALONE) * value[k].real:
+        cause = (
+            "; what drives it is the unsymmetric part of the stiffness of supports, and"
+            f" a damping ratio above {ratio:.2g} more holds it"
+        )
+    warnings.warn(
+        f"modes: unstable at {speed:.5g} rad/s ({speed * 30.0 / np.pi:.5g} rpm): the"
+        f" mode of {value[k].imag / (2.0 * np.pi):.5g} Hz grows, its damping ratio is"
+        f" {-ratio:.2g}{cause}",
+        stacklevel=3,
+    )
 
 
 def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:

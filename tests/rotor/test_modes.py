@@ -172,6 +172,28 @@ def test_lines_of_a_campbell_diagram_do_not_hang_on_how_many_speeds_it_has():
         np.testing.assert_allclose(found.frequency[-1], exact, rtol=DIFFERENCE)
 
 
+@pytest.mark.parametrize("cause", ("stiffness", "damping"))
+def test_a_mode_that_grows_is_told_with_its_cause(cause):
+    """Two masses, each on k: with k', -k' across the ratio is -k'/2k, with dampers c
+    across it is -c/2√(km)."""
+    k, mass, share = 1e7, 4.0, 8e-6
+    stiffness, damping = k * np.eye(5), np.zeros((5, 5))
+    if cause == "stiffness":
+        stiffness[0, 1], stiffness[1, 0] = -share * k, share * k
+    else:
+        damping[0, 1] = damping[1, 0] = share * np.sqrt(k * mass)
+    ends = [bj.PointMass(n, mass) for n in (0, 1)]
+    supports = [bj.LinearSupport(n, stiffness, damping) for n in (0, 1)]
+    rotor = bj.Rotor(bj.Shaft([0.0, 1.0], 1e-4), ends, supports, rigid=True)
+    with pytest.warns(UserWarning, match=r"unstable at 0 rad/s \(0 rpm\)") as told:
+        found = bj.modes(rotor)
+    (text,) = (str(one.message) for one in told)
+    assert ("unsymmetric part" in text) == (cause == "stiffness")
+    assert "damping ratio is -4e-06" in text
+    ratio = np.asarray(found.damping_ratio).min()
+    np.testing.assert_allclose(ratio, -0.5 * share, rtol=1e-4)
+
+
 class _Stop(AbstractSupport):
     """A spring that becomes ten thousand times as stiff at a speed."""
 
