@@ -10,11 +10,13 @@ Source: Lancaster, On eigenvalues of matrices dependent on a parameter, Numer. M
     (1964) 377-387.
 """
 
+import warnings
 from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import lax
 from jaxtyping import Array, Bool, Complex, Float, Int
 
@@ -32,8 +34,17 @@ _PLANAR = 1e-6
 _STILL = 7.0
 """In roots of the round-off: the share of the largest frequency of the model below
 which a mode counts as still, since round-off hides whether it oscillates [1]."""
-_SPARE = 8
-"""Modes above those asked for that a Campbell diagram follows as well."""
+_GROWS = 1e-9
+"""Growth over the frequency above which a mode is unstable, not by round-off [1]."""
+_ALONE = 0.01
+"""Share of a growth that another cause than the main one may have [1]."""
+_ALIKE = 0.7
+"""Overlap of a mode with itself at the next speed, below which the step is halved."""
+_HALVINGS = 10
+"""Most halvings of a step between two speeds of a Campbell diagram."""
+_CROSSING = 2e-3
+"""Step within which frequencies may cross, over all speeds: a longer one would step
+over modes that approach and part again [1]."""
 
 
 class Modes(eqx.Module):
@@ -97,25 +108,68 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
         Modes, with first derivatives with respect to all numbers of the rotor and to
         the speed. Where modes coincide the derivative of each is that of a mixture;
         their sum is right, and each is if they stay together.
+
+    Warns:
+        UserWarning: If a mode grows, and whether the unsymmetric part of the stiffness
+            of supports does it.
     """
     speed = as_real(speed)
     number("modes", "speed", speed, "rad/s")
-    return _modes(rotor, speed, _counted("modes", count))
+    found, driven = _modes(rotor, speed, _counted("modes", count))
+    if not is_traced(driven) and not is_traced(found.eigenvalue):
+        _warn_of_growth(found, float(speed), np.asarray(driven))
+    return found
 
 
 @eqx.filter_jit
 def _modes(rotor, speed, count):
+    """Modes, and by how much unsymmetric stiffness raises Re λ of each [rad/s]."""
     matrices = rotor.linearised(speed)
-    return shown(eigenpairs(matrices, count), matrices, speed)
+    pairs = eigenpairs(matrices, count)
+    fixed, known = stop(matrices), stop(pairs)
+    own = jnp.diagonal(_products(known, known, fixed))
+    unsymmetric = to_complex(0.5 * (fixed.stiffness - fixed.stiffness.T))
+    work = jnp.sum((known.left.conj() @ unsymmetric) * known.right, axis=1)
+    driven = jnp.where(own == 0, 0.0, -work / jnp.where(own == 0, 1.0, own)).real
+    return shown(pairs, matrices, speed), driven
+
+
+def _warn_of_growth(found, speed, driven):
+    """Warn of the first mode that grows.
+
+    Args:
+        found: Modes at the speed.
+        speed: [rad/s].
+        driven: Growth by unsymmetric stiffness (mode,) [rad/s].
+    """
+    value = np.asarray(found.eigenvalue)
+    grows = np.flatnonzero((value.imag > 0) & (value.real > _GROWS * np.abs(value)))
+    if not len(grows):
+        return
+    k = grows[0]
+    ratio = value[k].real / np.abs(value[k])
+    cause = ""
+    if driven[k] >= (1.0 - _ALONE) * value[k].real:
+        cause = (
+            "; what drives it is the unsymmetric part of the stiffness of supports, and"
+            f" a damping ratio above {ratio:.2g} more holds it"
+        )
+    warnings.warn(
+        f"modes: unstable at {speed:.5g} rad/s ({speed * 30.0 / np.pi:.5g} rpm): the"
+        f" mode of {value[k].imag / (2.0 * np.pi):.5g} Hz grows, its damping ratio is"
+        f" {-ratio:.2g}{cause}",
+        stacklevel=3,
+    )
 
 
 def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
     """Modes over speeds, each followed from one speed to the next.
 
     Modes are numbered by their frequencies at the first speed. A mode is followed by
-    its shape: eigenvectors of one speed are orthogonal to the left ones of another
-    mode at the next, but for what the step of the speed changes. Take small steps
-    where frequencies of one direction come close.
+    its shape: its overlap with each mode of the next speed is the product of two
+    scalar products, of left and of right vectors, and sums up to one. Where that
+    with itself is below 0.7, and where frequencies cross, speeds between are looked at
+    too, so that the lines hang little on how many speeds are given.
 
     Args:
         rotor: As in `modes`.
@@ -124,46 +178,149 @@ def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
 
     Returns:
         Modes with `speed` as first axis.
+
+    Warns:
+        UserWarning: If a mode is not clearly the same at the next speed, however small
+            the step; it may then change places with another one.
     """
-    return _campbell(rotor, speed_list("campbell", speeds), _counted("campbell", count))
+    speeds = speed_list("campbell", speeds)
+    found, overlap = _campbell(rotor, speeds, _counted("campbell", count))
+    if not is_traced(overlap):
+        _warn_of_swaps(np.asarray(speeds), np.asarray(overlap))
+    return found
+
+
+def _warn_of_swaps(speeds, overlap):
+    """Warn of modes that were not followed for certain.
+
+    Args:
+        speeds: (speed,) [rad/s].
+        overlap: Least one on the way to each of them (speed, mode) [1].
+    """
+    poor = ~(overlap >= _ALIKE)
+    steps = np.flatnonzero(poor.any(axis=1))
+    if not len(steps):
+        return
+    where = [
+        f"mode {', '.join(str(m + 1) for m in np.flatnonzero(poor[k]))} between"
+        f" {speeds[k - 1]:.5g} and {speeds[k]:.5g} rad/s"
+        for k in steps[:3]
+    ]
+    more = f" and in {len(steps) - 3} steps more" if len(steps) > 3 else ""
+    warnings.warn(
+        f"campbell: not followed for certain: {'; '.join(where)}{more}; there modes may"
+        " change places",
+        stacklevel=3,
+    )
 
 
 @eqx.filter_jit
 def _campbell(rotor, speeds, count):
+    """Modes over speeds, and the overlap of each on the way there (speed, mode)."""
     matrices = rotor.linearised(speeds[0])
     n = matrices.mass.shape[0]
-    followed = min(n, n if count is None else count + _SPARE)
-    pairs = lax.map(lambda speed: eigenpairs(rotor.linearised(speed), followed), speeds)
-    fixed = stop(pairs)
+    count = n if count is None else min(n, count)
+    fixed = stop(rotor)
+    crossing = _CROSSING * stop(jnp.max(speeds) - jnp.min(speeds))
 
-    def step(before, now):
-        speed, pairs = now
-        order = _pairing(_likeness(before, pairs, rotor.linearised(speed)))
-        return jax.tree.map(lambda leaf: leaf[order], pairs), order
+    def at_speed(speed, before):
+        """Eigenpairs in the order of those before, and their overlaps."""
+        there = fixed.linearised(speed)
+        now = _biorthogonal(eigenpairs(there, None), there)
+        return now, *_matched(before, now, there)
 
-    first = jax.tree.map(lambda leaf: leaf[0], fixed)
-    later = jax.tree.map(lambda leaf: leaf[1:], fixed)
-    _, orders = lax.scan(step, first, (stop(speeds[1:]), later))
-    orders = jnp.concatenate([jnp.arange(followed)[None], orders])[:, :count]
+    def follow(state, given):
+        before, at = state
+        speed, first = given
+        way = speed - at
 
-    def show(order, pairs, speed):
-        pairs = jax.tree.map(lambda leaf: leaf[order], pairs)
+        def step(state):
+            at, size, pairs, least, _ = state
+            left = speed - at
+            last = first | (jnp.abs(size) >= jnp.abs(left))
+            trial = jnp.where(last, speed, at + size)
+            now, order, overlap = at_speed(trial, pairs)
+            order = jnp.where(first, jnp.arange(n), order)
+            overlap = jnp.where(first, 1.0, overlap[:count])
+            now = jax.tree.map(lambda leaf: leaf[order], now)
+            short = jnp.abs(size) <= jnp.abs(way) / 2**_HALVINGS
+            crossed = (jnp.abs(size) > crossing) & _crossed(pairs, now, count) & ~first
+            good = (jnp.all(overlap >= _ALIKE) & ~crossed) | short
+            pairs = jax.tree.map(lambda a, b: jnp.where(good, a, b), now, pairs)
+            least = jnp.where(good, jnp.minimum(least, overlap), least)
+            size = jnp.where(good, 2.0 * size, 0.5 * size)
+            return jnp.where(good, trial, at), size, pairs, least, good & last
+
+        begin = at, way, before, jnp.ones(count, speed.dtype), jnp.asarray(False)
+        _, _, pairs, least, _ = lax.while_loop(lambda s: ~s[4], step, begin)
+        return (pairs, speed), (jax.tree.map(lambda leaf: leaf[:count], pairs), least)
+
+    blank = jax.eval_shape(lambda: eigenpairs(matrices, None))
+    blank = jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), blank)
+    first = jnp.arange(len(speeds)) == 0
+    turning = stop(speeds)
+    _, (pairs, overlap) = lax.scan(follow, (blank, turning[0]), (turning, first))
+
+    def show(pairs, speed):
+        # Vectors have no derivative; eigenvalues have that of one Newton step.
+        own = rotor.linearised(speed)
+        value = jax.vmap(lambda *pair: _refined(own, *pair))(
+            pairs.value, pairs.right, pairs.left
+        )
+        pairs = eqx.tree_at(lambda p: p.value, pairs, value)
         return shown(pairs, matrices, speed)
 
-    return jax.vmap(show)(orders, pairs, speeds)
+    return lax.map(lambda both: show(*both), (pairs, speeds)), overlap
 
 
-def _likeness(before, now, matrices):
-    """How much modes of one speed (row) are those of the next (column) [1].
-
-    Left and right vectors of different modes obey w·((λ + λ') M + C + Ω G) v = 0.
-    """
+def _products(left, right, matrices):
+    """w·((λ + λ') M + C + Ω G) v of left vectors of some modes and right ones of others
+    (mode, mode): zero for different modes of one speed [kg/s]."""
     mass, rates = (to_complex(part) for part in (matrices.mass, matrices.rates))
-    left, right = before.left.conj(), now.right.T
-    sums = before.value[:, None] + now.value[None, :]
-    product = sums * (left @ mass @ right) + left @ rates @ right
-    sizes = jnp.abs(before.value)[:, None] + jnp.abs(now.value)[None, :]
-    return jnp.abs(product) / jnp.where(sizes == 0, 1.0, sizes)
+    w, v = left.left.conj(), right.right.T
+    sums = left.value[:, None] + right.value[None, :]
+    return sums * (w @ mass @ v) + w @ rates @ v
+
+
+def _same(pairs):
+    """Which modes have the eigenvalue of which (mode, mode)."""
+    apart = jnp.abs(pairs.value[:, None] - pairs.value[None, :])
+    return apart <= _COINCIDENT * jnp.abs(pairs.value)[:, None]
+
+
+def _biorthogonal(pairs, matrices):
+    """With left vectors of which `_products` with the right ones is the unit matrix,
+    among modes that coincide too; those that do not oscillate stay what they are."""
+    swings = pairs.value.imag > 0
+    own = _same(pairs) & swings[:, None] & swings[None, :]
+    products = jnp.where(own, _products(pairs, pairs, matrices), 0.0)
+    products = products + jnp.diag(to_complex(jnp.where(swings, 0.0, 1.0)))
+    left = jnp.linalg.solve(products, pairs.left.conj()).conj()
+    return eqx.tree_at(lambda p: p.left, pairs, left)
+
+
+def _matched(before, now, matrices):
+    """For each mode its number among those of the next speed, each once, and how much
+    of it that one is; of modes that coincide, how much they are those before [1]."""
+    shares = _products(before, now, matrices) * _products(now, before, matrices).T
+    order = _pairing(jnp.where(jnp.isfinite(shares), jnp.abs(shares), 0.0))
+    one, other = _same(before), _same(now)
+    one, other = (same.astype(before.value.real.dtype) for same in (one, other))
+    together = jnp.abs(to_complex(one) @ shares @ to_complex(other).T)
+    sizes = jnp.minimum(jnp.sum(one, 1)[:, None], jnp.sum(other, 1)[None, :])
+    overlap = jnp.take_along_axis(together / sizes, order[:, None], axis=1)[:, 0]
+    swings = (before.value.imag > 0) & (now.value.imag[order] > 0)
+    return order, jnp.where(swings, jnp.minimum(overlap, 1.0), 1.0)
+
+
+def _crossed(before, now, count):
+    """Whether the frequency of one of the first modes crosses that of another."""
+    one, other = before.value.imag, now.value.imag
+    gaps = (x[:count, None] - x[None, :] for x in (one, other))
+    swing = (one > 0) & (other > 0)
+    alike = (_same(before) | _same(now))[:count]
+    turned = jnp.prod(jnp.stack([jnp.sign(gap) for gap in gaps]), axis=0) < 0
+    return jnp.any(turned & swing[:count, None] & swing[None, :] & ~alike)
 
 
 def _pairing(likeness):

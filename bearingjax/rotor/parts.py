@@ -1,6 +1,7 @@
 """What sits on a shaft: discs, point masses, supports and their housings."""
 
 import dataclasses
+import warnings
 from abc import abstractmethod
 from typing import Any
 
@@ -15,6 +16,8 @@ from ..design.material import Material
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 
+_FLAT = 2.0 * (1.0 + 1e-6)
+"""Polar over diametral moment of inertia of a flat disc, with round-off [1]."""
 STIFFNESS_UNITS = (
     *3 * (("N/m", "N/m", "N/m", "N", "N"),),
     *2 * (("N", "N", "N", "N m", "N m"),),
@@ -61,6 +64,10 @@ class Disc(AbstractPart):
         diametral_inertia: Moment of inertia about a diameter [kg m²].
 
     Traced: all fields but `station`.
+
+    Warns:
+        UserWarning: If the polar moment of inertia is above twice the diametral one,
+            which no body has.
     """
 
     station: int = eqx.field(static=True, converter=as_count)
@@ -72,6 +79,17 @@ class Disc(AbstractPart):
         check_station(self, self.station)
         for name in ("mass", "polar_inertia", "diametral_inertia"):
             non_negative(self, name)
+        sizes = self.polar_inertia, self.diametral_inertia
+        if any(is_traced(size) for size in sizes):
+            return
+        polar, diametral = map(float, sizes)
+        if polar > _FLAT * diametral:
+            warnings.warn(
+                f"Disc: `polar_inertia` ({polar:.5g} kg m²) is above twice"
+                f" `diametral_inertia` ({diametral:.5g} kg m²); no body has that, a"
+                " flat disc has just twice as much",
+                stacklevel=3,
+            )
 
     @classmethod
     def of_size(

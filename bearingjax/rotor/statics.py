@@ -94,8 +94,9 @@ def settle(
         ValueError: If the rotor has no support, or a loaded station is not there.
 
     Warns:
-        UserWarning: If a bearing bears nothing, or nothing holds the rotor along some
-            motion (which then stays what it is).
+        UserWarning: If a bearing bears nothing or loses its preload because the shaft
+            gives way, or nothing holds the rotor along some motion (which then stays
+            what it is).
     """
     loads = checked_loads("settle", rotor, loads)
     speed = as_real(speed)

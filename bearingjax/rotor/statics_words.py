@@ -3,6 +3,8 @@
 import warnings
 from typing import Any
 
+import equinox as eqx
+import jax.numpy as jnp
 import numpy as np
 
 from ..design.checks import is_traced
@@ -10,6 +12,10 @@ from ..numerics.result import Result
 from .parts import LinearSupport
 from .rotor import N_STATION
 from .shaft import STATION_FREEDOMS
+
+_SUSPECT, _KEPT = 0.2, 0.05
+"""Axial force over that before the shaft moved, by tangent and as it is: below it the
+preload is looked at, and is lost [1]."""
 
 
 def _named(rotor, motion) -> str:
@@ -51,8 +57,57 @@ def unsettled(rotor: Any, found: Any, place: Any) -> str:
     )
 
 
+def _lost_preload(rotor, found) -> str:
+    """Which bearings lost their preload, and why; empty if none did."""
+    moved = np.asarray(rotor.at_supports()) @ np.asarray(found.motion)
+    left, slopes = (np.asarray(x) for x in (found.support_load, found.stiffness))
+    preloaded = [
+        k
+        for k, support in enumerate(rotor.supports)
+        if not isinstance(support, LinearSupport)
+        and np.any(np.asarray(getattr(support, "offset", 1.0)))
+    ]
+    # A tangent tells how much it was at least, and whether to ask the bearing.
+    before = left[:, 2] - slopes[:, 2, 2] * moved[:, 2]
+    if all(abs(left[k, 2]) > _SUSPECT * abs(before[k]) for k in preloaded):
+        return ""
+    rest = jnp.zeros(N_STATION, found.motion.dtype)
+    asked = {
+        k: float(_at(rotor.supports[k].anywhere(), rest, found.speed)[2])
+        for k in preloaded
+    }
+    lost = {
+        k: force
+        for k, force in asked.items()
+        if force and left[k, 2] * np.sign(force) < _KEPT * abs(force)
+    }
+    if not lost:
+        return ""
+    kept = {k: max(left[k, 2] * np.sign(force), 0.0) for k, force in lost.items()}
+    words = [
+        f"the bearing on station {rotor.supports[k].station} is preloaded by"
+        f" {abs(force):.4g} N along the shaft and keeps {round(kept[k], 3):.4g} N"
+        for k, force in lost.items()
+    ]
+    travel = max((moved[k, 2] for k in lost), key=abs)
+    against = len({np.sign(force) for force in asked.values() if force}) > 1
+    cure = (
+        "what acts along the shaft is more than the preload"
+        if against
+        else "no other bearing presses back; turn one of them round (`turned`)"
+    )
+    return f"{'; '.join(words)}; the shaft goes {1e6 * travel:.4g} µm along z: {cure}"
+
+
+@eqx.filter_jit
+def _at(support, motion, speed):
+    """Force of a support where nothing has moved yet."""
+    return support.force(motion, jnp.zeros_like(motion), speed)
+
+
 def warn_of(rotor: Any, found: Any) -> None:
-    """Warn of bearings that bear nothing, and of a motion that nothing holds.
+    """Warn of bearings that bear nothing or lost their preload, and of a motion that
+    nothing holds.
 
     Args:
         rotor: The rotor.
@@ -70,6 +125,9 @@ def warn_of(rotor: Any, found: Any) -> None:
             " no stiffness here; give it a preload or a load",
             stacklevel=3,
         )
+    lost = _lost_preload(rotor, found)
+    if lost:
+        warnings.warn(f"settle: {lost}", stacklevel=3)
     free = np.asarray(found.free)
     springs = all(isinstance(support, LinearSupport) for support in rotor.supports)
     if free.any() and not springs:

@@ -8,6 +8,7 @@ import numpy as np
 from ..numerics.result import Result
 from ..numerics.types import as_array
 from ..rotor import (
+    LinearSupport,
     Modes,
     Rotor,
     Settled,
@@ -30,12 +31,14 @@ from .rotor_supports import unit_of_length, with_passage
 
 _PARTS = 40
 """Parts of the range of frequencies; a step of a branch spans one at most."""
+_FREQUENCIES = 200
+"""At which the largest linear vibration is sought, if supports are linear."""
 _SAMPLES = 64
 """Phases at which a linear vibration is told."""
 _ENDINGS = {
     Ending.POINTS: (
         "the branch did not reach the end of the range within the allowed points;"
-        " raise `rotor.response.points`"
+        " raise `rotor.response.points`, or `scale` where the vibration is far larger"
     ),
     Ending.SMALL_STEP: (
         "the branch could not be followed further: no step, however small, led on;"
@@ -127,9 +130,10 @@ def respond(
     if asked.method == "linear":
         assert linear is not None  # asked for by the caller
         return _linear(task, linear)
-    system = _system(
-        task, rotor, settled, modes, asked.scale, asked.speed, asked.reduction
-    )
+    scale = asked.scale
+    if scale is None and all(isinstance(s, LinearSupport) for s in rotor.supports):
+        scale = _largest(task, settled.rotor)
+    system = _system(task, rotor, settled, modes, scale, asked.speed, asked.reduction)
     method = (
         Shooting(asked.steps)
         if asked.method == "shooting"
@@ -165,6 +169,17 @@ def respond(
         _half_ranges(marked),
         stopped,
     )
+
+
+def _largest(task, linear) -> float | None:
+    """Norm of the largest linear response, tilts counted at the length of the shaft, or
+    `None` if there is none [m]."""
+    asked, shaft = task.response, task.shaft
+    frequency = np.linspace(asked.begin, asked.end, _FREQUENCIES)
+    found = harmonic_response(linear, task.loads, frequency, asked.speed)
+    arms = np.array([1.0] * 3 + [float(np.ptp(np.asarray(shaft.stations)))] * 2)
+    size = float(np.linalg.norm(np.asarray(found.motion) * arms, axis=(1, 2)).max())
+    return size if np.isfinite(size) and size > 0.0 else None
 
 
 def _half_ranges(every):

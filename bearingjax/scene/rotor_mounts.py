@@ -14,6 +14,7 @@ from ..rotor.vibration import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
 from .bearing_table import BESIDE, designated, read_bearing
 from .catalogue_doubts import catalogue_doubts
+from .catalogue_entry import FromCatalogue
 from .fit_table import Fits, fit_warnings, read_fits, turning
 from .quantity import SceneError
 from .read import read_element, scene_of
@@ -32,13 +33,14 @@ _SAME = 1e-3
 
 
 class _Bearing(NamedTuple):
-    """A bearing by its name, its seats, and the force to which its rows are ground
-    [N]."""
+    """A bearing by its name, its seats, the force to which its rows are ground [N], and
+    what its designation stands for."""
 
     name: str
     element: BearingElement[Any]
     fits: Fits | None
     set_force: float | None
+    catalogue: FromCatalogue | None
 
 
 def read_mounts(
@@ -93,7 +95,7 @@ def _own(table: Table, name: str, speed: float) -> _Bearing:
     design, fits = read_fits(table, table, design, Speed(speed, 0.0), catalogue)
     contact, numerics = table.table("contact"), table.table("numerics")
     element = read_element(design, contact, table, numerics)
-    return _told(_Bearing(name, element, fits, force))
+    return _told(_Bearing(name, element, fits, force, catalogue))
 
 
 def _told(bearing: _Bearing) -> _Bearing:
@@ -105,21 +107,29 @@ def _told(bearing: _Bearing) -> _Bearing:
 
 
 def _check_seat(bearing: _Bearing, shaft: Shaft, station: int) -> None:
-    """Warn of a fit on another shaft than that of the station."""
-    if bearing.fits is None:
-        return
-    seat = bearing.fits.mounting
-    wanted = np.array([float(seat.bore), float(seat.shaft_bore)])
+    """Warn of a bearing, or of its fit, on another shaft than that of the station."""
     beside = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
     diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
     there = diameters[:, beside].T
+    if bearing.fits is not None:
+        seat = bearing.fits.mounting
+        wanted = np.array([float(seat.bore), float(seat.shaft_bore)])
+        has = (
+            f"its fit has a shaft of {1e3 * wanted[0]:.5g} mm with a bore of"
+            f" {1e3 * wanted[1]:.5g} mm (`shaft_bore`)"
+        )
+        sizes = " or ".join(f"{1e3 * a:.5g} and {1e3 * b:.5g}" for a, b in there)
+    elif bearing.catalogue is not None:
+        entry = bearing.catalogue.entry
+        wanted, there = np.array([entry.bore]), there[:, :1]
+        has = f"{entry.designation} has a bore of {1e3 * entry.bore:.5g} mm"
+        sizes = " or ".join(f"{1e3 * size:.5g}" for size in dict.fromkeys(there[:, 0]))
+    else:
+        return
     if (np.abs(there - wanted) < _SAME * wanted[0]).all(axis=1).any():
         return
-    sizes = " or ".join(f"{1e3 * a:.5g} and {1e3 * b:.5g}" for a, b in there)
     warnings.warn(
-        f"{bearing.name}: its fit has a shaft of {1e3 * wanted[0]:.5g} mm with a bore"
-        f" of {1e3 * wanted[1]:.5g} mm (`shaft_bore`); at station {station} the shaft"
-        f" has {sizes} mm",
+        f"{bearing.name}: {has}; at station {station} the shaft has {sizes} mm",
         stacklevel=2,
     )
 
@@ -147,7 +157,8 @@ def _bearing(
     table.fill("bearing", own)
     tables.fill(own, _echoed(scene.inputs))
     fits = turning(scene.fits, speed)
-    return _told(_Bearing(scene.name, scene.element, fits, scene.preload_force))
+    own = scene.element, fits, scene.preload_force, scene.catalogue
+    return _told(_Bearing(scene.name, *own))
 
 
 def _echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
@@ -203,6 +214,7 @@ def _springs(table: Table, station: int) -> Mount:
     stiffness = table.table("stiffness")
     values = _isotropic(stiffness, "stiffness", "tilting stiffness")
     if not any(values):
+        stiffness.finish()
         raise stiffness.error("radial", "is missing, and so are `axial` and `tilt`")
     for key in ("preload", "offset", "law", "turned", "inertia"):
         if key in table:

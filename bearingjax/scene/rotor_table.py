@@ -192,6 +192,7 @@ def _loads(table: Table, shaft: Shaft, gravity: tuple[float, ...]) -> RotorLoads
         kinds = zip(LOADS[:5], LOAD_UNITS, strict=False)
         force = [one.quantity(name, kind_of(unit), 0.0) for name, unit in kinds]
         if not any(force):
+            one.finish()
             problem = f"is missing; give one at least of {', '.join(LOADS[:5])}"
             raise one.error("Fy", problem)
         forces.append(StationForce(station, force))

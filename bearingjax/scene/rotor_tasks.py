@@ -92,6 +92,13 @@ def read_response(
             " speed, that of the excitation",
             stacklevel=2,
         )
+    if speed is None and rotor.quantity("speed", "speed", 0.0) < 0.0:
+        warnings.warn(
+            "`rotor.speed` is negative, but in the response the rotor turns with its"
+            " excitation, from x towards y; give `rotor.response.speed` for the other"
+            " sense",
+            stacklevel=2,
+        )
     return ResponseTask(
         begin=begin,
         end=end,

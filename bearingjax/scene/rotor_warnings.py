@@ -16,8 +16,6 @@ _NEAR = 0.1
 """Share of a critical speed within which running is worth a word [1]."""
 _DRIFT = 0.5e-6
 """Change of radial clearance over the speed that is worth a word [m]."""
-_UNSTABLE = -1e-9
-"""Damping ratio below which a mode grows, not by round-off [1]."""
 
 
 def rotor_warnings(run: RotorRun) -> list[str]:
@@ -27,14 +25,6 @@ def rotor_warnings(run: RotorRun) -> list[str]:
         run: From `run_rotor`.
     """
     told = [*run.warnings, *_held_fits(run.task)]
-    if run.modes is not None:
-        (_, frequency), (_, ratio), _ = mode_numbers(run.modes)
-        grows = (ratio < _UNSTABLE) & (frequency > 0)
-        if grows.any():
-            told.append(
-                f"unstable at {rpm(run.task.speed)}: the mode of"
-                f" {frequency[grows][0]:.5g} Hz grows"
-            )
     if run.critical is not None and run.task.speed:
         speed, whirl = run.critical.speed, run.critical.whirl
         near = np.abs(np.abs(run.task.speed) / speed - 1.0) < _NEAR

@@ -1,5 +1,7 @@
 """Free vibration: frequency over amplitude, published and in closed form."""
 
+import dataclasses
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -8,7 +10,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from tolerances import DIFFERENCE, PUBLISHED
-from vibrations import Contact, duffing, oscillator, rotor
+from vibrations import Contact, Spring, duffing, oscillator, rotor
 
 import bearingjax as bj
 from bearingjax.rotor.vibration import HarmonicBalance, Shooting, backbone
@@ -64,6 +66,56 @@ def test_the_published_frequencies():
         parts = zip(spans[:-1], spans[1:], strict=True)
         whole = sum(quad(time, a, b, epsabs=1e-10)[0] for a, b in parts)
         assert abs(np.pi / whole / frequency - 1.0) < DIFFERENCE
+
+
+class Weight(eqx.Module):
+    """A constant load of one freedom."""
+
+    force: jax.Array
+
+    def __call__(self, phase, frequency, acceleration):
+        return self.force[None]
+
+
+def test_peaks_count_from_where_a_constant_load_is_carried():
+    """Against quadrature of the energy u²/2 + c u⁴/4 - F u."""
+    cubic, force = 0.3, 0.8
+
+    @jax.jit
+    def run(force):
+        system = oscillator(Spring(jnp.asarray(cubic), jnp.asarray(0.0)))
+        system = dataclasses.replace(system, load=Weight(force))
+        found = backbone(system, HEIGHTS, 0, HarmonicBalance(9, 64), throw=False)
+        return found.frequency, found.amplitude[:, 0]
+
+    def exact(force, height):
+        rest = brentq(lambda u: u + cubic * u**3 - force, 0.0, 2.0)
+
+        def energy(u):
+            return 0.5 * u**2 + 0.25 * cubic * u**4 - force * u
+
+        top = energy(rest + height)
+        low = brentq(lambda u: energy(u) - top, -3.0, rest)
+        middle, half = 0.5 * (rest + height + low), 0.5 * (rest + height - low)
+
+        def time(angle):
+            u = middle + half * np.sin(angle)
+            return half * np.cos(angle) / np.sqrt(2.0 * (top - energy(u)))
+
+        spans = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 9)
+        parts = zip(spans[:-1], spans[1:], strict=True)
+        return np.pi / sum(quad(time, a, b, epsabs=1e-10)[0] for a, b in parts), half
+
+    frequency, half = run(jnp.asarray(force))
+    each = np.array([exact(force, float(height)) for height in HEIGHTS])
+    np.testing.assert_allclose(frequency, each[:, 0], rtol=DIFFERENCE)
+    np.testing.assert_allclose(half, each[:, 1], rtol=DIFFERENCE)
+    slope = jax.jacfwd(lambda force: run(force)[0])(jnp.asarray(force))
+    ends = [exact(force + step, float(HEIGHTS[1]))[0] for step in (-1e-4, 1e-4)]
+    np.testing.assert_allclose(slope[1], (ends[1] - ends[0]) / 2e-4, rtol=1e-4)
+
+
+HEIGHTS = jnp.array([0.1, 0.5])
 
 
 def test_duffing_with_one_harmonic():

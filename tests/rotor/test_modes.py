@@ -8,6 +8,7 @@ with six elements and Cowper's shear coefficient, whose frame and freedoms are o
 (tests/rotor/test_ross.py). Torsion, which ROSS has and we have not, is left out.
 """
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -17,6 +18,7 @@ from slopes import with_slopes
 from tolerances import DIFFERENCE, PUBLISHED, SOLVER
 
 import bearingjax as bj
+from bearingjax.rotor import AbstractSupport
 
 TURN = 2 * np.pi
 
@@ -129,6 +131,84 @@ def test_modes_are_followed_through_crossings():
     np.testing.assert_allclose(
         at_rest, [636.6, 636.6, 721.0, 1641.7, 1641.7], rtol=PUBLISHED
     )
+
+
+def veering():
+    """Unequal supports and gyroscopic discs: lines cross, and some part again."""
+    rotor = bj.Rotor(
+        bj.Shaft([0.0, 0.15, 0.3, 0.5], 0.035),
+        [bj.Disc(1, 6.0, 0.1, 0.06), bj.Disc(3, 3.0, 0.05, 0.03)],
+        [
+            bj.LinearSupport(0, [9e7, 2.4e7, 1e7, 0, 0], [420, 420, 0, 0, 0]),
+            bj.LinearSupport(2, [18e7, 2.4e7, 0, 0, 0], [420, 420, 0, 0, 0]),
+        ],
+    )
+    return rotor
+
+
+def test_lines_of_a_campbell_diagram_do_not_hang_on_how_many_speeds_it_has():
+    """Against modes followed with NumPy in small steps."""
+    rotor, top = veering(), 6283.0
+
+    def values(speed):
+        at = rotor.linearised(speed)
+        n = at.mass.shape[0]
+        lower = np.linalg.solve(at.mass, np.hstack([at.stiffness, at.rates]))
+        state = np.block([[np.zeros((n, n)), np.eye(n)], [-lower]])
+        found, vectors = np.linalg.eig(state)
+        return found, np.linalg.inv(vectors), vectors
+
+    value, left, _ = values(0.0)
+    first = np.argsort(np.where(value.imag > 0, value.imag, np.inf))[:6]
+    left = left[first]
+    for speed in np.linspace(0.0, top, 1501)[1:]:
+        value, rows, vectors = values(speed)
+        now = np.abs(left @ vectors).argmax(axis=1)
+        assert len(set(now)) == len(now)
+        left = rows[now]
+    exact = value[now].imag / TURN
+    for count in (2, 6, 60):
+        found = bj.campbell(rotor, np.linspace(0.0, top, count), count=6)
+        np.testing.assert_allclose(found.frequency[-1], exact, rtol=DIFFERENCE)
+
+
+@pytest.mark.parametrize("cause", ("stiffness", "damping"))
+def test_a_mode_that_grows_is_told_with_its_cause(cause):
+    """Two masses, each on k: with k', -k' across the ratio is -k'/2k, with dampers c
+    across it is -c/2√(km)."""
+    k, mass, share = 1e7, 4.0, 8e-6
+    stiffness, damping = k * np.eye(5), np.zeros((5, 5))
+    if cause == "stiffness":
+        stiffness[0, 1], stiffness[1, 0] = -share * k, share * k
+    else:
+        damping[0, 1] = damping[1, 0] = share * np.sqrt(k * mass)
+    ends = [bj.PointMass(n, mass) for n in (0, 1)]
+    supports = [bj.LinearSupport(n, stiffness, damping) for n in (0, 1)]
+    rotor = bj.Rotor(bj.Shaft([0.0, 1.0], 1e-4), ends, supports, rigid=True)
+    with pytest.warns(UserWarning, match=r"unstable at 0 rad/s \(0 rpm\)") as told:
+        found = bj.modes(rotor)
+    (text,) = (str(one.message) for one in told)
+    assert ("unsymmetric part" in text) == (cause == "stiffness")
+    assert "damping ratio is -4e-06" in text
+    ratio = np.asarray(found.damping_ratio).min()
+    np.testing.assert_allclose(ratio, -0.5 * share, rtol=1e-4)
+
+
+class _Stop(AbstractSupport):
+    """A spring that becomes ten thousand times as stiff at a speed."""
+
+    station: int = eqx.field(static=True)
+    housing: None = None
+
+    def force(self, motion, velocity, speed, angle=0.0):
+        return jnp.where(speed > 500.0, 1e9, 1e5) * motion
+
+
+def test_a_campbell_diagram_says_where_modes_are_not_followed():
+    rotor = bj.Rotor(bj.Shaft([0.0, 0.2, 0.5], 0.03), [], _Stop(0))
+    with pytest.warns(UserWarning, match="between 400 and 600 rad/s") as told:
+        bj.campbell(rotor, np.linspace(0.0, 1000.0, 6), count=4)
+    assert len(told) == 1
 
 
 # Numbers of `stepped`, and what they are counted in.

@@ -185,3 +185,9 @@ def test_proportional_damping_of_a_free_shaft():
 def test_bad_input_is_named(make, error, shown):
     with pytest.raises(error, match=shown):
         make()
+
+
+def test_a_disc_of_impossible_inertia_is_odd():
+    bj.Disc(0, 1.0, 0.2, 0.1)  # flat
+    with pytest.warns(UserWarning, match="0.21 kg m².* above twice .*0.1 kg m²"):
+        bj.Disc(0, 1.0, 0.21, 0.1)

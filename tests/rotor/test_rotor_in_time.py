@@ -208,5 +208,9 @@ def test_what_does_not_reach_its_end_says_so():
     for change, message in bad:
         with pytest.raises(ValueError, match=message):
             simulate(duffing(), **({"duration": 20.0, "frequency": 0.9} | change))
+    stopping = FrequencyTable([0.0, 10.0], [2.0, 0.0])  # 10 rad, 1.6 periods
+    assert len(poincare(duffing(), stopping, 2).time) == 2
+    with pytest.raises(ValueError, match="point 3 is never reached: `frequency` ends"):
+        poincare(duffing(), stopping, 3)
     with pytest.raises(ValueError, match="rising from each to the next"):
         FrequencyTable([0.0, 0.0], [1.0, 2.0])

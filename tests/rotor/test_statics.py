@@ -1,7 +1,9 @@
 """Static equilibrium of rotors in their bearings, and linear analyses about it."""
 
+import re
 import warnings
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -127,6 +129,23 @@ def test_nothing_holds_it():
     texts = [str(one.message) for one in said]
     assert any("station 0, 2 bears nothing" in text for text in texts)
     assert any("nothing holds" in text for text in texts)
+
+
+def test_settle_says_where_a_preload_is_lost():
+    """Two bearings that face the same way push the shaft until neither presses."""
+    rotor, loads = opposed(bj.preload_offset(ELEMENT, 200.0))
+    shoved = bj.RotorLoads(forces=bj.StationForce(1, [0.0, 0.0, 3000.0, 0.0, 0.0]))
+    alike = eqx.tree_at(lambda r: r.supports[1].turned, rotor, replace_fn=lambda t: ~t)
+    both = "station 0 is preloaded by 200 N .* keeps 0 N; the bearing on station 2"
+    for one, load, words in (
+        (alike, loads, f"{both}.*no other bearing presses back"),
+        (rotor, shoved, "station 2 is preloaded by 200 N .* is more than the preload"),
+    ):
+        with pytest.warns(UserWarning) as said:
+            bj.settle(one, load)
+        texts = [str(one.message) for one in said]
+        assert any(re.search(words, text) for text in texts), texts
+    bj.settle(rotor, loads)  # warns of nothing
 
 
 def test_clearance():

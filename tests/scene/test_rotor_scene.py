@@ -26,6 +26,10 @@ KNOWN = "known in [rotor"
 
 # Settings of rotor_flexible, and the message after "rotor_flexible.toml: ".
 WRONG = {
+    "moment about the shaft": (
+        "rotor.excitation.forces=[{station=1, Mz='1 N m'}]",
+        "`rotor.excitation.forces[0].Mz`: unknown key; known in [rotor.excitation",
+    ),
     "table of one bearing": (
         "bearing={type='needle_roller'}",
         "`bearing`: the scene of a rotor has a [rotor], and its bearings as",
@@ -348,6 +352,21 @@ def test_unbalance_at_a_speed_of_its_own_is_odd():
     task = read_rotor("rotor_flexible", ["rotor.response.speed=3000 rpm"])
     (warning,) = task.warnings
     assert "unbalance turns at another speed" in warning
+
+
+@pytest.mark.parametrize(
+    "settings, words",
+    (
+        (["rotor.speed=-60 rpm"], "`rotor.speed` is negative, but in the response"),
+        (
+            ["bearings.locating={designation='6207'}"],
+            "locating: 6207 has a bore of 35 mm; at station 0 the shaft has 40 mm",
+        ),
+    ),
+)
+def test_what_does_not_go_together_is_odd(settings, words):
+    (warning,) = read_rotor("rotor_flexible", settings).warnings
+    assert words in warning
 
 
 def test_a_clearance_beside_its_class_is_odd():

@@ -27,7 +27,7 @@ from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
 from .method import AbstractMethod
 from .orbit import amplitudes, newton
-from .system import AbstractVibration, rates
+from .system import AbstractVibration, out_of_balance, rates
 
 _PHASES = 64
 """Phases at which a linear mode is sampled."""
@@ -118,8 +118,8 @@ def backbone(
     Args:
         system: The system. If its rotor turns with the excitation, it turns with the
             vibration here: the curve is that of a critical speed.
-        peaks: Largest displacement of the freedom, from small ones on (point,) [m,
-            rad].
+        peaks: Largest displacement of the freedom from where it rests under the
+            constant part of the excitation, from small ones on (point,) [m, rad].
         freedom: Which one. Static.
         method: `Shooting` or `HarmonicBalance`.
         mode: Number of the mode at rest, by frequency from 0, the speed being the
@@ -154,32 +154,56 @@ def _message(found, peaks):
     return (
         f"backbone: no free vibration found at point {first}, peak"
         f" {float(np.asarray(peaks)[first]):.3g} ({label}). Let peaks grow in smaller"
-        " steps, or choose a freedom that takes more part in the mode."
+        " steps, or choose a freedom that takes more part in the mode; constant loads"
+        " must have an equilibrium."
     )
 
 
 def _equations(method, given, freedom):
     """(z, ζ, ν) -> what is left: the method's, and a peak of a height at phase 0."""
-    system, peak = given
+    system, peak, rest = given
 
     def left(x):
         z, damping_ratio, ratio = x[:-2], x[-2], x[-1]
         u, rate = method.state(z)
-        held = jnp.stack([u[freedom] - peak / system.scale[freedom], rate[freedom]])
+        risen = u[freedom] - rest[freedom] - peak / system.scale[freedom]
+        held = jnp.stack([risen, rate[freedom]])
         free = _free(system, damping_ratio)
         return jnp.concatenate([method.residual(free, z, ratio), held])
 
     return left
 
 
-def _linear(system, freedom, method, mode):
+def _at_rest(system):
+    """Where the freedoms rest, over `scale` (n,); NaN if Newton's method finds none."""
+
+    def left(u, system):
+        one = jnp.ones_like(system.reference_frequency)
+        none, still = jnp.zeros_like(one), jnp.zeros_like(u)
+        return out_of_balance(_free(system, none), none, one, u, still, still)
+
+    def linearised(u):
+        return left(u, stop(system)), jax.jacfwd(left)(u, stop(system))
+
+    def correction(of_u, u, change, _):
+        # What nothing holds stays where it is.
+        return -jnp.linalg.pinv(jax.jacfwd(of_u)(u)) @ change
+
+    found = newton(linearised, jnp.zeros_like(system.scale), _STEPS)
+    solved = found.result == int(Result.CONVERGED)
+    rest = jnp.where(solved, found.x, jnp.nan)
+    return attach_by(left, rest, system, correction)
+
+
+def _linear(system, rest, freedom, method, mode):
     """Unknowns at rest, and their growth with the peak over the freedom's scale."""
     free = _free(system, jnp.zeros_like(system.reference_frequency))
     count = system.scale.shape[0]
     one = jnp.ones_like(free.damping_ratio)
     change = rates(free, one)
+    still = jnp.zeros_like(rest)
     matrix = jax.jacfwd(lambda y: change(jnp.zeros_like(one), y))(
-        jnp.zeros(2 * count, one.dtype)
+        jnp.concatenate([rest, still])
     )
     values, vectors = jnp.linalg.eig(matrix)
     turning = jnp.where(values.imag > 0, values.imag, jnp.inf)
@@ -190,10 +214,11 @@ def _linear(system, freedom, method, mode):
     u = jnp.cos(phases) * real - jnp.sin(phases) * imaginary
     rate = -jnp.sin(phases) * real - jnp.cos(phases) * imaginary
     growth = method.unknowns((u, rate))
+    every = jnp.broadcast_to(rest, u.shape), jnp.zeros_like(rate)
     ratios = jnp.stack([-values[k].real / jnp.abs(values[k]), values[k].imag])
     none = jnp.zeros_like(ratios)
     return (
-        jnp.concatenate([jnp.zeros_like(growth), ratios]),
+        jnp.concatenate([method.unknowns(every), ratios]),
         jnp.concatenate([growth, none]),
     )
 
@@ -201,11 +226,12 @@ def _linear(system, freedom, method, mode):
 @eqx.filter_jit
 def _followed(system, peaks, freedom, method, mode):
     fixed, size = stop(system), stop(system.scale[freedom])
-    rest, growth = _linear(fixed, freedom, method, mode)
+    where = _at_rest(system)
+    rest, growth = _linear(fixed, stop(where), freedom, method, mode)
 
     def linearised(x, height):
         def both(x):
-            value = _equations(method, (fixed, height * size), freedom)(x)
+            value = _equations(method, (fixed, height * size, stop(where)), freedom)(x)
             return value, value
 
         jacobian, value = jax.jacfwd(both, has_aux=True)(x)
@@ -259,7 +285,7 @@ def _followed(system, peaks, freedom, method, mode):
         def correction(of_x, x, change, _):
             return -jnp.linalg.solve(jax.jacfwd(of_x)(x), change)
 
-        x = attach_by(residual, found.x, (system, peak), correction)
+        x = attach_by(residual, found.x, (system, peak, where), correction)
         x = unless_failed(x, found.result == int(Result.CONVERGED))
         ratio, frequency = x[-1], x[-1] * system.reference_frequency
         u, rate = method.motion(_free(system, x[-2]), x[:-2], ratio)

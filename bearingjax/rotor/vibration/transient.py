@@ -150,6 +150,9 @@ def poincare(
 
     Returns:
         `History` at those times; raises and fails as `simulate`.
+
+    Raises:
+        ValueError: If the excitation comes to rest before.
     """
     count("poincare", "n_points", n_points)
     if settle < 0:
@@ -157,6 +160,11 @@ def poincare(
     table = as_frequency_table("poincare", frequency)
     phases = as_real(2.0 * np.pi * (settle + np.arange(n_points)))
     times = jax.vmap(table.time_at)(phases)
+    if not is_traced(times) and not np.isfinite(times[-1]):
+        raise ValueError(
+            f"poincare: point {settle + n_points} is never reached: `frequency` ends at"
+            f" {float(table.frequency[-1]):g} rad/s."
+        )
     # A little longer than the last, that is at zero where there is one point.
     duration = times[-1] + jnp.where(times[-1] > 0, 0.0, table.time_at(as_real(1.0)))
     return simulate(system, duration, table, start=start, times=times, **options)
