@@ -13,7 +13,9 @@ def add(commands):
         help="balls and rollers that skid: over time, or in the end",
         description="How the balls or rollers of a bearing move with its cage in its"
         " [lubricant], over the time of its [dynamics], or in the end.",
-        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
+        epilog="A `law` of viscosity without `film_coefficient` takes for films its"
+        " reciprocal asymptotic isoviscous pressure α*. Exit status: 0 solved, 2 bad"
+        " input, 3 not solved.",
     )
     add_scene(command)
     command.add_argument(

@@ -63,7 +63,8 @@ class Lubricant(eqx.Module):
         pressure: How it grows with pressure.
         density: Density over temperature.
         coefficient: Pressure-viscosity coefficient for films, or a plain number [1/Pa];
-            default the slope of the pressure law at p = 0.
+            `None`: α* of the pressure law, `isoviscous_coefficient`, on which films
+            depend, not its slope at p = 0.
         thermal_conductivity: Thermal conductivity [W/(m K)].
 
     Traced: all numbers. Static: the classes.
@@ -111,15 +112,18 @@ class Lubricant(eqx.Module):
 
     def pressure_coefficient(self, temperature: Scalar | float) -> Scalar:
         """Pressure-viscosity coefficient of films [1/Pa], temperature in K."""
-        kelvin = _kelvin(temperature)
         if self.coefficient is None:
-            return self._slope(kelvin)
+            return self.isoviscous_coefficient(temperature)
+        kelvin = _kelvin(temperature)
         density = self.density.at(kelvin)
         ambient = self.ambient.log_viscosity(kelvin, density)
         return self.coefficient.value(ambient, density)
 
     def isoviscous_coefficient(self, temperature: Scalar | float) -> Scalar:
         """Reciprocal asymptotic isoviscous pressure α* = 1/∫ μ(0)/μ(p) dp [1/Pa].
+
+        It is below the slope d ln μ/dp at p = 0 where that falls with pressure, and α
+        of Barus' law; zero of a viscosity that does not grow.
 
         Args:
             temperature: Temperature [K].
@@ -132,8 +136,12 @@ class Lubricant(eqx.Module):
         far = jnp.asarray(share / (1.0 - share), kelvin.dtype)
         weight = jnp.asarray(0.5 * weight / (1.0 - share) ** 2, kelvin.dtype)
         slope = self._slope(kelvin)
-        thicker = self.viscosity(far / slope, kelvin)
-        return slope / jnp.dot(weight, self._thin(kelvin) / thicker)
+        # Without growth the integral is infinite; near it α* is the slope.
+        grows = slope > 0
+        scale = jnp.where(grows, slope, 1e-9)
+        thicker = self.viscosity(far / scale, kelvin)
+        star = scale / jnp.dot(weight, self._thin(kelvin) / thicker)
+        return jnp.where(grows, star, slope)
 
     def thermal_loading(
         self, temperature: Scalar | float, speed: Scalar | float
