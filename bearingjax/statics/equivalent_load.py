@@ -32,7 +32,8 @@ from ..design import (
     ThrustBallBearing,
     rows_of,
 )
-from ..numerics.types import Scalar
+from ..numerics.linear import lengths
+from ..numerics.types import Scalar, as_real
 from .rating import nominal_contact_angle, rated_axially
 
 # Fa/(Z D²) in MPa, and Y of a single row, Y1, Y2 of two, at each (ISO 281, table 3).
@@ -105,17 +106,21 @@ def equivalent_load(
             of cylindrical rollers, which their ribs bear.
 
     Returns:
-        P and P0: axial loads of thrust bearings, else radial ones.
+        P and P0: axial loads of thrust bearings, else radial ones; NaN if a force is.
 
     Raises:
-        ValueError: If the rows of a set are unlike.
+        ValueError: If `load` is not of shape (6,), or the rows of a set are unlike.
 
     Source: ISO 281:2007, tables 3, 4, 7 and 9; ISO 76:2006, tables 2 and 3, and its
         formulas for thrust bearings.
     """
-    square = load[0] ** 2 + load[1] ** 2
-    loaded = square > 0
-    radial = jnp.where(loaded, jnp.sqrt(jnp.where(loaded, square, 1.0)), 0.0)
+    load = as_real(load)
+    if load.shape != (6,):
+        raise ValueError(
+            f"equivalent_load: `load` has shape {load.shape}; it must be (6,): Fx Fy Fz"
+            " Mx My Mz in N, N m."
+        )
+    radial = lengths(load[:2])
     axial = jnp.abs(load[2])
     factors = load_factors(bearing, axial)
     both = jnp.stack([radial, axial])
