@@ -18,6 +18,12 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .checks import check, in_range, is_traced, positive
 
+_PLACES = np.linspace(-0.999, 0.999, 257)
+"""Positions in half lengths at which a profile is checked."""
+
+_ROUND_OFF = 1e-12
+"""Drop below zero that is none [m]."""
+
 
 class AbstractProfile(eqx.Module):
     """Profile of a roller or a raceway."""
@@ -26,7 +32,8 @@ class AbstractProfile(eqx.Module):
     """Whether it consists of straight lines and flat arcs with kinks between them."""
 
     protruding: ClassVar[bool] = False
-    """Whether the drop may be negative somewhere."""
+    """Whether the drop may be negative somewhere: no roller then counts as open because
+    the straight line between its raceways is."""
 
     @abc.abstractmethod
     def drop(
@@ -63,16 +70,20 @@ class AbstractProfile(eqx.Module):
         if any(is_traced(x) for x in (*jax.tree.leaves(self), length, diameter)):
             return
         self._check_against(float(length), float(diameter))
-        ends = 0.5 * np.asarray(length) * np.array([-1.0, -0.999, 0.999, 1.0])
-        found = np.asarray(drops(self, ends, length, diameter))
-        fits = (found >= 0) & (found < 0.5 * float(diameter))
+        # What stands out anywhere would be taken for open while it touches.
+        places = np.array([-0.999, 0.999]) if self.protruding else _PLACES
+        places = np.concatenate([[-1.0], places, [1.0]])
+        at = 0.5 * np.asarray(length) * places
+        found = np.asarray(drops(self, at, length, diameter))
+        fits = (found >= -_ROUND_OFF) & (found < 0.5 * float(diameter))
         check(
             self,
             "crown_drop",
             fits,
-            "at least 0 and below half the roller diameter,"
+            "at least 0 all along the roller (a profile that may stand out says"
+            " `protruding = True`) and below half the roller diameter,"
             f" {0.5 * float(diameter):.6g} m",
-            found.max(),
+            found.min() if found.min() < -_ROUND_OFF else found.max(),
             "m",
         )
 

@@ -300,7 +300,7 @@ class BearingModel(eqx.Module):
             result=result,
             steps=steps,
             residual=residual,
-            magnitude=self._magnitude(solved),
+            magnitude=self.magnitude(solved),
             near=self.near(solved),
         )
 
@@ -363,7 +363,8 @@ class BearingModel(eqx.Module):
             for group, state in zip(self.groups, solved.groups, strict=True)
         )
 
-    def _magnitude(self, solved):
+    def magnitude(self, solved: Solved) -> Scalar:
+        """Sum of the sizes of what solved elements pass to the rings [N]."""
         sizes = []
         for group, state in zip(self.groups, solved.groups, strict=True):
             count = group.rows.element.n_displacements

@@ -33,7 +33,8 @@ from ..design import (
     ThrustBallBearing,
     rows_of,
 )
-from ..numerics.types import Scalar
+from ..numerics.linear import lengths
+from ..numerics.types import Scalar, as_real
 from .rating import nominal_contact_angle, rated_axially
 
 # Fa/(Z D²) in MPa, and Y of a single row, Y1, Y2 of two, at each (ISO 281, table 3).
@@ -106,15 +107,21 @@ def equivalent_load(
             of cylindrical rollers, which their ribs bear.
 
     Returns:
-        P and P0: axial loads of thrust bearings, else radial ones.
+        P and P0: axial loads of thrust bearings, else radial ones; NaN if a force is.
 
     Raises:
-        ValueError: If the rows of a set are unlike.
+        ValueError: If `load` is not of shape (6,), or the rows of a set are unlike.
 
     Source: ISO 281:2007, tables 3, 4, 7 and 9; ISO 76:2006, tables 2 and 3, and its
         formulas for thrust bearings.
     """
-    radial = _length(load[:2])
+    load = as_real(load)
+    if load.shape != (6,):
+        raise ValueError(
+            f"equivalent_load: `load` has shape {load.shape}; it must be (6,): Fx Fy Fz"
+            " Mx My Mz in N, N m."
+        )
+    radial = lengths(load[:2])
     axial = jnp.abs(load[2])
     factors = load_factors(bearing, axial)
     both = jnp.stack([radial, axial])
@@ -160,17 +167,10 @@ def left_out(bearing: Bearing | BearingSet, load: Float[Array, "6"]) -> LeftOut:
         centre = jnp.where(rated_axially(bearing), 0.0, sum(places) / len(rows))
     across = load[3:5] + centre * jnp.stack([load[1], -load[0]])
     return LeftOut(
-        _length(load[:2]) * float(is_thrust),
+        lengths(load[:2]) * float(is_thrust),
         jnp.abs(load[2]) * straight,
-        _length(across),
+        lengths(across),
     )
-
-
-def _length(pair):
-    """Length of a vector of two; at zero without a slope."""
-    square = jnp.sum(pair**2)
-    some = square != 0
-    return jnp.where(some, jnp.sqrt(jnp.where(some, square, 1.0)), 0.0)
 
 
 def load_factors(bearing: Bearing | BearingSet, axial: Scalar) -> Factors:

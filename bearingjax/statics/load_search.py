@@ -11,12 +11,14 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
+from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
 from ..design import AbstractBallBearing, SetRow
 from ..element.bearing_model import BearingModel, Solved
 from ..numerics import lanes
-from ..numerics.implicit import attach, unless_failed
+from ..numerics.implicit import attach_by, unless_failed
+from ..numerics.linear import solve
 from ..numerics.minimise import (
     Evaluation,
     Minimum,
@@ -168,7 +170,9 @@ def differentiable(
 ) -> Float[Array, "6"]:
     """The unknowns found, differentiable by the implicit function theorem [m].
 
-    Derivatives of a failed search are NaN.
+    Derivatives of a failed search are NaN. By the load they are infinite (where it does
+    not change, NaN) if no contact carries anything: the least load moves the ring to
+    the end of its clearance.
 
     Args:
         model: The bearing at the speeds.
@@ -178,8 +182,50 @@ def differentiable(
     # All that is traced goes through the arguments: a derivative rule must not close
     # over it.
     args = model, balance, minimum.memory
-    y = attach(_residual, minimum.x, args, model.has_potential)
+
+    def correction(of_y, y, change, _):
+        jacobian = jax.jacfwd(of_y)(y)
+        return -_by_stiffness(jacobian, change, model.has_potential)
+
+    y = attach_by(_residual, minimum.x, args, correction)
+    nothing = model.magnitude(minimum.memory) == 0
+    loose = jnp.where(nothing, balance.free, 0.0)
+    y = _without_limit(y, balance.along(balance.load), loose)
     return unless_failed(y, minimum.result == Result.CONVERGED)
+
+
+def _by_stiffness(stiffness, force, symmetric):
+    """How far the unknowns give way [m]; what is as good as not held, as if alone.
+
+    All unknowns are metres here: a diagonal of round-off beside the others is none, and
+    what it passes on, scaled to its size, would drown them.
+    """
+    diagonal = jnp.diagonal(stiffness)
+    least = 8.0 * jnp.finfo(diagonal.dtype).eps * jnp.max(diagonal)
+    held = ~(diagonal <= least)
+    both = held[:, None] & held[None, :]
+    alone = jnp.diag(jnp.where(held, 0.0, least))
+    return solve(jnp.where(both, stiffness, alone), force, symmetric)
+
+
+@jax.custom_jvp
+def _without_limit(y, load, loose):
+    """`y`, whose derivatives by the load along it are infinite where it is loose."""
+    return y
+
+
+def _rule(primals, tangents):
+    change, by_load, _ = tangents
+    y, _, loose = primals
+    if isinstance(change, SymbolicZero):
+        change = jnp.zeros_like(y)
+    if not isinstance(by_load, SymbolicZero):
+        # A product, as reverse mode needs: 0 times infinity is NaN.
+        change = change + jnp.where(loose > 0, jnp.inf, 0.0) * by_load
+    return _without_limit(*primals), change
+
+
+_without_limit.defjvp(_rule, symbolic_zeros=True)
 
 
 def _residual(y, args):

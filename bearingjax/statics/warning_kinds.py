@@ -5,7 +5,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..design import AbstractBallBearing, AbstractRollerBearing, rows_of
+from ..design import (
+    AbstractBallBearing,
+    AbstractRollerBearing,
+    AngularContactBallBearing,
+    rows_of,
+)
 from ..element.bearing_element import BearingElement
 from ..element.choices import BallChoices, RollerChoices
 from ..element.inertia import Speed
@@ -168,6 +173,14 @@ def _truncated_words(size, where):
     )
 
 
+def _land_words(size, where):
+    return (
+        "balls beyond the bottom of the groove, on the cylindrical land beside it:"
+        f" {where or f'{size:.0f} balls'}; pressure and stiffness there are worked out"
+        " with the curvature of the groove, a land presses harder and is softer"
+    )
+
+
 def _lifted_words(size, where):
     return (
         "lifted off the inner raceway by centrifugal force, more than"
@@ -261,6 +274,16 @@ KINDS: dict[str, Kind] = {
         0.0,
         _truncated_words,
         of.truncated_balls,
+    ),
+    "beyond_groove": Kind(
+        lambda element, _: any(
+            isinstance(row.bearing, AngularContactBallBearing)
+            for row in rows_of(element.bearing)
+        ),
+        of.on_land_count,
+        0.0,
+        _land_words,
+        lambda s: of.of_raceways(s, of.on_land(s)),
     ),
     "lifted_ball": Kind(
         lambda element, speed: _of_balls(element, speed) and speed is not None,

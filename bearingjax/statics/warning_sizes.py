@@ -12,6 +12,7 @@ import numpy as np
 
 from ..design import (
     AbstractBallBearing,
+    AngularContactBallBearing,
     Bearing,
     BearingSet,
     CylindricalRollerBearing,
@@ -413,6 +414,26 @@ def truncated_balls(solution: Solution) -> str:
     sides = margin.reshape(margin.shape[0], 2, -1).min(axis=2)
     where = of_raceways(solution, sides < 0)
     return f"contact load of up to {most:.5g} N; {where}"
+
+
+def on_land(solution: Solution) -> Any:
+    """Where balls carry load beyond the bottom of their groove (ball, 2).
+
+    There the raceway goes on as a cylinder, whose normal has no part along the axis.
+    """
+    balls = _of_balls(solution)
+    carrying = above_round_off(balls.contact_load) & (balls.contact_angle == 0.0)
+    parts = [
+        flags.reshape(flags.shape[0], 2, -1).any(axis=2)
+        & isinstance(bearing, AngularContactBallBearing)
+        for bearing, flags in _by_row(solution, carrying)
+    ]
+    return namespace(solution.result).concatenate(parts)
+
+
+def on_land_count(solution: Solution) -> Any:
+    """How many balls `on_land` counts."""
+    return _one(solution, on_land(solution).any(axis=1)).sum()
 
 
 def lifted(solution: Solution) -> Any:

@@ -128,3 +128,27 @@ def test_derivatives_of_an_open_bearing_are_finite():
     np.testing.assert_array_equal(force, np.zeros(12))
     slopes = jax.grad(lambda e: jnp.sum(e.force(jnp.zeros(12))))(element)
     assert all(np.all(np.isfinite(x)) for x in jax.tree.leaves(slopes))
+
+
+class Bulged(bj.design.AbstractProfile):
+    """Stands out in the middle by 5 um."""
+
+    def drop(self, position, length, diameter):
+        return 5e-6 * (4.0 * position**2 / length**2 - 0.5)
+
+
+class ToldBulged(Bulged):
+    protruding = True
+
+
+def test_a_profile_that_stands_out_in_the_middle_says_so():
+    """Else rollers that it loads are taken for open."""
+    with pytest.raises(ValueError, match="crown_drop` is -2.5e-06 m; .*protruding"):
+        cylindrical(roller_profile=Bulged())
+    # Two bulges of 2.5 um touch where the straight line is up to 5 um apart.
+    element = bj.BearingElement(
+        cylindrical(roller_profile=ToldBulged()), quadrature=bj.ContactMapped(16)
+    )
+    q = jnp.zeros(12).at[7].set(-11e-6)
+    load = element.rows(q)[0].contact_load[:, :2]
+    assert int((load > 1.0).all(axis=1).sum()) >= 3

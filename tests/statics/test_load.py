@@ -8,6 +8,7 @@ import pytest
 import robust_loads
 import robust_sweep
 from registry import balls, bearings, taper
+from slopes import with_slopes
 from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
@@ -405,6 +406,34 @@ def test_gradient_with_respect_to_load_is_the_compliance(tapered):
     compliance = np.asarray(jax.jacfwd(of)(load))[:, :5]
     stiffness = np.asarray(bj.solve_load(tapered, load).stiffness)[6:11, 6:11]
     assert np.allclose(compliance @ stiffness, np.eye(5), atol=1e-7)
+
+
+def inside_clearance():
+    """One ball at the load's end of the clearance, and rollers."""
+    size = dict(radial_internal_clearance=10e-6)
+    return [
+        balls(8, bj.DeepGrooveBallBearing, first_azimuth=-np.pi / 2, **size),
+        bj.CylindricalRollerBearing(7, 0.0725, 0.014, 0.01372, **size),
+    ]
+
+
+@pytest.mark.parametrize("bearing", inside_clearance(), ids=["balls", "rollers"])
+def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(bearing):
+    """No number at zero load; beyond, that of differences, however few elements hold
+    the ring."""
+    element = bj.BearingElement(bearing)
+
+    @with_slopes
+    def moved(force):
+        load = jnp.zeros(6).at[1].set(-force)
+        return bj.solve_load(element, load).displacement[7]
+
+    slope, value = moved(0.0)
+    assert float(value) == 0.0 and not np.isfinite(slope)
+    for force in (1e-3, 1.0):
+        step = 1e-4 * force
+        difference = float(moved(force + step)[1] - moved(force - step)[1]) / (2 * step)
+        assert float(moved(force)[0]) == pytest.approx(difference, rel=1e-4)
 
 
 def test_second_derivative_of_the_displacement():

@@ -395,3 +395,13 @@ def test_program_is_shared_by_bearings_of_one_kind():
 
     rows = [rating._row(balls(n=n)) for n in (7, 8, 9)]
     assert len({jax.tree.structure(row) for row in rows}) == 1
+
+
+def test_equivalent_load_of_what_is_no_load():
+    bearing = bj.DeepGrooveBallBearing(
+        8, 0.045, 0.0085, outer_osculation=0.525, inner_osculation=0.515
+    )
+    for load in ([0.0, np.nan, 800.0, 0, 0, 0], [np.nan, 0.0, 0.0, 0, 0, 0]):
+        assert np.all(np.isnan(bj.statics.equivalent_load(bearing, jnp.asarray(load))))
+    with pytest.raises(ValueError, match=r"`load` has shape \(3,\); it must be \(6,\)"):
+        bj.statics.equivalent_load(bearing, jnp.asarray([0.0, 500.0, 800.0]))

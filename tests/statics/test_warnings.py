@@ -364,3 +364,18 @@ def test_peaks_do_not_depend_on_the_positions(name):
     # Both ends, also of a single position.
     ends = np.asarray(along(row, 3).line_load)[..., [0, 2]]
     assert np.allclose(along(row, 1).edge_load, ends, rtol=ROUNDING, atol=0.0)
+
+
+def test_balls_beyond_the_bottom_of_their_groove():
+    """Pushed past it against its contact angle, the ball runs on the land."""
+    element = bj.BearingElement(balls(12))
+    b = element.bearing
+    bottom = float(b.centre_distance) * np.sin(float(b.contact_angle))
+    held = {"gx": 0.0, "gy": 0.0}
+    for share, told in ((0.8, False), (1.2, True)):
+        uz = {"uz": -share * bottom}
+        s = bj.solve_load(element, [0, -1500, 0, 0, 0, 0], prescribed=held | uz)
+        texts = [t for t in bj.warnings(s) if t.startswith("balls beyond the bottom")]
+        assert bool(texts) is told
+    loaded = np.flatnonzero(np.asarray(s.load_zone))
+    assert f"inner raceway: balls {', '.join(map(str, loaded))};" in texts[0]
