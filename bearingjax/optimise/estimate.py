@@ -267,13 +267,14 @@ def estimate_geometry(
     best = fits[0]
     others = [(fits[0].count, fits[0].misfit) for _, _, fits in readings[1:]]
     return GeometryEstimate(
-        _design(kind, known, best),
-        *best.errors,
-        raised,
-        best.misfit,
-        tuple((fit.count, fit.misfit) for fit in fits[1:5]),
-        others[0] if others else None,
-        contact_angle is None and typical.angle.spread > 1e-3,
+        bearing=_design(kind, known, best),
+        dynamic_error=best.errors[0],
+        static_error=best.errors[1],
+        raised=raised,
+        misfit=best.misfit,
+        rivals=tuple((fit.count, fit.misfit) for fit in fits[1:5]),
+        other_reading=others[0] if others else None,
+        assumed_contact_angle=contact_angle is None and typical.angle.spread > 1e-3,
     )
 
 

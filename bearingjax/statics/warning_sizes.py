@@ -343,8 +343,9 @@ def has_clearance(bearing: Bearing | BearingSet) -> bool:
     row = rows[0].bearing
     if len(rows) > 1 and not is_self_aligning(bearing):
         return False
-    straight = CylindricalRollerBearing | NeedleRollerBearing
-    return not row.is_one_sided if is_ball(row) else isinstance(row, straight)
+    if isinstance(row, AbstractBallBearing):
+        return not row.is_one_sided
+    return isinstance(row, CylindricalRollerBearing | NeedleRollerBearing)
 
 
 def clearance_lost(solution: Solution) -> Any:

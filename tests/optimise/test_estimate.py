@@ -69,8 +69,8 @@ def test_a_capacity_that_its_maker_has_raised_is_seen(
 ):
     """SKF's 6309, 6205 and NU 215 ECP beside the ordinary class of others; wanted are
     the published balls and rollers (18 in the NU 215)."""
-    sizes, (c, c0) = [1e-3 * x for x in size], (1e3 * x for x in ratings)
-    found = bj.estimate_geometry(*sizes, kind, c, c0)
+    (d, big, b), (c, c0) = (1e-3 * x for x in size), (1e3 * x for x in ratings)
+    found = bj.estimate_geometry(d, big, b, kind, c, c0)
     number, element, _ = inside(found.bearing)
     assert (number, found.raised) == (count, raised)
     assert element == pytest.approx(1e-3 * diameter, rel=0.02)

@@ -237,6 +237,7 @@ def test_clearances_of_tapered_bores_and_parts_of_a_class(written, low, high):
     row = rows_of(entry.bearing)[0].bearing
     found = float(bj.design.radial_clearance(row))
     assert found == pytest.approx(clearance, rel=1e-3)
+    assert entry.class_limits is not None
     limits = entry.class_limits(entry.clearance_class, entry.bore)
     np.testing.assert_allclose(np.array(limits) * 1e6, [low, high])
     assert bj.catalogue_entry(entry.designation).table == entry.table
