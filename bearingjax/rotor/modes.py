@@ -143,20 +143,21 @@ def _warn_of_growth(found, speed, driven):
         driven: Growth by unsymmetric stiffness (mode,) [rad/s].
     """
     value = np.asarray(found.eigenvalue)
-    grows = np.flatnonzero((value.imag > 0) & (value.real > _GROWS * np.abs(value)))
+    rate, angular = np.real(value), np.imag(value)
+    grows = np.flatnonzero((angular > 0) & (rate > _GROWS * np.abs(value)))
     if not len(grows):
         return
     k = grows[0]
-    ratio = value[k].real / np.abs(value[k])
+    ratio = rate[k] / np.abs(value[k])
     cause = ""
-    if driven[k] >= (1.0 - _ALONE) * value[k].real:
+    if driven[k] >= (1.0 - _ALONE) * rate[k]:
         cause = (
             "; what drives it is the unsymmetric part of the stiffness of supports, and"
             f" a damping ratio above {ratio:.2g} more holds it"
         )
     warnings.warn(
         f"modes: unstable at {speed:.5g} rad/s ({speed * 30.0 / np.pi:.5g} rpm): the"
-        f" mode of {value[k].imag / (2.0 * np.pi):.5g} Hz grows, its damping ratio is"
+        f" mode of {angular[k] / (2.0 * np.pi):.5g} Hz grows, its damping ratio is"
         f" {-ratio:.2g}{cause}",
         stacklevel=3,
     )
