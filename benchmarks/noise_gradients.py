@@ -93,7 +93,13 @@ def model(numbers):
     # Fast, so that a step is a large share of a turn.
     speed = bj.Speed(inner=1000.0)
     return NoiseModel(
-        bj.BearingElement(bearing), 0.37, load, speed, errors, retardation=retardation
+        bj.BearingElement(bearing),
+        0.37,
+        load,
+        speed,
+        errors,
+        retardation=retardation,
+        tilts=False,
     )
 
 

@@ -67,7 +67,7 @@ def plain():
     )  # fmt: skip
     return NoiseModel(
         bj.BearingElement(bearing), MASS, [*LOAD, 0.0, 0.0, 0.0],
-        bj.Speed(inner=SPEED), retardation=RETARDATION,
+        bj.Speed(inner=SPEED), retardation=RETARDATION, tilts=False,
     )  # fmt: skip
 
 
@@ -140,11 +140,8 @@ class Equations:
         on_ball[:, 1] += self.force
         now, then = force[:, self.on_outer].sum(1), later[:, self.on_outer].sum(1)
         z = now[:, 0] + RETARDATION * then[:, 0]
-        r, by_turn = now[:, 1] + RETARDATION * then[:, 1], now[:, 1] * self.orbit
-        by_turn *= RETARDATION
-        push = [
-            (r * c - by_turn * s).sum(), (r * s + by_turn * c).sum(), z.sum()
-        ]  # fmt: skip
+        r = now[:, 1] + RETARDATION * then[:, 1]
+        push = [(r * c).sum(), (r * s).sum(), z.sum()]
         on_ring = (np.array(push) + LOAD) / MASS
         return np.concatenate([v, on_ring, (on_ball / self.mass).ravel()])
 

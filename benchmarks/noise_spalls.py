@@ -74,6 +74,7 @@ def model(part):
     return NoiseModel(
         bj.BearingElement(BEARING), 2.0, [0.0, -300.0, 0, 0, 0, 0],
         bj.Speed(inner=2 * np.pi * SHAFT), errors, moving_ring="inner",
+        tilts=False,
     )  # fmt: skip
 
 

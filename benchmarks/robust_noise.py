@@ -130,7 +130,8 @@ def random_model(kind, rng):
     axial = rng.choice([0.0, 10 ** rng.uniform(0, 3.3)])
     load[2] = 0.0 if kind == "cylindrical" else -axial
     both = [RacewayErrors(outwards=waves(rng), axial=waves(rng)) for _ in range(2)]
-    return NoiseModel(element, 0.3, load, SPEED, FormErrors(*both), retardation=3e-6)
+    given = {"retardation": 3e-6, "tilts": False}
+    return NoiseModel(element, 0.3, load, SPEED, FormErrors(*both), **given)
 
 
 def run(kind, model, finer=1):

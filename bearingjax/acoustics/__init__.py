@@ -12,10 +12,10 @@ over the turn; `linear_model` and `transfer` the way from there to the sensor.
 Levels and bands of the acceleration (`level`, `band_levels`), lines that stand out with
 their names (`name_lines`: `3 BPFO`, `BPFI + shaft`, `2 cage`), the errors that make
 them to first order (`line_causes`), and how many contacts every element has
-(`contact_states`). `model_warnings` and `record_warnings` say what is doubtful in a
-record and its levels, as the command line does. `monte_carlo` draws bearings within
-tolerance classes and gives the distribution of their levels, and which tolerance makes
-how much of it.
+(`contact_states`). `model_warnings`, `record_warnings` and `share_warnings` say what is
+doubtful in a record and its levels, as the command line does. `monte_carlo` draws
+bearings within tolerance classes and gives the distribution of their levels, and which
+tolerance makes how much of it.
 
 Waves and damping are seldom known: levels compare designs and tolerances, they do not
 foretell what a rig reads. Worked: the notebook noise_from_form_errors.
@@ -34,6 +34,7 @@ from .cage_contact import CageContact as CageContact
 from .causes import line_causes as line_causes
 from .contact_states import ContactStates as ContactStates
 from .contact_states import contact_states as contact_states
+from .contact_width import bridged as bridged
 from .contact_width import contact_half_width as contact_half_width
 from .level import REFERENCE_ACCELERATION as REFERENCE_ACCELERATION
 from .level import acceleration_of as acceleration_of
@@ -85,3 +86,4 @@ from .vibration import rounding as rounding
 from .vibration import vibration as vibration
 from .warning import model_warnings as model_warnings
 from .warning import record_warnings as record_warnings
+from .warning import share_warnings as share_warnings

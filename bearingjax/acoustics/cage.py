@@ -91,38 +91,59 @@ class CageForces(NamedTuple):
     ring: Float[Array, "2"]
 
 
-def cage_forces(
+def cage_loads(
     cage: Cage,
     place: Float[Array, "3"],
     arcs: Float[Array, " element"],
-    azimuth: Float[Array, " element"],
     ring: Float[Array, "2"],
     pitch_radius: Scalar,
-) -> CageForces:
-    """Forces of pockets and land, reversed: as derivatives of an energy.
+    azimuth: Float[Array, " element"],
+) -> tuple[Float[Array, " element"], Scalar]:
+    """Forces of pockets along the pitch circle, and of the land along its normal [N].
 
     Args:
         cage: The cage.
         place: Its x, y and turn beyond the even orbit (3,) [m, rad].
         arcs: How far every rolling element is ahead of the even orbit (element,) [m].
-        azimuth: Of the rolling elements [rad].
         ring: x and y of the guiding ring [m].
         pitch_radius: Of the circle of the rolling elements [m].
+        azimuth: Of the rolling elements [rad].
     """
-    sine, cosine = jnp.sin(azimuth), jnp.cos(azimuth)
-    # How far each pocket moves along the pitch circle, per freedom of the cage.
-    along = jnp.stack([-sine, cosine, jnp.full_like(sine, 1.0) * pitch_radius], axis=1)
-    ahead = arcs - along @ place
+    ahead = arcs - _along(azimuth, pitch_radius) @ place
     half = 0.5 * cage.pocket_clearance
     pushed = cage.contact.force(ahead - half) - cage.contact.force(-ahead - half)
+    distance = lengths(place[:2] - ring)
+    return pushed, cage.contact.force(distance - 0.5 * cage.land_clearance)
+
+
+def cage_forces(
+    pockets: Float[Array, " element"],
+    land: Scalar,
+    place: Float[Array, "3"],
+    arcs: Float[Array, " element"],
+    ring: Float[Array, "2"],
+    pitch_radius: Scalar,
+    azimuth: Float[Array, " element"],
+) -> CageForces:
+    """Forces of pockets and land, reversed: as derivatives of an energy.
+
+    Args:
+        pockets, land: From `cage_loads`, or with their damping [N].
+        place, arcs, ring, pitch_radius, azimuth: As of `cage_loads`.
+    """
     off = place[:2] - ring
     distance = lengths(off)
-    held = cage.contact.force(distance - 0.5 * cage.land_clearance)
     centred = distance == 0.0
-    towards = jnp.where(centred, 0.0, held / jnp.where(centred, 1.0, distance))
+    towards = jnp.where(centred, 0.0, land / jnp.where(centred, 1.0, distance))
     on_ring = towards * off
-    on_cage = (-pushed @ along).at[:2].add(on_ring)
-    return CageForces(pushed, on_cage, -on_ring)
+    on_cage = (-pockets @ _along(azimuth, pitch_radius)).at[:2].add(on_ring)
+    return CageForces(pockets, on_cage, -on_ring)
+
+
+def _along(azimuth, pitch_radius):
+    """How far each pocket moves along the pitch circle, per freedom of the cage."""
+    sine, cosine = jnp.sin(azimuth), jnp.cos(azimuth)
+    return jnp.stack([-sine, cosine, jnp.full_like(sine, 1.0) * pitch_radius], axis=1)
 
 
 def fastest_of_cage(

@@ -6,12 +6,14 @@ pressure. With x = k b, of order k/R around a radius R and the half width b, tha
     3 (sin x - x cos x)/x³ ≈ 1 - x²/10   of a ball,   2 J₁(x)/x ≈ 1 - x²/8   of a roller
 
 of the wave. The equations of motion take the height in the middle of the contact
-instead: from x = 1 on waves are overstated by 10 % (13 % of rollers) and more.
+instead, and overstate waves from x = 1 on by 10 % (13 % of rollers) and more, unless
+`bridged` gives them the mean.
 
 Source: integral of cos over the pressures of Hertz, (1 - s²) per width of an ellipse
     and √(1 - s²) of a line.
 """
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -20,8 +22,46 @@ import numpy as np
 
 from ..contact.line import half_width
 from ..contact.point_law import ball_ellipses, balls_of
-from ..design import AbstractBallBearing
+from ..design import AbstractBallBearing, rows_of
 from ..design.material import contact_modulus
+from .free_row import of_rows
+from .model import NoiseModel
+from .standing import standing
+
+
+def bridged(model: NoiseModel) -> NoiseModel:
+    """The same bearing, with contacts that bridge waves shorter than they are long.
+
+    Contacts are as wide as under their mean load where the bearing stands; waves of
+    random bearings, which `drawn` adds, are bridged too. Spalls are not.
+
+    Args:
+        model: The bearing.
+
+    Returns:
+        The model with `half_width`, differentiable.
+
+    Fails: as `standing`; the width is then NaN or that of no balance.
+    """
+    return dataclasses.replace(model, half_width=_half_widths(model, model.orbits))
+
+
+@eqx.filter_jit
+def _half_widths(model, orbits):
+    system = model.still_system()
+    start, _ = standing(model, system, orbits)
+    bearing = model.element.bearing
+    loads = of_rows(system.contact_loads(start, jnp.zeros_like(model.mass)), bearing)
+    widths = []
+    for row, load in zip(rows_of(bearing), loads, strict=True):
+        carried = load > 0.0
+        count = jnp.maximum(jnp.sum(carried), 1).astype(load.dtype)
+        mean = jnp.sum(jnp.where(carried, load, 0.0)) / count
+        # A row that carries nothing has no contacts, and their width no slope.
+        some = mean > 0.0
+        width = _half_width(row.bearing, jnp.where(some, mean, 1.0))
+        widths.append(jnp.where(some, width, 0.0))
+    return jnp.stack(widths)
 
 
 def contact_half_width(bearing: Any, load: np.ndarray) -> float:

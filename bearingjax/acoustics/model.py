@@ -1,6 +1,7 @@
 """A bearing on a noise rig: one ring turns, the other one may move."""
 
 import dataclasses
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -8,7 +9,13 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing, is_self_aligning, n_elements, rows_of
+from ..design import (
+    AbstractBallBearing,
+    is_ball,
+    is_self_aligning,
+    n_elements,
+    rows_of,
+)
 from ..design.checks import (
     check,
     concrete,
@@ -18,7 +25,7 @@ from ..design.checks import (
     non_negative,
     positive,
 )
-from ..design.form_error import FormErrors
+from ..design.form_error import FormErrors, Surfaces
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..element.inertia import Speed
@@ -39,18 +46,25 @@ class NoiseModel(eqx.Module):
             with `Finite()`.
         mass: Of the moving ring, and of what moves with it [kg].
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring (6,) [N, N m]; moments only
-            if it may tilt.
+            if it tilts.
         speed: Of the rings.
         errors: Form errors; of a set those of each row, in that row's own axes, or one
             that all rows have.
-        tilting_inertia: Moment of inertia of the moving ring about a diameter [kg m²];
-            `None`: it does not tilt, nor does that of a self-aligning bearing.
+        tilting_inertia: Moment of inertia about a diameter of the moving ring and of
+            what moves with it [kg m²]; `None`: `ring_inertia`, as if `mass` were that
+            of a ring alone.
         sensor: What holds the moving ring beside the bearing; `None`: nothing.
         retardation: τ of the contacts' damping [s]. Damping ratio of a mode of ω that
             is held by contacts alone: ω τ/2.
         moving_ring: "outer" or "inner". Static.
+        tilts: Whether the moving ring tilts, as one on a rig does; a shaft in further
+            bearings may not. That of a self-aligning bearing never does. Levels may
+            hang on it by tens of dB. Static.
         cage: Of a single row of balls; `None`: the rolling elements go round evenly,
             each in its place.
+        half_width: Of the contacts of each row along the rolling direction, over which
+            waves are averaged (row,) [m], from `bridged`; `None`: waves are met as they
+            are, however short.
 
     Traced: all numbers.
     """
@@ -68,7 +82,11 @@ class NoiseModel(eqx.Module):
     sensor: Sensor | None = None
     retardation: Scalar = eqx.field(converter=as_real, metadata=unit("s"), default=1e-5)
     moving_ring: str = eqx.field(static=True, default="outer")
+    tilts: bool = eqx.field(static=True, default=True)
     cage: Cage | None = None
+    half_width: Float[Array, " row"] | None = eqx.field(
+        converter=as_real, metadata=unit("m"), default=None
+    )
 
     def __check_init__(self):
         instance(self, "element", BearingElement)
@@ -79,6 +97,11 @@ class NoiseModel(eqx.Module):
         instance(self, "sensor", Sensor, None)
         if self.tilting_inertia is not None:
             positive(self, "tilting_inertia")
+            if not self.tilts:
+                raise ValueError(
+                    "NoiseModel: `tilting_inertia` is given for a ring that does not"
+                    " tilt; leave it out, or `tilts`."
+                )
         non_negative(self, "retardation")
         if self.moving_ring not in RINGS:
             raise ValueError(
@@ -94,7 +117,7 @@ class NoiseModel(eqx.Module):
             return
         check(self, "load", np.isfinite(self.load), "finite")
         held = np.asarray(self.load)[len(self.freedoms) :]
-        allowed = "zero for freedoms that the ring does not have: give tilting_inertia"
+        allowed = "zero for freedoms that the ring does not have: it does not tilt"
         check(self, "load", held[: 5 - len(self.freedoms)] == 0.0, allowed)
         check(self, "load", np.asarray(self.load)[5] == 0.0, "zero about the axis")
 
@@ -162,7 +185,16 @@ class NoiseModel(eqx.Module):
     @property
     def freedoms(self) -> tuple[str, ...]:
         """Freedoms of the moving ring."""
-        return FREEDOMS[: 3 if self.tilting_inertia is None else 5]
+        return FREEDOMS[: 3 if self.inertia is None else 5]
+
+    @property
+    def inertia(self) -> Scalar | None:
+        """Moment of inertia about a diameter [kg m²]; `None`: the ring is held."""
+        if not self.tilts or is_self_aligning(self.element.bearing):
+            return None
+        if self.tilting_inertia is not None:
+            return self.tilting_inertia
+        return ring_inertia(self.element.bearing, self.mass, self.moving_ring)
 
     @property
     def fixed_ring(self) -> str:
@@ -197,16 +229,49 @@ class NoiseModel(eqx.Module):
         return dataclasses.replace(self.system(8), errors=None, cage=None)
 
 
+def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
+    """Moment of inertia about a diameter of a ring of a given mass [kg m²].
+
+    Its section is a square about the circle of contact, as large as the mass asks for;
+    in a set the mass is that of all rings, which tilt about the middle of the set.
+
+    Args:
+        bearing: A single row or a set.
+        mass: Of the ring [kg].
+        moving_ring: "outer" or "inner". Static.
+
+    Source: m (3 (R₁² + R₂²) + b²)/12 of a hollow cylinder, with the radii R ± b/2 and
+        b² = m/(2πRρ): m (R²/2 + 5 b²/24); and m z² of one that stands at z.
+    """
+    rows = rows_of(bearing)
+    part = as_real(mass) / len(rows)
+    total = jnp.zeros_like(part)
+    for row in rows:
+        radius = getattr(Surfaces.of(row.bearing), moving_ring).radius
+        area = part / (2.0 * jnp.pi * radius * row.bearing.rings.density)
+        total = total + part * (0.5 * radius**2 + 5.0 / 24.0 * area + row.position**2)
+    return total
+
+
+def _surfaces(model: NoiseModel, found: FreeRow) -> tuple[Surfaces, ...]:
+    """Where the contacts of each row run, and how they bridge waves."""
+    if (widths := model.half_width) is None:
+        return found.surfaces
+    p = 1.0 if is_ball(model.element.bearing) else 0.5
+    rows = zip(found.surfaces, widths, strict=True)
+    return tuple(one.bridging(b, jnp.full_like(b, p)) for one, b in rows)
+
+
 @eqx.filter_jit
 def _system(model, points) -> NoiseSystem:
     found = FreeRow.of(model.small, model.speed)
     some = jax.tree.leaves(model.errors)
     mass = jnp.repeat(model.mass, 3)
-    if model.tilting_inertia is not None:
-        mass = jnp.concatenate([mass, jnp.repeat(model.tilting_inertia, 2)])
+    if (inertia := model.inertia) is not None:
+        mass = jnp.concatenate([mass, jnp.repeat(inertia, 2)])
     errors = None
     if some:
-        both = zip(model.errors_of_rows, found.surfaces, strict=True)
+        both = zip(model.errors_of_rows, _surfaces(model, found), strict=True)
         errors = tuple(one.tabulated(surfaces, points) for one, surfaces in both)
     return NoiseSystem(
         row=found.row,

@@ -5,6 +5,10 @@ is then P₀ + Σ s² P over the sources of scale s, once it is averaged over be
 since sources are independent of each other. P₀ is what a perfect bearing has. A share P
 is found in two ways that agree for small errors: from the same bearings with the source
 smaller or switched off, and from the derivative, P = (s/2) ∂/∂s.
+
+Where sources act through each other, as two that only beat together or that open
+contacts, the mean square has products of them. Both ways then count a product for each
+of its sources: shares sum to more than the mean square (`Shares.together`).
 """
 
 from collections.abc import Mapping
@@ -62,6 +66,15 @@ class Shares(eqx.Module):
         quadratic in the source.
         """
         return (self.mean_square - self.smaller) / (1.0 - self.factor**2)
+
+    @property
+    def together(self) -> Scalar:
+        """Sum of all shares over the mean square [1].
+
+        Beyond 1 by products of sources, which count for each of them; below 1 by what
+        bearings without these sources have too.
+        """
+        return jnp.sum(self.share) / self.mean_square
 
     @property
     def ranking(self) -> tuple[str, ...]:

@@ -7,10 +7,19 @@ from jaxtyping import Array, Float, Int
 
 from ..element.ball_speed import CentrifugalOnly
 from ..element.choices import BallChoices
+from ..numerics.implicit import stop
 from ..numerics.linear import combined
-from ..statics.load import solve
+from ..numerics.result import Result
+from ..numerics.types import Scalar
+from ..statics.load import solve, solve_load
+from ..statics.solution import message
+from .encounter import Encounter
 from .model import NoiseModel
 from .system import NoiseSystem
+
+_CARRIES = 1e-7
+"""Load of a rolling element over the largest of a contact below which it carries
+nothing [1]: round-off of where a search without load ends."""
 
 
 def standing(
@@ -29,7 +38,8 @@ def standing(
     Returns:
         Coordinates (n,) [m, rad] and the `Result` code; differentiable.
 
-    Fails: as `solve_load`.
+    Fails: as `solve_load`; `NO_LOAD_PATH` too where no rolling element is pressed
+    between both rings: the moving one then lies anywhere.
     """
     element = model.small
     if orbits and isinstance(element.choices, BallChoices):
@@ -51,4 +61,41 @@ def standing(
 
     places = system.row.each(place, u, v, tilt)
     ring = (q[6:] if system.moving else q[:6])[: system.mass.shape[0]]
-    return jnp.concatenate([ring, places.T.ravel()]), solution.result
+    motion = jnp.concatenate([ring, places.T.ravel()])
+    between, most = _carried(system, motion)
+    loose = (solution.result == Result.CONVERGED) & ~(between > _CARRIES * most)
+    result = jnp.where(loose, int(Result.NO_LOAD_PATH), solution.result)
+    return motion, result.astype(jnp.int32)
+
+
+def _carried(system, motion) -> tuple[Scalar, Scalar]:
+    """Largest load that goes through a rolling element, and largest of all [N]."""
+    motion = stop(motion)
+    found = Encounter.at(system.azimuth(jnp.zeros((), motion.dtype)))
+    outer, inner = (
+        jnp.linalg.norm(force.stacked[:, :2], axis=1)
+        for force in system.on_raceways(motion, found)
+    )
+    return jnp.max(jnp.minimum(outer, inner)), jnp.max(jnp.maximum(outer, inner))
+
+
+def why(model: NoiseModel) -> str:
+    """Why a bearing finds no place under its load, in words.
+
+    Args:
+        model: The bearing; concrete.
+    """
+    options = model.solve_options
+    solution = solve_load(
+        model.small,
+        model.load,
+        free=options.free,
+        fixed_ring=options.fixed_ring,
+        throw=False,
+    )
+    if int(solution.result) == Result.CONVERGED:
+        return (
+            "nothing presses the rolling elements between the rings, and the"
+            f" {model.moving_ring} ring lies anywhere; add load or preload"
+        )
+    return message(solution, model.moving_ring)

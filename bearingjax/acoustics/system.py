@@ -6,7 +6,9 @@ enters by the places of the rolling elements and by the form errors that they me
 cage carries them round evenly, at the speed of rolling without slip.
 
 A film, and what else damps in a contact, resists the change of the contact's force:
-forces are f + τ df/dt, with a retardation time τ. No force jumps where a contact opens.
+forces are f + τ df/dt, with a retardation time τ, along the axes of each rolling
+element's section: that they go round with it is no change. No force jumps where a
+contact opens.
 Damping over stiffness of whole bearings is some 2.5 to 25 us, and contacts in series
 have the τ of each. The default lies in the middle of that range.
 
@@ -20,6 +22,8 @@ Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011) for balls 
     Dynamics of Rotating Machines (2010), p. 182-185: (0.25 to 2.5) 1e-5 s.
 """
 
+from typing import NamedTuple
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -30,7 +34,7 @@ from ..design.form_error import FormErrors, Surfaces
 from ..element.frame import RINGS, orbit, roll_ratio
 from ..element.row import Row
 from ..numerics.types import Scalar
-from .cage import Cage, cage_forces
+from .cage import Cage, cage_forces, cage_loads
 from .encounter import Encounter, Section
 from .free_balls import ball_forces, is_written_out
 from .free_element import FreeElement, forces
@@ -206,20 +210,28 @@ class NoiseSystem(eqx.Module):
         return self.row.each(one, *rings, places, *heights)
 
     def _contacts(self, motion, encounter):
-        """Derivatives of the energy by the moving ring's sections, and by places."""
+        """Derivatives of the energy by both rings' sections, and by places."""
         if is_written_out(self.row.element):
             given = self._motions(motion, encounter)
-            on_rings, on_places = ball_forces(
-                self.row.element, *given, encounter.raised
-            )
-            return on_rings[self.moving], on_places
+            return ball_forces(self.row.element, *given, encounter.raised)
 
         def one(free, rings, place):
             on_rings, on_place = forces(free, rings, place)
-            return free.in_section(on_rings[self.moving]), on_place
+            return [free.in_section(force) for force in on_rings], on_place
 
-        on_ring, on_places = self._each(one, motion, encounter)
-        return Section(*on_ring.T), on_places
+        on_rings, on_places = self._each(one, motion, encounter)
+        return [Section(*force.T) for force in on_rings], on_places
+
+    def on_raceways(
+        self, motion: Float[Array, " n"], encounter: Encounter
+    ) -> tuple[Section, Section]:
+        """Forces of the rolling elements on both raceways, reversed [N, N m].
+
+        Args:
+            motion, encounter: As of `resistance`.
+        """
+        (outer, inner), _ = self._contacts(motion, encounter)
+        return outer, inner
 
     def contact_forces(
         self,
@@ -248,19 +260,38 @@ class NoiseSystem(eqx.Module):
             motion: Coordinates (n,) [m, rad].
             encounter: Of the rolling elements.
         """
-        on_ring, on_places = self._contacts(motion, encounter)
-        on_places = on_places - self._of_each("force")
-        on_ring = encounter.push(on_ring, self.mass.shape[0], self.sites)
+        return self._assembled(motion, encounter, self._pressed(motion, encounter))
+
+    def _pressed(self, motion, encounter) -> "_Pressed":
+        """Forces in the axes of the rolling elements, and along the cage's normals."""
+        on_rings, on_places = self._contacts(motion, encounter)
+        on_ring = on_rings[self.moving]
+        pockets = land = None
+        if self.cage is not None:
+            given = self._cage_places(motion)
+            pockets, land = cage_loads(self.cage, *given, encounter.azimuth)
+        return _Pressed(on_ring, on_places - self._of_each("force"), pockets, land)
+
+    def _assembled(self, motion, encounter, pressed: "_Pressed") -> Float[Array, " n"]:
+        """Those forces on all coordinates."""
+        on_ring = encounter.push(pressed.on_ring, self.mass.shape[0], self.sites)
+        parts = [on_ring, pressed.on_places.T.ravel()]
         if (cage := self.cage) is None:
-            return jnp.concatenate([on_ring, on_places.T.ravel()])
+            return jnp.concatenate(parts)
+        found = cage_forces(
+            pressed.pockets, pressed.land, *self._cage_places(motion), encounter.azimuth
+        )
+        if RINGS.index(cage.guiding_ring) == self.moving:
+            parts[0] = on_ring.at[:2].add(found.ring)
+        return jnp.concatenate([*parts, found.arcs, found.cage])
+
+    def _cage_places(self, motion):
+        """Of the cage, the elements along the pitch circle, and the guiding ring."""
+        assert self.cage is not None  # asked by those who know
         arcs, place = self.caged(motion)
-        guided = RINGS.index(cage.guiding_ring) == self.moving
+        guided = RINGS.index(self.cage.guiding_ring) == self.moving
         guide = motion[:2] if guided else jnp.zeros((2,), motion.dtype)
-        radius = self.row.pitch_radius
-        found = cage_forces(cage, place, arcs, encounter.azimuth, guide, radius)
-        if guided:
-            on_ring = on_ring.at[:2].add(found.ring)
-        return jnp.concatenate([on_ring, on_places.T.ravel(), found.arcs, found.cage])
+        return place, arcs, guide, self.row.pitch_radius
 
     def contact_loads(
         self, motion: Float[Array, " n"], time: Scalar
@@ -320,8 +351,10 @@ class NoiseSystem(eqx.Module):
         if course is None:
             course = self._passing(motion, velocity, time)
         encounter, change = course
-        found, rate = jax.jvp(self.resistance, (motion, encounter), (velocity, change))
-        force = -found - self.retardation * rate
+        given = (motion, encounter), (velocity, change)
+        pressed, rate = jax.jvp(self._pressed, *given)
+        damped = jax.tree.map(lambda f, r: f + self.retardation * r, pressed, rate)
+        force = -self._assembled(motion, encounter, damped)
         force = force.at[: self.mass.shape[0]].add(self.load)
         if self.cage is not None:
             count = self.row.azimuth.shape[0]
@@ -334,6 +367,21 @@ class NoiseSystem(eqx.Module):
         s = self.sensor
         pull = s.stiffness * (motion[:3] - start[:3]) + s.damping * velocity[:3]
         return force.at[:3].add(-s.projector @ pull)
+
+
+class _Pressed(NamedTuple):
+    """Forces that the contacts damp, on the side of what holds the parts.
+
+    Attributes:
+        on_ring: Of the moving ring's raceway, in the elements' axial sections [N, N m].
+        on_places: Of the elements (element, m) [N, N m].
+        pockets, land: As `cage_loads` [N]; `None` without a cage.
+    """
+
+    on_ring: Section
+    on_places: Float[Array, "element m"]
+    pockets: Float[Array, " element"] | None
+    land: Scalar | None
 
 
 def _grown(share):

@@ -22,7 +22,7 @@ from ..numerics.types import Scalar
 from .cage import fastest_of_cage
 from .model import NoiseModel
 from .natural import natural_modes
-from .standing import standing
+from .standing import standing, why
 from .stepping import HELD, stepped
 
 _STABLE = 2.5
@@ -31,6 +31,9 @@ _TOGETHER = 64
 """Samples whose contact loads are worked out together."""
 STEP = 0.5
 """Longest step, of a radian of the fastest mode [rad]."""
+_ROUNDED = 500.0
+"""Round-off of all forces, over that of the sum of loads: the place at which the motion
+begins is in balance to some hundreds of it [1]."""
 _DOUBLINGS = 3
 """How often steps that proved too long for the contacts are halved."""
 
@@ -110,7 +113,7 @@ def rounding(model: NoiseModel, record: Vibration) -> float:
     """
     load = np.asarray(record.contact_load)
     most = float(np.max(np.sum(load, axis=(1, 2)), initial=0.0))
-    return float(np.finfo(load.dtype).eps) * most / float(model.mass)
+    return _ROUNDED * float(np.finfo(load.dtype).eps) * most / float(model.mass)
 
 
 def vibration(
@@ -166,7 +169,7 @@ def vibration(
     if not throw:
         return found
     return raise_unless_converged(
-        found, found.result, lambda: _failure(int(found.result), found.steps)
+        found, found.result, lambda: _failure(model, int(found.result), found.steps)
     )
 
 
@@ -184,7 +187,7 @@ def _with_enough_steps(model, turns, settle, samples) -> Vibration:
     return found
 
 
-def _failure(result: int, steps: int) -> str:
+def _failure(model: NoiseModel, result: int, steps: int) -> str:
     """Why a run failed, in words."""
     if result == Result.NON_FINITE:
         return f"vibration: the motion is not finite; with more `steps` than {steps}?"
@@ -193,7 +196,7 @@ def _failure(result: int, steps: int) -> str:
             f"vibration: `steps` is {steps}, too few for the contacts under their"
             " largest load; the motion cannot be trusted."
         )
-    return "vibration: the bearing finds no place under its load."
+    return f"vibration: the bearing finds no place under its load: {why(model)}."
 
 
 def needed_steps(model: NoiseModel, samples: int = 2048) -> int:

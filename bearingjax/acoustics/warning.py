@@ -18,6 +18,7 @@ from .model import NoiseModel
 from .natural import natural_modes, orbited, ring_modes
 from .orders import kinematic_frequencies
 from .scatter import Tolerances
+from .shares import Shares
 from .spectrum import Spectrum
 from .vibration import Vibration, bandwidth, needed_steps, rounding
 
@@ -27,6 +28,8 @@ _PLACES = 8
 """Places of the rolling elements on their way round at which modes are compared."""
 _WANDERING = 0.02
 """Change of a natural frequency on that way that is worth a word [1]."""
+_OVERLAP = 0.1
+"""Sum of shares beyond the whole that is worth a word [1]."""
 _LOBE = 2.0
 """Half width of a line with Hann's window [bins]."""
 
@@ -85,6 +88,27 @@ def record_warnings(
     ]
 
 
+def share_warnings(found: Shares) -> list[str]:
+    """What is doubtful in shares of sources.
+
+    Args:
+        found: From `shares`.
+
+    Returns:
+        A sentence, or none.
+    """
+    together = float(found.together)
+    error = float(np.linalg.norm(found.error) / found.mean_square)
+    # Of a single bearing there is no error.
+    if together <= 1.0 + max(_OVERLAP, 2.0 * error if error > 0.0 else 0.0):
+        return []
+    return [
+        f"parts of the sources sum to {100.0 * together:.3g} % of the mean square:"
+        " they act through each other, and what goes without one of them is counted"
+        " for each"
+    ]
+
+
 def _few_steps(model, samples, steps) -> Iterator[str]:
     least = needed_steps(model, samples)
     if steps is not None and steps < least:
@@ -103,13 +127,16 @@ def _wandering_modes(model: NoiseModel) -> Iterator[str]:
         if int(modes.result) == Result.CONVERGED:
             for name, frequency in ring_modes(modes, model):
                 every.setdefault(name, []).append(frequency)
-    for name, known in every.items():
-        low, high = min(known), max(known)
-        if high > (1.0 + _WANDERING) * low:
-            yield (
-                f"the {name} lies between {low:.5g} and {high:.5g} Hz as the rolling"
-                " elements orbit; what is told is where they stand at time zero"
-            )
+    told = [
+        f"{name} between {min(known):.5g} and {max(known):.5g} Hz"
+        for name, known in every.items()
+        if max(known) > (1.0 + _WANDERING) * min(known)
+    ]
+    if told:
+        yield (
+            "natural modes are told of where the rolling elements stand at time zero;"
+            f" as these orbit, they change: {'; '.join(told)}"
+        )
 
 
 def _above(model, told, tolerances) -> Iterator[str]:
@@ -168,15 +195,15 @@ def _bands(record, found, bands) -> Iterator[str]:
     changed, need = (np.asarray(a) for a in band_shift(found, bands))
     over = (wide & within)[:, None] & (np.abs(changed) >= LEAST_SHIFT)
     if over.any():
-        least = float(need[over].min())
-        turns = math.ceil(_LOBE * float(record.shaft_frequency) / max(least, 1e-9))
+        near = float(np.median(need[over]))
+        turns = math.ceil(_LOBE * float(record.shaft_frequency) / max(near, 1e-9))
         # Beyond the lobe of a line its skirt falls by 18 dB for twice the turns.
         turns = max(turns, 2 * record.turns)
         named = ", ".join(f"{c:g}" for c in centre[over.any(axis=1)])
         yield (
-            f"the window spreads strong lines over the edges of bands, which are left"
-            f" out for that: {named} Hz; raise `vibration.turns`, to {turns} for lines"
-            f" as near to an edge as {least:.2g} Hz"
+            "the window spreads strong lines over the edges of bands, which are left"
+            f" out for that: {named} Hz; raise `vibration.turns`, to {turns} for most"
+            " of them"
         )
 
 
@@ -200,6 +227,8 @@ def _total(model, record, found) -> Iterator[str]:
 
 def _short_waves(model, load, tolerances) -> Iterator[str]:
     """Waves that contacts bridge, but that elements of the model follow."""
+    if model.half_width is not None:
+        return
     drawn = _highest_drawn(tolerances)
     loads = of_rows(load, model.element.bearing, axis=1)
     for own, (where, bearing, errors) in zip(loads, _rows(model), strict=True):
@@ -218,7 +247,7 @@ def _short_waves(model, load, tolerances) -> Iterator[str]:
                     f"waves of the {part}{where} of order {most} and more are shorter"
                     f" than some three contacts of {2e3 * half:.2g} mm, which would"
                     " bridge them: their noise is overstated, by 10 % at that order and"
-                    " ever more above"
+                    " ever more above; average them with `vibration.bridging`"
                 )
 
 

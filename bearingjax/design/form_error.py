@@ -21,6 +21,9 @@ from .bearing import AbstractRollerBearing
 from .checks import check, instance, is_real, is_traced
 from .deviation import largest_deviation
 
+_NODES = 256
+"""Nodes across a contact, enough for waves as short as a hundredth of it."""
+
 
 class Surface(NamedTuple):
     """What a rolling contact around a part is like.
@@ -28,10 +31,31 @@ class Surface(NamedTuple):
     Attributes:
         radius: Of the circle of contact around the part's axis [m].
         relative: Radius of relative curvature along the rolling direction [m].
+        half_width: Of the contact along the rolling direction, which bridges waves [m];
+            `None`: waves are met as they are.
+        pressure: Exponent p of its pressure (1 - s²)^p, summed across the rolling
+            direction: 1 of an ellipse, 1/2 of a line [1].
     """
 
     radius: Scalar
     relative: Scalar
+    half_width: Scalar | None = None
+    pressure: Scalar | None = None
+
+    def bridged(self, order: Float[Array, " n"]) -> Float[Array, " n"]:
+        """What a contact leaves of waves: their mean over its pressure (n,) [1].
+
+        Args:
+            order: Waves per turn (n,) [1].
+
+        Source: ∫(1 - s²)^p cos(x s) ds / ∫(1 - s²)^p ds, x = k b/R, of half width b.
+        """
+        if self.half_width is None or self.pressure is None:
+            return jnp.ones_like(order)
+        turn = jnp.pi / _NODES * (jnp.arange(_NODES, dtype=order.dtype) + 0.5)
+        weight = jnp.sin(turn) ** (2.0 * self.pressure + 1.0)
+        x = order * (self.half_width / self.radius)
+        return jnp.cos(jnp.outer(x, jnp.cos(turn))) @ (weight / jnp.sum(weight))
 
 
 class AbstractShape(eqx.Module):
@@ -58,7 +82,8 @@ class Harmonics(AbstractShape):
 
     Order 1 on a raceway is eccentricity (or an axial runout), 2 an oval ring, 3 and
     more the lobes of a chuck or a seat. Waves that are shorter than a contact is long
-    are met as they are; a real contact bridges them (`acoustics.contact_half_width`).
+    are met as they are, where a real contact bridges them, unless the surface has a
+    `half_width` (`acoustics.bridged`).
 
     Attributes:
         order: Waves per turn (n,), whole numbers from 1.
@@ -156,9 +181,10 @@ class Harmonics(AbstractShape):
     def height(self, angle, surface):
         # Orders last, as far as the angles have axes.
         shape = (1,) * angle.ndim + (-1,)
-        order = jnp.asarray(self.order, angle.dtype).reshape(shape)
+        order = jnp.asarray(self.order, angle.dtype)
+        left, order = surface.bridged(order).reshape(shape), order.reshape(shape)
         amplitude, phase = self.amplitude.reshape(shape), self.phase.reshape(shape)
-        waves = amplitude * jnp.cos(order * angle[..., None] + phase)
+        waves = left * amplitude * jnp.cos(order * angle[..., None] + phase)
         return jnp.sum(waves, axis=-1)
 
 
@@ -446,3 +472,8 @@ class Surfaces(NamedTuple):
             Surface(pitch - radius * cosine, inner),
             Surface(radius, inner),
         )
+
+    def bridging(self, half_width: Scalar, pressure: Scalar) -> "Surfaces":
+        """The same with contacts that bridge waves; arguments as of `Surface`."""
+        given = {"half_width": half_width, "pressure": pressure}
+        return Surfaces(*(surface._replace(**given) for surface in self))

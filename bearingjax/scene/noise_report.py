@@ -41,15 +41,26 @@ def _bearing(run):
     )
     inner, outer = (float(s) * _RPM for s in (model.speed.inner, model.speed.outer))
     task, record = run.task, run.heard.record
+    inertia = model.inertia
+    tilts = "does not tilt"
+    if inertia is not None:
+        tilts = f"tilts, {float(inertia):.4g} kg m²"
+        if model.tilting_inertia is None:
+            tilts += " as of a ring of its mass"
+    bridging = ""
+    if model.half_width is not None:
+        widths = ", ".join(f"{2e3 * float(b):.2g}" for b in model.half_width)
+        bridging = f"; contacts average waves over {widths} mm"
     return "\n".join(
         [
             bearing_text(task.scene, bearing),
-            f"the {model.moving_ring} ring moves, {float(model.mass):.4g} kg, loaded by"
-            f" {load or 'nothing'}; inner ring {inner:.5g} rpm, outer ring"
+            f"the {model.moving_ring} ring moves, {float(model.mass):.4g} kg, and"
+            f" {tilts}",
+            f"loaded by {load or 'nothing'}; inner ring {inner:.5g} rpm, outer ring"
             f" {outer:.5g} rpm",
             f"record of {task.turns} turns, {float(record.duration):.4g} s, after"
             f" {task.settle} to settle; {len(record.time)} samples, {run.steps} steps"
-            " each",
+            f" each{bridging}",
         ]
     )
 
@@ -183,4 +194,4 @@ def _in_bands(task, found):
     for centre, name, part in told:
         by_source.setdefault(name, []).append(f"{centre} ({100.0 * part:.0f} %)")
     for name, bands in by_source.items():
-        yield f"  {name} make most of the bands, Hz: {', '.join(bands)}"
+        yield f"  {name}, the largest part of the bands, Hz: {', '.join(bands)}"

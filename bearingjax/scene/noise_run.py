@@ -12,11 +12,11 @@ from ..acoustics import (
     Line,
     MonteCarlo,
     NaturalModes,
-    NoiseModel,
     Shares,
     Spectrum,
     Vibration,
     band_levels,
+    bridged,
     contact_states,
     level,
     line_causes,
@@ -27,15 +27,15 @@ from ..acoustics import (
     record_warnings,
     ring_modes,
     rounding,
+    share_warnings,
     shares,
     spectrum,
     total_root_mean_square,
     vibration,
 )
+from ..acoustics.standing import why
 from ..design import n_elements, rows_of
 from ..numerics.result import Result
-from ..statics import solve_load
-from ..statics.solution import message
 from .noise_scene import DIRECTIONS, NoiseScene
 
 LARGEST_LINES = 12
@@ -131,8 +131,15 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
     modes = jax.device_get(natural_modes(model))
     result = Result(int(modes.result))
     if result is not Result.CONVERGED:
-        words = f"standing under the load: {_why(model)}"
+        words = f"standing under the load: {why(model)}"
         return NoiseRun(task, result, words, warnings=task.warnings)
+    if task.bridging:
+        width = bridged(model).half_width
+        models = (
+            dataclasses.replace(one, half_width=width) for one in (model, task.line)
+        )
+        model, line = models
+        task = dataclasses.replace(task, model=model, line=line)
     tolerances = task.tolerances if task.bearings else None
     _tell(told, "vibration")
     record = vibration(
@@ -162,6 +169,8 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
         told_so_far += (
             f"{many.levels.failed} of {task.bearings} random bearings were not solved",
         )
+    if many is not None and many.shares is not None:
+        told_so_far += tuple(share_warnings(many.shares))
     return NoiseRun(task, result, "converged", modes, steps, heard, many, told_so_far)
 
 
@@ -215,19 +224,6 @@ def _many(task: NoiseScene, steps: int, told) -> Many:
         )
         return Many(levels, made)
     return Many(levels, None)
-
-
-def _why(model: NoiseModel) -> str:
-    """Why a bearing finds no place under its load."""
-    options = model.solve_options
-    solution = solve_load(
-        model.small,
-        model.load,
-        free=options.free,
-        fixed_ring=options.fixed_ring,
-        throw=False,
-    )
-    return message(solution, model.moving_ring)
 
 
 def listen(task: NoiseScene, record: Vibration, modes: NaturalModes) -> Heard:

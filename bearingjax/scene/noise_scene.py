@@ -22,6 +22,8 @@ class NoiseScene:
         line: What all bearings of its line have in common: `waves` and `spalls`, but
             no spectra, profiles and differences of the rolling elements, which are of
             this one bearing.
+        bridging: Whether contacts average waves over their width; `run_noise` gives
+            both models that.
         turns, settle, samples: As of `vibration`.
         steps: As of `vibration`; `None`: as many as are needed.
         reference: Acceleration of 0 dB [m/s²].
@@ -40,6 +42,7 @@ class NoiseScene:
     scene: Scene
     model: NoiseModel
     line: NoiseModel
+    bridging: bool
     turns: int
     settle: int
     samples: int

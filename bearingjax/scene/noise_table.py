@@ -18,7 +18,7 @@ from ..acoustics import (
 )
 from ..acoustics.reference_levels import NORM
 from ..design import BearingSet, FormErrors, n_elements, rows_of
-from ..element import RINGS
+from ..element import FREEDOMS, RINGS
 from ..element.bearing_element import BearingElement
 from .deviations_table import read_deviations
 from .noise_scene import DIRECTIONS, NoiseScene
@@ -31,6 +31,8 @@ BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}
 WINDOWS = {"hann": Hann, "rectangular": Rectangular}
 NORMS = {"85-176211": NORM}
 """Largest allowed levels, by the bearing that they are for."""
+HELD = "held"
+"""Word in place of `tilting_inertia` for a ring that does not tilt."""
 MOST_SAMPLES = 200_000
 """Most samples of a record: some 20 MB as JSON."""
 
@@ -66,9 +68,7 @@ def read_noise(
         "errors": _of_rows(errors),
         "sensor": _sensor(vibration),
         "moving_ring": _moving_ring(vibration, operating),
-        "tilting_inertia": vibration.quantity(
-            "tilting_inertia", "moment of inertia", None
-        ),
+        **_tilting(vibration, scene),
     }
     retardation = vibration.quantity("retardation", "time", None)
     if retardation is not None:
@@ -86,6 +86,7 @@ def read_noise(
         scene=scene,
         model=model,
         line=line,
+        bridging=vibration.flag("bridging", False),
         **_record(vibration),
         **_levels(vibration),
         tolerances=tolerances,
@@ -98,6 +99,9 @@ def read_noise(
     vibration.finish()
     vibration.fill("moving_ring", model.moving_ring)
     vibration.fill("retardation", written(float(model.retardation), "s"))
+    tilts = model.inertia is not None
+    inertia = written(float(model.inertia), "kg m^2") if tilts else HELD
+    vibration.fill("tilting_inertia", inertia)
     own = {"deviations": deviations.echo(), "vibration": vibration.echo()}
     inputs = {**scene.inputs, "operating": _held(scene, model.moving_ring), **own}
     return dataclasses.replace(found, inputs=inputs)
@@ -126,7 +130,7 @@ def _nominal(element: BearingElement) -> BearingElement:
 
 
 def _held(scene: Scene, moving: str) -> dict[str, Any]:
-    """The echo of [operating], without supports, which are the rig's."""
+    """The echo of [operating], without supports: `tilting_inertia` says what tilts."""
     kept = dict(scene.inputs["operating"])
     for key in ("free", "prescribed"):
         kept.pop(key, None)
@@ -134,16 +138,30 @@ def _held(scene: Scene, moving: str) -> dict[str, Any]:
 
 
 def _check_operating(operating: Table, scene: Scene) -> None:
-    """Rings that turn, and whose motions nothing else prescribes."""
-    for key in ("free", "prescribed"):
-        if key in operating:
-            problem = "is not for noise: the moving ring shifts, and with a"
-            cure = "`vibration.tilting_inertia` it tilts"
-            raise operating.error(key, f"{problem} {cure}")
+    """Rings that turn, and of whose motions only both tilts may be held, at zero."""
+    tilts, moving = set(FREEDOMS[3:5]), set(FREEDOMS[:5])
+    words = "the ring shifts in ux, uy and uz; only gx and gy may be held, both at 0"
+    if set(scene.free or moving) not in (moving, moving - tilts):
+        raise operating.error("free", f"is not that of a vibration: {words}")
+    held = {name: x for name, x in scene.prescribed.items() if name != "gz" or x}
+    if set(held) not in (set(), tilts) or any(held.values()):
+        raise operating.error("prescribed", f"is not that of a vibration: {words}")
     if scene.speed is None:
         problem = "is zero" if "inner_speed" in operating else "is missing"
         rest = "and so is `outer_speed`; nothing vibrates at rest"
         raise operating.error("inner_speed", f"{problem}, {rest}")
+
+
+def _tilting(table: Table, scene: Scene) -> dict[str, Any]:
+    """Whether the moving ring tilts, and its inertia if it is given."""
+    held = "gx" in scene.prescribed or "gx" not in (scene.free or FREEDOMS)
+    if table.raw("tilting_inertia", None) == HELD:
+        return {"tilts": False}
+    inertia = table.quantity("tilting_inertia", "moment of inertia", None)
+    if held and inertia is not None:
+        problem = "is given, but [operating] holds gx and gy; choose one"
+        raise table.error("tilting_inertia", problem)
+    return {"tilts": not held, "tilting_inertia": inertia}
 
 
 def _moving_ring(vibration: Table, operating: Table) -> str:

@@ -17,7 +17,7 @@ from bearingjax.acoustics import (
     needed_steps,
     vibration,
 )
-from bearingjax.acoustics.cage import cage_forces, fastest_of_cage
+from bearingjax.acoustics.cage import cage_forces, cage_loads, fastest_of_cage
 from bearingjax.acoustics.standing import standing
 from bearingjax.acoustics.stepping import stepped
 
@@ -29,7 +29,7 @@ UNLIKE = balls(7, ball_deviation=1e-6 * np.array([0, 3, 0, -2, 0, 0, 1.0]))
 def model(cage=CAGE, speed=0.0, bearing=UNLIKE):
     element = bj.BearingElement(bearing)
     load = [0.0, -20.0, -200.0, 0.0, 0.0, 0.0]
-    return NoiseModel(element, 0.3, load, bj.Speed(speed), cage=cage)
+    return NoiseModel(element, 0.3, load, bj.Speed(speed), cage=cage, tilts=False)
 
 
 def test_what_one_part_gains_another_loses():
@@ -39,9 +39,8 @@ def test_what_one_part_gains_another_loses():
     at = jnp.asarray(scale * rng.normal(size=12))
 
     def forces(at):
-        found = cage_forces(
-            CAGE, at[7:10], at[:7], jnp.asarray(azimuth), at[10:], jnp.asarray(RADIUS)
-        )
+        places = at[7:10], at[:7], at[10:], jnp.asarray(RADIUS), jnp.asarray(azimuth)
+        found = cage_forces(*cage_loads(CAGE, *places), *places)
         return jnp.concatenate(found)
 
     found = np.asarray(forces(at))
@@ -65,9 +64,8 @@ def test_what_one_part_gains_another_loses():
 
 def test_a_centred_cage_feels_nothing():
     still = jnp.zeros(3)
-    found = cage_forces(
-        CAGE, still, jnp.zeros(7), jnp.arange(7.0), still[:2], jnp.asarray(RADIUS)
-    )
+    places = still, jnp.zeros(7), still[:2], jnp.asarray(RADIUS), jnp.arange(7.0)
+    found = cage_forces(*cage_loads(CAGE, *places), *places)
     assert not any(np.any(part) for part in found)
 
 

@@ -1,11 +1,22 @@
 """Half width of contacts against formulas of others, and what it leads to."""
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
+import scipy.special
 from registry import balls
 
 import bearingjax as bj
-from bearingjax.acoustics import contact_half_width
+from bearingjax.acoustics import NoiseModel, bridged, contact_half_width
+from bearingjax.acoustics.standing import standing
+from bearingjax.acoustics.warning import _short_waves
+from bearingjax.design.form_error import (
+    FormErrors,
+    Harmonics,
+    RacewayErrors,
+    Surface,
+    Surfaces,
+)
 
 YOUNG = 206e9 / (1.0 - 0.3**2)
 """E' of two bodies of steel, 2/((1-ν²)/E + (1-ν²)/E) [Pa]."""
@@ -34,6 +45,53 @@ def test_rollers():
     wanted = np.sqrt(4.0 * (500.0 / 0.0115) * radius / (np.pi * 0.5 * YOUNG))
     found = contact_half_width(bearing, np.full((9, 2), 500.0))
     assert found == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize(("pressure", "radius"), [(1.0, 0.02), (0.5, 0.01)])
+def test_contacts_leave_the_mean_of_waves(pressure, radius):
+    """Closed forms of the mean of a cosine over the pressure of an ellipse, a line."""
+    order = np.array([1.0, 30.0, 100.0, 400.0, 900.0])
+    x = order * 1e-4 / radius
+    wanted = 3.0 * (np.sin(x) - x * np.cos(x)) / x**3
+    if pressure == 0.5:
+        wanted = 2.0 * scipy.special.j1(x) / x
+    surface = Surface(*map(jnp.asarray, (radius, 0.004, 1e-4, pressure)))
+    left = np.asarray(surface.bridged(jnp.asarray(order)))
+    np.testing.assert_allclose(left, wanted, atol=1e-7)
+    assert left[0] > 0.99 and abs(left[-1]) < 0.35
+    assert np.all(Surface(*surface[:2]).bridged(jnp.asarray(order)) == 1.0)
+
+
+def test_a_bearing_bridges_its_waves_by_the_width_of_its_contacts():
+    """Errors that the balls meet are those of waves made smaller by hand."""
+    row = balls(7)
+    order = np.array([3, 400])
+
+    def model(amplitude):
+        waves = RacewayErrors(outwards=Harmonics(order, amplitude, [0.2, 0.4]))
+        return NoiseModel(
+            bj.BearingElement(row), 0.3, [0.0, 0.0, -300.0, 0, 0, 0],
+            bj.Speed(inner=200.0), FormErrors(outer=waves), tilts=False,
+        )  # fmt: skip
+
+    given = bridged(model([1e-6, 1e-6]))
+    (half,) = given.half_width
+    system = given.still_system()
+    start, _ = standing(given, system)
+    loads = np.asarray(system.contact_loads(start, jnp.zeros(())))
+    assert half == pytest.approx(contact_half_width(row, loads), rel=1e-9)
+    x = order * float(half) / float(Surfaces.of(row).outer.radius)
+    left = 3.0 * (np.sin(x) - x * np.cos(x)) / x**3
+    assert left[1] < 0.9
+    time = jnp.asarray(1.3e-3)
+    met = [
+        np.asarray(m.system().met(m.system().azimuth(time), time))
+        for m in (given, model(1e-6 * left))
+    ]
+    np.testing.assert_allclose(*met, atol=1e-6 * np.abs(met[0]).max())
+    # Said of the bearing that does not.
+    (told,) = _short_waves(model([1e-6, 1e-6]), loads[None], None)
+    assert "vibration.bridging" in told and not list(_short_waves(given, loads, None))
 
 
 def test_nothing_carries():

@@ -39,6 +39,7 @@ def model(height=1e-8):
         FormErrors(inner=RacewayErrors(outwards=wave)),
         sensor=Sensor(1e6, 30.0, (1.0, 2.0, 0.0)),
         retardation=1e-5,
+        tilts=False,
     )
 
 

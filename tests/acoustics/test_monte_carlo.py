@@ -1,5 +1,7 @@
 """Random bearings: what is drawn, the levels of many, and which source makes them."""
 
+import dataclasses
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -11,12 +13,14 @@ from bearingjax.acoustics import (
     Hann,
     NoiseModel,
     RandomWaves,
+    Shares,
     Tolerances,
     draw,
     drawn,
     level,
     monte_carlo,
     octave_bands,
+    share_warnings,
     shares,
     spectrum,
     total_root_mean_square,
@@ -42,6 +46,7 @@ MODEL = NoiseModel(
     [0.0, 0.0, -100.0, 0.0, 0.0, 0.0],
     bj.Speed(inner=1000.0),
     retardation=5e-6,
+    tilts=False,
 )
 # Far below the approach of a few µm; a sixth of the levels for the larger ones.
 SMALL = Tolerances(
@@ -155,15 +160,15 @@ def test_shares_by_switching_off_and_by_gradient_agree_for_small_errors():
 
 
 def test_shares_along_a_line_and_by_band():
-    bands = octave_bands()
+    bands, how = octave_bands(), HOW | {"turns": 4}
     found = shares(
-        MODEL, SMALL, 3, KEY, direction=(0, 0, 2.0), bands=bands, gradient=False, **HOW
+        MODEL, SMALL, 3, KEY, direction=(0, 0, 2.0), bands=bands, gradient=False, **how
     )
-    axial = shares(MODEL, SMALL, 3, KEY, direction=2, gradient=False, **HOW)
+    axial = shares(MODEL, SMALL, 3, KEY, direction=2, gradient=False, **how)
     np.testing.assert_allclose(found.share, axial.share, rtol=ROUNDING)
     assert axial.by_band is None
     every = [drawn(MODEL, SMALL, k) for k in jax.random.split(KEY, 3)]
-    counts = {"turns": 1, "settle": 3, "samples": 128, "steps": 6}
+    counts = {"turns": 4, "settle": 3, "samples": 128, "steps": 6}
     square = [np.var(vibration(m, **counts).acceleration[:, 2]) for m in every]
     np.testing.assert_allclose(found.mean_square, np.mean(square), rtol=1e-9)
     parts = np.asarray(found.by_band)
@@ -172,6 +177,20 @@ def test_shares_along_a_line_and_by_band():
     assert held.any() and not held.all() and np.all(parts[:, held] <= 1.0)
     with pytest.raises(ValueError, match="a vector or None"):
         shares(MODEL, SMALL, 3, KEY, direction=3, **HOW)
+
+
+def test_products_of_sources_are_told():
+    """Mean square 1 of a product of two sources: nothing goes without either."""
+    parts = {"outer_axial": 0.0, "inner_axial": 0.0, "diameter": 1.0}
+    found = Shares(
+        jnp.asarray(1.0), jnp.array([*parts.values()]), jnp.full(3, 0.01), None, None,
+        jnp.asarray(0.0), 6, tuple(parts),
+    )  # fmt: skip
+    assert found.together == 2.0
+    (told,) = share_warnings(found)
+    assert told.startswith("parts of the sources sum to 200 % of the mean square")
+    alone = dataclasses.replace(found, smaller=jnp.array([0.0, 1.0, 1.0]))
+    assert share_warnings(alone) == []
 
 
 def test_what_makes_no_sense_is_refused():

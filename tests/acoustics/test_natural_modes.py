@@ -24,8 +24,9 @@ BEARING = bj.DeepGrooveBallBearing(
     material=bj.Material(density=7850.0),
 )
 RADIAL = NoiseModel(
-    bj.BearingElement(BEARING), 0.3716, [0.0, -250.0, 0.0, 0.0, 0.0, 0.0], SPEED
-)
+    bj.BearingElement(BEARING), 0.3716, [0.0, -250.0, 0.0, 0.0, 0.0, 0.0], SPEED,
+    tilts=False,
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +49,48 @@ def test_published_frequencies_under_radial_load(radial):
     assert along / across == pytest.approx(1.2004, rel=2e-3)
     assert along == pytest.approx(2695.0, rel=1e-3)
     assert across == pytest.approx(2245.0, rel=1e-3)
+
+
+def test_a_four_point_bearing_has_higher_modes_than_the_paper(radial):
+    """Its balls have four contacts under a radial load; the paper's, and the mass that
+    was fitted to its figures, are of two.
+
+    At the angle α a ball bears 2 K cos^(5/2) α δ^(3/2) in place of K δ^(3/2), and a
+    stiffness goes with K^(2/3) at one load.
+    """
+    same = "n_balls", "pitch_diameter", "ball_diameter", "first_azimuth", "material"
+    bearing = bj.FourPointBallBearing(
+        **{name: getattr(BEARING, name) for name in same},
+        outer_osculation=0.52,
+        inner_osculation=0.52,
+        shim_angle=np.radians(26.0),
+    )
+    element = bj.BearingElement(bearing)
+    found = natural_modes(dataclasses.replace(RADIAL, element=element))
+    higher = (2.0 * np.cos(np.radians(26.0)) ** 2.5) ** (1 / 3)
+    assert higher == pytest.approx(1.153, abs=1e-3)
+    for direction, paper in ((1, 2695.0), (0, 2245.0)):
+        (own,), (two,) = ring_modes(found, direction), ring_modes(radial, direction)
+        assert own / two == pytest.approx(higher, rel=5e-3)
+        assert own == pytest.approx(1.153 * paper, rel=5e-3)
+
+
+def test_a_ring_tilts_unless_it_is_held():
+    """As a ring of square section around the circle of contact, of the mass given."""
+    free = dataclasses.replace(RADIAL, tilts=True)
+    radius = 0.5 * (0.0775 + 0.014288)
+    side = np.sqrt(0.3716 / (2.0 * np.pi * radius * 7850.0))
+    ends = radius + 0.5 * side * np.array([-1.0, 1.0])
+    inertia = 0.3716 / 12.0 * (3.0 * np.sum(ends**2) + side**2)
+    np.testing.assert_allclose(free.inertia, inertia, rtol=SOLVER)
+    assert free.freedoms[3:] == ("gx", "gy") and RADIAL.freedoms == ("ux", "uy", "uz")
+    assert RADIAL.inertia is None
+    given = dataclasses.replace(free, tilting_inertia=inertia)
+    np.testing.assert_allclose(
+        natural_modes(given).frequency, natural_modes(free).frequency, rtol=1e-6
+    )
+    with pytest.raises(ValueError, match="a ring that does not tilt"):
+        dataclasses.replace(RADIAL, tilting_inertia=inertia)
 
 
 def test_balls_move_with_the_ring_in_its_modes_and_alone_above(radial):

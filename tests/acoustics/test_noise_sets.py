@@ -41,9 +41,9 @@ OFF_CENTRE = bj.BearingSet(
 
 
 def model(bearing, load=LOAD, tilting=1e-4, **more):
-    return NoiseModel(
-        bj.BearingElement(bearing), 0.5, load, SPEED, tilting_inertia=tilting, **more
-    )
+    """A bearing that is held from tilting where its `tilting` inertia is None."""
+    given = {"tilting_inertia": tilting, "tilts": tilting is not None}
+    return NoiseModel(bj.BearingElement(bearing), 0.5, load, SPEED, **given, **more)
 
 
 def condensed(found, k):

@@ -49,7 +49,8 @@ def with_waves(bearing, highest, kind="outwards", part="inner", size=1e-9):
         every = np.arange(1, highest + 1)
         waves = Harmonics(every, size * (every == order), phase * np.ones(highest))
         errors = RacewayErrors(**{kind: waves})
-        return NoiseModel(element, 0.3, AXIAL, SPEED, FormErrors(**{part: errors}))
+        given = FormErrors(**{part: errors})
+        return NoiseModel(element, 0.3, AXIAL, SPEED, given, tilts=False)
 
     return model
 

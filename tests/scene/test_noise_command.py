@@ -42,6 +42,7 @@ inner_speed = "3000 rpm"
 
 [vibration]
 mass = "0.1 kg"
+tilting_inertia = "held"
 turns = 1
 settle = 0
 samples = 64
@@ -118,7 +119,7 @@ def test_every_file_holds_the_same_record(run, rerun, scene, tmp_path):
     assert picture.stat().st_size > 10_000
     _same_sound(sound, acceleration, done.out)
     for words in (
-        "the outer ring moves, 0.1 kg, loaded by Fz 100 N; inner ring 3000 rpm",
+        "the outer ring moves, 0.1 kg, and does not tilt\nloaded by Fz 100 N; inner",
         "record of 1 turns, 0.02 s, after 0 to settle; 64 samples",
         "natural modes of the ring: ",
         "2: 100 %; 0 open or close per turn of the shaft",
@@ -208,6 +209,21 @@ def test_what_is_not_solved_is_no_result(run, scene, tmp_path):
     found = read(out)
     assert set(found) == WORDS and found["result"] == "non_finite"
     assert not table.exists()
+
+
+def test_a_bearing_without_load_has_no_noise(run, scene, tmp_path):
+    out = tmp_path / "a.json"
+    done = run("noise", scene, "--json", out, "--set", "operating.load.Fz=0 N")
+    assert done.status == 3 and done.out == ""
+    assert "no_load_path: standing under the load: nothing presses the" in done.err
+    assert read(out)["result"] == "no_load_path"
+
+
+def test_round_off_is_no_noise(scene):
+    """Equal balls under an axial load, without errors: nothing shakes the ring."""
+    found = run_noise(read_noise(scene, ["deviations.waves.0.amplitude=0 um"]))
+    assert found.converged and found.heard.lines == ()
+    assert any(text.startswith("nothing shakes the bearing") for text in found.warnings)
 
 
 def test_a_motion_that_runs_away_is_no_result(scene):

@@ -49,16 +49,24 @@ WRONG = {
         "`vibration.moving_ring`: 'both' is not known; it must be one of outer, inner",
     ),
     "freedoms": (
-        "operating.free=['ux', 'uy', 'uz']",
-        "`operating.free`: is not for noise: the moving ring shifts, and with a",
+        "operating.free=['ux', 'uy', 'uz', 'gx']",
+        "`operating.free`: is not that of a vibration: the ring shifts in ux, uy and",
     ),
     "at rest": (
         "operating.inner_speed=0 rpm",
         "`operating.inner_speed`: is zero, and so is `outer_speed`; nothing",
     ),
-    "moment without tilt": (
-        "operating.load.Mx=1 N m",
-        "[vibration]: NoiseModel: `load` is",
+    "prescribed turn": (
+        "operating.prescribed.gz=1 mrad",
+        "`operating.prescribed`: is not that of a vibration: the ring shifts in ux, uy",
+    ),
+    "one tilt": (
+        "operating.prescribed.gx=0 mrad",
+        "`operating.prescribed`: is not that of a vibration: the ring shifts in ux, uy",
+    ),
+    "inertia of another kind": (
+        "vibration.tilting_inertia=free",
+        "`vibration.tilting_inertia`: 'free' does not begin with a finite",
     ),
     "row of a bearing": (
         f"deviations.waves=[{{{WAVE}, row=0}}]",
@@ -390,6 +398,38 @@ def test_the_ring_that_moves_is_the_one_that_is_not_fixed():
         (["operating.fixed_ring=inner", "vibration.moving_ring=outer"], "outer"),
     ):
         assert read_noise("noise_deep_groove", settings).model.moving_ring == moving
+
+
+HELD = (
+    ["vibration.tilting_inertia=held"],
+    ["operating.free=['ux', 'uy', 'uz']"],
+    # As `bearingjax new` writes it.
+    ["operating.prescribed={gx='0 mrad', gy='0 mrad'}"],
+)
+
+
+@pytest.mark.parametrize("settings", HELD, ids=lambda s: s[0].partition("=")[0])
+def test_the_ring_tilts_unless_it_is_held(settings):
+    free, held = (
+        read_noise("noise_four_point"),
+        read_noise("noise_four_point", settings),
+    )
+    assert free.model.freedoms[3:] == ("gx", "gy") and held.model.inertia is None
+    echo = free.inputs["vibration"]["tilting_inertia"]
+    assert echo.endswith(" kg m^2") and "prescribed" not in held.inputs["operating"]
+    assert held.inputs["vibration"]["tilting_inertia"] == "held"
+    given = read_noise("noise_four_point", [f"vibration.tilting_inertia={echo}"])
+    assert float(given.model.inertia) == pytest.approx(float(free.model.inertia))
+
+
+def test_a_moment_needs_a_ring_that_tilts():
+    moment = "operating.load={Fz='85 N', Mx='1 N m'}"
+    assert read_noise("noise_four_point", [moment]).model.load[3] == 1.0
+    with pytest.raises(SceneError, match="NoiseModel: `load` is .*it does not tilt"):
+        read_noise("noise_four_point", [moment, "vibration.tilting_inertia=held"])
+    both = ["vibration.tilting_inertia=1e-4 kg m^2", *HELD[2]]
+    with pytest.raises(SceneError, match=r"\[operating\] holds gx and gy; choose one"):
+        read_noise("noise_four_point", both)
 
 
 def test_a_seed_draws_the_same_phases_again():
