@@ -161,8 +161,9 @@ def catalogue_entry(designation: str) -> CatalogueEntry:
     Args:
         designation: Such as "6205", "SKF 6205-2RS1/C3", "NJ 205 ECP". Letters of
             seals, shields, cages and accuracy are accepted and said in `notes` to have
-            no effect; a class of clearance (C2 to C5) sets the clearance to the middle
-            of its range.
+            no effect; a class of clearance (C2 to C5, with H, L, M or P for a part of
+            it) sets the clearance to the middle of its range; a tapered bore (K) of
+            self-aligning bearings has classes of its own.
 
     Raises:
         SceneError: If there is no such bearing; names those near it.

@@ -17,6 +17,7 @@ by LYC, the latter by SKF as well, of four-point bearings; tapers by e, Y and Y0
 nowhere but in the standard.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import jax.numpy as jnp
@@ -138,7 +139,7 @@ class LeftOut(NamedTuple):
         radial: Of thrust ball bearings, for which ISO 281 has no factor at 90° [N].
         axial: Of cylindrical and needle rollers, whose ribs bear it [N].
         moment: About the pressure centre, where the contact normals of the elements
-            meet on the axis [N m].
+            meet on the axis, along the tilts that are free [N m].
     """
 
     radial: Scalar
@@ -146,11 +147,17 @@ class LeftOut(NamedTuple):
     moment: Scalar
 
 
-def left_out(bearing: Bearing | BearingSet, load: Float[Array, "6"]) -> LeftOut:
+def left_out(
+    bearing: Bearing | BearingSet,
+    load: Float[Array, "6"],
+    free: Sequence[str] = ("gx", "gy"),
+) -> LeftOut:
     """What the equivalent loads of a load have no part of.
 
     Args:
         bearing, load: As of `equivalent_load`; moments about the centre of the bearing.
+        free: Freedoms that follow from the load. A tilt that is held bears a moment of
+            its support: the standard too takes rings that are held parallel.
     """
     rows = rows_of(bearing)
     row = rows[0].bearing
@@ -166,6 +173,7 @@ def left_out(bearing: Bearing | BearingSet, load: Float[Array, "6"]) -> LeftOut:
         # Of a bearing that is rated axially it is far away.
         centre = jnp.where(rated_axially(bearing), 0.0, sum(places) / len(rows))
     across = load[3:5] + centre * jnp.stack([load[1], -load[0]])
+    across = across * jnp.asarray([name in free for name in ("gx", "gy")], load.dtype)
     return LeftOut(
         lengths(load[:2]) * float(is_thrust),
         jnp.abs(load[2]) * straight,

@@ -438,7 +438,7 @@ def _life(bearing, solution, conditions, speed, lamina_load) -> Life:
     equivalent = EquivalentLoad(
         *(_above(p, least) for p in equivalent_load(bearing, force))
     )
-    lost = left_out(bearing, force)
+    lost = left_out(bearing, force, solution.free)
     # ISO 281 rates rollers with 10/3, ISO/TS 16281 with 4 and a part of C.
     exponent = (3, 1) if kind is BALLS else (10, 3)
     ratio = equivalent.dynamic / rated.dynamic_capacity

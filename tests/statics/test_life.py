@@ -756,6 +756,9 @@ def test_moments_are_counted_about_the_pressure_centre():
     ):
         found = [float(x) for x in left_out(bearing, load)]
         np.testing.assert_allclose(found, [radial, axial, 50.0], rtol=1e-12)
+    # A tilt that is held bears what its support does.
+    for free, moment in ((("ux", "gx"), 30.0), (("gy",), 40.0), ((), 0.0)):
+        assert float(left_out(pair, load, free).moment) == pytest.approx(moment)
     slope = jax.jacfwd(lambda f: jnp.stack(left_out(straight, f)))(jnp.zeros(6))
     assert np.isfinite(slope).all()
 
