@@ -73,6 +73,10 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
     balance of all forces, `stiffness` its exact Jacobian, slightly unsymmetric, and
     `energy` the strain energy alone.
 
+    Numbers of the element are arrays, for which `jax.jit` has no place in a function:
+    take `jax.jit(lambda q: element.force(q))`, the design held, or
+    `equinox.filter_jit(element.force)`, the design an argument.
+
     An element that did not converge makes the numbers NaN-free but untrue: `evaluate`
     returns the code; `solve_load` passes it on.
 
@@ -265,7 +269,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 or from `force`: they are then solved from there, in fewer steps.
 
         Raises:
-            ValueError: If `q` is not of shape (12,).
+            ValueError: If `q` is not of shape (12,), or `near` of another structure or
+                found with `speed` where there is none now, or the other way.
             TypeError: If `speed` is not a `Speed`.
         """
         return self._at("energy", q, speed, near)
@@ -396,6 +401,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
     def _evaluated(self, name, q, speed, near, with_near):
         model = self.model(speed)
+        model.check_near(near)
         solved = model.solve(q, near)
         value = getattr(model, name)(q, solved)
         return (value, model.near(solved)) if with_near else value

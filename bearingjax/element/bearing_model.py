@@ -363,6 +363,27 @@ class BearingModel(eqx.Module):
             for group, state in zip(self.groups, solved.groups, strict=True)
         )
 
+    def check_near(self, near: Any) -> None:
+        """Raise unless `near` is of the shapes that `near` of this model has.
+
+        Args:
+            near: As given to `solve`; `None`: nothing.
+
+        Raises:
+            ValueError: If it is of another bearing, or of other speeds: rings that turn
+                are seen by their elements in another way than rings at rest.
+        """
+        if near is None:
+            return
+        wanted = jax.eval_shape(lambda: self.near(self.unsolved()))
+        shapes = [[jnp.shape(x) for x in jax.tree.leaves(n)] for n in (near, wanted)]
+        if shapes[0] != shapes[1]:
+            raise ValueError(
+                f"BearingElement: `near` holds arrays of shapes {shapes[0]}; here they"
+                f" must be {shapes[1]}. It must come from this bearing, with a `speed`"
+                " if there is one now, else without."
+            )
+
     def magnitude(self, solved: Solved) -> Scalar:
         """Sum of the sizes of what solved elements pass to the rings [N]."""
         sizes = []

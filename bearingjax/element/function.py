@@ -106,6 +106,7 @@ def _force(motion, velocity, time, parameters, near):
     model = parameters.element.model(speed)
     motion = jnp.asarray(motion)
     turned = motion
+    model.check_near(near)
     if time is not None and speed is not None:
         turned = turned.at[_GZ].add(jnp.stack([speed.outer, speed.inner]) * time)
     solved = model.solve(motion, near, model.azimuths(turned))

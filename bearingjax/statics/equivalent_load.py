@@ -96,7 +96,7 @@ class EquivalentLoad(NamedTuple):
 
 
 def equivalent_load(
-    bearing: Bearing | BearingSet, load: Float[Array, "6"]
+    bearing: Bearing | BearingSet, load: Float[Array | np.ndarray, "..."]
 ) -> EquivalentLoad:
     """Equivalent dynamic and static load of a bearing or of a set of like rows.
 
@@ -104,8 +104,8 @@ def equivalent_load(
         bearing: The design. A set whose rows carry axial load in both directions
             counts as a double-row bearing, one of rows in tandem as single rows side
             by side.
-        load: On the moving ring [N, N m]; the moments do not count, nor does axial load
-            of cylindrical rollers, which their ribs bear.
+        load: On the moving ring (6,) [N, N m]; the moments do not count, nor does axial
+            load of cylindrical rollers, which their ribs bear.
 
     Returns:
         P and P0: axial loads of thrust bearings, else radial ones; NaN if a force is.

@@ -16,6 +16,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from ..design import Bearing, BearingSet, rows_of
+from ..design.checks import is_traced
 from ..element.bearing_element import BearingElement, check_element
 from ..numerics.result import Result
 from .cases import Cases
@@ -182,12 +183,19 @@ def sweep(
         Sweep with all cases, in every process.
 
     Raises:
+        TypeError: For anything but an element; under `jit`, `grad` or `vmap`.
         ValueError: For unknown names, loads on held freedoms, designs that do not fit
             the cases, outputs that would not fit memory, and as `solve_load`.
 
     Fails: as `solve_load`, in `Sweep.result`, case by case; `NOT_RUN` after `stop`.
     """
     check_element("sweep", element)
+    if any(is_traced(leaf) for leaf in jax.tree.leaves((element, cases, life))):
+        raise TypeError(
+            "sweep: the design or the cases are traced (jit, grad, vmap); a sweep runs"
+            " programs of its own. Map `solve_load(..., throw=False)` over them with"
+            " jax.vmap instead, or many at a time with jax.lax.map."
+        )
     every = cases if isinstance(cases, Cases) else Cases(cases)
     options = SolveOptions(free, fixed_ring, points, tolerance, max_steps)
     options.check("sweep")

@@ -125,6 +125,13 @@ class OnlyForBalls(bj.element.AbstractKinematics):
         return bj.Linearised().ball(part)
 
 
+def test_elements_near_by_of_other_speeds_are_refused():
+    element, speed = bj.BearingElement(balls(6)), bj.Speed(inner=100.0)
+    for near, now in ((None, speed), (speed, None)):
+        with pytest.raises(ValueError, match="`near` holds .*with a `speed`"):
+            element.force(jnp.zeros(12), now, near=element.nothing_near(near))
+
+
 def test_kinematics_of_ones_own_work_or_are_refused():
     mine = bj.BearingElement(balls(N), kinematics=OnlyForBalls())
     plain = bj.BearingElement(balls(N))

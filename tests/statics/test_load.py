@@ -267,6 +267,30 @@ def test_a_batch_is_its_single_solutions_stacked(bearing):
             function(batch)
 
 
+def test_gradient_of_a_batch_past_a_masked_case(tapered):
+    """The load that fails is replaced before it is solved."""
+    loads = jnp.asarray([[0, 0, f, 0, 0, 0] for f in (6e3, -6e3, 3e3)])
+
+    @with_slopes
+    def total(clearance):
+        element = eqx.tree_at(
+            lambda e: e.bearing.radial_internal_clearance, tapered, clearance
+        )
+
+        def solve(loads):
+            return jax.vmap(lambda f: bj.solve_load(element, f, throw=False))(loads)
+
+        good = solve(loads).converged
+        safe = jnp.where(good[:, None], loads, loads[0])
+        moved = solve(safe).displacement
+        alone = bj.solve_load(element, loads[2], throw=False).displacement
+        masked = jnp.sum(jnp.where(good, moved[:, 8], 0.0))
+        return masked - moved[0, 8] - alone[8] + clearance
+
+    slope, _ = total(tapered.bearing.radial_internal_clearance)
+    assert float(slope) == pytest.approx(1.0, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     "call, text",
     [

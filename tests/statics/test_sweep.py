@@ -310,3 +310,8 @@ def test_coupled_slices_on_two_devices_come_to_an_end():
     subprocess.run(
         [sys.executable, "-c", COUPLED], env=threads, timeout=300, check=True
     )
+
+
+def test_a_traced_sweep_is_refused_at_once():
+    with pytest.raises(TypeError, match="traced.*Map `solve_load"):
+        jax.jit(lambda f: bj.sweep(ELEMENT, f).displacement)(jnp.asarray(loads()))
