@@ -59,6 +59,7 @@ from .damping import AbstractDamping as AbstractDamping
 from .damping import ModalDamping as ModalDamping
 from .damping import ProportionalDamping as ProportionalDamping
 from .harmonic import harmonic_response as harmonic_response
+from .harmonic import reduction_error as reduction_error
 from .loads import RotorLoads as RotorLoads
 from .loads import StationForce as StationForce
 from .modes import Modes as Modes

@@ -1,6 +1,7 @@
 """Vibration of the rotor of a scene: over frequency, and in time."""
 
 import dataclasses
+import warnings
 
 import jax
 import numpy as np
@@ -13,6 +14,7 @@ from ..rotor import (
     Rotor,
     Settled,
     harmonic_response,
+    reduction_error,
 )
 from ..rotor.vibration import (
     Branch,
@@ -33,6 +35,8 @@ _PARTS = 40
 """Parts of the range of frequencies; a step of a branch spans one at most."""
 _FREQUENCIES = 200
 """At which the largest linear vibration is sought, if supports are linear."""
+_REDUCED = 0.03
+"""Change of the linear response by a reduction that is worth a word [1]."""
 _SAMPLES = 64
 """Phases at which a linear vibration is told."""
 _ENDINGS = {
@@ -130,6 +134,8 @@ def respond(
     if asked.method == "linear":
         assert linear is not None  # asked for by the caller
         return _linear(task, linear)
+    if asked.reduction is not None:
+        _warn_of_reduction(task, settled.rotor)
     scale = asked.scale
     if scale is None and all(isinstance(s, LinearSupport) for s in rotor.supports):
         scale = _largest(task, settled.rotor)
@@ -169,6 +175,23 @@ def respond(
         _half_ranges(marked),
         stopped,
     )
+
+
+def _warn_of_reduction(task, linear) -> None:
+    """Warn of a reduction that changes the linear response at an end of the range."""
+    asked = task.response
+    for frequency in map(float, (asked.begin, asked.end)):
+        at = as_array(frequency, float)
+        speed = at if asked.speed is None else as_array(asked.speed, float)
+        error = float(reduction_error(linear, task.loads, at, speed, asked.reduction))
+        if error > _REDUCED:
+            warnings.warn(
+                f"`rotor.response.reduction` = {asked.reduction} changes the linear"
+                f" response at {frequency / (2.0 * np.pi):.5g} Hz by"
+                f" {100.0 * error:.2g} %; keep more modes",
+                stacklevel=2,
+            )
+            return
 
 
 def _largest(task, linear) -> float | None:

@@ -9,7 +9,7 @@ from tolerances import SOLVER
 from vibrations import grooves
 
 import bearingjax as bj
-from bearingjax.rotor import craig_bampton
+from bearingjax.rotor import craig_bampton, reduction_error
 from bearingjax.rotor.vibration import (
     HarmonicBalance,
     LawSupport,
@@ -39,6 +39,38 @@ def test_frequencies():
         last = error
     assert basis.shape == (whole.mass.shape[0],) * 2
     np.testing.assert_allclose(found, wanted, rtol=SOLVER)
+
+
+def test_error_of_a_linear_response():
+    """Against NumPy, of an unbalance between the supports."""
+    rotor, omega = stepped(), 700.0
+    loads = bj.RotorLoads(unbalances=bj.Unbalance(1, 1e-4, 0.3))
+    cosine, sine = map(np.asarray, loads.unbalanced(rotor))
+    force = omega**2 * (cosine - 1j * sine)
+    whole = rotor.linearised(omega)
+
+    def moved(matrices):
+        mass, rates, stiffness, motions = (
+            np.asarray(part)
+            for part in (
+                matrices.mass,
+                matrices.rates,
+                matrices.stiffness,
+                matrices.motions,
+            )
+        )
+        dynamic = stiffness + 1j * omega * rates - omega**2 * mass
+        found = motions @ np.linalg.solve(dynamic, motions.T @ force)
+        return found[: 5 * whole.n_nodes].reshape(-1, 5)[:, :3]
+
+    exact = moved(whole)
+    for modes in (0, 4):
+        reduced = moved(whole.projected(craig_bampton(rotor, modes)))
+        wanted = np.abs(reduced - exact).max() / np.abs(exact).max()
+        at = jnp.asarray(omega)
+        found = reduction_error(rotor, loads, at, at, modes)
+        np.testing.assert_allclose(found, wanted, rtol=1e-6)
+        assert (found > 0.01) == (modes == 0)
 
 
 def test_orbit():

@@ -180,6 +180,19 @@ def test_a_shaft_with_fast_modes_has_its_linear_response_by_every_method(respons
     assert apart.max() < 1e-6 * found.amplitude.max()
 
 
+def test_a_reduction_that_changes_the_response_is_told():
+    task = read_rotor(
+        "rotor_paper_12",
+        settings(
+            FEW, ON_SPRINGS, {"rotor.rigid": "false", "rotor.response.reduction": "0"}
+        ),
+    )
+    (told,) = rotor_warnings(run_rotor(task))
+    assert (
+        "`rotor.response.reduction` = 0 changes the linear response at 500 Hz" in told
+    )
+
+
 def test_what_is_not_asked_for_is_not_there(run, rerun, tmp_path):
     out = tmp_path / "a.json"
     text = _without("campbell", "response")
