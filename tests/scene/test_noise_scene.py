@@ -28,7 +28,7 @@ WRONG = {
     "unknown key": (
         "vibration.sensor_stifness=1 N/mm",
         "`vibration.sensor_stifness`: unknown key (did you mean `sensor_stiffness`?);"
-        " known in [vibration]: bands, mass, moving_ring, norm, reference,"
+        " known in [vibration]: bands, bridging, mass, moving_ring, norm, reference,"
         " retardation, samples, sensor_damping, sensor_direction, sensor_stiffness,"
         " settle, steps, tilting_inertia, tolerance, turns, window",
     ),
