@@ -18,6 +18,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
+from ..numerics.implicit import stop
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
@@ -194,8 +195,8 @@ class BearingModel(eqx.Module):
         Args:
             q: Ring freedoms [m, rad].
             near: `Evaluated.near` at ring freedoms near by: fewer steps.
-            azimuths: Where the elements are; `None`: `azimuths` of q. Derivatives see
-                them move if they are passed, or with `cage_torque`.
+            azimuths: Where the elements are; `None`: `azimuths` of q, whose turn by gz
+                derivatives see only with `cage_torque`.
 
         Returns:
             For `energy`, `force`, `stiffness`, `evaluate` and `results` at the same q.
@@ -205,9 +206,8 @@ class BearingModel(eqx.Module):
         """
         q = self._checked(q)
         if azimuths is None:
-            azimuths = self.azimuths(q)
-            if not self.cage_torque:
-                azimuths = jax.lax.stop_gradient(azimuths)
+            # Only the turn is held: the azimuths are numbers of the design too.
+            azimuths = self.azimuths(q if self.cage_torque else stop(q))
         known = [None] * len(self.groups) if near is None else near
 
         def one(row, azimuth, *near):
@@ -405,12 +405,12 @@ class BearingModel(eqx.Module):
         return Solved(self.azimuths(), tuple(groups))
 
     def following(self, q: Ring, solved: Solved) -> Solved:
-        """Solved elements whose azimuths follow both gz in derivatives.
+        """Solved elements whose azimuths follow both gz and the design in derivatives.
 
         Args:
             q: Ring freedoms at which they were solved [m, rad].
             solved: The elements.
         """
-        if self.cage_torque:
-            return solved
-        return solved._replace(azimuths=self.azimuths(q))
+        # With `cage_torque` the turn is added wherever they are used (`_places`).
+        azimuths = self.azimuths(None if self.cage_torque else q)
+        return solved._replace(azimuths=azimuths)
