@@ -15,6 +15,8 @@ from .line import Palmgren as Palmgren
 from .line import half_width as half_width
 from .line import peak_pressure as peak_pressure
 from .line import relative_radius as relative_radius
+from .line_contact import AbstractLineContact as AbstractLineContact
+from .line_contact import AbstractSliceLaw as AbstractSliceLaw
 from .line_contact import LineContact as LineContact
 from .line_contact import response as response
 from .point_law import AbstractPointLaw as AbstractPointLaw

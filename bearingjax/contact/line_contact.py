@@ -13,10 +13,12 @@ the derivative rule leads from one order to the next.
 import abc
 import dataclasses
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.profile import AbstractProfile
@@ -26,7 +28,7 @@ from ..numerics.pieces import Pieces, of_intervals
 from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
-from .line import EXPONENT
+from .line import EXPONENT, AbstractLineLaw, Palmgren
 
 # φ = C/(n+1) x₊^(n+1), φ' = C x₊^n, φ'' = n C x₊^(n-1), n = 10/9: the powers differ by
 # factors of x, so that one root serves all three.
@@ -36,6 +38,10 @@ _FACTORS = (_D / (_N + _D), 1.0, _N / _D)
 
 _NEAR = tuple(1.0 - 10.0**-k for k in (1, 2, 3, 4, 6, 9))
 """Positions ξ that cut a logarithm beside a measured profile."""
+
+
+_OF_ENERGY = 12
+"""Nodes of the energy of a slice: of a power 10/9 to 1e-9."""
 
 
 class Response(NamedTuple):
@@ -106,6 +112,47 @@ class AbstractLineContact(eqx.Module):
         return self.at(self.carried(table, a, b), xi)
 
 
+class AbstractSliceLaw(AbstractLineLaw):
+    """What a slice bears, by any smooth law of its own approach.
+
+    `line_load` is all that is to be written: stiffness and strain energy follow.
+    """
+
+    @abc.abstractmethod
+    def line_load(
+        self,
+        approach: Float[Array, "..."],
+        radius: Scalar,
+        modulus: Scalar,
+        length: Scalar,
+    ) -> Float[Array, "..."]:
+        """Load per length q [N/m] of a slice that is pressed.
+
+        Args:
+            approach: Of the slice, above zero [m]. q rises with it from zero.
+            radius: Radius of relative curvature in the middle of the roller [m].
+            modulus: Contact modulus E* [Pa].
+            length: Contact length [m].
+        """
+
+    def constant(self, roller, ring, length):
+        # Only a measure of stiffness here.
+        return Palmgren().constant(roller, ring, length)
+
+    def contact(self, line, radius, modulus):
+        one = jnp.ones_like(line.constant)
+        return SliceContact(
+            one,
+            line.length,
+            line.diameter,
+            line.roller_profile,
+            line.raceway_profile,
+            law=self,
+            radius=radius(jnp.zeros_like(one)),
+            modulus=modulus,
+        )
+
+
 class LineContact(AbstractLineContact):
     """One raceway contact of one roller, in independent slices.
 
@@ -124,6 +171,14 @@ class LineContact(AbstractLineContact):
     diameter: Scalar
     roller_profile: AbstractProfile
     raceway_profile: AbstractProfile
+
+    factors: ClassVar[tuple[float, float, float]] = _FACTORS
+    """Of φ, φ' and φ'', beside `constant` and what `densities` returns."""
+
+    def densities(self, x: Float[Array, "..."]) -> tuple[Array, Array, Array]:
+        """φ, φ' and φ'' at an approach, without `constant`, `factors`; 0 if apart."""
+        root = positive_power(x, _N - _D, _D)
+        return x * x * root, x * root, root
 
     def drop(self, xi: Float[Array, "..."]) -> Float[Array, "..."]:
         """Material removed from both bodies at ξ [m]."""
@@ -238,6 +293,42 @@ class LineContact(AbstractLineContact):
         return jnp.concatenate([places, knots[highest][None], beside])
 
 
+class SliceContact(LineContact):
+    """A raceway contact whose slices follow an `AbstractSliceLaw`; `constant` is 1.
+
+    Attributes:
+        law: The law.
+        radius: Radius of relative curvature in the middle of the roller [m].
+        modulus: Contact modulus E* [Pa].
+    """
+
+    law: AbstractSliceLaw
+    radius: Scalar
+    modulus: Scalar
+
+    factors: ClassVar[tuple[float, float, float]] = (1.0, 1.0, 1.0)
+
+    def line_load(self, approach):
+        return self.densities(approach)[1]
+
+    def densities(self, x):
+        pressed = ~(x <= 0)
+        some = jnp.where(pressed, x, 1e-9)
+
+        def load_at(x):
+            return self.law.line_load(x, self.radius, self.modulus, self.length)
+
+        load, stiffness = jax.jvp(load_at, (some,), (jnp.ones_like(some),))
+        # ∫ q dx with x = some·t³: a power begins gently.
+        node, weight = np.polynomial.legendre.leggauss(_OF_ENERGY)
+        t = 0.5 * (node + 1.0)
+        alike = (1,) * some.ndim + (_OF_ENERGY,)
+        inner = load_at(some[..., None] * jnp.asarray(t**3, some.dtype).reshape(alike))
+        weight = jnp.asarray(1.5 * weight * t * t, some.dtype)
+        found = some * (inner @ weight), load, stiffness
+        return tuple(jnp.where(pressed, values, 0.0) for values in found)
+
+
 def _vertex(left, top, right):
     """Where the parabola through three points is highest, in steps from the middle."""
     bend = 2.0 * top - left - right
@@ -253,10 +344,9 @@ def _offset(line, xi):
 def _integrals(line, nodes, quadrature) -> Response:
     """∫ φ ds, ∫ φ' (1, ξ) ds, ∫ φ'' (1, ξ, ξ²) ds with one root per node."""
     x = nodes.argument
-    root = positive_power(x, _N - _D, _D)
     basis = quadrature.basis(x.dtype)
     # Three products, not one of a stack: XLA joins arrays element by element.
-    stiffness, load, energy = root @ basis, (x * root) @ basis, (x * x * root) @ basis
+    energy, load, stiffness = (values @ basis for values in line.densities(x))
     middle, half = nodes.middle, nodes.half
     scale = 0.5 * line.length * line.constant
 
@@ -270,7 +360,7 @@ def _integrals(line, nodes, quadrature) -> Response:
         inner = middle**2 * m[:, 0] + 2.0 * middle * half * m[:, 1] + half**2 * m[:, 2]
         return scale * jnp.sum(half * inner)
 
-    energy_factor, load_factor, stiffness_factor = _FACTORS
+    energy_factor, load_factor, stiffness_factor = line.factors
     return Response(
         energy_factor * zeroth(energy),
         load_factor * jnp.stack([zeroth(load), first(load)]),

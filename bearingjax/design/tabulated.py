@@ -21,7 +21,9 @@ class Tabulated(AbstractProfile):
     both sides, with evenly spaced points by 0.074 of its height. With `ContactMapped`
     every high spot carries its load, to 1e-6 of the whole, in a time that grows with
     the number of points: fifty take four times as long as five, five hundred forty
-    times. Leave out points where the profile is smooth.
+    times. Leave out points where the profile is smooth. Derivatives of loads by the
+    table are good to 1e-7, of the stiffness by `drops` to 1e-6 and by `positions` to
+    1e-3; more `points` of `ContactMapped` make them exact.
 
     Attributes:
         positions: s, ascending, from one roller end to the other or beyond (n,) [m].

@@ -169,26 +169,33 @@ def _is_zero(x):
     return isinstance(x, SymbolicZero)
 
 
-def by_autodiff(function: Callable[[Any], Any], u: Any) -> Expansion:
+def by_autodiff(function: Callable[..., Any], u: Any, *beside: Any) -> Expansion:
     """Expansion of functions side by side, by automatic differentiation.
 
     For functions without integrals or powers that make their derivatives long.
 
     Args:
-        function: Smooth function of (k,) -> scalar.
+        function: Smooth function of (k,), and of what stands beside it, -> scalar.
         u: Arguments of each (..., k).
+        *beside: Pytrees of more arguments, such as constants of each contact, with the
+            leading axes of u; no derivatives by them are returned.
 
     Returns:
         Value (...), gradient (..., k) and Hessian (..., k, k).
     """
 
-    def one(u):
+    def one(u, *beside):
         def slopes(u):
-            value, gradient = jax.value_and_grad(function)(u)
+            value, gradient = jax.value_and_grad(function)(u, *beside)
             return gradient, (value, gradient)
 
         hessian, (value, gradient) = jax.jacfwd(slopes, has_aux=True)(u)
         return Expansion(value, gradient, hessian)
 
-    flat = jax.vmap(one)(u.reshape(-1, u.shape[-1]))
-    return jax.tree.map(lambda a: a.reshape(*u.shape[:-1], *a.shape[1:]), flat)
+    axes = u.shape[:-1]
+
+    def listed(a):
+        return a.reshape(-1, *a.shape[len(axes) :])
+
+    flat = jax.vmap(one)(listed(u), *jax.tree.map(listed, beside))
+    return jax.tree.map(lambda a: a.reshape(*axes, *a.shape[1:]), flat)

@@ -5,15 +5,29 @@ form with E = 206 GPa and ν = 0.3, and ISO/TS 16281. Tolerances are half a unit
 last printed digit.
 """
 
+from functools import partial
+
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from registry import bearings, motion
 from tolerances import ROUNDING
 
-from bearingjax.contact import ISO16281, LineConstant, LineContact, Palmgren, response
+import bearingjax as bj
+from bearingjax.contact import (
+    ISO16281,
+    AbstractSliceLaw,
+    LineConstant,
+    LineContact,
+    Palmgren,
+    response,
+)
 from bearingjax.design import Material, Straight
-from bearingjax.numerics import Midpoint
+from bearingjax.numerics import ContactMapped, Midpoint
+from bearingjax.numerics.types import as_real
+from bearingjax.numerics.units import unit
 
 STEEL = Material()
 UNIT = 10.0 ** (19 / 3)  # one N/mm^(19/9) in N/m^(19/9)
@@ -144,3 +158,48 @@ def test_densities_follow_from_each_other():
     c = float(Palmgren().constant(STEEL, STEEL, jnp.asarray(0.01372)))
     expected = c * np.asarray(depth[:4]) ** (10 / 9)
     np.testing.assert_allclose(densities[1][:4], expected, rtol=ROUNDING)
+
+
+class Power(AbstractSliceLaw):
+    """q = C x^n, at any n."""
+
+    factor: jax.Array = eqx.field(converter=as_real, metadata=unit("N/m"))
+    power: jax.Array = eqx.field(converter=as_real, metadata=unit("1"))
+
+    def line_load(self, approach, radius, modulus, length):
+        return self.factor * approach**self.power
+
+
+def test_a_law_of_ones_own_is_the_built_in_one_of_the_same_power():
+    """Of an element: energy, force and stiffness, and derivatives by the law."""
+    bearing, q = bearings()["cylindrical, crowned ends"], jnp.asarray(motion())
+
+    def of(value, own):
+        law = Power(value, 10 / 9) if own else LineConstant(value)
+        rule = ContactMapped(24)
+        e = bj.BearingElement(bearing, law, quadrature=rule).evaluate(q)
+        found = e.energy, e.force[6:], jnp.diagonal(e.stiffness)[6:]
+        return found, found
+
+    own, built = (
+        jax.jit(jax.jacfwd(partial(of, own=own), has_aux=True))(jnp.asarray(1.2e11))
+        for own in (True, False)
+    )
+    for mine, theirs in zip(*map(jax.tree.leaves, (own, built)), strict=True):
+        size = np.abs(theirs).max()
+        np.testing.assert_allclose(mine, theirs, rtol=1e-7, atol=1e-9 * size)
+
+
+def test_an_elastic_foundation_by_hand():
+    """q = k x: a roller pressed all along and tilted, W = k L (a²/2 + b²/6)."""
+    k, length, a, b = 3e10, 0.012, 5e-6, 2e-6
+    given = (jnp.asarray(v) for v in (1.3e11, length, 0.014))
+    line = LineContact(*given, Straight(), Straight())
+    contact = Power(k, 1.0).contact(line, lambda s: 0.005 + 0.0 * s, jnp.asarray(1e11))
+    rule = ContactMapped()
+    r = response(contact, contact.table(rule), rule, jnp.asarray(a), jnp.asarray(b))
+    whole = k * length
+    assert float(r.energy) == pytest.approx(whole * (a**2 / 2 + b**2 / 6), rel=1e-9)
+    assert np.allclose(r.load, [whole * a, whole * b / 3], rtol=1e-9, atol=0.0)
+    wanted = [whole, 0.0, whole / 3]
+    assert np.allclose(r.stiffness, wanted, rtol=1e-9, atol=1e-9 * whole)

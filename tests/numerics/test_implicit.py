@@ -12,6 +12,7 @@ import pytest
 from tolerances import ROUNDING
 
 from bearingjax.numerics import attach, attach_roots
+from bearingjax.numerics.expansion import by_autodiff
 from bearingjax.numerics.implicit import stop, unless_failed
 
 STIFFNESS = jnp.asarray([[2.0, 0.5, -0.3], [0.5, 1.5, 0.2], [-0.3, 0.2, 1.0]])
@@ -180,3 +181,18 @@ def test_what_failed_has_no_derivative():
     assert np.array_equal(slope(x, jnp.asarray(True))[1], [2.0, 2.0])
     value, lost = slope(x, jnp.asarray(False))
     assert float(value) == -2.0 and np.isnan(lost).all()
+
+
+def test_expansion_with_an_argument_of_each_function():
+    """a·x²y, with its own a at each of the places."""
+    u = jnp.asarray(np.random.default_rng(5).normal(size=(2, 3, 2)))
+    a = jnp.arange(1.0, 7.0).reshape(2, 3)
+    found = by_autodiff(lambda u, a: a * u[0] ** 2 * u[1], u, a)
+    x, y = u[..., 0], u[..., 1]
+    zero = jnp.zeros_like(x)
+    np.testing.assert_allclose(found.value, a * x * x * y, rtol=1e-12)
+    slopes = jnp.stack([2 * a * x * y, a * x * x], axis=-1)
+    np.testing.assert_allclose(found.gradient, slopes, rtol=1e-12)
+    rows = [[2 * a * y, 2 * a * x], [2 * a * x, zero]]
+    bends = jnp.stack([jnp.stack(row, axis=-1) for row in rows], axis=-2)
+    np.testing.assert_allclose(found.hessian, bends, rtol=1e-12)
