@@ -130,8 +130,8 @@ def ring_modes(modes: NaturalModes, model: NoiseModel) -> list[tuple[str, float]
     """
     masses = np.repeat(float(model.mass), 3)
     names = [f"along {name}" for name in "xyz"]
-    if model.inertia is not None:
-        tilting = np.repeat(float(model.inertia), 2)
+    if (inertia := model.inertia) is not None:
+        tilting = np.repeat(float(inertia), 2)
         masses = np.concatenate([masses, tilting])
         names += ["tilting about x", "tilting about y"]
     found: list[tuple[str, float]] = []

@@ -276,11 +276,11 @@ class NoiseSystem(eqx.Module):
         """Those forces on all coordinates."""
         on_ring = encounter.push(pressed.on_ring, self.mass.shape[0], self.sites)
         parts = [on_ring, pressed.on_places.T.ravel()]
-        if (cage := self.cage) is None:
+        cage, pockets, land = self.cage, pressed.pockets, pressed.land
+        if cage is None or pockets is None or land is None:
             return jnp.concatenate(parts)
-        found = cage_forces(
-            pressed.pockets, pressed.land, *self._cage_places(motion), encounter.azimuth
-        )
+        places = *self._cage_places(motion), encounter.azimuth
+        found = cage_forces(pockets, land, *places)
         if RINGS.index(cage.guiding_ring) == self.moving:
             parts[0] = on_ring.at[:2].add(found.ring)
         return jnp.concatenate([*parts, found.arcs, found.cage])

@@ -99,9 +99,9 @@ def read_noise(
     vibration.finish()
     vibration.fill("moving_ring", model.moving_ring)
     vibration.fill("retardation", written(float(model.retardation), "s"))
-    tilts = model.inertia is not None
-    inertia = written(float(model.inertia), "kg m^2") if tilts else HELD
-    vibration.fill("tilting_inertia", inertia)
+    inertia = model.inertia
+    told = HELD if inertia is None else written(float(inertia), "kg m^2")
+    vibration.fill("tilting_inertia", told)
     own = {"deviations": deviations.echo(), "vibration": vibration.echo()}
     inputs = {**scene.inputs, "operating": _held(scene, model.moving_ring), **own}
     return dataclasses.replace(found, inputs=inputs)

@@ -82,6 +82,7 @@ def test_a_ring_tilts_unless_it_is_held():
     side = np.sqrt(0.3716 / (2.0 * np.pi * radius * 7850.0))
     ends = radius + 0.5 * side * np.array([-1.0, 1.0])
     inertia = 0.3716 / 12.0 * (3.0 * np.sum(ends**2) + side**2)
+    assert free.inertia is not None
     np.testing.assert_allclose(free.inertia, inertia, rtol=SOLVER)
     assert free.freedoms[3:] == ("gx", "gy") and RADIAL.freedoms == ("ux", "uy", "uz")
     assert RADIAL.inertia is None
