@@ -14,10 +14,14 @@ catalogue's formula gives, are left out (benchmarks/skid_friction.py). Under an 
 load one ball stands for all; otherwise the motion repeats from orbit to orbit and is
 found at places along it (`places`). It is differentiable with respect to design, oil,
 load and speeds, and a map over loads is one `jax.vmap` (`places=1, throw=False`; read
-`result`). Contact loads and angles are those of the solved bearing, with its raceway
-control (`EqualShare()` as in the published method). Balls are free in their pockets:
-compare `wander` with the pocket clearance. A Newtonian film is right up to some 1 GPa;
-beyond, give `traction=Eyring()` or `LimitingStress()` of `bearingjax.lubrication`. At
+`result`). Contact loads, angles and the place of the ring belong to the same
+equilibrium: balls are thrown outwards by the orbit that they have (`load_speed=speed`:
+by that of pure rolling, as in the published method), with the raceway control of the
+bearing (`EqualShare()` there). "Converged" says that forces and powers balance, the
+powers to a millionth (`imbalance`). Balls are free in their pockets: compare `wander`
+with the pocket clearance. No oil bears shear stresses of more than some 0.12 times the
+pressure, which a Newtonian film soon exceeds: `skid_warnings` tells, and
+`traction=Eyring()` or `LimitingStress()` of `bearingjax.lubrication` yields. At
 high speed films are thinner, because the oil is sheared warm before it enters:
 `inlet_heating=True`.
 
@@ -48,10 +52,10 @@ pushes rollers forwards or holds them back (`cage_force`). All rollers orbit wit
 cage, which those under load drive against the drag of the oil (Harris 1966); inertia of
 the spin is included, friction on ribs and in pockets is not. In time (`skid`, under a
 constant load) rollers meet front and rear of pockets with clearance; with tight and
-stiff ones they end where `steady_skid` says. Loads are those of the centrifugal force
-of pure rolling; where slip is gross, repeat with `load_speed=Speed(w, w)`, w the cage
-speed found. The drag decides: its `fill`, the share of oil between the rings, is seldom
-known (benchmarks/skid_roller.py).
+stiff ones they end where `steady_skid` says. Loads over time are those of the
+centrifugal force of pure rolling; where slip is gross, give `load_speed=Speed(w, w)`,
+w the cage speed of the end state. The drag decides: its `fill`, the share of oil
+between the rings, is seldom known (benchmarks/skid_roller.py).
 
 Design
 ------
@@ -61,8 +65,9 @@ Design
 by hours) and `CageSlip`; variables are then "preload",
 "model.element.bearing.contact_angle", "model.temperature" and the like. Least friction
 torque with at most 1 % slip over a spectrum: benchmarks/skid_design.py. `skid_warnings`
-says what is doubtful: pockets too tight for the end state, a Newtonian film beyond 1
-GPa, an oil that is a glass, films that are not elastohydrodynamic, gross skidding.
+says what is doubtful: pockets too tight for the end state or too wide for the balls,
+shear stresses that no oil bears, an oil that is a glass, films that are not
+elastohydrodynamic or too thin, gross skidding.
 """
 
 from .conditions import Conditions as Conditions

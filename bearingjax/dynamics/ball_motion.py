@@ -33,6 +33,9 @@ from ..lubrication import (
 )
 from ..numerics.types import Scalar
 
+LEAST_LOAD = 1e-9
+"""Load far below any that matters, for means of directions without load [N]."""
+
 
 class BallState(NamedTuple):
     """How a ball moves.
@@ -141,7 +144,7 @@ def rolling(ball: LoadedBall, speed: Speed) -> BallState:
     """
     direction = jnp.stack([jnp.sin(ball.angle), jnp.cos(ball.angle)], axis=1)
     half = len(ball.outwards) // 2
-    weighted = (ball.load + 1e-9)[:, None] * direction
+    weighted = (ball.load + LEAST_LOAD)[:, None] * direction
     sums = weighted[:half].sum(axis=0), weighted[half:].sum(axis=0)
     outer, inner = (v / jnp.sqrt(v @ v) for v in sums)
     ratio = 0.5 * ball.diameter / ball.pitch_radius

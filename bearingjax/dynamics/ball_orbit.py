@@ -6,115 +6,132 @@ orbit, with derivatives along it by the interpolating trigonometric polynomial.
 """
 
 from functools import partial
+from typing import ClassVar
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
 from ..design import n_elements
-from ..element.inertia import Speed
-from ..numerics.types import Scalar
-from ..statics.solution import BallSolution
+from ..element.ball_speed import ball_mass
 from .ball_motion import (
+    LEAST_LOAD,
     BallState,
-    LoadedBall,
     rolling,
     sliding,
     tractions,
     unbalanced,
 )
 from .loaded import contact_loads, loaded_ball
-from .model import SkidModel
-from .orbit_search import AbstractOrbit, derivatives
-from .steady_results import Power, SteadySkid
+from .orbit_search import AbstractOrbit
+from .steady_results import Power, SteadySkid, driving
 
 
 class BallOrbit(AbstractOrbit):
-    """Equations of a ball; unknowns are spin and orbit at each place.
+    """Equations of a ball; unknowns are, at each place and each from pure rolling, the
+    spin about x, the slip on the outer raceway over the ball's radius, the spin about
+    the normal there, and the orbit.
 
-    Attributes:
-        model: The bearing, its oil and what surrounds the balls.
-        ball: The ball at all places (place,).
-        speed: Ring speeds.
-        density: Of the oil [kg/m³].
-        along: Matrix of derivatives along the orbit (place, place) [1].
-        start: As of `AbstractOrbit`.
+    Where oil is stiff the ball sticks to the outer raceway, and may yet turn and orbit
+    quite otherwise than in pure rolling: no slip or spin there is a difference of
+    speeds.
     """
 
-    model: SkidModel
-    ball: LoadedBall
-    speed: Speed
-    density: Scalar
-    along: Float[Array, "place place"]
-    start: Float[Array, " unknown"]
+    n_own: ClassVar = 4
+    n_common: ClassVar = 0
 
-    def _local(self, ball, y, slope):
-        """Forces out of balance of one place [N], and how large those are that cancel.
+    def excess(self, own, common):
+        return own[:, 3]
 
-        Args:
-            ball: The ball at that place.
-            y: Its spin and orbit (4,).
-            slope: How they change along the orbit (4,).
-        """
-        state = BallState(y[:3], y[3])
-        _, pulls, drag = self.forces(ball, state)
-        moment, force = unbalanced(ball, state, pulls, drag)
+    def loaded(self, row):
+        of, law = self.model.bearing, self.model.point_law
+        make = partial(loaded_ball, of, law, self.model.oil)
+        ball = jax.vmap(make)(*contact_loads(row, of, law))
+        rolls = jax.vmap(partial(rolling, speed=self.speed))(ball)
+        return ball, jnp.concatenate([rolls.spin, rolls.orbit[:, None]], axis=1)
+
+    def motion(self, body, rolls, own):
+        normal, across = _axes(body)
+        lever = body.pitch_radius + 0.5 * body.diameter * normal[1]
+        turned = own[1] + own[3] * lever / (0.5 * body.diameter)
+        spin = turned * across + (own[2] - own[3] * normal[2]) * normal
+        return rolls + jnp.append(spin.at[0].add(own[0]), own[3])
+
+    def local(self, body, rolls, own, slope, common):
+        state, _, pulls, drag = self.forces(body, rolls, own)
+        moment, force = unbalanced(body, state, pulls, drag)
         change = state.orbit * slope
         rotation = change[:3].at[2].add(change[3])
-        radius = 0.5 * ball.diameter
-        out = jnp.concatenate(
+        radius = 0.5 * body.diameter
+        normal, across = _axes(body)
+        turning = (moment - body.moment * rotation) / radius
+        out = jnp.stack(
             [
-                (moment - ball.moment * rotation) / radius,
-                (force - ball.mass * ball.pitch_radius * change[3])[None],
+                turning[0],
+                turning @ across,
+                turning @ normal,
+                force - body.mass * body.pitch_radius * change[3],
             ]
         )
         size = jnp.sum(jnp.abs(pulls.resultants.force)) + jnp.abs(drag)
         return out, size + jnp.sum(jnp.abs(pulls.resultants.moment)) / radius
 
-    def forces(self, ball, state):
-        """Motion of a ball against its raceways, tractions, and drag of the oil [N]."""
+    def forces(self, ball, rolls, own):
+        """Motion of a ball, that against its raceways, tractions, and drag of the oil
+        [N]."""
+        whole = self.motion(ball, rolls, own)
+        state = BallState(whole[:3], whole[3])
         moving = sliding(ball, state, self.speed)
+        # All is linear in the speeds. At two contacts rolling does not slip, nor does
+        # it spin on the outer one.
+        free = sliding(ball, BallState(rolls[:3], rolls[3]), self.speed)
+        slip, spin = free.slip, free.spin
+        normal, _ = _axes(ball)
+        sin, cos, radius = jnp.sin(ball.angle), jnp.cos(ball.angle), 0.5 * ball.diameter
+        # Sine and cosine of the angle from the outer normal, and how far the contact
+        # passes as the ball orbits without slip there.
+        turn, same = (
+            sin * normal[1] - cos * normal[2],
+            cos * normal[1] + sin * normal[2],
+        )
+        first = ball.pitch_radius + radius * normal[1]
+        passing = ball.side * first * same - ball.lever
+        if len(ball.outwards) == 2:
+            slip, spin = jnp.zeros_like(slip), spin.at[0].set(0.0)
+            # Nor are there differences on the outer one, which round-off would fill.
+            turn, passing = (v.at[0].set(0.0) for v in (turn, passing))
+            same = same.at[0].set(1.0)
+        _, slips, spins, orbit = own
+        along = radius * (slips * same + (spins - orbit * normal[2]) * turn)
+        slip = slip.at[:, 0].add(ball.side * along + orbit * passing)
+        slip = slip.at[:, 1].add(ball.side * radius * own[0])
+        spin = spin + spins * same - (slips + orbit * first / radius) * turn
+        spin = spin + orbit * (sin - normal[2] * same)
+        moving = moving._replace(slip=slip, spin=spin)
         drag = self.model.drag.force(
             state.orbit, ball.frontal_area, ball.pitch_radius, self.density
         )
-        return moving, tractions(ball, self.model.traction, moving), drag
-
-    def unbalanced(self, y):
-        y = y.reshape(-1, 4)
-        out, sizes = jax.vmap(self._local)(self.ball, y, self.along @ y)
-        return out.reshape(-1), sizes
-
-    def jacobian(self, y):
-        y = y.reshape(-1, 4)
-        function = jax.jacfwd(self._local, argnums=(1, 2), has_aux=True)
-        (own, sloped), _ = jax.vmap(function)(self.ball, y, self.along @ y)
-        count = y.shape[0]
-        if count == 1:
-            return own[0]
-        eye = jnp.eye(count, dtype=y.dtype)
-        whole = jnp.einsum("kl,kij->kilj", eye, own)
-        whole = whole + jnp.einsum("kl,kij->kilj", self.along, sloped)
-        return whole.reshape(4 * count, 4 * count)
+        return state, moving, tractions(ball, self.model.traction, moving), drag
 
     def inertia(self):
-        ball = self.ball
-        spin, turn = ball.moment / (0.5 * ball.diameter), ball.mass * ball.pitch_radius
-        own = jnp.stack([spin, spin, spin, turn], axis=1)
-        whole = jnp.diag(own.reshape(-1))
-        axial = 4 * jnp.arange(spin.shape[0]) + 2
-        return whole.at[axial, axial + 1].set(spin)
+        bearing, places = self.model.bearing, self.azimuth.shape[0]
+        diameter, pitch = bearing.ball_diameter, bearing.pitch_diameter
+        mass, moment = ball_mass(diameter, bearing.material.density)
+        spin = moment / (0.5 * diameter)
+        own = jnp.diag(jnp.stack([spin, spin, spin, 0.5 * mass * pitch]))
+        own = own.at[1, 3].set(spin * pitch / diameter)
+        whole = jnp.kron(jnp.eye(places, dtype=own.dtype), own)
+        return jnp.pad(whole, (0, self.start.size - whole.shape[0]))
 
     def described(self, y, **known):
-        ball, speed = self.ball, self.speed
-        y = y.reshape(-1, 4)
+        speed, (own, _, _) = self.speed, self.parts(y)
+        ball, rolls = self.bodies(y)
 
-        def one(ball, y):
-            state = BallState(y[:3], y[3])
-            moving, pulls, drag = self.forces(ball, state)
-            return moving, pulls, -drag * ball.pitch_radius * state.orbit
+        def one(ball, rolls, own):
+            state, moving, pulls, drag = self.forces(ball, rolls, own)
+            return state, moving, pulls, -drag * ball.pitch_radius * state.orbit
 
-        moving, pulls, lost = jax.vmap(one)(ball, y)
-        around = y[:, 3]
+        state, moving, pulls, lost = jax.vmap(one)(ball, rolls, own)
+        around = state.orbit
         # In time, not along the orbit: a ball is longer where it is slow.
         still = around == 0
         time = jnp.where(still, 1.0, 1.0 / jnp.where(still, 1.0, around))
@@ -133,15 +150,16 @@ class BallOrbit(AbstractOrbit):
             contact_load=ball.load,
             contact_angle=ball.angle,
             orbit_speed=around,
-            rolling_orbit_speed=jax.vmap(partial(rolling, speed=speed))(ball).orbit,
-            spin=y[:, :3],
+            rolling_orbit_speed=rolls[:, 3],
+            spin=state.spin,
             film=pulls.film,
             sliding=moving.slip,
             contact_spin=moving.spin,
             heat=pulls.resultants.heat,
             cage_speed=mean_orbit,
             wander=jnp.max(ahead) - jnp.min(ahead),
-            friction_torque=-on_inner,
+            ring_torque=jnp.stack([-on_outer, -on_inner]),
+            friction_torque=driving(-on_outer, -on_inner, speed),
             power=Power(
                 drive=-on_inner * speed.inner - on_outer * speed.outer,
                 contacts=mean(jnp.sum(pulls.resultants.heat, axis=1)),
@@ -152,33 +170,18 @@ class BallOrbit(AbstractOrbit):
         )
 
 
-def ball_orbit(
-    model: SkidModel,
-    solution: BallSolution,
-    speed: Speed,
-    load_speed: Speed,
-    azimuth: Float[Array, " place"],
-) -> BallOrbit:
-    """Equations of the balls of a solved bearing.
-
-    Args:
-        model: The bearing, its oil and what surrounds the balls.
-        solution: Of its load.
-        speed: Ring speeds.
-        load_speed: Ring speeds of that solution.
-        azimuth: The places, spread evenly (place,) [rad].
-    """
-    bearing, law = model.bearing, model.point_law
-    at = model.element.model(load_speed), bearing, law, solution.displacement, azimuth
-    make = partial(loaded_ball, bearing, law, model.oil)
-    ball = jax.vmap(make)(*contact_loads(*at))
-    start = jax.vmap(partial(rolling, speed=speed))(ball)
-    start = jnp.concatenate([start.spin, start.orbit[:, None]], axis=1).reshape(-1)
-    density = model.lubricant.density.at(model.temperature)
-    along = jnp.asarray(derivatives(azimuth.shape[0]), azimuth.dtype)
-    return BallOrbit(
-        model=model, ball=ball, speed=speed, density=density, along=along, start=start
-    )
+def _axes(ball):
+    """Unit vectors of the outer raceway: its normal n, of several contacts their mean,
+    and the axis about which a ball turns as it rolls there."""
+    if len(ball.outwards) == 2:
+        cos, sin = jnp.cos(ball.angle[0]), jnp.sin(ball.angle[0])
+    else:
+        weight = jnp.where(ball.side > 0, ball.load + LEAST_LOAD, 0.0)
+        cos, sin = weight @ jnp.cos(ball.angle), weight @ jnp.sin(ball.angle)
+        length = jnp.sqrt(cos * cos + sin * sin)
+        cos, sin = cos / length, sin / length
+    none = jnp.zeros_like(cos)
+    return jnp.stack([none, cos, sin]), jnp.stack([none, sin, -cos])
 
 
 def _ahead(share):

@@ -16,7 +16,13 @@ from ..statics.balance import Balance
 from ..statics.solution import BallSolution, RollerSolution
 from .balanced_loads import BalancedLoads
 from .load_table import LoadTable, load_table
-from .loaded import contact_ellipses, contact_loads, loaded_ball, loaded_rollers
+from .loaded import (
+    at_places,
+    contact_ellipses,
+    contact_loads,
+    loaded_ball,
+    loaded_rollers,
+)
 from .model import SkidModel
 from .motion import SkidState, Surroundings, mechanics
 from .ring_speed import SpeedTable
@@ -37,13 +43,11 @@ def tabulated(
     if places > 1:
         even = 2.0 * np.pi * np.arange(places) / places
         azimuth = jnp.asarray(even, solution.azimuth.dtype)
-    q = solution.displacement
+    there = at_places(model.element.model(speed), solution.displacement, azimuth)
     if not isinstance(solution, BallSolution):
-        return load_table(loaded_rollers(model, q, speed, azimuth))
+        return load_table(loaded_rollers(there, model.oil))
     bearing, law = model.bearing, model.point_law
-    at = solution.contact_load[:1], solution.contact_angle[:1]
-    if places > 1:
-        at = contact_loads(model.element.model(speed), bearing, law, q, azimuth)
+    at = contact_loads(there, bearing, law)
     balls = jax.vmap(partial(loaded_ball, bearing, law, model.oil))(*at)
     return load_table(balls)
 

@@ -5,10 +5,11 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..numerics.linear import lengths
-from ..numerics.types import namespace
 from ..numerics.units import unit
 from ..statics.solution import BallSolution, RollerSolution
+from .conditions import Conditions
 from .motion import SkidState, Work
+from .steady_results import slip
 
 
 class SkidMotion(eqx.Module):
@@ -26,8 +27,9 @@ class SkidMotion(eqx.Module):
         heat: Of each contact (time, ball, contact) [W].
         cage_force: Of the cage on the balls, in the sense in which angles are counted
             (time, ball) [N].
-        friction_torque: That turns the inner ring, of the losses that `SkidModel` knows
-            (time,) [N m].
+        friction_torque: On the ring that drives, the one that turns faster, of the
+            losses that `SkidModel` knows (time,) [N m].
+        ring_torque: On outer and inner ring (time, 2) [N m].
         power: Momentary powers (time,).
         work: Their integrals since the beginning (time,).
         kinetic_energy: Of balls and cage (time,) [J].
@@ -49,6 +51,7 @@ class SkidMotion(eqx.Module):
     heat: Float[Array, "time ball contact"] = eqx.field(metadata=unit("W"))
     cage_force: Float[Array, "time ball"] = eqx.field(metadata=unit("N"))
     friction_torque: Float[Array, " time"] = eqx.field(metadata=unit("N m"))
+    ring_torque: Float[Array, "time 2"] = eqx.field(metadata=unit("N m"))
     power: Work
     work: Work
     kinetic_energy: Float[Array, " time"] = eqx.field(metadata=unit("J"))
@@ -70,9 +73,30 @@ class SkidMotion(eqx.Module):
     @property
     def slip(self) -> Float[Array | np.ndarray, "time ball"]:
         """1 - orbit/rolling orbit (time, ball) [1]; zero where rings stand still."""
-        xp, still = namespace(self.orbit_speed), self.rolling_orbit_speed == 0
-        rolling = xp.where(still, 1.0, self.rolling_orbit_speed)
-        return xp.where(still, 0.0, 1.0 - self.orbit_speed / rolling)
+        return slip(self.orbit_speed, self.rolling_orbit_speed)
+
+    @property
+    def mean_friction_torque(self) -> tuple[float, int]:
+        """Mean of the friction torque over the last orbits of the cage [N m], and their
+        number: half of all that it made, at least one; NaN and 0 if it made none.
+
+        Of a motion that is concrete, as far as it was reached.
+        """
+        reached = np.isfinite(np.asarray(self.cage_speed))
+        time, torque, turn = (
+            np.asarray(v)[reached]
+            for v in (self.time, self.friction_torque, self.state.cage_turn)
+        )
+        turns = np.abs(turn) / (2.0 * np.pi)
+        orbits = int(turns[-1]) if turns.size else 0
+        if not orbits:
+            return float("nan"), 0
+        orbits -= orbits // 2
+        begin = np.interp(turns[-1] - orbits, turns, time)
+        steps = 0.5 * np.diff(time) * (torque[1:] + torque[:-1])
+        work = np.append(0.0, np.cumsum(steps))
+        done = work[-1] - np.interp(begin, time, work)
+        return float(done / (time[-1] - begin)), orbits
 
     @property
     def imbalance(self) -> Float[Array | np.ndarray, " time"]:
@@ -116,10 +140,12 @@ class SkidRollerHistory(SkidMotion):
     Attributes are those of `SkidMotion`, and
         solution: The bearing under its load.
         sliding: Slip along the rolling direction (time, roller, contact) [m/s].
+        conditions: In the contacts (time, roller, contact).
     """
 
     solution: RollerSolution
     sliding: Float[Array, "time roller contact"] = eqx.field(metadata=unit("m/s"))
+    conditions: Conditions
 
     @property
     def spin(self) -> Float[Array | np.ndarray, "time roller"]:

@@ -1,5 +1,6 @@
 """What the contacts of balls and rollers bear, from a solved bearing, and their oil."""
 
+import dataclasses
 from functools import partial
 
 import jax
@@ -12,46 +13,111 @@ from ..contact.line import half_width
 from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
 from ..design.ball import AbstractBallBearing
 from ..element.ball_speed import ball_mass
-from ..element.bearing_model import BearingModel
+from ..element.bearing_element import BearingElement
+from ..element.bearing_model import BearingModel, RowGroup
 from ..element.constants import ContactConstants, relative_radii
+from ..element.equilibrium import condensed
 from ..element.inertia import Speed, mass_and_inertia
+from ..element.row import Row
+from ..element.solved_row import RowResults, SolvedRow
 from ..lubrication import (
     ellipse_patch,
     line_film,
     line_patch,
     point_film,
 )
+from ..numerics.expansion import expanded
 from ..numerics.types import Ring
 from ..statics import rollers
 from ..statics.balls import ball_results
 from .ball_motion import LoadedBall
-from .model import Oil, SkidModel
+from .model import Oil
 from .roller_motion import LoadedRoller
 
 _SLICES = 16
 """Slices of a roller, spaced as the nodes of Gauss and Legendre."""
 
 
-def contact_loads(
-    model: BearingModel,
-    bearing: AbstractBallBearing,
-    law: AbstractPointLaw,
-    q: Ring,
-    azimuth: Float[Array, " station"],
-) -> tuple[Float[Array, "station contact"], Float[Array, "station contact"]]:
-    """Loads [N] and contact angles [rad] of a ball at places along its orbit.
+def orbiting(
+    element: BearingElement, speed: Speed, excess: Float[Array, "..."]
+) -> BearingModel:
+    """A bearing whose balls or rollers orbit faster than in pure rolling.
+
+    They are thrown outwards, and balls held against the turn of their axes, as under
+    rings that both turn faster by as much: spins relative to the orbit are those of
+    pure rolling.
 
     Args:
-        model: The bearing, of one row of like balls.
-        bearing: Its design.
+        element: The bearing, of one row of like balls or rollers.
+        speed: Ring speeds.
+        excess: Of their orbital speeds, each one's (body,) or that of all () [rad/s].
+    """
+
+    def one(excess):
+        return element.model(Speed(speed.inner + excess, speed.outer + excess))
+
+    if not excess.ndim:
+        return one(excess)
+    row, each = (
+        model.rows[0] for model in (element.model(speed), jax.vmap(one)(excess))
+    )
+    rows = (dataclasses.replace(row, element=each.element, unlike=True),)
+    return BearingModel(RowGroup.of(rows), element.equilibrium, element.cage_torque)
+
+
+def ring_forces(
+    row: Row, q: Ring, azimuth: Float[Array, " station"], solved: SolvedRow
+) -> Float[Array, "station 12"]:
+    """What each ball or roller of a solved row asks of the load that holds the rings.
+
+    Args:
+        row: The row, without a spring.
+        q: Ring freedoms [m, rad].
+        azimuth: Where they are [rad].
+        solved: The row solved there.
+
+    Returns:
+        Forces and moments [N, N m], with derivatives.
+    """
+
+    def seen(q):
+        return row.seen(row.local(q), azimuth)
+
+    def energy(rings):
+        def one(placed, rings, energies):
+            return expanded(condensed, rings, placed, energies)
+
+        return jnp.sum(solved.each(row, one, rings))
+
+    return jnp.einsum("kr,krq->kq", jax.grad(energy)(seen(q)), jax.jacfwd(seen)(q))
+
+
+def contact_loads(
+    row: RowResults, bearing: AbstractBallBearing, law: AbstractPointLaw
+) -> tuple[Float[Array, "station contact"], Float[Array, "station contact"]]:
+    """Loads [N] and contact angles [rad] of balls.
+
+    Args:
+        row: The solved row.
+        bearing: The design.
         law: Law of its contact constants.
+    """
+    found = ball_results((row,), (bearing,), law)
+    return found["contact_load"], found["contact_angle"]
+
+
+def at_places(
+    model: BearingModel, q: Ring, azimuth: Float[Array, " station"]
+) -> RowResults:
+    """A ball or roller at places along its orbit.
+
+    Args:
+        model: The bearing, of one row of like balls or rollers.
         q: Ring freedoms of the equilibrium [m, rad].
         azimuth: The places [rad].
     """
     (row,) = model.rows
-    solved = row.solve(q, azimuth, model.equilibrium, None)
-    found = ball_results((row.at(q, azimuth, solved),), (bearing,), law)
-    return found["contact_load"], found["contact_angle"]
+    return row.at(q, azimuth, row.solve(q, azimuth, model.equilibrium, None))
 
 
 def contact_ellipses(
@@ -121,40 +187,17 @@ def loaded_ball(
     )
 
 
-def roller_loads(
-    model: BearingModel, q: Ring, azimuth: Float[Array, " station"]
-) -> tuple[Float[Array, "station 2"], Float[Array, "station 2 slice"]]:
-    """Loads of a roller on both raceways at places along its orbit.
+def loaded_rollers(row: RowResults, oil: Oil) -> LoadedRoller:
+    """Rollers of a solved row.
 
     Args:
-        model: The bearing, of one row of like rollers.
-        q: Ring freedoms of the equilibrium [m, rad].
-        azimuth: The places [rad].
-
-    Returns:
-        Contact loads [N], and loads per length of its slices [N/m].
+        row: The row, of like rollers.
+        oil: Oil in their contacts.
     """
-    (row,) = model.rows
-    solved = row.at(q, azimuth, row.solve(q, azimuth, model.equilibrium, None))
-    load, _ = rollers.contact_loads(solved)
-    return load, rollers.line_loads(solved, jnp.asarray(_slices()[0], load.dtype))
-
-
-def loaded_rollers(
-    model: SkidModel, q: Ring, speed: Speed, azimuth: Float[Array, " station"]
-) -> LoadedRoller:
-    """A roller at places along its orbit, leading axis place.
-
-    Args:
-        model: The bearing and its oil.
-        q: Ring freedoms of the equilibrium [m, rad].
-        speed: Ring speeds of that equilibrium.
-        azimuth: The places [rad].
-    """
-    bearing = model.element.model(speed)
-    constants = bearing.rows[0].element.constants
-    make = partial(loaded_roller, constants, model.oil)
-    return jax.vmap(make)(*roller_loads(bearing, q, azimuth))
+    load, _ = rollers.contact_loads(row)
+    line_load = rollers.line_loads(row, jnp.asarray(_slices()[0], load.dtype))
+    make = partial(loaded_roller, row.row.element.constants, oil)
+    return jax.vmap(make)(load, line_load)
 
 
 def loaded_roller(
@@ -172,7 +215,7 @@ def loaded_roller(
         constants: Contact constants of the roller.
         oil: Oil in its contacts.
         load: Contact loads (outer, inner) (2,) [N].
-        line_load: Loads per length of its slices, from `roller_loads` [N/m].
+        line_load: Loads per length of its slices (2, slice) [N/m].
     """
     c, dtype = constants, load.dtype
     node, weight = (jnp.asarray(v, dtype) for v in _slices())

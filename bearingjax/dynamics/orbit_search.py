@@ -5,71 +5,272 @@ as the motion would, from pure rolling, and ends as Newton's method.
 """
 
 import abc
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..design import n_elements, pitch_radius
+from ..element.inertia import Speed
+from ..element.solved_row import RowResults
 from ..numerics import lanes
 from ..numerics.implicit import attach_by, stop, unless_failed
 from ..numerics.linear import solve, solve_any
 from ..numerics.result import Result
 from ..numerics.types import Scalar
+from ..statics.balance import Balance
+from .loaded import orbiting, ring_forces
+from .model import SkidModel
 from .steady_results import SteadyMotion
 
 _STEPS = 300
 _TOLERANCE = {"float64": 1e-10, "float32": 1e-3}
 _FIRST = 1e-5
 """First step in time [s]."""
-_FEW = 6
-"""Most unknowns of a system that is solved written out."""
+NO_TRACTION = 1e-9
+"""Traction over load that counts as none [1]."""
+_RING = 6
+"""Unknowns of the ring."""
+_FEW = 4
+"""Most unknowns beside them of a system that is solved written out."""
 
 
 class AbstractOrbit(eqx.Module):
-    """Equations of a motion that repeats from orbit to orbit.
+    """Equations of a motion that repeats from orbit to orbit, and of the ring.
+
+    Unknowns are those of each place along the orbit, counted from pure rolling, then
+    those that all places share, then those of the balance of the ring. Where oil is
+    stiff, slips are smaller than the round-off of the speeds: so they are no
+    differences of speeds. Balls and rollers are thrown outwards by the orbit that they
+    have, so that their loads and the place of the ring are part of the equations.
 
     Attributes:
-        start: Speeds to begin with (unknown,) [rad/s].
+        model: The bearing, its oil and what surrounds the balls or rollers.
+        speed: Ring speeds.
+        carried: Ring speeds of the loads: their pure rolling throws outwards.
+        follows: Whether the loads follow the orbit beyond that. Static.
+        balance: Of the ring.
+        azimuth: The places, spread evenly (place,) [rad].
+        density: Of the oil [kg/m³].
+        along: Matrix of derivatives along the orbit (place, place) [1].
+        least: Sum of the contact loads in pure rolling, beside which others are
+            measured that vanish [N].
+        start: Unknowns to begin with (unknown,) [rad/s, m].
     """
 
-    start: eqx.AbstractVar[Float[Array, " unknown"]]
+    model: SkidModel
+    speed: Speed
+    carried: Speed
+    follows: bool = eqx.field(static=True)
+    balance: Balance
+    azimuth: Float[Array, " place"]
+    density: Scalar
+    along: Float[Array, "place place"]
+    least: Scalar
+    start: Float[Array, " unknown"]
+
+    n_own: ClassVar[int]
+    """Unknowns of each place."""
+    n_common: ClassVar[int]
+    """Unknowns that all places share, each with an equation that is a mean over them.
+    """
 
     @abc.abstractmethod
-    def unbalanced(
-        self, y: Float[Array, " unknown"]
-    ) -> tuple[Float[Array, " unknown"], Float[Array, "..."]]:
-        """Forces out of balance [N], and how large those are that cancel [N].
+    def excess(
+        self, own: Float[Array, "place k"], common: Float[Array, " c"]
+    ) -> Float[Array, "..."]:
+        """Orbital speeds beyond pure rolling (place,), or one of all () [rad/s]."""
+
+    @abc.abstractmethod
+    def loaded(self, row: RowResults) -> tuple[Any, Array]:
+        """The balls or rollers of a solved row, and what of their pure rolling belongs
+        to the unknowns (element, k) [rad/s].
 
         Args:
-            y: Speeds (unknown,) [rad/s].
+            row: The row.
+        """
+
+    def motion(
+        self, body: Any, rolls: Float[Array, " k"], own: Float[Array, " k"]
+    ) -> Float[Array, " k"]:
+        """Speeds of one place, whose changes along the orbit `local` wants [rad/s].
+
+        Args:
+            body, rolls: From `loaded`.
+            own: Unknowns [rad/s].
+        """
+        return rolls + own
+
+    @abc.abstractmethod
+    def local(
+        self,
+        body: Any,
+        rolls: Float[Array, " k"],
+        own: Float[Array, " k"],
+        slope: Float[Array, " k"],
+        common: Float[Array, " c"],
+    ) -> tuple[Float[Array, " k+c"], Scalar]:
+        """Forces out of balance of one place [N], and how large those are that cancel.
+
+        Args:
+            body, rolls: From `loaded`.
+            own, common: Unknowns [rad/s].
+            slope: How the motion changes along the orbit.
         """
 
     @abc.abstractmethod
-    def jacobian(self, y: Float[Array, " unknown"]) -> Float[Array, "unknown unknown"]:
-        """Of the forces out of balance [N s/rad]; `y` as of `unbalanced`."""
-
-    @abc.abstractmethod
     def inertia(self) -> Float[Array, "unknown unknown"]:
-        """Mass matrix that belongs to them [kg m]."""
+        """Mass matrix that belongs to the forces; the ring has none [kg m]."""
 
     @abc.abstractmethod
     def described(self, y: Float[Array, " unknown"], **known: Any) -> SteadyMotion:
         """What is known of the motion.
 
         Args:
-            y: Speeds that fulfil the equations (unknown,) [rad/s].
+            y: Unknowns that fulfil the equations (unknown,) [rad/s, m].
             **known: Fields that do not follow from them.
         """
+
+    def parts(self, y: Float[Array, " unknown"]) -> tuple[Array, Array, Array]:
+        """Unknowns of the places (place, k), of all (c,) and of the ring (6,)."""
+        places = self.azimuth.shape[0]
+        end = places * self.n_own
+        own, common, ring = jnp.split(y, [end, end + self.n_common])
+        return own.reshape(places, self.n_own), common, ring
+
+    @property
+    def _rows(self) -> tuple[Array, np.ndarray, np.ndarray]:
+        """Azimuths at which the contacts are solved: the places, or of a single place
+        that stands for all, all balls or rollers (element,) [rad]; which of them are
+        the balls or rollers of the ring's balance; and their places."""
+        balls, places = n_elements(self.model.bearing), self.azimuth.size
+        if places > 1:
+            stand = np.arange(balls) * places // balls
+            return self.azimuth, stand, stand
+        turn = jnp.asarray(2.0 * np.pi * np.arange(balls) / balls, self.azimuth.dtype)
+        return self.azimuth + turn, np.arange(balls), np.zeros(balls, int)
+
+    def _solved(self, own, common, ring):
+        """The solved row with its balls or rollers, and what pulls at the ring [N]."""
+        azimuth, stand, _ = self._rows
+        excess = self.excess(own, common) if self.follows else jnp.zeros_like(own[0, 0])
+        if excess.ndim:
+            excess = jnp.broadcast_to(excess, azimuth.shape)
+        bearing = orbiting(self.model.element, self.carried, excess)
+        (row,), q = bearing.rows, self.balance.ring_freedoms(ring)
+        solved = row.solve(q, azimuth, bearing.equilibrium, None)
+        pulls = ring_forces(row, q, azimuth, solved)[stand, self.balance.moving]
+        pulls = jax.vmap(self.balance.along)(pulls)
+        found = row.at(q, azimuth, solved)
+        places = self.azimuth.size
+        return jax.tree.map(lambda a: a[:places], self.loaded(found)), pulls, found
+
+    def bodies(self, y: Float[Array, " unknown"]) -> tuple[Any, Array]:
+        """Balls or rollers at all places, and their pure rolling, as of `loaded`."""
+        return self._solved(*self.parts(y))[0]
+
+    def _forces(self, own, common, ring, sloped=None):
+        """Forces out of balance of all places, pulls at the ring, and the motion; then
+        the sizes of forces at the places, and on the ring [N]."""
+        (bodies, rolls), pulls, found = self._solved(own, common, ring)
+        motion = jax.vmap(self.motion)(bodies, rolls, own)
+        slope = self.along @ (motion if sloped is None else stop(motion))
+        slope = slope if sloped is None else slope + sloped[None]
+        each = jax.vmap(self.local, (0, 0, 0, 0, None))
+        out, sizes = each(bodies, rolls, own, slope, common)
+        loads = jnp.sum(found.contact_load[self._rows[1]])
+        return (out, pulls, motion), (jnp.max(sizes), loads)
+
+    def _assembled(self, out, pulls, ring):
+        k, balance = self.n_own, self.balance
+        held = (1.0 - balance.free) * ring - balance.held
+        left = balance.along(balance.load) - jnp.sum(pulls, axis=0) - held
+        return jnp.concatenate(
+            [out[:, :k].reshape(-1), jnp.mean(out[:, k:], axis=0), left]
+        )
+
+    def unbalanced(self, y: Float[Array, " unknown"]) -> Float[Array, " unknown"]:
+        """Forces out of balance [N].
+
+        Args:
+            y: Unknowns (unknown,) [rad/s, m].
+        """
+        own, common, ring = self.parts(y)
+        (out, pulls, _), _ = self._forces(own, common, ring)
+        return self._assembled(out, pulls, ring)
+
+    def evaluated(self, y: Float[Array, " unknown"]) -> "Evaluated":
+        """`unbalanced` with its Jacobian.
+
+        Args:
+            y: Unknowns (unknown,) [rad/s, m].
+        """
+        own, common, ring = self.parts(y)
+        (places, k), c = own.shape, common.size
+
+        # What happens at a place hangs on its own unknowns and on those that all share:
+        # all places are moved at once.
+        def moved(way):
+            here, sloped, shared, turned = jnp.split(way, [k, 2 * k, 2 * k + c])
+            now = own + here[None], common + shared, ring + turned
+            forces, sizes = self._forces(*now, sloped)
+            return forces, (forces, sizes)
+
+        way = jnp.zeros(2 * k + c + _RING, y.dtype)
+        slopes, ((out, pulls, _), sizes) = jax.jacfwd(moved, has_aux=True)(way)
+        of_places, of_ring, motion = slopes
+        here, sloped, shared = jnp.split(of_places, [k, 2 * k], axis=2)
+        by_own, by_shared = motion[:, :, :k], motion[:, :, 2 * k :]
+        # Along the orbit a place feels what the others do.
+        across = jnp.einsum("kl,kij,ljm->kilm", self.along, sloped, by_own)
+        eye = jnp.eye(places, dtype=y.dtype)
+        whole = across + jnp.einsum("kl,kij->kilj", eye, here)
+        whole = whole.reshape(places, k + c, places * k)
+        behind = jnp.einsum("kl,ljm->kjm", self.along, by_shared)
+        shared = shared + jnp.einsum("kij,kjm->kim", sloped, behind)
+        rows = jnp.concatenate([whole, shared], axis=2)
+        means = jnp.mean(rows[:, k:], axis=0)
+        # The ring, by the places where balls or rollers stand.
+        stand = jnp.zeros((_RING, places, k), y.dtype)
+        stand = stand.at[:, self._rows[2]].add(-jnp.moveaxis(of_ring[:, :, :k], 0, 1))
+        turned = -jnp.sum(of_ring[:, :, 2 * k :], axis=0)
+        turned = turned.at[:, c:].add(-jnp.diag(1.0 - self.balance.free))
+        last = jnp.concatenate([stand.reshape(_RING, -1), turned], axis=1)
+        # Tractions of which no contact would tell are none.
+        loads = jnp.maximum(sizes[1], self.least)
+        most = jnp.maximum(sizes[0], NO_TRACTION * loads)
+        largest = jnp.full(y.size - _RING, most)
+        return Evaluated(
+            self._assembled(out, pulls, ring),
+            jnp.concatenate([largest, jnp.full(_RING, loads)]),
+            jnp.concatenate([rows[:, :k].reshape(-1, y.size), means, last]),
+        )
+
+
+class Evaluated(NamedTuple):
+    """Equations of an orbit at a motion.
+
+    Attributes:
+        out: Forces out of balance (unknown,) [N].
+        sizes: What each is measured against (unknown,) [N].
+        jacobian: Of the forces (unknown, unknown) [N s/rad, N/m].
+    """
+
+    out: Float[Array, " unknown"]
+    sizes: Float[Array, " unknown"]
+    jacobian: Float[Array, "unknown unknown"]
 
 
 class Found(NamedTuple):
     """What a search ended with.
 
     Attributes:
-        y: Speeds (unknown,) [rad/s].
-        residual: Force out of balance relative to the tractions [1].
+        y: Unknowns (unknown,) [rad/s, m].
+        residual: Largest force out of balance, relative to the tractions; of the ring,
+            to the contact loads [1].
         steps: Steps of the search.
         result: `Result` code.
     """
@@ -89,21 +290,21 @@ def search(orbit: AbstractOrbit) -> Found:
     Fails: `STEP_LIMIT`, `NON_FINITE`.
     """
     loop = lanes.Loop(_init, _step, _terminate, _finish)
-    few = orbit.start.size <= _FEW
+    few = orbit.start.size <= _FEW + _RING
     return Found(*lanes.run(loop, stop(orbit), 16 if few else 2))
 
 
 def known(
     orbit: AbstractOrbit, y: Float[Array, " unknown"], result: Int[Array, ""]
 ) -> Float[Array, " unknown"]:
-    """Speeds that were found, with their derivatives; NaN if they failed.
+    """Unknowns that were found, with their derivatives; NaN if they failed.
 
     Args:
         orbit: The equations.
-        y: From `search` (unknown,) [rad/s].
+        y: From `search` (unknown,) [rad/s, m].
         result: `Result` code of all that was solved.
     """
-    y = attach_by(lambda y, orbit: orbit.unbalanced(y)[0], y, orbit, _correction)
+    y = attach_by(_unbalanced, y, orbit, _correction)
     return unless_failed(y, result == int(Result.CONVERGED))
 
 
@@ -125,65 +326,82 @@ def derivatives(count: int) -> np.ndarray:
 
 class _State(NamedTuple):
     y: Float[Array, " unknown"]
-    out: Float[Array, " unknown"]
-    size: Scalar
-    goal: Scalar
+    at: Evaluated
     step: Scalar
     steps: Int[Array, ""]
 
 
 def _solve(matrix, right):
     """Of a matrix with positive diagonal; what nothing holds does not move."""
-    if right.shape[0] <= _FEW:
-        return solve(matrix, right, False)
+    few = right.shape[0] - _RING
+    if few <= _FEW:
+        # The ring by itself, then the speeds with a ring that follows them.
+        a, b = matrix[:few, :few], matrix[:few, few:]
+        c, d = matrix[few:, :few], matrix[few:, few:]
+        follows, alone = solve(d, c, False), solve(d, right[few:], False)
+        speeds = solve(a - b @ follows, right[:few] - b @ alone, False)
+        return jnp.concatenate([speeds, alone - follows @ speeds])
     held = jnp.any(matrix != 0, axis=1)
     return solve_any(matrix + jnp.diag(jnp.where(held, 0.0, 1.0)), right)
 
 
 def _init(orbit):
-    none, nothing = jnp.zeros_like(orbit.start[0]), jnp.zeros_like(orbit.start)
-    first = jnp.full_like(none, _FIRST)
-    return _State(orbit.start, nothing, none, none, first, jnp.full((), -1, jnp.int32))
+    y, n = orbit.start, orbit.start.size
+    nothing = Evaluated(jnp.zeros_like(y), jnp.ones_like(y), jnp.zeros((n, n), y.dtype))
+    return _State(y, nothing, jnp.full_like(y[0], _FIRST), jnp.full((), -1, jnp.int32))
 
 
 def _step(orbit, state):
-    first = state.steps < 0
-    matrix = orbit.jacobian(state.y)
-    move = _solve(orbit.inertia() / state.step - matrix, state.out)
+    first, slopes = state.steps < 0, state.at.jacobian
+    # The ring is slow too, where nearly nothing holds it.
+    ring = np.arange(state.y.size - _RING, state.y.size)
+    hold = orbit.least / pitch_radius(orbit.model.bearing)
+    slow = _FIRST * jnp.maximum(jnp.max(jnp.abs(slopes[ring, ring])), hold)
+    inertia = orbit.inertia().at[ring, ring].add(slow)
+    move = _solve(inertia / state.step - slopes, state.at.out)
     y = jnp.where(first, state.y, state.y + move)
-    out, sizes = orbit.unbalanced(y)
-    size = jnp.max(jnp.abs(out))
-    # Round-off of the speeds, in the stiffness of the film.
-    tiny = jnp.finfo(y.dtype).eps
-    noise = 8.0 * tiny * jnp.max(jnp.abs(matrix) @ jnp.abs(y))
-    goal = _TOLERANCE[str(y.dtype)] * jnp.max(sizes) + noise
-    ratio = state.size / jnp.maximum(size, jnp.finfo(y.dtype).tiny)
+    at = orbit.evaluated(y)
+    ratio = _size(state.at) / jnp.maximum(_size(at), jnp.finfo(y.dtype).tiny)
     taken = first | (ratio > 0.5)
     longer = state.step * jnp.clip(2.0 * ratio, 1.5, 10.0)
     step = jnp.where(taken, longer, 0.2 * state.step)
-    new = _State(
-        y, out, size, goal, jnp.where(first, state.step, step), state.steps + 1
-    )
+    new = _State(y, at, jnp.where(first, state.step, step), state.steps + 1)
     kept = state._replace(step=step, steps=state.steps + 1)
     return lanes.Either(taken, new, kept)
 
 
+def _size(at):
+    return jnp.max(jnp.abs(at.out))
+
+
+def _done(state):
+    at, dtype = state.at, state.y.dtype
+    goal = _TOLERANCE[str(dtype)] * at.sizes
+    # Round-off of the unknowns, in the stiffness of the films, and of the loads.
+    noise = jnp.max(jnp.abs(at.jacobian[:-_RING]) @ jnp.abs(state.y)) + at.sizes[-1]
+    goal = goal.at[:-_RING].add(8.0 * jnp.finfo(dtype).eps * noise)
+    return jnp.all(jnp.abs(at.out) <= goal)
+
+
 def _terminate(orbit, state):
     finite = jnp.isfinite(state.step) & jnp.all(jnp.isfinite(state.y))
-    going = (state.size > state.goal) & finite & (state.steps < _STEPS)
+    going = ~_done(state) & finite & (state.steps < _STEPS)
     return (state.steps >= 0) & ~going
 
 
 def _finish(orbit, state):
-    finite = jnp.all(jnp.isfinite(state.y)) & jnp.isfinite(state.size)
-    done = state.size <= state.goal
-    result = jnp.where(done, int(Result.CONVERGED), int(Result.STEP_LIMIT))
+    finite = jnp.all(jnp.isfinite(state.y)) & jnp.isfinite(_size(state.at))
+    result = jnp.where(_done(state), int(Result.CONVERGED), int(Result.STEP_LIMIT))
     result = jnp.where(finite, result, int(Result.NON_FINITE)).astype(jnp.int32)
-    scale = jnp.maximum(state.goal, jnp.finfo(state.goal.dtype).tiny)
-    tolerance = _TOLERANCE[str(state.y.dtype)]
-    return state.y, tolerance * state.size / scale, state.steps, result
+    sizes = jnp.maximum(state.at.sizes, jnp.finfo(state.y.dtype).tiny)
+    residual = jnp.max(jnp.abs(state.at.out) / sizes)
+    return state.y, residual, state.steps, result
+
+
+def _unbalanced(y, orbit):
+    return orbit.unbalanced(y)
 
 
 def _correction(of_y, y, change, orbit):
     # Traction resists: it is the negative Jacobian whose diagonal is positive.
-    return _solve(-orbit.jacobian(y), change)
+    return _solve(-orbit.evaluated(y).jacobian, change)

@@ -10,19 +10,16 @@ Source: T. A. Harris, An Analytical Method to Predict Skidding in High Speed Rol
     inertia of the spin.
 """
 
-from functools import partial
+from typing import ClassVar
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
 from ..design import n_elements
-from ..element.inertia import Speed
-from ..numerics.types import Scalar
-from ..statics.solution import RollerSolution
+from ..element.inertia import Speed, mass_and_inertia
+from .conditions import conditions_of
 from .loaded import loaded_rollers
-from .model import SkidModel
-from .orbit_search import AbstractOrbit, derivatives
+from .orbit_search import AbstractOrbit
 from .roller_motion import (
     LoadedRoller,
     RollerState,
@@ -31,45 +28,38 @@ from .roller_motion import (
     tractions,
     unbalanced,
 )
-from .steady_results import Power, SteadyRollerSkid
+from .steady_results import Power, SteadyRollerSkid, driving
 
 
 class RollerOrbit(AbstractOrbit):
-    """Equations of the rollers; unknowns are the spin at each place, and the orbit.
+    """Equations of the rollers; unknowns are the spin at each place, and the orbit."""
 
-    Both are counted from pure rolling: where oil is stiff, slips are smaller than the
-    round-off of the speeds, and so they are no differences of speeds.
+    n_own: ClassVar = 1
+    n_common: ClassVar = 1
 
-    Attributes:
-        model: The bearing, its oil and what surrounds the rollers.
-        roller: A roller at all places (place,).
-        rolls: Its motion in pure rolling (place,).
-        speed: Ring speeds.
-        density: Of the oil [kg/m³].
-        along: Matrix of derivatives along the orbit (place, place) [1].
-        start: As of `AbstractOrbit`.
-    """
+    def excess(self, own, common):
+        return common[0]
 
-    model: SkidModel
-    roller: LoadedRoller
-    rolls: RollerState
-    speed: Speed
-    density: Scalar
-    along: Float[Array, "place place"]
-    start: Float[Array, " unknown"]
+    def loaded(self, row):
+        roller = loaded_rollers(row, self.model.oil)
+        return roller, jax.vmap(self.rolls)(roller).spin[:, None]
 
-    def _local(self, roller, rolls, spin, slope, orbit):
-        """Spin and orbit out of balance at one place [N], and the size of forces."""
-        state, _, pulls, drag = self.forces(roller, rolls, spin, orbit)
-        moment, force = unbalanced(roller, pulls, drag)
-        radius = 0.5 * roller.diameter
-        out = (moment - roller.moment * state.orbit * slope) / radius
+    def rolls(self, roller: LoadedRoller) -> RollerState:
+        """Its motion in pure rolling."""
+        return rolling(roller, self.speed)
+
+    def local(self, body, rolls, own, slope, common):
+        state, _, pulls, drag = self.forces(body, own[0], common[0])
+        moment, force = unbalanced(body, pulls, drag)
+        radius = 0.5 * body.diameter
+        out = (moment - body.moment * state.orbit * slope[0]) / radius
         size = jnp.sum(jnp.abs(pulls.force)) + jnp.abs(drag)
-        return (out, force), size
+        return jnp.stack([out, force]), size
 
-    def forces(self, roller, rolls, spin, orbit):
+    def forces(self, roller, spin, orbit):
         """Motion of a roller, that against its raceways, tractions, and the force of
         the oil between the rings [N]; `spin` and `orbit` from pure rolling."""
+        rolls = self.rolls(roller)
         state = RollerState(rolls.spin + spin, rolls.orbit + orbit)
         # Linear in all speeds, and rolling does not slip.
         moving = sliding(roller, state, self.speed)._replace(
@@ -80,47 +70,29 @@ class RollerOrbit(AbstractOrbit):
         )
         return state, moving, tractions(roller, self.model.traction, moving), drag
 
-    def unbalanced(self, y):
-        spin, orbit = y[:-1], y[-1]
-        each = jax.vmap(self._local, in_axes=(0, 0, 0, 0, None))
-        given = self.roller, self.rolls, spin, self.along @ spin, orbit
-        (out, force), sizes = each(*given)
-        return jnp.concatenate([out, jnp.mean(force, keepdims=True)]), sizes
-
-    def jacobian(self, y):
-        spin, orbit = y[:-1], y[-1]
-        function = jax.jacfwd(self._local, argnums=(2, 3, 4), has_aux=True)
-        each = jax.vmap(function, in_axes=(0, 0, 0, 0, None))
-        given = self.roller, self.rolls, spin, self.along @ spin, orbit
-        (of_out, of_force), _ = each(*given)
-        own, sloped, orbiting = of_out
-        spins = jnp.diag(own) + sloped[:, None] * self.along
-        share = 1.0 / spin.shape[0]
-        row = share * of_force[0]
-        corner = jnp.mean(of_force[2], keepdims=True)
-        upper = jnp.concatenate([spins, orbiting[:, None]], axis=1)
-        return jnp.concatenate([upper, jnp.concatenate([row, corner])[None]])
-
     def inertia(self):
-        roller = self.roller
-        spin = roller.moment / (0.5 * roller.diameter)
-        rollers = n_elements(self.model.bearing)
-        radius = roller.pitch_radius[0]
-        turn = roller.mass[0] * radius + self.model.cage.inertia / (rollers * radius)
-        whole = jnp.diag(jnp.concatenate([spin, turn[None]]))
-        return whole.at[:-1, -1].set(spin)
+        constants = self.model.element.model(self.speed).rows[0].element.constants
+        mass, moment, _ = mass_and_inertia(constants)
+        radius, spin = constants.pitch_radius, moment / (0.5 * constants.diameter)
+        rollers, places = n_elements(self.model.bearing), self.azimuth.shape[0]
+        turn = mass * radius + self.model.cage.inertia / (rollers * radius)
+        own = jnp.full(places, spin)
+        whole = jnp.diag(jnp.append(own, turn)).at[:-1, -1].set(own)
+        return jnp.pad(whole, (0, self.start.size - whole.shape[0]))
 
     def described(self, y, **known):
-        roller, speed = self.roller, self.speed
+        speed, (own, common, _) = self.speed, self.parts(y)
+        roller, _ = self.bodies(y)
 
-        def one(roller, rolls, spin):
-            state, moving, pulls, drag = self.forces(roller, rolls, spin, y[-1])
+        def one(roller, spin):
+            state, moving, pulls, drag = self.forces(roller, spin, common[0])
             push = jnp.sum(pulls.force) - drag
             lost = -drag * roller.pitch_radius * state.orbit
-            return state, moving, pulls, push, lost
+            told = conditions_of(self.model, roller, moving, pulls.film)
+            return state, self.rolls(roller), moving, pulls, push, lost, told
 
-        found = jax.vmap(one)(roller, self.rolls, y[:-1])
-        state, moving, pulls, push, lost = found
+        found = jax.vmap(one)(roller, own[:, 0])
+        state, rolls, moving, pulls, push, lost, told = found
         rollers = n_elements(self.model.bearing)
 
         def mean(values):
@@ -130,52 +102,22 @@ class RollerOrbit(AbstractOrbit):
         return SteadyRollerSkid(
             contact_load=roller.load,
             orbit_speed=state.orbit,
-            rolling_orbit_speed=self.rolls.orbit,
+            rolling_orbit_speed=rolls.orbit,
             spin=state.spin,
-            rolling_spin=self.rolls.spin,
+            rolling_spin=rolls.spin,
             film=pulls.film,
             sliding=moving.slip,
             heat=pulls.heat,
             cage_speed=state.orbit[0],
             cage_force=push,
-            friction_torque=-on_inner,
+            conditions=told,
+            ring_torque=jnp.stack([-on_outer, -on_inner]),
+            friction_torque=driving(-on_outer, -on_inner, speed),
             power=Power(
                 drive=-on_inner * speed.inner - on_outer * speed.outer,
                 contacts=mean(jnp.sum(pulls.heat, axis=1)),
                 drag=mean(lost),
-                cage=jnp.zeros_like(y[-1]),
+                cage=jnp.zeros_like(common[0]),
             ),
             **known,
         )
-
-
-def roller_orbit(
-    model: SkidModel,
-    solution: RollerSolution,
-    speed: Speed,
-    load_speed: Speed,
-    azimuth: Float[Array, " place"],
-) -> RollerOrbit:
-    """Equations of the rollers of a solved bearing.
-
-    Args:
-        model: The bearing, its oil and what surrounds the rollers.
-        solution: Of its load.
-        speed: Ring speeds.
-        load_speed: Ring speeds of that solution.
-        azimuth: The places, spread evenly (place,) [rad].
-    """
-    roller = loaded_rollers(model, solution.displacement, load_speed, azimuth)
-    rolls = jax.vmap(partial(rolling, speed=speed))(roller)
-    density = model.lubricant.density.at(model.temperature)
-    along = jnp.asarray(derivatives(azimuth.shape[0]), azimuth.dtype)
-    start = jnp.zeros(azimuth.shape[0] + 1, azimuth.dtype)
-    return RollerOrbit(
-        model=model,
-        roller=roller,
-        rolls=rolls,
-        speed=speed,
-        density=density,
-        along=along,
-        start=start,
-    )

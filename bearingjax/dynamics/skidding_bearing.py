@@ -16,6 +16,7 @@ from ..optimise.measure import AbstractLargest, AbstractMeasure, hour_weights
 from ..optimise.smooth import EXPONENT
 from ..optimise.system import AbstractSystem
 from ..statics.cases import Cases, solve_case
+from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
 from .model import SkidModel
 from .steady import check_places, end_state, enough_places, failure
@@ -67,7 +68,9 @@ class SkiddingBearing(AbstractSystem):
         rings = case.inner_speed, case.outer_speed
         speed = Speed(*(still if ring is None else ring for ring in rings))
         places = enough_places(model.bearing) if self.places is None else self.places
-        return end_state(model, solution, speed, speed, places)
+        asked = loaded.load, loaded.prescribed, loaded.fixed_displacement, None, speed
+        whole = load_case(model.bearing, options, *asked)
+        return end_state(model, solution, whole, options, speed, places)
 
     def message(self, solved):
         if int(solved.result) == Result.GRID_MISFIT:

@@ -12,19 +12,24 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..design import is_ball, n_elements
+from ..design import is_ball, n_elements, pitch_radius
 from ..design.checks import is_traced
 from ..element.inertia import Speed
 from ..numerics.result import Result, raise_unless_converged
+from ..statics.balance import balance_of
 from ..statics.load import solve_load
-from .ball_orbit import ball_orbit
+from ..statics.load_case import LoadCase, load_case
+from ..statics.options import SolveOptions
+from .ball_orbit import BallOrbit
 from .model import SkidModel
-from .orbit_search import known, search
-from .roller_orbit import roller_orbit
+from .orbit_search import NO_TRACTION, derivatives, known, search
+from .roller_orbit import RollerOrbit
 from .steady_results import SteadyMotion
 
 _PLACES = 96
 """Least number of places along an orbit."""
+_IMBALANCE = {"float64": 1e-6, "float32": 1e-2}
+"""Share of the power that may be missing in an end state [1]."""
 
 
 def steady_skid(
@@ -48,9 +53,9 @@ def steady_skid(
         places: Places along the orbit, a multiple of the number of balls or rollers, or
             1 where all bear the same; static. Default: 1 if they do, else at least 96
             (so too if it cannot be known, because the load is traced).
-        load_speed: Ring speeds at which contact loads are worked out, by centrifugal
-            forces of pure rolling; default: `speed`. Those of rollers that all orbit at
-            ω are of `Speed(ω, ω)`.
+        load_speed: Ring speeds whose pure rolling throws balls or rollers outwards, as
+            in the published method; default: their orbit does that they have in the
+            end, so that contact loads belong to the slip.
         prescribed, free, fixed_ring: As of `solve_load`.
         throw: Raise if it cannot be solved; otherwise read `result`.
 
@@ -68,7 +73,8 @@ def steady_skid(
         SolveError: If not solved, and `throw` is set.
 
     Fails: codes of the load solve; `STEP_LIMIT`, `NON_FINITE`; `GRID_MISFIT` if one
-        place stands for balls that bear unlike loads.
+        place stands for balls that bear unlike loads, or if the places are too few:
+        more than a millionth of the power is then missing (`imbalance`).
     """
     check_places("steady_skid", model.bearing, places)
     carried = speed if load_speed is None else load_speed
@@ -82,7 +88,11 @@ def steady_skid(
         throw=throw,
     )
     count = _places(model.bearing, solution, places)
-    found = end_state(model, solution, speed, carried, count)
+    options = SolveOptions(free, fixed_ring)
+    asked = model.bearing, options, load, prescribed, None, None, carried
+    follows = load_speed is None
+    given = model, solution, load_case(*asked), options, speed
+    found = end_state(*given, count, follows)
     if not throw:
         return found
     return raise_unless_converged(found, found.result, lambda: _message(found))
@@ -155,41 +165,83 @@ def failure(found: SteadyMotion) -> str:
         found: One end state, concrete.
     """
     out = f"force out of balance {float(found.residual):.1e} of the tractions"
-    return f"{int(found.steps)} steps; {out}"
+    power = f"power {abs(float(found.imbalance)):.1e} of the losses"
+    return f"{int(found.steps)} steps; {out}, {power}"
 
 
 @eqx.filter_jit
 def end_state(
-    model: SkidModel, solution: Any, speed: Speed, load_speed: Speed, count: int
+    model: SkidModel,
+    solution: Any,
+    case: LoadCase,
+    options: SolveOptions,
+    speed: Speed,
+    count: int,
+    follows: bool = True,
 ) -> Any:
     """How the balls or rollers of a solved bearing skid in the end; never raises.
 
     Args:
         model: The bearing, its oil and what surrounds the balls.
-        solution: Of its load.
+        solution: Of its load, for balls or rollers in pure rolling.
+        case: That load, with the speeds of the solution.
+        options: Settings of its solve.
         speed: Ring speeds.
-        load_speed: Ring speeds of that solution.
         count: Number of places along the orbit. Static.
+        follows: Whether loads follow the orbit from that of pure rolling. Static.
 
     Returns, Fails: As of `steady_skid`.
     """
+    bearing = model.bearing
     turn = jnp.asarray(2.0 * np.pi * np.arange(count) / count, model.temperature.dtype)
-    azimuth = solution.azimuth[0] + turn
-    make = ball_orbit if is_ball(model.bearing) else roller_orbit
-    orbit = make(model, solution, speed, load_speed, azimuth)
+    balance = balance_of(case, pitch_radius(bearing), options.moving_ring == "outer")
+    kind = BallOrbit if is_ball(bearing) else RollerOrbit
+    solved = solution.result == int(Result.CONVERGED)
+    ring = solution.displacement[balance.moving] / balance.scale
+    rolling = jnp.zeros(count * kind.n_own + kind.n_common, ring.dtype)
+    orbit = kind(
+        model=model,
+        speed=speed,
+        carried=case.speed,
+        follows=follows,
+        balance=balance,
+        azimuth=solution.azimuth[0] + turn,
+        density=model.lubricant.density.at(model.temperature),
+        along=jnp.asarray(derivatives(count), turn.dtype),
+        least=jnp.sum(solution.roller_load),
+        # A search from nowhere ends at once.
+        start=jnp.concatenate([rolling, jnp.where(solved, ring, jnp.nan)]),
+    )
     found = search(orbit)
-    result = found.result
+    result = jnp.where(solved, found.result, solution.result)
     if count == 1:
         # One place does not stand for all.
         misfit = _unlike(solution) & (result == int(Result.CONVERGED))
         result = jnp.where(misfit, int(Result.GRID_MISFIT), result)
-    result = jnp.maximum(result, solution.result).astype(jnp.int32)
     y = known(orbit, found.y, result)
-    return orbit.described(
+    told = orbit.described(
         y,
         solution=solution,
-        azimuth=azimuth,
+        displacement=balance.ring_freedoms(orbit.parts(y)[2]),
+        azimuth=orbit.azimuth,
         residual=found.residual,
         steps=found.steps,
         result=result,
     )
+    # Forces in balance whose powers are not: too few places, or lost in round-off.
+    lost = _missing(told, speed, orbit) > _IMBALANCE[str(ring.dtype)]
+    wrong = Result.STEP_LIMIT if count == 1 else Result.GRID_MISFIT
+    result = jnp.where(lost & (result == int(Result.CONVERGED)), int(wrong), result)
+    return eqx.tree_at(lambda t: t.result, told, result.astype(jnp.int32))
+
+
+def _missing(found, speed, orbit):
+    """`imbalance`; losses of which no load at that speed would tell are none [1]."""
+    power, fastest = (
+        found.power,
+        jnp.maximum(jnp.abs(speed.inner), jnp.abs(speed.outer)),
+    )
+    losses = power.contacts + power.drag + power.cage
+    least = NO_TRACTION * orbit.least * fastest * pitch_radius(orbit.model.bearing)
+    tiny = jnp.finfo(losses.dtype).tiny
+    return jnp.abs(power.drive - losses) / jnp.maximum(jnp.maximum(losses, least), tiny)

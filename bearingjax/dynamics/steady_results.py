@@ -1,15 +1,38 @@
 """What is known of skidding balls and rollers in the end."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..element.inertia import Speed
 from ..numerics.linear import lengths
 from ..numerics.types import Scalar, namespace
 from ..numerics.units import unit
 from ..statics.solution import BallSolution, RollerSolution
+from .conditions import Conditions
+
+
+def slip(orbit: Any, rolling: Any) -> Any:
+    """1 - orbit/rolling, zero where nothing rolls [1].
+
+    Args:
+        orbit, rolling: Arrays of NumPy or of JAX [rad/s].
+    """
+    xp, still = namespace(orbit), rolling == 0
+    return xp.where(still, 0.0, 1.0 - orbit / xp.where(still, 1.0, rolling))
+
+
+def driving(outer: Scalar, inner: Scalar, speed: Speed) -> Scalar:
+    """Torque on the ring that turns faster, of like speeds on the inner one [N m].
+
+    Args:
+        outer, inner: Torques on the rings [N m].
+        speed: Their speeds.
+    """
+    return jnp.where(jnp.abs(speed.outer) > jnp.abs(speed.inner), outer, inner)
 
 
 class Power(NamedTuple):
@@ -34,21 +57,27 @@ class SteadyMotion(eqx.Module):
     Attributes:
         azimuth: The places (place,) [rad]; one place stands for all where all bear
             the same.
+        displacement: Ring freedoms, outer ring first (12,) [m, rad].
         contact_load: Loads (place, contact) [N].
         orbit_speed: Orbital speed (place,) [rad/s].
         rolling_orbit_speed: That of pure rolling (place,) [rad/s].
         film: Central films (place, contact) [m].
         heat: Of each contact (place, contact) [W].
         cage_speed: Mean orbital speed [rad/s].
-        friction_torque: That turns the inner ring, the mean over the orbit, of the
-            losses that `SkidModel` knows [N m].
+        friction_torque: On the ring that drives, the one that turns faster; the mean
+            over the orbit, of the losses that `SkidModel` knows [N m].
+        ring_torque: On outer and inner ring (2,) [N m].
         power: Mean powers.
-        residual: Force out of balance relative to the tractions [1].
+        residual: Largest force out of balance, relative to the tractions; of the ring,
+            to the contact loads [1].
         steps: Steps of the search.
         result: `Result` code.
     """
 
     azimuth: Float[Array, " place"] = eqx.field(metadata=unit("rad"))
+    displacement: Float[Array, "12"] = eqx.field(
+        metadata=unit(("m", "m", "m", "rad", "rad", "rad") * 2)
+    )
     contact_load: Float[Array, "place contact"] = eqx.field(metadata=unit("N"))
     orbit_speed: Float[Array, " place"] = eqx.field(metadata=unit("rad/s"))
     rolling_orbit_speed: Float[Array, " place"] = eqx.field(metadata=unit("rad/s"))
@@ -56,6 +85,7 @@ class SteadyMotion(eqx.Module):
     heat: Float[Array, "place contact"] = eqx.field(metadata=unit("W"))
     cage_speed: Scalar = eqx.field(metadata=unit("rad/s"))
     friction_torque: Scalar = eqx.field(metadata=unit("N m"))
+    ring_torque: Float[Array, "2"] = eqx.field(metadata=unit("N m"))
     power: Power
     residual: Scalar = eqx.field(metadata=unit("1"))
     steps: Int[Array, ""]
@@ -63,8 +93,17 @@ class SteadyMotion(eqx.Module):
 
     @property
     def slip(self) -> Float[Array | np.ndarray, "*n place"]:
-        """1 - orbit/rolling orbit (place,) [1]."""
-        return 1.0 - self.orbit_speed / self.rolling_orbit_speed
+        """1 - orbit/rolling orbit (place,) [1]; zero where rings stand still."""
+        return slip(self.orbit_speed, self.rolling_orbit_speed)
+
+    @property
+    def imbalance(self) -> Float[Array | np.ndarray, "*n"]:
+        """Power of the drive that is not accounted for, over all losses [1]."""
+        power, xp = self.power, namespace(self.power.drive)
+        losses = power.contacts + power.drag + power.cage
+        still = losses == 0
+        missing = (power.drive - losses) / xp.where(still, 1.0, losses)
+        return xp.where(still, 0.0, missing)
 
     @property
     def cage_slip(self) -> Float[Array | np.ndarray, "*n"]:
@@ -83,7 +122,7 @@ class SteadySkid(SteadyMotion):
     rolling is outer raceway control at the contact angles.
 
     Attributes are those of `SteadyMotion`, and
-        solution: The bearing under its load.
+        solution: The bearing under its load, in pure rolling.
         contact_angle: Angles (place, contact) [rad].
         spin: Of the ball relative to its orbiting frame, tangential, radial, axial
             (place, 3) [rad/s].
@@ -118,13 +157,14 @@ class SteadyRollerSkid(SteadyMotion):
     All orbit with the cage, so that `orbit_speed` is the same everywhere.
 
     Attributes are those of `SteadyMotion`, and
-        solution: The bearing under its load.
+        solution: The bearing under its load, in pure rolling.
         spin: About the roller axis, relative to the orbiting frame (place,) [rad/s].
         rolling_spin: That of pure rolling (place,) [rad/s].
         sliding: Slip along the rolling direction (place, contact) [m/s].
         cage_force: Of the cage on a roller, in the sense in which angles are counted:
             where it is positive the rear of a pocket pushes, else the front holds back
             (place,) [N].
+        conditions: In the contacts (place, contact).
     """
 
     solution: RollerSolution
@@ -132,6 +172,7 @@ class SteadyRollerSkid(SteadyMotion):
     rolling_spin: Float[Array, " place"] = eqx.field(metadata=unit("rad/s"))
     sliding: Float[Array, "place contact"] = eqx.field(metadata=unit("m/s"))
     cage_force: Float[Array, " place"] = eqx.field(metadata=unit("N"))
+    conditions: Conditions
 
     @property
     def sliding_speed(self) -> Float[Array | np.ndarray, "*n place contact"]:

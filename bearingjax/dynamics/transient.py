@@ -28,11 +28,13 @@ from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
 from .balanced_loads import BalancedLoads
 from .beginning import balanced_surroundings, surroundings
+from .conditions import conditions_of
 from .history import SkidHistory, SkidRollerHistory
 from .integration import Options, integrated
 from .model import SkidModel
 from .motion import SkidState, each_ball, energies, mechanics, power
 from .ring_speed import SpeedTable, as_table
+from .steady_results import driving
 
 _PLACES = 96
 """Places of the table."""
@@ -264,12 +266,16 @@ def _reported(around, time, state):
         ),
     )
     kinetic, potential = energy
-    speed, on_inner = around.speed.at(time), balls.ring_torque[0]
+    speed = around.speed.at(time)
+    inner, outer = (-jnp.sum(torque) for torque in balls.ring_torque)
     rolling = jax.vmap(partial(mechanics(balls.ball).rolling, speed=speed))(balls.ball)
     of_balls = {}
     if is_ball(around.model.bearing):
         angle, spin = balls.ball.angle, balls.moving.spin
         of_balls = {"contact_angle": angle, "contact_spin": spin}
+    else:
+        told = jax.vmap(partial(conditions_of, around.model))
+        of_balls = {"conditions": told(balls.ball, balls.moving, balls.pulls.film)}
     return dict(
         **of_balls,
         azimuth=balls.azimuth,
@@ -279,7 +285,8 @@ def _reported(around, time, state):
         sliding=balls.moving.slip,
         heat=balls.pulls.heat,
         cage_force=balls.push,
-        friction_torque=-jnp.sum(on_inner),
+        friction_torque=driving(outer, inner, speed),
+        ring_torque=jnp.stack([outer, inner]),
         power=powers,
         kinetic_energy=kinetic + 0.5 * around.model.cage.inertia * state.cage_speed**2,
         potential_energy=potential,

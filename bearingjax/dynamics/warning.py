@@ -5,15 +5,20 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..lubrication import Newtonian, Regime
+from ..design import is_ball, n_elements
+from ..lubrication import DryFriction, Newtonian, Regime, SlipCurve
 from .conditions import Conditions
 from .model import SkidModel
 
-NEWTONIAN_PRESSURE = 1e9
-"""Pressure from which no oil bears the stress of a Newtonian film [Pa]."""
+MOST_SHEAR = 0.12
+"""Shear stress over pressure that no oil exceeds [1]. Oils yield at 0.03 to 0.12 of the
+pressure: Bair & Winer (1979)."""
 
 GROSS = 0.1
 """Slip of a ball or roller from which skidding is gross [1]."""
+
+PRESSED = 1e-2
+"""Share of the largest contact load from which the stress of a contact counts [1]."""
 
 STARTED = 0.1
 """Share of the fastest rolling from which times count, of a motion in time [1]."""
@@ -22,33 +27,46 @@ MIXED = 3.0
 """Least film over what remains of a film at rest below which surfaces touch [1]."""
 
 
-def skid_warnings(model: SkidModel, found: Any, state: Conditions | None) -> list[str]:
+def skid_warnings(
+    model: SkidModel, found: Any, state: Conditions | None = None
+) -> list[str]:
     """What is doubtful about a skidding motion, a sentence each.
 
     Args:
         model: The bearing, its oil and what surrounds the balls.
         found: How its balls or rollers move, concrete; from `steady_skid` or `skid`.
-        state: From `conditions`; of rollers `None`.
+        state: From `conditions`; rollers bring their own.
     """
+    state = found.conditions if state is None else state
     found, state = jax.tree.map(np.asarray, (found, state))
     loaded = found.contact_load > 1e-9 * np.nanmax(found.contact_load, initial=0.0)
     # Before the rings turn there is no film, and slip means nothing.
     rolling = np.abs(found.rolling_orbit_speed)
     turning = rolling >= STARTED * np.nanmax(rolling, initial=0.0)
+    turning &= rolling > 0
     loaded &= turning[..., None]
-    if state is None:
-        pressure = found.solution.roller_pressure
-        told = _slip(found, loaded), _newtonian(model, pressure)
-        return [text for text in told if text]
     told = (
+        _pockets(model),
         _wander(model, found),
-        _slip(found, loaded),
-        _newtonian(model, np.where(loaded, state.peak_pressure, 0.0)),
+        _slip(found, turning, loaded.all(axis=-1)),
+        _sheared(model, state, found.contact_load, loaded),
         _glass(model, state, loaded),
         _regimes(state, loaded),
         _mixed(model, state, loaded),
     )
     return [text for text in told if text]
+
+
+def _pockets(model):
+    bearing, play = model.bearing, float(model.cage.pocket_clearance)
+    size = bearing.ball_diameter if is_ball(bearing) else bearing.roller_diameter
+    apart = np.pi * float(bearing.pitch_diameter) / n_elements(bearing) - float(size)
+    if not play > apart:
+        return ""
+    return (
+        f"a pocket clearance of {1e3 * play:.4g} mm is more than the"
+        f" {1e3 * apart:.3g} mm between two balls or rollers: pockets would overlap"
+    )
 
 
 def _wander(model, found):
@@ -63,23 +81,40 @@ def _wander(model, found):
     )
 
 
-def _slip(found, loaded):
-    largest = np.abs(found.slip[loaded.all(axis=-1)]).max(initial=0.0)
+def _slip(found, turning, driven):
+    slip = np.abs(found.slip)
+    largest = slip[turning].max(initial=0.0)
     if not largest > GROSS:
         return ""
+    text = f"gross skidding, slip up to {100.0 * largest:.4g} %"
+    if not driven.any():
+        return f"{text}: nothing is pressed between both raceways, and nothing drives"
+    under_load = slip[driven].max(initial=0.0)
+    if under_load < largest:
+        text = f"{text}, of what both raceways press {100.0 * under_load:.4g} %"
     return (
-        f"gross skidding, slip up to {100.0 * largest:.3g} %: films and viscosities are"
-        " those of rolling contacts at the temperature of the oil, which sliding heats"
+        f"{text}: films and viscosities are those of rolling contacts at the"
+        " temperature of the oil, which sliding heats"
     )
 
 
-def _newtonian(model, pressures):
-    pressure = float(np.max(pressures))
-    if type(model.traction) is not Newtonian or not pressure > NEWTONIAN_PRESSURE:
+def _sheared(model, state, load, loaded):
+    # These laws are measured, or of no oil.
+    if isinstance(model.traction, DryFriction | SlipCurve):
         return ""
+    # Little pressure says little: oil bears some stress without any.
+    counts = loaded & (load > PRESSED * np.nanmax(load, initial=0.0))
+    shear = np.where(counts, state.shear, 0.0).max(initial=0.0)
+    if not shear > MOST_SHEAR:
+        return ""
+    newtonian = isinstance(model.traction, Newtonian)
+    law = "a Newtonian film" if newtonian else "its law of traction"
+    cure = "Eyring's law or a limiting stress" if newtonian else "a limiting stress"
+    pressure = float(np.where(counts, state.peak_pressure, 0.0).max(initial=0.0))
     return (
-        f"a Newtonian film at {1e-9 * pressure:.3g} GPa: beyond some 1 GPa no oil bears"
-        " such stress; Eyring's law or a limiting stress is right"
+        f"shear stresses of {shear:.3g} times the pressure by {law}, at up to"
+        f" {1e-9 * pressure:.3g} GPa: no oil bears more than some {MOST_SHEAR:g};"
+        f" {cure} is right"
     )
 
 

@@ -49,6 +49,7 @@ OF_TIME = {
     "cage_speed": "rad/s",
     "rolling_cage_speed": "rad/s",
     "friction_torque": "N m",
+    "ring_torque": "N m",
     "kinetic_energy": "J",
     "potential_energy": "J",
     "imbalance": "J",
@@ -63,16 +64,16 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
         run: From `run_skid`.
 
     Returns:
-        cage_speed, rolling_cage_speed, friction_torque, power, and what `UNITS` lists
-        for each ball or roller, those of contacts for each raceway (outer, inner), of
-        two arcs that of the more loaded one. Of an end state they are where they stand
-        in the solved bearing, `orbit` has the same at all places, and of balls there is
-        `wander`. Of a
-        motion in time all have a leading axis `time`; besides there are what `OF_TIME`
-        lists and `work`; null stands at times that were not reached. And result,
-        message, residual, iterations, warnings, inputs (the file is a scene again) and
-        version. Without a solution numbers
-        are left out.
+        cage_speed, rolling_cage_speed, friction_torque (on the ring that turns faster),
+        ring_torque (outer, inner), power, and what `UNITS` lists for each ball or
+        roller, those of contacts for each raceway (outer, inner), of two arcs that of
+        the more loaded one. Of an end state they are where they stand in the solved
+        bearing, `orbit` has the same at all places, and of balls there is `wander`. Of
+        a motion in time all have a leading axis `time`; besides there are what
+        `OF_TIME` lists, `work`, and `mean_friction_torque`, over the last whole orbits
+        of the cage, null without any; null stands at times that were not reached. And
+        result, message, residual, iterations, warnings, inputs (the file is a scene
+        again) and version. Without a solution numbers are left out.
     """
     from .. import __version__
 
@@ -114,6 +115,9 @@ def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
         reached = np.isfinite(run.found.cage_speed)
         powers = {f"power_{n}": np.asarray(v) for n, v in _powers(run).items()}
         whole, units = _of_time(run) | powers, OF_TIME | dict.fromkeys(powers, "W")
+        both = whole.pop("ring_torque").T
+        whole |= {f"ring_torque_{ring}": v for ring, v in zip(RINGS, both, strict=True)}
+        units |= {f"ring_torque_{ring}": units["ring_torque"] for ring in RINGS}
         columns = {column_header(name, units[name]): v for name, v in whole.items()}
         columns = {header: v[reached] for header, v in columns.items()}
         balls = {name: values[reached] for name, values in balls.items()}
@@ -232,6 +236,7 @@ def _end(run):
         "rolling_cage_speed": float(rolling_cage_speed(run)),
         **own,
         "friction_torque": float(found.friction_torque),
+        "ring_torque": found.ring_torque.tolist(),
         "power": {k: float(v) for k, v in _powers(run).items()},
         **({"wander": float(found.wander)} if hasattr(found, "wander") else {}),
         "orbit": {name: values.tolist() for name, values in orbit.items()},
@@ -245,8 +250,9 @@ def _of_time(run):
 
 def _motion(run):
     listed = {**_of_time(run), **each_ball(run)}
-    work = run.found.work._asdict()
+    work, (mean, orbits) = run.found.work._asdict(), run.found.mean_friction_torque
     return {
+        "mean_friction_torque": mean if orbits else None,
         **{name: values.tolist() for name, values in listed.items()},
         "power": {k: v.tolist() for k, v in _powers(run).items()},
         "work": {k: v.tolist() for k, v in work.items()},

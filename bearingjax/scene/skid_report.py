@@ -59,16 +59,30 @@ def _cage(speed, rolling):
     )
 
 
-def _torque(torque):
-    value = f"{1e3 * _clean(torque):.5g} N mm"
-    return f"friction torque {value} on the inner ring (of sliding and drag alone)"
+def _torque(run, torque, when=""):
+    speed = run.task.speed
+    faster = abs(float(speed.outer)) > abs(float(speed.inner))
+    value, ring = f"{1e3 * _clean(torque):.5g} N mm", "outer" if faster else "inner"
+    return (
+        f"friction torque {value} on the {ring} ring{when} (of sliding and drag alone)"
+    )
+
+
+def _mean_torque(run):
+    mean, orbits = run.found.mean_friction_torque
+    last = float(run.found.friction_torque[-1])
+    if not orbits:
+        return _torque(run, last)
+    many = "orbit" if orbits == 1 else f"{orbits} orbits"
+    now = f"; at the end {1e3 * _clean(last):.5g} N mm"
+    return _torque(run, mean, f", mean of the last {many} of the cage{now}")
 
 
 def _end(run):
     found, power = run.found, run.found.power
     lines = [
         _cage(float(found.cage_speed), float(rolling_cage_speed(run))),
-        _torque(found.friction_torque),
+        _torque(run, found.friction_torque),
         f"power           drive {_clean(power.drive):.5g} W = contacts"
         f" {_clean(power.contacts):.5g} W + drag {_clean(power.drag):.5g} W + cage"
         f" {_clean(power.cage):.5g} W",
@@ -104,7 +118,7 @@ def _motion(run):
         [
             f"after {float(found.time[-1]):.4g} s:",
             _cage(float(found.cage_speed[-1]), float(rolling_cage_speed(run)[-1])),
-            _torque(found.friction_torque[-1]),
+            _mean_torque(run),
             f"over the time:  work of the drive {_clean(work.drive[-1]):.5g} J ="
             f" contacts {_clean(work.contacts[-1]):.5g} J + drag"
             f" {_clean(work.drag[-1]):.5g} J + motion {_clean(kinetic):.5g} J"

@@ -116,8 +116,17 @@ def read_skid(
     _check_bearing(top, scene)
     lubricant = top.table("lubricant", required=True)
     cage, dynamics = top.table("cage"), top.table("dynamics")
+    supply = lubricant.word("supply") if "supply" in lubricant else None
+    supply = None if supply == "oil_bath" else supply  # the default, as echoed
     lubricant.skip(*OWN)
     oil, temperature, odd = read_lubricant(lubricant)
+    if supply is not None:
+        odd = (
+            *odd,
+            f"`lubricant.supply` {supply!r} counts for the friction torque of"
+            " `solve` alone; what skids has films of plenty of oil, and the drag of"
+            " `dynamics.fill`",
+        )
     traction = read_traction(lubricant)
     values: dict[str, Any] = {
         "cage": _built(cage, Cage, cage.fields(Cage)),
@@ -167,8 +176,11 @@ def _check_bearing(top: Table, scene: Scene) -> None:
         raise bearing.error("type", problem)
     if scene.speed is None:
         operating = top.table("operating")
+        given = [key for key in ("inner_speed", "outer_speed") if key in operating]
         problem = "is missing, and so is `outer_speed`; nothing skids at rest"
-        raise operating.error("inner_speed", problem)
+        if given:
+            problem = "is 0, and the other ring stands still too; nothing skids at rest"
+        raise operating.error(given[0] if given else "inner_speed", problem)
 
 
 def _drag(dynamics: Table) -> dict[str, float]:

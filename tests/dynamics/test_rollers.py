@@ -25,7 +25,7 @@ from bearingjax.element.inertia import Speed, roller_speeds
 from bearingjax.lubrication import Eyring, Newtonian, mil_l_23699
 from bearingjax.numerics.result import Result
 
-ROLLERS, PLACES = 7, 28
+ROLLERS, PLACES = 7, 56
 BEARING = bearings()["cylindrical, crowned ends"]
 OIL, WARM = mil_l_23699(), 363.15
 FAST = 1500.0
@@ -214,18 +214,21 @@ def test_slip_falls_with_load_and_rises_with_speed(found):
     np.testing.assert_allclose(ends[10_000.0].rolling_orbit_speed, want, rtol=1e-12)
 
 
-def test_loads_are_those_of_the_bearing(found):
-    """The places of the rollers bear what they do in the solved bearing; slices bear
-    nearly as much as the contact."""
-    end = found[0][1000.0]
-    at = end.contact_load[:: PLACES // ROLLERS]
-    np.testing.assert_allclose(at, end.solution.roller_load, rtol=SOLVER, atol=1e-6)
+@pytest.mark.parametrize("name", [60.0, 1000.0, "both"])
+def test_loads_are_those_of_the_orbit_that_is_found(found, name):
+    """Rollers are thrown outwards as they orbit, however far they slip, and those that
+    stand in the bearing carry its load."""
+    end = found[0][name]
     centrifugal = end.contact_load[:, 0] - end.contact_load[:, 1]
     mass = 7800.0 * np.pi / 4.0 * 0.014**2 * 0.01372
     density = float(BEARING.material.density) / 7800.0
-    want = density * mass * 0.03625 * end.rolling_orbit_speed[0] ** 2
+    want = density * mass * 0.03625 * end.cage_speed**2
     # Along the roller the loads of both raceways are parallel where it is not tilted.
     np.testing.assert_allclose(centrifugal, want, rtol=1e-6)
+    at, angle = (v[:: PLACES // ROLLERS] for v in (end.contact_load, end.azimuth))
+    load = name if isinstance(name, float) else BASE[0]
+    np.testing.assert_allclose(at[:, 1] @ np.cos(angle), load, rtol=1e-9)
+    np.testing.assert_allclose(at[:, 1] @ np.sin(angle), 0.0, atol=1e-8 * load)
 
 
 def test_balances(found):
@@ -253,8 +256,10 @@ def test_loaded_rollers_drive_the_cage(found):
     assert np.sum(end.cage_force[loaded]) < 0.0
     assert np.all(end.cage_force[~loaded] > 0.0)
     # They slow down on the way round, and are spun up where they are loaded.
+    end = found[0][1000.0]
     ratio = end.spin / end.rolling_spin
-    assert np.argmax(ratio) in (1, 2, 3) and ratio.min() < 0.98 * ratio.max()
+    assert 0 < np.argmax(ratio) < PLACES // 2 < np.argmin(ratio)
+    assert ratio.min() < 0.995 * ratio.max()
 
 
 def test_without_drag_they_roll(found):
@@ -299,6 +304,7 @@ def test_in_time_they_end_where_the_steady_state_is(found):
         model,
         [1000.0, 0, 0, 0, 0, 0],
         speed=Speed(inner=FAST),
+        load_speed=Speed(end.cage_speed, end.cage_speed),
         duration=duration,
         times=np.append(0.0, duration - turn * np.linspace(2.0, 0.0, 201)),
         tolerance=1e-5,
@@ -312,7 +318,7 @@ def test_in_time_they_end_where_the_steady_state_is(found):
     assert np.max(np.abs(moved.imbalance)) < 1e-6 * moved.work.drive[-1]
     # Spins, and what the pockets do: rear and front, at the places of the steady state.
     azimuth = np.mod(np.asarray(moved.azimuth)[2:], 2.0 * np.pi).ravel()
-    for k in (0, 7, 14, 21):
+    for k in (0, 14, 28, 42):
         apart = np.mod(azimuth - end.azimuth[k] + np.pi, 2.0 * np.pi) - np.pi
         near = np.abs(apart) < 0.05
         spin = np.mean(np.asarray(moved.spin)[2:].ravel()[near])

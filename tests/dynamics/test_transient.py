@@ -69,7 +69,9 @@ def run(load=LIGHT, *, model=FEW, speed=EVEN, duration=0.02, tolerance=1e-7, **g
 
 
 def steady(load):
-    return steady_skid(FEW, load, speed=SPEED, free=FREE, places=STEADY_PLACES)
+    """With the loads of pure rolling, as they are tabulated in time."""
+    given = dict(speed=SPEED, load_speed=SPEED, free=FREE)
+    return steady_skid(FEW, load, **given, places=STEADY_PLACES)
 
 
 @pytest.fixture(scope="module")
@@ -103,6 +105,22 @@ def test_power_balance(given):
         # The integral of the powers as they are reported, as far as times tell.
         mean = np.trapezoid(found.power.drag, found.time)
         np.testing.assert_allclose(work.drag[-1], mean, rtol=1e-2)
+
+
+def test_mean_torque_is_that_of_whole_orbits():
+    """Of a torque that swings twice an orbit of the cage, over two of four orbits."""
+    found = run()
+    turn = 2.0 * np.pi * np.linspace(0.0, 4.3, found.time.size)
+    found = eqx.tree_at(
+        lambda f: (f.state.cage_turn, f.friction_torque),
+        found,
+        (turn, 5.0 + np.sin(turn) ** 2),
+    )
+    mean, orbits = found.mean_friction_torque
+    assert orbits == 2
+    np.testing.assert_allclose(mean, 5.5, rtol=1e-2)
+    short = eqx.tree_at(lambda f: f.state.cage_turn, found, 0.2 * turn)
+    assert short.mean_friction_torque[1] == 0
 
 
 def test_it_starts_at_rest():

@@ -196,13 +196,21 @@ def test_rollers(run, tmp_path):
     }
     for draw, (k, values) in shown.items():
         np.testing.assert_array_equal(lines(draw(found))[k][:-1], values)
-    pressed = eqx.tree_at(
-        lambda f: f.solution.roller_pressure, found, np.full((7, 2), 1.2e9)
-    )
-    thin = dataclasses.replace(end.task.model, traction=Newtonian())
-    slip, text = skid_warnings(thin, pressed, None)
+    # The conditions of balls, one by one.
+    state = found.conditions
+    full = np.full_like(state.least_film, 1e-6)
+    fine = state._replace(least_film=full, regime=np.full_like(state.regime, 3))
+    model = end.task.model
+    (slip,) = skid_warnings(model, found, fine)
     assert slip.startswith("gross skidding, slip up to")
-    assert text.startswith("a Newtonian film at 1.2 GPa")
+    for changes, begins in (
+        (dict(shear=full + 3.5), "shear stresses of 3.5 times the pressure by its law"),
+        (dict(outside_fluid_range=full > 0), "the oil is a glass from"),
+        (dict(regime=0 * state.regime), "films of all of the contacts are isoviscous"),
+        (dict(least_film=0.02 * full), "films down to 0.02 µm, less than 3 times"),
+    ):
+        bad = eqx.tree_at(lambda f: f.conditions, found, fine._replace(**changes))
+        assert skid_warnings(model, bad)[1].startswith(begins)
 
 
 @pytest.mark.slow
@@ -319,7 +327,24 @@ def test_what_is_doubtful(end):
         assert "pocket clearance is 200 µm: the cage takes part" in wander
         return text
 
-    assert "a Newtonian film at 1.2 GPa" in told(peak_pressure=1.2e9)
+    yields = dataclasses.replace(model, traction=Newtonian())
+    sheared = changed(state, shear=3.5)
+    texts = skid_warnings(yields, found, sheared)
+    assert texts[1].startswith(
+        "shear stresses of 3.5 times the pressure by a Newtonian"
+    )
+    assert len(skid_warnings(model, found, changed(state, shear=0.1))) == 1
+    wide = eqx.tree_at(lambda m: m.cage.pocket_clearance, model, np.array(0.02))
+    (text,) = skid_warnings(wide, found, state)
+    assert text.startswith("a pocket clearance of 20 mm is more than the 15.2 mm betw")
+    loose = eqx.tree_at(
+        lambda f: (f.contact_load, f.orbit_speed),
+        found,
+        (found.contact_load * np.array([1.0, 0.0]), 0.0 * found.orbit_speed),
+    )
+    assert "slip up to 100 %: nothing is pressed between" in " ".join(
+        skid_warnings(model, loose, state)
+    )
     assert "range of its law in all of the contacts" in told(outside_fluid_range=True)
     rigid = told(regime=int(Regime.ISOVISCOUS_RIGID))
     assert "films of all of the contacts are isoviscous and rigid" in rigid
