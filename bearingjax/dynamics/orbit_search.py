@@ -52,6 +52,9 @@ class AbstractOrbit(eqx.Module):
         speed: Ring speeds.
         carried: Ring speeds of the loads: their pure rolling throws outwards.
         follows: Whether the loads follow the orbit beyond that. Static.
+        pressed: 1 where something is pressed between the rings, 0 where not: balls or
+            rollers then come to rest, and without the centrifugal force of their orbit
+            nothing would hold the ring in its place [1].
         balance: Of the ring.
         azimuth: The places, spread evenly (place,) [rad].
         density: Of the oil [kg/m³].
@@ -65,6 +68,7 @@ class AbstractOrbit(eqx.Module):
     speed: Speed
     carried: Speed
     follows: bool = eqx.field(static=True)
+    pressed: Scalar
     balance: Balance
     azimuth: Float[Array, " place"]
     density: Scalar
@@ -156,7 +160,9 @@ class AbstractOrbit(eqx.Module):
     def _solved(self, own, common, ring):
         """The solved row with its balls or rollers, and what pulls at the ring [N]."""
         azimuth, stand, _ = self._rows
-        excess = self.excess(own, common) if self.follows else jnp.zeros_like(own[0, 0])
+        excess = jnp.zeros_like(own[0, 0])
+        if self.follows:
+            excess = self.pressed * self.excess(own, common)
         if excess.ndim:
             excess = jnp.broadcast_to(excess, azimuth.shape)
         bearing = orbiting(self.model.element, self.carried, excess)

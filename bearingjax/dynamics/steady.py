@@ -28,6 +28,9 @@ from .steady_results import SteadyMotion
 
 _PLACES = 96
 """Least number of places along an orbit."""
+_PRESSED = 1e-7
+"""Load of a ball or roller on both rings, over the largest, that is no round-off [1].
+"""
 _IMBALANCE = {"float64": 1e-6, "float32": 1e-2}
 """Share of the power that may be missing in an end state [1]."""
 
@@ -67,6 +70,9 @@ def steady_skid(
         axially and 160 N radially, against an integration in time: 3e-4 with 50, 2e-6
         with 100, 3e-8 with 200. More slip in a narrow zone needs more. Of the slip of
         36 rollers, against 864 places: 1e-4 with 108, 1e-5 with 432.
+
+    Where nothing is pressed between the rings, as without load, drag stops the balls or
+    rollers: they slip wholly, under the loads of pure rolling.
 
     Raises:
         ValueError: For a number of places that does not suit.
@@ -153,6 +159,12 @@ def _unlike(solution):
     return jnp.any(spread > 1e-6 * jnp.max(loads))
 
 
+def _is_pressed(solution):
+    """Whether anything is pressed between the rings, rather than thrown outwards."""
+    loads = solution.roller_load
+    return jnp.max(jnp.min(loads, axis=1)) > _PRESSED * jnp.max(loads)
+
+
 def _message(found):
     label = Result(int(found.result)).label
     return f"steady_skid: {label} after {failure(found)}."
@@ -204,6 +216,7 @@ def end_state(
         speed=speed,
         carried=case.speed,
         follows=follows,
+        pressed=_is_pressed(solution).astype(ring.dtype),
         balance=balance,
         azimuth=solution.azimuth[0] + turn,
         density=model.lubricant.density.at(model.temperature),

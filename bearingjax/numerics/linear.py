@@ -171,18 +171,42 @@ def one_by_one(function: Callable) -> Callable:
             )
 
         members = [a for a, m in zip(arrays, mapped, strict=True) if m]
-        found = lax.map(one, members)
+        # Unrolled: small matrices take as long as a turn of the loop.
+        _, found = lax.scan(lambda _, m: (None, one(m)), None, members, unroll=4)
         return found, jax.tree.map(lambda _: True, found)
 
     return single
 
 
-@one_by_one
+def _solver(way: Callable) -> Callable:
+    """`one_by_one` of a solver; one factorisation serves all right-hand sides.
+
+    Args:
+        way: Of a matrix (n, n) and right-hand sides (n, k).
+    """
+    each = one_by_one(way)
+
+    @custom_vmap
+    def single(matrix, rhs):
+        return each(matrix, rhs)
+
+    @single.def_vmap
+    def _rule(_, mapped, matrix, rhs):
+        if mapped[0]:
+            return jax.vmap(each, [0 if m else None for m in mapped])(matrix, rhs), True
+        columns = jnp.moveaxis(rhs, 0, -1)
+        found = single(matrix, columns.reshape(rhs.shape[1], -1))
+        return jnp.moveaxis(found.reshape(columns.shape), -1, 0), True
+
+    return single
+
+
+@_solver
 def _by_cholesky(matrix, rhs):
     return dense.cho_solve(dense.cho_factor(matrix), rhs)
 
 
-@one_by_one
+@_solver
 def _by_elimination(matrix, rhs):
     return jnp.linalg.solve(matrix, rhs)
 

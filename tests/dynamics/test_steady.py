@@ -321,6 +321,15 @@ def test_loads_are_those_of_the_orbit_that_is_found(stiff, axial, speed):
     np.testing.assert_allclose(radial[0] - radial[1], pull, rtol=0.02)
 
 
+def test_without_load_drag_stops_the_balls():
+    """Nothing is pressed against the ring that turns, so nothing drives."""
+    end = steady_skid(MODEL, np.zeros(6), speed=SPEED, free=["uz"], places=1)
+    np.testing.assert_allclose(end.slip, 1.0, rtol=1e-5)
+    assert abs(float(end.friction_torque)) < 1e-15
+    state = conditions(MODEL, end, SPEED)
+    assert any("nothing drives" in text for text in skid_warnings(MODEL, end, state))
+
+
 def test_one_place_does_not_stand_for_unlike_balls(one_place):
     assert int(one_place.result[-1]) == Result.GRID_MISFIT
     with pytest.raises(ValueError, match="unlike loads"):
