@@ -214,7 +214,7 @@ def end_state(
     orbit = kind(
         model=model,
         speed=speed,
-        carried=case.speed,
+        carried=speed if case.speed is None else case.speed,
         follows=follows,
         pressed=_is_pressed(solution).astype(ring.dtype),
         balance=balance,

@@ -193,8 +193,8 @@ def test_a_law_of_ones_own_is_the_built_in_one_of_the_same_power():
 def test_an_elastic_foundation_by_hand():
     """q = k x: a roller pressed all along and tilted, W = k L (a²/2 + b²/6)."""
     k, length, a, b = 3e10, 0.012, 5e-6, 2e-6
-    given = (jnp.asarray(v) for v in (1.3e11, length, 0.014))
-    line = LineContact(*given, Straight(), Straight())
+    modulus, width, size = map(jnp.asarray, (1.3e11, length, 0.014))
+    line = LineContact(modulus, width, size, Straight(), Straight())
     contact = Power(k, 1.0).contact(line, lambda s: 0.005 + 0.0 * s, jnp.asarray(1e11))
     rule = ContactMapped()
     r = response(contact, contact.table(rule), rule, jnp.asarray(a), jnp.asarray(b))

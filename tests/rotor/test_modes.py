@@ -8,6 +8,8 @@ with six elements and Cowper's shear coefficient, whose frame and freedoms are o
 (tests/rotor/test_ross.py). Torsion, which ROSS has and we have not, is left out.
 """
 
+from typing import Any
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -150,7 +152,7 @@ def test_lines_of_a_campbell_diagram_do_not_hang_on_how_many_speeds_it_has():
     """Against modes followed with NumPy in small steps."""
     rotor, top = veering(), 6283.0
 
-    def values(speed):
+    def values(speed) -> Any:
         at = rotor.linearised(speed)
         n = at.mass.shape[0]
         lower = np.linalg.solve(at.mass, np.hstack([at.stiffness, at.rates]))
