@@ -75,6 +75,8 @@ def read_noise(
         values["retardation"] = retardation
     with vibration.building():
         model = NoiseModel(element, **values)
+        # As a number of the scene, which the echo has.
+        model = dataclasses.replace(model, tilting_inertia=model.inertia)
         line = dataclasses.replace(
             model, element=_nominal(element), errors=_of_rows(common)
         )

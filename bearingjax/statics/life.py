@@ -418,6 +418,9 @@ def _life(bearing, solution, conditions, speed, lamina_load) -> Life:
     loads, force = (
         jnp.where(solution.converged, value, jnp.nan) for value in (loads, force)
     )
+    # What carries nothing does no damage: without load displacements have no
+    # derivatives, and zero times infinity would be none of the life either.
+    loads = jnp.where(loads <= 0, 0.0, loads)
     rated = ratings(
         bearing,
         conditions.dynamic_capacity,

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
+from jax import lax
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
@@ -170,9 +171,8 @@ def differentiable(
 ) -> Float[Array, "6"]:
     """The unknowns found, differentiable by the implicit function theorem [m].
 
-    Derivatives of a failed search are NaN. By the load they are infinite (where it does
-    not change, NaN) if no contact carries anything: the least load moves the ring to
-    the end of its clearance.
+    Derivatives of a failed search are NaN. By the load they are infinite if no contact
+    carries anything: the least load moves the ring to the end of its clearance.
 
     Args:
         model: The bearing at the speeds.
@@ -220,9 +220,20 @@ def _rule(primals, tangents):
     if isinstance(change, SymbolicZero):
         change = jnp.zeros_like(y)
     if not isinstance(by_load, SymbolicZero):
-        # A product, as reverse mode needs: 0 times infinity is NaN.
-        change = change + jnp.where(loose > 0, jnp.inf, 0.0) * by_load
+        change = change + jnp.where(loose > 0, _infinite(by_load), 0.0)
     return _without_limit(*primals), change
+
+
+def _infinite(rate):
+    """Infinity times `rate`, 0 where that is 0, in forward and in reverse mode.
+
+    To JAX it is a linear solve, which says itself what its transpose is.
+    """
+
+    def times(_, rate):
+        return jnp.where(rate == 0, 0.0, jnp.inf * rate)
+
+    return lax.custom_linear_solve(lambda x: 0.0 * x, rate, times, times)
 
 
 _without_limit.defjvp(_rule, symbolic_zeros=True)

@@ -179,7 +179,8 @@ def test_float32(profile, moment):
     )
     assert float(found.peak_pressure) == pytest.approx(peak, rel=5e-5)
     assert float(found.approach) == pytest.approx(float(double.approach), rel=1e-5)
-    assert float(found.load) == pytest.approx(3000.0, rel=2e-6)
+    # A sum of some thousand cells, in an order that depends on the processor.
+    assert float(found.load) == pytest.approx(3000.0, rel=5e-6)
     assert float(found.tilt) == pytest.approx(float(double.tilt), abs=5e-9)
     assert float(found.moment) == pytest.approx(float(double.moment), abs=3e-4)
 
