@@ -22,7 +22,7 @@ Of lines further off Hann's window leaves less than 2e-11 of their power beyond.
 """
 _AROUND = np.arange(-_REACH, _REACH, dtype=np.int32)[None]
 _STRONG = 5.0
-"""Of a line over the geometric mean of its neighbours, from which it is strong [1].
+"""Ratio of a line to the geometric mean of its neighbours, from which it is strong [1].
 
 Of noise, whose lines have sizes by Rayleigh's distribution, one in 10^6 is."""
 _NEIGHBOURS = 25
@@ -159,7 +159,7 @@ class Leakage(NamedTuple):
 
 @eqx.filter_jit
 def leakage(spectrum: Spectrum, edges: Any) -> Leakage:
-    """What the window of a spectrum spreads over edges.
+    """Estimate what the window of a spectrum spreads over edges of bands.
 
     Lines are the local maxima of the spectrum that stand out of it; each is taken for a
     lone one, with the frequency and amplitude that its neighbours tell

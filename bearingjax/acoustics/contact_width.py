@@ -30,7 +30,7 @@ from .standing import standing
 
 
 def bridged(model: NoiseModel) -> NoiseModel:
-    """The same bearing, with contacts that bridge waves shorter than they are long.
+    """Return the bearing with contacts that bridge waves shorter than they are long.
 
     Contacts are as wide as under their mean load where the bearing stands; waves of
     random bearings, which `drawn` adds, are bridged too. Spalls are not.

@@ -40,7 +40,7 @@ def model_warnings(
     steps: int | None = None,
     tolerances: Tolerances | None = None,
 ) -> list[str]:
-    """What is doubtful about a bearing and the record that is asked of it.
+    """Warnings about a bearing and the record that is asked of it.
 
     Args:
         model: The bearing; concrete.
@@ -66,7 +66,7 @@ def record_warnings(
     bands: Bands,
     tolerances: Tolerances | None = None,
 ) -> list[str]:
-    """What is doubtful in a record and its levels.
+    """Warnings about a record and its levels.
 
     Args:
         model: The bearing; concrete.
@@ -89,7 +89,7 @@ def record_warnings(
 
 
 def share_warnings(found: Shares) -> list[str]:
-    """What is doubtful in shares of sources.
+    """Warnings about shares of sources.
 
     Args:
         found: From `shares`.

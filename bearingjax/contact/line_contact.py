@@ -113,7 +113,7 @@ class AbstractLineContact(eqx.Module):
 
 
 class AbstractSliceLaw(AbstractLineLaw):
-    """What a slice bears, by any smooth law of its own approach.
+    """Load of a slice by any smooth law of its own approach.
 
     `line_load` is all that is to be written: stiffness and strain energy follow.
     """

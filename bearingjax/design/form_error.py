@@ -43,7 +43,7 @@ class Surface(NamedTuple):
     pressure: Scalar | None = None
 
     def bridged(self, order: Float[Array, " n"]) -> Float[Array, " n"]:
-        """What a contact leaves of waves: their mean over its pressure (n,) [1].
+        """Share of waves that a contact leaves, their mean over its pressure (n,) [1].
 
         Args:
             order: Waves per turn (n,) [1].

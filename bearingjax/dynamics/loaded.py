@@ -68,7 +68,8 @@ def orbiting(
 def ring_forces(
     row: Row, q: Ring, azimuth: Float[Array, " station"], solved: SolvedRow
 ) -> Float[Array, "station 12"]:
-    """What each ball or roller of a solved row asks of the load that holds the rings.
+    """Forces of each ball or roller of a solved row on the rings, reversed: its part of
+    the load that holds them.
 
     Args:
         row: The row, without a spring.

@@ -1,4 +1,4 @@
-"""What can be optimised: a bearing alone, on its seats, or with more, such as oil."""
+"""Designs to be optimised: a bearing alone, on its seats, or with more, such as oil."""
 
 import abc
 from collections.abc import Callable

@@ -54,7 +54,7 @@ _ENDINGS = {
     ),
 }
 _FINER = {"shooting": "`steps`", "harmonic_balance": "`harmonics` and `samples`"}
-"""What makes a method more accurate."""
+"""Settings that make a method more accurate."""
 Stopped = tuple[Result, str]
 _amplitudes = jax.jit(amplitudes)
 

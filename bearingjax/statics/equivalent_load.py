@@ -133,7 +133,7 @@ def equivalent_load(
 
 
 class LeftOut(NamedTuple):
-    """What a load has that the equivalent loads have no part of.
+    """Parts of a load that the equivalent loads leave out.
 
     Attributes:
         radial: Of thrust ball bearings, for which ISO 281 has no factor at 90° [N].
@@ -152,7 +152,7 @@ def left_out(
     load: Float[Array, "6"],
     free: Sequence[str] = ("gx", "gy"),
 ) -> LeftOut:
-    """What the equivalent loads of a load have no part of.
+    """Return the parts of a load that its equivalent loads leave out.
 
     Args:
         bearing, load: As of `equivalent_load`; moments about the centre of the bearing.

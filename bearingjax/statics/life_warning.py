@@ -94,7 +94,7 @@ def _light(bearing, ratings, numbers):
 
 
 def _left_out(bearing, numbers):
-    """What P and P0 have no part of."""
+    """Warnings about parts of the load that P and P0 leave out."""
     if "equivalent_load" not in numbers:
         return []
     load = np.asarray(numbers["equivalent_load"])
@@ -119,7 +119,7 @@ _LOST = {
     " life and the static safety, have no part of it; the reference life of ISO/TS"
     " 16281 has",
 }
-"""What P and P0 may have no part of, in words."""
+"""Warnings by the part of the load that P and P0 leave out."""
 
 
 def _off_the_diagrams(numbers):

@@ -1,4 +1,4 @@
-"""What is doubtful about the service of a bearing, its seats and speed, in words."""
+"""Warnings about the service of a bearing: its seats and its speed."""
 
 from typing import Any
 

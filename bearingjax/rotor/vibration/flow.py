@@ -98,7 +98,7 @@ def _stage_motion(at, begin, second):
 
 
 def _out_of_balance(at, begin, second):
-    """What the equations of motion leave at every stage (stage, n)."""
+    """Residuals of the equations of motion at every stage (stage, n)."""
     return jax.vmap(
         lambda phase, *motion: out_of_balance(begin.system, phase, begin.ratio, *motion)
     )(*_stage_motion(at, begin, second), second)

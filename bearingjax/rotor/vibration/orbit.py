@@ -19,7 +19,7 @@ TOLERANCE = {"float64": 1e-10, "float32": 1e-4}
 """Of the residual of a method, or of Newton's step towards the orbit, pure numbers
 [1]."""
 _ROUND_OFF = 1e3
-"""What forces that cancel may leave of their sum, in units of round-off [1]."""
+"""Largest remainder of forces that cancel, over their sum and round-off [1]."""
 STABLE = 1e-6
 """By how much a multiplier of a stable orbit may exceed one: round-off [1]."""
 _FINE = 8
