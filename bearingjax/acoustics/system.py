@@ -286,8 +286,8 @@ class NoiseSystem(eqx.Module):
         return jnp.concatenate([*parts, found.arcs, found.cage])
 
     def _cage_places(self, motion):
-        """Places of the cage [m, rad], of the elements along the pitch circle and of the
-        guiding ring [m], and the pitch radius [m]."""
+        """Places of the cage [m, rad], of the elements along the pitch circle [m]
+        and of the guiding ring [m]; and the pitch radius [m]."""
         assert self.cage is not None  # asked by those who know
         arcs, place = self.caged(motion)
         guided = RINGS.index(self.cage.guiding_ring) == self.moving
