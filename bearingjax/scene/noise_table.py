@@ -24,8 +24,9 @@ from .deviations_table import read_deviations
 from .noise_scene import DIRECTIONS, NoiseScene
 from .read import Scene, scene_of
 from .scene_file import find_scene, parse_bearing
-from .table import Table, written
-from .tolerance_table import read_tolerance
+from .schema import Keys, read_keys, scene_key
+from .table import Table
+from .tolerance_table import ToleranceKeys, read_tolerance
 
 BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}
 WINDOWS = {"hann": Hann, "rectangular": Rectangular}
@@ -35,6 +36,121 @@ HELD = "held"
 """Word in place of `tilting_inertia` for a ring that does not tilt."""
 MOST_SAMPLES = 200_000
 """Most samples of a record: some 20 MB as JSON."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class VibrationKeys(Keys):
+    """[vibration]: the rig of a bearing whose noise is wanted, and how it is heard."""
+
+    mass: float = scene_key("mass of the moving ring", "mass")
+    moving_ring: str | None = scene_key(
+        "ring that the load acts on",
+        choices=RINGS,
+        default=None,
+        otherwise="the one that is not `operating.fixed_ring`; without either `outer`",
+    )
+    tilting_inertia: float | str | None = scene_key(
+        "moment of inertia of the moving ring about a diameter; `held`: it does not"
+        " tilt, as with `operating.prescribed` gx and gy at 0",
+        "moment of inertia",
+        choices=(HELD,),
+        default=None,
+        otherwise="that of a ring of this mass",
+    )
+    bridging: bool = scene_key(
+        "whether contacts average waves over their width, as they do in fact;"
+        " otherwise shorter waves are met as they are, with a warning",
+        default=False,
+    )
+    retardation: float | None = scene_key(
+        "retardation time of the contacts' damping; whole bearings have 2.5 to 25 us"
+        " (Krämer 1993)",
+        "time",
+        default=None,
+        otherwise="10 us",
+    )
+    sensor_stiffness: float | None = scene_key(
+        "stiffness of the sensor that holds the moving ring",
+        "stiffness",
+        default=None,
+    )
+    sensor_damping: float | None = scene_key(
+        "damping of the sensor", "damping", default=None
+    )
+    sensor_direction: list[float] = scene_key(
+        "line of the sensor: x, y, z, or its three components",
+        default=None,
+        needs=("sensor_stiffness", "sensor_damping"),
+        otherwise="y",
+        reader=lambda table, name: _direction(table, name),
+        json={
+            "anyOf": [
+                {"enum": list(DIRECTIONS)},
+                {
+                    "type": "array",
+                    "items": {"type": "number"},
+                    "minItems": 3,
+                    "maxItems": 3,
+                },
+            ]
+        },
+    )
+    turns: int = scene_key("turns of the record", default=8)
+    settle: int = scene_key("turns that settle before it", default=2, least=0)
+    samples: int = scene_key(
+        "samples of a turn, an even number", default=2048, least=16
+    )
+    steps: int | None = scene_key(
+        "steps of the integration between two samples",
+        default=None,
+        otherwise="as many as the stiffest contact needs",
+    )
+    reference: float = scene_key(
+        "acceleration of 0 dB",
+        "acceleration",
+        default=REFERENCE_ACCELERATION,
+        above=0.0,
+    )
+    bands: str = scene_key(
+        "bands of the levels", choices=tuple(BANDS), default="octave"
+    )
+    norm: str | None = scene_key(
+        "largest allowed levels, by the bearing that they are for",
+        choices=tuple(NORMS),
+        default=None,
+    )
+    window: str = scene_key(
+        "window of the spectrum", choices=tuple(WINDOWS), default="hann"
+    )
+    tolerance: ToleranceKeys | None = scene_key(
+        "how bearings off the line scatter, for `--monte-carlo`", default=None
+    )
+
+    def check(self) -> None:
+        if self.samples % 2:
+            problem = f"{self.samples} is odd; it must be even"
+            raise self.table.error("samples", problem)
+        turns = self.turns + self.settle
+        if turns * self.samples > MOST_SAMPLES:
+            number = f"{turns} turns of {self.samples} are too many"
+            problem = f"{number}; at most {MOST_SAMPLES} samples"
+            raise self.table.error("samples", problem)
+        if self.norm is None:
+            return
+        if self.bands != "octave":
+            raise self.table.error("norm", "is of octaves; take `bands` = octave")
+        if self.reference != REFERENCE_ACCELERATION:
+            problem = f"counts from {REFERENCE_ACCELERATION:g} m/s²; leave out"
+            raise self.table.error("norm", f"{problem} `reference`")
+
+    @property
+    def sensor(self) -> Sensor | None:
+        """What holds the moving ring, if anything does."""
+        stiffness, damping = self.sensor_stiffness, self.sensor_damping
+        if stiffness is None and damping is None:
+            return None
+        with self.table.building():
+            return Sensor(stiffness or 0.0, damping or 0.0, self.sensor_direction)
 
 
 def read_noise(
@@ -53,7 +169,7 @@ def read_noise(
     data = parse_bearing(path, settings)
     top = Table(data, path.name)
     scene = scene_of(data, path)
-    vibration = top.table("vibration", required=True)
+    vibration = read_keys(VibrationKeys, top.table("vibration", required=True))
     operating, deviations = top.table("operating"), top.table("deviations")
     _check_operating(operating, scene)
     element = scene.running()
@@ -62,49 +178,60 @@ def read_noise(
     errors, common = read_deviations(deviations, counts, path.parent)
     deviations.finish()
     values = {
-        "mass": vibration.quantity("mass", "mass"),
+        "mass": vibration.mass,
         "load": scene.load,
         "speed": scene.speed,
         "errors": _of_rows(errors),
-        "sensor": _sensor(vibration),
+        "sensor": vibration.sensor,
         "moving_ring": _moving_ring(vibration, operating),
         **_tilting(vibration, scene),
     }
-    retardation = vibration.quantity("retardation", "time", None)
-    if retardation is not None:
-        values["retardation"] = retardation
-    with vibration.building():
+    if vibration.retardation is not None:
+        values["retardation"] = vibration.retardation
+    with vibration.table.building():
         model = NoiseModel(element, **values)
         # As a number of the scene, which the echo has.
         model = dataclasses.replace(model, tilting_inertia=model.inertia)
         line = dataclasses.replace(
             model, element=_nominal(element), errors=_of_rows(common)
         )
-    tolerances, tighter, seed = None, (), 0
-    if "tolerance" in vibration or bearings:
-        table = vibration.table("tolerance", required=True)
-        tolerances, tighter, seed = read_tolerance(table, bearing)
+    random = vibration.tolerance
+    if random is None and bearings:
+        random = read_keys(
+            ToleranceKeys, vibration.table.table("tolerance", required=True)
+        )
+    tolerances, tighter = (
+        (None, ()) if random is None else read_tolerance(random, bearing)
+    )
+    norm = None if vibration.norm is None else np.array(NORMS[vibration.norm])
     found = NoiseScene(
         scene=scene,
         model=model,
         line=line,
-        bridging=vibration.flag("bridging", False),
-        **_record(vibration),
-        **_levels(vibration),
+        bridging=vibration.bridging,
+        turns=vibration.turns,
+        settle=vibration.settle,
+        samples=vibration.samples,
+        steps=vibration.steps,
+        reference=vibration.reference,
+        bands=BANDS[vibration.bands](),
+        norm=norm,
+        window=WINDOWS[vibration.window](),
         tolerances=tolerances,
         tighter=tighter,
-        seed=seed,
+        seed=0 if random is None else random.seed,
         bearings=bearings,
         warnings=scene.warnings,
         inputs={},
     )
-    vibration.finish()
-    vibration.fill("moving_ring", model.moving_ring)
-    vibration.fill("retardation", written(float(model.retardation), "s"))
+    vibration.table.finish()
     inertia = model.inertia
-    told = HELD if inertia is None else written(float(inertia), "kg m^2")
-    vibration.fill("tilting_inertia", told)
-    own = {"deviations": deviations.echo(), "vibration": vibration.echo()}
+    vibration.fill(
+        moving_ring=model.moving_ring,
+        retardation=float(model.retardation),
+        tilting_inertia=HELD if inertia is None else float(inertia),
+    )
+    own = {"deviations": deviations.echo(), "vibration": vibration.table.echo()}
     inputs = {**scene.inputs, "operating": _held(scene, model.moving_ring), **own}
     return dataclasses.replace(found, inputs=inputs)
 
@@ -154,89 +281,40 @@ def _check_operating(operating: Table, scene: Scene) -> None:
         raise operating.error("inner_speed", f"{problem}, {rest}")
 
 
-def _tilting(table: Table, scene: Scene) -> dict[str, Any]:
+def _tilting(vibration: VibrationKeys, scene: Scene) -> dict[str, Any]:
     """Whether the moving ring tilts, and its inertia if it is given."""
     held = "gx" in scene.prescribed or "gx" not in (scene.free or FREEDOMS)
-    if table.raw("tilting_inertia", None) == HELD:
+    inertia = vibration.tilting_inertia
+    if inertia == HELD:
         return {"tilts": False}
-    inertia = table.quantity("tilting_inertia", "moment of inertia", None)
     if held and inertia is not None:
         problem = "is given, but [operating] holds gx and gy; choose one"
-        raise table.error("tilting_inertia", problem)
+        raise vibration.table.error("tilting_inertia", problem)
     return {"tilts": not held, "tilting_inertia": inertia}
 
 
-def _moving_ring(vibration: Table, operating: Table) -> str:
+def _moving_ring(vibration: VibrationKeys, operating: Table) -> str:
     """The ring that the load acts on; the outer one unless the scene says another."""
-    fixed = operating.word("fixed_ring")
-    moving = vibration.choice("moving_ring", RINGS, None)
+    fixed, moving = operating.word("fixed_ring"), vibration.moving_ring
     if fixed is None:
         return moving or "outer"
     if moving == fixed:
         problem = f"{moving!r} is the `fixed_ring` of [operating]; it must be the other"
-        raise vibration.error("moving_ring", problem)
+        raise vibration.table.error("moving_ring", problem)
     return RINGS[1 - RINGS.index(fixed)]
 
 
-def _sensor(table: Table) -> Sensor | None:
-    stiffness = table.quantity("sensor_stiffness", "stiffness", None)
-    damping = table.quantity("sensor_damping", "damping", None)
-    if stiffness is None and damping is None:
-        if "sensor_direction" in table:
-            problem = "goes with `sensor_stiffness` or `sensor_damping`"
-            raise table.error("sensor_direction", problem)
-        return None
-    with table.building():
-        return Sensor(stiffness or 0.0, damping or 0.0, _direction(table))
-
-
-def _direction(table: Table) -> list[float]:
-    given = table.raw("sensor_direction", "y")
+def _direction(table: Table, name: str) -> list[float]:
+    given = table.raw(name, "y")
     if isinstance(given, list):
         numbers = [one for one in given if isinstance(one, int | float)]
         if len(numbers) == 3 and len(given) == 3 and not any(map(_is_bool, given)):
             return [float(one) for one in numbers]
     elif given in DIRECTIONS:
-        return [float(given == name) for name in DIRECTIONS]
+        return [float(given == axis) for axis in DIRECTIONS]
     problem = f"{given!r} is not known; it must be x, y, z or three bare numbers"
-    raise table.error("sensor_direction", problem)
+    raise table.error(name, problem)
 
 
 def _is_bool(value: object) -> bool:
     return isinstance(value, bool)
-
-
-def _record(table: Table) -> dict[str, Any]:
-    turns, settle = table.integer("turns", 8), table.integer("settle", 2, least=0)
-    samples = table.integer("samples", 2048, least=16)
-    if samples % 2:
-        raise table.error("samples", f"{samples} is odd; it must be even")
-    if (turns + settle) * samples > MOST_SAMPLES:
-        number = f"{turns + settle} turns of {samples} are too many"
-        raise table.error("samples", f"{number}; at most {MOST_SAMPLES} samples")
-    return {
-        "turns": turns,
-        "settle": settle,
-        "samples": samples,
-        "steps": table.integer("steps", None),
-    }
-
-
-def _levels(table: Table) -> dict[str, Any]:
-    reference = table.quantity("reference", "acceleration", REFERENCE_ACCELERATION)
-    if not reference > 0.0:
-        problem = f"{reference:g} m/s² is not allowed; above 0"
-        raise table.error("reference", problem)
-    kind = table.choice("bands", tuple(BANDS), "octave")
-    norm = table.choice("norm", tuple(NORMS), None)
-    if norm is not None and kind != "octave":
-        raise table.error("norm", "is of octaves; take `bands` = octave")
-    if norm is not None and reference != REFERENCE_ACCELERATION:
-        problem = f"counts from {REFERENCE_ACCELERATION:g} m/s²; leave out `reference`"
-        raise table.error("norm", problem)
-    return {
-        "reference": reference,
-        "bands": BANDS[kind](),
-        "norm": None if norm is None else np.array(NORMS[norm]),
-        "window": WINDOWS[table.choice("window", tuple(WINDOWS), "hann")](),
-    }

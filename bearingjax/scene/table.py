@@ -120,7 +120,7 @@ class Table:
             name, unit = field.name, unit_of(kind, field.name)
             must = field.default is dataclasses.MISSING or name in required
             if must or name in self:
-                several = _is_array(field.type)
+                several = is_array(field.type)
                 found[name] = (
                     self.quantities(name, kind_of(unit))
                     if several
@@ -346,7 +346,7 @@ def written_numbers(owner: Any) -> dict[str, str | float]:
     }
 
 
-def _is_array(annotation):
+def is_array(annotation):
     """Whether a field holds an array, or `None`."""
     kinds = get_args(annotation) or (annotation,)
     return any(getattr(kind, "dim_str", "") for kind in kinds)

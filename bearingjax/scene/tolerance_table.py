@@ -15,14 +15,8 @@ from ..design.tolerance import (
     running_accuracy,
 )
 from .deviations_table import MOST_ORDER
-from .table import Table
+from .schema import Keys, scene_key
 
-_KINDS = {
-    "diameter": "length",
-    "spacing": "angle",
-    "outer_eccentricity": "length",
-    "inner_eccentricity": "length",
-}
 _WAVES = {
     "waviness": ("outer_outwards", "inner_outwards"),
     "axial_waviness": ("outer_axial", "inner_axial"),
@@ -30,66 +24,133 @@ _WAVES = {
 }
 """Keys of the root mean square of waves, and what has it."""
 
+_OWN = ("diameter", "spacing", "outer_eccentricity", "inner_eccentricity")
+"""Keys in place of those of the grade and class."""
+
 
 Tighter = tuple[tuple[str, dict[str, float]], ...]
 """Names of tighter tolerances, and how much smaller they make each source [1]."""
 
 
-def read_tolerance(table: Table, bearing: Any) -> tuple[Tolerances, Tighter, int]:
-    """How bearings scatter, what the next tighter grade and class make of it, and the
-    seed of the random numbers.
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class ToleranceKeys(Keys):
+    """[vibration.tolerance]: how bearings off the line scatter."""
+
+    grade: str | None = scene_key(
+        "grade of the rolling elements",
+        choices=(*BALL_GRADES, *ROLLER_GRADES),
+        default=None,
+    )
+    tolerance_class: str | None = scene_key(
+        "class of the rings, for their eccentricity",
+        name="class",
+        choices=TOLERANCE_CLASSES,
+        default=None,
+    )
+    bore: float | None = scene_key("bore", "length", default=None, needs=("class",))
+    outside_diameter: float | None = scene_key(
+        "outside diameter", "length", default=None, needs=("class",)
+    )
+    waviness: float | None = scene_key(
+        "root mean square of the waves of both raceways", "length", default=None
+    )
+    axial_waviness: float | None = scene_key(
+        "root mean square of their axial waves", "length", default=None
+    )
+    element_waviness: float | None = scene_key(
+        "root mean square of the waves of the rolling elements",
+        "length",
+        default=None,
+        otherwise="that of the grade",
+    )
+    highest: int = scene_key(
+        "highest order of waves of raceways; the lowest is 2",
+        default=100,
+        least=2,
+        most=MOST_ORDER["raceway"],
+    )
+    highest_of_elements: int = scene_key(
+        "highest order of waves of rolling elements",
+        default=40,
+        least=2,
+        most=MOST_ORDER["element"],
+    )
+    slope: float = scene_key(
+        "amplitudes fall with this power of the order", default=1.0
+    )
+    diameter: float | None = scene_key(
+        "standard deviation of the elements' diameters",
+        "length",
+        default=None,
+        otherwise="that of the grade",
+    )
+    spacing: float | None = scene_key(
+        "standard deviation of the elements' azimuths", "angle", default=None
+    )
+    outer_eccentricity: float | None = scene_key(
+        "standard deviation of the outer raceway's eccentricity",
+        "length",
+        default=None,
+        otherwise="that of the class",
+    )
+    inner_eccentricity: float | None = scene_key(
+        "standard deviation of the inner raceway's eccentricity",
+        "length",
+        default=None,
+        otherwise="that of the class",
+    )
+    seed: int = scene_key("seed of the random numbers", default=0, least=0)
+
+    def check(self) -> None:
+        if self.tolerance_class is not None and self.grade is None:
+            problem = "goes with a `grade`; or give the eccentricities"
+            raise self.table.error("class", problem)
+
+
+def read_tolerance(keys: ToleranceKeys, bearing: Any) -> tuple[Tolerances, Tighter]:
+    """How bearings scatter, and what the next tighter grade and class make of it.
 
     Args:
-        table: `[vibration.tolerance]`.
+        keys: `[vibration.tolerance]`.
         bearing: The design.
 
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    grades = BALL_GRADES if is_ball(bearing) else ROLLER_GRADES
-    grade = table.choice("grade", grades, None)
-    slope = table.number("slope", 1.0)
-    highest = {
-        "raceway": _highest(table, "highest", 100, "raceway"),
-        "element": _highest(table, "highest_of_elements", 40, "element"),
-    }
-    runouts = _runouts(table)
-    runout = runouts[0] if runouts else None
-    if grade is None and runout is not None:
-        raise table.error("class", "goes with a `grade`; or give the eccentricities")
+    table, grade = keys.table, keys.grade
+    if grade is not None:
+        table.choice("grade", BALL_GRADES if is_ball(bearing) else ROLLER_GRADES)
+    runouts = _runouts(keys)
     given: dict[str, Any] = {
-        name: table.quantity(name, kind)
-        for name, kind in _KINDS.items()
-        if name in table
+        name: value for name in _OWN if (value := getattr(keys, name)) is not None
     }
     with table.building():
-        for key, names in _WAVES.items():
-            if key in table:
-                height = table.quantity(key, "length")
-                last = highest["element" if names == ("elements",) else "raceway"]
-                waves = RandomWaves.of_root_mean_square(height, 2, last, slope)
-                given |= dict.fromkeys(names, waves)
+        for name, of in _WAVES.items():
+            height = getattr(keys, name)
+            if height is not None:
+                elements = of == ("elements",)
+                last = keys.highest_of_elements if elements else keys.highest
+                waves = RandomWaves.of_root_mean_square(height, 2, last, keys.slope)
+                given |= dict.fromkeys(of, waves)
         found = Tolerances()
         if grade is not None:
             found = Tolerances.of_grade(
                 grade,
                 bearing,
-                runout=runout,
-                highest_of_elements=highest["element"],
-                slope=slope,
+                runout=runouts[0] if runouts else None,
+                highest_of_elements=keys.highest_of_elements,
+                slope=keys.slope,
             )
         found = dataclasses.replace(found, **given)
     if not found.sources:
         raise table.error("grade", "is missing, and so is everything that scatters")
-    tighter = (*_next_grade(grade, bearing), *_next_class(table, runouts))
+    tighter = (*_next_grade(grade, bearing), *_next_class(keys, runouts))
     # What is given by its number does not follow from the grade or class.
-    own = {*given, *(("elements",) if "element_waviness" in table else ())}
     kept = [
-        (name, {k: v for k, v in factors.items() if k not in own})
+        (name, {k: v for k, v in factors.items() if k not in given})
         for name, factors in tighter
     ]
-    told = tuple((name, factors) for name, factors in kept if factors)
-    return found, told, table.integer("seed", 0, least=0)
+    return found, tuple((name, factors) for name, factors in kept if factors)
 
 
 def _next_grade(grade: str | None, bearing: Any) -> Tighter:
@@ -112,12 +173,12 @@ def _next_grade(grade: str | None, bearing: Any) -> Tighter:
     return ((f"grade {name} in place of {grade}", factors),)
 
 
-def _next_class(table: Table, runouts: list) -> Tighter:
+def _next_class(keys: ToleranceKeys, runouts: list) -> Tighter:
     """The class of rings that is one better, if there is one."""
     if len(runouts) < 2:
         return ()
     worse, better = runouts
-    mine = table.word("class")
+    mine = keys.tolerance_class or ""
     name = TOLERANCE_CLASSES[TOLERANCE_CLASSES.index(mine) + 1]
     factors = {
         "outer_eccentricity": better.outer / worse.outer,
@@ -126,24 +187,12 @@ def _next_class(table: Table, runouts: list) -> Tighter:
     return ((f"class {name} in place of {mine}", factors),)
 
 
-def _highest(table: Table, key: str, default: int, part: str) -> int:
-    most = MOST_ORDER[part]
-    value = table.integer(key, default, least=2)
-    if value > most:
-        raise table.error(key, f"{value} is too many; at most {most}")
-    return value
-
-
-def _runouts(table: Table) -> list:
+def _runouts(keys: ToleranceKeys) -> list:
     """Radial runout of the rings of a tolerance class, and of the next better one."""
-    name = table.choice("class", TOLERANCE_CLASSES, None)
-    sizes = ("bore", "outside_diameter")
+    name, table = keys.tolerance_class, keys.table
     if name is None:
-        for key in sizes:
-            if key in table:
-                raise table.error(key, "goes with a `class` of tolerances")
         return []
-    lengths = [table.quantity(key, "length") for key in sizes]
+    lengths = [table.quantity(key, "length") for key in ("bore", "outside_diameter")]
     with table.building():
         found = [running_accuracy(name, *lengths)]
     with contextlib.suppress(IndexError, ValueError):

@@ -416,7 +416,7 @@ def test_the_ring_tilts_unless_it_is_held(settings):
     )
     assert free.model.freedoms[3:] == ("gx", "gy") and held.model.inertia is None
     echo = free.inputs["vibration"]["tilting_inertia"]
-    assert echo.endswith(" kg m^2") and "prescribed" not in held.inputs["operating"]
+    assert echo.endswith(" kg m²") and "prescribed" not in held.inputs["operating"]
     assert held.inputs["vibration"]["tilting_inertia"] == "held"
     given = read_noise("noise_four_point", [f"vibration.tilting_inertia={echo}"])
     assert float(given.model.inertia) == pytest.approx(float(free.model.inertia))

@@ -1,0 +1,342 @@
+"""Schema of scene files: a class describes a table, each of its fields one key.
+
+The fields of a `Keys` class read the table, make its JSON Schema and its part of the
+scene guide (`schema_text`). Rules that concern several keys are the `check` of the
+class.
+"""
+
+import dataclasses
+import functools
+import types
+import typing
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar, get_args, get_origin
+
+from ..numerics.units import CELSIUS
+from .quantity import KINDS
+from .table import Table, written
+
+_REQUIRED: Any = dataclasses.MISSING
+
+
+@dataclasses.dataclass(frozen=True)
+class Key:
+    """What a key of a scene may hold, beside the type of its field.
+
+    Attributes:
+        about: One line for the scene guide, without a full stop.
+        kind: Kind of quantity (`quantity.KINDS`); empty for a pure number.
+        above, least, below, most: Range, in SI; temperatures in °C.
+        choices: Words that may stand there.
+        of: Classes that may stand there, by the word or the `type` that names them.
+        hint: What an error about the range adds.
+        needs: Keys of which one must stand beside this one.
+        without: Keys that must not stand beside this one, with what an error says;
+            empty for "give either ... or this, not both".
+        only: Words of other keys for which this one is of use.
+        name: Key in the file, if a field cannot be called so.
+        otherwise: What is taken where the default depends on something else.
+        reader: Reads what fits no type, from the table and the name of the key.
+        json: JSON Schema of what `reader` reads.
+    """
+
+    about: str
+    kind: str = ""
+    _: dataclasses.KW_ONLY
+    above: int | float | None = None
+    least: int | float | None = None
+    below: int | float | None = None
+    most: int | float | None = None
+    choices: Sequence[str] = ()
+    of: Mapping[str, type] = dataclasses.field(default_factory=dict)
+    hint: str = ""
+    needs: Sequence[str] = ()
+    without: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    only: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)
+    name: str = ""
+    otherwise: str = ""
+    reader: Callable[[Table, str], Any] | None = None
+    json: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+
+    @property
+    def unit(self) -> str:
+        """SI unit, °C of temperatures; empty of a pure number."""
+        unit = KINDS[self.kind][0] if self.kind else ""
+        return "°C" if unit == "K" else unit
+
+    @property
+    def allowed(self) -> str:
+        """Range in words, as "above 0 N"; empty without one."""
+        low, high = ("least", self.least), ("most", self.most)
+        if self.above is not None:
+            low = ("above", self.above)
+        if self.below is not None:
+            high = ("below", self.below)
+        unit = f" {self.unit}" if self.unit else ""
+        ends = {name: f"{value:g}" for name, value in (low, high) if value is not None}
+        first, last = ends.get("least"), ends.get("most")
+        if first and last:
+            return f"from {first} to {last}{unit}"
+        if first and "below" in ends:
+            return f"from {first} to below {ends['below']}{unit}"
+        words = {"least": "at least", "most": "at most"}
+        told = [f"{words.get(name, name)} {value}" for name, value in ends.items()]
+        return " and ".join(told) + (unit if told else "")
+
+    def holds(self, value: float) -> bool:
+        """Whether a number is in the range.
+
+        Args:
+            value: In the units of the range.
+        """
+        return not (
+            (self.above is not None and not value > self.above)
+            or (self.least is not None and not value >= self.least)
+            or (self.below is not None and not value < self.below)
+            or (self.most is not None and not value <= self.most)
+        )
+
+
+def scene_key(
+    about: str, kind: str = "", *, default: Any = _REQUIRED, **rest: Any
+) -> Any:
+    """Field of a `Keys` class.
+
+    Args:
+        about, kind: As of `Key`.
+        default: If the key is absent; without a default it is required.
+        **rest: Other attributes of `Key`.
+    """
+    metadata = {"key": Key(about, kind, **rest)}
+    return dataclasses.field(default=default, metadata=metadata)
+
+
+class Field(NamedTuple):
+    """One key of a table.
+
+    Attributes:
+        name: In the file.
+        attribute: In the class.
+        key: What it may hold.
+        kinds: Types that it may have, without `None`.
+        default: If absent, or `dataclasses.MISSING`.
+    """
+
+    name: str
+    attribute: str
+    key: Key
+    kinds: tuple[Any, ...]
+    default: Any
+
+    @property
+    def required(self) -> bool:
+        """Whether it must be given."""
+        return self.default is _REQUIRED
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Keys:
+    """Base of the classes that describe tables.
+
+    Attributes:
+        table: The table that was read, for errors and the echo.
+    """
+
+    table: Table = dataclasses.field(repr=False, compare=False)
+
+    def check(self) -> None:
+        """Raise SceneError where keys do not go together; nothing by default."""
+
+    def fill(self, **values: float | str | None) -> None:
+        """Say what stands for keys in the echo, such as defaults that follow from
+        something else.
+
+        Args:
+            **values: By the name of the field; numbers in SI.
+        """
+        for one in fields_of(type(self)):
+            if one.attribute in values:
+                value = values[one.attribute]
+                unit = KINDS[one.key.kind][0] if one.key.kind else ""
+                if isinstance(value, float):
+                    value = written(value, unit)
+                self.table.fill(one.name, value)
+
+
+K = TypeVar("K", bound=Keys)
+
+
+def read_keys(kind: type[K], table: Table) -> K:
+    """The keys of a table.
+
+    Args:
+        kind: Class that describes the table.
+        table: The table.
+
+    Raises:
+        SceneError: For what is missing, of another kind, out of its range, or does not
+            go together.
+    """
+    known = fields_of(kind)
+    values = {one.attribute: _value(table, one) for one in known}
+    for one in known:
+        _check_neighbours(table, one)
+    found = kind(table=table, **values)
+    for one in known:
+        _check_use(found, one)
+    found.check()
+    return found
+
+
+@functools.cache
+def fields_of(kind: type[Keys]) -> tuple[Field, ...]:
+    """The keys of a table, in order.
+
+    Args:
+        kind: Class of the table.
+    """
+    hints = typing.get_type_hints(kind)
+    found = []
+    for field in dataclasses.fields(kind):
+        if "key" not in field.metadata:
+            continue
+        one: Key = field.metadata["key"]
+        kinds = tuple(k for k in _united(hints[field.name]) if k is not types.NoneType)
+        name = one.name or field.name
+        found.append(Field(name, field.name, one, kinds, field.default))
+    return tuple(found)
+
+
+def _united(hint: Any) -> tuple[Any, ...]:
+    """Types of a union, or the one type."""
+    union = get_origin(hint) in (types.UnionType, typing.Union)
+    return get_args(hint) if union else (hint,)
+
+
+def element_of(kind: Any) -> Any:
+    """Type of the entries of `tuple[X, ...]`; `None` of any other type."""
+    return get_args(kind)[0] if get_origin(kind) is tuple else None
+
+
+def is_keys(kind: Any) -> bool:
+    """Whether a type describes a table."""
+    return isinstance(kind, type) and issubclass(kind, Keys)
+
+
+def _value(table: Table, field: Field) -> Any:
+    """What stands at a key, in SI, within its range."""
+    name, one, kinds = field.name, field.key, field.kinds
+    default = () if field.required else (field.default,)
+    if one.reader is not None:
+        return one.reader(table, name)
+    if one.of:
+        return instance(table, name, one.of, *default)
+    if is_keys(kinds[0]):
+        if name not in table and not field.required:
+            return field.default
+        return read_keys(kinds[0], table.table(name, required=field.required))
+    of_list = element_of(kinds[0])
+    if is_keys(of_list):
+        if name not in table and not field.required:
+            return field.default
+        return tuple(read_keys(of_list, part) for part in table.tables(name))
+    if of_list is str:
+        return table.words(name, one.choices)
+    if of_list is float:
+        return _in_range(table, name, tuple(table.quantities(name, one.kind)), one)
+    if len(kinds) > 1 and element_of(kinds[1]) is float:  # one number, or a list
+        if isinstance(table.raw(name, None), list):
+            return _in_range(table, name, tuple(table.quantities(name, one.kind)), one)
+    if kinds[0] is str or (str in kinds and table.word(name) in one.choices):
+        return table.choice(name, tuple(one.choices), *default)
+    if kinds[0] is bool:
+        return (
+            table.flag(name, *default) if default != (None,) or name in table else None
+        )
+    if kinds[0] is int:
+        least = 1 if one.least is None else int(one.least)
+        value = table.integer(name, *default, least=least)
+        if value is not None and one.most is not None and value > one.most:
+            raise table.error(name, f"{value} is too many; at most {one.most:g}")
+        return value
+    read = table.quantity if one.kind else _bare(table)
+    return _in_range(table, name, read(name, one.kind, *default), one)
+
+
+def _bare(table: Table) -> Callable[..., Any]:
+    return lambda name, kind, *default: table.number(name, *default)
+
+
+def _in_range(table: Table, name: str, value: Any, one: Key) -> Any:
+    """The number, or numbers, if they are in the range of a key that stands there."""
+    if name not in table or value is None:
+        return value
+    zero = CELSIUS if one.unit == "°C" else 0.0
+    for number in value if isinstance(value, tuple) else (value,):
+        if not one.holds(number - zero):
+            unit = f" {one.unit}" if one.unit else ""
+            hint = f" ({one.hint})" if one.hint else ""
+            problem = f"{number - zero:.6g}{unit} is not allowed; {one.allowed}{hint}"
+            raise table.error(name, problem)
+    return value
+
+
+def instance(table: Table, name: str, kinds: Mapping[str, type], *default: Any) -> Any:
+    """An instance of one of several classes: named by a word, or with its numbers.
+
+    Args:
+        table: In which it stands.
+        name: Its key.
+        kinds: The classes, by their word; a table names one by its `type`, which may be
+            left out where there is only one.
+        default: If absent; without a default the key is required.
+
+    Raises:
+        SceneError: For what is missing, unknown or not allowed.
+    """
+    given = table.table_or_word(name, tuple(kinds))
+    if given is None:
+        if not default:
+            raise table.error(name, f"is missing; it must be one of {', '.join(kinds)}")
+        return default[0]
+    if isinstance(given, str):
+        kind, own = kinds[given], table.empty(name)
+    else:
+        word = (
+            given.choice("type", tuple(kinds)) if len(kinds) > 1 else next(iter(kinds))
+        )
+        kind, own = kinds[word], given
+    values = own.fields(kind)
+    with own.building():
+        return kind(**values)
+
+
+def _check_neighbours(table: Table, field: Field) -> None:
+    """Raise SceneError for keys that must, or must not, stand beside one that does;
+    the default of one that needs others is not echoed without them."""
+    needs = field.key.needs
+    alone = bool(needs) and not any(other in table for other in needs)
+    if field.name not in table:
+        if alone:
+            table.fill(field.name, None)
+        return
+    for other, problem in field.key.without.items():
+        if other in table:
+            text = problem or f"give either `{other}` or this, not both"
+            raise table.error(field.name, text)
+    if alone:
+        told = " or ".join(f"`{other}`" for other in needs)
+        missing = ", which is missing" if len(needs) == 1 else ""
+        raise table.error(field.name, f"goes with {told}{missing}")
+
+
+def _check_use(found: Keys, field: Field) -> None:
+    """Raise SceneError for a key that the words of others leave without a use; its
+    default is not echoed."""
+    for other, words in field.key.only.items():
+        if getattr(found, other) in words:
+            continue
+        if field.name in found.table:
+            told = " or ".join(words)
+            raise found.table.error(field.name, f"goes with `{other}` = {told}")
+        found.table.fill(field.name, None)

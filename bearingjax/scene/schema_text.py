@@ -1,0 +1,250 @@
+"""What a schema of scene files looks like outside: JSON Schema, and tables of keys."""
+
+import dataclasses
+import inspect
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from ..numerics.units import unit_of
+from .quantity import KINDS, kind_of
+from .schema import Field, Keys, element_of, fields_of, is_keys
+from .table import LARGEST, is_array
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+_QUANTITY = r"^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\s\d].*$"
+_ENDS = {
+    "above": "exclusiveMinimum",
+    "least": "minimum",
+    "below": "exclusiveMaximum",
+    "most": "maximum",
+}
+
+
+def table_schema(kind: type[Keys]) -> dict[str, Any]:
+    """JSON Schema of a table.
+
+    Args:
+        kind: Class that describes it.
+    """
+    known = fields_of(kind)
+    return object_schema(
+        {one.name: field_schema(one) for one in known},
+        [one.name for one in known if one.required],
+        _first_line(kind),
+    )
+
+
+def object_schema(
+    properties: Mapping[str, Any], required: list[str], description: str = ""
+) -> dict[str, Any]:
+    """JSON Schema of a table with these keys and no others.
+
+    Args:
+        properties: JSON Schema of each key.
+        required: Keys that must be given.
+        description: What the table is.
+    """
+    found: dict[str, Any] = {"type": "object"}
+    if description:
+        found["description"] = description
+    found |= {"properties": dict(properties), "additionalProperties": False}
+    return found | ({"required": required} if required else {})
+
+
+def field_schema(field: Field) -> dict[str, Any]:
+    """JSON Schema of one key.
+
+    Args:
+        field: From `fields_of`.
+    """
+    key, found = field.key, _bare_schema(field)
+    text = key.about + (f"; {key.allowed}" if key.allowed else "")
+    found = {**found, "description": text}
+    if isinstance(field.default, bool | int | str):
+        found["default"] = field.default
+    elif isinstance(field.default, float):
+        number = f"{field.default:g} {key.unit}" if key.kind else field.default
+        found["default"] = number
+    if key.otherwise:
+        found["x-otherwise"] = key.otherwise
+    return found
+
+
+def _bare_schema(field: Field) -> dict[str, Any]:
+    """Type and range of what may stand at a key."""
+    key, kinds = field.key, field.kinds
+    if key.reader is not None:
+        return dict(key.json)
+    if key.of:
+        return classes_schema(key.of)
+    if is_keys(kinds[0]):
+        return table_schema(kinds[0])
+    of_list = element_of(kinds[0])
+    if is_keys(of_list):
+        return {"type": "array", "items": table_schema(of_list), "minItems": 1}
+    if of_list is str:
+        return {
+            "type": "array",
+            "items": {"enum": list(key.choices)},
+            "uniqueItems": True,
+        }
+    if of_list is float:
+        return {"type": "array", "items": number_schema(key.kind)}
+    ends = {_ENDS[end]: getattr(key, end) for end in _ENDS}
+    ends = {name: end for name, end in ends.items() if end is not None}
+    several = []
+    for kind in kinds:
+        if kind is str:
+            several.append({"enum": list(key.choices)})
+        elif kind is bool:
+            several.append({"type": "boolean"})
+        elif kind is int:
+            several.append(
+                {"type": "integer", "minimum": 1, "maximum": LARGEST, **ends}
+            )
+        elif element_of(kind) is float:
+            several.append({"type": "array", "items": number_schema(key.kind)})
+        else:
+            several.append(number_schema(key.kind) | ({} if key.kind else ends))
+    return several[0] if len(several) == 1 else {"anyOf": several}
+
+
+def number_schema(kind: str) -> dict[str, Any]:
+    """JSON Schema of a quantity, or of a pure number.
+
+    Args:
+        kind: Of `quantity.KINDS`; empty for a pure number.
+    """
+    if not kind:
+        return {"type": "number"}
+    example = f"5 {KINDS[kind][1]}"
+    return {
+        "type": "string",
+        "pattern": _QUANTITY,
+        "examples": [example],
+        "x-kind": kind,
+    }
+
+
+def classes_schema(kinds: Mapping[str, type]) -> dict[str, Any]:
+    """JSON Schema of one of several classes: its word, or a table with its numbers.
+
+    Args:
+        kinds: The classes by their words.
+    """
+    bare = [word for word, kind in kinds.items() if not class_schema(kind)["required"]]
+    words = [{"enum": bare}] if bare else []
+    tables = [class_schema(kind, word) for word, kind in kinds.items()]
+    return {"anyOf": [*words, *tables]}
+
+
+def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
+    """JSON Schema of a table that holds the numbers of a class.
+
+    Args:
+        kind: Class whose fields have units.
+        word: Its `type`; empty: the table has none.
+        **more: JSON Schema of further keys.
+
+    Returns:
+        With `required` also if it is empty.
+    """
+    texts, properties, required = attribute_texts(kind), {}, []
+    if word:
+        properties["type"] = {"const": word, "description": _first_line(kind)}
+    for field in dataclasses.fields(kind):
+        if "unit" not in field.metadata:
+            continue
+        unit = unit_of(kind, field.name)
+        number = number_schema(kind_of(unit) if unit else "")
+        if is_array(field.type):
+            number = {"type": "array", "items": number}
+        properties[field.name] = number | {"description": texts.get(field.name, "")}
+        if field.default is dataclasses.MISSING:
+            required.append(field.name)
+    found = object_schema(properties | more, required, _first_line(kind))
+    return {**found, "required": required}
+
+
+def attribute_texts(kind: type) -> dict[str, str]:
+    """What the docstrings of a class and its bases say of its attributes.
+
+    Args:
+        kind: Class whose docstrings list "name: text" in indented lines.
+    """
+    found: dict[str, str] = {}
+    for base in reversed(kind.__mro__):
+        names: list[str] = []
+        for line in inspect.cleandoc(base.__dict__.get("__doc__") or "").splitlines():
+            match = re.match(r" {4}([a-z_]\w*(?:, \w+)*): (.*)", line)
+            if match:
+                names = match[1].split(", ")
+                found |= dict.fromkeys(names, match[2])
+            elif line.startswith(" " * 8) and names:
+                more = {name: f"{found[name]} {line.strip()}" for name in names}
+                found |= more
+            else:
+                names = []
+    return {name: text.rstrip(".") for name, text in found.items()}
+
+
+def _first_line(kind: type) -> str:
+    return (inspect.getdoc(kind) or "").partition("\n")[0].rstrip(".")
+
+
+def key_tables(schema: Mapping[str, Any], path: str = "") -> Iterator[str]:
+    """Tables of the keys of a JSON Schema in Markdown, one for each table of a scene.
+
+    Args:
+        schema: Of a table.
+        path: Its dotted name; empty for a whole scene.
+    """
+    for schema in schema.get("anyOf", [schema]):
+        if "properties" not in schema:
+            continue
+        rows, inner = [], []
+        for name, one in schema["properties"].items():
+            parts = [p for p in _objects(one) if "properties" in p]
+            place = f"{path}.{name}" if path else name
+            inner += [(place, part) for part in parts]
+            if path or not parts:
+                must = name in schema.get("required", ())
+                rows.append(_row(name, one, must))
+        if rows:
+            title = f"### `[{path}]`\n\n" if path else ""
+            about = schema.get("description", "")
+            head = "| key | holds | default | meaning |\n|---|---|---|---|\n"
+            yield f"{title}{about}\n\n{head}" + "".join(rows)
+        for place, part in inner:
+            yield from key_tables(part, place)
+
+
+def _objects(schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Tables that may stand at a key."""
+    if "items" in schema:
+        return _objects(schema["items"])
+    return list(schema.get("anyOf", [schema]))
+
+
+def _row(name: str, schema: Mapping[str, Any], must: bool) -> str:
+    default = schema.get("x-otherwise", schema.get("default", ""))
+    shown = "required" if must else str(default).lower() if default is not None else ""
+    cells = f"`{name}`", _holds(schema), shown, schema.get("description", "")
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
+
+
+def _holds(schema: Mapping[str, Any]) -> str:
+    """What may stand at a key, in a few words."""
+    if "x-kind" in schema:
+        return schema["x-kind"]
+    if "enum" in schema:
+        return ", ".join(f"`{word}`" for word in schema["enum"])
+    if "const" in schema:
+        return f"`{schema['const']}`"
+    if "items" in schema:
+        return f"list: {_holds(schema['items'])}"
+    if "anyOf" in schema:
+        return " or ".join(dict.fromkeys(map(_holds, schema["anyOf"])))
+    words = {"boolean": "true, false", "integer": "whole number", "object": "table"}
+    return words.get(schema.get("type", ""), schema.get("type", ""))
