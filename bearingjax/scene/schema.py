@@ -215,7 +215,7 @@ def _united(hint: Any) -> tuple[Any, ...]:
 
 def element_of(kind: Any) -> Any:
     """Type of the entries of `tuple[X, ...]`; `None` of any other type."""
-    return get_args(kind)[0] if get_origin(kind) is tuple else None
+    return next(iter(get_args(kind)), None) if get_origin(kind) is tuple else None
 
 
 def is_keys(kind: Any) -> bool:
@@ -225,46 +225,47 @@ def is_keys(kind: Any) -> bool:
 
 def _value(table: Table, field: Field) -> Any:
     """What stands at a key, in SI, within its range."""
-    name, one, kinds = field.name, field.key, field.kinds
+    name, one, kind = field.name, field.key, field.kinds[0]
     default = () if field.required else (field.default,)
+    absent = name not in table and not field.required
     if one.reader is not None:
         return one.reader(table, name)
     if one.of:
         return instance(table, name, one.of, *default)
-    if is_keys(kinds[0]):
-        if name not in table and not field.required:
+    inner = element_of(kind)
+    if is_keys(kind):
+        if absent:
             return field.default
-        return read_keys(kinds[0], table.table(name, required=field.required))
-    of_list = element_of(kinds[0])
-    if is_keys(of_list):
-        if name not in table and not field.required:
+        return read_keys(kind, table.table(name, required=field.required))
+    if is_keys(inner):
+        if absent:
             return field.default
-        return tuple(read_keys(of_list, part) for part in table.tables(name))
-    if of_list is str:
+        return tuple(read_keys(inner, part) for part in table.tables(name))
+    if inner is str:
         return table.words(name, one.choices)
-    if of_list is float:
-        return _in_range(table, name, tuple(table.quantities(name, one.kind)), one)
-    if len(kinds) > 1 and element_of(kinds[1]) is float:  # one number, or a list
-        if isinstance(table.raw(name, None), list):
-            return _in_range(table, name, tuple(table.quantities(name, one.kind)), one)
-    if kinds[0] is str or (str in kinds and table.word(name) in one.choices):
+    if kind is str or (str in field.kinds and table.word(name) in one.choices):
         return table.choice(name, tuple(one.choices), *default)
-    if kinds[0] is bool:
-        return (
-            table.flag(name, *default) if default != (None,) or name in table else None
-        )
-    if kinds[0] is int:
-        least = 1 if one.least is None else int(one.least)
-        value = table.integer(name, *default, least=least)
-        if value is not None and one.most is not None and value > one.most:
-            raise table.error(name, f"{value} is too many; at most {one.most:g}")
-        return value
-    read = table.quantity if one.kind else _bare(table)
-    return _in_range(table, name, read(name, one.kind, *default), one)
+    if kind is bool:
+        return None if absent and default == (None,) else table.flag(name, *default)
+    if kind is int:
+        return _count(table, name, one, *default)
+    lists = inner is float, any(element_of(k) is float for k in field.kinds[1:])
+    if lists[0] or (lists[1] and isinstance(table.raw(name, None), list)):
+        if absent:
+            return field.default
+        return _in_range(table, name, tuple(table.quantities(name, one.kind)), one)
+    if one.kind:
+        return _in_range(table, name, table.quantity(name, one.kind, *default), one)
+    return _in_range(table, name, table.number(name, *default), one)
 
 
-def _bare(table: Table) -> Callable[..., Any]:
-    return lambda name, kind, *default: table.number(name, *default)
+def _count(table: Table, name: str, one: Key, *default: Any) -> Any:
+    """A whole number in the range of a key."""
+    least = 1 if one.least is None else int(one.least)
+    value = table.integer(name, *default, least=least)
+    if name in table and one.most is not None and value > one.most:
+        raise table.error(name, f"{value} is too many; at most {one.most:g}")
+    return value
 
 
 def _in_range(table: Table, name: str, value: Any, one: Key) -> Any:

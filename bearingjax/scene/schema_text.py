@@ -200,20 +200,20 @@ def key_tables(schema: Mapping[str, Any], path: str = "") -> Iterator[str]:
         schema: Of a table.
         path: Its dotted name; empty for a whole scene.
     """
-    for schema in schema.get("anyOf", [schema]):
-        if "properties" not in schema:
+    for table in schema.get("anyOf", [schema]):
+        if "properties" not in table:
             continue
         rows, inner = [], []
-        for name, one in schema["properties"].items():
+        for name, one in table["properties"].items():
             parts = [p for p in _objects(one) if "properties" in p]
             place = f"{path}.{name}" if path else name
             inner += [(place, part) for part in parts]
             if path or not parts:
-                must = name in schema.get("required", ())
+                must = name in table.get("required", ())
                 rows.append(_row(name, one, must))
         if rows:
             title = f"### `[{path}]`\n\n" if path else ""
-            about = schema.get("description", "")
+            about = table.get("description", "")
             head = "| key | holds | default | meaning |\n|---|---|---|---|\n"
             yield f"{title}{about}\n\n{head}" + "".join(rows)
         for place, part in inner:
@@ -247,4 +247,5 @@ def _holds(schema: Mapping[str, Any]) -> str:
     if "anyOf" in schema:
         return " or ".join(dict.fromkeys(map(_holds, schema["anyOf"])))
     words = {"boolean": "true, false", "integer": "whole number", "object": "table"}
-    return words.get(schema.get("type", ""), schema.get("type", ""))
+    kind = str(schema.get("type", ""))
+    return words.get(kind, kind)
