@@ -12,8 +12,9 @@ from ..contact.halfspace import FreeEnds, RollerContact
 from ..contact.line import AbstractLineLaw
 from ..design import Material
 from .bearing_table import read_material, read_profile
-from .choices_table import read_line_law
+from .choices_table import LineContactKeys
 from .scene_file import find_scene, parse_scene
+from .schema import read_keys
 from .table import Table, written_numbers
 
 LAWS = ("palmgren", "iso16281")
@@ -200,7 +201,7 @@ def _scene(top: Table, name, contact: RollerContact, odd) -> ContactScene:
         loads=loads,
         listed=listed,
         **_motion(operating, loads),
-        law=read_line_law(law),
+        law=read_keys(LineContactKeys, law).law,
         **grid,
         tolerance=tolerance,
         max_steps=numerics.integer("max_steps", 500),

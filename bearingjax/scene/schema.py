@@ -29,7 +29,7 @@ class Key:
         above, least, below, most: Range, in SI; temperatures in °C.
         choices: Words that may stand there.
         of: Classes that may stand there, by the word or the `type` that names them.
-        hint: What an error about the range adds.
+        hint: What an error about the range, or about what is no table, adds.
         needs: Keys of which one must stand beside this one.
         without: Keys that must not stand beside this one, with what an error says;
             empty for "give either ... or this, not both".
@@ -144,6 +144,14 @@ class Keys:
 
     table: Table = dataclasses.field(repr=False, compare=False)
 
+    @property
+    def given(self) -> dict[str, Any]:
+        """Values of the keys that have one, by the name of the field."""
+        values = {
+            f.attribute: getattr(self, f.attribute) for f in fields_of(type(self))
+        }
+        return {name: value for name, value in values.items() if value is not None}
+
     def check(self) -> None:
         """Raise SceneError where keys do not go together; nothing by default."""
 
@@ -236,14 +244,17 @@ def _value(table: Table, field: Field) -> Any:
     if is_keys(kind):
         if absent:
             return field.default
-        return read_keys(kind, table.table(name, required=field.required))
+        inside = table.table(name, required=field.required, hint=one.hint)
+        return read_keys(kind, inside)
     if is_keys(inner):
         if absent:
             return field.default
         return tuple(read_keys(inner, part) for part in table.tables(name))
     if inner is str:
         return table.words(name, one.choices)
-    if kind is str or (str in field.kinds and table.word(name) in one.choices):
+    word = table.word(name) if str in field.kinds else None
+    # Text where a pure number may stand is a word, and maybe misspelt.
+    if kind is str or (word is not None and (word in one.choices or not one.kind)):
         return table.choice(name, tuple(one.choices), *default)
     if kind is bool:
         return None if absent and default == (None,) else table.flag(name, *default)
