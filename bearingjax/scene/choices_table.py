@@ -72,7 +72,6 @@ class LineContactKeys(Keys):
     line_constant: float | None = scene_key(
         "constant of q = K δ^(10/9), in place of the law's",
         "line constant",
-        default=None,
         only={"line_law": ("palmgren", "iso16281")},
     )
     slices: int = scene_key(
@@ -102,10 +101,10 @@ class PointContactKeys(Keys):
         default="free_angle",
     )
     outer_constant: float | None = scene_key(
-        "constant of Q = K δ^(3/2) on the outer raceway", "point constant", default=None
+        "constant of Q = K δ^(3/2) on the outer raceway", "point constant"
     )
     inner_constant: float | None = scene_key(
-        "constant on the inner raceway", "point constant", default=None
+        "constant on the inner raceway", "point constant"
     )
 
     def check(self) -> None:
@@ -136,7 +135,7 @@ class ControlKeys(Keys):
         default="outer",
     )
     friction_coefficient: float | None = scene_key(
-        "friction that holds the gyroscopic moment", default=None
+        "friction that holds the gyroscopic moment"
     )
 
     def check(self) -> None:
@@ -163,7 +162,6 @@ class BallNumericsKeys(Keys):
     kinematics: str | None = scene_key(
         "how rings displace the raceways",
         choices=tuple(KINEMATICS),
-        default=None,
         otherwise="`finite`",
     )
     equilibrium: str = scene_key(
@@ -186,9 +184,7 @@ class RollerNumericsKeys(BallNumericsKeys):
         "rule along the rollers", choices=tuple(QUADRATURES), default="contact_mapped"
     )
     points: int | None = scene_key(
-        "nodes of a contact, or slices of a roller",
-        default=None,
-        otherwise="those of the rule",
+        "nodes of a contact, or slices of a roller", otherwise="those of the rule"
     )
 
     def rule(self, n_rollers: int) -> AbstractQuadrature:

@@ -27,21 +27,13 @@ class LifeKeys(Keys):
     """[life]: what a rating life needs beside the bearing."""
 
     dynamic_capacity: float | None = scene_key(
-        "basic dynamic load rating C",
-        "force",
-        default=None,
-        above=0,
-        otherwise=_RATED,
+        "basic dynamic load rating C", "force", above=0, otherwise=_RATED
     )
     static_capacity: float | None = scene_key(
-        "basic static load rating C0",
-        "force",
-        default=None,
-        above=0,
-        otherwise=_RATED,
+        "basic static load rating C0", "force", above=0, otherwise=_RATED
     )
     fatigue_load_limit: float | None = scene_key(
-        "fatigue load limit Cu", "force", default=None, above=0, otherwise=_RATED
+        "fatigue load limit Cu", "force", above=0, otherwise=_RATED
     )
     reliability: float = scene_key(
         "share of bearings that reach the life",
@@ -58,7 +50,6 @@ class LifeKeys(Keys):
     )
     contamination: float | str | None = scene_key(
         "contamination factor e_C, or a class of ISO 281: the modified life is told",
-        default=None,
         least=0,
         most=1,
         choices=tuple(CLEANLINESS),
@@ -67,7 +58,6 @@ class LifeKeys(Keys):
     viscosity: float | None = scene_key(
         "of the oil in operation",
         "kinematic viscosity",
-        default=None,
         above=0,
         below=1,
         otherwise="that of [lubricant] at its temperature",

@@ -17,24 +17,24 @@ roller as JSON."""
 class LoadKeys(Keys):
     """Load on the moving ring."""
 
-    Fx: float | None = scene_key("force along x", "force", default=None)
-    Fy: float | None = scene_key("force along y", "force", default=None)
-    Fz: float | None = scene_key("axial force", "force", default=None)
-    Mx: float | None = scene_key("moment about x", "moment", default=None)
-    My: float | None = scene_key("moment about y", "moment", default=None)
-    Mz: float | None = scene_key("moment about the axis", "moment", default=None)
+    Fx: float | None = scene_key("force along x", "force")
+    Fy: float | None = scene_key("force along y", "force")
+    Fz: float | None = scene_key("axial force", "force")
+    Mx: float | None = scene_key("moment about x", "moment")
+    My: float | None = scene_key("moment about y", "moment")
+    Mz: float | None = scene_key("moment about the axis", "moment")
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class MotionKeys(Keys):
     """Displacements at which the moving ring is held."""
 
-    ux: float | None = scene_key("displacement along x", "length", default=None)
-    uy: float | None = scene_key("displacement along y", "length", default=None)
-    uz: float | None = scene_key("axial displacement", "length", default=None)
-    gx: float | None = scene_key("tilt about x", "angle", default=None)
-    gy: float | None = scene_key("tilt about y", "angle", default=None)
-    gz: float | None = scene_key("turn about the axis", "angle", default=None)
+    ux: float | None = scene_key("displacement along x", "length")
+    uy: float | None = scene_key("displacement along y", "length")
+    uz: float | None = scene_key("axial displacement", "length")
+    gx: float | None = scene_key("tilt about x", "angle")
+    gy: float | None = scene_key("tilt about y", "angle")
+    gz: float | None = scene_key("turn about the axis", "angle")
 
 
 def _named(example: str) -> str:
@@ -51,17 +51,14 @@ class OperatingKeys(Keys):
         default="outer",
     )
     load: LoadKeys | None = scene_key(
-        "load on the moving ring", default=None, hint=_named('Fy = "-4 kN"')
+        "load on the moving ring", hint=_named('Fy = "-4 kN"')
     )
     prescribed: MotionKeys | None = scene_key(
-        "displacements at which the moving ring is held",
-        default=None,
-        hint=_named('uz = "10 um"'),
+        "displacements at which the moving ring is held", hint=_named('uz = "10 um"')
     )
     free: tuple[str, ...] | None = scene_key(
         "freedoms that may move",
         choices=FREEDOMS[:5],
-        default=None,
         otherwise="all that the bearing restrains and nothing prescribes",
     )
     inner_speed: float = scene_key("speed of the inner ring", "speed", default=0.0)
@@ -118,7 +115,6 @@ class SolveKeys(Keys):
 
     tolerance: float | None = scene_key(
         "relative residual at which it ends",
-        default=None,
         least=1e-14,
         below=0.01,
         otherwise=f"{DEFAULT_TOLERANCE['float64']:g}",
