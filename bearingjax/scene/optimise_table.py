@@ -3,7 +3,7 @@
 import dataclasses
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..design import BearingSet, is_ball, rows_of
 from ..design.fits import PARTS
@@ -29,6 +29,7 @@ from .life_table import life_conditions
 from .quantity import SceneError, kind_of
 from .read import Scene, scene_of
 from .scene_file import find_scene, parse_bearing
+from .schema import Keys, read_keys, scene_key
 from .table import Table, not_among
 
 OBJECTIVES = (
@@ -78,6 +79,90 @@ class Optimisation:
     max_steps: int
     tolerance: float
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
+
+
+OF_FREEDOM = ("displacement", "stiffness")
+"""Objectives that are those of one freedom."""
+_QUANTITY: dict[str, Any] = {"type": "string"}
+
+
+def _later(table: Table, name: str) -> Any:
+    """What stands there, whose unit follows from the measure."""
+    return table.raw(name, None)
+
+
+def _freedom(of: str) -> Any:
+    return scene_key(
+        "freedom of the displacement or stiffness",
+        choices=FREEDOMS[:5],
+        only={of: OF_FREEDOM},
+    )
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class ConstraintKeys(Keys):
+    """[[optimise.constraints]]: a bound on a measure."""
+
+    measure: str = scene_key("what is bounded", choices=OBJECTIVES)
+    freedom: str | None = _freedom("measure")
+    at_least: Any = scene_key(
+        "lower bound, in the unit of the measure",
+        default=None,
+        reader=_later,
+        json=_QUANTITY,
+    )
+    at_most: Any = scene_key(
+        "upper bound, in the unit of the measure",
+        default=None,
+        reader=_later,
+        json=_QUANTITY,
+    )
+
+    def check(self) -> None:
+        if self.at_least is None and self.at_most is None:
+            problem = "give `at_least`, `at_most` or both"
+            raise self.table.error("measure", problem)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class OptimiseKeys(Keys):
+    """[optimise]: what is free, what is made least, and what is kept."""
+
+    objective: str = scene_key(
+        "what is made least; a life in hours is made largest", choices=OBJECTIVES
+    )
+    freedom: str | None = _freedom("objective")
+    target: Any = scene_key(
+        "stiffness that is wanted, with its unit",
+        default=None,
+        only={"objective": ("stiffness",)},
+        reader=_later,
+        json=_QUANTITY,
+    )
+    exponent: float = scene_key(
+        "of the norm that stands for a maximum over rolling elements and cases",
+        default=EXPONENT,
+    )
+    variables: Any = scene_key(
+        "free numbers by their key in the scene, in quotes: `{ from, to, start }`",
+        reader=lambda table, name: table.table(name, required=True),
+        json={"type": "object", "additionalProperties": {"type": "object"}},
+    )
+    constraints: tuple[ConstraintKeys, ...] = scene_key(
+        "bounds on measures", default=()
+    )
+    method: str | None = scene_key(
+        "search", choices=METHODS, otherwise="by the constraints and variables"
+    )
+    max_steps: int = scene_key("step limit", default=200)
+    tolerance: float = scene_key(
+        "gradient at which the search ends", default=1e-5, above=0, below=0.1
+    )
+
+    def check(self) -> None:
+        if self.constraints and self.method not in (None, "slsqp"):
+            problem = f'{self.method!r} keeps no constraints; take "slsqp" or leave it'
+            raise self.table.error("method", f"{problem} out")
 
 
 def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optimisation:
@@ -150,34 +235,21 @@ def _operating(scene: Scene) -> Cases:
 def _optimisation(
     top: Table, table: Table, scene: Scene, cases: Cases, begun: set[str]
 ) -> Optimisation:
-    element = scene.element
-    kind = table.choice("objective", OBJECTIVES)
-    balls = is_ball(element.bearing)
-    exponent = table.number("exponent", EXPONENT)
+    keys, balls = read_keys(OptimiseKeys, table), is_ball(scene.element.bearing)
     with table.building():
-        PeakPressure(exponent)
-    life = _life(scene, cases, table.table("variables").keys())
-    objective = _measure(table, "objective", kind, exponent, balls, life, target=True)
-    constraints = ()
-    if "constraints" in table:
-        constraints = tuple(
-            _constraint(part, exponent, balls, life)
-            for part in table.tables("constraints")
-        )
-    fit = top.table("fit")
-    free = table.table("variables", required=True)
-    variables = _variables(free, fit, scene, begun)
-    method = table.choice("method", METHODS, None)
-    if constraints and method not in (None, "slsqp"):
-        problem = f'{method!r} keeps no constraints; take "slsqp" or leave it out'
-        raise table.error("method", problem)
-    tolerance = table.number("tolerance", 1e-5)
-    if not 0.0 < tolerance < 0.1:
-        problem = f"{tolerance:g} is not allowed; above 0 and below 0.1"
-        raise table.error("tolerance", problem)
-    steps = table.integer("max_steps", 200)
+        PeakPressure(keys.exponent)
+    measured = _Measured(
+        keys.exponent, balls, _life(scene, cases, keys.variables.keys())
+    )
     return Optimisation(
-        scene, cases, variables, objective, constraints, method, steps, tolerance
+        scene,
+        cases,
+        _variables(keys.variables, top.table("fit"), scene, begun),
+        measured.objective(keys),
+        tuple(measured.constraint(one) for one in keys.constraints),
+        keys.method,
+        keys.max_steps,
+        keys.tolerance,
     )
 
 
@@ -250,18 +322,6 @@ def _no_number(key, table, numbers):
     return not_among(key, tuple(numbers))
 
 
-def _constraint(table: Table, exponent, balls, life) -> Constraint:
-    kind = table.choice("measure", OBJECTIVES)
-    measure = _measure(table, "measure", kind, exponent, balls, life)
-    least, most = (
-        table.quantity(key, _kind_of(measure), None) for key in ("at_least", "at_most")
-    )
-    if least is None and most is None:
-        raise table.error("measure", "give `at_least`, `at_most` or both")
-    with table.building():
-        return Constraint(measure, least, most)
-
-
 def _life(scene: Scene, cases: Cases, varied: Iterable[str]) -> RatingLife | None:
     """Rating life in hours by the [life] of a scene, or `None` without speeds."""
     if cases.inner_speed is None and cases.outer_speed is None:
@@ -269,28 +329,55 @@ def _life(scene: Scene, cases: Cases, varied: Iterable[str]) -> RatingLife | Non
     return RatingLife(life_conditions(scene, varied), True)
 
 
-def _measure(table: Table, key, kind, exponent, balls, life, target=False) -> Any:
-    if kind == "rating_life":
-        if life is None:
-            problem = "rating_life is in hours: it needs a speed in [operating]"
-            raise table.error(key, problem)
-        return life
-    if kind == "peak_pressure":
-        return PeakPressure(exponent)
-    if kind == "mean_pressure":
-        return MeanPressure(exponent)
-    if kind == "edge_load":
-        if balls:
-            raise table.error(key, "balls have no ends; `edge_load` is for rollers")
-        return EdgeLoad(exponent)
-    freedom = table.choice("freedom", FREEDOMS[:5])
-    if kind == "displacement":
-        return Displacement(freedom, exponent)
-    if not target:
-        return Stiffness(freedom, exponent)
-    wanted = table.quantity("target", _kind_of(Stiffness(freedom)))
-    with table.building():
-        return StiffnessTarget(wanted, freedom)
+class _Measured(NamedTuple):
+    """Measures of a bearing.
+
+    Attributes:
+        exponent: Of the norms.
+        balls: Whether its rolling elements are balls.
+        life: Its rating life in hours, or `None` without a speed.
+    """
+
+    exponent: float
+    balls: bool
+    life: RatingLife | None
+
+    def objective(self, keys: OptimiseKeys) -> Any:
+        """What is made least."""
+        if keys.objective != "stiffness":
+            return self._measure(keys, "objective")
+        kind = _kind_of(self._measure(keys, "objective"))
+        wanted = keys.table.quantity("target", kind)
+        with keys.table.building():
+            return StiffnessTarget(wanted, keys.freedom or "")
+
+    def constraint(self, keys: ConstraintKeys) -> Constraint:
+        """A bound on a measure."""
+        measure = self._measure(keys, "measure")
+        kind, table = _kind_of(measure), keys.table
+        ends = [table.quantity(key, kind, None) for key in ("at_least", "at_most")]
+        with table.building():
+            return Constraint(measure, *ends)
+
+    def _measure(self, keys: OptimiseKeys | ConstraintKeys, key: str) -> Any:
+        kind = getattr(keys, key)
+        if kind == "rating_life":
+            if self.life is None:
+                problem = "rating_life is in hours: it needs a speed in [operating]"
+                raise keys.table.error(key, problem)
+            return self.life
+        if kind == "peak_pressure":
+            return PeakPressure(self.exponent)
+        if kind == "mean_pressure":
+            return MeanPressure(self.exponent)
+        if kind == "edge_load":
+            if self.balls:
+                problem = "balls have no ends; `edge_load` is for rollers"
+                raise keys.table.error(key, problem)
+            return EdgeLoad(self.exponent)
+        freedom = keys.freedom or keys.table.choice("freedom", FREEDOMS[:5])
+        of = Displacement if kind == "displacement" else Stiffness
+        return of(freedom, self.exponent)
 
 
 def _kind_of(measure) -> str:

@@ -17,6 +17,7 @@ from .fit_table import FitKeys, TemperatureKeys
 from .life_table import LifeKeys
 from .noise_table import VibrationKeys
 from .operating_table import OperatingKeys, OutputKeys, SolveKeys
+from .optimise_table import OptimiseKeys
 from .schema import Keys
 from .schema_text import (
     DIALECT,
@@ -47,6 +48,7 @@ def _bearing_scene() -> dict[str, Any]:
         "life": table_schema(LifeKeys),
         "output": table_schema(OutputKeys),
         "cases": table_schema(CasesKeys),
+        "optimise": table_schema(OptimiseKeys),
         "vibration": table_schema(VibrationKeys),
     }
     return object_schema(tables, ["bearing"], "a bearing under load")

@@ -277,7 +277,7 @@ FILES = {
     ),
     "target of a pressure": (
         GOOD.replace('"stiffness"', '"peak_pressure"').replace('freedom = "uy"', ""),
-        "`optimise.target`: unknown key",
+        "`optimise.target`: goes with `objective` = stiffness",
     ),
     "exponent": (
         "exponent = 1\n" + GOOD,
