@@ -17,6 +17,7 @@ from . import (
     noise,
     optimise,
     rotor,
+    schema,
     skid,
     solve,
     sweep,
@@ -35,6 +36,7 @@ _COMMANDS = (
     catalogue,
     new,
     examples,
+    schema,
 )
 
 

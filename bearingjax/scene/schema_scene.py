@@ -18,27 +18,58 @@ from .life_table import LifeKeys
 from .noise_table import VibrationKeys
 from .operating_table import OperatingKeys, OutputKeys, SolveKeys
 from .optimise_table import OptimiseKeys
+from .quantity import SceneError
 from .schema import Keys
 from .schema_text import (
     DIALECT,
     class_schema,
     classes_schema,
+    key_tables,
     number_schema,
     object_schema,
     table_schema,
 )
+from .table import not_among
 
 
 def scene_schema() -> dict[str, Any]:
     """JSON Schema of every scene."""
-    kinds = _bearing_scene()
-    return {"$schema": DIALECT, "title": "bearingjax scene", **kinds}
+    numbers = {"anyOf": [{"enum": [*MATERIALS]}, class_schema(Material)]}
+    defs = {
+        "bearing": _bearing(),
+        "material": numbers,
+        # Without a `type` it is straight.
+        "profile": {"anyOf": [*_profiles(), object_schema({}, [])]},
+        "rib": class_schema(Rib),
+    }
+    head = {"$schema": DIALECT, "title": "Scene of bearingjax"}
+    return {**head, **_bearing_scene(), "$defs": defs}
+
+
+def key_guide(name: str = "") -> str:
+    """Tables of the keys of scenes, in Markdown.
+
+    Args:
+        name: Dotted name of one table, such as "operating.load"; empty for all.
+
+    Raises:
+        SceneError: If there is no such table.
+    """
+    schema = scene_schema()
+    found = [*key_tables(schema)]
+    for word, one in schema["$defs"].items():
+        found += key_tables(one, word)
+    names = [path for path, _ in found]
+    if name and name not in names:
+        raise SceneError(f"schema: {not_among(name, tuple(dict.fromkeys(names)))}")
+    chosen = [text for path, text in found if not name or path == name]
+    return "\n".join(chosen)
 
 
 def _bearing_scene() -> dict[str, Any]:
     """Of a bearing: `solve`, `sweep`, `life`, `optimise`, `skid`, `noise`."""
     tables = {
-        "bearing": _bearing(),
+        "bearing": _ref("bearing"),
         "set": _set(),
         "contact": _merged(LineContactKeys, PointContactKeys),
         "operating": _merged(OperatingKeys, ControlKeys),
@@ -67,7 +98,7 @@ def _set() -> dict[str, Any]:
     """Of a [set], whose rows may have bearings of their own."""
     found = table_schema(SetKeys)
     row = found["properties"]["rows"]["items"]
-    row["properties"]["bearing"] = _bearing() | {"description": "keys as of [bearing]"}
+    row["properties"]["bearing"] = _ref("bearing", "bearing of this row alone")
     return found
 
 
@@ -90,33 +121,34 @@ def _of_type(word: str, kind: type) -> dict[str, Any]:
         count: {"type": "integer", "minimum": 1, "description": "rolling elements"}
     }
     if word in ROLLERS:
-        profile = _said("profile of the rollers", {"anyOf": [*_profiles()]})
-        raceway = _said("profile of the raceway", {"anyOf": [*_profiles()]})
-        raceways = object_schema({ring: raceway for ring in RINGS}, [])
-        rib, about = class_schema(Rib), "every rib of the `arrangement`"
-        ribs = object_schema({name: rib for name in RIB_NAMES}, [], "ribs by name")
-        more |= {"roller_profile": profile, "raceway_profile": raceways, "ribs": ribs}
+        raceway = _ref("profile", "profile of the raceway")
+        ribs = {name: _ref("rib") for name in RIB_NAMES}
+        more |= {
+            "roller_profile": _ref("profile", "profile of the rollers"),
+            "raceway_profile": object_schema(dict.fromkeys(RINGS, raceway), []),
+            "ribs": object_schema(ribs, [], "ribs by name"),
+        }
         if word != "tapered_roller":
-            letters = {"enum": [*ARRANGEMENTS]}
+            letters, play = {"enum": [*ARRANGEMENTS]}, number_schema("length")
             more |= {
-                "arrangement": _said("letters of the ribs: NU, NJ …", letters),
-                "rib": _said(about, rib),
-                "axial_internal_clearance": _said(
-                    "axial play between the ribs", number_schema("length")
-                ),
+                "arrangement": {**letters, "description": "letters of the ribs"},
+                "rib": _ref("rib", "every rib of the `arrangement`"),
+                "axial_internal_clearance": {
+                    **play,
+                    "description": "axial play between the ribs",
+                },
             }
-    numbers = {"anyOf": [{"enum": [*MATERIALS]}, class_schema(Material)]}
-    more["material"] = _said("material of the rolling elements", numbers)
-    more["ring_material"] = _said("material of the rings, if another", numbers)
+    more["material"] = _ref("material", "material of the rolling elements")
+    more["ring_material"] = _ref("material", "material of the rings, if another")
     found = class_schema(kind, word, **more)
     must = ("type", count, *required_numbers(word), *found["required"])
     return {**found, "required": [*dict.fromkeys(must)]}
 
 
 def _profiles() -> list[dict[str, Any]]:
-    """Profiles; without a `type` straight."""
-    return [*classes_schema(PROFILES)["anyOf"][1:], object_schema({}, [])]
+    return [one for one in classes_schema(PROFILES)["anyOf"] if "properties" in one]
 
 
-def _said(about: str, schema: dict[str, Any]) -> dict[str, Any]:
-    return {**schema, "description": about}
+def _ref(name: str, about: str = "") -> dict[str, Any]:
+    found = {"$ref": f"#/$defs/{name}"}
+    return {**found, "description": about} if about else found

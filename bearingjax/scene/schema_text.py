@@ -4,7 +4,7 @@ import dataclasses
 import inspect
 import re
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, get_args
 
 from ..numerics.units import unit_of
 from .quantity import KINDS, kind_of
@@ -151,17 +151,27 @@ def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
     if word:
         properties["type"] = {"const": word, "description": _first_line(kind)}
     for field in dataclasses.fields(kind):
-        if "unit" not in field.metadata:
+        if "unit" not in field.metadata or len(_shape(field.type)) > 1:
             continue
         unit = unit_of(kind, field.name)
         number = number_schema(kind_of(unit) if unit else "")
         if is_array(field.type):
             number = {"type": "array", "items": number}
-        properties[field.name] = number | {"description": texts.get(field.name, "")}
+        about = re.sub(r" (\[[^\]]*\]|\(\w+,\))", "", texts.get(field.name, ""))
+        about, _, none = about.partition("; `None`: ")
+        properties[field.name] = {**number, "description": about}
+        if none:
+            properties[field.name]["x-otherwise"] = none
         if field.default is dataclasses.MISSING:
             required.append(field.name)
     found = object_schema(properties | more, required, _first_line(kind))
     return {**found, "required": required}
+
+
+def _shape(annotation: Any) -> list[str]:
+    """Axes of an array; none of a number."""
+    kinds = get_args(annotation) or (annotation,)
+    return " ".join(getattr(kind, "dim_str", "") for kind in kinds).split()
 
 
 def attribute_texts(kind: type) -> dict[str, str]:
@@ -190,8 +200,8 @@ def _first_line(kind: type) -> str:
     return (inspect.getdoc(kind) or "").partition("\n")[0].rstrip(".")
 
 
-def key_tables(schema: Mapping[str, Any], path: str = "") -> Iterator[str]:
-    """Tables of the keys of a JSON Schema in Markdown, one for each table of a scene.
+def key_tables(schema: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, str]]:
+    """Tables of the keys of a JSON Schema in Markdown, with the names of their tables.
 
     Args:
         schema: Of a table.
@@ -200,19 +210,15 @@ def key_tables(schema: Mapping[str, Any], path: str = "") -> Iterator[str]:
     for table in schema.get("anyOf", [schema]):
         if "properties" not in table:
             continue
-        rows, inner = [], []
+        rows, inner = "", []
         for name, one in table["properties"].items():
-            parts = [p for p in _objects(one) if "properties" in p]
             place = f"{path}.{name}" if path else name
-            inner += [(place, part) for part in parts]
-            if path or not parts:
-                must = name in table.get("required", ())
-                rows.append(_row(name, one, must))
-        if rows:
-            title = f"### `[{path}]`\n\n" if path else ""
-            about = table.get("description", "")
+            inner += [(place, part) for part in _objects(one) if "properties" in part]
+            rows += _row(name, one, name in table.get("required", ()))
+        if path and rows:
+            about = table.get("description", "").removeprefix(f"[{path}]: ")
             head = "| key | holds | default | meaning |\n|---|---|---|---|\n"
-            yield f"{title}{about}\n\n{head}" + "".join(rows)
+            yield path, f"### `[{path}]`\n\n{about}\n\n{head}{rows}"
         for place, part in inner:
             yield from key_tables(part, place)
 
@@ -227,12 +233,16 @@ def _objects(schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 def _row(name: str, schema: Mapping[str, Any], must: bool) -> str:
     default = schema.get("x-otherwise", schema.get("default", ""))
     shown = "required" if must else str(default).lower() if default is not None else ""
-    cells = f"`{name}`", _holds(schema), shown, schema.get("description", "")
+    about = schema.get("description", "")
+    about = re.sub(r"^\[+[\w.]+\]+: ", "", about)
+    cells = f"`{name}`", _holds(schema), shown, about
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
 
 
 def _holds(schema: Mapping[str, Any]) -> str:
     """What may stand at a key, in a few words."""
+    if "$ref" in schema:
+        return f"a {schema['$ref'].rpartition('/')[2]}"
     if "x-kind" in schema:
         return schema["x-kind"]
     if "enum" in schema:

@@ -1,0 +1,136 @@
+"""The schema of scene files: what editors check, what the guide tells, what is read."""
+
+import dataclasses
+import json
+import tomllib
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from bearingjax import SceneError, scene
+from bearingjax.scene import shipped_scenes
+from bearingjax.scene.quantity import KINDS
+from bearingjax.scene.schema import Keys, fields_of, read_keys
+from bearingjax.scene.schema_scene import key_guide, scene_schema
+from bearingjax.scene.table import Table
+
+
+def classes(kind=Keys):
+    for sub in kind.__subclasses__():
+        yield sub
+        yield from classes(sub)
+
+
+TABLES = sorted(classes(), key=lambda kind: kind.__name__)
+
+
+@pytest.fixture(scope="module")
+def validator():
+    schema = scene_schema()
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
+
+
+def faults(validator, data):
+    return [
+        f"{list(e.absolute_path)}: {e.message}" for e in validator.iter_errors(data)
+    ]
+
+
+@pytest.mark.parametrize("name", shipped_scenes())
+def test_schema_holds_for_shipped_scenes_and_their_echo(name, validator):
+    path = shipped_scenes()[name]
+    data = tomllib.loads(path.read_text("utf-8"))
+    assert not faults(validator, data)
+    if "rotor" in data:
+        found = scene.read_rotor(name)
+    elif "roller" in data:
+        found = scene.read_contact(name)
+    elif "vibration" in data:
+        found = scene.read_noise(name)
+    elif "dynamics" in data:
+        found = scene.read_skid(name, steady=True)
+    else:
+        found = scene.read_scene(name)
+    assert not faults(validator, found.inputs)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"operating": {"load": {"Fq": "1 kN"}}},
+        {"operating": {"inner_speed": 3000}},
+        {"operating": {"fixed_ring": "left"}},
+        {"numerics": {"tolerance": 0.5}},
+        {"bearing": {"type": "deep_groove_ball", "n_balls": 8}},
+        {"bearing": {"designation": "6205", "n_balls": 0}},
+        {"life": {"reliability": 95}},
+        {"strange": {}},
+    ],
+    ids=json.dumps,
+)
+def test_schema_refuses(change, validator):
+    data = {"bearing": {"designation": "6205"}, **change}
+    assert faults(validator, data)
+
+
+def test_guide_of_keys_is_current():
+    guide = Path(scene.__file__).with_name("KEYS.md").read_text("utf-8")
+    _, _, tables = guide.partition("\n\n## Tables\n\n")
+    assert tables == key_guide(), (
+        "run `bearingjax schema --keys` and put what it prints below `## Tables`"
+    )
+
+
+def test_schema_command_prints_json_and_tables_of_keys(run):
+    assert json.loads(run("schema").out) == json.loads(json.dumps(scene_schema()))
+    done = run("schema", "--keys", "operating.load")
+    assert done.status == 0 and done.out.count("| force |") == 3
+    done = run("schema", "--keys", "operating.lod")
+    assert done.status == 2 and "did you mean `operating.load`?" in done.err
+
+
+def bad_values(field):
+    """Values that a key must refuse, with part of the message."""
+    key, kinds = field.key, field.kinds
+    if key.reader is not None or key.of:
+        return
+    if kinds == (float,) and key.kind:
+        unit, example = KINDS[key.kind]
+        yield 3, "has no unit"
+        yield f"3 {example}lots", "has the unknown unit"
+        other = "kg" if unit != "kg" else "mm"
+        yield f"3 {other}", "is not a"
+    elif kinds == (float,):
+        yield "3 mm", "is not a bare number"
+        yield float("nan"), "is not a finite number"
+    elif kinds == (int,):
+        yield 2.5, "is not a whole number"
+        yield -1, "is not a whole number of at least"
+    elif kinds == (bool,):
+        yield "yes", "is not true or false"
+    elif kinds == (str,) and key.choices:
+        yield "no such word", "is not known"
+    if kinds[0] in (int, float) and not key.kind:
+        for end, step in (("above", 0), ("least", -1), ("below", 0), ("most", 1)):
+            value = getattr(key, end)
+            if value is not None and (kinds[0] is float or end == "most"):
+                yield kinds[0](value + step), ""
+
+
+@pytest.mark.parametrize("kind", TABLES, ids=lambda kind: kind.__name__)
+def test_every_key_refuses_wrong_values(kind):
+    assert dataclasses.is_dataclass(kind) and kind.__doc__
+    names = [field.name for field in fields_of(kind)]
+    assert len(set(names)) == len(names)
+    for field in fields_of(kind):
+        assert field.key.about and not field.key.about.endswith(".")
+        for value, told in bad_values(field):
+            with pytest.raises(SceneError) as caught:
+                read_keys(kind, Table({field.name: value}, "x.toml", "t"))
+            message = str(caught.value)
+            # What is required may be missed first.
+            if "is missing" not in message and "goes with" not in message:
+                assert message.startswith(f"x.toml: `t.{field.name}`: "), message
+                assert told in message and "\n" not in message
