@@ -54,7 +54,7 @@ def run_cases(
     """
     done: list[tuple[np.ndarray, Sweep]] = []
     for part in table.structures:
-        mine = _cases_of(table, part)
+        mine = part.of(table.cases)
         # A sweep asks after its first block; what was stopped begins no other one.
         stopped = bool(done) and stop is not None and stop()
         if mine.size and not stopped:
@@ -62,13 +62,6 @@ def run_cases(
     if len(table.structures) == 1:
         return done[0][1]
     return _merged(table, done)
-
-
-def _cases_of(table: CaseTable, part: Structure) -> np.ndarray:
-    """Numbers of the cases whose design is of a structure."""
-    if part.designs is None:
-        return np.arange(table.cases.count)
-    return np.flatnonzero(np.isin(np.asarray(table.cases.design), part.designs))
 
 
 def _run(table, part, mine, progress, stop) -> Sweep:

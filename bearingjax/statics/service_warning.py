@@ -82,8 +82,8 @@ def seat_warnings(
 def speed_warnings(
     turns: Any,
     *,
-    limiting_speed: float | None = None,
-    reference_speed: float | None = None,
+    limiting_speed: Any = None,
+    reference_speed: Any = None,
 ) -> list[str]:
     """Warnings about a speed beyond those that a catalogue names, a sentence each.
 
@@ -107,11 +107,14 @@ def speed_warnings(
             " warmer than the 70 °C of ISO 15312, or its load must be less",
         ),
     ):
-        if limit is None or not (size > limit).any():
+        if limit is None:
             continue
-        top, allowed = (f"{x * 30 / np.pi:.5g}" for x in (size.max(), limit))
+        above = size > float(limit) * (1.0 + 1e-9)  # by more than round-off
+        if not above.any():
+            continue
+        top, allowed = (f"{x * 30 / np.pi:.5g}" for x in (size.max(), float(limit)))
         told.append(
             f"speed of {top} rpm, above {words.format(allowed)}"
-            f"{in_how_many(size > limit, size)}"
+            f"{in_how_many(above, size)}"
         )
     return told
