@@ -7,7 +7,6 @@ import numpy as np
 from ..design.fits import FitState
 from ..element.inertia import Speed
 from .life import turns_against_load
-from .life_warning import in_how_many
 
 MOST_STRESS = 127e6
 """Hoop stress above which a fit is warned of, of bearing steel [Pa]: the largest that
@@ -113,8 +112,9 @@ def speed_warnings(
         if not above.any():
             continue
         top, allowed = (f"{x * 30 / np.pi:.5g}" for x in (size.max(), float(limit)))
-        told.append(
-            f"speed of {top} rpm, above {words.format(allowed)}"
-            f"{in_how_many(above, size)}"
-        )
+        many = ""
+        if above.ndim:
+            many = f", in {above.sum()} of {above.size} cases, worst case"
+            many += f" {np.argmax(size)}"
+        told.append(f"speed of {top} rpm, above {words.format(allowed)}{many}")
     return told
