@@ -114,11 +114,12 @@ def _sizes(bearing, ratings, numbers) -> Iterator[tuple[str, Any]]:
         yield "loaded_ends", share[..., 0].sum() + share[..., -1].sum()
     if hours is not None and "damage" in numbers:
         xp = namespace(hours)
-        still = xp.isinf(hours) & (numbers["damage"] > 0)
-        yield "no_hours", xp.where(still, 1.0, 0.0 * numbers["damage"])
+        # Without load there is none either, whatever the speed.
+        still = xp.where(xp.isinf(hours), 1.0, 0.0)
+        yield "no_hours", xp.where(numbers["damage"] > 0, still, xp.nan)
 
 
-def _load(numbers):
+def _load(numbers) -> Any:
     """The larger one of P and of the load with the reference life, of those known."""
     names = ("equivalent_load", "reference_load")
     known = [numbers[name] for name in names if name in numbers]

@@ -86,7 +86,7 @@ def given(warned: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         name: warned[name] > kind.limit for name, kind in ALL.items() if name in warned
     }
     for name in set(over) & set(LIFE_KINDS):
-        if LIFE_KINDS[name].of_all and not (over[name] | np.isnan(warned[name])).all():
+        if LIFE_KINDS[name].of_all and (~over[name] & np.isfinite(warned[name])).any():
             del over[name]
     return {name: cases for name, cases in over.items() if cases.any()}
 

@@ -42,7 +42,7 @@ contamination = "grease, normal"
 HEAVY = """
 [bearing]
 designation = "NJ 205 ECP"
-roller_profile = { type = "cylindrical" }
+roller_profile = { type = "straight" }
 [operating]
 load = { Fy = "-25 kN", Fz = "500 N" }
 free = ["ux", "uy", "uz"]
