@@ -8,10 +8,10 @@ import jax.numpy as jnp
 
 from ..element.bearing_element import BearingElement
 from ..statics.cases import Cases
-from ..statics.life import LIFE_OUTPUTS, LifeConditions, life_of
-from ..statics.life_warning import life_warnings
-from ..statics.rating import ratings
+from ..statics.life import LifeConditions, life_of
+from ..statics.life_warning import life_sizes
 from ..statics.spectrum import spectrum_life
+from ..statics.warning import counted
 from .measure import AbstractMeasure
 from .system import element_of, loads_of
 
@@ -83,28 +83,18 @@ class OfLife(AbstractMeasure):
         return jax.vmap(one)(loads_of(solution))
 
     def warnings(self, element: Any, solution: Any) -> list[str]:
-        """Warnings about the lives of all cases, as of `life_warnings`.
+        """Warnings about the lives of all cases, each kind once.
 
         Args:
             element, solution: As of a call, concrete.
         """
-        bearing = element_of(element).bearing
-        given = self.conditions
-        rated = ratings(
-            bearing,
-            given.dynamic_capacity,
-            given.static_capacity,
-            given.fatigue_load_limit,
-        )
-        numbers = jax.device_get(self._numbers(element_of(element), solution))
-        return life_warnings(bearing, rated, numbers)
+        return counted(jax.device_get(self._sizes(element_of(element), solution)))
 
     @eqx.filter_jit
-    def _numbers(self, element, solution):
+    def _sizes(self, element, solution):
         def one(solution):
-            found = vars(life_of(element, solution, self.conditions))
-            kept = (name for name in LIFE_OUTPUTS if name != "damage_share")
-            return {k: found[k] for k in kept if found[k] is not None}
+            life = life_of(element, solution, self.conditions)
+            return life_sizes(element.bearing, life.ratings, vars(life))
 
         return jax.vmap(one)(loads_of(solution))
 

@@ -26,7 +26,7 @@ from ..statics.spectrum import revolutions_per_hour
 from ..statics.sweep import SUMMARIES, stack_designs
 from .cases_list import LARGEST, read_list
 from .quantity import KINDS, SceneError, kind_of, to_si
-from .read import Scene, scene_of, with_speed_told
+from .read import Scene, scene_of
 from .scene_file import assign, find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
 from .table import Table
@@ -69,6 +69,18 @@ class Structure:
     element: BearingElement[Any]
     designs: np.ndarray | None
     scene: Scene
+
+    @property
+    def designation(self) -> str | None:
+        """Its bearing of the catalogue."""
+        taken = self.scene.catalogue
+        return None if taken is None else taken.entry.designation
+
+    def of(self, cases: Cases) -> np.ndarray:
+        """Numbers of the cases whose design is among these."""
+        if self.designs is None:
+            return np.arange(cases.count)
+        return np.flatnonzero(np.isin(np.asarray(cases.design), self.designs))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -194,7 +206,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     structures, design, made, odd = _designs(data, path, columns)
     _check_outputs(table, outputs, structures)
     cases = _cases(table, scene, columns, design)
-    scene = speeds_told(scene, cases)
+    odd += speeds_told(structures, cases)
     return CaseTable(
         scene=scene,
         structures=structures,
@@ -236,10 +248,26 @@ def _makes_design(key: str) -> bool:
     return "." in key and key.partition(".")[0] in DESIGN
 
 
-def speeds_told(scene: Scene, cases: Cases) -> Scene:
-    """The scene with warnings of speeds of its cases beyond those of the catalogue."""
+def speeds_told(structures: Sequence[Structure], cases: Cases) -> tuple[str, ...]:
+    """Warnings of speeds of the cases beyond those of the catalogue of each bearing."""
+    turns, told = turns_of(cases), []
+    for name in dict.fromkeys(part.designation for part in structures):
+        mine = [part.of(cases) for part in structures if part.designation == name]
+        own = np.zeros(cases.count)
+        own[np.concatenate(mine)] = turns[np.concatenate(mine)]
+        bearing = next(p.scene for p in structures if p.designation == name).installed
+        told += bearing.speed_warnings(own)
+    return tuple(told)
+
+
+def turns_of(cases: Cases) -> np.ndarray:
+    """Speed of one ring against the other (case,) [rad/s].
+
+    Args:
+        cases: Of a scene.
+    """
     turns = revolutions_per_hour(cases, np)
-    return scene if turns is None else with_speed_told(scene, turns * np.pi / 1800.0)
+    return np.zeros(cases.count) if turns is None else turns * np.pi / 1800.0
 
 
 def _alike(first: Iterable[str], odd: Sequence[str]) -> tuple[str, ...]:
@@ -453,13 +481,13 @@ def _designs(data, path, columns):
 
 
 def _rated_as(scene: Scene) -> tuple[Any, ...]:
-    """What published ratings of a design follow from."""
+    """What published ratings and speeds of a design follow from."""
     arrangement = scene.inputs.get("set", {}).get("arrangement")
     if scene.catalogue is None:
         return None, arrangement
     entry = scene.catalogue.entry
     published = entry.dynamic_capacity, entry.static_capacity, entry.fatigue_load_limit
-    return published, arrangement
+    return published, entry.limiting_speed, entry.reference_speed, arrangement
 
 
 def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:

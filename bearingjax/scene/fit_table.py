@@ -400,7 +400,10 @@ def turning(fits: Fits | None, speed: float) -> Fits | None:
 
 
 def installed(
-    drawing: BearingElement[Any], preload: float | None, fits: Fits | None
+    drawing: BearingElement[Any],
+    preload: float | None,
+    fits: Fits | None,
+    catalogue: FromCatalogue | None = None,
 ) -> Installed:
     """A bearing with the preload and the seats of its scene.
 
@@ -408,10 +411,13 @@ def installed(
         drawing: The bearing with its laws and numerics.
         preload: Force to which its rows are ground [N], or `None`.
         fits: From `read_fits`.
+        catalogue: What its designation stands for, or `None`.
     """
+    names = "limiting_speed", "reference_speed"
+    speeds = {k: getattr(catalogue.entry, k) for k in names} if catalogue else {}
     if fits is None:
-        return Installed(drawing, preload)
-    return Installed(drawing, preload, fits.mounting, fits.conditions)
+        return Installed(drawing, preload, **speeds)
+    return Installed(drawing, preload, fits.mounting, fits.conditions, **speeds)
 
 
 def _with_clearance(bearing, clearance):

@@ -1,6 +1,5 @@
 """Rating life of a scene as text for people, and as numbers in SI for programs."""
 
-import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
@@ -34,10 +33,9 @@ def scene_life(scene: Scene, solution: Solution) -> Life:
     Raises:
         SceneError: If its numbers of life and bearing do not go together.
     """
-    conditions = life_conditions(scene)
     speed = scene.speed
-    if speed is None or float(speed.inner) == float(speed.outer):
-        conditions = dataclasses.replace(conditions, viscosity=None, contamination=None)
+    turning = speed is not None and float(speed.inner) != float(speed.outer)
+    conditions = life_conditions(scene, turning=turning)
     try:
         life = life_of(solution.element, solution, conditions)
     except ValueError as error:

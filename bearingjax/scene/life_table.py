@@ -146,7 +146,9 @@ _UNRATED = (
 """Keys of [bearing] that change no load rating."""
 
 
-def life_conditions(scene: "Scene", varied: Iterable[str] = ()) -> LifeConditions:
+def life_conditions(
+    scene: "Scene", varied: Iterable[str] = (), turning: bool = True
+) -> LifeConditions:
     """Conditions of the rating life of a scene, with the ratings of its designation.
 
     A bearing of the catalogue has the published ratings where [life] gives none, those
@@ -156,8 +158,12 @@ def life_conditions(scene: "Scene", varied: Iterable[str] = ()) -> LifeCondition
     Args:
         scene: The scene.
         varied: Keys that its cases vary.
+        turning: Whether the rings turn against each other; without that there is no
+            film, and no modified life.
     """
     own = LifeConditions() if scene.life is None else scene.life
+    if not turning:
+        own = dataclasses.replace(own, viscosity=None, contamination=None)
     published = _published(scene, varied)
     return dataclasses.replace(own, **{name: c for name, (c, _) in published.items()})
 

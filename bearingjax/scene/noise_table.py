@@ -22,7 +22,7 @@ from ..element import FREEDOMS, RINGS
 from ..element.bearing_element import BearingElement
 from .deviations_table import read_deviations
 from .noise_scene import DIRECTIONS, NoiseScene
-from .read import Scene, scene_of
+from .read import Scene, scene_of, with_speed_told
 from .scene_file import find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
 from .table import Table
@@ -158,7 +158,7 @@ def read_noise(
     path = find_scene(source)
     data = parse_bearing(path, settings)
     top = Table(data, path.name)
-    scene = scene_of(data, path)
+    scene = with_speed_told(scene_of(data, path))
     vibration = read_keys(VibrationKeys, top.table("vibration", required=True))
     operating, deviations = top.table("operating"), top.table("deviations")
     _check_operating(operating, scene)

@@ -54,7 +54,7 @@ def _fits(fits: Fits, design: Installed, varied: set[str]) -> Fits:
             limits |= {seat: Limits(own, own), ring: exact}
             names[k] = ""
     if any(name.startswith("bearing.") for name in varied):
-        row = rows_of(jax.device_get(design.drawing.bearing))[0].bearing
+        row = rows_of(design.drawing.bearing)[0].bearing
         free = float(radial_clearance(row))
         limits["clearance"] = Limits(free, free)
     return dataclasses.replace(

@@ -23,11 +23,11 @@ from ..optimise.search import METHODS
 from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
-from .cases_table import DESIGN, read_cases, speeds_told
+from .cases_table import DESIGN, read_cases, turns_of
 from .fit_table import no_expansion, read_temperature
 from .life_table import life_conditions
 from .quantity import SceneError, kind_of
-from .read import Scene, scene_of
+from .read import Scene, scene_of, with_speed_told
 from .scene_file import find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
 from .table import Table, not_among
@@ -198,7 +198,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
             raise top.error("cases", problem)
         # On its seats a bearing has the clearance of the speeds of each case.
         cases = dataclasses.replace(cases, design=None)
-    scene = speeds_told(scene, cases)
+    scene = with_speed_told(scene, turns_of(cases))
     table = top.table("optimise")
     task = _optimisation(top, table, scene, cases, set(begun))
     table.finish()

@@ -16,7 +16,6 @@ from ..element import (
 from ..statics.installed import Installed
 from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
-from ..statics.service_warning import speed_warnings
 from .bearing_table import designated, read_bearing
 from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue, catalogue_entry
@@ -92,7 +91,7 @@ class Scene:
     @property
     def installed(self) -> Installed:
         """The bearing with its preload, seats and temperatures."""
-        return installed(self.element, self.preload_force, self.fits)
+        return installed(self.element, self.preload_force, self.fits, self.catalogue)
 
     def ground(self, programs: Path | None = None) -> Installed:
         """As `installed`, its rows ground to their preload.
@@ -160,27 +159,20 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
         SceneError: One line that names file, key, fault and what is allowed.
     """
     path = find_scene(source)
-    scene = scene_of(parse_bearing(path, settings), path)
-    if scene.speed is None:
-        return scene
-    return with_speed_told(scene, scene.speed.inner - scene.speed.outer)
+    return with_speed_told(scene_of(parse_bearing(path, settings), path))
 
 
-def with_speed_told(scene: Scene, turns: Any) -> Scene:
+def with_speed_told(scene: Scene, turns: Any = None) -> Scene:
     """The scene with warnings of speeds beyond those of the catalogue.
 
     Args:
-        scene: With a designation, else it comes back as it is.
-        turns: Speed of one ring against the other, of one or many cases [rad/s].
+        scene: From `scene_of`.
+        turns: Speed of one ring against the other, of one or many cases [rad/s];
+            `None`: that of the scene.
     """
-    if scene.catalogue is None:
-        return scene
-    entry = scene.catalogue.entry
-    told = speed_warnings(
-        turns,
-        limiting_speed=entry.limiting_speed,
-        reference_speed=entry.reference_speed,
-    )
+    if turns is None:
+        turns = scene.speed.inner - scene.speed.outer if scene.speed else 0.0
+    told = scene.installed.speed_warnings(turns)
     return dataclasses.replace(scene, warnings=(*scene.warnings, *told))
 
 

@@ -8,14 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..design import AbstractBallBearing
-from ..element import BearingElement, Speed
+from ..element import Speed
 from ..rotor import Housing, Shaft
 from ..rotor.vibration import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
+from ..statics.installed import Installed
 from .bearing_table import BESIDE, designated, read_bearing
 from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue
-from .fit_table import Fits, fit_warnings, read_fits, turning
+from .fit_table import Fits, fit_warnings, installed, read_fits, turning
 from .quantity import SceneError
 from .read import read_element, scene_of
 from .rotor_scene import Mount
@@ -33,13 +34,11 @@ _SAME = 1e-3
 
 
 class _Bearing(NamedTuple):
-    """A bearing by its name, its seats, the force to which its rows are ground [N], and
-    what its designation stands for."""
+    """A bearing by its name, its seats, and what its designation stands for."""
 
     name: str
-    element: BearingElement[Any]
+    installed: Installed
     fits: Fits | None
-    set_force: float | None
     catalogue: FromCatalogue | None
 
 
@@ -95,15 +94,14 @@ def _own(table: Table, name: str, speed: float) -> _Bearing:
     design, fits = read_fits(table, table, design, Speed(speed, 0.0), catalogue)
     contact, numerics = table.table("contact"), table.table("numerics")
     element = read_element(design, contact, table, numerics)
-    return _told(_Bearing(name, element, fits, force, catalogue))
+    return _told(name, element, force, fits, catalogue)
 
 
-def _told(bearing: _Bearing) -> _Bearing:
-    """The bearing; what is odd about its fits is warned of."""
-    if bearing.fits is not None:
-        for text in fit_warnings(bearing.fits, bearing.element.bearing):
-            warnings.warn(f"{bearing.name}: {text}", stacklevel=2)
-    return bearing
+def _told(name, element, force, fits, catalogue) -> _Bearing:
+    """A bearing; what is odd about its fits is warned of."""
+    for text in () if fits is None else fit_warnings(fits, element.bearing):
+        warnings.warn(f"{name}: {text}", stacklevel=2)
+    return _Bearing(name, installed(element, force, fits, catalogue), fits, catalogue)
 
 
 def _check_seat(bearing: _Bearing, shaft: Shaft, station: int) -> None:
@@ -157,8 +155,8 @@ def _bearing(
     table.fill("bearing", own)
     tables.fill(own, _echoed(scene.inputs))
     fits = turning(scene.fits, speed)
-    own = scene.element, fits, scene.preload_force, scene.catalogue
-    return _told(_Bearing(scene.name, *own))
+    force = scene.preload_force
+    return _told(scene.name, scene.element, force, fits, scene.catalogue)
 
 
 def _echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
@@ -171,7 +169,7 @@ def _echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _mount(table: Table, station: int, bearing: _Bearing) -> Mount:
-    design = bearing.element.bearing
+    design = bearing.installed.drawing.bearing
     preload = table.quantity("preload", "force", None)
     offset = table.quantity("offset", "length", None)
     if preload is not None and offset is not None:
@@ -196,9 +194,8 @@ def _mount(table: Table, station: int, bearing: _Bearing) -> Mount:
     return Mount(
         station=station,
         name=bearing.name,
-        element=bearing.element,
+        installed=bearing.installed,
         fits=bearing.fits,
-        set_force=bearing.set_force,
         preload=preload,
         offset=0.0 if offset is None else offset,
         law=law,
@@ -222,9 +219,8 @@ def _springs(table: Table, station: int) -> Mount:
     return Mount(
         station=station,
         name="springs",
-        element=None,
+        installed=None,
         fits=None,
-        set_force=None,
         preload=None,
         offset=0.0,
         law=None,

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..element import BearingElement
 from ..rotor import AbstractDamping, AbstractPart, Housing, Shaft
+from ..statics.installed import Installed
 from .fit_table import Fits
 
 
@@ -17,10 +18,9 @@ class Mount:
     Attributes:
         station: Number of the station.
         name: Of the bearing; "springs" without one.
-        element: The bearing before it is preloaded and mounted; `None`: springs.
+        installed: The bearing with its seats, or `None`: springs.
         fits: Its seats, temperatures and the speed of the rotor, or `None`: it is
             taken as on the drawing.
-        set_force: Force to which the rows of a set are ground [N], or `None`.
         preload: Axial force that the bearing alone carries in its place [N], or `None`.
         offset: Axial displacement of the inner ring in its place [m].
         law: "fixed_angle", "moving_angle", "cubic", or `None` for the bearing itself.
@@ -33,9 +33,8 @@ class Mount:
 
     station: int
     name: str
-    element: BearingElement[Any] | None
+    installed: Installed | None
     fits: Fits | None
-    set_force: float | None
     preload: float | None
     offset: float
     law: str | None
@@ -44,6 +43,11 @@ class Mount:
     stiffness: tuple[float, ...]
     damping: tuple[float, ...]
     housing: Housing | None
+
+    @property
+    def element(self) -> BearingElement[Any] | None:
+        """The bearing before it is preloaded and mounted."""
+        return None if self.installed is None else self.installed.drawing
 
 
 @dataclasses.dataclass(frozen=True)

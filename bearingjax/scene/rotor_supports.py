@@ -14,7 +14,6 @@ from ..rotor import (
     preload_offset,
 )
 from ..rotor.vibration import LawSupport
-from .fit_table import installed
 from .rotor_mounts import LAWS
 from .rotor_scene import Mount
 
@@ -32,11 +31,11 @@ def support_of(mount: Mount) -> AbstractSupport:
         SolveError: If a bearing does not bear its preload.
     """
     housing = mount.housing
-    if mount.element is None:
+    if mount.installed is None:
         return LinearSupport(
             mount.station, mount.stiffness, mount.damping, housing=housing
         )
-    element = installed(mount.element, mount.set_force, mount.fits).at()
+    element = mount.installed.at()
     offset = as_array(mount.offset, float)
     if mount.preload is not None:
         offset = preload_offset(element, as_array(mount.preload, float))

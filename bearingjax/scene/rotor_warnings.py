@@ -24,7 +24,7 @@ def rotor_warnings(run: RotorRun) -> list[str]:
     Args:
         run: From `run_rotor`.
     """
-    told = [*run.warnings, *_held_fits(run.task)]
+    told = [*run.warnings, *_fast(run.task), *_held_fits(run.task)]
     if run.critical is not None and run.task.speed:
         speed, whirl = run.critical.speed, run.critical.whirl
         near = np.abs(np.abs(run.task.speed) / speed - 1.0) < _NEAR
@@ -40,6 +40,15 @@ def rotor_warnings(run: RotorRun) -> list[str]:
             " are unstable: the rotor does not stay there"
         )
     return told
+
+
+def _fast(task: RotorScene):
+    """Bearings that run faster than their catalogue lets them."""
+    top = max(map(abs, (task.speed, *_run_to(task))))
+    for mount in {mount.name: mount for mount in task.mounts}.values():
+        if mount.installed is not None:
+            for text in mount.installed.speed_warnings(top):
+                yield f"{mount.name}: {text}"
 
 
 def _held_fits(task: RotorScene):
@@ -64,9 +73,13 @@ def _held_fits(task: RotorScene):
 
 def _ends(task: RotorScene) -> list[float]:
     """Ends of the speeds that a scene asks for [rad/s]."""
+    lines = task.campbell
+    return [*(() if lines is None else map(float, lines[[0, -1]])), *_run_to(task)]
+
+
+def _run_to(task: RotorScene) -> list[float]:
+    """Ends of the speeds at which it runs, beside the one of the scene [rad/s]."""
     ends: list[float] = []
-    if task.campbell is not None:
-        ends += [float(task.campbell[0]), float(task.campbell[-1])]
     asked, motion = task.response, task.transient
     if asked is not None:
         ends += (asked.begin, asked.end) if asked.speed is None else (asked.speed,)

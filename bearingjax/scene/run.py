@@ -1,12 +1,16 @@
 """Running what a scene asks for."""
 
 import dataclasses
+from functools import partial
 from pathlib import Path
 
 from ..numerics.types import as_array
+from ..optimise.life import OfLife, RatingLife
 from ..optimise.optimise import Optimised, optimise
 from ..statics.load import solve_load
 from ..statics.solution import Solution
+from .cases_table import turns_of
+from .life_table import life_conditions
 from .optimise_table import Optimisation
 from .programs import called
 from .quantity import SceneError
@@ -100,7 +104,7 @@ def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
     """
     scene = task.scene
     try:
-        return optimise(
+        found = optimise(
             scene.installed,
             task.cases,
             task.variables,
@@ -117,3 +121,23 @@ def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
         )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
+    return _judged(task, found)
+
+
+def _judged(task: Optimisation, found: Optimised) -> Optimised:
+    """With [life], the warnings about lives that `solve` gives of the same designs,
+    whatever the measures."""
+    scene = task.scene
+    measures = task.objective, *(c.measure for c in task.constraints)
+    if scene.life is None or any(isinstance(m, OfLife) for m in measures):
+        return found
+    turning = bool(turns_of(task.cases).any())
+    names = [variable.name for variable in task.variables]
+    life = RatingLife(life_conditions(scene, names, turning))
+    sides = {"before": found.initial, "after": found.element}
+    judged = {}
+    for side, design in sides.items():
+        outcome = getattr(found, side)
+        doubts = partial(life.warnings, design, outcome.solution)
+        judged[side] = outcome._replace(doubts=doubts)
+    return dataclasses.replace(found, **judged)

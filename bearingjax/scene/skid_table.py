@@ -29,7 +29,7 @@ from ..element.frame import LOAD_UNITS, LOADS
 from .lubricant_table import read_lubricant, read_traction
 from .oil_table import OWN
 from .quantity import kind_of
-from .read import Scene, scene_of
+from .read import Scene, scene_of, with_speed_told
 from .scene_file import find_scene, parse_bearing
 from .table import Table, written
 
@@ -138,13 +138,16 @@ def read_skid(
     values["inlet_heating"] = dynamics.flag("inlet_heating", False)
     with dynamics.building():
         model = SkidModel(scene.running(), oil, temperature, traction, **values)
+    speeds = _speeds(dynamics, scene.speed)
+    time = _time(dynamics, steady)
+    scene = with_speed_told(scene, _fastest(speeds, time["duration"]))
     found = SkidScene(
         scene=scene,
         model=model,
         oil=str(lubricant.raw("name", None) or lubricant.raw("law", None)),
-        speeds=_speeds(dynamics, scene.speed),
+        speeds=speeds,
         **_loads(dynamics, scene),
-        **_time(dynamics, steady),
+        **time,
         places=_places(dynamics, steady, n_elements(model.bearing)),
         warnings=tuple(dict.fromkeys((*scene.warnings, *odd))),
         inputs={},
@@ -249,6 +252,16 @@ def _speeds(dynamics: Table, speed: Speed | None) -> SpeedTable | None:
     if inner is None and outer is None:
         raise table.error("inner", "is missing, and so is `outer`; give one of them")
     return SpeedTable(time, np.zeros_like(time) if inner is None else inner, outer)
+
+
+def _fastest(speeds: SpeedTable | None, duration: float | None) -> float | None:
+    """Fastest speed of one ring against the other until a time [rad/s]; `None`: that
+    of the scene, which alone counts for an end state."""
+    if speeds is None or duration is None:
+        return None
+    time = np.append(np.asarray(speeds.time), duration)
+    turns = np.asarray(speeds.inner - speeds.outer)
+    return float(np.abs(np.interp(np.minimum(time, duration), time[:-1], turns)).max())
 
 
 def _loads(dynamics: Table, scene: Scene) -> dict:

@@ -11,14 +11,12 @@ import numpy as np
 from ..design import radial_clearance, rows_of
 from ..numerics.units import display_unit
 from ..statics.cases import Cases
-from ..statics.life import LIFE_OUTPUTS
-from ..statics.life_warning import life_warnings
+from ..statics.life import LIFE_OUTPUTS, LifeConditions
 from ..statics.preload import is_opposed, pressed
-from ..statics.rating import ratings
 from ..statics.sweep import Sweep, sweep
 from ..statics.sweep_program import not_run
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
-from .cases_table import CaseTable, Structure
+from .cases_table import CaseTable, Structure, turns_of
 from .files import write_numbers
 from .life_table import life_conditions
 from .quantity import SceneError
@@ -54,7 +52,7 @@ def run_cases(
     """
     done: list[tuple[np.ndarray, Sweep]] = []
     for part in table.structures:
-        mine = _cases_of(table, part)
+        mine = part.of(table.cases)
         # A sweep asks after its first block; what was stopped begins no other one.
         stopped = bool(done) and stop is not None and stop()
         if mine.size and not stopped:
@@ -62,13 +60,6 @@ def run_cases(
     if len(table.structures) == 1:
         return done[0][1]
     return _merged(table, done)
-
-
-def _cases_of(table: CaseTable, part: Structure) -> np.ndarray:
-    """Numbers of the cases whose design is of a structure."""
-    if part.designs is None:
-        return np.arange(table.cases.count)
-    return np.flatnonzero(np.isin(np.asarray(table.cases.design), part.designs))
 
 
 def _run(table, part, mine, progress, stop) -> Sweep:
@@ -89,11 +80,23 @@ def _run(table, part, mine, progress, stop) -> Sweep:
             neighbours=table.neighbours,
             progress=progress,
             stop=stop,
-            life=life_conditions(part.scene),
+            life=_life(table, part),
         )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
     return _on_seats(part, solved)
+
+
+def _life(table: CaseTable, part: Structure) -> LifeConditions | None:
+    """Conditions of the lives that are kept, or with [life] judged; else `None`.
+
+    Without speeds a life is judged as `solve` does, which then has no film.
+    """
+    if set(LIFE_OUTPUTS) & set(table.outputs or ()):
+        return life_conditions(part.scene)
+    if part.scene.life is None:
+        return None
+    return life_conditions(part.scene, turning=bool(turns_of(table.cases).any()))
 
 
 def _on_seats(part: Structure, solved: Sweep) -> Sweep:
@@ -198,19 +201,8 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
 
 
 def all_warnings(table: CaseTable, solved: Sweep) -> list[str]:
-    """Warnings of the scene, of its cases and of the lives that were kept of them."""
-    told = [*table.warnings, *set_warnings(table, solved), *solved.warnings]
-    if not set(LIFE_OUTPUTS) & set(solved.outputs):
-        return told
-    conditions = life_conditions(table.scene, table.varied)
-    bearing = table.scene.element.bearing
-    rated = ratings(
-        bearing,
-        conditions.dynamic_capacity,
-        conditions.static_capacity,
-        conditions.fatigue_load_limit,
-    )
-    return [*told, *life_warnings(bearing, rated, solved.outputs)]
+    """Warnings of the scene, of the preload of its set and of its cases."""
+    return [*table.warnings, *set_warnings(table, solved), *solved.warnings]
 
 
 def set_warnings(table: CaseTable, solved: Sweep) -> list[str]:

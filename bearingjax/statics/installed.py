@@ -1,5 +1,6 @@
 """The bearing as it runs: preloaded, mounted on its seats, warm and turning."""
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -11,6 +12,7 @@ from ..element.inertia import Speed
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .preload import preload
+from .service_warning import speed_warnings
 
 
 class Installed(eqx.Module):
@@ -32,6 +34,9 @@ class Installed(eqx.Module):
         mounting: Seats; `None`: clearance and contact angles are those of the drawing.
         conditions: Temperatures and speeds; `None`: at rest, at the temperature of the
             measured sizes.
+        limiting_speed: To which its catalogue lets it run, of one ring against the
+            other [rad/s]; `None`: not known. It changes nothing that is solved.
+        reference_speed: Thermal reference speed of its catalogue, likewise [rad/s].
 
     Traced: all numbers. Static: what is `None`.
 
@@ -46,6 +51,12 @@ class Installed(eqx.Module):
     )
     mounting: Mounting | None = None
     conditions: FitConditions | None = None
+    limiting_speed: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad/s"), default=None
+    )
+    reference_speed: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad/s"), default=None
+    )
 
     def __check_init__(self):
         instance(self, "drawing", BearingElement)
@@ -74,7 +85,7 @@ class Installed(eqx.Module):
         if self.preload is None:
             return self
         element = preload(self.drawing, self.preload, throw=throw)
-        return Installed(element, None, self.mounting, self.conditions)
+        return dataclasses.replace(self, drawing=element, preload=None)
 
     def at(
         self, speed: Speed | None = None, *, throw: bool = True
@@ -105,3 +116,15 @@ class Installed(eqx.Module):
             )
         bearing = mounted(element.bearing, self.mounting, conditions)
         return eqx.tree_at(lambda e: e.bearing, element, bearing)
+
+    def speed_warnings(self, turns: Any) -> list[str]:
+        """Warnings about speeds beyond those of its catalogue, a sentence each.
+
+        Args:
+            turns: As of `statics.speed_warnings`, concrete.
+        """
+        return speed_warnings(
+            turns,
+            limiting_speed=self.limiting_speed,
+            reference_speed=self.reference_speed,
+        )

@@ -349,20 +349,16 @@ def _rows_in_words(bearing) -> str:
     return " and ".join(f"{type(r).__name__} of {n_elements(r)}" for r in rows)
 
 
-def life_outputs(
-    solution: Solution, conditions: LifeConditions, names: Sequence[str]
-) -> dict[str, Array]:
-    """Numbers of the life of a solution, by name.
+def life_outputs(life: Life, names: Sequence[str]) -> dict[str, Array]:
+    """Numbers of a life, by name.
 
     Args:
-        solution: A single one; it has the bearing that was solved.
-        conditions: As of `life_of`.
+        life: Of one solution.
         names: Of `LIFE_OUTPUTS`.
 
     Raises:
         ValueError: For one that the conditions or the solution do not give.
     """
-    life = life_of(solution.element, solution, conditions)
     found = {name: getattr(life, name) for name in names}
     for name, value in found.items():
         if value is None:

@@ -1,11 +1,13 @@
-"""What is doubtful about rating lives, in words."""
+"""What is doubtful about rating lives: sizes, and words for them."""
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
 
+import jax
 import numpy as np
 
 from ..design import Bearing, BearingSet, is_ball, pitch_radius
+from ..numerics.types import namespace
 from .life_factor import KAPPA
 from .rating import Ratings
 from .reference_life import LEAST_LAMINAE
@@ -30,151 +32,199 @@ Source: rule of catalogues of rolling bearings (SKF), for want of a closer one.
 """
 
 
+class LifeKind(NamedTuple):
+    """A kind of warning about a rating life.
+
+    Attributes:
+        limit: Largest size that gives no warning.
+        words: (size, where) -> the sentence; where is "" for many cases.
+        where: (bearing, ratings, numbers) of one life -> numbers of it, in words.
+        of_all: Whether it is told only if all cases have it.
+    """
+
+    limit: float
+    words: Callable[[float, str], str]
+    where: Callable[[Any, Any, Any], str] = lambda bearing, ratings, numbers: ""
+    of_all: bool = False
+
+
 def life_warnings(
     bearing: Bearing | BearingSet, ratings: Ratings, numbers: Mapping[str, Any]
 ) -> list[str]:
-    """Warnings about a rating life, or about those of many cases, a sentence each.
+    """Warnings about one rating life, a sentence each.
+
+    Of many cases see `Sweep.warnings`.
 
     Args:
         bearing: The design, concrete.
         ratings: Load ratings, concrete.
-        numbers: Of a `Life` by name, such as `vars(life)`, concrete; in many cases
-            (case,). Those are judged that there are; `damage_share` of one load.
+        numbers: Of a `Life` by name, such as `vars(life)`, concrete. Those are judged
+            that there are.
 
     Source: ISO 281:2007, which doubts its lives of loads above C0 or C/2, and has no
         a_ISO below κ = 0.1; its diagrams of a_ISO and e_C end at κ = 4.
     """
+    bearing, ratings, numbers = jax.device_get((bearing, ratings, dict(numbers)))
     return [
-        *_heavy(ratings, numbers),
-        *_light(bearing, ratings, numbers),
-        *_left_out(bearing, numbers),
-        *_off_the_diagrams(numbers),
-        *_at_ends(numbers),
-        *_still(numbers),
-    ]
-
-
-def _load(numbers):
-    """The larger one of P and of the load with the reference life, of those known."""
-    names = ("equivalent_load", "reference_load")
-    known = [np.asarray(numbers[name]) for name in names if name in numbers]
-    return np.max(known, axis=0) if known else None
-
-
-def _heavy(ratings, numbers):
-    most = min(0.5 * float(ratings.dynamic_capacity), float(ratings.static_capacity))
-    load = _load(numbers)
-    if load is None or not (load > most).any():
-        return []
-    return [
-        f"equivalent load of {1e-3 * np.nanmax(load):.4g} kN, above"
-        f" {1e-3 * most:.4g} kN, the lesser of C0 and C/2: ISO 281 does not vouch for"
-        f" lives of such loads{in_how_many(load > most, load)}"
-    ]
-
-
-def _light(bearing, ratings, numbers):
-    """Too little load to roll; at a standstill nothing skids."""
-    hours, load = numbers.get("life_hours"), _load(numbers)
-    if hours is None or load is None:
-        return []
-    balls = is_ball(bearing)
-    share = LEAST_LOAD_OF_BALLS if balls else LEAST_LOAD_OF_ROLLERS
-    least = share * float(ratings.dynamic_capacity)
-    turns = np.isfinite(hours) | (load == 0)
-    light = (load < least) & turns
-    if not light.any():
-        return []
-    kind = "ball" if balls else "roller"
-    return [
-        f"equivalent load of {np.min(load[light]):.4g} N, below {least:.4g} N,"
-        f" {share:g} C, which makers of {kind} bearings ask for: the {kind}s may skid"
-        f"{in_how_many(light, np.where(light, -load, -np.inf))}"
-    ]
-
-
-def _left_out(bearing, numbers):
-    """Warnings about parts of the load that P and P0 leave out."""
-    if "equivalent_load" not in numbers:
-        return []
-    load = np.asarray(numbers["equivalent_load"])
-    told = []
-    for name, words in _LOST.items():
-        lost = np.asarray(numbers.get(f"{name}_left_out", 0.0))
-        share = 1e-6
-        if name == "moment":
-            share = LARGEST_MOMENT * float(pitch_radius(bearing))
-        much = lost > share * load
-        if much.any():
-            size = f"{np.max(lost[much]):.4g}"
-            told.append(f"{name} {words.format(size)}{in_how_many(much, lost)}")
-    return told
-
-
-_LOST = {
-    "radial": "load of {} N, for which ISO 281 has no factor at 90°: P and P0 have no"
-    " part of it",
-    "axial": "load of {} N, which ribs bear: P and P0 have no part of it",
-    "moment": "of {} N m about the pressure centre: P and P0, and with them the basic"
-    " life and the static safety, have no part of it; the reference life of ISO/TS"
-    " 16281 has",
-}
-"""Warnings by the part of the load that P and P0 leave out."""
-
-
-def _off_the_diagrams(numbers):
-    if numbers.get("viscosity_ratio") is None:
-        return []
-    kappa = np.asarray(numbers["viscosity_ratio"])
-    # At a standstill, where it is 0, nothing tires.
-    thin, thick = (kappa > 0) & (kappa < KAPPA[0]), kappa > KAPPA[1]
-    found = []
-    if thin.any():
-        found.append(
-            f"viscosity ratio of {kappa[thin].min():.3g}: ISO 281 has no a_ISO below"
-            f" {KAPPA[0]:g}; the one at {KAPPA[0]:g} is taken"
-            f"{in_how_many(thin, np.where(thin, -kappa, -np.inf))}"
+        LIFE_KINDS[name].words(
+            float(size), LIFE_KINDS[name].where(bearing, ratings, numbers)
         )
-    if thick.any():
-        found.append(
-            f"viscosity ratio of {kappa[thick].max():.3g}: the diagrams of ISO 281 end"
-            f" at {KAPPA[1]:g}; a_ISO and the e_C of a class of cleanliness are those"
-            f" at {KAPPA[1]:g}{in_how_many(thick, kappa)}"
-        )
-    return found
-
-
-def _at_ends(numbers):
-    share = numbers.get("damage_share")
-    if share is None or np.ndim(share) != 3 or np.shape(share)[2] < LEAST_LAMINAE:
-        return []
-    ends = float(np.sum(np.asarray(share)[:, :, [0, -1]]))
-    if not ends > MOST_AT_ENDS:
-        return []
-    return [
-        f"{100 * ends:.3g} % of the fatigue is in the laminae at the ends of the"
-        " rollers: at sharp ends the life depends on the number of laminae,"
-        f" {np.shape(share)[2]} here; with a profile that runs out it does not"
+        for name, size in life_sizes(bearing, ratings, numbers).items()
+        if size > LIFE_KINDS[name].limit
     ]
 
 
-def _still(numbers):
-    hours = numbers.get("life_hours")
-    if hours is None or not np.isinf(hours).all():
-        return []
-    if not (np.asarray(numbers["damage"]) > 0).any():
-        return []
-    return ["the rings do not turn against each other: there is no life in hours"]
-
-
-def in_how_many(flags: Any, size: Any) -> str:
-    """In how many of many cases, and the worst of them; "" of one case.
+def life_sizes(
+    bearing: Bearing | BearingSet, ratings: Ratings, numbers: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Size of every kind of warning about a life that can arise, NaN of a failed one.
 
     Args:
-        flags: Which cases (case,).
-        size: How bad they are (case,).
+        bearing, ratings, numbers: As of `life_warnings`, traced or not.
     """
-    if not np.ndim(flags):
-        return ""
-    worst = int(np.nanargmax(size))
-    return f", in {int(flags.sum())} of {len(flags)} cases, worst case {worst}"
+    known = {name: value for name, value in numbers.items() if value is not None}
+    return dict(_sizes(bearing, ratings, known))
+
+
+def _sizes(bearing, ratings, numbers) -> Iterator[tuple[str, Any]]:
+    load = _load(numbers)
+    if load is not None:
+        yield "heavy_load", load / _most(ratings)
+    hours = numbers.get("life_hours")
+    if load is not None and hours is not None:
+        xp = namespace(load)
+        # At a standstill nothing skids.
+        turns = xp.isfinite(hours) | (load == 0)
+        yield "light_load", xp.where(turns, 1.0 - load / _least(bearing, ratings), 0.0)
+    if "equivalent_load" in numbers:
+        load, radius = numbers["equivalent_load"], pitch_radius(bearing)
+        much = {"radial": 1e-6, "axial": 1e-6, "moment": LARGEST_MOMENT * radius}
+        for name, share in much.items():
+            lost = numbers.get(f"{name}_left_out", 0.0)
+            over = lost - share * load
+            yield f"{name}_left_out", namespace(load).where(over > 0, lost, 0.0 * over)
+    if "viscosity_ratio" in numbers:
+        kappa = numbers["viscosity_ratio"]
+        xp = namespace(kappa)
+        # At a standstill, where it is 0, nothing tires.
+        yield "thin_film", KAPPA[0] / xp.where(kappa == 0, xp.inf, kappa)
+        yield "thick_film", kappa
+    share = numbers.get("damage_share")
+    if share is not None and share.shape[-1] >= LEAST_LAMINAE:
+        yield "loaded_ends", share[..., 0].sum() + share[..., -1].sum()
+    if hours is not None and "damage" in numbers:
+        xp = namespace(hours)
+        # Without load there is none either, whatever the speed.
+        still = xp.where(xp.isinf(hours), 1.0, 0.0)
+        yield "no_hours", xp.where(numbers["damage"] > 0, still, xp.nan)
+
+
+def _load(numbers) -> Any:
+    """The larger one of P and of the load with the reference life, of those known."""
+    names = ("equivalent_load", "reference_load")
+    known = [numbers[name] for name in names if name in numbers]
+    return namespace(known[0]).maximum(known[0], known[-1]) if known else None
+
+
+def _most(ratings):
+    c, c0 = ratings.dynamic_capacity, ratings.static_capacity
+    return namespace(c0).minimum(0.5 * c, c0)
+
+
+def _least(bearing, ratings):
+    share = LEAST_LOAD_OF_BALLS if is_ball(bearing) else LEAST_LOAD_OF_ROLLERS
+    return share * ratings.dynamic_capacity
+
+
+def _heavy_words(size, where):
+    return (
+        f"equivalent load {where or f'{size:.4g} times'} the lesser of C0 and C/2: ISO"
+        " 281 does not vouch for lives of such loads"
+    )
+
+
+def _heavy_numbers(bearing, ratings, numbers):
+    load, most = (1e-3 * float(x) for x in (_load(numbers), _most(ratings)))
+    return f"of {load:.4g} kN, above {most:.4g} kN,"
+
+
+def _light_words(size, where):
+    what = where or (
+        f"of {100.0 * (1.0 - size):.3g} % of {LEAST_LOAD_OF_BALLS:g} C of balls or"
+        f" {LEAST_LOAD_OF_ROLLERS:g} C of rollers, which makers ask for: these"
+    )
+    return f"equivalent load {what} may skid"
+
+
+def _light_numbers(bearing, ratings, numbers):
+    least = float(_least(bearing, ratings))
+    share = least / float(ratings.dynamic_capacity)
+    kind = "ball" if is_ball(bearing) else "roller"
+    return (
+        f"of {float(_load(numbers)):.4g} N, below {least:.4g} N, {share:g} C, which"
+        f" makers of {kind} bearings ask for: the {kind}s"
+    )
+
+
+def _thin_words(size, where):
+    return (
+        f"viscosity ratio of {KAPPA[0] / size:.3g}: ISO 281 has no a_ISO below"
+        f" {KAPPA[0]:g}; the one at {KAPPA[0]:g} is taken"
+    )
+
+
+def _thick_words(size, where):
+    return (
+        f"viscosity ratio of {size:.3g}: the diagrams of ISO 281 end at {KAPPA[1]:g};"
+        f" a_ISO and the e_C of a class of cleanliness are those at {KAPPA[1]:g}"
+    )
+
+
+def _ends_words(size, where):
+    return (
+        f"{100 * size:.3g} % of the fatigue is in the laminae at the ends of the"
+        f" rollers: at sharp ends the life depends on the number of laminae{where};"
+        " with a profile that runs out it does not"
+    )
+
+
+LIFE_KINDS: dict[str, LifeKind] = {
+    "heavy_load": LifeKind(1.0, _heavy_words, _heavy_numbers),
+    "light_load": LifeKind(0.0, _light_words, _light_numbers),
+    "radial_left_out": LifeKind(
+        0.0,
+        lambda size, where: (
+            f"radial load of {size:.4g} N, for which ISO 281 has no factor at 90°: P"
+            " and P0 have no part of it"
+        ),
+    ),
+    "axial_left_out": LifeKind(
+        0.0,
+        lambda size, where: (
+            f"axial load of {size:.4g} N, which ribs bear: P and P0 have no part of it"
+        ),
+    ),
+    "moment_left_out": LifeKind(
+        0.0,
+        lambda size, where: (
+            f"moment of {size:.4g} N m about the pressure centre: P and P0, and with"
+            " them the basic life and the static safety, have no part of it; the"
+            " reference life of ISO/TS 16281 has"
+        ),
+    ),
+    "thin_film": LifeKind(1.0, _thin_words),
+    "thick_film": LifeKind(KAPPA[1], _thick_words),
+    "loaded_ends": LifeKind(
+        MOST_AT_ENDS,
+        _ends_words,
+        lambda b, r, numbers: f", {np.shape(numbers['damage_share'])[2]} here",
+    ),
+    "no_hours": LifeKind(
+        0.0,
+        lambda size, where: (
+            "the rings do not turn against each other: there is no life in hours"
+        ),
+        of_all=True,
+    ),
+}
+"""Every kind of warning about a life, by name, in the order in which they are told."""

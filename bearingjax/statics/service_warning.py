@@ -7,7 +7,6 @@ import numpy as np
 from ..design.fits import FitState
 from ..element.inertia import Speed
 from .life import turns_against_load
-from .life_warning import in_how_many
 
 MOST_STRESS = 127e6
 """Hoop stress above which a fit is warned of, of bearing steel [Pa]: the largest that
@@ -82,8 +81,8 @@ def seat_warnings(
 def speed_warnings(
     turns: Any,
     *,
-    limiting_speed: float | None = None,
-    reference_speed: float | None = None,
+    limiting_speed: Any = None,
+    reference_speed: Any = None,
 ) -> list[str]:
     """Warnings about a speed beyond those that a catalogue names, a sentence each.
 
@@ -107,11 +106,15 @@ def speed_warnings(
             " warmer than the 70 °C of ISO 15312, or its load must be less",
         ),
     ):
-        if limit is None or not (size > limit).any():
+        if limit is None:
             continue
-        top, allowed = (f"{x * 30 / np.pi:.5g}" for x in (size.max(), limit))
-        told.append(
-            f"speed of {top} rpm, above {words.format(allowed)}"
-            f"{in_how_many(size > limit, size)}"
-        )
+        above = size > float(limit) * (1.0 + 1e-9)  # by more than round-off
+        if not above.any():
+            continue
+        top, allowed = (f"{x * 30 / np.pi:.5g}" for x in (size.max(), float(limit)))
+        many = ""
+        if above.ndim:
+            many = f", in {above.sum()} of {above.size} cases, worst case"
+            many += f" {np.argmax(size)}"
+        told.append(f"speed of {top} rpm, above {words.format(allowed)}{many}")
     return told

@@ -53,7 +53,8 @@ class Sweep(eqx.Module):
     Attributes:
         cases: The cases that were solved.
         outputs: By name, leading axis case; among them `warning_KIND`, the size of
-            every kind of warning that can arise (`statics.warning_kinds.KINDS`).
+            every kind of warning that can arise (`statics.warning_kinds.KINDS`, and
+            with conditions of a life `statics.life_warning.LIFE_KINDS`).
         moving_ring: "outer" or "inner".
         zeros: (output, names along its last axes whose numbers are zero whatever the
             case), each; a table leaves them out.
@@ -177,7 +178,9 @@ def sweep(
             and the remaining cases have the code `NOT_RUN`. It must return the same in
             all processes. (A KeyboardInterrupt loses what was solved; a signal handler
             whose flag `stop` returns does not.)
-        life: Conditions of rating lives among `outputs`; default `LifeConditions()`.
+        life: Conditions of rating lives among `outputs`, and of warnings about lives
+            even if none is kept; `None`: lives are not looked at, or if `outputs` name
+            one `LifeConditions()`.
 
     Returns:
         Sweep with all cases, in every process.
@@ -210,7 +213,7 @@ def sweep(
             f"sweep: `life` is a {type(life).__name__}; it must be LifeConditions."
         )
     keep, lives = _kept(outputs)
-    life = (life or LifeConditions()) if lives else None
+    life = LifeConditions() if lives and life is None else life
     places = np.array(jax.devices() if devices is None else list(devices))
     task = Task(options, keep, warn, lives, life)
     program = Program(element, task, size, places)

@@ -16,7 +16,8 @@ from jax.sharding import PartitionSpec as Spec
 from ..element.frame import RINGS
 from ..numerics.result import Result
 from .cases import solve_case
-from .life import LifeConditions, life_outputs
+from .life import LifeConditions, life_of, life_outputs
+from .life_warning import life_sizes
 from .options import SolveOptions
 from .solution import Solution
 from .warning import sizes
@@ -45,7 +46,7 @@ class Task(eqx.Module):
         keep: Of a Solution, the outputs by name.
         warn: Whether to look for warnings.
         lives: Names of `LIFE_OUTPUTS` that are kept too.
-        life: Conditions of the life.
+        life: Conditions of the life; `None`: it is not looked at.
 
     Traced: the numbers of `options` and `life`. Static: all else.
     """
@@ -72,14 +73,17 @@ class Task(eqx.Module):
             return value
 
         kept = {name: told(v) for name, v in _arrays(self.keep(solution)).items()}
+        warned = sizes(solution) if self.warn else {}
         if self.life is not None:
-            lives = life_outputs(solution, self.life, self.lives)
+            life = life_of(solution.element, solution, self.life)
+            lives = life_outputs(life, self.lives)
             kept |= {name: told(v) for name, v in lives.items()}
+            if self.warn:
+                bearing = solution.element.bearing
+                doubts = life_sizes(bearing, life.ratings, vars(life))
+                warned |= {name: told(size) for name, size in doubts.items()}
         always = {name: getattr(solution, name) for name in ALWAYS}
-        if not self.warn:
-            return {**kept, **always}
-        warned = {WARNED + name: size for name, size in sizes(solution).items()}
-        return {**kept, **always, **warned}
+        return {**kept, **always, **{WARNED + k: size for k, size in warned.items()}}
 
 
 def _arrays(kept) -> dict[str, jax.Array]:

@@ -7,8 +7,12 @@ import numpy as np
 
 from ..design.checks import is_traced
 from ..numerics.types import namespace
+from .life_warning import LIFE_KINDS
 from .solution import Solution
 from .warning_kinds import KINDS
+
+ALL: dict[str, Any] = {**KINDS, **LIFE_KINDS}
+"""Every kind of warning about a case, by name."""
 
 
 def warnings(solution: Solution) -> list[str]:
@@ -76,9 +80,14 @@ def given(warned: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Which cases have each kind, by name (case,); kinds without cases left out.
 
     Args:
-        warned: Name -> `sizes` (case,).
+        warned: Name -> `sizes`, and `life_sizes` (case,).
     """
-    over = {name: warned[name] > KINDS[name].limit for name in KINDS if name in warned}
+    over = {
+        name: warned[name] > kind.limit for name, kind in ALL.items() if name in warned
+    }
+    for name in set(over) & set(LIFE_KINDS):
+        if LIFE_KINDS[name].of_all and (~over[name] & np.isfinite(warned[name])).any():
+            del over[name]
     return {name: cases for name, cases in over.items() if cases.any()}
 
 
@@ -86,12 +95,12 @@ def counted(warned: dict[str, np.ndarray]) -> list[str]:
     """The sentences of many cases: each kind once, with its worst case.
 
     Args:
-        warned: Name -> `sizes` (case,).
+        warned: As of `given`.
     """
     out = []
     for name, cases in given(warned).items():
         worst = int(np.nanargmax(warned[name]))
-        said = KINDS[name].words(float(warned[name][worst]), "")
+        said = ALL[name].words(float(warned[name][worst]), "")
         out.append(
             f"{name}: {said}, in {int(cases.sum())} of {len(cases)} cases, worst case"
             f" {worst}"

@@ -7,12 +7,20 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import read_cases, read_optimisation
+from bearingjax.scene import (
+    read_cases,
+    read_noise,
+    read_optimisation,
+    read_rotor,
+    read_skid,
+)
 from bearingjax.scene.life_table import (
     life_conditions,
     not_published,
     rating_origins,
 )
+from bearingjax.scene.rotor_run import RotorRun
+from bearingjax.scene.rotor_warnings import rotor_warnings
 
 LOAD = '[operating]\nload = { Fy = "-1 kN" }\n'
 
@@ -152,6 +160,52 @@ def test_speeds_are_held_against_those_of_the_catalogue(read, tmp_path):
     path = tmp_path / "found.toml"
     path.write_text(text, encoding="utf-8")
     assert read_optimisation(path).scene.warnings == told
+
+
+FAST = {
+    "skid": (
+        '[lubricant]\nname = "MIL-L-23699"\ntemperature = "70 °C"\n'
+        '[dynamics]\nduration = "1 s"\nramp = "10 s"\n[cage]\n',
+        lambda path: read_skid(path, steady=True).warnings,
+        lambda path: read_skid(path).warnings,
+    ),
+    "noise": (
+        '[vibration]\nmass = "0.1 kg"\n',
+        lambda path: read_noise(path).warnings,
+        lambda path: read_noise(path, ["operating.inner_speed=2000 rpm"]).warnings,
+    ),
+    "rotor": (
+        '[rotor]\nspeed = "20000 rpm"\n[[rotor.shaft]]\nlength = "100 mm"\n'
+        'outer_diameter = "25 mm"\ndivisions = 2\n'
+        '[[rotor.bearings]]\nstation = 1\nbearing = "own"\n'
+        '[bearings.own]\ndesignation = "6205"\n',
+        lambda path: rotor_warnings(RotorRun(read_rotor(path), None)),
+        lambda path: rotor_warnings(
+            RotorRun(read_rotor(path, ["rotor.speed=2000 rpm"]), None)
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize("command", FAST)
+def test_every_command_tells_the_speeds_of_the_catalogue(command, tmp_path):
+    """Of a motion in time, the speed that it reaches."""
+    table, fast, slow = FAST[command]
+    bearing = f'[bearing]\ndesignation = "6205"\n{LOAD}inner_speed = "20000 rpm"\n'
+    path = tmp_path / f"{command}.toml"
+    text = table if command == "rotor" else bearing + table
+    path.write_text(text, encoding="utf-8")
+    words = "speed of 20000 rpm, above the limiting speed of the catalogue, 18000 rpm"
+    (told,) = (line for line in fast(path) if "catalogue" in line)
+    assert told.removeprefix("own: ").startswith(words)
+    assert not any("catalogue" in line for line in slow(path))
+
+
+def test_each_bearing_of_a_sweep_has_its_own_speeds(tmp_path):
+    text = f'[bearing]\ndesignation = "6205"\n{LOAD}inner_speed = "12000 rpm"\n'
+    text += '[cases.grid]\nbearing.designation = ["6205", "6210", "6206"]\n'
+    told = [line for line in cases(tmp_path, text).warnings if "limiting" in line]
+    assert len(told) == 1 and told[0].endswith("in 1 of 3 cases, worst case 1")
 
 
 def test_each_bearing_of_a_sweep_has_its_own_ratings(tmp_path):

@@ -706,7 +706,8 @@ def test_what_a_rotor_tells_of_its_fits(scene):
     assert "own at stations 0, 1, its inner ring turning at 30000 rpm" in text
     assert "fits: shaft k5, housing H7; sizes of the solve: middle" in text
     left = expected["radial_clearance"]
-    (told,) = rotor_warnings(run)
+    fast, *_, told = rotor_warnings(run)
+    assert fast.startswith("own: speed of 30000 rpm, above the limiting speed")
     words = f"with the radial clearance at 30000 rpm, {1e6 * left['operating']:.4g} µm"
     assert words in told and "; at 60000 rpm its fits leave " in told
     # Speeds that are not asked for are no matter.
