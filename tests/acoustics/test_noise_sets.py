@@ -161,7 +161,9 @@ def test_gyroscopic_moments_that_are_left_out_are_told():
     sine, cosine = np.sin(0.4), np.cos(0.4)
     pitch = np.arctan2(sine, cosine + ratio)
     along = np.cos(pitch) * cosine + np.sin(pitch) * sine
-    rolls = omega / ratio / (along * (1 / (1 + ratio * cosine) + 1 / (1 - ratio * cosine)))
+    rolls = (
+        omega / ratio / (along * (1 / (1 + ratio * cosine) + 1 / (1 - ratio * cosine)))
+    )
     orbit = 0.5 * omega * (1.0 - ratio * cosine)
     moment = mass * 0.01**2 / 10.0 * rolls * orbit * np.sin(pitch)
     fast = dataclasses.replace(model(OFF_CENTRE), speed=bj.Speed(inner=omega))

@@ -243,9 +243,11 @@ def test_a_load_that_is_held_ends_where_the_steady_state_is():
     end = steady(axial)
     assert np.max(np.abs(found.imbalance)) < 1e-6 * float(found.work.drive[-1])
     for name in ("orbit_speed", "spin", "contact_load", "contact_angle", "sliding"):
-        got, want = (np.asarray(getattr(f, name)) for f in (found, end))
+        # Balls at other distances from each other share the load otherwise.
+        got = np.mean(getattr(found, name)[-1], axis=0)
+        want = np.asarray(getattr(end, name))[0]
         size = np.max(np.abs(want))
-        np.testing.assert_allclose(got[-1], want, rtol=0, atol=1e-4 * size)
+        np.testing.assert_allclose(got, want, rtol=0, atol=1e-4 * size)
     np.testing.assert_allclose(
         found.friction_torque[-1], end.friction_torque, rtol=1e-4
     )
