@@ -21,7 +21,7 @@ scene noise_four_point are 6 apart, opposite each other.
 
 Run: python benchmarks/paper_kurushin.py [--turns N] [--smoke] [--json]
 
-Last run:
+Last run (levels: before contacts were damped along their normals, not run again since):
 
 natural frequencies and loads: ours | published
   along, radial 250 N [Hz]                    2695 | 2695

@@ -43,7 +43,9 @@ class NoiseModel(eqx.Module):
 
     Attributes:
         element: The bearing or set, with linearised kinematics; a self-aligning one
-            with `Finite()`.
+            with `Finite()`. Whatever its raceway control, balls are carried as with
+            `CentrifugalOnly()`: they orbit at the free contact angle, and have no
+            gyroscopic moment; `record_warnings` tells where that moment matters.
         mass: Of the moving ring, and of what moves with it [kg].
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring (6,) [N, N m]; moments only
             if it tilts.

@@ -19,6 +19,7 @@ from ..design.checks import check, count, is_traced
 from ..numerics.implicit import stop
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
+from ..statics.options import DEFAULT_TOLERANCE
 from .cage import fastest_of_cage
 from .model import NoiseModel
 from .natural import natural_modes
@@ -31,9 +32,6 @@ _TOGETHER = 64
 """Samples whose contact loads are worked out together."""
 STEP = 0.5
 """Longest step, of a radian of the fastest mode [rad]."""
-_ROUNDED = 500.0
-"""Round-off of all forces, over that of the sum of loads: the place at which the motion
-begins is in balance to some hundreds of it [1]."""
 _DOUBLINGS = 3
 """How often steps that proved too long for the contacts are halved."""
 
@@ -105,15 +103,18 @@ def bandwidth(samples: int, shaft_frequency: Any) -> Any:
 
 
 def rounding(model: NoiseModel, record: Vibration) -> float:
-    """Acceleration that the round-off of the contacts' forces may make [m/s²].
+    """Acceleration that forces out of balance by round-off may make [m/s²].
 
     Args:
         model: The bearing.
         record: Its vibration; concrete.
     """
+    # Where the motion begins, forces balance to the tolerance of the solve, of all
+    # loads; let go, a contact swings to twice that. Round-off of a load, whose approach
+    # δ is a difference of lengths l, is 1.5 eps l/δ of it: less, up to l/δ = 3e4.
     load = np.asarray(record.contact_load)
     most = float(np.max(np.sum(load, axis=(1, 2)), initial=0.0))
-    return _ROUNDED * float(np.finfo(load.dtype).eps) * most / float(model.mass)
+    return 2.0 * DEFAULT_TOLERANCE[str(load.dtype)] * most / float(model.mass)
 
 
 def vibration(

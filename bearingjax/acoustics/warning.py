@@ -5,10 +5,14 @@ from collections.abc import Iterator
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
-from ..design import rows_of
+from ..design import n_elements, rows_of
 from ..design.form_error import FormErrors, Harmonics, Surfaces
+from ..element.ball_inertia import carried, turning
+from ..element.ball_speed import CentrifugalOnly, OuterControl
+from ..element.choices import BallChoices
 from ..numerics.result import Result
 from .bands import LEAST_SHIFT, Bands, band_shift, covers, total_root_mean_square
 from .contact_states import contact_states
@@ -30,6 +34,9 @@ _WANDERING = 0.02
 """Change of a natural frequency on that way that is worth a word [1]."""
 _OVERLAP = 0.1
 """Sum of shares beyond the whole that is worth a word [1]."""
+_GYROSCOPIC = 0.05
+"""Tractions that the gyroscopic moment of balls asks for, over loads, that are worth a
+word: they turn contact angles by as much in radians [1]."""
 _LOBE = 2.0
 """Half width of a line with Hann's window [bins]."""
 
@@ -83,6 +90,7 @@ def record_warnings(
         *_bands(record, found, bands),
         *_total(model, record, found),
         *_short_waves(model, np.asarray(record.contact_load), tolerances),
+        *_gyroscopic(model, np.asarray(record.contact_load)),
         *_halves(record),
         *_lost(record),
     ]
@@ -120,7 +128,11 @@ def _few_steps(model, samples, steps) -> Iterator[str]:
 
 def _wandering_modes(model: NoiseModel) -> Iterator[str]:
     """Natural modes that change as the rolling elements orbit."""
-    angles = 2.0 * np.pi / _PLACES * np.arange(_PLACES)
+    share = np.arange(_PLACES) / _PLACES
+    count = n_elements(rows_of(model.element.bearing)[0].bearing)
+    # Of the way round and of the way to the next element, after which equal ones stand
+    # as before.
+    angles = 2.0 * np.pi / count * (np.floor(count * share) + share)
     every: dict[str, list[float]] = {}
     for angle in angles if model.orbits else ():
         modes = jax.device_get(natural_modes(orbited(model, angle)))
@@ -150,11 +162,11 @@ def _above(model, told, tolerances) -> Iterator[str]:
             yield f"the {name} at {frequency:.5g} Hz lies {cut}"
     drawn = _highest_drawn(tolerances)
     for where, bearing, errors in _rows(model):
-        turning = kinematic_frequencies(bearing, model.speed)
+        rolling = kinematic_frequencies(bearing, model.speed)
         passing = {
-            "outer raceway": abs(float(turning.cage - turning.outer)),
-            "inner raceway": abs(float(turning.inner - turning.cage)),
-            "elements": float(turning.rotation),
+            "outer raceway": abs(float(rolling.cage - rolling.outer)),
+            "inner raceway": abs(float(rolling.inner - rolling.cage)),
+            "elements": float(rolling.rotation),
         }
         for part, given in _parts(errors).items():
             highest = max(_highest(given), drawn[part])
@@ -249,6 +261,35 @@ def _short_waves(model, load, tolerances) -> Iterator[str]:
                     " bridge them: their noise is overstated, by 10 % at that order and"
                     " ever more above; average them with `vibration.bridging`"
                 )
+
+
+def _gyroscopic(model, load) -> Iterator[str]:
+    """Balls so fast that the gyroscopic moment, which is left out, moves them.
+
+    At the free contact angle, or that which the axial load asks for if it is larger.
+    """
+    choices = model.element.choices
+    if not isinstance(choices, BallChoices):
+        return
+    if isinstance(choices.raceway_control, CentrifugalOnly):
+        return
+    loads = of_rows(load, model.element.bearing, axis=1)
+    for own, (where, bearing, _) in zip(loads, _rows(model), strict=True):
+        each = 0.5 * float(np.mean(np.sum(own, axis=2)))  # of a ball, on one raceway
+        if not each > 0.0:
+            continue
+        sine = abs(float(model.load[2])) / (each * own.shape[1])
+        cosine = min(float(bearing.free_cosine), math.sqrt(max(0.0, 1.0 - sine**2)))
+        normal = jnp.array([math.sqrt(1.0 - cosine**2), cosine])
+        ball = turning(bearing, bearing.ball_diameter, model.speed, OuterControl())
+        found = carried(ball, jnp.stack([normal] * 2), jnp.full(2, each))
+        share = float(jnp.max(jnp.abs(found.traction))) / each
+        if share > _GYROSCOPIC:
+            yield (
+                f"the gyroscopic moment of the balls{where} asks for tractions of"
+                f" {100.0 * share:.2g} % of their loads; noise leaves it out, whatever"
+                " the raceway control, and contact angles are not those of a load solve"
+            )
 
 
 def _halves(record) -> Iterator[str]:

@@ -64,7 +64,9 @@ def skid(
 ) -> Any:
     """How the balls or rollers of a bearing and its cage move.
 
-    Contact loads and angles are quasi-static. Of a constant load they are tabulated
+    Contact loads and angles are quasi-static, with the inertia of pure rolling, however
+    far the balls slip (end states of `steady_skid` have that of their orbits). Of a
+    constant load they are tabulated
     around the bearing, for the ring where `solve_load` finds it. Of a load that varies
     in time they follow from a balance of the ring at every time, with the balls where
     they are. That is what `balanced` does for a constant load too: steps cost three to

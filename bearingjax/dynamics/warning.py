@@ -8,6 +8,7 @@ import numpy as np
 from ..design import is_ball, n_elements
 from ..lubrication import DryFriction, Newtonian, Regime, SlipCurve
 from .conditions import Conditions
+from .history import SkidMotion
 from .model import SkidModel
 
 MOST_SHEAR = 0.12
@@ -92,9 +93,15 @@ def _slip(found, turning, driven):
     under_load = slip[driven].max(initial=0.0)
     if under_load < largest:
         text = f"{text}, of what both raceways press {100.0 * under_load:.4g} %"
-    return (
+    text = (
         f"{text}: films and viscosities are those of rolling contacts at the"
         " temperature of the oil, which sliding heats"
+    )
+    if not isinstance(found, SkidMotion):
+        return text
+    return (
+        f"{text}; contact loads in time have the centrifugal force of pure rolling, if"
+        " no `load_speed` is given"
     )
 
 

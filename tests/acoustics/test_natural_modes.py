@@ -10,6 +10,7 @@ from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
 from bearingjax.acoustics import NoiseModel, Sensor, natural_modes
+from bearingjax.acoustics.warning import _wandering_modes
 
 # Without the inertia of the orbit, which presses every ball on the outer raceway.
 SPEED = bj.Speed()
@@ -141,6 +142,30 @@ def test_balls_that_carry_nothing_ride_on_the_outer_ring_at_speed(radial):
     least = still * np.sqrt(0.3716 / (0.3716 + carried))
     assert least < along < 0.97 * still
     assert np.min(found.frequency) > 100.0
+
+
+def test_modes_that_change_as_equal_balls_pass_are_told():
+    """Eight of them, on the way of one to the place of the next."""
+    eight = dataclasses.replace(BEARING, n_balls=8, radial_internal_clearance=20e-6)
+    turning = bj.Speed(inner=10.0)
+
+    def at(angle):
+        bearing = dataclasses.replace(eight, first_azimuth=np.pi / 2 + angle)
+        element = bj.BearingElement(bearing)
+        return dataclasses.replace(RADIAL, element=element, speed=turning)
+
+    places = [natural_modes(at(k * np.pi / 32)) for k in range(8)]
+    across = [ring_modes(found, 0)[0] for found in places]
+    ends = min(across), max(across)
+    assert ends[1] > 1.4 * ends[0]
+    for first in (0.0, np.pi / 8):
+        (text,) = _wandering_modes(at(first))
+        (along,) = (one for one in text.split("; ") if "along x" in one)
+        told = along.partition(" between ")[2].split(" Hz")[0].split(" and ")
+        np.testing.assert_allclose(np.array(told, float), ends, rtol=1e-4)
+    # Under an axial load all places are alike.
+    axial = dataclasses.replace(at(0.0), load=jnp.array([0.0, 0, 250.0, 0, 0, 0]))
+    assert not list(_wandering_modes(axial))
 
 
 def test_derivatives(radial):

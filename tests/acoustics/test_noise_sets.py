@@ -24,6 +24,7 @@ from bearingjax.acoustics import (
 )
 from bearingjax.acoustics.free_row import of_rows
 from bearingjax.acoustics.standing import standing
+from bearingjax.acoustics.warning import _gyroscopic
 from bearingjax.design import FormErrors, Harmonics, RacewayErrors, with_raceways
 
 SPEED = bj.Speed(inner=300.0)
@@ -151,6 +152,28 @@ def test_lines_of_rows_that_roll_otherwise_say_so():
     pair = bj.BearingSet((bj.SetRow(rows[0], -0.01), bj.SetRow(rows[1], 0.01)))
     (line,) = name_lines(heard, pair, bj.Speed(inner=2 * np.pi), tolerance=0.05)
     assert line.name == "BPFO of row 1"
+
+
+def test_gyroscopic_moments_that_are_left_out_are_told():
+    """As Harris has them, rolling on the outer raceway, at the free contact angle."""
+    omega, load = 1500.0, np.full((2, 17, 2), 20.0)
+    mass, ratio = 7850.0 * np.pi / 6.0 * 0.01**3, 0.2
+    sine, cosine = np.sin(0.4), np.cos(0.4)
+    pitch = np.arctan2(sine, cosine + ratio)
+    along = np.cos(pitch) * cosine + np.sin(pitch) * sine
+    rolls = (
+        omega / ratio / (along * (1 / (1 + ratio * cosine) + 1 / (1 - ratio * cosine)))
+    )
+    orbit = 0.5 * omega * (1.0 - ratio * cosine)
+    moment = mass * 0.01**2 / 10.0 * rolls * orbit * np.sin(pitch)
+    fast = dataclasses.replace(model(OFF_CENTRE), speed=bj.Speed(inner=omega))
+    texts = list(_gyroscopic(fast, load))
+    assert [text.partition(" of row ")[2][0] for text in texts] == ["0", "1"]
+    share = 100.0 * 2.0 * moment / 0.01 / 20.0
+    assert f"tractions of {share:.2g} % of their loads" in texts[0] and share < 30.0
+    assert not list(_gyroscopic(fast, 20.0 * load))
+    asked = bj.BearingElement(OFF_CENTRE, raceway_control=bj.CentrifugalOnly())
+    assert not list(_gyroscopic(dataclasses.replace(fast, element=asked), load))
 
 
 def test_errors_of_a_set_are_one_for_each_row():

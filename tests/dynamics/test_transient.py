@@ -232,6 +232,27 @@ def test_power_balance_under_a_load_that_varies(varying):
     assert np.max(np.abs(found.imbalance)) < 1e-6 * float(found.work.drive[-1])
 
 
+def test_a_load_that_is_held_ends_where_the_steady_state_is():
+    """Behind one across the axis; balls free in wide pockets, in no even spacing."""
+    axial = np.array([0.0, 0.0, 120.0, 0.0, 0.0, 0.0])
+    share = np.array([1.0, 1.0, 0.0, 0.0, 0.0])[:, None]
+    history = LoadHistory(TIMES, share * BOTH + (1.0 - share) * axial)
+    still = SinusoidalLoad(np.zeros(6), np.zeros(6), SPEED.inner)
+    wide = with_cage(pocket_clearance=8e-3)
+    found = run(Varying(history, still), model=wide, duration=0.8, tolerance=1e-6)
+    end = steady(axial)
+    assert np.max(np.abs(found.imbalance)) < 1e-6 * float(found.work.drive[-1])
+    for name in ("orbit_speed", "spin", "contact_load", "contact_angle", "sliding"):
+        # Balls at other distances from each other share the load otherwise.
+        got = np.mean(getattr(found, name)[-1], axis=0)
+        want = np.asarray(getattr(end, name))[0]
+        size = np.max(np.abs(want))
+        np.testing.assert_allclose(got, want, rtol=0, atol=1e-4 * size)
+    np.testing.assert_allclose(
+        found.friction_torque[-1], end.friction_torque, rtol=1e-4
+    )
+
+
 def test_a_load_that_ceases_and_comes_back():
     """Without load nothing holds the ring; balls lie in the outer raceway."""
     share = np.array([1.0, 1.0, 0.0, 0.0, 1.0])
