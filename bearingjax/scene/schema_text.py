@@ -171,7 +171,8 @@ def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
 def _shape(annotation: Any) -> list[str]:
     """Axes of an array; none of a number."""
     kinds = get_args(annotation) or (annotation,)
-    return " ".join(getattr(kind, "dim_str", "") for kind in kinds).split()
+    names = " ".join(str(getattr(kind, "dim_str", "")) for kind in kinds)
+    return [*map(str, names.split())]
 
 
 def attribute_texts(kind: type) -> dict[str, str]:
