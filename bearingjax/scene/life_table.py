@@ -10,8 +10,7 @@ from ..statics.life import FRAMES, LifeConditions
 from ..statics.life_factor import CLEANLINESS
 from ..statics.rating import dynamic_capacity, rated_axially, static_capacity
 from ..statics.reference_life import LEAST_LAMINAE
-from .lubricant_table import read_lubricant
-from .oil_table import OWN, Oil
+from .oil_table import Oil, read_oil
 from .table import Table
 
 if TYPE_CHECKING:
@@ -244,10 +243,8 @@ def _lubrication(top: Table, table: Table) -> dict[str, Any]:
         if "lubricant" not in top:
             problem = "is missing, and so is [lubricant]; `contamination` needs an oil"
             raise table.error("viscosity", problem)
-        lubricant = top.table("lubricant")
-        lubricant.skip("traction", *OWN)
-        oil, temperature, _ = read_lubricant(lubricant)
-        viscosity = float(oil.kinematic_viscosity(temperature))
+        oil, _ = read_oil(top.table("lubricant"))
+        viscosity = float(oil.lubricant.kinematic_viscosity(oil.temperature))
     if table.word("contamination") is not None:
         return {
             "viscosity": viscosity,

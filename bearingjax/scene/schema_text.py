@@ -28,11 +28,13 @@ def table_schema(kind: type[Keys]) -> dict[str, Any]:
         kind: Class that describes it.
     """
     known = fields_of(kind)
-    return object_schema(
-        {one.name: field_schema(one) for one in known},
-        [one.name for one in known if one.required],
-        _first_line(kind),
-    )
+    properties = {one.name: field_schema(one) for one in known}
+    for key, other in kind.numbers.items():
+        for name, one in class_schema(other)["properties"].items():
+            text = f"{one['description']}; with {key}" if key else one["description"]
+            properties.setdefault(name, {**one, "description": text})
+    required = [one.name for one in known if one.required]
+    return object_schema(properties, required, _first_line(kind))
 
 
 def object_schema(
@@ -59,7 +61,8 @@ def field_schema(field: Field) -> dict[str, Any]:
         field: From `fields_of`.
     """
     key, found = field.key, _bare_schema(field)
-    text = key.about + (f"; {key.allowed}" if key.allowed else "")
+    goes_with = key.goes_with and f"with {key.goes_with}"
+    text = "; ".join(filter(None, (key.about, key.allowed, goes_with)))
     found = {**found, "description": text}
     if isinstance(field.default, bool | int | str):
         found["default"] = field.default
@@ -74,10 +77,10 @@ def field_schema(field: Field) -> dict[str, Any]:
 def _bare_schema(field: Field) -> dict[str, Any]:
     """Type and range of what may stand at a key."""
     key, kinds = field.key, field.kinds
-    if key.reader is not None:
-        return dict(key.json)
     if key.of:
         return classes_schema(key.of)
+    if key.reader is not None:
+        return dict(key.json)
     if is_keys(kinds[0]):
         return table_schema(kinds[0])
     of_list = element_of(kinds[0])
@@ -161,6 +164,9 @@ def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
         if is_array(field.type):
             number = {"type": "array", "items": number}
         properties[field.name] = number | {"description": texts.get(field.name, "")}
+        if isinstance(field.default, int | float):
+            shown = f"{field.default:g} {unit}" if unit else field.default
+            properties[field.name]["default"] = shown
         if field.default is dataclasses.MISSING:
             required.append(field.name)
     found = object_schema(properties | more, required, _first_line(kind))
@@ -177,7 +183,7 @@ def attribute_texts(kind: type) -> dict[str, str]:
     for base in reversed(kind.__mro__):
         names: list[str] = []
         for line in inspect.cleandoc(base.__dict__.get("__doc__") or "").splitlines():
-            match = re.match(r" {4}([a-z_]\w*(?:, \w+)*): (.*)", line)
+            match = re.match(r" {4}([A-Za-z_]\w*(?:, \w+)*): (.*)", line)
             if match:
                 names = match[1].split(", ")
                 found |= dict.fromkeys(names, match[2])
@@ -229,8 +235,9 @@ def _objects(schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 def _row(name: str, schema: Mapping[str, Any], must: bool) -> str:
     default = schema.get("x-otherwise", schema.get("default", ""))
-    shown = "required" if must else str(default).lower() if default is not None else ""
-    cells = f"`{name}`", _holds(schema), shown, schema.get("description", "")
+    default = str(default).lower() if isinstance(default, bool) else default
+    shown = "required" if must else default
+    cells = f"`{name}`", _holds(schema), str(shown), schema.get("description", "")
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
 
 

@@ -66,7 +66,7 @@ WRONG = {
     ),
     "index of an oil that has its own": (
         ["lubricant.viscosity_index=95"],
-        "`lubricant.viscosity_index`: unknown key; known in [lubricant]: ",
+        "`lubricant.viscosity_index`: goes with a `grade`, or with the `name` of",
     ),
     "thin oil of a low index": (
         ["lubricant.name=ISO VG 10", "lubricant.viscosity_index=500"],
