@@ -1,5 +1,6 @@
 """Laws, kinematics and numerics that a scene chooses by name."""
 
+import dataclasses
 from typing import Any
 
 from ..contact.coupled import CoupledSlices
@@ -13,8 +14,6 @@ from ..contact.point_law import (
 )
 from ..design import Bearing, BearingSet, is_ball, n_elements, rows_of
 from ..element import (
-    RINGS,
-    AbstractKinematics,
     AbstractRacewayControl,
     CentrifugalOnly,
     ConstantAngle,
@@ -29,8 +28,8 @@ from ..element import (
 )
 from ..numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
-from ..numerics.units import unit_of
 from ..statics.load_search import SLOTS
+from .schema import Keys, read_keys, scene_key
 from .table import Table
 
 LINE_LAWS = {
@@ -63,6 +62,151 @@ MOST_SLICES = 10_000
 """Most slices of a roller."""
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class LineContactKeys(Keys):
+    """[contact] of rollers: the law of their slices."""
+
+    line_law: str = scene_key(
+        "approach and load of a slice", choices=tuple(LINE_LAWS), default="palmgren"
+    )
+    line_constant: float | None = scene_key(
+        "constant of q = K δ^(10/9), in place of the law's",
+        "line constant",
+        only={"line_law": ("palmgren", "iso16281")},
+    )
+    slices: int = scene_key(
+        "slices of a roller",
+        default=CoupledSlices().slices,
+        only={"line_law": ("coupled_slices",)},
+    )
+
+    @property
+    def law(self) -> AbstractLineLaw:
+        """The law of the slices."""
+        with self.table.building():
+            if self.line_law == "coupled_slices":
+                return CoupledSlices(self.slices)
+            if self.line_constant is not None:
+                return LineConstant(self.line_constant)
+        return LINE_LAWS[self.line_law]()
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class PointContactKeys(Keys):
+    """[contact] of balls: the law of their contacts."""
+
+    point_law: str = scene_key(
+        "contact angle for which the constants are worked out",
+        choices=tuple(POINT_LAWS),
+        default="free_angle",
+    )
+    outer_constant: float | None = scene_key(
+        "constant of Q = K δ^(3/2) on the outer raceway", "point constant"
+    )
+    inner_constant: float | None = scene_key(
+        "constant on the inner raceway", "point constant"
+    )
+
+    def check(self) -> None:
+        for name, other in _BOTH:
+            if getattr(self, name) is None and getattr(self, other) is not None:
+                problem = "is missing; give the constants of both rings"
+                raise self.table.error(name, problem)
+
+    @property
+    def law(self) -> AbstractPointLaw:
+        """The law of the contacts."""
+        if self.outer_constant is None or self.inner_constant is None:
+            return POINT_LAWS[self.point_law]()
+        with self.table.building():
+            return PointConstant(self.outer_constant, self.inner_constant)
+
+
+_BOTH = (("outer_constant", "inner_constant"), ("inner_constant", "outer_constant"))
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class ControlKeys(Keys):
+    """Raceway control of balls that turn."""
+
+    raceway_control: str = scene_key(
+        "raceway on which balls roll without spin, for their gyroscopic moment",
+        choices=tuple(CONTROLS),
+        default="outer",
+    )
+    friction_coefficient: float | None = scene_key(
+        "friction that holds the gyroscopic moment"
+    )
+
+    def check(self) -> None:
+        limited = self.raceway_control == "friction_limited"
+        if limited and self.friction_coefficient is None:
+            self.table.number("friction_coefficient")
+        if not limited and self.friction_coefficient is not None:
+            problem = 'goes with `raceway_control` = "friction_limited" only'
+            raise self.table.error("friction_coefficient", problem)
+
+    @property
+    def control(self) -> AbstractRacewayControl:
+        """The raceway control."""
+        if self.friction_coefficient is None:
+            return CONTROLS[self.raceway_control]()
+        with self.table.building():
+            return FrictionLimited(self.friction_coefficient)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class BallNumericsKeys(Keys):
+    """[numerics] of balls."""
+
+    kinematics: str | None = scene_key(
+        "how rings displace the raceways",
+        choices=tuple(KINEMATICS),
+        otherwise="`finite`",
+    )
+    equilibrium: str = scene_key(
+        "solver of the rolling elements' own equilibrium",
+        choices=tuple(EQUILIBRIA),
+        default="newton",
+    )
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class RollerNumericsKeys(BallNumericsKeys):
+    """[numerics] of rollers."""
+
+    kinematics: str = scene_key(
+        "how rings displace the raceways",
+        choices=tuple(KINEMATICS),
+        default="linearised",
+    )
+    quadrature: str = scene_key(
+        "rule along the rollers", choices=tuple(QUADRATURES), default="contact_mapped"
+    )
+    points: int | None = scene_key(
+        "nodes of a contact, or slices of a roller", otherwise="those of the rule"
+    )
+
+    def rule(self, n_rollers: int) -> AbstractQuadrature:
+        """The rule along the rollers.
+
+        Args:
+            n_rollers: Number of rollers of all rows.
+        """
+        points, kind = self.points, QUADRATURES[self.quadrature]
+        if self.quadrature == "midpoint" and (points or 0) > MOST_SLICES:
+            size = 8e-9 * SLOTS * 2 * n_rollers * (points or 0)
+            problem = (
+                f"{points} is too many slices: {size:.3g} GB in each array of a sweep,"
+                f" of {SLOTS} cases at a time; at most {MOST_SLICES}"
+            )
+            raise self.table.error("points", problem)
+        with self.table.building():
+            chosen = kind() if points is None else kind(points)
+        self.table.fill("points", chosen.points)
+        return chosen
+
+
 def read_choices(
     contact: Table, operating: Table, numerics: Table, bearing: Bearing | BearingSet
 ) -> dict[str, Any]:
@@ -74,77 +218,23 @@ def read_choices(
     """
     if is_ball(bearing):
         choices: dict[str, Any] = {
-            "point_law": _point_law(contact),
-            "raceway_control": _control(operating),
+            "point_law": read_keys(PointContactKeys, contact).law,
+            "raceway_control": read_keys(ControlKeys, operating).control,
         }
-        if "kinematics" in numerics:
-            choices["kinematics"] = _kinematics(numerics)
+        keys = read_keys(BallNumericsKeys, numerics)
     else:
-        law = read_line_law(contact)
-        n_rollers = sum(n_elements(row.bearing) for row in rows_of(bearing))
-        choices = {"line_law": law, "kinematics": _kinematics(numerics)}
+        law = read_keys(LineContactKeys, contact).law
+        choices = {"line_law": law}
+        keys = rollers = read_keys(RollerNumericsKeys, numerics)
         if not isinstance(law, CoupledSlices):
-            choices["quadrature"] = _quadrature(numerics, n_rollers)
-    solver = numerics.choice("equilibrium", tuple(EQUILIBRIA), "newton")
-    return {**choices, "equilibrium": EQUILIBRIA[solver]()}
-
-
-def read_line_law(contact: Table) -> AbstractLineLaw:
-    """Line law of a `[contact]` table."""
-    law = contact.choice("line_law", tuple(LINE_LAWS), "palmgren")
-    if law == "coupled_slices":
-        with contact.building():
-            return CoupledSlices(contact.integer("slices", CoupledSlices().slices))
-    constant = contact.real("line_constant", unit_of(LineConstant, "value"), None)
-    if constant is None:
-        return LINE_LAWS[law]()
-    with contact.building():
-        return LineConstant(constant)
-
-
-def _quadrature(numerics: Table, n_rollers: int) -> AbstractQuadrature:
-    rule = numerics.choice("quadrature", tuple(QUADRATURES), "contact_mapped")
-    points = numerics.integer("points", None)
-    if rule == "midpoint" and points is not None and points > MOST_SLICES:
-        size = 8e-9 * SLOTS * 2 * n_rollers * points
-        problem = (
-            f"{points} is too many slices: {size:.3g} GB in each array of a sweep, of"
-            f" {SLOTS} cases at a time; at most {MOST_SLICES}"
-        )
-        raise numerics.error("points", problem)
-    with numerics.building():
-        chosen = QUADRATURES[rule]() if points is None else QUADRATURES[rule](points)
-    numerics.fill("points", chosen.points)
-    return chosen
-
-
-def _kinematics(numerics: Table) -> AbstractKinematics:
-    return KINEMATICS[numerics.choice("kinematics", tuple(KINEMATICS), "linearised")]()
-
-
-def _point_law(contact: Table) -> AbstractPointLaw:
-    law = contact.choice("point_law", tuple(POINT_LAWS), "free_angle")
-    outer, inner = (
-        contact.real(f"{ring}_constant", unit_of(PointConstant, ring), None)
-        for ring in RINGS
-    )
-    if outer is None and inner is None:
-        return POINT_LAWS[law]()
-    for name, value in (("outer_constant", outer), ("inner_constant", inner)):
-        if value is None:
-            raise contact.error(name, "is missing; give the constants of both rings")
-    with contact.building():
-        return PointConstant(outer, inner)
-
-
-def _control(operating: Table) -> AbstractRacewayControl:
-    name = operating.choice("raceway_control", tuple(CONTROLS), "outer")
-    friction = "friction_coefficient"
-    if name != "friction_limited":
-        if friction in operating:
-            problem = 'goes with `raceway_control` = "friction_limited" only'
-            raise operating.error(friction, problem)
-        return CONTROLS[name]()
-    with operating.building():
-        unit = unit_of(FrictionLimited, "friction")
-        return FrictionLimited(operating.real(friction, unit))
+            count = sum(n_elements(row.bearing) for row in rows_of(bearing))
+            choices["quadrature"] = rollers.rule(count)
+        else:
+            for name in ("quadrature", "points"):
+                if name in numerics:
+                    problem = "is not for coupled slices, which `contact.slices` counts"
+                    raise numerics.error(name, problem)
+                numerics.fill(name, None)
+    if keys.kinematics is not None:
+        choices["kinematics"] = KINEMATICS[keys.kinematics]()
+    return {**choices, "equilibrium": EQUILIBRIA[keys.equilibrium]()}

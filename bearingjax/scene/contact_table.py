@@ -12,7 +12,7 @@ from ..contact.halfspace import FreeEnds, RollerContact
 from ..contact.line import AbstractLineLaw
 from ..design import MATERIALS, AbstractProfile, Material
 from .bearing_table import PROFILES, read_material, read_profile
-from .choices_table import read_line_law
+from .choices_table import LineContactKeys
 from .scene_file import find_scene, parse_scene
 from .schema import Keys, read_keys, scene_key
 from .schema_text import class_schema
@@ -32,6 +32,7 @@ def _profile(table: Table, name: str) -> AbstractProfile:
     return read_profile(table.table(name))
 
 
+_EITHER = "give either this or `small_diameter` and `large_diameter`"
 _MATERIAL = {"anyOf": [{"enum": list(MATERIALS)}, class_schema(Material)]}
 
 
@@ -45,39 +46,23 @@ class RollerKeys(Keys):
     diameter: float | None = scene_key(
         "diameter of a cylindrical roller",
         "length",
-        default=None,
         above=0,
-        without=dict.fromkeys(
-            ("small_diameter", "large_diameter"),
-            "give either this or `small_diameter` and `large_diameter`",
-        ),
+        without={"small_diameter": _EITHER},
     )
     small_diameter: float | None = scene_key(
-        "diameter at the small end",
-        "length",
-        default=None,
-        above=0,
-        needs=("large_diameter",),
+        "diameter at the small end", "length", above=0, needs=("large_diameter",)
     )
     large_diameter: float | None = scene_key(
-        "diameter at the large end",
-        "length",
-        default=None,
-        above=0,
-        needs=("small_diameter",),
+        "diameter at the large end", "length", above=0, needs=("small_diameter",)
     )
     half_angle: float | None = scene_key(
-        "half cone angle", "angle", default=None, otherwise="that of its diameters"
+        "half cone angle", "angle", otherwise="that of its diameters"
     )
     profile: AbstractProfile = scene_key(
         "shape along it", of=PROFILES, default="straight", reader=_profile
     )
     material: Material | None = scene_key(
-        "what it is made of",
-        default=None,
-        otherwise="steel",
-        reader=read_material,
-        json=_MATERIAL,
+        "material", otherwise="steel", reader=read_material, json=_MATERIAL
     )
     free_ends: bool = scene_key("whether its end faces bear no stress", default=False)
 
@@ -102,19 +87,22 @@ class RacewayKeys(Keys):
     """[raceway]: a plane, a cylinder or a cone."""
 
     diameter: float | None = scene_key(
-        "diameter in the middle", "length", default=None, above=0, otherwise="a plane"
+        "diameter in the middle", "length", above=0, otherwise="a plane"
     )
     side: str | None = scene_key(
         "ring that has it",
         choices=tuple(SIDES),
-        default=None,
         needs=("diameter",),
         hint="without it the raceway is a plane",
     )
     half_angle: float = scene_key(
-        "half cone angle; below 40.1 deg in size",
+        "half cone angle",
         "angle",
         default=0.0,
+        above=-40.1,
+        below=40.1,
+        shown="deg",
+        refusal="is not allowed; below 40.1 in size",
         needs=("diameter",),
         hint="without it the raceway is a plane",
     )
@@ -122,11 +110,7 @@ class RacewayKeys(Keys):
         "shape along it", of=PROFILES, default="straight", reader=_profile
     )
     material: Material | None = scene_key(
-        "what it is made of",
-        default=None,
-        otherwise="that of the roller",
-        reader=read_material,
-        json=_MATERIAL,
+        "material", otherwise="that of the roller", reader=read_material, json=_MATERIAL
     )
 
     @property
@@ -139,10 +123,6 @@ class RacewayKeys(Keys):
     def check(self) -> None:
         if self.diameter is not None and self.side is None:
             self.table.choice("side", tuple(SIDES))  # raises that it is missing
-        angle = self.half_angle
-        if not abs(angle) < 0.7:
-            problem = f"{np.rad2deg(angle):.4g} deg is not allowed; below 40.1 in size"
-            raise self.table.error("half_angle", problem)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -150,26 +130,20 @@ class ContactOperatingKeys(Keys):
     """[operating] of one contact: how roller and raceway are pressed."""
 
     load: float | tuple[float, ...] | None = scene_key(
-        "load, or a list of loads, solved in one call",
-        "force",
-        default=None,
-        above=0,
-        refusal="must be above 0",
+        "load, or a list of loads", "force", above=0, refusal="must be above 0"
     )
     approach: float | None = scene_key(
-        "approach in the middle", "length", default=None, without={"load": ""}
+        "approach in the middle", "length", without={"load": ""}
     )
     moment: float | None = scene_key(
         "moment of the pressure about the middle",
         "moment",
-        default=None,
         needs=("load",),
         hint="an approach has a `tilt`",
     )
     tilt: float | None = scene_key(
         "tilt; above zero it closes the gap at positive positions",
         "angle",
-        default=None,
         above=-0.1,
         below=0.1,
         refusal="is not allowed; below 0.1 rad in size",
@@ -217,15 +191,10 @@ class ContactNumericsKeys(Keys):
         refusal="is not allowed; from 1 (even cells) to 4",
     )
     half_width: float | None = scene_key(
-        "half width of the grid",
-        "length",
-        default=None,
-        above=0,
-        otherwise="found for each load",
+        "half width of the grid", "length", above=0, otherwise="found for each load"
     )
     tolerance: float | None = scene_key(
         "relative residual at which it ends",
-        default=None,
         least=1e-14,
         below=0.01,
         otherwise="that of the solver",
@@ -241,15 +210,13 @@ class SliceLawKeys(Keys):
         "approach and load of a slice", choices=LAWS, default="palmgren"
     )
     line_constant: float | None = scene_key(
-        "constant of q = K δ^(10/9), in place of the law's",
-        "line constant",
-        default=None,
+        "constant of q = K δ^(10/9), in place of the law's", "line constant"
     )
 
     @property
     def law(self) -> AbstractLineLaw:
         """The law of the slices."""
-        return read_line_law(self.table)
+        return read_keys(LineContactKeys, self.table).law
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)

@@ -48,17 +48,10 @@ class DeviationKeys(Keys):
 
     part: str = scene_key("part that has it", choices=(*RACEWAYS, ELEMENTS))
     row: int | None = scene_key(
-        "row of a set, from 0, in whose own axes it stands",
-        default=None,
-        least=0,
-        otherwise="every row",
+        "row of a set, from 0, in whose axes it stands", least=0, otherwise="every row"
     )
     element: int | None = scene_key(
-        "rolling element, from 0",
-        default=None,
-        least=0,
-        only={"part": (ELEMENTS,)},
-        otherwise="every one",
+        "its number, from 0", least=0, only={"part": (ELEMENTS,)}, otherwise="every one"
     )
 
     @property
@@ -103,7 +96,6 @@ class DirectedKeys(DeviationKeys):
     direction: str | None = scene_key(
         "of a raceway's waves; `raised`: along the contact normal",
         choices=DIRECTIONS,
-        default=None,
         otherwise=DIRECTIONS[0],
     )
 
@@ -202,16 +194,12 @@ class SpectrumKeys(DirectedKeys):
 class ProfileKeys(DirectedKeys):
     """[[deviations.profile]]: measured heights at even angles."""
 
-    points: tuple[float, ...] | None = scene_key("heights", "length", default=None)
+    points: tuple[float, ...] | None = scene_key("heights", "length")
     file: str | None = scene_key(
-        'CSV file of heights, with the one column "height [um]"',
-        default=None,
-        reader=lambda table, name: table.raw(name, None),
-        json={"type": "string"},
+        'CSV file of heights, with the one column "height [um]"'
     )
     highest: int | None = scene_key(
         "highest order that is kept; at most 900, of elements 110",
-        default=None,
         otherwise="as many as the heights hold",
     )
 

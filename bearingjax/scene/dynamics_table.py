@@ -18,6 +18,7 @@ from ..dynamics import (
 )
 from ..element import Speed
 from ..element.frame import LOADS
+from .operating_table import LoadKeys
 from .schema import Keys, scene_key
 
 AXES = ("vertical", "horizontal")
@@ -57,10 +58,10 @@ class SpeedSeriesKeys(SeriesKeys):
 
     time: tuple[float, ...] = scene_key("rising times", "time")
     inner: tuple[float, ...] | None = scene_key(
-        "speed of the inner ring", "speed", default=None, otherwise="it stands"
+        "speed of the inner ring", "speed", otherwise="it stands"
     )
     outer: tuple[float, ...] | None = scene_key(
-        "speed of the outer ring", "speed", default=None, otherwise="it stands"
+        "speed of the outer ring", "speed", otherwise="it stands"
     )
 
     @property
@@ -74,20 +75,8 @@ class SpeedSeriesKeys(SeriesKeys):
         return SpeedTable(self.time, still if inner is None else inner, outer)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class AmplitudeKeys(Keys):
-    """Amplitudes of a load that swings."""
-
-    Fx: float = scene_key("force along x", "force", default=0.0)
-    Fy: float = scene_key("force along y", "force", default=0.0)
-    Fz: float = scene_key("axial force", "force", default=0.0)
-    Mx: float = scene_key("moment about x", "moment", default=0.0)
-    My: float = scene_key("moment about y", "moment", default=0.0)
-    Mz: float = scene_key("moment about the axis", "moment", default=0.0)
-
-
 def _component(about: str, kind: str) -> Any:
-    return scene_key(about, kind, default=None, needs=("time",), otherwise=_CONSTANT)
+    return scene_key(about, kind, needs=("time",), otherwise=_CONSTANT)
 
 
 _CONSTANT = "that of [operating]"
@@ -98,7 +87,7 @@ class LoadSeriesKeys(SeriesKeys):
     """Load over time, linear between times, or a sine about that of [operating]."""
 
     time: tuple[float, ...] | None = scene_key(
-        "rising times", "time", default=None, without={"amplitude": ""}
+        "rising times", "time", without={"amplitude": ""}
     )
     Fx: tuple[float, ...] | None = _component("force along x", "force")
     Fy: tuple[float, ...] | None = _component("force along y", "force")
@@ -106,9 +95,9 @@ class LoadSeriesKeys(SeriesKeys):
     Mx: tuple[float, ...] | None = _component("moment about x", "moment")
     My: tuple[float, ...] | None = _component("moment about y", "moment")
     Mz: tuple[float, ...] | None = _component("moment about the axis", "moment")
-    amplitude: AmplitudeKeys | None = scene_key("amplitudes of a sine", default=None)
+    amplitude: LoadKeys | None = scene_key("amplitudes of a sine")
     speed: float | None = scene_key(
-        "angular frequency of the sine", "speed", default=None, needs=("amplitude",)
+        "angular frequency of the sine", "speed", needs=("amplitude",)
     )
     phase: float = scene_key(
         "phase of the sine", "angle", default=0.0, needs=("amplitude",)
@@ -121,12 +110,14 @@ class LoadSeriesKeys(SeriesKeys):
             constant: That of [operating] [N, N m].
         """
         if self.amplitude is not None:
-            amplitude = [getattr(self.amplitude, name) for name in LOADS]
-            if not any(amplitude):
+            given = self.amplitude.given
+            amplitude = {name: given.get(name, 0.0) for name in LOADS}
+            self.amplitude.fill(**amplitude)
+            if not any(amplitude.values()):
                 problem = 'names no load, such as { Fy = "80 N" }'
                 raise self.table.error("amplitude", problem)
             speed = self.table.quantity("speed", "speed")  # raises that it is missing
-            return SinusoidalLoad(constant, amplitude, speed, self.phase)
+            return SinusoidalLoad(constant, [*amplitude.values()], speed, self.phase)
         time = self.time
         if time is None:
             time = tuple(self.table.quantities("time", "time"))  # the same
@@ -162,16 +153,11 @@ class DynamicsKeys(Keys):
     places: int | None = scene_key(
         "places along an orbit; 1 or 6 and more, of the end state 1 or a multiple of"
         " the number of balls or rollers",
-        default=None,
         most=MOST_PLACES,
         otherwise="as many as the bearing needs",
     )
     duration: float | None = scene_key(
-        "duration of the motion; needed without `--steady`",
-        "time",
-        default=None,
-        above=0,
-        most=1e5,
+        "duration of the motion; needed without `--steady`", "time", above=0, most=1e5
     )
     n_times: int = scene_key(
         "times that are told", default=501, least=2, most=MOST_TIMES
@@ -187,20 +173,18 @@ class DynamicsKeys(Keys):
     ramp: float | None = scene_key(
         "time in which rings come to their speeds, evenly from rest",
         "time",
-        default=None,
         above=0,
         refusal="must be above 0",
         without={"speed": "give either `speed` over time or this, not both"},
     )
     speed: SpeedSeriesKeys | None = scene_key(
-        "speeds over time", default=None, otherwise="those of [operating]"
+        "speeds over time", otherwise="those of [operating]"
     )
     load: LoadSeriesKeys | None = scene_key(
-        "load over time, of balls", default=None, otherwise=_CONSTANT
+        "load over time, of balls", otherwise=_CONSTANT
     )
     balanced: bool | None = scene_key(
         "whether the ring of balls is in balance at every time",
-        default=None,
         otherwise="true with a `load` over time",
     )
 

@@ -42,14 +42,17 @@ from ..statics.installed import Installed
 from ..statics.service_warning import seat_warnings
 from .catalogue_entry import CLEARANCE, FromCatalogue, class_limits
 from .quantity import SceneError
-from .table import Table, written
+from .schema import Keys, read_keys, scene_key
+from .schema_text import class_schema, number_schema
+from .table import Table
 
 _ZERO = 273.15
 _REFERENCE = _ZERO + 20.0
 _COLDEST, _HOTTEST = -100.0, 400.0
-_ROUGHEST = 100e-6
 _THICKEST = 100.0
 """Outside diameters of the bearing: any larger housing gives way as an endless one."""
+
+_CATALOGUE = "that of the `designation`"
 
 EXPANSIONS = {
     "inner_ring": "ring_expansion",
@@ -57,6 +60,171 @@ EXPANSIONS = {
     "outer_ring": "ring_expansion",
 }
 """Keys of the expansions of the parts of a bearing."""
+
+
+def _seat_material(table: Table, name: str) -> WarmMaterial:
+    given = table.table_or_word(name, tuple(WARM_MATERIALS))
+    if given is None:
+        table.fill(name, "steel")
+        return WarmMaterial.steel()
+    if isinstance(given, str):
+        return WARM_MATERIALS[given]()
+    values = given.fields(Material, "elastic_modulus", "poisson_ratio", "density")
+    own = given.quantity("expansion", "temperature coefficient")
+    with given.building():
+        return WarmMaterial(Material(**values), own)
+
+
+def _seat_key(of: str) -> Any:
+    numbers = class_schema(Material, expansion=number_schema("temperature coefficient"))
+    numbers["required"] = [*numbers["properties"]]
+    return scene_key(
+        f"material of the {of}",
+        default=None,
+        otherwise="steel",
+        reader=_seat_material,
+        json={"anyOf": [{"enum": [*WARM_MATERIALS]}, numbers]},
+    )
+
+
+def _roughness(what: str) -> Any:
+    return scene_key(
+        f"mean roughness depth Rz of the {what}",
+        "length",
+        default=None,
+        shown="µm",
+        least=0,
+        most=100,
+    )
+
+
+def _of_seat(small: bool) -> dict[str, Any]:
+    names = [name for name in LIMIT_CLASSES if name[0].islower() is small]
+    return {"choices": names, "words": limit_classes(small), "default": None}
+
+
+def _interference(of: str) -> Any:
+    return scene_key(
+        f"interference {of}, as measured", "length", default=None, otherwise=_BY_CLASS
+    )
+
+
+_BY_CLASS = "by the tolerance class"
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class FitKeys(Keys):
+    """[fit]: the seats of a bearing."""
+
+    bore: float | None = scene_key(
+        "bore of the bearing", "length", otherwise=_CATALOGUE
+    )
+    outside_diameter: float | None = scene_key(
+        "outside diameter of the bearing", "length", otherwise=_CATALOGUE
+    )
+    housing_diameter: float = scene_key(
+        "outside diameter of the housing around the bearing", "length"
+    )
+    shaft: str | None = scene_key("tolerance class of the shaft", **_of_seat(True))
+    housing: str | None = scene_key("tolerance class of the housing", **_of_seat(False))
+    shaft_interference: float | None = _interference("of shaft and bore")
+    housing_interference: float | None = _interference("of bearing and housing")
+    shaft_bore: float = scene_key("bore of a hollow shaft", "length", default=0.0)
+    clearance: str | None = scene_key(
+        "class of the clearance before mounting",
+        choices=[c + part for part in CLEARANCE_PARTS for c in CLEARANCE_CLASSES],
+        otherwise="that of the `designation`, or the bearing's own number",
+    )
+    at: str = scene_key(
+        "sizes of the solve, in their tolerances",
+        choices=tuple(PLACES),
+        default="middle",
+    )
+    shaft_material: WarmMaterial = _seat_key("shaft")
+    housing_material: WarmMaterial = _seat_key("housing")
+    ring_expansion: float | None = scene_key(
+        "thermal expansion of the rings",
+        "temperature coefficient",
+        otherwise="that of their material",
+    )
+    element_expansion: float | None = scene_key(
+        "thermal expansion of the rolling elements",
+        "temperature coefficient",
+        otherwise="that of their material",
+    )
+    shaft_roughness: float | None = _roughness("shaft")
+    housing_roughness: float | None = _roughness("housing's bore")
+    ring_roughness: float | None = _roughness("seats of the rings")
+    inner_raceway: float | None = scene_key(
+        "mean outside diameter up to which the inner ring counts",
+        "length",
+        otherwise="the smallest of the raceway",
+    )
+    outer_raceway: float | None = scene_key(
+        "mean inside diameter from which the outer ring counts",
+        "length",
+        otherwise="the largest of the raceway",
+    )
+    ring_width: float | None = scene_key(
+        "width of a ring, B or T; sets need it", "length", otherwise=_CATALOGUE
+    )
+
+    def check(self) -> None:
+        for seat, example in (("shaft", '"k5"'), ("housing", '"H7"')):
+            key = f"{seat}_interference"
+            given = getattr(self, seat) is not None
+            if given == (getattr(self, key) is not None):
+                problem = f"stands beside `{key}`" if given else "is missing"
+                cure = f"give a tolerance class, such as {example}, or `{key}`"
+                raise self.table.error(seat, f"{problem}; {cure}")
+        if self.ring_roughness and not {"shaft_roughness", "housing_roughness"} & set(
+            self.table.keys()
+        ):
+            problem = "goes with `shaft_roughness` or `housing_roughness`"
+            raise self.table.error("ring_roughness", problem)
+
+
+def _warm(part: str) -> Any:
+    return scene_key(
+        f"temperature of the {part}",
+        "temperature",
+        default=None,
+        least=_COLDEST,
+        most=_HOTTEST,
+        otherwise="`reference`",
+    )
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class TemperatureKeys(Keys):
+    """[temperature]: how warm a bearing on its seats is."""
+
+    reference: float = scene_key(
+        "temperature of the measured sizes",
+        "temperature",
+        default=_REFERENCE,
+        least=_COLDEST,
+        most=_HOTTEST,
+    )
+    shaft: float | None = _warm("shaft")
+    inner_ring: float | None = _warm("inner ring")
+    elements: float | None = _warm("rolling elements")
+    outer_ring: float | None = _warm("outer ring")
+    housing: float | None = _warm("housing")
+
+    def conditions(self, speed: Speed | None) -> FitConditions:
+        """Temperatures and speeds of the seats.
+
+        Args:
+            speed: Of the rings; `None`: at rest.
+        """
+        warm = {"reference": self.reference, **dict.fromkeys(PARTS, self.reference)}
+        warm |= self.given
+        self.fill(**{part: warm[part] for part in PARTS})
+        if speed is None:
+            return FitConditions(**warm)
+        speeds = {"speed": float(speed.inner), "outer_speed": float(speed.outer)}
+        return FitConditions(**warm, **speeds)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -134,7 +302,6 @@ def read_fits(
             problem = "goes with a [fit]; without one nothing depends on it"
             raise beside.error("temperature", problem)
         return bearing, None
-    table = beside.table("fit")
     row = rows_of(bearing)[0].bearing
     if isinstance(row, ThrustBallBearing):
         problem = "is for radial bearings; a thrust bearing has no play to be changed:"
@@ -144,25 +311,26 @@ def read_fits(
     ):
         problem = "is for rows of one bearing; those of this set differ"
         raise beside.error("fit", problem)
-    place = table.choice("at", tuple(PLACES), "middle")
-    sizes = _sizes(table, catalogue)
-    given, names = _limits(table, row, sizes)
-    given["clearance"] = _clearance(table, own, sizes["bore"], catalogue)
+    keys = read_keys(FitKeys, beside.table("fit"))
+    table, place = keys.table, keys.at
+    sizes = _sizes(keys, catalogue)
+    given = _limits(keys, row, sizes)
+    given["clearance"] = _clearance(keys, own, sizes["bore"], catalogue)
     scatters = given["clearance"] is not None
-    if place != "middle" and not (scatters or any(names)):
+    if place != "middle" and not (scatters or keys.shaft or keys.housing):
         problem = "goes with tolerance classes, or a class of clearance"
         raise table.error("at", f"{place!r} {problem}; here all sizes are given")
-    conditions = _conditions(temperature, speed)
+    conditions = read_keys(TemperatureKeys, temperature).conditions(speed)
     unknown = _unknown_expansions(table, own)
     for part, key in unknown.items():
         if float(getattr(conditions, part)) != float(conditions.reference):
             raise no_expansion(table, part, key)
-    seats = sizes | _seats(table, own, row) | _width(table, bearing, catalogue)
+    seats: dict[str, Any] = (
+        sizes | _seats(keys, own, row) | _width(keys, bearing, catalogue)
+    )
     # For `Mounting` to check by name; `mounting_at` sets them anew.
-    if not names[0]:
-        seats["shaft_interference"] = given["shaft"].lower
-    if not names[1]:
-        seats["housing_interference"] = -given["housing"].lower
+    for seat in ("shaft_interference", "housing_interference"):
+        seats[seat] = getattr(keys, seat) or 0.0
     with table.building():
         whole = sized(Mounting(**seats), row)
         if not scatters:
@@ -177,6 +345,7 @@ def read_fits(
         if scatters:
             bearing = _with_clearance(bearing, there.radial_clearance)
         mounting = Mounting(**seats)
+        names = keys.shaft or "", keys.housing or ""
         fits = Fits(mounting, conditions, place, given, names, unknown)
         mounted(bearing, fits.mounting, conditions)
     return bearing, fits
@@ -258,82 +427,63 @@ def _with_clearance(bearing, clearance):
     )
 
 
-def _sizes(table: Table, catalogue: FromCatalogue | None) -> dict[str, Any]:
+def _sizes(keys: FitKeys, catalogue: FromCatalogue | None) -> dict[str, float]:
     """Diameters of the seats and of the housing."""
-    found = {}
-    for key in ("bore", "outside_diameter", "housing_diameter"):
-        own = getattr(catalogue.entry, key, None) if catalogue else None
-        if key == "housing_diameter" and key not in table:
-            problem = "is missing: the outside diameter of the housing around the seat"
-            raise table.error(key, f'{problem}, a length, such as "100 mm"')
-        found[key] = table.quantity(key, "length", *([] if own is None else [own]))
+    found = {"housing_diameter": keys.housing_diameter}
+    for key in ("bore", "outside_diameter"):
+        found[key] = _catalogued(keys, key, key, catalogue)
     size, most = found["housing_diameter"], _THICKEST * found["outside_diameter"]
     if size > most:
         problem = f"{size:.5g} m is not allowed; at most {most:.4g} m (metres meant?)"
-        raise table.error("housing_diameter", problem)
+        raise keys.table.error("housing_diameter", problem)
     return found
 
 
-def _width(table: Table, bearing, catalogue) -> dict[str, Any]:
+def _catalogued(keys: FitKeys, key: str, name: str, catalogue) -> float:
+    """A length of [fit], or of the catalogue."""
+    own = getattr(catalogue.entry, name, None) if catalogue else None
+    return keys.table.quantity(key, "length", *([] if own is None else [own]))
+
+
+def _width(keys: FitKeys, bearing, catalogue) -> dict[str, float]:
     """Width of a ring, which a set needs whose rows have rings of their own."""
     key, own = "ring_width", catalogue.entry.width if catalogue else None
     apart = isinstance(bearing, BearingSet) and not is_self_aligning(bearing)
-    if not apart and key not in table:
+    if not apart and keys.ring_width is None:
         return {}
-    if key not in table and own is None:
+    if keys.ring_width is None and own is None:
         problem = "is missing: the width of a ring, B; between the rows of a set rings"
         cure = "grow over this length, beyond it shaft and housing"
-        raise table.error(key, f"{problem} {cure}")
-    return {key: table.quantity(key, "length", *([] if own is None else [own]))}
+        raise keys.table.error(key, f"{problem} {cure}")
+    return {key: _catalogued(keys, key, "width", catalogue)}
 
 
-def _limits(table: Table, row, sizes) -> tuple[dict[str, Any], tuple[str, str]]:
-    """Limits of the seats and rings, and names of the classes of the seats."""
+def _limits(keys: FitKeys, row, sizes) -> dict[str, Any]:
+    """Limits of the seats and rings."""
     exact = Limits(0.0, 0.0)
     found: dict[str, Any] = {}
-    names = []
-    for seat, ring, of_ring in (
-        ("shaft", "bore", bore_limits),
-        ("housing", "outside_diameter", outside_limits),
+    for seat, ring, of_ring, sign in (
+        ("shaft", "bore", bore_limits, 1.0),
+        ("housing", "outside_diameter", outside_limits, -1.0),
     ):
-        name = _class(table, seat)
-        names.append(name)
-        if not name:
-            value = table.quantity(f"{seat}_interference", "length")
+        name = getattr(keys, seat)
+        if name is None:
             # As a deviation: a housing that is small is tight.
-            own = value if seat == "shaft" else -value
+            own = sign * getattr(keys, f"{seat}_interference")
             found[seat], found[ring] = Limits(own, own), exact
             continue
         if isinstance(row, TaperedRollerBearing):
             problem = "is for bearings of other types: the tolerances of tapered"
             cure = f"rollers differ; give `{seat}_interference`"
-            raise table.error(seat, f"{problem} {cure}")
-        with table.building():
+            raise keys.table.error(seat, f"{problem} {cure}")
+        with keys.table.building():
             found[seat], found[ring] = limits(name, sizes[ring]), of_ring(sizes[ring])
-    return found, (names[0], names[1])
+    return found
 
 
-def _class(table: Table, seat: str) -> str:
-    """Name of the tolerance class of a seat; empty if its interference is given."""
-    key = f"{seat}_interference"
-    if (seat in table) == (key in table):
-        problem = "is missing" if seat not in table else f"stands beside `{key}`"
-        example = '"k5"' if seat == "shaft" else '"H7"'
-        raise table.error(
-            seat, f"{problem}; give a tolerance class, such as {example}, or `{key}`"
-        )
-    if key in table:
-        return ""
-    small = seat == "shaft"
-    names = tuple(name for name in LIMIT_CLASSES if name[0].islower() is small)
-    return table.choice(seat, names, words=limit_classes(small))
-
-
-def _clearance(table: Table, own: Table, bore, catalogue) -> Limits | None:
+def _clearance(keys: FitKeys, own: Table, bore, catalogue) -> Limits | None:
     """Limits of a clearance class; `None`: the bearing's own number."""
-    names = [c + part for part in CLEARANCE_PARTS for c in CLEARANCE_CLASSES]
-    name = table.choice("clearance", tuple(names), None)
-    drawn = own.keys_given()
+    table, name, drawn = keys.table, keys.clearance, own.keys_given()
     # A line that only restates the catalogue does not count.
     changed = drawn if catalogue is None else catalogue.overridden
     stated = [key for key in (CLEARANCE, "contact_angle") if key in changed]
@@ -379,72 +529,36 @@ def no_expansion(table: Table, part: str, key: str) -> SceneError:
     return table.error(EXPANSIONS[part], problem)
 
 
-def _seats(table: Table, own: Table, row) -> dict[str, Any]:
+def _seats(keys: FitKeys, own: Table, row) -> dict[str, Any]:
     """Sizes and materials of a `Mounting`; interferences are put in later."""
-    seats: dict[str, Any] = {"shaft_interference": 0.0, "housing_interference": 0.0}
-    for key in ("shaft_bore", "inner_raceway", "outer_raceway"):
-        if key in table:
-            seats[key] = table.quantity(key, "length")
-    ring = _roughness(table, "ring_roughness", 0.0)
+    seats: dict[str, Any] = {
+        key: value
+        for key in ("shaft_bore", "inner_raceway", "outer_raceway")
+        if (value := getattr(keys, key)) is not None
+    }
     for seat in ("shaft", "housing"):
-        rough = _roughness(table, f"{seat}_roughness", None)
+        rough = getattr(keys, f"{seat}_roughness")
         if rough is not None:
-            seats[f"{seat}_smoothing"] = smoothing(rough, ring)
-        seats[seat] = _seat_material(table, f"{seat}_material")
-    if ring and not {"shaft_roughness", "housing_roughness"} & set(table.keys()):
-        problem = "goes with `shaft_roughness` or `housing_roughness`"
-        raise table.error("ring_roughness", problem)
+            smooth = smoothing(rough, keys.ring_roughness or 0.0)
+            seats[f"{seat}_smoothing"] = smooth
+        seats[seat] = getattr(keys, f"{seat}_material")
     drawn = own.keys_given()
     balls = drawn.get("material", "steel")
     rings = drawn.get("ring_material", balls)
-    ring = _of_bearing(table, rings, "ring_expansion", row.rings)
-    ball = _of_bearing(table, balls, "element_expansion", row.material)
+    ring = _of_bearing(keys, rings, "ring_expansion", row.rings)
+    ball = _of_bearing(keys, balls, "element_expansion", row.material)
     return {**seats, "inner_ring": ring, "outer_ring": ring, "elements": ball}
 
 
-def _roughness(table: Table, key: str, default: float | None) -> Any:
-    """Mean roughness depth Rz of a seat or ring."""
-    value = table.quantity(key, "length", default)
-    if value is not None and not 0.0 <= value <= _ROUGHEST:
-        problem = f"{1e6 * value:.5g} µm is not allowed; from 0 to"
-        raise table.error(key, f"{problem} {1e6 * _ROUGHEST:g} µm")
-    return value
-
-
-def _of_bearing(table: Table, given: Any, wanted: str, material) -> WarmMaterial:
+def _of_bearing(keys: FitKeys, given: Any, wanted: str, material) -> WarmMaterial:
     """A material of the bearing with its expansion; without a name that of steel."""
-    value = table.quantity(wanted, "temperature coefficient", None)
+    value = getattr(keys, wanted)
     if value is None:
         name = given if isinstance(given, str) else "steel"
         value = float(WARM_MATERIALS[name]().expansion)
-        table.fill(wanted, written(value, "1/K"))
-    with table.building():
+        keys.fill(**{wanted: value})
+    with keys.table.building():
         return WarmMaterial(material, value)
-
-
-def _seat_material(table: Table, key: str) -> WarmMaterial:
-    given = table.table_or_word(key, tuple(WARM_MATERIALS))
-    if given is None:
-        table.fill(key, "steel")
-        return WarmMaterial.steel()
-    if isinstance(given, str):
-        return WARM_MATERIALS[given]()
-    values = given.fields(Material, "elastic_modulus", "poisson_ratio", "density")
-    own = given.quantity("expansion", "temperature coefficient")
-    with given.building():
-        return WarmMaterial(Material(**values), own)
-
-
-def _conditions(table: Table, speed: Speed | None) -> FitConditions:
-    """Temperatures and speeds."""
-    reference = read_temperature(table, "reference", _REFERENCE)
-    warm = {part: read_temperature(table, part, reference) for part in PARTS}
-    warm["reference"] = reference
-    if speed is None:
-        return FitConditions(**warm)
-    return FitConditions(
-        **warm, speed=float(speed.inner), outer_speed=float(speed.outer)
-    )
 
 
 def read_temperature(table: Table, key: str, *default: float | None) -> Any:

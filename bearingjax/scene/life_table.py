@@ -11,14 +11,61 @@ from ..statics.life_factor import CLEANLINESS
 from ..statics.rating import dynamic_capacity, rated_axially, static_capacity
 from ..statics.reference_life import LEAST_LAMINAE
 from .oil_table import Oil, read_oil
+from .schema import Keys, read_keys, scene_key
 from .table import Table
 
 if TYPE_CHECKING:
     from .read import Scene
 
 _RATINGS = ("dynamic_capacity", "static_capacity", "fatigue_load_limit")
-_SURVIVING = (0.9, 0.9995)
-"""Reliabilities of ISO 281."""
+_RATED = "published for the `designation`, else from the geometry"
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class LifeKeys(Keys):
+    """[life]: what a rating life needs beside the bearing."""
+
+    dynamic_capacity: float | None = scene_key(
+        "basic dynamic load rating C", "force", above=0, otherwise=_RATED
+    )
+    static_capacity: float | None = scene_key(
+        "basic static load rating C0", "force", above=0, otherwise=_RATED
+    )
+    fatigue_load_limit: float | None = scene_key(
+        "fatigue load limit Cu", "force", above=0, otherwise=_RATED
+    )
+    reliability: float = scene_key(
+        "share of bearings that reach the life",
+        default=0.9,
+        least=0.9,
+        most=0.9995,
+        hint="a share, not %",
+    )
+    load_fixed_to: str = scene_key(
+        "`space`, or the ring that the load turns with", choices=FRAMES, default="space"
+    )
+    edge_stress: bool = scene_key(
+        "whether the ends of rollers are stressed more, by ISO/TS 16281", default=True
+    )
+    contamination: float | str | None = scene_key(
+        "contamination factor e_C, or a class of ISO 281: the modified life is told",
+        least=0,
+        most=1,
+        choices=tuple(CLEANLINESS),
+        hint="e_C, or a class of ISO 281",
+    )
+    viscosity: float | None = scene_key(
+        "of the oil in operation",
+        "kinematic viscosity",
+        above=0,
+        below=1,
+        otherwise="that of [lubricant] at its temperature",
+    )
+
+    def check(self) -> None:
+        if self.viscosity is not None and self.contamination is None:
+            problem = "is missing; the modified life needs it beside `viscosity`"
+            raise self.table.error("contamination", problem)
 
 
 def read_life(
@@ -37,25 +84,23 @@ def read_life(
     """
     if "life" not in top:
         return None
-    table = top.table("life")
-    values: dict[str, Any] = {
-        name: table.quantity(name, "force", None) for name in _RATINGS
-    }
-    for name, value in values.items():
-        if value is not None and not value > 0:
-            raise table.error(name, f"{value:g} N is not allowed; above 0 N")
-    values["reliability"] = _reliability(table)
-    values["load_fixed_to"] = table.choice("load_fixed_to", FRAMES, "space")
-    values["edge_stress"] = _edge_stress(table, bearing)
-    values |= _lubrication(top, table)
-    if values["viscosity"] is not None and not _turns(speed) and "cases" not in top:
+    keys = read_keys(LifeKeys, top.table("life"))
+    table = keys.table
+    if is_ball(bearing):
+        if "edge_stress" in table:
+            raise table.error("edge_stress", "is for rollers; balls have no ends")
+        table.fill("edge_stress", None)
+    viscosity = None if keys.contamination is None else _viscosity(top, keys)
+    if viscosity is not None and not _turns(speed) and "cases" not in top:
         problem = "needs a speed of one ring against the other, for its film"
         raise table.error("contamination", problem)
     _check_points(top, bearing, points)
     table.finish()
+    names = [field.name for field in dataclasses.fields(LifeConditions)]
+    values = {name: getattr(keys, name) for name in names}
     with table.building():
         rated_axially(bearing)  # which refuses sets of unlike rows
-        return LifeConditions(**values)
+        return LifeConditions(**{**values, "viscosity": viscosity})
 
 
 _USUAL = {"dynamic_capacity": 1.0, "static_capacity": 1.0, "fatigue_load_limit": 0.07}
@@ -207,54 +252,18 @@ def _turns(speed) -> bool:
     return speed is not None and float(speed.inner) != float(speed.outer)
 
 
-def _reliability(table: Table) -> float:
-    value, (low, high) = table.number("reliability", 0.9), _SURVIVING
-    if not low <= value <= high:
-        problem = f"{value:g} is not allowed; from {low:g} to {high:g} (a share, not %)"
-        raise table.error("reliability", problem)
-    return value
-
-
-def _edge_stress(table: Table, bearing: Bearing | BearingSet) -> bool:
-    """Whether roller ends are stressed more; balls have no ends."""
-    if not is_ball(bearing):
-        return table.flag("edge_stress", True)
-    if "edge_stress" in table:
-        table.flag("edge_stress")
-        raise table.error("edge_stress", "is for rollers; balls have no ends")
-    return True
-
-
-def _lubrication(top: Table, table: Table) -> dict[str, Any]:
-    """Viscosity and contamination; the oil may be that of [lubricant]."""
-    viscosity = table.quantity("viscosity", "kinematic viscosity", None)
-    if viscosity is not None and not 0 < viscosity < 1.0:
-        problem = f"{1e6 * viscosity:g} mm²/s is not allowed; above 0, below 10^6 mm²/s"
-        raise table.error("viscosity", problem)
-    if viscosity is not None and "lubricant" in top:
-        problem = "stands beside [lubricant], whose oil has a viscosity; choose one"
-        raise table.error("viscosity", problem)
-    if "contamination" not in table:
-        if viscosity is not None:
-            problem = "is missing; the modified life needs it beside `viscosity`"
-            raise table.error("contamination", problem)
-        return {"viscosity": None, "contamination": None}
-    if viscosity is None:
-        if "lubricant" not in top:
-            problem = "is missing, and so is [lubricant]; `contamination` needs an oil"
-            raise table.error("viscosity", problem)
-        oil, _ = read_oil(top.table("lubricant"))
-        viscosity = float(oil.lubricant.kinematic_viscosity(oil.temperature))
-    if table.word("contamination") is not None:
-        return {
-            "viscosity": viscosity,
-            "contamination": table.choice("contamination", tuple(CLEANLINESS)),
-        }
-    share = table.number("contamination")
-    if not 0 <= share <= 1:
-        problem = f"{share:g} is not allowed; e_C from 0 to 1, or a class of ISO 281"
-        raise table.error("contamination", problem)
-    return {"viscosity": viscosity, "contamination": share}
+def _viscosity(top: Table, keys: LifeKeys) -> float:
+    """Kinematic viscosity of the oil, which may be that of [lubricant] [m²/s]."""
+    if keys.viscosity is not None:
+        if "lubricant" in top:
+            problem = "stands beside [lubricant], whose oil has a viscosity; choose one"
+            raise keys.table.error("viscosity", problem)
+        return keys.viscosity
+    if "lubricant" not in top:
+        problem = "is missing, and so is [lubricant]; `contamination` needs an oil"
+        raise keys.table.error("viscosity", problem)
+    oil, _ = read_oil(top.table("lubricant"))
+    return float(oil.lubricant.kinematic_viscosity(oil.temperature))
 
 
 def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[str, ...]:

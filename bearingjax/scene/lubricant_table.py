@@ -59,68 +59,52 @@ class LubricantKeys(Keys):
     temperature: float = scene_key(
         "temperature of the oil", "temperature", least=-60, most=250
     )
-    name: str | None = scene_key("one of these oils", choices=tuple(OILS), default=None)
+    name: str | None = scene_key("one of these oils", choices=tuple(OILS))
     law: str | None = scene_key(
         "law of viscosity over pressure, in place of a `name`",
         choices=tuple(LAWS),
-        default=None,
         without={"name": ""},
     )
     coefficient: float | None = scene_key(
         "pressure-viscosity coefficient of the law, required",
         "pressure coefficient",
-        default=None,
         only={"law": _OF_PRESSURE},
     )
     grade: float | None = scene_key(
-        "ISO VG, the viscosity at 40 °C in mm²/s",
-        default=None,
-        only={"law": _OF_PRESSURE},
+        "ISO VG, the viscosity at 40 °C in mm²/s", only={"law": _OF_PRESSURE}
     )
     viscosity_index: float | None = scene_key(
-        "viscosity index of a `grade` or an ISO VG", default=None, otherwise="95"
+        "viscosity index of a `grade` or an ISO VG", otherwise="95"
     )
     reference_viscosity: float | None = scene_key(
-        "viscosity at `reference_temperature`",
-        "viscosity",
-        default=None,
-        needs=("law",),
+        "viscosity at `reference_temperature`", "viscosity", needs=("law",)
     )
     reference_temperature: float | None = scene_key(
         "temperature of the reference",
         "temperature",
-        default=None,
         needs=("reference_viscosity",),
         otherwise="`temperature`; `free_volume` needs it",
     )
     film_coefficient: float | None = scene_key(
         "pressure-viscosity coefficient for films",
         "pressure coefficient",
-        default=None,
         needs=("law",),
-        otherwise="reciprocal asymptotic isoviscous pressure α* of the law,"
-        " 1/∫ μ(0)/μ(p) dp, not its slope at zero pressure",
+        otherwise="α* of the law, 1/∫ μ(0)/μ(p) dp, not its slope at zero pressure",
     )
     density: float | None = scene_key(
         "density at `density_temperature`",
         "density",
-        default=None,
         needs=("law",),
         otherwise=f"{DENSITY:g} kg/m³, and it is said",
     )
     density_slope: float | None = scene_key(
         "loss of density per kelvin",
         "density slope",
-        default=None,
         needs=("law",),
         otherwise=f"{Density.slope:g} kg/(m³ K)",
     )
     density_temperature: float | None = scene_key(
-        "temperature of the density",
-        "temperature",
-        default=None,
-        needs=("law",),
-        otherwise="15 °C",
+        "temperature of the density", "temperature", needs=("law",), otherwise="15 °C"
     )
     traction: AbstractTraction = scene_key(
         "law of traction, of what skids", of=TRACTIONS, default="newtonian"
@@ -133,7 +117,6 @@ class LubricantKeys(Keys):
     roughness: float | None = scene_key(
         "root mean square of both surfaces together, for the films of `solve`",
         "length",
-        default=None,
         above=0,
         below=1e-4,
     )
@@ -206,11 +189,7 @@ class LubricantKeys(Keys):
         if given == ["cold_viscosity"]:
             return self.built(Walther)
         # Without factors the viscosity is that of the one temperature that there is.
-        values = {
-            "reference_temperature": self.temperature,
-            "first": 0.0,
-            "second": 0.0,
-        }
+        values = dict(reference_temperature=self.temperature, first=0.0, second=0.0)
         for name in ("reference_viscosity", *values):
             if name in table:
                 values[name] = table.real(name, unit_of(Exponential, name))

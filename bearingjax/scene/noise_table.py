@@ -46,7 +46,6 @@ class VibrationKeys(Keys):
     moving_ring: str | None = scene_key(
         "ring that the load acts on",
         choices=RINGS,
-        default=None,
         otherwise="the one that is not `operating.fixed_ring`; without either `outer`",
     )
     tilting_inertia: float | str | None = scene_key(
@@ -54,7 +53,6 @@ class VibrationKeys(Keys):
         " tilt, as with `operating.prescribed` gx and gy at 0",
         "moment of inertia",
         choices=(HELD,),
-        default=None,
         otherwise="that of a ring of this mass",
     )
     bridging: bool = scene_key(
@@ -66,17 +64,12 @@ class VibrationKeys(Keys):
         "retardation time of the contacts' damping; whole bearings have 2.5 to 25 us"
         " (Krämer 1993)",
         "time",
-        default=None,
         otherwise="10 us",
     )
     sensor_stiffness: float | None = scene_key(
-        "stiffness of the sensor that holds the moving ring",
-        "stiffness",
-        default=None,
+        "stiffness of the sensor that holds the moving ring", "stiffness"
     )
-    sensor_damping: float | None = scene_key(
-        "damping of the sensor", "damping", default=None
-    )
+    sensor_damping: float | None = scene_key("damping of the sensor", "damping")
     sensor_direction: list[float] = scene_key(
         "line of the sensor: x, y, z, or its three components",
         default=None,
@@ -102,7 +95,6 @@ class VibrationKeys(Keys):
     )
     steps: int | None = scene_key(
         "steps of the integration between two samples",
-        default=None,
         otherwise="as many as the stiffest contact needs",
     )
     reference: float = scene_key(
@@ -115,15 +107,13 @@ class VibrationKeys(Keys):
         "bands of the levels", choices=tuple(BANDS), default="octave"
     )
     norm: str | None = scene_key(
-        "largest allowed levels, by the bearing that they are for",
-        choices=tuple(NORMS),
-        default=None,
+        "largest allowed levels, by the bearing that they are for", choices=tuple(NORMS)
     )
     window: str = scene_key(
         "window of the spectrum", choices=tuple(WINDOWS), default="hann"
     )
     tolerance: ToleranceKeys | None = scene_key(
-        "how bearings off the line scatter, for `--monte-carlo`", default=None
+        "how bearings off the line scatter, for `--monte-carlo`"
     )
 
     def check(self) -> None:

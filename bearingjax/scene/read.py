@@ -8,20 +8,15 @@ from typing import Any
 
 from ..design import Bearing, BearingSet, is_ball, n_elements, rows_of
 from ..element import (
-    FREEDOMS,
-    LOADS,
     RINGS,
     BearingElement,
     ConstantAngle,
     Speed,
 )
-from ..element.frame import LOAD_UNITS, MOTION_UNITS
-from ..numerics.units import unit_of
 from ..statics.installed import Installed
 from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
 from ..statics.service_warning import speed_warnings
-from ..statics.support import restrained_freedoms
 from .bearing_table import designated, read_bearing
 from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue, catalogue_entry
@@ -29,6 +24,7 @@ from .choices_table import KINEMATICS, read_choices
 from .fit_table import Fits, fit_warnings, installed, read_fits
 from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
+from .operating_table import MOST_POINTS, OperatingKeys, OutputKeys, SolveKeys
 from .programs import called
 from .quantity import SceneError
 from .scene_file import (
@@ -38,12 +34,9 @@ from .scene_file import (
     parse_bearing,
     shipped_scenes,
 )
+from .schema import read_keys
 from .set_preload import SetPreload
 from .table import Table
-
-MOST_POINTS = 10_000
-"""Most positions along a roller: line load and pressure on two raceways, 0.8 MB each
-roller as JSON."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -240,44 +233,22 @@ def read_element(
 
 
 def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
-    operating, numerics = top.table("operating"), top.table("numerics")
-    speeds = {r: operating.real(f"{r}_speed", unit_of(Speed, r), 0.0) for r in RINGS}
-    speed = Speed(**speeds) if any(speeds.values()) else None
+    numerics, asked = top.table("numerics"), read_keys(SolveKeys, top.table("numerics"))
+    operating = read_keys(OperatingKeys, top.table("operating"))
+    speed = operating.speed
     oil = None
     if "lubricant" in top:
         oil, assumed = read_oil(top.table("lubricant"))
         odd += assumed
     bearing, fits = read_fits(top, top.table("bearing"), bearing, speed, catalogue)
-    element = read_element(bearing, top.table("contact"), operating, numerics)
-    tolerance = numerics.number("tolerance", None)
-    if tolerance is not None and not 1e-14 <= tolerance < 1e-2:
-        problem = f"{tolerance:g} is not allowed; from 1e-14 to below 0.01"
-        raise numerics.error("tolerance", problem)
-    numerics.fill("tolerance", tolerance or DEFAULT_TOLERANCE["float64"])
-    free = operating.words("free", FREEDOMS[:5])
-    prescribed = _components(operating, "prescribed", FREEDOMS, MOTION_UNITS)
-    both = sorted(set(free or ()) & set(prescribed))
-    if both:
-        problem = f"{', '.join(both)} is both free and prescribed; choose one"
-        raise operating.error("free", problem)
-    if free is None:
-        held = [f for f in restrained_freedoms(bearing) if f not in prescribed]
-        operating.fill("free", held)
-    load = _components(operating, "load", LOADS, LOAD_UNITS)
-    for freedom, component in zip(FREEDOMS, LOADS, strict=True):
-        left_out = free is not None and freedom not in (*free, "gz")
-        if load.get(component) and (left_out or freedom in prescribed):
-            why = "prescribed" if freedom in prescribed else "not among `free`"
-            problem = (
-                f"{component} acts on {freedom}, which is {why}: its support would take"
-                " that load; choose one"
-            )
-            raise operating.error("load", problem)
-    points = _points(top.table("output"), bearing)
+    element = read_element(bearing, top.table("contact"), operating.table, numerics)
+    numerics.fill("tolerance", asked.tolerance or DEFAULT_TOLERANCE["float64"])
+    points = 2 if is_ball(bearing) else _points(top.table("output"), bearing)
     held = is_ball(bearing) and isinstance(element.kinematics, ConstantAngle)
-    if held and any(speeds.values()):
+    if held and speed is not None:
         problem = "constant_angle is for balls at rest; leave out the speeds"
         raise numerics.error("kinematics", problem)
+    operating.fill_free(bearing)
     life = read_life(top, bearing, speed, points)
     if fits is not None:
         fixed_to = "space" if life is None else life.load_fixed_to
@@ -289,12 +260,12 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
         preload_force=preload,
         fits=fits,
         oil=oil,
-        load=tuple(load.get(component, 0.0) for component in LOADS),
-        prescribed=prescribed,
-        free=free,
-        fixed_ring=operating.choice("fixed_ring", RINGS, "outer"),
+        load=operating.loads,
+        prescribed=operating.held,
+        free=operating.free,
+        fixed_ring=operating.fixed_ring,
         speed=speed,
-        tolerance=tolerance,
+        tolerance=asked.tolerance,
         points=points,
         life=life,
         warnings=odd,
@@ -302,27 +273,9 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
     )
 
 
-def _components(operating, key, names, units) -> dict[str, float]:
-    """Table of six components, each with its unit."""
-    given = operating.raw(key, {})
-    if not isinstance(given, dict):
-        example = {"load": 'Fy = "-4 kN"', "prescribed": 'uz = "10 um"'}[key]
-        problem = f"{given!r} is not a table; name the components, {{ {example} }}"
-        raise operating.error(key, problem)
-    table = operating.table(key)
-    values = {}
-    for name, unit in zip(names, units, strict=True):
-        value = table.real(name, unit, None)
-        if value is not None:
-            values[name] = value
-    return values
-
-
 def _points(output: Table, bearing) -> int:
-    """Positions along a roller; balls have none."""
-    if is_ball(bearing):
-        return 2
-    points = output.integer("points", 101, least=2)
+    """Positions along a roller."""
+    points = read_keys(OutputKeys, output).points
     if points > MOST_POINTS:
         rollers = sum(n_elements(row.bearing) for row in rows_of(bearing))
         size = 4 * 20e-6 * rollers * points

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple, TypeVar, get_args, get_origin
 
 from ..numerics.units import CELSIUS
-from .quantity import KINDS
+from .quantity import KINDS, to_si
 from .table import Table, written
 
 _REQUIRED: Any = dataclasses.MISSING
@@ -26,10 +26,13 @@ class Key:
     Attributes:
         about: One line for the scene guide, without a full stop.
         kind: Kind of quantity (`quantity.KINDS`); empty for a pure number.
-        above, least, below, most: Range, in SI; temperatures in °C.
+        above, least, below, most: Range, in `unit`.
+        shown: Unit of the range, in which an error tells the number; empty: SI, of
+            temperatures °C.
         choices: Words that may stand there.
+        words: The choices as an error tells them, where they are too many to list.
         of: Classes that may stand there, by the word or the `type` that names them.
-        hint: What an error about the range, or about missing `needs`, adds.
+        hint: What an error about the range, missing `needs`, or what is no table, adds.
         refusal: What an error about the range says, in place of "is not allowed; ...".
         needs: Keys of which one must stand beside this one.
         without: Keys that must not stand beside this one, with what an error says;
@@ -48,7 +51,9 @@ class Key:
     least: int | float | None = None
     below: int | float | None = None
     most: int | float | None = None
+    shown: str = ""
     choices: Sequence[str] = ()
+    words: str = ""
     of: Mapping[str, type] = dataclasses.field(default_factory=dict)
     hint: str = ""
     refusal: str = ""
@@ -62,9 +67,19 @@ class Key:
 
     @property
     def unit(self) -> str:
-        """SI unit, °C of temperatures; empty of a pure number."""
+        """Unit of the range; empty of a pure number."""
         unit = KINDS[self.kind][0] if self.kind else ""
-        return "°C" if unit == "K" else unit
+        return self.shown or ("°C" if unit == "K" else unit)
+
+    def told(self, value: float) -> float:
+        """A number in the unit of the range.
+
+        Args:
+            value: In SI.
+        """
+        if self.unit == "°C":
+            return value - CELSIUS
+        return value / to_si(f"1 {self.shown}", self.kind) if self.shown else value
 
     @property
     def allowed(self) -> str:
@@ -96,7 +111,7 @@ class Key:
         """Whether a number is in the range.
 
         Args:
-            value: In the units of the range.
+            value: In `unit`.
         """
         return not (
             (self.above is not None and not value > self.above)
@@ -113,7 +128,8 @@ def scene_key(
 
     Args:
         about, kind: As of `Key`.
-        default: If the key is absent; without a default it is required.
+        default: If the key is absent; without a default it is required, unless the
+            field may be `None`.
         **rest: Other attributes of `Key`.
     """
     metadata = {"key": Key(about, kind, **rest)}
@@ -156,6 +172,14 @@ class Keys:
     with which they do; read by `built`."""
 
     table: Table = dataclasses.field(repr=False, compare=False)
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """Values of the keys that have one, by the name of the field."""
+        values = {
+            f.attribute: getattr(self, f.attribute) for f in fields_of(type(self))
+        }
+        return {name: value for name, value in values.items() if value is not None}
 
     def built(self, kind: type[Any]) -> Any:
         """An instance of a class whose numbers stand in the table.
@@ -224,9 +248,11 @@ def fields_of(kind: type[Keys]) -> tuple[Field, ...]:
         if "key" not in field.metadata:
             continue
         one: Key = field.metadata["key"]
-        kinds = tuple(k for k in _united(hints[field.name]) if k is not types.NoneType)
-        name = one.name or field.name
-        found.append(Field(name, field.name, one, kinds, field.default))
+        united, default = _united(hints[field.name]), field.default
+        kinds = tuple(kind for kind in united if kind is not types.NoneType)
+        if default is _REQUIRED and len(kinds) < len(united):
+            default = None
+        found.append(Field(one.name or field.name, field.name, one, kinds, default))
     return tuple(found)
 
 
@@ -259,15 +285,18 @@ def _value(table: Table, field: Field) -> Any:
     if is_keys(kind):
         if absent:
             return field.default
-        return read_keys(kind, table.table(name, required=field.required))
+        inside = table.table(name, required=field.required, hint=one.hint)
+        return read_keys(kind, inside)
     if is_keys(inner):
         if absent:
             return field.default
         return tuple(read_keys(inner, part) for part in table.tables(name))
     if inner is str:
         return table.words(name, one.choices)
-    if kind is str or (str in field.kinds and table.word(name) in one.choices):
-        return table.choice(name, tuple(one.choices), *default)
+    word = table.word(name) if str in field.kinds else None
+    # Text where a pure number may stand is a word, and maybe misspelt.
+    if kind is str or (word is not None and (word in one.choices or not one.kind)):
+        return table.choice(name, tuple(one.choices), *default, words=one.words)
     if kind is bool:
         return None if absent and default == (None,) else table.flag(name, *default)
     if kind is int:
@@ -296,13 +325,12 @@ def _in_range(table: Table, name: str, value: Any, one: Key) -> Any:
     """The number, or numbers, if they are in the range of a key that stands there."""
     if name not in table or value is None:
         return value
-    zero = CELSIUS if one.unit == "°C" else 0.0
-    for number in value if isinstance(value, tuple) else (value,):
-        if not one.holds(number - zero):
+    for number in map(one.told, value if isinstance(value, tuple) else (value,)):
+        if not one.holds(number):
             unit = f" {one.unit}" if one.unit else ""
             hint = f" ({one.hint})" if one.hint else ""
             problem = one.refusal or f"is not allowed; {one.allowed}{hint}"
-            raise table.error(name, f"{number - zero:.6g}{unit} {problem}")
+            raise table.error(name, f"{number:.6g}{unit} {problem}")
     return value
 
 

@@ -192,11 +192,18 @@ class Table:
             raise self.error(key, f"{value!r} names something twice")
         return tuple(value)
 
-    def table(self, key: str, required: bool = False) -> "Table":
-        """Sub-table; empty if absent and not required."""
+    def table(self, key: str, required: bool = False, hint: str = "") -> "Table":
+        """Sub-table; empty if absent and not required.
+
+        Args:
+            key: Key in this table.
+            required: Whether it must be there.
+            hint: What the error about something else adds.
+        """
         value = self._get(key, _MISSING if required else {}, "a table")
         if not isinstance(value, Mapping):
-            raise self.error(key, f"{value!r} is not a table")
+            problem = f"{value!r} is not a table"
+            raise self.error(key, f"{problem}; {hint}" if hint else problem)
         known = self._read.get(key)
         if isinstance(known, Table):  # asked for before
             return known

@@ -37,30 +37,26 @@ class ToleranceKeys(Keys):
     """[vibration.tolerance]: how bearings off the line scatter."""
 
     grade: str | None = scene_key(
-        "grade of the rolling elements",
-        choices=(*BALL_GRADES, *ROLLER_GRADES),
-        default=None,
+        "grade of the rolling elements", choices=(*BALL_GRADES, *ROLLER_GRADES)
     )
     tolerance_class: str | None = scene_key(
         "class of the rings, for their eccentricity",
         name="class",
         choices=TOLERANCE_CLASSES,
-        default=None,
     )
-    bore: float | None = scene_key("bore", "length", default=None, needs=("class",))
+    bore: float | None = scene_key("bore", "length", needs=("class",))
     outside_diameter: float | None = scene_key(
-        "outside diameter", "length", default=None, needs=("class",)
+        "outside diameter", "length", needs=("class",)
     )
     waviness: float | None = scene_key(
-        "root mean square of the waves of both raceways", "length", default=None
+        "root mean square of the waves of both raceways", "length"
     )
     axial_waviness: float | None = scene_key(
-        "root mean square of their axial waves", "length", default=None
+        "root mean square of their axial waves", "length"
     )
     element_waviness: float | None = scene_key(
         "root mean square of the waves of the rolling elements",
         "length",
-        default=None,
         otherwise="that of the grade",
     )
     highest: int = scene_key(
@@ -81,22 +77,19 @@ class ToleranceKeys(Keys):
     diameter: float | None = scene_key(
         "standard deviation of the elements' diameters",
         "length",
-        default=None,
         otherwise="that of the grade",
     )
     spacing: float | None = scene_key(
-        "standard deviation of the elements' azimuths", "angle", default=None
+        "standard deviation of the elements' azimuths", "angle"
     )
     outer_eccentricity: float | None = scene_key(
         "standard deviation of the outer raceway's eccentricity",
         "length",
-        default=None,
         otherwise="that of the class",
     )
     inner_eccentricity: float | None = scene_key(
         "standard deviation of the inner raceway's eccentricity",
         "length",
-        default=None,
         otherwise="that of the class",
     )
     seed: int = scene_key("seed of the random numbers", default=0, least=0)

@@ -58,7 +58,7 @@ SETTINGS = {
     "contamination above one": (
         "life_spectrum",
         "life.contamination=1.2",
-        "`life.contamination`: 1.2 is not allowed; e_C from 0 to 1, or a class of ISO",
+        "`life.contamination`: 1.2 is not allowed; from 0 to 1 (e_C, or a class of ISO",
     ),
     "contamination of no class": (
         "life_spectrum",
@@ -79,7 +79,7 @@ SETTINGS = {
     "thick oil of a life": (
         "life_spectrum",
         "life.viscosity=20 m^2/s",
-        "`life.viscosity`: 2e+07 mm²/s is not allowed; above 0, below 10^6 mm²/s",
+        "`life.viscosity`: 20 m²/s is not allowed; above 0 and below 1 m²/s",
     ),
     "load fixed to a shaft": (
         "life_spectrum",

@@ -583,7 +583,7 @@ def test_slices_that_press_on_each_other():
     element = bj.read_scene("tapered", setting).element
     assert element.line_law == bj.CoupledSlices(12)
     # The rule of independent slices has no place beside it.
-    with pytest.raises(bj.SceneError, match="`numerics.points`: unknown key"):
+    with pytest.raises(bj.SceneError, match="`numerics.points`: is not for coupled slices"):
         bj.read_scene("tapered", (*setting, "numerics.points=30"))
     with pytest.raises(bj.SceneError, match="`slices` is 2; it must be a whole number"):
         bj.read_scene("tapered", (setting[0], "contact.slices=2"))
