@@ -1,5 +1,6 @@
 """The [bearing] and [set] tables of a scene: what stands on the drawing."""
 
+import dataclasses
 import difflib
 from typing import Any
 
@@ -37,6 +38,7 @@ from ..element import RINGS
 from ..statics.preload import check_preload
 from .catalogue_entry import FromCatalogue, catalogue_entry, taken_from
 from .quantity import SceneError
+from .schema import Keys, read_keys, scene_key
 from .table import Table, written_numbers
 
 ROLLERS = {
@@ -154,70 +156,139 @@ def _single(table: Table) -> Bearing:
     return _balls(table, kind) if kind in BALLS else _rollers(table, kind)
 
 
-def _own(row: Table, common: Bearing) -> Bearing:
-    """The bearing of a row of a set: its own, or the one of all rows without."""
-    if "bearing" not in row:
-        return common
-    own = row.table("bearing")
-    bearing = _single(own)
-    if isinstance(bearing, SelfAligningBallRow):
-        raise row.error("bearing", "a self-aligning bearing is no row of a set")
-    return bearing
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SpringKeys(Keys):
+    """Spring that presses a row."""
+
+    spring_force: float | None = scene_key(
+        "force of the spring that preloads, where the row just touches", "force"
+    )
+    spring_stiffness: float = scene_key(
+        "force that it loses per travel",
+        "stiffness",
+        default=0.0,
+        needs=("spring_force",),
+    )
+
+    @property
+    def spring(self) -> PreloadSpring | None:
+        """The spring, if there is one."""
+        if self.spring_force is None:
+            return None
+        with self.table.building():
+            return PreloadSpring(self.spring_force, self.spring_stiffness)
 
 
-def _set(table: Table, bearing: Bearing) -> tuple[BearingSet, float | None]:
-    arrangement = table.choice("arrangement", SETS)
-    if arrangement == "tandem":
-        for key in ("preload_force", "preload_offset", "spring_force"):
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class RowKeys(SpringKeys):
+    """[[set.rows]]: a row in its place."""
+
+    position: float = scene_key("place along the axis", "length")
+    mirrored: bool = scene_key("whether it is turned round", default=False)
+    inner_offset: float = scene_key(
+        "axial offset of the inner ring against the outer one: preload by ground rings",
+        "length",
+        default=0.0,
+    )
+
+    def row(self, common: Bearing) -> SetRow:
+        """The row.
+
+        Args:
+            common: The bearing of rows that have none of their own.
+        """
+        bearing = common
+        if "bearing" in self.table:
+            bearing = _single(self.table.table("bearing"))
+        if isinstance(bearing, SelfAligningBallRow):
+            problem = "a self-aligning bearing is no row of a set"
+            raise self.table.error("bearing", problem)
+        place = {"position": self.position, "inner_offset": self.inner_offset}
+        with self.table.building():
+            return SetRow(bearing, mirrored=self.mirrored, spring=self.spring, **place)
+
+
+_IN_PAIRS = ("preload_force", "preload_offset", "spring_force")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SetKeys(SpringKeys):
+    """[set]: several bearings that act as one."""
+
+    arrangement: str = scene_key("how the rows stand", choices=SETS)
+    spacing: float | None = scene_key(
+        "distance of the rows; of `rows` their `position` counts", "length"
+    )
+    count: int = scene_key(
+        "rows of a tandem", default=2, only={"arrangement": ("tandem",)}
+    )
+    preload_offset: float | None = scene_key(
+        "travel of the rings that grinding leaves to be closed", "length"
+    )
+    preload_force: float | None = scene_key(
+        "force to which the rows are ground", "force", without={"preload_offset": ""}
+    )
+    rows: tuple[RowKeys, ...] = scene_key(
+        "the rows", default=(), only={"arrangement": ("rows",)}
+    )
+
+    def check(self) -> None:
+        table = self.table
+        if self.arrangement == "rows":
+            for key in ("spacing", "preload_offset", "spring_force"):
+                if key in table:
+                    raise table.error(key, "is of each row here; write it in `rows`")
+            table.tables("rows")  # which must be there
+        else:
+            table.quantity("spacing", "length")
+        for key in _IN_PAIRS if self.arrangement == "tandem" else ():
             if key in table:
                 problem = "is for rows that face each other; those of a tandem do not"
                 raise table.error(key, problem)
-        spacing, count = table.quantity("spacing", "length"), table.integer("count", 2)
-        with table.building():
-            return BearingSet.tandem(bearing, spacing, count), None
-    force = table.quantity("preload_force", "force", None)
-    if arrangement == "rows":
-        rows = []
-        for row in table.tables("rows"):
-            places = row.fields(SetRow, "position")
-            mirrored, spring = row.flag("mirrored", False), _spring(row)
-            own = _own(row, bearing)
-            with row.building():
-                rows.append(SetRow(own, mirrored=mirrored, spring=spring, **places))
-        with table.building():
-            pack = BearingSet(tuple(rows))
-    else:
-        spacing = table.quantity("spacing", "length")
-        offset = table.quantity("preload_offset", "length", None)
-        spring = _spring(table)
-        if force is not None and offset is not None:
-            problem = "give either `preload_offset` or this, not both"
-            raise table.error("preload_force", problem)
-        with table.building():
-            build = getattr(BearingSet, arrangement)
-            pack = build(bearing, spacing, offset or 0.0, spring)
+
+    def set_of(self, bearing: Bearing) -> BearingSet:
+        """The bearings as a set, before they are ground to `preload_force`.
+
+        Args:
+            bearing: That of all rows that have none of their own.
+        """
+        if self.arrangement == "rows":
+            rows = tuple(row.row(bearing) for row in self.rows)
+            with self.table.building():
+                return BearingSet(rows)
+        spacing, spring = self.spacing or 0.0, self.spring
+        with self.table.building():
+            if self.arrangement == "tandem":
+                return BearingSet.tandem(bearing, spacing, self.count)
+            build = getattr(BearingSet, self.arrangement)
+            return build(bearing, spacing, self.preload_offset or 0.0, spring)
+
+
+def _set(table: Table, bearing: Bearing) -> tuple[BearingSet, float | None]:
+    keys = read_keys(SetKeys, table)
+    pack, force = keys.set_of(bearing), keys.preload_force
     if force is not None:
         with table.building():
             check_preload(pack, force)
     return pack, force
 
 
-def _spring(table: Table) -> PreloadSpring | None:
-    force = table.quantity("spring_force", "force", None)
-    stiffness = table.quantity("spring_stiffness", "stiffness", None)
-    if force is None:
-        if stiffness is not None:
-            raise table.error("spring_stiffness", "goes with `spring_force`")
-        return None
-    with table.building():
-        return PreloadSpring(force, 0.0 if stiffness is None else stiffness)
+def required_numbers(kind: str) -> tuple[str, ...]:
+    """Numbers that a [bearing] must give although their class has a default.
+
+    Args:
+        kind: Its `type`.
+    """
+    if kind == "tapered_roller":
+        return ("roller_axis_angle", "roller_half_angle")
+    grooved = kind in BALLS and kind != "self_aligning_ball"
+    return ("outer_osculation",) if grooved else ()
 
 
 def _balls(table: Table, kind: str) -> Bearing:
-    required = () if kind == "self_aligning_ball" else ("outer_osculation",)
     values = {
         "n_balls": table.integer("n_balls"),
-        **table.fields(BALLS[kind], *required),
+        **table.fields(BALLS[kind], *required_numbers(kind)),
         **_materials(table),
     }
     with table.building():
@@ -225,10 +296,9 @@ def _balls(table: Table, kind: str) -> Bearing:
 
 
 def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
-    required = ("roller_axis_angle", "roller_half_angle")
     values = {
         "n_rollers": table.integer("n_rollers"),
-        **table.fields(ROLLERS[kind], *required),
+        **table.fields(ROLLERS[kind], *required_numbers(kind)),
         "roller_profile": read_profile(table.table("roller_profile")),
     }
     raceways = table.table("raceway_profile")

@@ -28,6 +28,7 @@ from .cases_list import LARGEST, read_list
 from .quantity import KINDS, SceneError, kind_of, to_si
 from .read import Scene, scene_of, with_speed_told
 from .scene_file import assign, find_scene, parse_bearing
+from .schema import Keys, read_keys, scene_key
 from .table import Table
 
 OPERATING = {
@@ -109,6 +110,54 @@ class _Column:
     index: np.ndarray
 
 
+_VARIES: dict[str, Any] = {
+    "type": "object",
+    "additionalProperties": {"type": ["array", "object"]},
+}
+_ENTRIES: dict[str, Any] = {"type": "array", "items": {"type": "object"}}
+
+
+def _raw(table: Table, name: str) -> Any:
+    return table.raw(name, None)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class CasesKeys(Keys):
+    """[cases]: what varies, named by the keys of the scene."""
+
+    grid: Any = scene_key(
+        "values of each key, a list or `{ start, stop, count }`; every combination is a"
+        " case, the last key running fastest",
+        default=None,
+        reader=_raw,
+        json=_VARIES,
+    )
+    file: str | None = scene_key(
+        "path of a CSV with a row for each case, its header such as"
+        " `operating.load.Fy [kN]`"
+    )
+    spectrum: Any = scene_key(
+        "a table for each case, with its `hours`",
+        default=None,
+        reader=_raw,
+        json=_ENTRIES,
+    )
+    outputs: tuple[str, ...] | None = scene_key(
+        "results that are kept", otherwise="the usual ones"
+    )
+    neighbours: bool | None = scene_key(
+        "whether cases that follow each other are alike, so that each starts from the"
+        " one before",
+        otherwise="true of a grid",
+    )
+
+    def check(self) -> None:
+        given = [key for key in ("grid", "file", "spectrum") if key in self.table]
+        if len(given) != 1:
+            problem = "must have one of `grid`, `file` or `spectrum`"
+            raise self.table.own_error(problem)
+
+
 def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     """Read a scene with `[cases]`.
 
@@ -126,23 +175,17 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
             " `file` or `spectrum`"
         )
     top = Table(data, path.name)
-    table = top.table("cases")
-    kind = [k for k in ("grid", "file", "spectrum") if k in table]
-    if len(kind) != 1:
-        raise top.error("cases", "must have one of `grid`, `file` or `spectrum`")
-    if kind[0] == "grid":
-        columns = _grid(table, table.raw("grid"))
-    elif kind[0] == "file":
+    keys = read_keys(CasesKeys, top.table("cases"))
+    table, outputs, neighbours = keys.table, keys.outputs, keys.neighbours
+    if neighbours is None:
+        neighbours = keys.grid is not None
+    if keys.grid is not None:
+        columns = _grid(table, keys.grid)
+    elif keys.spectrum is not None:
+        columns = _spectrum(table, keys.spectrum)
+    else:
         lists = read_list(table, path.parent, OPERATING).items()
         columns = [_Column(key, v, np.arange(len(v))) for key, v in lists]
-    else:
-        columns = _spectrum(table, table.raw("spectrum"))
-    neighbours = table.flag("neighbours", kind[0] == "grid")
-    outputs = table.raw("outputs", None)
-    if outputs is not None and not (
-        isinstance(outputs, list) and all(isinstance(name, str) for name in outputs)
-    ):
-        raise table.error("outputs", f"{outputs!r} is not a list of names")
     table.finish()
     data = _begun(data, columns, path.name)
     scene = scene_of(data, path)
@@ -158,7 +201,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         cases=cases,
         varied=tuple(column.key for column in columns),
         settings=made,
-        outputs=None if outputs is None else tuple(outputs),
+        outputs=outputs,
         neighbours=neighbours,
         warnings=_alike(scene.warnings, odd),
         inputs=_inputs(scene, columns, _placed(data["cases"], path)),

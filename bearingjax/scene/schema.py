@@ -292,7 +292,9 @@ def _value(table: Table, field: Field) -> Any:
             return field.default
         return tuple(read_keys(inner, part) for part in table.tables(name))
     if inner is str:
-        return table.words(name, one.choices)
+        return _texts(table, name, one)
+    if kind is str and not one.choices:
+        return _text(table, name, *default)
     word = table.word(name) if str in field.kinds else None
     # Text where a pure number may stand is a word, and maybe misspelt.
     if kind is str or (word is not None and (word in one.choices or not one.kind)):
@@ -309,6 +311,26 @@ def _value(table: Table, field: Field) -> Any:
     if one.kind:
         return _in_range(table, name, table.quantity(name, one.kind, *default), one)
     return _in_range(table, name, table.number(name, *default), one)
+
+
+def _text(table: Table, name: str, *default: Any) -> Any:
+    """Any text."""
+    value = table.raw(name, *default)
+    if name in table and not isinstance(value, str):
+        raise table.error(name, f"{value!r} is not a text")
+    return value
+
+
+def _texts(table: Table, name: str, one: Key) -> tuple[str, ...] | None:
+    """Distinct words out of several, or any texts where none are listed."""
+    if one.choices:
+        return table.words(name, one.choices)
+    value = table.raw(name, None)
+    if value is None:
+        return None
+    if not isinstance(value, list) or not all(isinstance(x, str) for x in value):
+        raise table.error(name, f"{value!r} is not a list of names")
+    return tuple(value)
 
 
 def _count(table: Table, name: str, one: Key, *default: Any) -> Any:

@@ -86,12 +86,9 @@ def _bare_schema(field: Field) -> dict[str, Any]:
     of_list = element_of(kinds[0])
     if is_keys(of_list):
         return {"type": "array", "items": table_schema(of_list), "minItems": 1}
+    text = {"enum": list(key.choices)} if key.choices else {"type": "string"}
     if of_list is str:
-        return {
-            "type": "array",
-            "items": {"enum": list(key.choices)},
-            "uniqueItems": True,
-        }
+        return {"type": "array", "items": text, "uniqueItems": True}
     if of_list is float:
         return {"type": "array", "items": number_schema(key.kind)}
     ends = {_ENDS[end]: getattr(key, end) for end in _ENDS}
@@ -99,7 +96,7 @@ def _bare_schema(field: Field) -> dict[str, Any]:
     several = []
     for kind in kinds:
         if kind is str:
-            several.append({"enum": list(key.choices)})
+            several.append(text)
         elif kind is bool:
             several.append({"type": "boolean"})
         elif kind is int:

@@ -50,6 +50,10 @@ class Table:
         """Error that names file and key."""
         return SceneError(f"{self._file}: `{self._full(key)}`: {problem}")
 
+    def own_error(self, problem: object) -> SceneError:
+        """Error that names file and table."""
+        return SceneError(f"{self._file}: `{self._path}`: {problem}")
+
     def quantity(self, key: str, kind: str, default: Any = _MISSING) -> Any:
         """Number in SI of a quantity with a unit.
 
