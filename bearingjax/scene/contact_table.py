@@ -33,6 +33,7 @@ def _profile(table: Table, name: str) -> AbstractProfile:
 
 
 _EITHER = "give either this or `small_diameter` and `large_diameter`"
+_PROFILE = {"anyOf": [class_schema(kind, word) for word, kind in PROFILES.items()]}
 _MATERIAL = {"anyOf": [{"enum": list(MATERIALS)}, class_schema(Material)]}
 
 
@@ -59,7 +60,7 @@ class RollerKeys(Keys):
         "half cone angle", "angle", otherwise="that of its diameters"
     )
     profile: AbstractProfile = scene_key(
-        "shape along it", of=PROFILES, default="straight", reader=_profile
+        "shape along it", default="straight", reader=_profile, json=_PROFILE
     )
     material: Material | None = scene_key(
         "material", otherwise="steel", reader=read_material, json=_MATERIAL
@@ -107,7 +108,7 @@ class RacewayKeys(Keys):
         hint="without it the raceway is a plane",
     )
     profile: AbstractProfile = scene_key(
-        "shape along it", of=PROFILES, default="straight", reader=_profile
+        "shape along it", default="straight", reader=_profile, json=_PROFILE
     )
     material: Material | None = scene_key(
         "material", otherwise="that of the roller", reader=read_material, json=_MATERIAL

@@ -77,10 +77,10 @@ def field_schema(field: Field) -> dict[str, Any]:
 def _bare_schema(field: Field) -> dict[str, Any]:
     """Type and range of what may stand at a key."""
     key, kinds = field.key, field.kinds
-    if key.of:
-        return classes_schema(key.of)
     if key.reader is not None:
         return dict(key.json)
+    if key.of:
+        return classes_schema(key.of)
     if is_keys(kinds[0]):
         return table_schema(kinds[0])
     of_list = element_of(kinds[0])
