@@ -123,7 +123,7 @@ class Exponential(AbstractAmbient):
     Attributes:
         reference_viscosity: Dynamic viscosity at T_R [Pa s].
         reference_temperature: T_R [K].
-        first: Factor of D [K].
+        first: Factor of D = 1/T - 1/T_R [K].
         second: Factor of D² [K²].
 
     Traced: all fields.

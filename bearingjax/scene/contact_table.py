@@ -10,11 +10,12 @@ import numpy as np
 
 from ..contact.halfspace import FreeEnds, RollerContact
 from ..contact.line import AbstractLineLaw
-from ..design import Material
-from .bearing_table import read_material, read_profile
+from ..design import MATERIALS, AbstractProfile, Material
+from .bearing_table import PROFILES, read_material, read_profile
 from .choices_table import LineContactKeys
 from .scene_file import find_scene, parse_scene
-from .schema import read_keys
+from .schema import Keys, read_keys, scene_key
+from .schema_text import class_schema
 from .table import Table, written_numbers
 
 LAWS = ("palmgren", "iso16281")
@@ -23,9 +24,207 @@ LAWS = ("palmgren", "iso16281")
 SIDES = {"inner": 1.0, "outer": -1.0}
 """Sign of the curvature of a raceway."""
 
-MOST_ACROSS, MOST_ALONG = 1001, 4001
 MOST_NUMBERS = 5e7
 """Most numbers in the influence of cells graded or with free ends: 0.4 GB."""
+
+
+def _profile(table: Table, name: str) -> AbstractProfile:
+    return read_profile(table.table(name))
+
+
+_EITHER = "give either this or `small_diameter` and `large_diameter`"
+_PROFILE = {"anyOf": [class_schema(kind, word) for word, kind in PROFILES.items()]}
+_MATERIAL = {"anyOf": [{"enum": list(MATERIALS)}, class_schema(Material)]}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class RollerKeys(Keys):
+    """[roller]: a cylindrical or tapered roller."""
+
+    length: float = scene_key(
+        "effective length", "length", above=0, refusal="must be above 0"
+    )
+    diameter: float | None = scene_key(
+        "diameter of a cylindrical roller",
+        "length",
+        above=0,
+        without={"small_diameter": _EITHER},
+    )
+    small_diameter: float | None = scene_key(
+        "diameter at the small end", "length", above=0, needs=("large_diameter",)
+    )
+    large_diameter: float | None = scene_key(
+        "diameter at the large end", "length", above=0, needs=("small_diameter",)
+    )
+    half_angle: float | None = scene_key(
+        "half cone angle", "angle", otherwise="that of its diameters"
+    )
+    profile: AbstractProfile = scene_key(
+        "shape along it", default="straight", reader=_profile, json=_PROFILE
+    )
+    material: Material | None = scene_key(
+        "material", otherwise="steel", reader=read_material, json=_MATERIAL
+    )
+    free_ends: bool = scene_key("whether its end faces bear no stress", default=False)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Small and large diameter [m]."""
+        small, large = self.small_diameter, self.large_diameter
+        both = self.diameter or 0.0  # checked when it was read
+        return small or both, large or both
+
+    def check(self) -> None:
+        if self.diameter is None and self.small_diameter is None:
+            self.table.quantity("diameter", "length")  # raises that it is missing
+        small, large = self.ends
+        if large < small:
+            problem = f"is below `small_diameter`, {1e3 * small:g} mm"
+            raise self.table.error("large_diameter", problem)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class RacewayKeys(Keys):
+    """[raceway]: a plane, a cylinder or a cone."""
+
+    diameter: float | None = scene_key(
+        "diameter in the middle", "length", above=0, otherwise="a plane"
+    )
+    side: str | None = scene_key(
+        "ring that has it",
+        choices=tuple(SIDES),
+        needs=("diameter",),
+        hint="without it the raceway is a plane",
+    )
+    half_angle: float = scene_key(
+        "half cone angle",
+        "angle",
+        default=0.0,
+        above=-40.1,
+        below=40.1,
+        shown="deg",
+        refusal="is not allowed; below 40.1 in size",
+        needs=("diameter",),
+        hint="without it the raceway is a plane",
+    )
+    profile: AbstractProfile = scene_key(
+        "shape along it", default="straight", reader=_profile, json=_PROFILE
+    )
+    material: Material | None = scene_key(
+        "material", otherwise="that of the roller", reader=read_material, json=_MATERIAL
+    )
+
+    @property
+    def radius(self) -> float:
+        """Radius normal to the generatrix in the middle, signed [m]."""
+        if self.diameter is None or self.side is None:
+            return np.inf
+        return SIDES[self.side] * 0.5 * self.diameter / np.cos(self.half_angle)
+
+    def check(self) -> None:
+        if self.diameter is not None and self.side is None:
+            self.table.choice("side", tuple(SIDES))  # raises that it is missing
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class ContactOperatingKeys(Keys):
+    """[operating] of one contact: how roller and raceway are pressed."""
+
+    load: float | tuple[float, ...] | None = scene_key(
+        "load, or a list of loads", "force", above=0, refusal="must be above 0"
+    )
+    approach: float | None = scene_key(
+        "approach in the middle", "length", without={"load": ""}
+    )
+    moment: float | None = scene_key(
+        "moment of the pressure about the middle",
+        "moment",
+        needs=("load",),
+        hint="an approach has a `tilt`",
+    )
+    tilt: float | None = scene_key(
+        "tilt; above zero it closes the gap at positive positions",
+        "angle",
+        above=-0.1,
+        below=0.1,
+        refusal="is not allowed; below 0.1 rad in size",
+        without={"moment": ""},
+    )
+
+    @property
+    def loads(self) -> tuple[float, ...]:
+        """All loads [N]; none if the approach is given."""
+        if self.load is None:
+            return ()
+        return self.load if isinstance(self.load, tuple) else (self.load,)
+
+    def check(self) -> None:
+        if self.load is None and self.approach is None:
+            problem = "is missing; give it, a list of loads, or `approach`"
+            raise self.table.error("load", problem)
+        if self.load == ():
+            raise self.table.error("load", "is an empty list; give one load at least")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class ContactNumericsKeys(Keys):
+    """[numerics] of one contact: the cells of its grid, and when to stop."""
+
+    across: int = scene_key(
+        "cells across the contact",
+        default=35,
+        least=3,
+        most=1001,
+        refusal="is too many cells; at most 1001",
+    )
+    along: int = scene_key(
+        "cells along the roller",
+        default=64,
+        least=3,
+        most=4001,
+        refusal="is too many cells; at most 4001",
+    )
+    grading: float = scene_key(
+        "exponent by which cells are shorter towards the ends; 1: even",
+        default=2.0,
+        least=1,
+        most=4,
+        refusal="is not allowed; from 1 (even cells) to 4",
+    )
+    half_width: float | None = scene_key(
+        "half width of the grid", "length", above=0, otherwise="found for each load"
+    )
+    tolerance: float | None = scene_key(
+        "relative residual at which it ends",
+        least=1e-14,
+        below=0.01,
+        otherwise="that of the solver",
+    )
+    max_steps: int = scene_key("most steps of the solver", default=500)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SliceLawKeys(Keys):
+    """[contact]: the slices that a contact is compared with."""
+
+    line_law: str = scene_key(
+        "approach and load of a slice", choices=LAWS, default="palmgren"
+    )
+    line_constant: float | None = scene_key(
+        "constant of q = K δ^(10/9), in place of the law's", "line constant"
+    )
+
+    @property
+    def law(self) -> AbstractLineLaw:
+        """The law of the slices."""
+        return read_keys(LineContactKeys, self.table).law
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class ContactOutputKeys(Keys):
+    """[output] of one contact."""
+
+    field: bool = scene_key("whether every cell's pressure is written", default=False)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -105,173 +304,78 @@ def read_contact(source: str | Path, settings: Iterable[str] = ()) -> ContactSce
     if "bearing" in data:
         problem = "a contact is one [roller] on one [raceway], or a roller of a bearing"
         raise top.error("bearing", problem)
+    roller = read_keys(RollerKeys, top.table("roller", required=True))
+    raceway = read_keys(RacewayKeys, top.table("raceway"))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        contact = _contact(top)
+        contact = _contact(roller, raceway)
     scene = _scene(top, path.stem, contact, tuple(str(w.message) for w in caught))
     top.finish()
     return dataclasses.replace(scene, inputs=top.echo())
 
 
-def _contact(top: Table) -> RollerContact:
-    roller, raceway = top.table("roller", required=True), top.table("raceway")
-    length = _positive(roller, "length", "length")
-    small, large = _diameters(roller)
-    profile = read_profile(roller.table("profile"))
-    material = read_material(roller, "material") or Material()
-    radius, widening = _raceway(raceway, max(small, large))
-    ring_profile = read_profile(raceway.table("profile"))
-    ring_material = read_material(raceway, "material") or material
-    for table, given in ((roller, material), (raceway, ring_material)):
+def _contact(roller: RollerKeys, raceway: RacewayKeys) -> RollerContact:
+    small, large = roller.ends
+    if raceway.side == "outer" and (raceway.diameter or 0.0) <= large:
+        problem = f"an outer raceway is wider than the roller, {1e3 * large:g} mm"
+        raise raceway.table.error("diameter", problem)
+    material = roller.material or Material()
+    ring_material = raceway.material or material
+    for table, given in ((roller.table, material), (raceway.table, ring_material)):
         table.fill("material", written_numbers(given))
-    with roller.building():
+    with roller.table.building():
         return RollerContact(
-            length,
+            roller.length,
             small,
             large,
-            half_angle=roller.quantity("half_angle", "angle", None),
-            raceway_radius=radius,
-            raceway_half_angle=widening,
-            roller_profile=profile,
-            raceway_profile=ring_profile,
+            half_angle=roller.half_angle,
+            raceway_radius=raceway.radius,
+            raceway_half_angle=raceway.half_angle,
+            roller_profile=roller.profile,
+            raceway_profile=raceway.profile,
             material=material,
             raceway_material=ring_material,
-            free_ends=FreeEnds() if roller.flag("free_ends", False) else None,
+            free_ends=FreeEnds() if roller.free_ends else None,
         )
-
-
-def _diameters(roller: Table) -> tuple[float, float]:
-    ends = ("small_diameter", "large_diameter")
-    if not any(key in roller for key in ends):
-        diameter = _positive(roller, "diameter", "length")
-        return diameter, diameter
-    if "diameter" in roller:
-        problem = "give either this or `small_diameter` and `large_diameter`"
-        raise roller.error("diameter", problem)
-    small, large = (_positive(roller, key, "length") for key in ends)
-    if large < small:
-        problem = f"is below `small_diameter`, {1e3 * small:g} mm"
-        raise roller.error("large_diameter", problem)
-    return small, large
-
-
-def _raceway(raceway: Table, roller_diameter: float) -> tuple[float, float]:
-    """Radius normal to the generatrix in the middle, signed, and half cone angle."""
-    if "diameter" not in raceway:
-        for key in ("side", "half_angle"):
-            if key in raceway:
-                problem = "goes with `diameter`; without it the raceway is a plane"
-                raise raceway.error(key, problem)
-        return np.inf, 0.0
-    diameter = _positive(raceway, "diameter", "length")
-    side = raceway.choice("side", tuple(SIDES))
-    angle = raceway.quantity("half_angle", "angle", 0.0)
-    if not abs(angle) < 0.7:
-        problem = f"{np.rad2deg(angle):.4g} deg is not allowed; below 40.1 in size"
-        raise raceway.error("half_angle", problem)
-    if side == "outer" and diameter <= roller_diameter:
-        problem = (
-            f"an outer raceway is wider than the roller, {1e3 * roller_diameter:g}"
-        )
-        raise raceway.error("diameter", f"{problem} mm")
-    return SIDES[side] * 0.5 * diameter / np.cos(angle), angle
 
 
 def _scene(top: Table, name, contact: RollerContact, odd) -> ContactScene:
-    operating = top.table("operating", required=True)
-    numerics, law = top.table("numerics"), top.table("contact")
-    law.choice("line_law", LAWS, "palmgren")
-    loads, listed = _loads(operating)
-    grid = _grid(numerics, contact)
-    if grid["grading"] > 1.0 or contact.free_ends is not None:
-        count = max(len(loads), 1) * grid["across"] * grid["along"] ** 2
-        if count > MOST_NUMBERS:
-            problem = (
-                f"{grid['along']} cells take too much memory, graded or with free ends;"
-                " fewer graded ones do as well, or take `grading` = 1 without free ends"
-            )
-            raise numerics.error("along", problem)
-    tolerance = numerics.number("tolerance", None)
-    if tolerance is not None and not 1e-14 <= tolerance < 1e-2:
-        problem = f"{tolerance:g} is not allowed; from 1e-14 to below 0.01"
-        raise numerics.error("tolerance", problem)
+    operating = read_keys(ContactOperatingKeys, top.table("operating", required=True))
+    numerics = read_keys(ContactNumericsKeys, top.table("numerics"))
+    _check_grid(numerics, contact, len(operating.loads))
     return ContactScene(
         name=name,
         contact=contact,
-        loads=loads,
-        listed=listed,
-        **_motion(operating, loads),
-        law=read_keys(LineContactKeys, law).law,
-        **grid,
-        tolerance=tolerance,
-        max_steps=numerics.integer("max_steps", 500),
-        field=top.table("output").flag("field", False),
+        loads=operating.loads,
+        approach=operating.approach,
+        moment=operating.moment,
+        tilt=operating.tilt,
+        listed=isinstance(operating.load, tuple),
+        law=read_keys(SliceLawKeys, top.table("contact")).law,
+        across=numerics.across,
+        along=numerics.along,
+        grading=numerics.grading,
+        half_width=numerics.half_width,
+        tolerance=numerics.tolerance,
+        max_steps=numerics.max_steps,
+        field=read_keys(ContactOutputKeys, top.table("output")).field,
         warnings=odd,
         inputs={},
     )
 
 
-def _loads(operating: Table) -> tuple[tuple[float, ...], bool]:
-    """Loads, and whether they are a list; none if the approach is given."""
-    if "load" not in operating:
-        if "approach" not in operating:
-            problem = "is missing; give it, a list of loads, or `approach`"
-            raise operating.error("load", problem)
-        return (), False
-    if "approach" in operating:
-        raise operating.error("approach", "give either `load` or this, not both")
-    listed = isinstance(operating.raw("load"), list)
-    if listed:
-        loads = operating.quantities("load", "force")
-    else:
-        loads = [operating.quantity("load", "force")]
-    if not loads:
-        raise operating.error("load", "is an empty list; give one load at least")
-    for load in loads:
-        if not load > 0:
-            raise operating.error("load", f"{load:g} N must be above 0")
-    return tuple(loads), listed
-
-
-def _motion(operating: Table, loads) -> dict[str, float | None]:
-    approach = None if loads else operating.quantity("approach", "length")
-    moment = operating.quantity("moment", "moment", None)
-    tilt = operating.quantity("tilt", "angle", None)
-    if moment is not None and tilt is not None:
-        raise operating.error("tilt", "give either `moment` or this, not both")
-    if moment is not None and not loads:
-        raise operating.error("moment", "goes with `load`; an approach has a `tilt`")
-    if tilt is not None and not abs(tilt) < 0.1:
-        problem = f"{tilt:g} rad is not allowed; below 0.1 rad in size"
-        raise operating.error("tilt", problem)
-    return {"approach": approach, "moment": moment, "tilt": tilt}
-
-
-def _grid(numerics: Table, contact: RollerContact) -> dict:
-    across = numerics.integer("across", 35, least=3)
-    along = numerics.integer("along", 64, least=3)
-    for key, value, most in (
-        ("across", across, MOST_ACROSS),
-        ("along", along, MOST_ALONG),
-    ):
-        if value > most:
-            raise numerics.error(key, f"{value} is too many cells; at most {most}")
-    grading = numerics.number("grading", 2.0)
-    if not 1.0 <= grading <= 4.0:
-        problem = f"{grading:g} is not allowed; from 1 (even cells) to 4"
-        raise numerics.error("grading", problem)
-    width = None
-    if "half_width" in numerics:
-        width = _positive(numerics, "half_width", "length")
-        gap = contact.gap(contact.grid(width, across, 3, 1.0))
+def _check_grid(keys: ContactNumericsKeys, contact: RollerContact, loads: int) -> None:
+    """Raise SceneError for a grid that is too large for memory or for the bodies."""
+    if keys.grading > 1.0 or contact.free_ends is not None:
+        if max(loads, 1) * keys.across * keys.along**2 > MOST_NUMBERS:
+            problem = (
+                f"{keys.along} cells take too much memory, graded or with free ends;"
+                " fewer graded ones do as well, or take `grading` = 1 without free ends"
+            )
+            raise keys.table.error("along", problem)
+    if keys.half_width is not None:
+        gap = contact.gap(contact.grid(keys.half_width, keys.across, 3, 1.0))
         if not np.isfinite(np.asarray(gap)).all():
-            problem = f"{1e3 * width:g} mm is wider than the roller or its raceway"
-            raise numerics.error("half_width", problem)
-    return {"across": across, "along": along, "grading": grading, "half_width": width}
-
-
-def _positive(table: Table, key: str, kind: str) -> float:
-    value = table.quantity(key, kind)
-    if not value > 0:
-        raise table.error(key, f"{value:g} m must be above 0")
-    return value
+            width = f"{1e3 * keys.half_width:g} mm"
+            problem = f"{width} is wider than the roller or its raceway"
+            raise keys.table.error("half_width", problem)

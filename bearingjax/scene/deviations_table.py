@@ -1,7 +1,8 @@
 """The [deviations] table of a scene: form errors of raceways and rolling elements."""
 
+import dataclasses
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ..design.form_error import (
     Spall,
 )
 from .cases_list import read_list
+from .schema import Keys, read_keys, scene_key
 from .table import Table, written
 
 RACEWAYS = {"outer raceway": "outer", "inner raceway": "inner"}
@@ -23,8 +25,241 @@ MOST_ORDER = {"raceway": 900, "element": 110}
 rolling element, err by 1 % of their amplitude there."""
 
 
-COMMON = ("waves", "spalls")
-"""Kinds of errors that all bearings of a line have, not the one of the scene alone."""
+class Place(NamedTuple):
+    """Where a form error stands, beside what its table says.
+
+    Attributes:
+        count: Rolling elements of the row; `None` of an error of a raceway.
+        folder: Of the scene.
+        row: How many rows had the same table before.
+    """
+
+    count: int | None
+    folder: Path
+    row: int
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class DeviationKeys(Keys):
+    """A form error of a part of every row, or of one."""
+
+    common: ClassVar[bool] = False
+    """Whether all bearings of a line have it, not the one of the scene alone."""
+
+    part: str = scene_key("part that has it", choices=(*RACEWAYS, ELEMENTS))
+    row: int | None = scene_key(
+        "row of a set, from 0, in whose axes it stands", least=0, otherwise="every row"
+    )
+    element: int | None = scene_key(
+        "its number, from 0", least=0, only={"part": (ELEMENTS,)}, otherwise="every one"
+    )
+
+    @property
+    def along(self) -> str:
+        """Direction in which the shape of a raceway is counted."""
+        return "raised"
+
+    @property
+    def most(self) -> int:
+        """Highest order of waves of the part."""
+        return MOST_ORDER["element" if self.part == ELEMENTS else "raceway"]
+
+    def shape(self, place: Place) -> AbstractShape:
+        """The form error.
+
+        Args:
+            place: Where it stands.
+        """
+        raise NotImplementedError
+
+    def _each(self, values: Any, place: Place) -> Any:
+        """Values of the part; of every rolling element, those not meant have 0."""
+        values = np.asarray(values, dtype=float)
+        if place.count is None:
+            return values
+        which = np.arange(place.count)
+        chosen = np.ones(place.count) if self.element is None else which == self.element
+        return chosen.reshape(-1, *[1] * values.ndim) * values
+
+    def _check_order(self, name: str, order: Any) -> None:
+        """Raise SceneError for an order that the part cannot have."""
+        whole = isinstance(order, int) and not isinstance(order, bool)
+        if not whole or not 1 <= order <= self.most:
+            problem = f"{order!r} is not a whole number from 1 to {self.most}"
+            raise self.table.error(name, problem)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class DirectedKeys(DeviationKeys):
+    """A form error that a raceway may have in several directions."""
+
+    direction: str | None = scene_key(
+        "of a raceway's waves; `raised`: along the contact normal",
+        choices=DIRECTIONS,
+        otherwise=DIRECTIONS[0],
+    )
+
+    @property
+    def along(self) -> str:
+        return self.direction or DIRECTIONS[0]
+
+    def check(self) -> None:
+        if self.part != ELEMENTS:
+            self.fill(direction=self.along)
+        elif self.direction is not None:
+            problem = "is of raceways; an element has a height alone"
+            raise self.table.error("direction", problem)
+
+
+def _orders(table: Table, name: str) -> tuple[Any, ...]:
+    named = table.raw(name)
+    return tuple(named) if isinstance(named, list) and named else (named,)
+
+
+_ORDER = {"type": "integer", "minimum": 1, "maximum": MOST_ORDER["raceway"]}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class WavesKeys(DirectedKeys):
+    """[[deviations.waves]]: waves around a part."""
+
+    common: ClassVar[bool] = True
+
+    order: tuple[int, ...] = scene_key(
+        "waves in a turn, or a list; at most 900, of elements 110",
+        reader=_orders,
+        json={"anyOf": [_ORDER, {"type": "array", "items": _ORDER, "minItems": 1}]},
+    )
+    amplitude: float | tuple[float, ...] = scene_key(
+        "amplitude, or a list with one of each order", "length"
+    )
+    phase: float | tuple[float, ...] = scene_key(
+        "phase, or a list with one of each order", "angle", default=0.0
+    )
+
+    def check(self) -> None:
+        super().check()
+        for order in self.order:
+            self._check_order("order", order)
+        if len(set(self.order)) < len(self.order):
+            raise self.table.error("order", f"{list(self.order)} names an order twice")
+        for name in ("amplitude", "phase"):
+            given = getattr(self, name)
+            if isinstance(given, tuple) and len(given) != len(self.order):
+                problem = f"has {len(given)} values for {len(self.order)} orders"
+                raise self.table.error(name, problem)
+        if np.any(np.less(self.amplitude, 0.0)):
+            problem = "is negative; turn the `phase` by 180 deg in its place"
+            raise self.table.error("amplitude", problem)
+
+    def shape(self, place: Place) -> Harmonics:
+        sizes = np.broadcast_to(self.amplitude, len(self.order))
+        sizes = self._each(sizes, place)
+        return Harmonics(self.order, sizes, np.broadcast_to(self.phase, sizes.shape))
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SpectrumKeys(DirectedKeys):
+    """[[deviations.spectrum]]: waves of every order of a range."""
+
+    lowest: int = scene_key("lowest order", most=MOST_ORDER["raceway"])
+    highest: int = scene_key(
+        "highest order; of elements 110 at most", most=MOST_ORDER["raceway"]
+    )
+    amplitude: float = scene_key("amplitude of the lowest order", "length", least=0)
+    slope: float = scene_key("amplitudes fall with this power of the order")
+    seed: int = scene_key(
+        "seed of the random phases; rows draw their own", default=0, least=0
+    )
+
+    def check(self) -> None:
+        super().check()
+        for name in ("lowest", "highest"):
+            self._check_order(name, getattr(self, name))
+        if self.highest < self.lowest:
+            problem = f"{self.highest} is below `lowest`, {self.lowest}"
+            raise self.table.error("highest", problem)
+
+    def shape(self, place: Place) -> Harmonics:
+        # Rows draw on their own; the first as a single one.
+        seed = [self.seed, place.row] if place.row else self.seed
+        orders = self.highest - self.lowest + 1
+        shape = (orders,) if place.count is None else (place.count, orders)
+        phase = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, shape)
+        sizes = self._each(np.full(1, self.amplitude), place)
+        return Harmonics.spectrum(self.lowest, self.highest, sizes, self.slope, phase)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class ProfileKeys(DirectedKeys):
+    """[[deviations.profile]]: measured heights at even angles."""
+
+    points: tuple[float, ...] | None = scene_key("heights", "length")
+    file: str | None = scene_key(
+        'CSV file of heights, with the one column "height [um]"'
+    )
+    highest: int | None = scene_key(
+        "highest order that is kept; at most 900, of elements 110",
+        otherwise="as many as the heights hold",
+    )
+
+    def check(self) -> None:
+        super().check()
+        if (self.points is None) == (self.file is None):
+            problem = "give either heights here or a `file` of them"
+            raise self.table.error("points", problem)
+        if self.highest is not None:
+            self._check_order("highest", self.highest)
+
+    def shape(self, place: Place) -> Harmonics:
+        heights, table = np.array(self.points), self.table
+        if self.points is None:
+            found = read_list(table, place.folder, {"height": "length"}, "heights")
+            if list(found) != ["height"]:
+                problem = 'must have one column, headed such as "height [um]"'
+                raise table.error("file", problem)
+            heights = found["height"]
+            table.fill("file", None)  # in the echo its heights
+            table.fill("points", [written(height, "m") for height in heights])
+        highest = self.highest or min(self.most, max(1, (len(heights) - 1) // 2))
+        table.fill("highest", highest)
+        waves = Harmonics.measured(heights, highest)
+        sizes = self._each(waves.amplitude, place)
+        return Harmonics(waves.order, sizes, np.broadcast_to(waves.phase, sizes.shape))
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SpallKeys(DeviationKeys):
+    """[[deviations.spalls]]: a place where the surface is lower."""
+
+    common: ClassVar[bool] = True
+
+    angle: float = scene_key("angle of its middle", "angle", default=0.0)
+    length: float = scene_key("length along the rolling direction", "length", above=0)
+    depth: float = scene_key("depth of its floor", "length", above=0)
+
+    def check(self) -> None:
+        if "direction" in self.table:
+            problem = "is not of spalls, which lower the surface"
+            raise self.table.error("direction", problem)
+        if self.part == ELEMENTS and self.element is None:
+            problem = "is missing; number of the element with the spall"
+            raise self.table.error("element", problem)
+
+    def shape(self, place: Place) -> Spall:
+        every = np.zeros(() if place.count is None else (place.count,))
+        depth = self._each(self.depth, place)
+        return Spall(every + self.angle, every + self.length, depth)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class DeviationsKeys(Keys):
+    """[deviations]: form errors of raceways and rolling elements."""
+
+    waves: tuple[WavesKeys, ...] = scene_key("waves around parts", default=())
+    spectrum: tuple[SpectrumKeys, ...] = scene_key("spectra of waves", default=())
+    profile: tuple[ProfileKeys, ...] = scene_key("measured profiles", default=())
+    spalls: tuple[SpallKeys, ...] = scene_key("spalls", default=())
 
 
 def read_deviations(
@@ -40,21 +275,13 @@ def read_deviations(
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    readers = {
-        "waves": _waves,
-        "spectrum": _spectrum,
-        "profile": _profile,
-        "spalls": _spall,
-    }
+    keys = read_keys(DeviationsKeys, table)
     found = [_Gathered(count) for count in counts]
     common = [_Gathered(count) for count in counts]
-    for kind, reader in readers.items():
-        for one in table.tables(kind) if kind in table else ():
-            for k, row in enumerate(_rows(one, kind, found)):
-                row.add(one, kind, reader, folder, k)
-            for k, row in enumerate(_rows(one, kind, common)):
-                if kind in COMMON:
-                    row.add(one, kind, reader, folder, k)
+    for one in (*keys.waves, *keys.spectrum, *keys.profile, *keys.spalls):
+        for rows in (found, common) if one.common else (found,):
+            for k, row in enumerate(_rows(one, rows)):
+                row.add(one, folder, k)
     both = [tuple(row.errors() for row in rows) for rows in (found, common)]
     return both[0], both[1]
 
@@ -69,23 +296,18 @@ class _Gathered:
             ring: {name: [] for name in DIRECTIONS} for ring in RACEWAYS.values()
         }
 
-    def add(self, one: Table, kind: str, reader: Any, folder: Path, row: int):
+    def add(self, one: DeviationKeys, folder: Path, row: int):
         """Take up one table; `row`: how many rows had it before."""
-        part = one.choice("part", (*RACEWAYS, ELEMENTS))
-        given = _Given(folder, row)
-        if part == ELEMENTS:
-            which = _which(one, self.count)
-            _no_direction(one, "is of raceways; an element has a height alone")
-            self.elements.append(reader(one, self.count, which, given))
-            return
-        if "element" in one:
-            raise one.error("element", f"goes with `part` = {ELEMENTS}")
-        direction = "raised"
-        if kind == "spalls":
-            _no_direction(one, "is not of spalls, which lower the surface")
+        of_elements = one.part == ELEMENTS
+        if one.element is not None and one.element >= self.count:
+            problem = f"{one.element} is not there; the elements are 0 to"
+            raise one.table.error("element", f"{problem} {self.count - 1}")
+        with one.table.building():
+            shape = one.shape(Place(self.count if of_elements else None, folder, row))
+        if of_elements:
+            self.elements.append(shape)
         else:
-            direction = one.choice("direction", DIRECTIONS, "outwards")
-        self.rings[RACEWAYS[part]][direction].append(reader(one, None, None, given))
+            self.rings[RACEWAYS[one.part]][one.along].append(shape)
 
     def errors(self) -> FormErrors:
         """All of them."""
@@ -93,23 +315,11 @@ class _Gathered:
         return FormErrors(made["outer"], made["inner"], self.elements)
 
 
-class _Given(NamedTuple):
-    """What a reader needs to know beside its table.
-
-    Attributes:
-        folder: Of the scene.
-        row: How many rows had the same table before.
-    """
-
-    folder: Path
-    row: int
-
-
-def _rows(table: Table, kind: str, found: list[_Gathered]) -> list[_Gathered]:
+def _rows(keys: DeviationKeys, found: list[_Gathered]) -> list[_Gathered]:
     """The rows that are meant: one by its number, or all; of a spall one."""
-    which = table.integer("row", None, least=0)
+    which, table = keys.row, keys.table
     if which is None:
-        if kind == "spalls" and len(found) > 1:
+        if isinstance(keys, SpallKeys) and len(found) > 1:
             raise table.error("row", "is missing; number of the row with the spall")
         return found
     if len(found) == 1:
@@ -118,116 +328,3 @@ def _rows(table: Table, kind: str, found: list[_Gathered]) -> list[_Gathered]:
         allowed = f"the rows are 0 to {len(found) - 1}"
         raise table.error("row", f"{which} is not there; {allowed}")
     return [found[which]]
-
-
-def _which(table: Table, count: int) -> int | None:
-    """Number of the element that is meant; `None`: all."""
-    which = table.integer("element", None, least=0)
-    if which is not None and which >= count:
-        allowed = f"the elements are 0 to {count - 1}"
-        raise table.error("element", f"{which} is not there; {allowed}")
-    return which
-
-
-def _no_direction(table: Table, why: str) -> None:
-    if "direction" in table:
-        raise table.error("direction", why)
-
-
-def _each(values: Any, count: int | None, which: int | None) -> Any:
-    """Values of a part; of every rolling element, those that are not meant have 0."""
-    values = np.asarray(values, dtype=float)
-    if count is None:
-        return values
-    chosen = np.ones(count) if which is None else np.arange(count) == which
-    return chosen.reshape(-1, *[1] * values.ndim) * values
-
-
-def _order(table: Table, key: str, value: Any, count: int | None) -> int:
-    most = MOST_ORDER["raceway" if count is None else "element"]
-    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
-        raise table.error(key, f"{value!r} is not a whole number from 1 to {most}")
-    return value
-
-
-def _listed(table: Table, key: str, kind: str, orders: list, default: Any = None):
-    """One quantity for all orders, or a list with one for each."""
-    if not isinstance(table.raw(key, None), list):
-        usual = () if default is None else (default,)
-        return np.full(len(orders), table.quantity(key, kind, *usual))
-    values = table.quantities(key, kind)
-    if len(values) != len(orders):
-        problem = f"has {len(values)} values for {len(orders)} orders"
-        raise table.error(key, problem)
-    return np.array(values)
-
-
-def _waves(table: Table, count, which, given) -> Harmonics:
-    named = table.raw("order")
-    listed = named if isinstance(named, list) and named else [named]
-    orders = [_order(table, "order", one, count) for one in listed]
-    if len(set(orders)) < len(orders):
-        raise table.error("order", f"{named!r} names an order twice")
-    amplitude = _listed(table, "amplitude", "length", orders)
-    if np.any(amplitude < 0.0):
-        problem = "is negative; turn the `phase` by 180 deg in its place"
-        raise table.error("amplitude", problem)
-    phase = _listed(table, "phase", "angle", orders, 0.0)
-    with table.building():
-        sizes = _each(amplitude, count, which)
-        return Harmonics(orders, sizes, np.broadcast_to(phase, sizes.shape))
-
-
-def _spectrum(table: Table, count, which, given) -> Harmonics:
-    low, high = (
-        _order(table, key, table.raw(key), count) for key in ("lowest", "highest")
-    )
-    if high < low:
-        raise table.error("highest", f"{high} is below `lowest`, {low}")
-    amplitude = table.quantity("amplitude", "length")
-    if amplitude < 0.0:
-        raise table.error("amplitude", f"{amplitude:g} m is negative")
-    slope = table.number("slope")
-    # Rows draw on their own; the first as a single one.
-    seed = table.integer("seed", 0, least=0)
-    draws = np.random.default_rng([seed, given.row] if given.row else seed)
-    shape = (high - low + 1,) if count is None else (count, high - low + 1)
-    phase = draws.uniform(0.0, 2.0 * np.pi, shape)
-    with table.building():
-        sizes = _each(np.full(1, amplitude), count, which)
-        return Harmonics.spectrum(low, high, sizes, slope, phase)
-
-
-def _profile(table: Table, count, which, given) -> Harmonics:
-    if ("points" in table) == ("file" in table):
-        raise table.error("points", "give either heights here or a `file` of them")
-    if "points" in table:
-        heights = np.array(table.quantities("points", "length"))
-    else:
-        found = read_list(table, given.folder, {"height": "length"}, "heights")
-        if list(found) != ["height"]:
-            problem = 'must have one column, headed such as "height [um]"'
-            raise table.error("file", problem)
-        heights = found["height"]
-        table.fill("file", None)  # in the echo its heights
-        table.fill("points", [written(height, "m") for height in heights])
-    most = MOST_ORDER["raceway" if count is None else "element"]
-    shown = min(most, max(1, (len(heights) - 1) // 2))
-    highest = _order(table, "highest", table.raw("highest", shown), count)
-    with table.building():
-        waves = Harmonics.measured(heights, highest)
-        sizes = _each(waves.amplitude, count, which)
-        return Harmonics(waves.order, sizes, np.broadcast_to(waves.phase, sizes.shape))
-
-
-def _spall(table: Table, count, which, given) -> Spall:
-    angle = table.quantity("angle", "angle", 0.0)
-    length, depth = (table.quantity(key, "length") for key in ("length", "depth"))
-    for key, value in (("length", length), ("depth", depth)):
-        if not value > 0.0:
-            raise table.error(key, f"{value:g} m is not allowed; above 0 m")
-    if count is not None and which is None:
-        raise table.error("element", "is missing; number of the element with the spall")
-    every = np.zeros(() if count is None else (count,))
-    with table.building():
-        return Spall(every + angle, every + length, _each(depth, count, which))

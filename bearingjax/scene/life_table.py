@@ -10,8 +10,7 @@ from ..statics.life import FRAMES, LifeConditions
 from ..statics.life_factor import CLEANLINESS
 from ..statics.rating import dynamic_capacity, rated_axially, static_capacity
 from ..statics.reference_life import LEAST_LAMINAE
-from .lubricant_table import read_lubricant
-from .oil_table import OWN, Oil
+from .oil_table import Oil, read_oil
 from .schema import Keys, read_keys, scene_key
 from .table import Table
 
@@ -269,10 +268,8 @@ def _viscosity(top: Table, keys: LifeKeys) -> float:
     if "lubricant" not in top:
         problem = "is missing, and so is [lubricant]; `contamination` needs an oil"
         raise keys.table.error("viscosity", problem)
-    lubricant = top.table("lubricant")
-    lubricant.skip("traction", *OWN)
-    oil, temperature, _ = read_lubricant(lubricant)
-    return float(oil.kinematic_viscosity(temperature))
+    oil, _ = read_oil(top.table("lubricant"))
+    return float(oil.lubricant.kinematic_viscosity(oil.temperature))
 
 
 def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[str, ...]:

@@ -1,5 +1,9 @@
 """The [lubricant] table of a scene: an oil, its temperature, its law of traction."""
 
+import dataclasses
+from collections.abc import Mapping
+from typing import ClassVar
+
 import numpy as np
 
 from ..lubrication import (
@@ -18,10 +22,10 @@ from ..lubrication import (
     Roelands,
     SlipCurve,
     Walther,
-    iso_vg,
 )
-from ..numerics.units import unit_of
-from .table import Table
+from ..numerics.units import CELSIUS, unit_of
+from ..statics.friction import SUPPLIES
+from .schema import Keys, scene_key
 
 LAWS = {"free_volume": FreeVolume, "barus": Barus, "roelands": Roelands}
 """Laws of viscosity over pressure; the first has the temperature in it."""
@@ -38,126 +42,159 @@ DENSITY = 900.0
 """Of an oil at 15 °C whose density is not given [kg/m³]."""
 
 _AMBIENT = ("grade", "cold_viscosity", "reference_viscosity")
-_COLDEST, _HOTTEST = -60.0, 250.0
-_ZERO = 273.15
+_OF_PRESSURE = ("barus", "roelands")
+"""Laws of the pressure alone, beside which the viscosity is given."""
 
 
-def read_lubricant(table: Table) -> tuple[Lubricant, float, tuple[str, ...]]:
-    """An oil, its temperature [K], and what was assumed of it.
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class LubricantKeys(Keys):
+    """[lubricant]: an oil by its name, or by a law of its viscosity over pressure."""
 
-    Args:
-        table: `[lubricant]`.
-
-    Raises:
-        SceneError: For what is missing, unknown or not allowed.
-    """
-    temperature = table.quantity("temperature", "temperature")
-    celsius = temperature - _ZERO
-    if not _COLDEST <= celsius <= _HOTTEST:
-        allowed = f"from {_COLDEST:g} to {_HOTTEST:g} °C"
-        raise table.error("temperature", f"{celsius:.5g} °C is not allowed; {allowed}")
-    if "law" in table:
-        if "name" in table:
-            raise table.error("law", "give either `name` or this, not both")
-        oil, odd = _by_law(table, temperature)
-        return oil, temperature, odd
-    if "name" not in table:
-        names = ", ".join(OILS)
-        problem = f"is missing; give one of {names}, or a `law` with its numbers"
-        raise table.error("name", problem)
-    return _named(table), temperature, ()
-
-
-def read_traction(table: Table) -> AbstractTraction:
-    """Law of traction at the key `traction`, by its name or with its numbers.
-
-    Args:
-        table: `[lubricant]`.
-    """
-    given = table.table_or_word("traction", tuple(TRACTIONS))
-    if given is None:
-        table.fill("traction", "newtonian")
-        return Newtonian()
-    if isinstance(given, Table):
-        kind, own = TRACTIONS[given.choice("type", tuple(TRACTIONS))], given
-    else:
-        kind, own = TRACTIONS[given], table.empty("traction")
-    values = own.fields(kind)
-    with own.building():
-        return kind(**values)
-
-
-def _named(table: Table) -> Lubricant:
-    name = table.choice("name", tuple(OILS))
-    if not name.startswith("ISO VG") or "viscosity_index" not in table:
-        return OILS[name]()
-    index = table.number("viscosity_index")
-    with table.building():
-        return iso_vg(float(name.split()[-1]), index)
-
-
-def _by_law(table: Table, temperature: float) -> tuple[Lubricant, tuple[str, ...]]:
-    law = LAWS[table.choice("law", tuple(LAWS))]
-    if law is FreeVolume:
-        values = table.fields(FreeVolume)
-        with table.building():
-            ambient = pressure = FreeVolume(**values)
-    else:
-        coefficient = table.quantity("coefficient", "pressure coefficient")
-        ambient = _ambient(table, temperature)
-        with table.building():
-            pressure = law(coefficient)
-    of_films = table.quantity("film_coefficient", "pressure coefficient", None)
-    density, odd = _density(table)
-    with table.building():
-        return Lubricant(ambient, pressure, density, of_films), odd
-
-
-def _ambient(table: Table, temperature: float) -> AbstractAmbient:
-    """Viscosity at atmospheric pressure, by one of three ways."""
-    given = [key for key in _AMBIENT if key in table]
-    if len(given) != 1:
-        ways = ", ".join(f"`{key}`" for key in _AMBIENT)
-        problem = "is missing" if not given else f"stands beside `{given[0]}`"
-        key = "reference_viscosity" if not given else given[1]
-        raise table.error(key, f"{problem}; give one of {ways}")
-    if given == ["grade"]:
-        grade, index = table.number("grade"), table.number("viscosity_index", 95.0)
-        with table.building():
-            return Walther.from_grade(grade, index)
-    if given == ["cold_viscosity"]:
-        values = table.fields(Walther)
-        with table.building():
-            return Walther(**values)
-    # Without factors the viscosity is that of the one temperature that there is.
-    values = {"reference_temperature": temperature, "first": 0.0, "second": 0.0}
-    for name in ("reference_viscosity", *values):
-        if name in table:
-            values[name] = table.real(name, unit_of(Exponential, name))
-    with table.building():
-        return Exponential(**values)
-
-
-def _density(table: Table) -> tuple[Density, tuple[str, ...]]:
-    keys = {
-        "value": "density",
-        "slope": "density_slope",
-        "reference_temperature": "density_temperature",
+    numbers: ClassVar[Mapping[str, type]] = {
+        "`law` = free_volume": FreeVolume,
+        "`cold_viscosity`": Walther,
+        "`reference_viscosity`": Exponential,
     }
-    values = {}
-    for name, key in keys.items():
-        value = table.real(key, unit_of(Density, name), None)
-        if value is not None:
-            values[name] = value
-    odd = ()
-    if "value" not in values:
-        if values:
+
+    temperature: float = scene_key(
+        "temperature of the oil", "temperature", least=-60, most=250
+    )
+    name: str | None = scene_key("one of these oils", choices=tuple(OILS))
+    law: str | None = scene_key(
+        "law of viscosity over pressure, in place of a `name`",
+        choices=tuple(LAWS),
+        without={"name": ""},
+    )
+    coefficient: float | None = scene_key(
+        "pressure-viscosity coefficient of the law, required",
+        "pressure coefficient",
+        only={"law": _OF_PRESSURE},
+    )
+    grade: float | None = scene_key(
+        "ISO VG, the viscosity at 40 °C in mm²/s", only={"law": _OF_PRESSURE}
+    )
+    viscosity_index: float | None = scene_key(
+        "viscosity index of a `grade` or an ISO VG", otherwise="95"
+    )
+    reference_viscosity: float | None = scene_key(
+        "viscosity at `reference_temperature`", "viscosity", needs=("law",)
+    )
+    reference_temperature: float | None = scene_key(
+        "temperature of the reference",
+        "temperature",
+        needs=("reference_viscosity",),
+        otherwise="`temperature`; `free_volume` needs it",
+    )
+    film_coefficient: float | None = scene_key(
+        "pressure-viscosity coefficient for films",
+        "pressure coefficient",
+        needs=("law",),
+        otherwise="α* of the law, 1/∫ μ(0)/μ(p) dp, not its slope at zero pressure",
+    )
+    density: float | None = scene_key(
+        "density at `density_temperature`",
+        "density",
+        needs=("law",),
+        otherwise=f"{DENSITY:g} kg/m³, and it is said",
+    )
+    density_slope: float | None = scene_key(
+        "loss of density per kelvin",
+        "density slope",
+        needs=("law",),
+        otherwise=f"{Density.slope:g} kg/(m³ K)",
+    )
+    density_temperature: float | None = scene_key(
+        "temperature of the density", "temperature", needs=("law",), otherwise="15 °C"
+    )
+    traction: AbstractTraction = scene_key(
+        "law of traction, of what skids", of=TRACTIONS, default="newtonian"
+    )
+    supply: str = scene_key(
+        "how the oil is supplied, for the friction torque of `solve`",
+        choices=SUPPLIES,
+        default="oil_bath",
+    )
+    roughness: float | None = scene_key(
+        "root mean square of both surfaces together, for the films of `solve`",
+        "length",
+        above=0,
+        below=1e-4,
+    )
+
+    @property
+    def called(self) -> str:
+        """Name of the oil, or of its law."""
+        return str(self.name or self.law)
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """What was assumed of the oil."""
+        if self.law is None or self.density is not None:
+            return ()
+        density = f"{DENSITY:g} kg/m³ is taken at 15 °C"
+        return (f"the oil's density is not given: {density}",)
+
+    def check(self) -> None:
+        if self.law is None and self.name is None:
+            names = ", ".join(OILS)
+            problem = f"is missing; give one of {names}, or a `law` with its numbers"
+            raise self.table.error("name", problem)
+        graded = self.grade is not None or self.called.startswith("ISO VG")
+        if self.viscosity_index is not None and not graded:
+            problem = "goes with a `grade`, or with the `name` of an ISO VG"
+            raise self.table.error("viscosity_index", problem)
+        more = self.density_slope, self.density_temperature
+        if self.density is None and more != (None, None):
             problem = "is missing; the other numbers of the density go with it"
-            raise table.error("density", problem)
-        values["value"] = DENSITY
-        odd = (f"the oil's density is not given: {DENSITY:g} kg/m³ is taken at 15 °C",)
-    with table.building():
-        return Density(**values), odd
+            raise self.table.error("density", problem)
+
+    def oil(self) -> Lubricant:
+        """The oil."""
+        if self.name is not None:
+            index = self.viscosity_index
+            given = {} if index is None else {"viscosity_index": index}
+            with self.table.building():
+                return OILS[self.name](**given)
+        if self.law == "free_volume":
+            ambient = pressure = self.built(FreeVolume)
+        else:
+            ambient = self._ambient()
+            # Raises that it is missing, if it is.
+            coefficient = self.table.quantity("coefficient", "pressure coefficient")
+            with self.table.building():
+                pressure = LAWS[self.law or ""](coefficient)
+        density = {
+            "value": DENSITY if self.density is None else self.density,
+            "slope": self.density_slope,
+            "reference_temperature": self.density_temperature,
+        }
+        given = {name: value for name, value in density.items() if value is not None}
+        with self.table.building():
+            return Lubricant(ambient, pressure, Density(**given), self.film_coefficient)
+
+    def _ambient(self) -> AbstractAmbient:
+        """Viscosity at atmospheric pressure, by one of three ways."""
+        table = self.table
+        given = [key for key in _AMBIENT if key in table]
+        if len(given) != 1:
+            ways = ", ".join(f"`{key}`" for key in _AMBIENT)
+            problem = "is missing" if not given else f"stands beside `{given[0]}`"
+            key = "reference_viscosity" if not given else given[1]
+            raise table.error(key, f"{problem}; give one of {ways}")
+        if self.grade is not None:
+            index = 95.0 if self.viscosity_index is None else self.viscosity_index
+            self.fill(viscosity_index=index)
+            with table.building():
+                return Walther.from_grade(self.grade, index)
+        if given == ["cold_viscosity"]:
+            return self.built(Walther)
+        # Without factors the viscosity is that of the one temperature that there is.
+        values = dict(reference_temperature=self.temperature, first=0.0, second=0.0)
+        for name in ("reference_viscosity", *values):
+            if name in table:
+                values[name] = table.real(name, unit_of(Exponential, name))
+        with table.building():
+            return Exponential(**values)
 
 
 def described(lubricant: Lubricant, temperature: float) -> str:
@@ -176,6 +213,6 @@ def described(lubricant: Lubricant, temperature: float) -> str:
         )
     )
     return (
-        f"{temperature - _ZERO:.4g} °C: {1e3 * viscosity:.4g} mPa s,"
+        f"{temperature - CELSIUS:.4g} °C: {1e3 * viscosity:.4g} mPa s,"
         f" {1e9 * coefficient:.4g} 1/GPa, {density:.4g} kg/m³"
     )

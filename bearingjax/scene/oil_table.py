@@ -12,15 +12,13 @@ import numpy as np
 from ..lubrication import Lubricant
 from ..numerics.types import as_array
 from ..statics.contact_films import Films, films
-from ..statics.friction import SUPPLIES, Friction, friction_torque
+from ..statics.friction import Friction, friction_torque
 from ..statics.friction_skf import SkfFriction, skf_friction_torque, skf_series
 from ..statics.solution import Solution
 from .catalogue_entry import FromCatalogue
-from .lubricant_table import described, read_lubricant, read_traction
+from .lubricant_table import LubricantKeys, described
+from .schema import read_keys
 from .table import Table
-
-OWN = ("supply", "roughness")
-"""Keys that only a solve has a use for."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,15 +63,9 @@ def read_oil(table: Table) -> tuple[Oil, tuple[str, ...]]:
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    lubricant, temperature, odd = read_lubricant(table)
-    read_traction(table)  # of a bearing that skids
-    supply = table.choice("supply", SUPPLIES, "oil_bath")
-    roughness = table.quantity("roughness", "length", None)
-    if roughness is not None and not 0.0 < roughness < 1e-4:
-        problem = f"{roughness:g} m is not allowed; above 0 and below 0.1 mm"
-        raise table.error("roughness", problem)
-    name = str(table.raw("name", None) or table.raw("law", None))
-    return Oil(name, lubricant, temperature, supply, roughness), odd
+    keys = read_keys(LubricantKeys, table)
+    known = keys.temperature, keys.supply, keys.roughness
+    return Oil(keys.called, keys.oil(), *known), keys.assumed
 
 
 def oil_facts(

@@ -10,7 +10,7 @@ import functools
 import types
 import typing
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple, TypeVar, get_args, get_origin
+from typing import Any, ClassVar, NamedTuple, TypeVar, get_args, get_origin
 
 from ..numerics.units import CELSIUS
 from .quantity import KINDS, to_si
@@ -32,7 +32,8 @@ class Key:
         choices: Words that may stand there.
         words: The choices as an error tells them, where they are too many to list.
         of: Classes that may stand there, by the word or the `type` that names them.
-        hint: What an error about the range, or about what is no table, adds.
+        hint: What an error about the range, missing `needs`, or what is no table, adds.
+        refusal: What an error about the range says, in place of "is not allowed; ...".
         needs: Keys of which one must stand beside this one.
         without: Keys that must not stand beside this one, with what an error says;
             empty for "give either ... or this, not both".
@@ -55,6 +56,7 @@ class Key:
     words: str = ""
     of: Mapping[str, type] = dataclasses.field(default_factory=dict)
     hint: str = ""
+    refusal: str = ""
     needs: Sequence[str] = ()
     without: Mapping[str, str] = dataclasses.field(default_factory=dict)
     only: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)
@@ -97,6 +99,13 @@ class Key:
         words = {"least": "at least", "most": "at most"}
         told = [f"{words.get(name, name)} {value}" for name, value in ends.items()]
         return " and ".join(told) + (unit if told else "")
+
+    @property
+    def goes_with(self) -> str:
+        """What must stand beside it, in words; empty if nothing."""
+        needs = " or ".join(f"`{other}`" for other in self.needs)
+        words = (f"`{other}` = {' or '.join(ws)}" for other, ws in self.only.items())
+        return " and ".join(filter(None, (needs, *words)))
 
     def holds(self, value: float) -> bool:
         """Whether a number is in the range.
@@ -158,6 +167,10 @@ class Keys:
         table: The table that was read, for errors and the echo.
     """
 
+    numbers: ClassVar[Mapping[str, type]] = {}
+    """Classes whose numbers may stand in the table under their own names, by the key
+    with which they do; read by `built`."""
+
     table: Table = dataclasses.field(repr=False, compare=False)
 
     @property
@@ -167,6 +180,16 @@ class Keys:
             f.attribute: getattr(self, f.attribute) for f in fields_of(type(self))
         }
         return {name: value for name, value in values.items() if value is not None}
+
+    def built(self, kind: type[Any]) -> Any:
+        """An instance of a class whose numbers stand in the table.
+
+        Args:
+            kind: One of `numbers`.
+        """
+        values = self.table.fields(kind)
+        with self.table.building():
+            return kind(**values)
 
     def check(self) -> None:
         """Raise SceneError where keys do not go together; nothing by default."""
@@ -315,7 +338,8 @@ def _count(table: Table, name: str, one: Key, *default: Any) -> Any:
     least = 1 if one.least is None else int(one.least)
     value = table.integer(name, *default, least=least)
     if name in table and one.most is not None and value > one.most:
-        raise table.error(name, f"{value} is too many; at most {one.most:g}")
+        problem = one.refusal or f"is too many; at most {one.most:g}"
+        raise table.error(name, f"{value} {problem}")
     return value
 
 
@@ -327,8 +351,8 @@ def _in_range(table: Table, name: str, value: Any, one: Key) -> Any:
         if not one.holds(number):
             unit = f" {one.unit}" if one.unit else ""
             hint = f" ({one.hint})" if one.hint else ""
-            problem = f"{number:.6g}{unit} is not allowed; {one.allowed}{hint}"
-            raise table.error(name, problem)
+            problem = one.refusal or f"is not allowed; {one.allowed}{hint}"
+            raise table.error(name, f"{number:.6g}{unit} {problem}")
     return value
 
 
@@ -340,12 +364,16 @@ def instance(table: Table, name: str, kinds: Mapping[str, type], *default: Any) 
         name: Its key.
         kinds: The classes, by their word; a table names one by its `type`, which may be
             left out where there is only one.
-        default: If absent; without a default the key is required.
+        default: If absent, an instance or its word; without a default the key is
+            required.
 
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
     given = table.table_or_word(name, tuple(kinds))
+    if given is None and default and isinstance(default[0], str):
+        given = default[0]
+        table.fill(name, given)
     if given is None:
         if not default:
             raise table.error(name, f"is missing; it must be one of {', '.join(kinds)}")
@@ -376,9 +404,9 @@ def _check_neighbours(table: Table, field: Field) -> None:
             text = problem or f"give either `{other}` or this, not both"
             raise table.error(field.name, text)
     if alone:
-        told = " or ".join(f"`{other}`" for other in needs)
         missing = ", which is missing" if len(needs) == 1 else ""
-        raise table.error(field.name, f"goes with {told}{missing}")
+        missing = f"; {field.key.hint}" if field.key.hint else missing
+        raise table.error(field.name, f"goes with {field.key.goes_with}{missing}")
 
 
 def _check_use(found: Keys, field: Field) -> None:
@@ -388,6 +416,5 @@ def _check_use(found: Keys, field: Field) -> None:
         if getattr(found, other) in words:
             continue
         if field.name in found.table:
-            told = " or ".join(words)
-            raise found.table.error(field.name, f"goes with `{other}` = {told}")
+            raise found.table.error(field.name, f"goes with {field.key.goes_with}")
         found.table.fill(field.name, None)

@@ -28,11 +28,13 @@ def table_schema(kind: type[Keys]) -> dict[str, Any]:
         kind: Class that describes it.
     """
     known = fields_of(kind)
-    return object_schema(
-        {one.name: field_schema(one) for one in known},
-        [one.name for one in known if one.required],
-        _first_line(kind),
-    )
+    properties = {one.name: field_schema(one) for one in known}
+    for key, other in kind.numbers.items():
+        for name, one in class_schema(other)["properties"].items():
+            text = f"{one['description']}; with {key}" if key else one["description"]
+            properties.setdefault(name, {**one, "description": text})
+    required = [one.name for one in known if one.required]
+    return object_schema(properties, required, _first_line(kind))
 
 
 def object_schema(
@@ -59,7 +61,8 @@ def field_schema(field: Field) -> dict[str, Any]:
         field: From `fields_of`.
     """
     key, found = field.key, _bare_schema(field)
-    text = key.about + (f"; {key.allowed}" if key.allowed else "")
+    goes_with = key.goes_with and f"with {key.goes_with}"
+    text = "; ".join(filter(None, (key.about, key.allowed, goes_with)))
     found = {**found, "description": text}
     if isinstance(field.default, bool | int | str):
         found["default"] = field.default
@@ -162,6 +165,9 @@ def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
         properties[field.name] = {**number, "description": about}
         if none:
             properties[field.name]["x-otherwise"] = none
+        if isinstance(field.default, int | float):
+            shown = f"{field.default:g} {unit}" if unit else field.default
+            properties[field.name]["default"] = shown
         if field.default is dataclasses.MISSING:
             required.append(field.name)
     found = object_schema(properties | more, required, _first_line(kind))
@@ -185,7 +191,7 @@ def attribute_texts(kind: type) -> dict[str, str]:
     for base in reversed(kind.__mro__):
         names: list[str] = []
         for line in inspect.cleandoc(base.__dict__.get("__doc__") or "").splitlines():
-            match = re.match(r" {4}([a-z_]\w*(?:, \w+)*): (.*)", line)
+            match = re.match(r" {4}([A-Za-z_]\w*(?:, \w+)*): (.*)", line)
             if match:
                 names = match[1].split(", ")
                 found |= dict.fromkeys(names, match[2])
@@ -233,9 +239,9 @@ def _objects(schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 def _row(name: str, schema: Mapping[str, Any], must: bool) -> str:
     default = schema.get("x-otherwise", schema.get("default", ""))
-    shown = "required" if must else str(default).lower() if default is not None else ""
-    about = schema.get("description", "")
-    about = re.sub(r"^\[+[\w.]+\]+: ", "", about)
+    default = str(default).lower() if isinstance(default, bool) else default
+    shown = "required" if must else str(default)
+    about = re.sub(r"^\[+[\w.]+\]+: ", "", schema.get("description", ""))
     cells = f"`{name}`", _holds(schema), shown, about
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
 

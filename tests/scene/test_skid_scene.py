@@ -66,7 +66,15 @@ WRONG = {
     ),
     "index of an oil that has its own": (
         ["lubricant.viscosity_index=95"],
-        "`lubricant.viscosity_index`: unknown key; known in [lubricant]: ",
+        "`lubricant.viscosity_index`: goes with a `grade`, or with the `name` of",
+    ),
+    "density of an oil that has its own": (
+        ["lubricant.density=900 kg/m^3"],
+        "`lubricant.density`: goes with `law`, which is missing",
+    ),
+    "temperature of no viscosity": (
+        [ROELANDS + ", grade=46, reference_temperature='40 °C'}"],
+        "`lubricant.reference_temperature`: goes with `reference_viscosity`, which is",
     ),
     "thin oil of a low index": (
         ["lubricant.name=ISO VG 10", "lubricant.viscosity_index=500"],
