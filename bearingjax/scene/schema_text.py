@@ -233,7 +233,8 @@ def _objects(schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 def _row(name: str, schema: Mapping[str, Any], must: bool) -> str:
     default = schema.get("x-otherwise", schema.get("default", ""))
-    shown = "required" if must else str(default).lower() if default is not None else ""
+    word = str(default).lower() if isinstance(default, bool) else str(default)
+    shown = "required" if must else word
     about = schema.get("description", "")
     about = re.sub(r"^\[+[\w.]+\]+: ", "", about)
     cells = f"`{name}`", _holds(schema), shown, about
