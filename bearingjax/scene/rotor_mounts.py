@@ -1,5 +1,6 @@
 """The [[rotor.bearings]] and [bearings.NAME] tables of a scene: what holds a shaft."""
 
+import dataclasses
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,35 +22,165 @@ from .quantity import SceneError
 from .read import read_element, scene_of
 from .rotor_scene import Mount
 from .scene_file import bearing_place, find_scene, parse_bearing, shipped_scenes
-from .stations import read_station
+from .schema import Keys, scene_key
+from .schema_text import number_schema, object_schema
 from .table import Table, not_among
 
-LAWS = {
-    "fixed_angle": FixedAngle,
-    "moving_angle": MovingAngle,
-    "cubic": CubicExpansion,
-}
+LAWS = {"fixed_angle": FixedAngle, "moving_angle": MovingAngle, "cubic": CubicExpansion}
 _SAME = 1e-3
 """Difference of diameters, over the bore, from which a shaft is another one [1]."""
 
+_OF_BEARING: Any = {
+    "needs": ("bearing",),
+    "without": {"stiffness": "goes with a `bearing`, not with `stiffness`"},
+}
+
+
+def _direction(about: str, kind: str) -> Any:
+    return scene_key(about, kind, default=0.0, least=0)
+
+
+def _side(about: str, kind: str, other: str) -> Any:
+    without = {"radial": "give either `radial` or `x` and `y`"}
+    return scene_key(about, kind, least=0, needs=(other,), without=without)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SpringKeys(Keys):
+    """[rotor.bearings.stiffness]: springs in place of a bearing."""
+
+    radial: float = _direction("across the shaft", "stiffness")
+    x: float | None = _side("along x, where y differs", "stiffness", "y")
+    y: float | None = _side("along y", "stiffness", "x")
+    axial: float = _direction("along the shaft", "stiffness")
+    tilt: float = _direction("against tilting about x and y", "tilting stiffness")
+
+    def check(self) -> None:
+        if self.x is not None:
+            self.table.fill("radial", None)
+
+    @property
+    def diagonal(self) -> tuple[float, ...]:
+        """Of ux, uy, uz, gx, gy (5,) [N/m, N m]; of dampers [N s/m, N m s]."""
+        across = (self.radial if one is None else one for one in (self.x, self.y))
+        return (*across, self.axial, self.tilt, self.tilt)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class DamperKeys(SpringKeys):
+    """[rotor.bearings.damping]: dampers beside the bearing or the springs."""
+
+    radial: float = _direction("across the shaft", "damping")
+    x: float | None = _side("along x, where y differs", "damping", "y")
+    y: float | None = _side("along y", "damping", "x")
+    axial: float = _direction("along the shaft", "damping")
+    tilt: float = _direction("against tilting about x and y", "tilting damping")
+
+
+def _of_axes(about: str, kind: str, **default: float) -> Any:
+    """Field of one number for all of x, y and z, or a table with one for each."""
+    usual = tuple(default.values())
+
+    def read(table: Table, key: str) -> list[float]:
+        apart = isinstance(table.raw(key, None), Mapping)
+        place, names = (table.table(key), "xyz") if apart else (table, 3 * [key])
+        found = []
+        for name in names:
+            found.append(place.quantity(name, kind, *(() if apart else usual)))
+            if found[-1] < 0.0:
+                raise place.error(name, f"{found[-1]:g} is not allowed; at least 0")
+        return found
+
+    axes = object_schema({axis: number_schema(kind) for axis in "xyz"}, list("xyz"))
+    json = {"anyOf": [number_schema(kind), axes]}
+    return scene_key(about, kind, **default, least=0, reader=read, json=json)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class HousingKeys(Keys):
+    """[rotor.bearings.housing]: a mass on springs, between the bearing and ground."""
+
+    mass: float = scene_key("mass of the housing", "mass", above=0)
+    stiffness: list[float] = _of_axes(
+        "springs against ground, along each axis", "stiffness"
+    )
+    damping: list[float] = _of_axes(
+        "dampers against ground, along each axis", "damping", default=0.0
+    )
+
+    @property
+    def housing(self) -> Housing:
+        """The housing."""
+        with self.table.building():
+            return Housing(**self.given)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class MountKeys(Keys):
+    """[[rotor.bearings]]: what holds the shaft, a bearing or springs each."""
+
+    station: int = scene_key("station of the shaft", least=0)
+    bearing: str | None = scene_key(
+        "NAME of [bearings.NAME], or name or path of the scene of a bearing"
+    )
+    stiffness: SpringKeys | None = scene_key(
+        "springs in place of a bearing", without={"bearing": ""}
+    )
+    preload: float | None = scene_key(
+        "axial force that the bearing bears before the shaft gives way",
+        "force",
+        above=0,
+        needs=("bearing",),
+        without={**_OF_BEARING["without"], "offset": ""},
+    )
+    offset: float | None = scene_key(
+        "axial displacement of the inner ring", "length", otherwise="0 m", **_OF_BEARING
+    )
+    law: str | None = scene_key(
+        "published law of a preloaded bearing in its place",
+        choices=tuple(LAWS),
+        otherwise="the bearing itself",
+        **_OF_BEARING,
+    )
+    turned: bool = scene_key(
+        "whether the bearing faces the other way", default=False, **_OF_BEARING
+    )
+    inertia: bool = scene_key(
+        "whether its rolling elements feel the speed", default=False, **_OF_BEARING
+    )
+    damping: DamperKeys = scene_key("dampers beside it", default=DamperKeys)
+    housing: HousingKeys | None = scene_key(
+        "mass on springs on which it stands", otherwise="ground"
+    )
+
+    def check(self) -> None:
+        if self.stiffness is not None and not any(self.stiffness.diagonal):
+            springs = self.stiffness.table
+            springs.finish()
+            raise springs.error("radial", "is missing, and so are `axial` and `tilt`")
+        if self.bearing is None and self.stiffness is None:
+            problem = "is missing, and so is `stiffness`; give one of them"
+            raise self.table.error("bearing", problem)
+
 
 class _Bearing(NamedTuple):
-    """A bearing by its name, its seats, and what its designation stands for."""
+    """A bearing (`None`: springs) by its name, its seats, and what its designation
+    stands for."""
 
     name: str
-    installed: Installed
-    fits: Fits | None
-    catalogue: FromCatalogue | None
+    installed: Installed | None
+    fits: Fits | None = None
+    catalogue: FromCatalogue | None = None
 
 
 def read_mounts(
-    top: Table, rotor: Table, shaft: Shaft, speed: float, path: Path
+    top: Table, holds: tuple[MountKeys, ...], shaft: Shaft, speed: float, path: Path
 ) -> tuple[Mount, ...]:
     """What holds the shaft of a rotor.
 
     Args:
         top: The whole scene.
-        rotor: Its [rotor].
+        holds: Its [[rotor.bearings]].
         shaft: The shaft.
         speed: Of the rotor [rad/s], at which inner rings turn on their seats.
         path: Of the scene: others are named from there.
@@ -63,23 +194,13 @@ def read_mounts(
             raise top.error(key, f"{problem} [bearings.NAME.{key}]")
     tables = top.table("bearings")
     named = {name: _own(tables.table(name), name, speed) for name in tables.keys()}
-    mounts, used = [], set()
-    for table in rotor.tables("bearings"):
-        station = read_station(table, shaft)
-        if ("bearing" in table) == ("stiffness" in table):
-            both = "bearing" in table
-            problem = "give either `bearing` or this" if both else "is missing, and so"
-            end = "" if both else " is `stiffness`; give one of them"
-            raise table.error("stiffness" if both else "bearing", problem + end)
-        if "stiffness" in table:
-            mounts.append(_springs(table, station))
-            continue
-        bearing = _bearing(table, tables, named, speed, path)
-        used.add(bearing.name)
-        _check_seat(bearing, shaft, station)
-        mounts.append(_mount(table, station, bearing))
+    mounts = []
+    for keys in holds:
+        bearing = _bearing(keys, tables, named, speed, path)
+        _check_seat(bearing, shaft, keys.station)
+        mounts.append(_mount(keys, bearing))
     for name in named:
-        if name not in used:
+        if name not in [keys.bearing for keys in holds]:
             raise tables.error(name, "is in no [[rotor.bearings]]; leave it out")
     return tuple(mounts)
 
@@ -133,11 +254,11 @@ def _check_seat(bearing: _Bearing, shaft: Shaft, station: int) -> None:
 
 
 def _bearing(
-    table: Table, tables: Table, named: dict[str, _Bearing], speed: float, path: Path
+    keys: MountKeys, tables: Table, named: dict[str, _Bearing], speed: float, path: Path
 ) -> _Bearing:
-    name = table.word("bearing")
-    if table.raw("bearing") != name or name is None:
-        raise table.error("bearing", f"{table.raw('bearing')!r} is not a name")
+    table, name = keys.table, keys.bearing
+    if name is None:
+        return _Bearing("springs", None)
     if name in named:
         return named[name]
     place = bearing_place(name, path)
@@ -168,110 +289,39 @@ def _echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
     return {**inputs["bearing"], **beside, **chosen}
 
 
-def _mount(table: Table, station: int, bearing: _Bearing) -> Mount:
-    design = bearing.installed.drawing.bearing
-    preload = table.quantity("preload", "force", None)
-    offset = table.quantity("offset", "length", None)
-    if preload is not None and offset is not None:
-        raise table.error("preload", "give either `offset` or this, not both")
-    if preload is not None:
-        if not preload > 0.0:
-            raise table.error("preload", f"{preload:g} N is not allowed; above 0 N")
-        if "uz" not in restrained_freedoms(design):
-            problem = "is axial, and this bearing holds no axial load; leave it out"
-            raise table.error("preload", f"{problem}, or give it a negative clearance")
-    law = table.choice("law", tuple(LAWS), None)
-    inertia = table.flag("inertia", False)
-    if law is not None:
-        if not isinstance(design, AbstractBallBearing) or len(design.grooves) != 2:
-            problem = "is for one row of balls with one groove in each ring"
-            raise table.error("law", problem)
-        if preload is None and offset is None:
-            problem = "is missing; the law is that of a preloaded bearing"
-            raise table.error("preload", problem)
-        if inertia:
-            raise table.error("inertia", "is for the true bearing, not for a `law`")
+def _mount(keys: MountKeys, bearing: _Bearing) -> Mount:
+    if bearing.installed is not None:
+        _check_bearing(keys, bearing.installed.drawing.bearing)
+    springs, housing = keys.stiffness, keys.housing
     return Mount(
-        station=station,
+        station=keys.station,
         name=bearing.name,
         installed=bearing.installed,
         fits=bearing.fits,
-        preload=preload,
-        offset=0.0 if offset is None else offset,
-        law=law,
-        turned=table.flag("turned", False),
-        inertia=inertia,
-        stiffness=(),
-        damping=_dampers(table),
-        housing=_housing(table),
+        preload=keys.preload,
+        offset=keys.offset or 0.0,
+        law=keys.law,
+        turned=keys.turned,
+        inertia=keys.inertia,
+        stiffness=() if springs is None else springs.diagonal,
+        damping=keys.damping.diagonal,
+        housing=None if housing is None else housing.housing,
     )
 
 
-def _springs(table: Table, station: int) -> Mount:
-    stiffness = table.table("stiffness")
-    values = _isotropic(stiffness, "stiffness", "tilting stiffness")
-    if not any(values):
-        stiffness.finish()
-        raise stiffness.error("radial", "is missing, and so are `axial` and `tilt`")
-    for key in ("preload", "offset", "law", "turned", "inertia"):
-        if key in table:
-            raise table.error(key, "goes with a `bearing`, not with `stiffness`")
-    return Mount(
-        station=station,
-        name="springs",
-        installed=None,
-        fits=None,
-        preload=None,
-        offset=0.0,
-        law=None,
-        turned=False,
-        inertia=False,
-        stiffness=values,
-        damping=_dampers(table),
-        housing=_housing(table),
-    )
-
-
-def _dampers(table: Table) -> tuple[float, ...]:
-    return _isotropic(table.table("damping"), "damping", "tilting damping")
-
-
-def _isotropic(table: Table, kind: str, tilting: str) -> tuple[float, ...]:
-    """One number for each of ux uy uz gx gy; x and y may differ."""
-    sides = [side for side in ("x", "y") if side in table]
-    if sides and "radial" in table:
-        raise table.error(sides[0], "give either `radial` or `x` and `y`")
-    if sides:
-        across = [_at_least_zero(table, side, kind, None) for side in ("x", "y")]
-    else:
-        across = 2 * [_at_least_zero(table, "radial", kind, 0.0)]
-    axial = _at_least_zero(table, "axial", kind, 0.0)
-    tilt = _at_least_zero(table, "tilt", tilting, 0.0)
-    return (*across, axial, tilt, tilt)
-
-
-def _at_least_zero(table: Table, key: str, kind: str, default: float | None) -> float:
-    given = () if default is None else (default,)
-    value = table.quantity(key, kind, *given)
-    if value < 0.0:
-        raise table.error(key, f"{value:g} is not allowed; at least 0")
-    return value
-
-
-def _housing(table: Table) -> Housing | None:
-    if "housing" not in table:
-        return None
-    housing = table.table("housing")
-    mass = housing.quantity("mass", "mass")
-    stiffness = _of_axes(housing, "stiffness", ())
-    damping = _of_axes(housing, "damping", (0.0,))
-    with housing.building():
-        return Housing(mass, stiffness, damping)
-
-
-def _of_axes(table: Table, key: str, default: tuple[float, ...]) -> tuple[float, ...]:
-    """One number for all of x, y and z, or a table with one for each."""
-    if isinstance(table.raw(key, None), Mapping):
-        axes = table.table(key)
-        return tuple(_at_least_zero(axes, axis, key, None) for axis in "xyz")
-    return 3 * (_at_least_zero(table, key, key, *(default or (None,))),)
+def _check_bearing(keys: MountKeys, design: Any) -> None:
+    """Raise SceneError for what this bearing cannot have."""
+    table = keys.table
+    if keys.preload is not None and "uz" not in restrained_freedoms(design):
+        problem = "is axial, and this bearing holds no axial load; leave it out"
+        raise table.error("preload", f"{problem}, or give it a negative clearance")
+    if keys.law is None:
+        return
+    if not isinstance(design, AbstractBallBearing) or len(design.grooves) != 2:
+        problem = "is for one row of balls with one groove in each ring"
+        raise table.error("law", problem)
+    if keys.preload is None and keys.offset is None:
+        problem = "is missing; the law is that of a preloaded bearing"
+        raise table.error("preload", problem)
+    if keys.inertia:
+        raise table.error("inertia", "is for the true bearing, not for a `law`")

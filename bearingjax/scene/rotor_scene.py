@@ -9,6 +9,7 @@ from ..element import BearingElement
 from ..rotor import AbstractDamping, AbstractPart, Housing, Shaft
 from ..statics.installed import Installed
 from .fit_table import Fits
+from .rotor_tasks import ResponseKeys, TransientKeys
 
 
 @dataclasses.dataclass(frozen=True)
@@ -51,61 +52,6 @@ class Mount:
 
 
 @dataclasses.dataclass(frozen=True)
-class ResponseTask:
-    """Periodic vibration over a range of frequencies.
-
-    Attributes:
-        begin, end: Frequencies of the excitation [rad/s].
-        method: "linear", "harmonic_balance" or "shooting".
-        harmonics, samples: Of the harmonic balance.
-        steps: Of the integration over a period.
-        points: Most points of the branch.
-        speed: Of the rotor [rad/s]; `None`: that of the excitation.
-        reduction: Craig-Bampton modes; `None`: all freedoms.
-        scale: Displacement that is called one [m], or `None` for a default.
-        station, coordinate: Shown in report and picture.
-    """
-
-    begin: float
-    end: float
-    method: str
-    harmonics: int
-    samples: int
-    steps: int
-    points: int
-    speed: float | None
-    reduction: int | None
-    scale: float | None
-    station: int
-    coordinate: str
-
-
-@dataclasses.dataclass(frozen=True)
-class TransientTask:
-    """Motion in time from rest in the static equilibrium.
-
-    Attributes:
-        duration: [s].
-        speed_to: Speed at the end of an even run-up [rad/s]; `None`: constant.
-        n_times: Number of times that are reported.
-        tolerance, max_steps: Of the integration.
-        reduction: Craig-Bampton modes; `None`: all freedoms.
-        passage: Whether the rolling elements pass, as they orbit with the cage.
-        station, coordinate: Shown in report and picture.
-    """
-
-    duration: float
-    speed_to: float | None
-    n_times: int
-    tolerance: float
-    max_steps: int
-    reduction: int | None
-    passage: bool
-    station: int
-    coordinate: str
-
-
-@dataclasses.dataclass(frozen=True)
 class RotorScene:
     """What the scene of a rotor asks for, in SI.
 
@@ -138,8 +84,8 @@ class RotorScene:
     loads: Any
     n_modes: int
     campbell: np.ndarray | None
-    response: ResponseTask | None
-    transient: TransientTask | None
+    response: ResponseKeys | None
+    transient: TransientKeys | None
     warnings: tuple[str, ...]
     inputs: dict[str, Any]
 

@@ -40,6 +40,7 @@ class Key:
         only: Words of other keys for which this one is of use.
         name: Key in the file, if a field cannot be called so.
         otherwise: What is taken where the default depends on something else.
+        follows: Works that out from the values of the other keys of the table.
         reader: Reads what fits no type, from the table and the name of the key.
         json: JSON Schema of what `reader` reads.
     """
@@ -62,6 +63,7 @@ class Key:
     only: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)
     name: str = ""
     otherwise: str = ""
+    follows: Callable[[Mapping[str, Any]], Any] | None = None
     reader: Callable[[Table, str], Any] | None = None
     json: Mapping[str, Any] = dataclasses.field(default_factory=dict)
 
@@ -129,7 +131,7 @@ def scene_key(
     Args:
         about, kind: As of `Key`.
         default: If the key is absent; without a default it is required, unless the
-            field may be `None`.
+            field may be `None`. The class of a table: what it reads without keys.
         **rest: Other attributes of `Key`.
     """
     metadata = {"key": Key(about, kind, **rest)}
@@ -194,7 +196,7 @@ class Keys:
     def check(self) -> None:
         """Raise SceneError where keys do not go together; nothing by default."""
 
-    def fill(self, **values: float | str | None) -> None:
+    def fill(self, **values: int | float | str | None) -> None:
         """Say what stands for keys in the echo, such as defaults that follow from
         something else.
 
@@ -208,6 +210,16 @@ class Keys:
                 if isinstance(value, float):
                     value = written(value, unit)
                 self.table.fill(one.name, value)
+
+    def with_defaults(self, **values: int | float | str) -> Any:
+        """These keys with defaults that follow from something else, in the echo too.
+
+        Args:
+            **values: By the name of the field, for those that are `None`; in SI.
+        """
+        absent = {k: v for k, v in values.items() if getattr(self, k) is None}
+        self.fill(**absent)
+        return dataclasses.replace(self, **absent)
 
 
 K = TypeVar("K", bound=Keys)
@@ -228,7 +240,13 @@ def read_keys(kind: type[K], table: Table) -> K:
     values = {one.attribute: _value(table, one) for one in known}
     for one in known:
         _check_neighbours(table, one)
-    found = kind(table=table, **values)
+    later = {
+        one.attribute: one.key.follows(values)
+        for one in known
+        if one.key.follows is not None and values[one.attribute] is None
+    }
+    found = kind(table=table, **values | later)
+    found.fill(**later)
     for one in known:
         _check_use(found, one)
     found.check()
@@ -283,7 +301,7 @@ def _value(table: Table, field: Field) -> Any:
         return instance(table, name, one.of, *default)
     inner = element_of(kind)
     if is_keys(kind):
-        if absent:
+        if absent and field.default is not kind:
             return field.default
         inside = table.table(name, required=field.required, hint=one.hint)
         return read_keys(kind, inside)

@@ -13,12 +13,24 @@ from .choices_table import (
     PointContactKeys,
     RollerNumericsKeys,
 )
+from .contact_table import (
+    ContactNumericsKeys,
+    ContactOperatingKeys,
+    ContactOutputKeys,
+    RacewayKeys,
+    RollerKeys,
+    SliceLawKeys,
+)
+from .deviations_table import DeviationsKeys
+from .dynamics_table import CageKeys, DynamicsKeys
 from .fit_table import FitKeys, TemperatureKeys
 from .life_table import LifeKeys
+from .lubricant_table import LubricantKeys
 from .noise_table import VibrationKeys
 from .operating_table import OperatingKeys, OutputKeys, SolveKeys
 from .optimise_table import OptimiseKeys
 from .quantity import SceneError
+from .rotor_table import RotorKeys
 from .schema import Keys
 from .schema_text import (
     DIALECT,
@@ -43,7 +55,8 @@ def scene_schema() -> dict[str, Any]:
         "rib": class_schema(Rib),
     }
     head = {"$schema": DIALECT, "title": "Scene of bearingjax"}
-    return {**head, **_bearing_scene(), "$defs": defs}
+    kinds = [_bearing_scene(), _contact_scene(), _rotor_scene()]
+    return {**head, "anyOf": kinds, "$defs": defs}
 
 
 def key_guide(name: str = "") -> str:
@@ -76,13 +89,48 @@ def _bearing_scene() -> dict[str, Any]:
         "numerics": _merged(BallNumericsKeys, RollerNumericsKeys, SolveKeys),
         "fit": table_schema(FitKeys),
         "temperature": table_schema(TemperatureKeys),
+        "lubricant": table_schema(LubricantKeys),
         "life": table_schema(LifeKeys),
         "output": table_schema(OutputKeys),
         "cases": table_schema(CasesKeys),
         "optimise": table_schema(OptimiseKeys),
+        "cage": table_schema(CageKeys),
+        "dynamics": table_schema(DynamicsKeys),
+        "deviations": table_schema(DeviationsKeys),
         "vibration": table_schema(VibrationKeys),
     }
-    return object_schema(tables, ["bearing"], "a bearing under load")
+    return object_schema(tables, ["bearing"], "a bearing")
+
+
+def _contact_scene() -> dict[str, Any]:
+    """Of one roller on one raceway: `contact`."""
+    tables = {
+        "roller": table_schema(RollerKeys),
+        "raceway": table_schema(RacewayKeys),
+        "operating": table_schema(ContactOperatingKeys),
+        "numerics": table_schema(ContactNumericsKeys),
+        "contact": table_schema(SliceLawKeys),
+        "output": table_schema(ContactOutputKeys),
+    }
+    return object_schema(tables, ["roller"], "one roller on one raceway")
+
+
+def _rotor_scene() -> dict[str, Any]:
+    """Of a shaft on its bearings: `rotor`."""
+    named = _bearing()
+    beside = {
+        "set": _set(),
+        "contact": _merged(LineContactKeys, PointContactKeys),
+        "numerics": _merged(BallNumericsKeys, RollerNumericsKeys),
+        "fit": table_schema(FitKeys),
+        "temperature": table_schema(TemperatureKeys),
+        **table_schema(ControlKeys)["properties"],
+    }
+    for one in named["anyOf"]:
+        one["properties"] |= beside
+    bearings = {"type": "object", "additionalProperties": named}
+    tables = {"rotor": table_schema(RotorKeys), "bearings": bearings}
+    return object_schema(tables, ["rotor"], "a shaft on its bearings")
 
 
 def _merged(*kinds: type[Keys]) -> dict[str, Any]:

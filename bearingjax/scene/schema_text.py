@@ -213,6 +213,7 @@ def key_tables(schema: Mapping[str, Any], path: str = "") -> Iterator[tuple[str,
     Args:
         schema: Of a table.
         path: Its dotted name; empty for a whole scene.
+        listed: Whether a scene may have several of it.
     """
     for table in schema.get("anyOf", [schema]):
         if "properties" not in table:
@@ -220,14 +221,16 @@ def key_tables(schema: Mapping[str, Any], path: str = "") -> Iterator[tuple[str,
         rows, inner = "", []
         for name, one in table["properties"].items():
             place = f"{path}.{name}" if path else name
-            inner += [(place, part) for part in _objects(one) if "properties" in part]
+            part = _objects(one)
+            inner += [(place, t, "items" in one) for t in part if "properties" in t]
             rows += _row(name, one, name in table.get("required", ()))
         if path and rows:
-            about = table.get("description", "").removeprefix(f"[{path}]: ")
+            about = re.sub(r"^\[+[\w.]+\]+: ", "", table.get("description", ""))
             head = "| key | holds | default | meaning |\n|---|---|---|---|\n"
-            yield path, f"### `[{path}]`\n\n{about}\n\n{head}{rows}"
-        for place, part in inner:
-            yield from key_tables(part, place)
+            title = f"[[{path}]]" if listed else f"[{path}]"
+            yield path, f"### `{title}`\n\n{about}\n\n{head}{rows}"
+        for place, part, of_list in inner:
+            yield from key_tables(part, place, of_list)
 
 
 def _objects(schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:

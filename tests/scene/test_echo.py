@@ -131,7 +131,7 @@ def leaves(task):
     """Numbers and choices of what was read; not what is static in a load solve."""
     plain = dataclasses.is_dataclass(task) and not isinstance(task, eqx.Module)
     if plain and not isinstance(task, type):
-        names = {field.name for field in dataclasses.fields(task)}
+        names = {field.name for field in dataclasses.fields(task) if field.compare}
         parts = [getattr(task, name) for name in sorted(names - {"tolerance", "free"})]
         return [leaf for part in parts for leaf in leaves(part)]
     if isinstance(task, tuple | list):

@@ -131,7 +131,7 @@ WRONG = {
     ),
     "negative spring": (
         "rotor.bearings.1={station=3, stiffness={x='-1 N/um', y='1 N/um'}}",
-        "`rotor.bearings[1].stiffness.x`: -1e+06 is not allowed; at least 0",
+        "`rotor.bearings[1].stiffness.x`: -1e+06 N/m is not allowed; at least 0 N/m",
     ),
     "preload of springs": (
         "rotor.bearings.1={station=3, stiffness={radial='1 N/um'}, preload='1 N'}",
