@@ -10,12 +10,11 @@ import numpy as np
 
 from ..contact.halfspace import FreeEnds, RollerContact
 from ..contact.line import AbstractLineLaw
-from ..design import MATERIALS, AbstractProfile, Material
-from .bearing_table import PROFILES, read_material, read_profile
+from ..design import AbstractProfile, Material
+from .bearing_table import read_material, read_profile
 from .choices_table import LineContactKeys
 from .scene_file import find_scene, parse_scene
 from .schema import Keys, read_keys, scene_key
-from .schema_text import class_schema
 from .table import Table, written_numbers
 
 LAWS = ("palmgren", "iso16281")
@@ -33,8 +32,8 @@ def _profile(table: Table, name: str) -> AbstractProfile:
 
 
 _EITHER = "give either this or `small_diameter` and `large_diameter`"
-_PROFILE = {"anyOf": [class_schema(kind, word) for word, kind in PROFILES.items()]}
-_MATERIAL = {"anyOf": [{"enum": list(MATERIALS)}, class_schema(Material)]}
+_PROFILE = {"$ref": "#/$defs/profile"}
+_MATERIAL = {"$ref": "#/$defs/material"}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)

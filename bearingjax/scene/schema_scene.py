@@ -49,9 +49,12 @@ def scene_schema() -> dict[str, Any]:
     numbers = {"anyOf": [{"enum": [*MATERIALS]}, class_schema(Material)]}
     defs = {
         "bearing": _bearing(),
+        "set": _set(),
+        "contact": _merged("laws of the contacts", LineContactKeys, PointContactKeys),
+        "fit": table_schema(FitKeys),
+        "temperature": table_schema(TemperatureKeys),
         "material": numbers,
-        # Without a `type` it is straight.
-        "profile": {"anyOf": [*_profiles(), object_schema({}, [])]},
+        "profile": {"anyOf": _profiles()},
         "rib": class_schema(Rib),
     }
     head = {"$schema": DIALECT, "title": "Scene of bearingjax"}
@@ -68,27 +71,30 @@ def key_guide(name: str = "") -> str:
     Raises:
         SceneError: If there is no such table.
     """
-    schema = scene_schema()
-    found = [*key_tables(schema)]
-    for word, one in schema["$defs"].items():
-        found += key_tables(one, word)
-    names = [path for path, _ in found]
-    if name and name not in names:
-        raise SceneError(f"schema: {not_among(name, tuple(dict.fromkeys(names)))}")
-    chosen = [text for path, text in found if not name or path == name]
-    return "\n".join(chosen)
+    schema, found, pages = scene_schema(), [], []
+    for kind in schema["anyOf"]:
+        found.append((f"Scenes of {kind['description']}", [*key_tables(kind)]))
+    parts = [t for word, one in schema["$defs"].items() for t in key_tables(one, word)]
+    found.append(("Parts of several scenes", parts))
+    for title, tables in found:
+        chosen = [text for path, text in tables if not name or path == name]
+        pages += chosen if name else [f"## {title}\n", *chosen]
+    if not pages:
+        names = dict.fromkeys(path for _, tables in found for path, _ in tables)
+        raise SceneError(f"schema: {not_among(name, tuple(names))}")
+    return "\n".join(pages)
 
 
 def _bearing_scene() -> dict[str, Any]:
     """Of a bearing: `solve`, `sweep`, `life`, `optimise`, `skid`, `noise`."""
     tables = {
         "bearing": _ref("bearing"),
-        "set": _set(),
-        "contact": _merged(LineContactKeys, PointContactKeys),
-        "operating": _merged(OperatingKeys, ControlKeys),
-        "numerics": _merged(BallNumericsKeys, RollerNumericsKeys, SolveKeys),
-        "fit": table_schema(FitKeys),
-        "temperature": table_schema(TemperatureKeys),
+        "set": _ref("set"),
+        "contact": _ref("contact"),
+        "operating": _merged("load, support and speeds", OperatingKeys, ControlKeys),
+        "numerics": _merged("solvers", BallNumericsKeys, RollerNumericsKeys, SolveKeys),
+        "fit": _ref("fit"),
+        "temperature": _ref("temperature"),
         "lubricant": table_schema(LubricantKeys),
         "life": table_schema(LifeKeys),
         "output": table_schema(OutputKeys),
@@ -117,29 +123,28 @@ def _contact_scene() -> dict[str, Any]:
 
 def _rotor_scene() -> dict[str, Any]:
     """Of a shaft on its bearings: `rotor`."""
-    named = _bearing()
-    beside = {
-        "set": _set(),
-        "contact": _merged(LineContactKeys, PointContactKeys),
-        "numerics": _merged(BallNumericsKeys, RollerNumericsKeys),
-        "fit": table_schema(FitKeys),
-        "temperature": table_schema(TemperatureKeys),
+    within = {
+        "set": _ref("set", "as of a bearing alone"),
+        "contact": _ref("contact", "as of a bearing alone"),
+        "fit": _ref("fit", "as of a bearing alone"),
+        "temperature": _ref("temperature", "as of a bearing alone"),
+        "numerics": _merged("solvers", BallNumericsKeys, RollerNumericsKeys),
         **table_schema(ControlKeys)["properties"],
     }
-    for one in named["anyOf"]:
-        one["properties"] |= beside
+    about = "a bearing by its name: the keys of a bearing, and beside them"
+    named = {**_ref("bearing", about), "properties": within}
     bearings = {"type": "object", "additionalProperties": named}
     tables = {"rotor": table_schema(RotorKeys), "bearings": bearings}
     return object_schema(tables, ["rotor"], "a shaft on its bearings")
 
 
-def _merged(*kinds: type[Keys]) -> dict[str, Any]:
+def _merged(about: str, *kinds: type[Keys]) -> dict[str, Any]:
     """One table whose keys several classes read."""
     first, *more = (table_schema(kind) for kind in kinds)
     properties = dict(first["properties"])
     for one in more:
         properties |= one["properties"]
-    return object_schema(properties, [], first["description"])
+    return object_schema(properties, [], about)
 
 
 def _set() -> dict[str, Any]:
@@ -160,7 +165,12 @@ def _bearing() -> dict[str, Any]:
     name = {"type": "string", "description": "bearing of the catalogue"}
     about = "a bearing of the catalogue, of which single keys may be given otherwise"
     designated = object_schema({"designation": name, **every}, ["designation"], about)
-    return {"anyOf": [*variants, designated]}
+    # Where a bearing stands, other keys may stand beside its own (`_ref`).
+    open_ones = [
+        {key: part for key, part in one.items() if key != "additionalProperties"}
+        for one in (*variants, designated)
+    ]
+    return {"anyOf": open_ones}
 
 
 def _of_type(word: str, kind: type) -> dict[str, Any]:
@@ -198,5 +208,7 @@ def _profiles() -> list[dict[str, Any]]:
 
 
 def _ref(name: str, about: str = "") -> dict[str, Any]:
-    found = {"$ref": f"#/$defs/{name}"}
+    found: dict[str, Any] = {"$ref": f"#/$defs/{name}"}
+    if name == "bearing":
+        found["unevaluatedProperties"] = False
     return {**found, "description": about} if about else found

@@ -207,7 +207,9 @@ def _first_line(kind: type) -> str:
     return (inspect.getdoc(kind) or "").partition("\n")[0].rstrip(".")
 
 
-def key_tables(schema: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, str]]:
+def key_tables(
+    schema: Mapping[str, Any], path: str = "", listed: bool = False
+) -> Iterator[tuple[str, str]]:
     """Tables of the keys of a JSON Schema in Markdown, with the names of their tables.
 
     Args:
@@ -223,12 +225,17 @@ def key_tables(schema: Mapping[str, Any], path: str = "") -> Iterator[tuple[str,
             place = f"{path}.{name}" if path else name
             part = _objects(one)
             inner += [(place, t, "items" in one) for t in part if "properties" in t]
+            named = one.get("additionalProperties")
+            if isinstance(named, dict) and "properties" in named:
+                inner.append((f"{place}.NAME", named, False))
             rows += _row(name, one, name in table.get("required", ()))
         if path and rows:
             about = re.sub(r"^\[+[\w.]+\]+: ", "", table.get("description", ""))
             head = "| key | holds | default | meaning |\n|---|---|---|---|\n"
-            title = f"[[{path}]]" if listed else f"[{path}]"
-            yield path, f"### `{title}`\n\n{about}\n\n{head}{rows}"
+            title = f"`[[{path}]]`" if listed else f"`[{path}]`"
+            kind = table["properties"].get("type", {}).get("const")
+            title += f", {kind}" if kind else ""
+            yield path, f"### {title}\n\n{about}\n\n{head}{rows}"
         for place, part, of_list in inner:
             yield from key_tables(part, place, of_list)
 
