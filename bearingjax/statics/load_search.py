@@ -171,8 +171,9 @@ def differentiable(
 ) -> Float[Array, "6"]:
     """The unknowns found, differentiable by the implicit function theorem [m].
 
-    Derivatives of a failed search are NaN. By the load they are infinite if no contact
-    carries anything: the least load moves the ring to the end of its clearance.
+    Derivatives of a failed search are NaN. By the load they are infinite if no element
+    bears on both rings, at rest or at speed: the least load moves the ring to the end
+    of its clearance. By all else they are then zero.
 
     Args:
         model: The bearing at the speeds.
@@ -188,8 +189,7 @@ def differentiable(
         return -_by_stiffness(jacobian, change, model.has_potential)
 
     y = attach_by(_residual, minimum.x, args, correction)
-    nothing = model.magnitude(minimum.memory) == 0
-    loose = jnp.where(nothing, balance.free, 0.0)
+    loose = jnp.where(model.is_apart(minimum.memory), balance.free, 0.0)
     y = _without_limit(y, balance.along(balance.load), loose)
     return unless_failed(y, minimum.result == Result.CONVERGED)
 
@@ -210,7 +210,7 @@ def _by_stiffness(stiffness, force, symmetric):
 
 @jax.custom_jvp
 def _without_limit(y, load, loose):
-    """`y`, whose derivatives by the load along it are infinite where it is loose."""
+    """`y`, with infinite derivatives by the load, and no others, where it is loose."""
     return y
 
 
@@ -219,6 +219,7 @@ def _rule(primals, tangents):
     y, _, loose = primals
     if isinstance(change, SymbolicZero):
         change = jnp.zeros_like(y)
+    change = jnp.where(loose > 0, 0.0, change)
     if not isinstance(by_load, SymbolicZero):
         change = change + jnp.where(loose > 0, _infinite(by_load), 0.0)
     return _without_limit(*primals), change

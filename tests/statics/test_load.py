@@ -1,5 +1,7 @@
 """The load solve: loads and displacements mixed, result codes, derivatives."""
 
+import functools
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -435,32 +437,40 @@ def test_gradient_with_respect_to_load_is_the_compliance(tapered):
     assert np.allclose(compliance @ stiffness, np.eye(5), atol=1e-7)
 
 
-def inside_clearance():
-    """One ball at the load's end of the clearance, and rollers."""
+@functools.cache
+def moved_inside_clearance(name):
+    """How far a radial force moves one ball at its end of the clearance, or rollers, by
+    force and speed, and the slopes."""
     size = dict(radial_internal_clearance=10e-6)
-    return [
-        balls(8, bj.DeepGrooveBallBearing, first_azimuth=-np.pi / 2, **size),
-        bj.CylindricalRollerBearing(7, 0.0725, 0.014, 0.01372, **size),
-    ]
-
-
-@pytest.mark.parametrize("bearing", inside_clearance(), ids=["balls", "rollers"])
-def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(bearing):
-    """No number at zero load; beyond, that of differences, however few elements hold
-    the ring."""
+    if name == "balls":
+        bearing = balls(8, bj.DeepGrooveBallBearing, first_azimuth=-np.pi / 2, **size)
+    else:
+        bearing = bj.CylindricalRollerBearing(7, 0.0725, 0.014, 0.01372, **size)
     element = bj.BearingElement(bearing)
 
     @with_slopes
+    def moved(x):
+        load = jnp.zeros(6).at[1].set(-x[0])
+        return bj.solve_load(element, load, speed=bj.Speed(x[1])).displacement[7]
+
+    return moved
+
+
+@pytest.mark.parametrize("speed", [0.0, 1000.0])
+@pytest.mark.parametrize("name", ["balls", "rollers"])
+def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(name, speed):
+    """No number at zero load, at speed neither: what turns then presses the outer ring
+    alone. Beyond, that of differences, however few elements hold the ring."""
+
     def moved(force):
-        load = jnp.zeros(6).at[1].set(-force)
-        return bj.solve_load(element, load).displacement[7]
+        return moved_inside_clearance(name)(jnp.asarray([force, speed]))
 
     slope, value = moved(0.0)
-    assert float(value) == 0.0 and not np.isfinite(slope)
+    assert float(value) == 0.0 and not np.isfinite(slope[0]) and slope[1] == 0.0
     for force in (1e-3, 1.0):
         step = 1e-4 * force
         difference = float(moved(force + step)[1] - moved(force - step)[1]) / (2 * step)
-        assert float(moved(force)[0]) == pytest.approx(difference, rel=1e-4)
+        assert float(moved(force)[0][0]) == pytest.approx(difference, rel=1e-4)
 
 
 def test_second_derivative_of_the_displacement():
