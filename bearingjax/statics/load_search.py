@@ -18,7 +18,7 @@ from jaxtyping import Array, Float
 from ..design import AbstractBallBearing, SetRow
 from ..element.bearing_model import BearingModel, Solved
 from ..numerics import lanes
-from ..numerics.implicit import attach_by, unless_failed
+from ..numerics.implicit import attach_by
 from ..numerics.linear import solve
 from ..numerics.minimise import (
     Evaluation,
@@ -27,7 +27,6 @@ from ..numerics.minimise import (
     TrustRegionNewton,
     continuation,
 )
-from ..numerics.result import Result
 from ..numerics.types import Scalar
 from .balance import Balance
 from .options import SolveOptions
@@ -171,7 +170,7 @@ def differentiable(
 ) -> Float[Array, "6"]:
     """The unknowns found, differentiable by the implicit function theorem [m].
 
-    Derivatives of a failed search are NaN. By the load they are infinite if no element
+    By the load derivatives are infinite if no element
     bears on both rings, at rest or at speed: the least load moves the ring to the end
     of its clearance. By all else they are then zero.
 
@@ -190,8 +189,7 @@ def differentiable(
 
     y = attach_by(_residual, minimum.x, args, correction)
     loose = jnp.where(model.is_apart(minimum.memory), balance.free, 0.0)
-    y = _without_limit(y, balance.along(balance.load), loose)
-    return unless_failed(y, minimum.result == Result.CONVERGED)
+    return _without_limit(y, balance.along(balance.load), loose)
 
 
 def _by_stiffness(stiffness, force, symmetric):
