@@ -166,8 +166,8 @@ def _spoiled(causes, effects, solved):
     To JAX it is a linear solve, which says itself what its transpose is: the same with
     causes and effects exchanged.
     """
-    cause, _ = ravel_pytree(causes)
-    effect, apart = ravel_pytree(effects)
+    cause, _ = ravel_pytree(_parts(causes))
+    effect, apart = ravel_pytree(_parts(effects))
     n = cause.shape[0]
 
     def bad(changes):
@@ -182,7 +182,13 @@ def _spoiled(causes, effects, solved):
         return jnp.concatenate([cause, jnp.where(solved, both[n:], 0.0)])
 
     both = jnp.concatenate([cause, effect])
-    return apart(lax.custom_linear_solve(lambda x: x, both, forth, back)[n:])
+    found = apart(lax.custom_linear_solve(lambda x: x, both, forth, back)[n:])
+    return [lax.complex(*x) if isinstance(x, tuple) else x for x in found]
+
+
+def _parts(arrays):
+    """Real and imaginary parts of those that are complex."""
+    return [(x.real, x.imag) if jnp.iscomplexobj(x) else x for x in arrays]
 
 
 def recall(function, values, args):
