@@ -53,9 +53,9 @@ Many devices in a program of your own
 -------------------------------------
 
 `sweep` spreads its cases itself, and cannot be traced. `jax.shard_map` of a mapped
-`solve_load` over a `jax.sharding.Mesh` needs `check_vma=False`: derivative rules know of no axes of a mesh. A
-batch of a size that is left open (`jax.export.symbolic_shape`) goes through
-`jax.lax.map`, not through `jax.vmap`, which divides a batch by its size.
+`solve_load` over a `jax.sharding.Mesh` needs `check_vma=False`: derivative rules know
+of no axes of a mesh. A batch of a size that is left open (`jax.export.symbolic_shape`)
+goes through `jax.lax.map`, not through `jax.vmap`, which divides a batch by its size.
 
 A program that waits for ever, without load on the processor
 ------------------------------------------------------------
