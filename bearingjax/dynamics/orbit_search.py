@@ -310,8 +310,11 @@ def known(
         y: From `search` (unknown,) [rad/s, m].
         result: `Result` code of all that was solved.
     """
-    y = attach_by(_unbalanced, y, orbit, _correction)
-    return unless_failed(y, result == int(Result.CONVERGED))
+    return unless_failed(
+        lambda orbit: attach_by(_unbalanced, y, orbit, _correction),
+        (orbit,),
+        result == int(Result.CONVERGED),
+    )
 
 
 def derivatives(count: int) -> np.ndarray:

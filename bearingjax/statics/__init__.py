@@ -40,22 +40,22 @@ A freedom that is prescribed, or left out of `free`, is held (`solution.held`): 
 on it is an error, or under `jit` the result code `no_load_path`, because its support
 would take it. What the support passes to the bearing is in `force`.
 
-Failed cases in a gradient: the derivative of a failed solve is NaN, and NaN times the
-zero of a mask is NaN. Replace the load that fails before it is solved::
+Failed cases in a gradient: the derivative of a failed solve is NaN. Where a mask leaves
+it out it is zero, of a life (`rating_life`) too::
 
-    solve = jax.vmap(lambda load: solve_load(element, load, throw=False))
-    good = solve(loads).converged
-    safe = jnp.where(good[:, None], loads, a_load_that_converges)
-    moved = solve(safe).displacement
-    total = jnp.sum(jnp.where(good[:, None], moved, 0.0))
+    s = jax.vmap(lambda load: solve_load(element, load, throw=False))(loads)
+    total = jnp.sum(jnp.where(s.converged[:, None], s.displacement, 0.0))
+
+Mask what was solved itself: NaN comes back from what else is computed from a failed
+case before the mask.
 
 Many devices in a program of your own
 -------------------------------------
 
 `sweep` spreads its cases itself, and cannot be traced. `jax.shard_map` of a mapped
-`solve_load` needs `check_vma=False`: derivative rules know of no axes of a mesh. A
-batch of a size that is left open (`jax.export.symbolic_shape`) goes through
-`jax.lax.map`, not through `jax.vmap`, which divides a batch by its size.
+`solve_load` over a `jax.sharding.Mesh` needs `check_vma=False`: derivative rules know
+of no axes of a mesh. A batch of a size that is left open (`jax.export.symbolic_shape`)
+goes through `jax.lax.map`, not through `jax.vmap`, which divides a batch by its size.
 
 A program that waits for ever, without load on the processor
 ------------------------------------------------------------

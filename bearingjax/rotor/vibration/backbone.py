@@ -12,6 +12,7 @@ curve of ω.
 Source: Krack, Computers & Structures 154 (2015) 59, extended periodic motion.
 """
 
+from functools import partial
 from typing import Any
 
 import equinox as eqx
@@ -278,15 +279,16 @@ def _followed(system, peaks, freedom, method, mode):
     _, every = lax.scan(one, begin, heights)
     every = jax.tree.map(lambda x: x[1:], every)
 
-    def reported(found, peak):
+    def reported(found, *given):
+        system, *_ = given
+
         def residual(x, given):
             return _equations(method, given, freedom)(x)
 
         def correction(of_x, x, change, _):
             return -jnp.linalg.solve(jax.jacfwd(of_x)(x), change)
 
-        x = attach_by(residual, found.x, (system, peak, where), correction)
-        x = unless_failed(x, found.result == int(Result.CONVERGED))
+        x = attach_by(residual, found.x, given, correction)
         ratio, frequency = x[-1], x[-1] * system.reference_frequency
         u, rate = method.motion(_free(system, x[-2]), x[:-2], ratio)
         return dict(
@@ -300,4 +302,8 @@ def _followed(system, peaks, freedom, method, mode):
             result=found.result,
         )
 
-    return Backbone(**jax.vmap(reported)(every, peaks))
+    def known(found, peak):
+        given, solved = (system, peak, where), found.result == int(Result.CONVERGED)
+        return unless_failed(partial(reported, found), given, solved)
+
+    return Backbone(**jax.vmap(known)(every, peaks))

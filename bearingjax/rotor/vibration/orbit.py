@@ -242,11 +242,13 @@ def _solved(system, frequency, method, motion, max_steps):
         _, jacobian = method.linearised(given[0], z, given[1])
         return -jnp.linalg.solve(jacobian[:, :-1], change)
 
-    z = attach_by(residual, found.x[:-1], (system, ratio), correction)
-    solved = found.result == int(Result.CONVERGED)
-    x = jnp.append(unless_failed(z, solved), ratio)
-    left = jnp.max(jnp.abs(found.left))
-    return reported(system, method, x, left, found.steps, found.result)
+    def orbit(system, ratio):
+        z = attach_by(residual, found.x[:-1], (system, ratio), correction)
+        left = jnp.max(jnp.abs(found.left))
+        x = jnp.append(z, ratio)
+        return reported(system, method, x, left, found.steps, found.result)
+
+    return unless_failed(orbit, (system, ratio), found.result == int(Result.CONVERGED))
 
 
 def reported(

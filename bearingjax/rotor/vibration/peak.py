@@ -158,6 +158,9 @@ def _found(system, points, freedom, method):
         return -jnp.linalg.solve(jax.jacfwd(of_y)(y), change)
 
     y = jnp.concatenate([point.x, point.tangent])
-    y = attach_by(residual, y, (system, point.tangent), correction)
-    x, _ = split_up(unless_failed(y, result == int(Result.CONVERGED)))
-    return reported(system, method, x, point.residual, count, result)
+
+    def orbit(system):
+        x, _ = split_up(attach_by(residual, y, (system, point.tangent), correction))
+        return reported(system, method, x, point.residual, count, result)
+
+    return unless_failed(orbit, (system,), result == int(Result.CONVERGED))
