@@ -217,9 +217,21 @@ def _eigh_rule(primals, tangents):
 
 _eigh = one_by_one(lambda matrix: tuple(jnp.linalg.eigh(matrix)))
 
-eig = one_by_one(lambda matrix: tuple(lax.linalg.eig(matrix)))
-"""Eigenvalues of any matrix (n,), left and right unit vectors, column by column; on
-processors only, and without derivatives."""
+
+def eig(
+    matrix: Float[Array, "n n"],
+) -> tuple[Complex[Array, " n"], Complex[Array, "n n"], Complex[Array, "n n"]]:
+    """Eigenvalues of any matrix, left and right unit vectors, column by column.
+
+    On processors only, and without derivatives.
+
+    Args:
+        matrix: A [any unit].
+    """
+    return _eig(matrix)
+
+
+_eig = one_by_one(lambda matrix: tuple(lax.linalg.eig(matrix)))
 
 
 @jax.custom_jvp
