@@ -1,6 +1,6 @@
 """Branches over frequency: folds, flips, Neimark-Sacker points, and how they end."""
 
-from types import SimpleNamespace
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -24,6 +24,7 @@ from bearingjax.rotor.vibration import (
     trace,
 )
 from bearingjax.rotor.vibration.branch import _flip, _pairs
+from bearingjax.rotor.vibration.continuation import Place
 
 pytestmark = pytest.mark.filterwarnings("ignore:follow. .* are unstable")
 BALANCE, SHOOTING = HarmonicBalance(7, 32, steps=24), Shooting(24)
@@ -80,11 +81,12 @@ def test_duffing(branches):
 
 def test_hundreds_of_pairs_of_multipliers():
     """Their product, of 820 factors near 0.05, is no number above zero."""
+    blank: Any = 7 * [None]
     for last, sign in ((0.99, 1.0), (1.01, -1.0)):
         turned = last * np.array([[np.cos(1), -np.sin(1)], [np.sin(1), np.cos(1)]])
         matrix = np.diag([*np.linspace(0.95, 0.98, 39), 0.0, 0.0])
         matrix[39:, 39:] = turned
-        point = SimpleNamespace(monodromy=matrix)
+        point = Place(*blank)._replace(monodromy=matrix)
         assert np.isclose(sign * _pairs(point), abs(last**2 - 1.0))
         assert _flip(point) > 0
 
