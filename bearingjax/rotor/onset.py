@@ -85,7 +85,7 @@ def _crossing(rotor, ends, before):
         value = np.asarray(way.eigenvalue)
         return value[1, np.argmin(np.abs(value[0] - before))]
 
-    speed = brentq(
+    speed: Any = brentq(
         lambda speed: _ratio(before if speed == ends[0] else at(speed)) + level,
         *ends,
         xtol=_LOCATED * np.abs(ends).max(),
