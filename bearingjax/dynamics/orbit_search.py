@@ -18,7 +18,8 @@ from ..element.inertia import Speed
 from ..element.solved_row import RowResults
 from ..numerics import lanes
 from ..numerics.implicit import attach_by, stop, unless_failed
-from ..numerics.linear import solve, solve_any
+from ..numerics.lapack import solve_any
+from ..numerics.linear import solve
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from ..statics.balance import Balance

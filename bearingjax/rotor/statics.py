@@ -13,8 +13,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..design.checks import is_traced, number
-from ..numerics.eigen import eigh
 from ..numerics.implicit import attach_by, recall, stop, unless_failed
+from ..numerics.lapack import eigh
 from ..numerics.linear import solve
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged

@@ -60,14 +60,14 @@ goes through `jax.lax.map`, not through `jax.vmap`, which divides a batch by its
 A program that waits for ever, without load on the processor
 ------------------------------------------------------------
 
-jaxlib 0.10 hands a large batch of matrices (`jax.vmap` of `jnp.linalg.eig`, `solve`) to
-LAPACK in parts, on XLA's threads, by a thread that waits for the others. As many such
-batches at once as there are cores, and none is left to do the work: on two cores two
-batches that do not depend on each other are enough, as in a `vmap` of critical speeds
-over rotors. `jax.lax.map` instead of `vmap` avoids it; so does, with one device,
-`PJRT_NPROC=1` in the environment (one thread;
-`XLA_FLAGS=--xla_cpu_multi_thread_eigen=false` does not). Solves of bearings, `sweep` on
-any number of devices among them, pass one matrix after the other to LAPACK.
+jaxlib 0.10 hands a large batch of matrices (`jax.vmap` of `solve` or `eig` of
+`jnp.linalg`) to LAPACK in parts, on XLA's threads, by a thread that waits for the
+others. As many such batches at once as there are cores, and none is left to do the
+work: on two cores two batches that do not depend on each other are enough. The package
+passes one matrix after the other. In functions of your own that are mapped
+`jax.lax.map` in place of `jax.vmap` avoids it; so does, with one device, `PJRT_NPROC=1`
+in the environment (one thread; `XLA_FLAGS=--xla_cpu_multi_thread_eigen=false` does
+not).
 """
 
 from .cases import Cases as Cases

@@ -24,6 +24,7 @@ from jaxtyping import Array, Float, Int
 
 from ...design.checks import real_numbers
 from ...numerics.implicit import attach_by, stop, unless_failed
+from ...numerics.lapack import eig, pseudoinverse, solve_any
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
 from .method import AbstractMethod
@@ -188,7 +189,7 @@ def _at_rest(system):
 
     def correction(of_u, u, change, _):
         # What nothing holds stays where it is.
-        return -jnp.linalg.pinv(jax.jacfwd(of_u)(u)) @ change
+        return -pseudoinverse(jax.jacfwd(of_u)(u)) @ change
 
     found = newton(linearised, jnp.zeros_like(system.scale), _STEPS)
     solved = found.result == int(Result.CONVERGED)
@@ -206,7 +207,7 @@ def _linear(system, rest, freedom, method, mode):
     matrix = jax.jacfwd(lambda y: change(jnp.zeros_like(one), y))(
         jnp.concatenate([rest, still])
     )
-    values, vectors = jnp.linalg.eig(matrix)
+    values, _, vectors = eig(matrix)
     turning = jnp.where(values.imag > 0, values.imag, jnp.inf)
     k = jnp.argsort(turning)[mode]
     shape = vectors[:count, k] / vectors[freedom, k]
@@ -286,7 +287,7 @@ def _followed(system, peaks, freedom, method, mode):
             return _equations(method, given, freedom)(x)
 
         def correction(of_x, x, change, _):
-            return -jnp.linalg.solve(jax.jacfwd(of_x)(x), change)
+            return -solve_any(jax.jacfwd(of_x)(x), change)
 
         x = attach_by(residual, found.x, given, correction)
         ratio, frequency = x[-1], x[-1] * system.reference_frequency
