@@ -5,6 +5,7 @@ import importlib
 import inspect
 import json
 import pkgutil
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -48,6 +49,20 @@ def test_a_file_imports_only_its_own_layer_and_those_before(path):
     allowed = set(LAYERS[: LAYERS.index(own) + 1]) - NOT_SEEN.get(own, set())
     foreign = set(imported_layers(path)) & set(LAYERS) - allowed
     assert not foreign, f"{path.name} imports {foreign}"
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_only_one_file_calls_lapack(path):
+    """A batch of matrices may wait for ever, see `numerics/lapack.py`; these call no
+    LAPACK: `norm` and `block_diag`. NumPy's own waits for nobody."""
+    if path == PACKAGE / "numerics" / "lapack.py":
+        return
+    text = path.read_text()
+    called = set(re.findall(r"(?:jnp|lax|jax\.numpy|scipy)\.linalg\.(\w+)", text))
+    imported = re.findall(
+        r"from jax[\w.]* import linalg|(?:from|import) jax.*linalg", text
+    )
+    assert called <= {"norm", "block_diag"} and not imported
 
 
 def public_objects():

@@ -22,6 +22,7 @@ from jax import lax
 from jaxtyping import Array, Complex, Float, Int
 
 from ..design.checks import check, real_numbers
+from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar, as_real
 from .model import NoiseModel
 from .natural import contact_stiffness
@@ -159,12 +160,11 @@ def _transfer(model, frequency, orbits) -> Transfer:
         real = linear.stiffness - jnp.diag(omega**2 * linear.mass)
         dynamic = lax.complex(real, omega * linear.damping)
         # Symmetric: the ring's rows of the inverse are its columns.
-        rows = jnp.linalg.solve(dynamic, ring.astype(dynamic.dtype)).T
+        rows = solve_any(dynamic, ring.astype(dynamic.dtype)).T
         one = jnp.ones_like(omega)
         by_push = rows @ push.astype(rows.dtype)
         return rows[:, :k], by_push * lax.complex(one, omega * linear.retardation)
 
-    # One after the other: LAPACK for batches of matrices may wait for ever.
     by_force, by_errors = lax.map(at, frequency)
     by_errors = by_errors.reshape(*by_errors.shape[:2], *linear.push.shape[1:])
     return Transfer(frequency, by_force, by_errors, linear.result)

@@ -18,8 +18,8 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..design import rows_of
-from ..numerics.eigen import eigh
 from ..numerics.implicit import stop
+from ..numerics.lapack import eigh
 from .model import NoiseModel
 from .standing import standing
 from .system import NoiseSystem

@@ -25,7 +25,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ..numerics.implicit import attach_by, stop
-from ..numerics.linear import solve_any
+from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar
 from .line import AbstractLineLaw, Palmgren
 from .line_contact import AbstractLineContact, LineContact, Response
@@ -204,7 +204,7 @@ def _free(matrix, curvature, held):
 
 
 def _divided(matrix, right):
-    return solve_any(matrix, right, positive=True)
+    return solve_any(matrix, right, "positive")
 
 
 def _rest(table, loads, given):

@@ -14,7 +14,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..numerics.linear import solve, solve_any
+from ..numerics.lapack import solve_any
+from ..numerics.linear import solve
 from ..numerics.types import Scalar
 
 

@@ -18,7 +18,8 @@ from ..element.inertia import Speed
 from ..element.solved_row import RowResults
 from ..numerics import lanes
 from ..numerics.implicit import attach_by, stop, unless_failed
-from ..numerics.linear import solve, solve_any
+from ..numerics.lapack import solve_any
+from ..numerics.linear import solve
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from ..statics.balance import Balance
@@ -310,8 +311,11 @@ def known(
         y: From `search` (unknown,) [rad/s, m].
         result: `Result` code of all that was solved.
     """
-    y = attach_by(_unbalanced, y, orbit, _correction)
-    return unless_failed(y, result == int(Result.CONVERGED))
+    return unless_failed(
+        lambda orbit: attach_by(_unbalanced, y, orbit, _correction),
+        (orbit,),
+        result == int(Result.CONVERGED),
+    )
 
 
 def derivatives(count: int) -> np.ndarray:

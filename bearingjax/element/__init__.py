@@ -51,12 +51,12 @@ Which numerics?
 Faster
 ------
 
-Jit the loop around the element, with the element closed over (`jax.jit(lambda q:
-element.force(q))`; a bound method itself cannot be hashed): its contact constants are
-then worked out once. If the design is traced, work them out before the loop: `model =
-element.model(speed)`, then `model.force(q)`. Many cases: `bearingjax.sweep`; in a
-program of your own `jax.lax.map(..., batch_size=256)`: there rolling elements wait in a
-queue, not for each other. Many small calls, one after the other, as of an integrator:
+Jit the loop around the element, with the element closed over
+(`jax.jit(element.force)`): its contact constants are then worked out once. If the
+design is traced, work them out before the loop: `model = element.model(speed)`, then
+`model.force(q)`. Many cases: `bearingjax.sweep`; in a program of your own
+`jax.lax.map(..., batch_size=256)`: there rolling elements wait in a queue, not for each
+other. Many small calls, one after the other, as of an integrator:
 `jax.config.update("jax_cpu_enable_async_dispatch", False)` before all else saves the
 hand-over between threads, half of the time of a call (benchmarks/single_call.py
 --inline). What a scene lacks (ribs, speed) is not compiled.

@@ -73,9 +73,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
     balance of all forces, `stiffness` its exact Jacobian, slightly unsymmetric, and
     `energy` the strain energy alone.
 
-    Numbers of the element are arrays, for which `jax.jit` has no place in a function:
-    take `jax.jit(lambda q: element.force(q))`, the design held, or
-    `equinox.filter_jit(element.force)`, the design an argument.
+    `jax.jit(element.force)` holds the design, `equinox.filter_jit(element.force)` has
+    it as an argument and compiles once for all designs of one structure.
 
     An element that did not converge makes the numbers NaN-free but untrue: `evaluate`
     returns the code; `solve_load` passes it on.
@@ -181,6 +180,20 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 ' best. Before all else: jax.config.update("jax_enable_x64", True)',
                 stacklevel=3,
             )
+
+    def __hash__(self) -> int:
+        """Of the structure: `jax.jit` of a method needs it, and compares the numbers.
+
+        Raises:
+            TypeError: If a number is traced, which cannot be compared.
+        """
+        leaves, structure = jax.tree.flatten(self)
+        if any(is_traced(leaf) for leaf in leaves):
+            raise TypeError(
+                "BearingElement: a design that is traced cannot be hashed; for"
+                " `jax.jit(element.force)` take `jax.jit(lambda q: element.force(q))`."
+            )
+        return hash((structure, *(jnp.shape(leaf) for leaf in leaves)))
 
     def model(self, speed: Speed | None = None) -> BearingModel:
         """The bearing with all its contact constants worked out.

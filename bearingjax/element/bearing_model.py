@@ -16,12 +16,13 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Bool, Float, Int
 
 from ..numerics.implicit import stop
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
+from .constants import TETHER
 from .equilibrium import Near, settle
 from .rolling_element import split
 from .row import Row
@@ -391,6 +392,26 @@ class BearingModel(eqx.Module):
             count = group.rows.element.n_displacements
             sizes.append(jnp.sum(jnp.abs(state.energies.gradient[..., :count])))
         return sum(sizes[1:], start=sizes[0])
+
+    def is_apart(self, solved: Solved) -> Bool[Array, ""]:
+        """Whether no rolling element bears on both rings: nothing holds them together.
+
+        Turning elements press the outer ring alone; what stiffness is left then is
+        that of the springs which hold them in place.
+
+        Args:
+            solved: The elements.
+        """
+        # Contacts are stiffer than their tethers by 1e14; some round-off is left.
+        left = 1e4 * jnp.finfo(self.dtype).eps / TETHER
+        apart = []
+        for group, state in zip(self.groups, solved.groups, strict=True):
+            element, stiffness = group.rows.element, state.energies.hessian
+            width = stiffness.shape[-1] // (1 if element.sees_difference else 2)
+            of_inner = jnp.diagonal(stiffness, axis1=-2, axis2=-1)[..., -width:]
+            along = of_inner[..., : element.n_displacements]
+            apart.append(jnp.all(along <= left * jnp.max(element.tether)))
+        return jnp.all(jnp.stack(apart))
 
     def of_elements(self, function: Callable) -> list[Any]:
         """Apply function(element) to the elements of every group of rows.

@@ -8,6 +8,8 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jax import lax
+from jax.custom_derivatives import SymbolicZero
+from jax.flatten_util import ravel_pytree
 
 from .linear import solve
 
@@ -106,25 +108,87 @@ def _parted(args):
     return traced, others, lambda *parts: eqx.combine(*parts, static)
 
 
-def unless_failed(value, solved):
-    """`value`, with derivatives that are NaN if it was not solved for.
+def unless_failed(function, args, solved):
+    """function(*args), with derivatives that are NaN if it was not solved for.
 
-    A failed solve ends anywhere, and a derivative there is no answer.
+    A failed solve ends anywhere, and a derivative there is no answer. Where nothing
+    changes it is zero even so: a failed case of a batch that a mask leaves out does not
+    spoil the gradient of the others, whatever numbers it ended with.
 
     Args:
-        value: Floating array.
+        function: Function of args -> pytree; it sees through its arguments alone what
+            it is differentiated by.
+        args: Tuple of pytrees; what is no array is static.
         solved: Whether it was solved for, a scalar flag.
+
+    Returns:
+        What `function` returns, differentiable with respect to `args`.
     """
+    traced, others, joined = _parted(args)
+    # No change gets through if not solved, in neither direction.
+    gated = jax.tree.map(lambda x: jnp.where(solved, x, lax.stop_gradient(x)), traced)
+    found, rest, whole = _parted(function(*joined(gated, others)))
+    return whole(_marked(found, traced, solved), rest)
 
-    @jax.custom_jvp
-    def known(value, factor):
-        return value
 
-    @known.defjvp
-    def _rule(primals, tangents):
-        return known(*primals), tangents[0] * primals[1]
+@jax.custom_jvp
+def _marked(effect, cause, solved):
+    """The effect; if not solved, its changes are NaN where its cause changes."""
+    return effect
 
-    return known(value, jnp.where(solved, 1.0, jnp.nan).astype(value.dtype))
+
+def _marked_rule(primals, tangents):
+    values, tree = jax.tree.flatten(primals[0])
+    causes = [c for c in jax.tree.leaves(tangents[1]) if not _is_none(c)]
+    changes = jax.tree.leaves(tangents[0])
+    effects = [e for e in changes if not _is_none(e)]
+    if causes and effects:
+        effects = _spoiled(causes, effects, primals[2])
+    known = iter(effects)
+    # No symbolic zeros: under `vmap` they would miss the axis of the batch.
+    changes = [
+        jnp.zeros_like(v) if _is_none(c) else next(known)
+        for v, c in zip(values, changes, strict=True)
+    ]
+    return _marked(*primals), jax.tree.unflatten(tree, changes)
+
+
+def _is_none(change):
+    return isinstance(change, SymbolicZero)
+
+
+_marked.defjvp(_marked_rule, symbolic_zeros=True)
+
+
+def _spoiled(causes, effects, solved):
+    """The effects; if not solved, NaN if any cause is not zero, else zero.
+
+    To JAX it is a linear solve, which says itself what its transpose is: the same with
+    causes and effects exchanged.
+    """
+    cause, _ = ravel_pytree(_parts(causes))
+    effect, apart = ravel_pytree(_parts(effects))
+    n = cause.shape[0]
+
+    def bad(changes):
+        return jnp.where(~solved & jnp.any(changes != 0), jnp.nan, 0.0)
+
+    def forth(_, both):
+        effect = jnp.where(solved, both[n:], bad(both[:n]))
+        return jnp.concatenate([jnp.zeros_like(both[:n]), effect])
+
+    def back(_, both):
+        cause = jnp.full_like(both[:n], bad(both[n:]))
+        return jnp.concatenate([cause, jnp.where(solved, both[n:], 0.0)])
+
+    both = jnp.concatenate([cause, effect])
+    found = apart(lax.custom_linear_solve(lambda x: x, both, forth, back)[n:])
+    return [lax.complex(*x) if isinstance(x, tuple) else x for x in found]
+
+
+def _parts(arrays):
+    """Real and imaginary parts of those that are complex."""
+    return [(x.real, x.imag) if jnp.iscomplexobj(x) else x for x in arrays]
 
 
 def recall(function, values, args):

@@ -3,24 +3,14 @@
 LAPACK is called once per matrix; for 3 to 6 unknowns under `vmap` the unrolled
 factorisation is many times faster and has no foreign call in it. More than eight go to
 LAPACK: a program written out grows with their third power.
-
-jaxlib 0.10 divides a large batch of matrices among XLA's threads, by the thread that
-ran into it, which then waits for its share to be done by others. As soon as every
-thread waits so, for as many batches that do not depend on each other, the program
-waits for ever: on two cores two batches are enough. One matrix is never divided, so
-that LAPACK is given one after the other (`one_by_one`).
 """
 
-from collections.abc import Callable
 from typing import Any
 
-import jax
 import jax.numpy as jnp
-import jax.scipy.linalg as dense
-from jax import lax
-from jax.custom_batching import custom_vmap
-from jaxtyping import Array, Float, Inexact
+from jaxtyping import Array, Float
 
+from .lapack import solve_any
 from .types import namespace
 
 _WRITTEN_OUT = 8
@@ -147,96 +137,6 @@ def solve(
             value = value - a[i][j] * x[j]
         x[i] = value / a[i][i]
     return jnp.stack([x[i] * scale[i] for i in range(n)])
-
-
-def one_by_one(function: Callable) -> Callable:
-    """A function of arrays that `jax.vmap` calls for one member after the other.
-
-    It is not to be differentiated: give it what `lax.stop_gradient` returns.
-
-    Args:
-        function: Of arrays; returns a pytree of arrays.
-    """
-
-    @custom_vmap
-    def single(*arrays):
-        return function(*arrays)
-
-    @single.def_vmap
-    def _rule(_, mapped, *arrays):
-        def one(members):
-            member = iter(members)
-            return single(
-                *(next(member) if m else a for a, m in zip(arrays, mapped, strict=True))
-            )
-
-        members = [a for a, m in zip(arrays, mapped, strict=True) if m]
-        # Unrolled: small matrices take as long as a turn of the loop.
-        _, found = lax.scan(lambda _, m: (None, one(m)), None, members, unroll=4)
-        return found, jax.tree.map(lambda _: True, found)
-
-    return single
-
-
-def _solver(way: Callable) -> Callable:
-    """`one_by_one` of a solver; one factorisation serves all right-hand sides.
-
-    Args:
-        way: Of a matrix (n, n) and right-hand sides (n, k).
-    """
-    each = one_by_one(way)
-
-    @custom_vmap
-    def single(matrix, rhs):
-        return each(matrix, rhs)
-
-    @single.def_vmap
-    def _rule(_, mapped, matrix, rhs):
-        if mapped[0]:
-            return jax.vmap(each, [0 if m else None for m in mapped])(matrix, rhs), True
-        columns = jnp.moveaxis(rhs, 0, -1)
-        found = single(matrix, columns.reshape(rhs.shape[1], -1))
-        return jnp.moveaxis(found.reshape(columns.shape), -1, 0), True
-
-    return single
-
-
-@_solver
-def _by_cholesky(matrix, rhs):
-    return dense.cho_solve(dense.cho_factor(matrix), rhs)
-
-
-@_solver
-def _by_elimination(matrix, rhs):
-    return jnp.linalg.solve(matrix, rhs)
-
-
-def solve_any(
-    matrix: Inexact[Array, "n n"],
-    rhs: Inexact[Array, "n ..."],
-    positive: bool = False,
-) -> Inexact[Array, "n ..."]:
-    """Solve a system of any number of unknowns by LAPACK.
-
-    Under `jax.vmap` one matrix after the other; differentiable to any order.
-
-    Args:
-        matrix: Regular [any unit].
-        rhs: One or more right-hand sides.
-        positive: Whether the matrix is symmetric and positive definite. Static.
-
-    Returns:
-        Solution, shape of `rhs`; NaN if a matrix that is said to be positive is not.
-    """
-    held = lax.stop_gradient(matrix)
-    way = _by_cholesky if positive else _by_elimination
-    return lax.custom_linear_solve(
-        lambda x: matrix @ x,
-        rhs,
-        lambda _, b: way(held, b),
-        lambda _, b: way(held.T, b),
-        symmetric=positive,
-    )
 
 
 def _solve_scaled(matrix, rhs):

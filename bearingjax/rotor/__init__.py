@@ -17,7 +17,8 @@ Linear analyses
 
 `modes(rotor, speed)` has eigenvalues, frequencies [Hz], damping ratios, logarithmic
 decrements, mode shapes and the sense of whirl (+1 forward, -1 backward, 0 in a plane or
-axial); `campbell` follows each mode over the speeds by its shape; `critical_speeds` are
+axial); `campbell` follows each mode over the speeds by its shape, `instability_onsets`
+tells from which speed on one grows; `critical_speeds` are
 solved for, not read off, and a warning says if strong dampers may have hidden one
 (`missed`); `unbalance_response` and `harmonic_response` give amplitudes;
 `rotor.linearised(speed)` the matrices M, C, G, K. Frequencies, damping ratios, critical
@@ -65,6 +66,8 @@ from .loads import StationForce as StationForce
 from .modes import Modes as Modes
 from .modes import campbell as campbell
 from .modes import modes as modes
+from .onset import Onset as Onset
+from .onset import instability_onsets as instability_onsets
 from .parts import AbstractPart as AbstractPart
 from .parts import AbstractSupport as AbstractSupport
 from .parts import Disc as Disc

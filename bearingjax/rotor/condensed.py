@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar
 from .held import of_each
 from .loads import RotorLoads
@@ -102,7 +103,7 @@ def condensed(rotor: Rotor, loads: RotorLoads, speed: Scalar) -> Condensed:
             inner = own[np.ix_(rest, rest)]
             across = own[np.ix_(rest, kept)] * scale[None, kept]
             known = jnp.concatenate([-across, force[rest, None]], axis=1)
-            follow = jnp.linalg.solve(inner, known)
+            follow = solve_any(inner, known)
             back = back.at[rest].set(follow[:, :-1])
             there = there.at[rest].set(follow[:, -1])
     stiffness = back.T @ own @ back

@@ -6,15 +6,15 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import lax
 from jaxtyping import Array, Complex, Float, Int
 
 from ..design.checks import count as whole
-from ..design.checks import is_traced
-from ..numerics.eigen import eigh
+from ..design.checks import is_traced, number
 from ..numerics.implicit import stop
+from ..numerics.lapack import cholesky, congruent, eigh, solve_any
 from ..numerics.types import as_count
-from .damping import mass_normal
 from .modes import (
     direction,
     eigenpairs,
@@ -33,6 +33,10 @@ _SETTLED = 1e-9
 """Relative size of the last step of a critical speed that is found [1]."""
 _SAME, _PARALLEL = 1e-7, 0.03
 """Relative distance of two that are one, if their motions differ by less than so."""
+
+_NEAR = 0.1
+"""Share of a critical speed within which an operating speed is warned of [1]."""
+_RPM = 30.0 / np.pi
 
 
 class CriticalSpeeds(eqx.Module):
@@ -57,7 +61,9 @@ class CriticalSpeeds(eqx.Module):
     missed: Int[Array, ""]
 
 
-def critical_speeds(rotor: Rotor, *, count: Any = 6) -> CriticalSpeeds:
+def critical_speeds(
+    rotor: Rotor, *, count: Any = 6, operating_speed: Any = None
+) -> CriticalSpeeds:
     """Speeds at which a mode vibrates once per revolution.
 
     Without damping and with supports of constant stiffness they are the solutions of
@@ -70,13 +76,15 @@ def critical_speeds(rotor: Rotor, *, count: Any = 6) -> CriticalSpeeds:
     Args:
         rotor: The rotor.
         count: How many, the lowest.
+        operating_speed: Speed of the rotor [rad/s], for the warning; `None`: none.
 
     Returns:
         CriticalSpeeds; speeds and damping ratios have first derivatives with respect
         to all numbers of the rotor.
 
     Warns:
-        UserWarning: If one may be missing.
+        UserWarning: If one may be missing, and if the operating speed lies within 10 %
+            of one of forward whirl.
     """
     count = as_count(count)
     whole("critical_speeds", "count", count)
@@ -88,7 +96,23 @@ def critical_speeds(rotor: Rotor, *, count: Any = 6) -> CriticalSpeeds:
             " dampers, or supports that follow the speed, led the search away",
             stacklevel=2,
         )
+    if operating_speed is not None and not is_traced(found.speed):
+        number("critical_speeds", "operating_speed", operating_speed, "rad/s")
+        if not is_traced(operating_speed):
+            _warn_if_near(found, float(operating_speed))
     return found
+
+
+def _warn_if_near(found, speed):
+    """Warn of a forward critical speed close to that of the rotor [rad/s]."""
+    critical = np.asarray(found.speed)
+    near = (np.asarray(found.whirl) > 0) & (abs(abs(speed) / critical - 1.0) < _NEAR)
+    if near.any():
+        warnings.warn(
+            f"critical_speeds: {speed * _RPM:.5g} rpm lies within 10 % of the forward"
+            f" critical speed of {critical[near][0] * _RPM:.5g} rpm",
+            stacklevel=3,
+        )
 
 
 @eqx.filter_jit
@@ -176,10 +200,10 @@ def _undamped(matrices: RotorMatrices, count):
     S/(ωᵢ ωⱼ) with S = 1 - iG and eigenvalues 1/Ω². Motions that nothing holds (ω = 0)
     are condensed out of S.
     """
-    factor = jnp.linalg.cholesky(matrices.mass)
-    stiffness = mass_normal(factor, matrices.stiffness)
+    factor = cholesky(matrices.mass)
+    stiffness = congruent(factor, matrices.stiffness)
     squares, basis = eigh(stiffness)
-    gyroscopic = basis.T @ mass_normal(factor, matrices.gyroscopic) @ basis
+    gyroscopic = basis.T @ congruent(factor, matrices.gyroscopic) @ basis
     n = squares.shape[0]
     eye = jnp.eye(n, dtype=squares.dtype)
     s = lax.complex(eye, -gyroscopic)
@@ -187,7 +211,7 @@ def _undamped(matrices: RotorMatrices, count):
     loose = to_complex(jnp.where(free, 1.0, 0.0))
     held = 1.0 - loose
     both = loose[:, None] * loose[None, :]
-    follow = -jnp.linalg.solve(both * s + jnp.diag(held), loose[:, None] * s)
+    follow = -solve_any(both * s + jnp.diag(held), loose[:, None] * s)
     follow = follow * held[None, :]
     softness = to_complex(
         jnp.where(free, 0.0, 1.0 / jnp.sqrt(jnp.where(free, 1.0, squares)))
@@ -199,7 +223,7 @@ def _undamped(matrices: RotorMatrices, count):
     speed = jnp.where(there, 1.0 / jnp.sqrt(jnp.where(there, values, 1.0)), 0.0)
     motion = softness[:, None] * vectors
     motion = to_complex(basis) @ (motion + follow @ motion)
-    motion = jax.scipy.linalg.solve_triangular(to_complex(factor.T), motion)
+    motion = solve_any(to_complex(factor.T), motion, "upper")
     return speed, motion.T
 
 
@@ -246,7 +270,7 @@ def _newton(rotor, point, right, left, share: Any = 1.0):
         return jnp.stack([value.real, value.imag])
 
     slope = stop(jax.jacfwd(residual)(point))
-    return point - jnp.linalg.solve(slope, residual(point))
+    return point - solve_any(slope, residual(point))
 
 
 def _vectors(matrices, point, right, left):
@@ -255,9 +279,9 @@ def _vectors(matrices, point, right, left):
     value = lax.complex(point[0], point[1] * (1.0 + 1e-10))
     rates, mass = to_complex(matrices.rates), to_complex(matrices.mass)
     slope = 2.0 * value * mass + rates
-    factors = jax.scipy.linalg.lu_factor(matrices.dynamic_stiffness(value))
-    right = jax.scipy.linalg.lu_solve(factors, slope @ right)
-    left = jax.scipy.linalg.lu_solve(factors, slope.conj().T @ left, trans=2)
+    stiffness = matrices.dynamic_stiffness(value)
+    right = solve_any(stiffness, slope @ right)
+    left = solve_any(stiffness.conj().T, slope.conj().T @ left)
     return _unit(right), _unit(left)
 
 

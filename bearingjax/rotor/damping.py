@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..design.checks import non_negative
-from ..numerics.eigen import eigh
+from ..numerics.lapack import cholesky, congruent, eigh
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 
@@ -88,20 +88,9 @@ class ModalDamping(AbstractDamping):
     ) -> Matrix:
         """Damping matrix [N s/m, N s, N m s]: 2 ζ ω m for every mode."""
         mass, stiffness = rotor
-        factor = jnp.linalg.cholesky(mass)
-        modal = mass_normal(factor, 0.5 * (stiffness + stiffness.T))
+        factor = cholesky(mass)
+        modal = congruent(factor, 0.5 * (stiffness + stiffness.T))
         return 2.0 * self.ratio * factor @ square_root(modal) @ factor.T
-
-
-def mass_normal(factor: Matrix, matrix: Matrix) -> Matrix:
-    """A matrix in coordinates in which the mass matrix is one, L⁻¹ A L⁻ᵀ.
-
-    Args:
-        factor: Cholesky factor L of the mass matrix.
-        matrix: A.
-    """
-    half = jax.scipy.linalg.solve_triangular(factor, matrix, lower=True)
-    return jax.scipy.linalg.solve_triangular(factor, half.T, lower=True).T
 
 
 @jax.custom_jvp

@@ -7,6 +7,7 @@ import jax.numpy as jnp
 from jax import lax
 
 from ..design.checks import number
+from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar, as_real
 from .loads import RotorLoads
 from .modes import speed_list, to_complex
@@ -67,7 +68,7 @@ def reduction_error(
         motions = to_complex(matrices.motions)
         value = lax.complex(0.0 * frequency, frequency)
         stiffness = matrices.dynamic_stiffness(value)
-        moved = motions @ jnp.linalg.solve(stiffness, motions.T @ force)
+        moved = motions @ solve_any(stiffness, motions.T @ force)
         return matrices.split(moved)[0][..., :3]
 
     exact = nodes(whole)

@@ -23,8 +23,8 @@ from jaxtyping import Array, Bool, Complex, Float, Int
 from ..design.checks import check, is_traced, number, real_numbers
 from ..design.checks import count as whole
 from ..numerics.implicit import stop
+from ..numerics.lapack import cholesky, congruent, eig, eigvals, solve_any
 from ..numerics.types import as_count, as_real
-from .damping import mass_normal
 from .rotor import Rotor, RotorMatrices
 
 _COINCIDENT = 1e-7
@@ -185,7 +185,7 @@ def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
             the step; it may then change places with another one.
     """
     speeds = speed_list("campbell", speeds)
-    found, overlap = _campbell(rotor, speeds, _counted("campbell", count))
+    found, overlap = followed(rotor, speeds, _counted("campbell", count))
     if not is_traced(overlap):
         _warn_of_swaps(np.asarray(speeds), np.asarray(overlap))
     return found
@@ -216,8 +216,14 @@ def _warn_of_swaps(speeds, overlap):
 
 
 @eqx.filter_jit
-def _campbell(rotor, speeds, count):
-    """Modes over speeds, and the overlap of each on the way there (speed, mode)."""
+def followed(
+    rotor: Rotor, speeds: Float[Array, " speed"], count: int | None
+) -> tuple[Modes, Float[Array, "speed mode"]]:
+    """Modes over speeds, and the least overlap of each on the way there.
+
+    Args:
+        rotor, speeds, count: As in `campbell`.
+    """
     matrices = rotor.linearised(speeds[0])
     n = matrices.mass.shape[0]
     count = n if count is None else min(n, count)
@@ -296,7 +302,7 @@ def _biorthogonal(pairs, matrices):
     own = _same(pairs) & swings[:, None] & swings[None, :]
     products = jnp.where(own, _products(pairs, pairs, matrices), 0.0)
     products = products + jnp.diag(to_complex(jnp.where(swings, 0.0, 1.0)))
-    left = jnp.linalg.solve(products, pairs.left.conj()).conj()
+    left = solve_any(products, pairs.left.conj()).conj()
     return eqx.tree_at(lambda p: p.left, pairs, left)
 
 
@@ -357,7 +363,7 @@ def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
     fixed = stop(matrices)
     n = fixed.mass.shape[0]
     factor, stiffness, state = _state(fixed)
-    values, left, right = lax.linalg.eig(state)
+    values, left, right = eig(state)
     eps = jnp.finfo(stiffness.dtype).eps
     floor = _STILL * jnp.sqrt(eps * jnp.linalg.norm(stiffness))
     values = jnp.where(jnp.abs(values) <= floor, 0.0, values)
@@ -375,7 +381,7 @@ def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
     def vectors(columns):
         sizes = jnp.linalg.norm(columns, axis=0)
         unit = columns / to_complex(jnp.where(sizes == 0, 1.0, sizes))[None, :]
-        return jax.scipy.linalg.solve_triangular(to_complex(factor.T), unit).T
+        return solve_any(to_complex(factor.T), unit, "upper").T
 
     right, left = vectors(right[:n, chosen]), vectors(left[n:, chosen])
     value = jax.vmap(lambda *pair: _refined(matrices, *pair))(value, right, left)
@@ -384,10 +390,10 @@ def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
 
 def _state(matrices):
     """Factor of the mass matrix, stiffness and state matrix in mass-normal freedoms."""
-    factor = jnp.linalg.cholesky(matrices.mass)
-    stiffness = mass_normal(factor, matrices.stiffness)
+    factor = cholesky(matrices.mass)
+    stiffness = congruent(factor, matrices.stiffness)
     eye = jnp.eye(factor.shape[0], dtype=factor.dtype)
-    lower = [-stiffness, -mass_normal(factor, matrices.rates)]
+    lower = [-stiffness, -congruent(factor, matrices.rates)]
     return factor, stiffness, jnp.block([[jnp.zeros_like(eye), eye], lower])
 
 
@@ -399,7 +405,7 @@ def resonances_above(matrices: RotorMatrices, frequency: Any) -> Int[Array, ""]:
         frequency: ω [rad/s].
     """
     *_, state = _state(matrices)
-    values = jnp.linalg.eigvals(state)
+    values = eigvals(state)
     return jnp.sum((values.imag > frequency) & resonates(values))
 
 

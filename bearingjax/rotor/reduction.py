@@ -3,15 +3,13 @@
 from typing import Any
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
-from ..numerics.eigen import eigh
+from ..numerics.lapack import cholesky, congruent, eigh, solve_any
 from ..numerics.types import as_count
-from .damping import mass_normal
 from .rotor import N_HOUSING, N_STATION, Rotor
 
 Basis = Float[Array, "motion fewer"]
@@ -59,17 +57,15 @@ def _basis(rotor, modes):
     inner = np.ix_(rest, rest)
     shapes = jnp.eye(own.mass.shape[0], dtype=own.mass.dtype)[:, kept]
     if len(rest):
-        follow = -jnp.linalg.solve(
-            own.stiffness[inner], own.stiffness[np.ix_(rest, kept)]
-        )
+        follow = -solve_any(own.stiffness[inner], own.stiffness[np.ix_(rest, kept)])
         shapes = shapes.at[rest].set(follow)
     count = min(modes, len(rest))
     if not count:
         return shapes
     mass, stiffness = (lax.stop_gradient(m[inner]) for m in (own.mass, own.stiffness))
-    factor = jnp.linalg.cholesky(mass)
-    _, vectors = eigh(mass_normal(factor, stiffness))
-    clamped = jax.scipy.linalg.solve_triangular(factor.T, vectors[:, :count])
+    factor = cholesky(mass)
+    _, vectors = eigh(congruent(factor, stiffness))
+    clamped = solve_any(factor.T, vectors[:, :count], "upper")
     body = jnp.stack(_sizes(lax.stop_gradient(rotor.shaft.stations)))
     places = rest[rest < N_STATION * rotor.shaft.n_nodes] % N_STATION
     largest = jnp.max(jnp.abs(clamped) / body[places][:, None], axis=0)

@@ -9,7 +9,7 @@ from jax import lax
 from jaxtyping import Array, Complex, Float
 
 from ..design.checks import non_negative, number
-from ..numerics.linear import solve_any
+from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 from .modes import speed_list, to_complex

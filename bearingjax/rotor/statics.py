@@ -13,8 +13,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..design.checks import is_traced, number
-from ..numerics.eigen import eigh
 from ..numerics.implicit import attach_by, recall, stop, unless_failed
+from ..numerics.lapack import eigh
 from ..numerics.linear import solve
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
@@ -176,17 +176,6 @@ def _undone(of_y, y, change, parts):
     return -solve(parts.slope(parts.of_supports(y)[1]), change, False)
 
 
-def _place(rotor, loads, speed):
-    """Condensed rotor, what the search found, and its unknowns with derivatives."""
-    parts = condensed(rotor, loads, speed)
-    length = rotor.shaft.stations[-1] - rotor.shaft.stations[0]
-    found = _searched(stop(parts), stop(length))
-    y = attach_by(_balance, found.x, parts, _undone)
-    solved = found.result == Result.CONVERGED
-    y = unless_failed(jnp.where(solved, y, jnp.nan), solved)
-    return parts, found, y
-
-
 @eqx.filter_jit
 def settled_at(rotor, loads, speed) -> tuple[Settled, Float[Array, " motion"]]:
     """The result, and where the search ended even if it is none (motion,).
@@ -194,12 +183,23 @@ def settled_at(rotor, loads, speed) -> tuple[Settled, Float[Array, " motion"]]:
     Args:
         rotor, loads, speed: As of `settle`, checked.
     """
-    parts, found, y = _place(rotor, loads, speed)
-    motion = parts.motion(y)
-    known = jax.tree.map(
-        lambda leaf: jnp.where(found.result == Result.CONVERGED, leaf, jnp.nan),
-        found.memory,
-    )
+    parts = condensed(rotor, loads, speed)
+    length = rotor.shaft.stations[-1] - rotor.shaft.stations[0]
+    found = _searched(stop(parts), stop(length))
+    solved = found.result == Result.CONVERGED
+
+    def there(*given):
+        return _settled(found, solved, *given)
+
+    settled = unless_failed(there, (rotor, parts, speed), solved)
+    return settled, stop(parts).motion(found.x)
+
+
+def _settled(found, solved, rotor, parts, speed) -> Settled:
+    """What the search found, with derivatives; NaN if it failed."""
+    y = attach_by(_balance, found.x, parts, _undone)
+    motion = parts.motion(jnp.where(solved, y, jnp.nan))
+    known = jax.tree.map(lambda leaf: jnp.where(solved, leaf, jnp.nan), found.memory)
     load, stiffness, damping = recall(
         lambda parts, y: parts.of_supports(y), known, (parts, y)
     )
@@ -208,7 +208,7 @@ def settled_at(rotor, loads, speed) -> tuple[Settled, Float[Array, " motion"]]:
         for support, k, c in zip(rotor.supports, stiffness, damping, strict=True)
     ]
     n = N_STATION * rotor.shaft.n_nodes
-    there = Settled(
+    return Settled(
         displacement=motion[:n].reshape(-1, N_STATION),
         housing=motion[n:].reshape(-1, N_HOUSING),
         support_load=load,
@@ -222,7 +222,6 @@ def settled_at(rotor, loads, speed) -> tuple[Settled, Float[Array, " motion"]]:
         result=found.result,
         free=_free(stop(parts), stop(parts.slope(stiffness))),
     )
-    return there, stop(parts).motion(found.x)
 
 
 def _free(parts, slope):

@@ -6,14 +6,13 @@ from typing import Any
 import numpy as np
 
 from ..numerics.result import Result
-from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes
+from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
 from .files import write_numbers
 from .fit_report import fit_as_dict
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient
 from .rotor_run import RotorRun
 from .rotor_scene import RotorScene
-from .rotor_warnings import mode_numbers, rotor_warnings
 
 UNITS: dict[str, str] = dict(
     zip(STATION_FREEDOMS, ("m", "m", "m", "rad", "rad"), strict=True)
@@ -35,7 +34,9 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         `critical_speed` [rad/s] with `critical_whirl` and `critical_damping_ratio`;
         `static`: `station` [m], `displacement` (station, 5), `bearing`,
         `bearing_station`, `load` (bearing, 5), `stiffness` (bearing, 5, 5);
-        `campbell`: `speed`, and `frequency`, `damping_ratio`, `whirl` (speed, mode);
+        `campbell`: `speed`, and `frequency`, `damping_ratio`, `whirl` (speed, mode),
+        and of modes that become unstable `onset_speed` [rad/s] with `onset_frequency`
+        [Hz] and `onset_mode`, from 0;
         `response`: `method`, `frequency` [Hz], `coordinate` ("uy_1": uy of station 1),
         `amplitude` (point, coordinate), and unless it is linear `stable`,
         `multipliers` (point, multiplier, real and imaginary part), `events` (`kind`,
@@ -58,7 +59,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
     if run.settled is not None:
         parts["static"] = _static(run)
     if run.campbell is not None and run.task.campbell is not None:
-        parts["campbell"] = _campbell(run.campbell, run.task.campbell)
+        parts["campbell"] = _campbell(run.campbell, run.task.campbell, run.onsets)
     if run.response is not None:
         parts["response"] = _response(run.response)
     if run.transient is not None:
@@ -68,7 +69,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         **parts,
         "result": worst.label,
         "message": rotor_message(run),
-        "warnings": rotor_warnings(run),
+        "warnings": list(run.warnings),
         "inputs": run.task.inputs,
         "version": __version__,
     }
@@ -83,6 +84,22 @@ def rotor_message(run: RotorRun) -> str:
     if run.converged:
         return "converged"
     return "; ".join(f"{one.part}: {one.message}" for one in run.failures)
+
+
+def mode_numbers(found: Modes) -> list[tuple[str, np.ndarray]]:
+    """Frequency [Hz], damping ratio and whirl of modes, over speeds too.
+
+    Args:
+        found: As NumPy holds it.
+    """
+    value = np.asarray(found.eigenvalue)
+    size = np.abs(value)
+    ratio = -np.real(value) / np.where(size == 0, 1.0, size)
+    return [
+        ("frequency", np.imag(value) / _TURN),
+        ("damping_ratio", np.where(size == 0, 0.0, ratio)),
+        ("whirl", np.asarray(found.whirl)),
+    ]
 
 
 def write_rotor_json(path: str | Path, run: RotorRun) -> None:
@@ -199,9 +216,15 @@ def _fits(task: RotorScene) -> list[dict[str, Any]]:
     ]
 
 
-def _campbell(found: Modes, speeds: np.ndarray) -> dict[str, Any]:
+def _campbell(
+    found: Modes, speeds: np.ndarray, onsets: tuple[Onset, ...]
+) -> dict[str, Any]:
     numbers = {name: values.tolist() for name, values in mode_numbers(found)}
-    return {"speed": speeds.tolist(), **numbers}
+    begun = {
+        f"onset_{name}": [getattr(onset, name) for onset in onsets]
+        for name in ("speed", "frequency", "mode")
+    }
+    return {"speed": speeds.tolist(), **numbers, **begun}
 
 
 def _response(found: RotorResponse) -> dict[str, Any]:

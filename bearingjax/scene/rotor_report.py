@@ -6,11 +6,11 @@ from ..rotor import STATION_FREEDOMS
 from .fit_report import fit_report
 from .report import without_round_off
 from .rotor_motion import RotorResponse, RotorTransient
+from .rotor_output import mode_numbers
 from .rotor_run import RotorRun
-from .rotor_warnings import RPM, mode_numbers, rotor_warnings, rpm
 
 _RULE = "-" * 78
-_HZ = 0.5 / np.pi
+_HZ, _RPM = 0.5 / np.pi, 30.0 / np.pi
 _WHIRL = {1: "forward", -1: "backward", 0: "-"}
 _AXIAL = 0.9
 """Share of the largest motion above which a motion along the shaft is the mode [1]."""
@@ -35,7 +35,7 @@ def rotor_report(run: RotorRun) -> str:
         parts.append(_response(run, run.response))
     if run.transient is not None:
         parts.append(_transient(run, run.transient))
-    notes = [f"warning: {text}" for text in rotor_warnings(run)]
+    notes = [f"warning: {text}" for text in run.warnings]
     return f"\n{_RULE}\n".join(parts) + "".join(f"\n{note}" for note in notes)
 
 
@@ -151,7 +151,7 @@ def _critical(run):
     rows = zip(*(np.asarray(part)[there] for part in parts), strict=True)
     for k, (speed, ratio, whirl, shape) in enumerate(rows):
         lines.append(
-            f"{k + 1:4d}{speed * RPM:12.5g}{speed:12.5g}{_clean(ratio):12.4g}"
+            f"{k + 1:4d}{speed * _RPM:12.5g}{speed:12.5g}{_clean(ratio):12.4g}"
             f"  {_whirl(whirl, shape, _length(run))}"
         )
     return "\n".join(lines)
@@ -169,6 +169,11 @@ def _campbell(run):
         lines.append(
             f"{k + 1:4d}{frequency[0, k]:11.5g} Hz{frequency[-1, k]:11.5g} Hz"
             f"  {_whirl(whirl[-1, k], shape[k], _length(run))}"
+        )
+    for onset in run.onsets:
+        lines.append(
+            f"{onset.mode + 1:4d} is unstable from {rpm(onset.speed)}"
+            f" ({onset.speed:.5g} rad/s) on, at {onset.frequency:.5g} Hz"
         )
     return "\n".join(lines)
 
@@ -234,3 +239,12 @@ def _transient(run, found: RotorTransient):
 def _clean(value, digits=12):
     """Rounded, without a minus before a zero."""
     return round(float(value), digits) + 0.0
+
+
+def rpm(speed: float) -> str:
+    """A speed for people.
+
+    Args:
+        speed: [rad/s].
+    """
+    return f"{float(speed) * _RPM:.5g} rpm"

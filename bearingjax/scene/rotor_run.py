@@ -14,14 +14,17 @@ from ..numerics.types import as_array
 from ..rotor import (
     CriticalSpeeds,
     Modes,
+    Onset,
     Rotor,
     Settled,
     campbell,
     critical_speeds,
+    instability_onsets,
     modes,
     settle,
     settle_over,
 )
+from .fit_table import fit_facts, turning
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient, respond, run_in_time
 from .rotor_scene import RotorScene
@@ -56,6 +59,7 @@ class RotorRun:
         modes: At that speed.
         critical: Critical speeds.
         campbell: Modes over `task.campbell`, the speeds [rad/s].
+        onsets: Where modes of it become unstable.
         response: Periodic vibration over the frequency.
         transient: Motion in time.
         failures: Parts that were not solved.
@@ -68,6 +72,7 @@ class RotorRun:
     modes: Modes | None = None
     critical: CriticalSpeeds | None = None
     campbell: Modes | None = None
+    onsets: tuple[Onset, ...] = ()
     response: RotorResponse | None = None
     transient: RotorTransient | None = None
     failures: tuple[Failure, ...] = ()
@@ -80,6 +85,8 @@ class RotorRun:
 
 
 _RPM = 30.0 / np.pi
+_DRIFT = 0.5e-6
+"""Change of radial clearance over the speed that is worth a word [m]."""
 _COARSE = 1e-3
 """Error of the stiffness over the speed that is worth a word [1]."""
 _STAGES = {
@@ -145,7 +152,7 @@ def run_rotor(task: RotorScene, told: Callable[[str], None] | None = None) -> Ro
         task=task,
         rotor=rotor,
         failures=tuple(parts.failures),
-        warnings=(*task.warnings, *parts.warnings),
+        warnings=(*task.warnings, *parts.warnings, *task_warnings(task)),
         **parts.found,
     )
 
@@ -182,7 +189,9 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     if follows is None:
         return None
     with parts.part("critical speeds"):
-        found["critical"] = _held(critical_speeds(follows, count=count))
+        found["critical"] = _held(
+            critical_speeds(follows, count=count, operating_speed=task.speed)
+        )
     if follows is not settled.rotor and (found["critical"].speed > highest).any():
         parts.warnings.append(
             f"above {highest * _RPM:.5g} rpm critical speeds are those of the stiffness"
@@ -193,6 +202,9 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
         with parts.part("campbell"):
             lines = campbell(follows, task.campbell, count=count)
             found["campbell"] = _held(lines)
+            found["onsets"] = instability_onsets(
+                follows, task.campbell, found["campbell"]
+            )
     return follows
 
 
@@ -227,6 +239,61 @@ def top_speed(task: RotorScene) -> float:
         ends = asked.begin, asked.end
         speeds += ends if asked.speed is None else [abs(asked.speed)]
     return max(*speeds, 1.0)
+
+
+def task_warnings(task: RotorScene) -> Iterator[str]:
+    """What is doubtful about the bearings at the speeds that are asked for, in words.
+
+    Args:
+        task: From `read_rotor`.
+    """
+    top = max(map(abs, (task.speed, *_run_to(task))))
+    for mount in {mount.name: mount for mount in task.mounts}.values():
+        if mount.installed is not None:
+            for text in mount.installed.speed_warnings(top):
+                yield f"{mount.name}: {text}"
+    yield from held_fits(task)
+
+
+def held_fits(task: RotorScene) -> Iterator[str]:
+    """Bearings whose rings grow over the speeds that are asked for, which their fits
+    leave out, in words.
+
+    Args:
+        task: From `read_rotor`.
+    """
+    for mount, _ in task.seats:
+        assert mount.element is not None  # it has fits
+        bearing = mount.element.bearing
+        left = {
+            speed: float(fit_facts(fits, bearing).operating.radial_clearance)
+            for speed in (task.speed, *_ends(task))
+            if (fits := turning(mount.fits, speed)) is not None
+        }
+        far = max(left, key=lambda speed: abs(left[speed] - left[task.speed]))
+        if abs(left[far] - left[task.speed]) > _DRIFT:
+            yield (
+                f"{mount.name}: all speeds are solved with the radial clearance at"
+                f" {task.speed * _RPM:.5g} rpm, {1e6 * left[task.speed]:.4g} µm; at"
+                f" {far * _RPM:.5g} rpm its fits leave {1e6 * left[far]:.4g} µm"
+            )
+
+
+def _ends(task: RotorScene) -> list[float]:
+    """Ends of the speeds that a scene asks for [rad/s]."""
+    lines = task.campbell
+    return [*(() if lines is None else map(float, lines[[0, -1]])), *_run_to(task)]
+
+
+def _run_to(task: RotorScene) -> list[float]:
+    """Ends of the speeds at which it runs, beside the one of the scene [rad/s]."""
+    ends: list[float] = []
+    asked, motion = task.response, task.transient
+    if asked is not None:
+        ends += (asked.begin, asked.end) if asked.speed is None else (asked.speed,)
+    if motion is not None and motion.speed_to is not None:
+        ends.append(motion.speed_to)
+    return ends
 
 
 def _nonlinear(task: RotorScene, rotor: Rotor, linear: Any, parts: _Parts) -> None:

@@ -40,34 +40,34 @@ A freedom that is prescribed, or left out of `free`, is held (`solution.held`): 
 on it is an error, or under `jit` the result code `no_load_path`, because its support
 would take it. What the support passes to the bearing is in `force`.
 
-Failed cases in a gradient: the derivative of a failed solve is NaN, and NaN times the
-zero of a mask is NaN. Replace the load that fails before it is solved::
+Failed cases in a gradient: the derivative of a failed solve is NaN. Where a mask leaves
+it out it is zero, of a life (`rating_life`) too::
 
-    solve = jax.vmap(lambda load: solve_load(element, load, throw=False))
-    good = solve(loads).converged
-    safe = jnp.where(good[:, None], loads, a_load_that_converges)
-    moved = solve(safe).displacement
-    total = jnp.sum(jnp.where(good[:, None], moved, 0.0))
+    s = jax.vmap(lambda load: solve_load(element, load, throw=False))(loads)
+    total = jnp.sum(jnp.where(s.converged[:, None], s.displacement, 0.0))
+
+Mask what was solved itself: NaN comes back from what else is computed from a failed
+case before the mask.
 
 Many devices in a program of your own
 -------------------------------------
 
 `sweep` spreads its cases itself, and cannot be traced. `jax.shard_map` of a mapped
-`solve_load` needs `check_vma=False`: derivative rules know of no axes of a mesh. A
-batch of a size that is left open (`jax.export.symbolic_shape`) goes through
-`jax.lax.map`, not through `jax.vmap`, which divides a batch by its size.
+`solve_load` over a `jax.sharding.Mesh` needs `check_vma=False`: derivative rules know
+of no axes of a mesh. A batch of a size that is left open (`jax.export.symbolic_shape`)
+goes through `jax.lax.map`, not through `jax.vmap`, which divides a batch by its size.
 
 A program that waits for ever, without load on the processor
 ------------------------------------------------------------
 
-jaxlib 0.10 hands a large batch of matrices (`jax.vmap` of `jnp.linalg.eig`, `solve`) to
-LAPACK in parts, on XLA's threads, by a thread that waits for the others. As many such
-batches at once as there are cores, and none is left to do the work: on two cores two
-batches that do not depend on each other are enough, as in a `vmap` of critical speeds
-over rotors. `jax.lax.map` instead of `vmap` avoids it; so does, with one device,
-`PJRT_NPROC=1` in the environment (one thread;
-`XLA_FLAGS=--xla_cpu_multi_thread_eigen=false` does not). Solves of bearings, `sweep` on
-any number of devices among them, pass one matrix after the other to LAPACK.
+jaxlib 0.10 hands a large batch of matrices (`jax.vmap` of `solve` or `eig` of
+`jnp.linalg`) to LAPACK in parts, on XLA's threads, by a thread that waits for the
+others. As many such batches at once as there are cores, and none is left to do the
+work: on two cores two batches that do not depend on each other are enough. The package
+passes one matrix after the other. In functions of your own that are mapped
+`jax.lax.map` in place of `jax.vmap` avoids it; so does, with one device, `PJRT_NPROC=1`
+in the environment (one thread; `XLA_FLAGS=--xla_cpu_multi_thread_eigen=false` does
+not).
 """
 
 from .cases import Cases as Cases

@@ -19,6 +19,7 @@ from ..design.checks import check, in_range, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
 from ..element.inertia import Speed
+from ..numerics.implicit import unless_failed
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
@@ -404,7 +405,11 @@ def solution_loads(
 
 
 @eqx.filter_jit
-def _life(bearing, solution, conditions, speed, lamina_load) -> Life:
+def _life(bearing, solution, *others) -> Life:
+    return unless_failed(_life_of, (bearing, solution, *others), solution.converged)
+
+
+def _life_of(bearing, solution, conditions, speed, lamina_load) -> Life:
     speed = solution.speed if speed is None else speed
     loads = lamina_load
     if loads is None:

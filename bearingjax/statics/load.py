@@ -19,8 +19,8 @@ from ..design import (
 from ..element.bearing_element import BearingElement, check_element
 from ..element.bearing_model import BearingModel
 from ..element.inertia import Speed
-from ..numerics.implicit import stop
-from ..numerics.result import raise_unless_converged
+from ..numerics.implicit import stop, unless_failed
+from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from .balance import balance_of
 from .load_case import LoadCase, Prescribed, Vector, load_case
@@ -106,7 +106,8 @@ def solve_load(
 
     Returns:
         Solution, differentiable with respect to design, load, prescribed values and
-        speeds (implicit function theorem).
+        speeds (implicit function theorem). Derivatives of a failed solve are NaN, and
+        zero where it is masked.
 
     Raises:
         TypeError: For a bearing in place of an element, or text in place of numbers.
@@ -169,7 +170,12 @@ def _solve(
     rows = rows_of(stop(element.bearing))
     begin = beginning(rows, frozen, still, stop(case.start))
     minimum = search(frozen, still, begin, options)
-    return solution_of(element, model, balance, case, options, begin, minimum)
+
+    def solution(*given):
+        return solution_of(*given, options, begin, minimum)
+
+    given, solved = (element, model, balance, case), minimum.result == Result.CONVERGED
+    return unless_failed(solution, given, solved)
 
 
 def raise_if_failed(solution: Solution) -> Solution:

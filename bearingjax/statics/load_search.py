@@ -18,7 +18,7 @@ from jaxtyping import Array, Float
 from ..design import AbstractBallBearing, SetRow
 from ..element.bearing_model import BearingModel, Solved
 from ..numerics import lanes
-from ..numerics.implicit import attach_by, unless_failed
+from ..numerics.implicit import attach_by
 from ..numerics.linear import solve
 from ..numerics.minimise import (
     Evaluation,
@@ -27,7 +27,6 @@ from ..numerics.minimise import (
     TrustRegionNewton,
     continuation,
 )
-from ..numerics.result import Result
 from ..numerics.types import Scalar
 from .balance import Balance
 from .options import SolveOptions
@@ -171,8 +170,9 @@ def differentiable(
 ) -> Float[Array, "6"]:
     """The unknowns found, differentiable by the implicit function theorem [m].
 
-    Derivatives of a failed search are NaN. By the load they are infinite if no contact
-    carries anything: the least load moves the ring to the end of its clearance.
+    By the load derivatives are infinite if no element
+    bears on both rings, at rest or at speed: the least load moves the ring to the end
+    of its clearance. By all else they are then zero.
 
     Args:
         model: The bearing at the speeds.
@@ -188,10 +188,8 @@ def differentiable(
         return -_by_stiffness(jacobian, change, model.has_potential)
 
     y = attach_by(_residual, minimum.x, args, correction)
-    nothing = model.magnitude(minimum.memory) == 0
-    loose = jnp.where(nothing, balance.free, 0.0)
-    y = _without_limit(y, balance.along(balance.load), loose)
-    return unless_failed(y, minimum.result == Result.CONVERGED)
+    loose = jnp.where(model.is_apart(minimum.memory), balance.free, 0.0)
+    return _without_limit(y, balance.along(balance.load), loose)
 
 
 def _by_stiffness(stiffness, force, symmetric):
@@ -210,7 +208,7 @@ def _by_stiffness(stiffness, force, symmetric):
 
 @jax.custom_jvp
 def _without_limit(y, load, loose):
-    """`y`, whose derivatives by the load along it are infinite where it is loose."""
+    """`y`, with infinite derivatives by the load, and no others, where it is loose."""
     return y
 
 
@@ -219,6 +217,7 @@ def _rule(primals, tangents):
     y, _, loose = primals
     if isinstance(change, SymbolicZero):
         change = jnp.zeros_like(y)
+    change = jnp.where(loose > 0, 0.0, change)
     if not isinstance(by_load, SymbolicZero):
         change = change + jnp.where(loose > 0, _infinite(by_load), 0.0)
     return _without_limit(*primals), change

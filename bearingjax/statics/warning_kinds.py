@@ -175,7 +175,8 @@ def _truncated_words(size, where):
 
 def _land_words(size, where):
     return (
-        "balls beyond the bottom of the groove, on the cylindrical land beside it:"
+        "balls beyond the bottom of the groove, on the cylindrical land beside it, with"
+        f" more than {100.0 * of.LAND_SHARE:g} % of a contact's load:"
         f" {where or f'{size:.0f} balls'}; pressure and stiffness there are worked out"
         " with the curvature of the groove, a land presses harder and is softer"
     )

@@ -71,6 +71,8 @@ LARGEST_ANGLE = math.radians(75.0)
 """Largest angle of a contact from the middle of its raceway [rad]. A shoulder that
 reaches so far is 0.39 ball diameters high: twice the usual, and more than any."""
 
+LAND_SHARE = 0.05
+"""Share of a contact's load beyond the bottom of its groove above which it is told."""
 SMALLEST_LIFT = 0.05
 """Centrifugal force of a lifted ball over the largest load of a contact up to which it
 does not matter [1]: what such balls would carry at rest is less than that, and their
@@ -418,18 +420,28 @@ def truncated_balls(solution: Solution) -> str:
 
 
 def on_land(solution: Solution) -> Any:
-    """Where balls carry load beyond the bottom of their groove (ball, 2).
+    """Where balls carry more than `LAND_SHARE` of a load beyond the bottom of their
+    groove (ball, 2).
 
     There the raceway goes on as a cylinder, whose normal has no part along the axis.
+    Of a Hertzian contact that is cut at x of its half-length from the middle, the share
+    1/2 - 3x/4 + x³/4 lies beyond; in the middle, and past it, one half is counted.
     """
-    balls = _of_balls(solution)
-    carrying = above_round_off(balls.contact_load) & (balls.contact_angle == 0.0)
-    parts = [
-        flags.reshape(flags.shape[0], 2, -1).any(axis=2)
-        & isinstance(bearing, AngularContactBallBearing)
-        for bearing, flags in _by_row(solution, carrying)
-    ]
-    return namespace(solution.result).concatenate(parts)
+    balls, xp, parts = _of_balls(solution), namespace(solution.result), []
+    carrying = above_round_off(balls.contact_load)
+    # An open ellipse has no length.
+    half = xp.where(carrying, balls.semi_axes[..., 1], 1.0)
+    cut = xp.where(carrying, balls.contact_angle / half, xp.inf)
+    for bearing, of_row in _by_row(solution, cut):
+        sides = of_row.reshape(of_row.shape[0], 2, -1).min(axis=2)
+        if not isinstance(bearing, AngularContactBallBearing):
+            parts.append(sides < -xp.inf)
+            continue
+        osculations = xp.stack([bearing.outer_osculation, bearing.inner_osculation])
+        x = xp.clip(sides * osculations * bearing.ball_diameter, 0.0, 1.0)
+        share = 0.5 - 0.75 * x + 0.25 * x**3
+        parts.append(share > LAND_SHARE)
+    return xp.concatenate(parts)
 
 
 def on_land_count(solution: Solution) -> Any:

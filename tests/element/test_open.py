@@ -126,6 +126,9 @@ def test_derivatives_of_an_open_bearing_are_finite():
     energy, force = jax.value_and_grad(element.energy)(jnp.zeros(12))
     assert float(energy) == 0.0
     np.testing.assert_array_equal(force, np.zeros(12))
+    model = element.model()
+    apart = [model.is_apart(model.solve(jnp.zeros(12).at[7].set(u))) for u in (0, 1e-3)]
+    assert apart == [True, False]
     slopes = jax.grad(lambda e: jnp.sum(e.force(jnp.zeros(12))))(element)
     assert all(np.all(np.isfinite(x)) for x in jax.tree.leaves(slopes))
 

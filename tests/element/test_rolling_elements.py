@@ -138,3 +138,17 @@ def test_kinematics_of_ones_own_work_or_are_refused():
     np.testing.assert_array_equal(mine.force(Q), plain.force(Q))
     with pytest.raises(ValueError, match="has no method `roller`"):
         bj.BearingElement(taper(N), kinematics=OnlyForBalls())
+
+
+def test_methods_under_jit_hold_their_own_design():
+    """Of one structure, and so of one hash; numbers tell them apart."""
+    bearing = bj.CylindricalRollerBearing(7, 0.0725, 0.014, 0.01372)
+    one = bj.BearingElement(bearing, quadrature=bj.Midpoint(4))
+    other = eqx.tree_at(lambda e: e.bearing.roller_length, one, jnp.asarray(0.015))
+    q = jnp.zeros(12).at[7].set(-5e-6)
+    found = [float(jax.jit(element.energy)(q)) for element in (one, other)]
+    assert hash(one) == hash(other) and found[0] != found[1]
+    expected = [float(element.energy(q)) for element in (one, other)]
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+    with pytest.raises(TypeError, match="a design that is traced cannot be hashed"):
+        jax.eval_shape(lambda element: jax.jit(element.energy)(q), one)

@@ -174,13 +174,40 @@ def test_stop():
 
 def test_what_failed_has_no_derivative():
     def doubled(x, solved):
-        return jnp.sum(2.0 * unless_failed(x, solved))
+        return jnp.sum(unless_failed(lambda x: 2.0 * x, (x,), solved))
 
     slope = jax.jit(jax.value_and_grad(doubled))
     x = jnp.asarray([1.0, -2.0])
     assert np.array_equal(slope(x, jnp.asarray(True))[1], [2.0, 2.0])
     value, lost = slope(x, jnp.asarray(False))
     assert float(value) == -2.0 and np.isnan(lost).all()
+
+
+def test_what_failed_and_is_masked_spoils_no_derivative():
+    """√x beside 1/x, of a design p that all cases share and an x of their own."""
+
+    def of(p, x):
+        return unless_failed(lambda p, x: (p * jnp.sqrt(x), p / x), (p, x), x > 0)
+
+    x, good = jnp.asarray([4.0, -1.0, 0.0, jnp.nan]), jnp.asarray([1.0, 0, 0, 0]) > 0
+
+    def masked(p, x):
+        roots, ratios = jax.vmap(of, (None, 0))(p, x)
+        return jnp.sum(jnp.where(good, roots + ratios, 0.0))
+
+    for way in (jax.jacrev, jax.jacfwd):
+        slopes = jax.jit(way(masked, (0, 1)))(3.0, x)
+        assert float(slopes[0]) == 2.25
+        np.testing.assert_array_equal(slopes[1], [0.75 - 3.0 / 16.0, 0, 0, 0])
+        bends = jax.jit(jax.jacfwd(way(masked, 1), 1))(3.0, x)
+        expected = np.zeros((4, 4))
+        expected[0, 0] = -3.0 / 32.0 + 6.0 / 64.0
+        np.testing.assert_allclose(bends, expected, atol=1e-15)
+        # Nothing cancels: what changes spoils all that follows from it.
+        lost = way(lambda p, x: of(p, x)[0] - of(p, x)[0], (0, 1))(3.0, x[1])
+        assert np.isnan(lost).all()
+    _, (root, _) = jax.jvp(of, (3.0, x[1]), (0.0, 0.0))
+    assert float(root) == 0.0
 
 
 def test_expansion_with_an_argument_of_each_function():

@@ -1,7 +1,4 @@
-"""Unrolled symmetric solves against LAPACK, and LAPACK one matrix at a time."""
-
-import re
-from functools import partial
+"""Unrolled symmetric solves against LAPACK."""
 
 import jax
 import jax.numpy as jnp
@@ -10,7 +7,7 @@ import pytest
 from tolerances import ROUNDING, SOLVER
 
 from bearingjax.numerics import smallest_pivot, solve_symmetric
-from bearingjax.numerics.linear import dot, lengths, norm, quadratic, solve_any, trace
+from bearingjax.numerics.linear import dot, lengths, norm, quadratic, trace
 
 solve_many = jax.jit(jax.vmap(solve_symmetric))
 pivot_many = jax.jit(jax.vmap(smallest_pivot))
@@ -131,47 +128,3 @@ def test_lengths_have_derivatives_at_zero():
     np.testing.assert_array_equal(lengths(vectors), [5.0, 0.0])
     slopes = jax.grad(lambda v: jnp.sum(lengths(v)))(jnp.asarray(vectors))
     np.testing.assert_allclose(slopes, [[0.6, -0.8], [0.0, 0.0]], rtol=ROUNDING)
-
-
-@pytest.mark.parametrize("positive", [False, True])
-def test_any_number_of_unknowns_by_lapack(positive):
-    """Mapped twice, held or not, and derivatives of the second order in both modes."""
-    rng = np.random.default_rng(4)
-    matrix, rhs = positive_definite(rng, 3, 9), rng.normal(size=(3, 2, 9))
-    if not positive:
-        matrix = matrix + 0.1 * rng.normal(size=matrix.shape)
-    change, a, b = rng.normal(size=(9, 9)), *rng.normal(size=(2, 9))
-    change = jnp.asarray(change + change.T)
-
-    def second(mode, solve, matrix, rhs):
-        def slope(t):
-            return jax.jvp(
-                lambda s: a @ solve(matrix + s * change, rhs + s * b), (t,), (1.0,)
-            )[1]
-
-        return (jax.jacfwd if mode == "forward" else jax.jacrev)(slope)(0.0)
-
-    def mapped(function):
-        return jax.jit(jax.vmap(jax.vmap(function, (None, 0))))(matrix, rhs)
-
-    ours = partial(solve_any, positive=positive)
-    want = np.linalg.solve(matrix[:, None], rhs[..., None])[..., 0]
-    np.testing.assert_allclose(mapped(ours), want, rtol=SOLVER)
-    plain = mapped(partial(second, "forward", jnp.linalg.solve))
-    for mode in ("forward", "reverse"):
-        np.testing.assert_allclose(mapped(partial(second, mode, ours)), plain, 1e-7)
-
-
-@pytest.mark.parametrize("positive", [False, True])
-def test_no_batch_of_matrices_reaches_lapack(positive):
-    """jaxlib would divide it among threads, which may wait for each other for ever."""
-
-    def slope(matrix):
-        return jax.jacrev(lambda m: solve_any(m, m[0], positive))(matrix)
-
-    matrix = jnp.asarray(positive_definite(np.random.default_rng(3), 20, 30))
-    text = jax.jit(jax.vmap(slope)).lower(matrix).as_text()
-    calls = re.findall(
-        r"@lapack_d(?:potrf|getrf)_ffi\(.*\) -> \(tensor<([0-9x]+)xf64>", text
-    )
-    assert calls and set(calls) <= {"30x30", "1x30x30"}

@@ -1,5 +1,7 @@
 """Branches over frequency: folds, flips, Neimark-Sacker points, and how they end."""
 
+from typing import Any
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -21,7 +23,10 @@ from bearingjax.rotor.vibration import (
     solve_orbit,
     trace,
 )
+from bearingjax.rotor.vibration.branch import _flip, _pairs
+from bearingjax.rotor.vibration.continuation import Place
 
+pytestmark = pytest.mark.filterwarnings("ignore:follow. .* are unstable")
 BALANCE, SHOOTING = HarmonicBalance(7, 32, steps=24), Shooting(24)
 STEPS = Steps(first=0.05, largest=0.5)
 FORCE, CUBIC, RATIO = 0.15, 0.05, 0.03
@@ -42,8 +47,10 @@ def folds_of_one_harmonic():
 @pytest.fixture(scope="module")
 def branches():
     system = duffing(CUBIC, FORCE, RATIO)
+    with pytest.warns(match=r"^follow: \d+ of \d+ periodic vibrations are unstable"):
+        balance = follow(system, 0.6, 1.6, BALANCE, steps=STEPS)
     return {
-        "balance": follow(system, 0.6, 1.6, BALANCE, steps=STEPS),
+        "balance": balance,
         "shooting": follow(system, 0.6, 1.6, SHOOTING, steps=STEPS),
         "parameter": follow(
             system, 0.6, 1.6, BALANCE, parameter=ChangeOfParameter(), steps=STEPS
@@ -70,6 +77,27 @@ def test_duffing(branches):
             assert np.abs(event.multipliers - 1.0).min() < 1e-4
             half = 0.5 * np.ptp(event.displacement, axis=0)
             assert np.allclose(half, event.amplitude, rtol=0.01)  # between the samples
+
+
+def test_hundreds_of_pairs_of_multipliers():
+    """Their product, of 820 factors near 0.05, is no number above zero."""
+    blank: Any = 7 * [None]
+    for last, sign in ((0.99, 1.0), (1.01, -1.0)):
+        turned = last * np.array([[np.cos(1), -np.sin(1)], [np.sin(1), np.cos(1)]])
+        matrix = np.diag([*np.linspace(0.95, 0.98, 39), 0.0, 0.0])
+        matrix[39:, 39:] = turned
+        point = Place(*blank)._replace(monodromy=matrix)
+        assert np.isclose(sign * _pairs(point), abs(last**2 - 1.0))
+        assert _flip(point) > 0
+
+
+def test_a_branch_ends_at_frequency_zero(branches):
+    system = duffing(CUBIC, FORCE, RATIO)
+    branch = follow(system, 0.6, -0.6, BALANCE, steps=STEPS)
+    assert branch.ending == Ending.REST
+    assert 0 < branch.frequency[-1] < 0.5 and (branch.frequency > 0).all()
+    with pytest.raises(ValueError, match="`begin` is 0 rad/s"):
+        follow(system, 0.0, 0.6, BALANCE, steps=STEPS)
 
 
 def test_nothing_is_compiled_anew(branches):

@@ -4,6 +4,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 from machines import friswell, paper
 from tolerances import DIFFERENCE, PUBLISHED, SOLVER
 
@@ -61,6 +62,10 @@ def test_they_lie_on_the_campbell_diagram():
         np.testing.assert_allclose(2 * np.pi * at.frequency[k], speed, rtol=SOLVER)
         np.testing.assert_allclose(at.damping_ratio[k], ratio, rtol=DIFFERENCE)
     assert critical.damping_ratio.min() > 1e-3
+    near = "^critical_speeds: -.* rpm lies within 10 % of the forward critical speed of"
+    with pytest.warns(match=near):
+        speed = -1.05 * float(critical.speed[1])
+        bj.critical_speeds(rotor, count=4, operating_speed=speed)
     # Had the search not found the second one, the count would have told.
     rate = -critical.damping_ratio * critical.speed
     point = jnp.stack([rate, critical.speed], axis=1)

@@ -308,3 +308,40 @@ def test_a_rotor_that_nothing_holds():
 def test_bad_input_is_named(call, error, shown):
     with pytest.raises(error, match=shown):
         call(paper(1e8, 1e8))
+
+
+class Whirling(AbstractSupport):
+    """Pushes along the whirl, in proportion to the speed; and damps."""
+
+    station: int = eqx.field(static=True)
+    across: Any
+    constant: Any
+    damping: Any
+    housing: None = None
+
+    def force(self, motion, velocity, speed, angle=0.0):
+        x, y, z, *_ = motion
+        push = self.across * speed + self.constant
+        pushed = jnp.stack([push * y, -push * x, 0 * z, 0 * z, 0 * z])
+        return 1e6 * motion + self.damping * velocity + pushed
+
+
+def test_the_onset_of_instability():
+    """A push κΩ across: λ = iω where κΩ = cω. Signs of c and κ as they come."""
+    shaft = bj.Shaft([-0.1, 0.0, 0.1], 0.04)
+    speeds = np.linspace(0.0, 600.0, 4)
+
+    def onsets(across, constant, damping):
+        support = Whirling(1, *map(jnp.asarray, (across, constant, damping)))
+        rotor = bj.Rotor(shaft, [bj.PointMass(1, 5.0)], [support], rigid=True)
+        found = bj.campbell(rotor, speeds, count=3)
+        return bj.rotor.instability_onsets(rotor, speeds, found), float(rotor.mass)
+
+    (found,), mass = onsets(50.0, 0.0, 40.0)
+    natural = np.sqrt(1e6 / mass)
+    np.testing.assert_allclose(found.speed, 0.8 * natural, rtol=DIFFERENCE)
+    np.testing.assert_allclose(TURN * found.frequency, natural, rtol=DIFFERENCE)
+    # A damping ratio of -1e-6 is the noise of a tangent; one of -1e-3 is there at rest.
+    assert not onsets(0.0, 2.0, 0.0)[0]
+    (found,), _ = onsets(0.0, 2e3, 0.0)
+    assert found.speed == 0.0

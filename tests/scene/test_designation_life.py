@@ -19,8 +19,7 @@ from bearingjax.scene.life_table import (
     not_published,
     rating_origins,
 )
-from bearingjax.scene.rotor_run import RotorRun
-from bearingjax.scene.rotor_warnings import rotor_warnings
+from bearingjax.scene.rotor_run import task_warnings
 
 LOAD = '[operating]\nload = { Fy = "-1 kN" }\n'
 
@@ -179,10 +178,8 @@ FAST = {
         'outer_diameter = "25 mm"\ndivisions = 2\n'
         '[[rotor.bearings]]\nstation = 1\nbearing = "own"\n'
         '[bearings.own]\ndesignation = "6205"\n',
-        lambda path: rotor_warnings(RotorRun(read_rotor(path), None)),
-        lambda path: rotor_warnings(
-            RotorRun(read_rotor(path, ["rotor.speed=2000 rpm"]), None)
-        ),
+        lambda path: task_warnings(read_rotor(path)),
+        lambda path: task_warnings(read_rotor(path, ["rotor.speed=2000 rpm"])),
     ),
 }
 

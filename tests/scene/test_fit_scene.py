@@ -27,9 +27,8 @@ from bearingjax.scene.fit_report import fit_as_dict
 from bearingjax.scene.fit_table import fit_facts
 from bearingjax.scene.optimise_report import _variables
 from bearingjax.scene.report import design_sections
-from bearingjax.scene.rotor_run import RotorRun
+from bearingjax.scene.rotor_run import RotorRun, task_warnings
 from bearingjax.scene.rotor_supports import support_of
-from bearingjax.scene.rotor_warnings import rotor_warnings
 from bearingjax.scene.sweep_run import _on_seats
 from bearingjax.statics.options import SolveOptions
 from bearingjax.statics.sweep import Sweep
@@ -706,14 +705,14 @@ def test_what_a_rotor_tells_of_its_fits(scene):
     assert "own at stations 0, 1, its inner ring turning at 30000 rpm" in text
     assert "fits: shaft k5, housing H7; sizes of the solve: middle" in text
     left = expected["radial_clearance"]
-    fast, *_, told = rotor_warnings(run)
+    fast, *_, told = task_warnings(task)
     assert fast.startswith("own: speed of 30000 rpm, above the limiting speed")
     words = f"with the radial clearance at 30000 rpm, {1e6 * left['operating']:.4g} µm"
     assert words in told and "; at 60000 rpm its fits leave " in told
     # Speeds that are not asked for are no matter.
     slow = read_rotor(path, ["rotor.bearings.0.bearing=own", "rotor.campbell.to=1 rpm"])
     slow = dataclasses.replace(slow, speed=0.0)
-    assert rotor_warnings(RotorRun(slow, None)) == []
+    assert not list(task_warnings(slow))
     odd = read_rotor(
         path,
         [

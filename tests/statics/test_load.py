@@ -1,5 +1,7 @@
 """The load solve: loads and displacements mixed, result codes, derivatives."""
 
+import functools
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -267,31 +269,57 @@ def test_a_batch_is_its_single_solutions_stacked(bearing):
             function(batch)
 
 
-def test_gradient_of_a_batch_past_a_masked_case(tapered):
-    """The load that fails is replaced before it is solved."""
-    loads = jnp.asarray([[0, 0, f, 0, 0, 0] for f in (6e3, -6e3, 3e3)])
+@pytest.mark.parametrize("way", [jax.jacrev, jax.jacfwd])
+def test_gradient_of_a_batch_past_masked_cases(tapered, way):
+    """By a number of the design that all cases share, and by their loads."""
 
-    @with_slopes
-    def total(clearance):
+    def total(x):
+        clearance, *forces = x
         element = eqx.tree_at(
             lambda e: e.bearing.radial_internal_clearance, tapered, clearance
         )
 
-        def solve(loads):
-            return jax.vmap(lambda f: bj.solve_load(element, f, throw=False))(loads)
+        def solve(force):
+            load = jnp.zeros(6).at[2].set(force)
+            s = bj.solve_load(element, load, throw=False)
+            return s.converged, s.displacement[8], bj.rating_life(s).reference_load
 
-        good = solve(loads).converged
-        safe = jnp.where(good[:, None], loads, loads[0])
-        return jnp.sum(jnp.where(good, solve(safe).displacement[:, 8], 0.0))
+        good, moved, load = jax.vmap(solve)(jnp.stack(forces))
+        told = jnp.where(good, 1e3 * moved + 1e-3 * load, 0.0)
+        return jnp.sum(told)
 
-    middle, step = float(tapered.bearing.radial_internal_clearance), 1e-8
-    slope, _ = total(jnp.asarray(middle))
-    _, (after, before) = zip(
-        *(total(jnp.asarray(middle + sign * step)) for sign in (1.0, -1.0)), strict=True
+    total, clearance = (
+        with_slopes(total, way),
+        tapered.bearing.radial_internal_clearance,
     )
-    difference = float(after - before) / (2.0 * step)
-    assert abs(difference) > 0.1
-    assert float(slope) == pytest.approx(difference, rel=1e-6)
+    x = jnp.asarray([float(clearance), 6e3, -6e3, np.nan, 3e3])
+    slopes, _ = total(x)
+    assert slopes[2] == 0 and slopes[3] == 0
+    for k, step in ((0, 1e-8), (1, 1.0), (4, 1.0)):
+        after, before = (total(x.at[k].add(sign * step))[1] for sign in (1.0, -1.0))
+        difference = float(after - before) / (2.0 * step)
+        assert abs(difference) > 1e-6
+        assert float(slopes[k]) == pytest.approx(difference, rel=1e-6)
+
+
+def test_many_devices_and_a_batch_of_open_size(tapered):
+    """The recipes of `bearingjax.statics` for a program of one's own."""
+
+    def moved(load):
+        return bj.solve_load(tapered, load, throw=False).displacement
+
+    loads = jnp.asarray([[0, 0, force, 0, 0, 0] for force in (6e3, 3e3)])
+    mesh = jax.sharding.Mesh(np.asarray(jax.devices()[:1]), ("case",))
+    case = jax.P("case")
+    on_devices = jax.shard_map(
+        jax.vmap(moved), mesh=mesh, in_specs=case, out_specs=case, check_vma=False
+    )
+    found = jax.jit(on_devices)(loads)
+    of_any_size = jax.jit(lambda loads: jax.lax.map(moved, loads))
+    shape = (*jax.export.symbolic_shape("n"), 6)
+    program = jax.export.export(of_any_size)(jax.ShapeDtypeStruct(shape, loads.dtype))
+    for rows in (loads, loads[:1]):
+        np.testing.assert_allclose(program.call(rows), found[: len(rows)], 1e-7, 1e-14)
 
 
 @pytest.mark.parametrize(
@@ -435,32 +463,40 @@ def test_gradient_with_respect_to_load_is_the_compliance(tapered):
     assert np.allclose(compliance @ stiffness, np.eye(5), atol=1e-7)
 
 
-def inside_clearance():
-    """One ball at the load's end of the clearance, and rollers."""
+@functools.cache
+def moved_inside_clearance(name):
+    """How far a radial force moves one ball at its end of the clearance, or rollers, by
+    force and speed, and the slopes."""
     size = dict(radial_internal_clearance=10e-6)
-    return [
-        balls(8, bj.DeepGrooveBallBearing, first_azimuth=-np.pi / 2, **size),
-        bj.CylindricalRollerBearing(7, 0.0725, 0.014, 0.01372, **size),
-    ]
-
-
-@pytest.mark.parametrize("bearing", inside_clearance(), ids=["balls", "rollers"])
-def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(bearing):
-    """No number at zero load; beyond, that of differences, however few elements hold
-    the ring."""
+    if name == "balls":
+        bearing = balls(8, bj.DeepGrooveBallBearing, first_azimuth=-np.pi / 2, **size)
+    else:
+        bearing = bj.CylindricalRollerBearing(7, 0.0725, 0.014, 0.01372, **size)
     element = bj.BearingElement(bearing)
 
     @with_slopes
+    def moved(x):
+        load = jnp.zeros(6).at[1].set(-x[0])
+        return bj.solve_load(element, load, speed=bj.Speed(x[1])).displacement[7]
+
+    return moved
+
+
+@pytest.mark.parametrize("speed", [0.0, 1000.0])
+@pytest.mark.parametrize("name", ["balls", "rollers"])
+def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(name, speed):
+    """No number at zero load, at speed neither: what turns then presses the outer ring
+    alone. Beyond, that of differences, however few elements hold the ring."""
+
     def moved(force):
-        load = jnp.zeros(6).at[1].set(-force)
-        return bj.solve_load(element, load).displacement[7]
+        return moved_inside_clearance(name)(jnp.asarray([force, speed]))
 
     slope, value = moved(0.0)
-    assert float(value) == 0.0 and not np.isfinite(slope)
+    assert float(value) == 0.0 and not np.isfinite(slope[0]) and slope[1] == 0.0
     for force in (1e-3, 1.0):
         step = 1e-4 * force
         difference = float(moved(force + step)[1] - moved(force - step)[1]) / (2 * step)
-        assert float(moved(force)[0]) == pytest.approx(difference, rel=1e-4)
+        assert float(moved(force)[0][0]) == pytest.approx(difference, rel=1e-4)
 
 
 def test_second_derivative_of_the_displacement():

@@ -367,12 +367,13 @@ def test_peaks_do_not_depend_on_the_positions(name):
 
 
 def test_balls_beyond_the_bottom_of_their_groove():
-    """Pushed past it against its contact angle, the ball runs on the land."""
+    """Pushed past it against its contact angle, the ball runs on the land; before,
+    its contact ellipse reaches over the bottom."""
     element = bj.BearingElement(balls(12))
     b = element.bearing
     bottom = float(b.centre_distance) * np.sin(float(b.contact_angle))
     held = {"gx": 0.0, "gy": 0.0}
-    for share, told in ((0.8, False), (1.2, True)):
+    for share, told in ((0.3, False), (0.8, True), (1.2, True)):
         uz = {"uz": -share * bottom}
         s = bj.solve_load(element, [0, -1500, 0, 0, 0, 0], prescribed=held | uz)
         texts = [t for t in bj.warnings(s) if t.startswith("balls beyond the bottom")]

@@ -16,6 +16,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ...design.checks import check
+from ...numerics.lapack import eigh
 from ...numerics.types import Scalar, as_real
 from .grid import Grid
 from .pressure import ContactSolution
@@ -61,7 +62,7 @@ class Stress(eqx.Module):
     @property
     def principal(self) -> Float[Array, "... 3"]:
         """Principal stresses, ascending [Pa]."""
-        return jnp.linalg.eigvalsh(self.tensor)
+        return jnp.vectorize(eigh, signature="(n,n)->(n),(n,n)")(self.tensor)[0]
 
     @property
     def greatest_shear(self) -> Float[Array, "..."]:

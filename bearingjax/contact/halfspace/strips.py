@@ -8,7 +8,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array
 
-from ...numerics.linear import solve_any
+from ...numerics.lapack import solve_any
 from ...numerics.result import Result
 from .gradients import AbstractPressureSolver
 from .influence import EvenInfluence, cosine_sums, padded_size

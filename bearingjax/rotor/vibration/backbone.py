@@ -12,6 +12,7 @@ curve of ω.
 Source: Krack, Computers & Structures 154 (2015) 59, extended periodic motion.
 """
 
+from functools import partial
 from typing import Any
 
 import equinox as eqx
@@ -23,6 +24,7 @@ from jaxtyping import Array, Float, Int
 
 from ...design.checks import real_numbers
 from ...numerics.implicit import attach_by, stop, unless_failed
+from ...numerics.lapack import eig, pseudoinverse, solve_any
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
 from .method import AbstractMethod
@@ -187,7 +189,7 @@ def _at_rest(system):
 
     def correction(of_u, u, change, _):
         # What nothing holds stays where it is.
-        return -jnp.linalg.pinv(jax.jacfwd(of_u)(u)) @ change
+        return -pseudoinverse(jax.jacfwd(of_u)(u)) @ change
 
     found = newton(linearised, jnp.zeros_like(system.scale), _STEPS)
     solved = found.result == int(Result.CONVERGED)
@@ -205,7 +207,7 @@ def _linear(system, rest, freedom, method, mode):
     matrix = jax.jacfwd(lambda y: change(jnp.zeros_like(one), y))(
         jnp.concatenate([rest, still])
     )
-    values, vectors = jnp.linalg.eig(matrix)
+    values, _, vectors = eig(matrix)
     turning = jnp.where(values.imag > 0, values.imag, jnp.inf)
     k = jnp.argsort(turning)[mode]
     shape = vectors[:count, k] / vectors[freedom, k]
@@ -278,15 +280,16 @@ def _followed(system, peaks, freedom, method, mode):
     _, every = lax.scan(one, begin, heights)
     every = jax.tree.map(lambda x: x[1:], every)
 
-    def reported(found, peak):
+    def reported(found, *given):
+        system, *_ = given
+
         def residual(x, given):
             return _equations(method, given, freedom)(x)
 
         def correction(of_x, x, change, _):
-            return -jnp.linalg.solve(jax.jacfwd(of_x)(x), change)
+            return -solve_any(jax.jacfwd(of_x)(x), change)
 
-        x = attach_by(residual, found.x, (system, peak, where), correction)
-        x = unless_failed(x, found.result == int(Result.CONVERGED))
+        x = attach_by(residual, found.x, given, correction)
         ratio, frequency = x[-1], x[-1] * system.reference_frequency
         u, rate = method.motion(_free(system, x[-2]), x[:-2], ratio)
         return dict(
@@ -300,4 +303,8 @@ def _followed(system, peaks, freedom, method, mode):
             result=found.result,
         )
 
-    return Backbone(**jax.vmap(reported)(every, peaks))
+    def known(found, peak):
+        given, solved = (system, peak, where), found.result == int(Result.CONVERGED)
+        return unless_failed(partial(reported, found), given, solved)
+
+    return Backbone(**jax.vmap(known)(every, peaks))

@@ -1,5 +1,6 @@
 """A branch of periodic orbits with its stability and its marked points."""
 
+import warnings
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -9,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ...design.checks import positive
 from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
 from .continuation import (
@@ -100,7 +102,8 @@ def follow(
 
     Args:
         system: The system.
-        begin, end: Frequencies [rad/s]; `end` may be below.
+        begin, end: Frequencies [rad/s], `begin` above zero; `end` may be below it. At
+            zero, where nothing repeats, the branch ends.
         method: `Shooting` or `HarmonicBalance`.
         start: Displacements at `begin` to start with, at even phases from 0 on, such
             as an orbit's by any method (sample, n) [m, rad]; `None`: rest.
@@ -112,7 +115,14 @@ def follow(
 
     Returns:
         The branch. It always comes back; `ending` says why it ends.
+
+    Raises:
+        ValueError: If `begin` is not above zero.
+
+    Warns:
+        UserWarning: If some of its orbits are unstable.
     """
+    positive("follow", "begin", begin, "rad/s")
     parameter, steps = parameter or Arclength(), steps or Steps()
     motion, begin, end = beginning(system, start), as_real(begin), as_real(end)
     found = _traced(system, method, motion, begin, end, parameter, steps, points)
@@ -120,6 +130,13 @@ def follow(
     at = Place(*(x[:count] for x in every))
     scale, unit = np.asarray(system.scale), float(system.reference_frequency)
     multipliers = np.linalg.eigvals(at.monodromy)
+    stable = np.abs(multipliers).max(axis=1, initial=0.0) <= 1.0 + STABLE
+    if not stable.all():
+        warnings.warn(
+            f"follow: {int((~stable).sum())} of {len(stable)} periodic vibrations are"
+            " unstable: the system does not stay there",
+            stacklevel=2,
+        )
     return Branch(
         frequency=np.asarray(at.x[:, -1]) * unit,
         amplitude=np.stack([_amplitude(system, u) for u in at.motion])
@@ -127,7 +144,7 @@ def follow(
         else np.zeros((0, len(scale))),
         displacement=np.asarray(at.motion) * scale,
         multipliers=multipliers,
-        stable=np.abs(multipliers).max(axis=1, initial=0.0) <= 1.0 + STABLE,
+        stable=stable,
         unknowns=np.asarray(at.x[:, :-1]),
         residual=np.asarray(at.residual),
         newton=np.asarray(at.newton),
@@ -162,14 +179,24 @@ def _fold(point: Place) -> float:
 
 
 def _flip(point: Place) -> float:
-    return float(np.prod(np.linalg.eigvals(point.monodromy) + 1.0).real)
+    return _least(np.linalg.eigvals(point.monodromy) + 1.0)
 
 
 def _pairs(point: Place) -> float:
-    """Π (κ_i κ_j - 1) over all pairs: zero where a pair has the product one."""
+    """Zero where a pair of multipliers has the product one."""
     k = np.linalg.eigvals(point.monodromy)
     i, j = np.triu_indices(len(k), 1)
-    return float(np.prod(k[i] * k[j] - 1.0).real)
+    return _least(k[i] * k[j] - 1.0)
+
+
+def _least(factors: np.ndarray) -> float:
+    """Least of some factors with the sign of their product, which is real.
+
+    It changes sign where the product does; that of hundreds is too small a number.
+    """
+    sizes = np.abs(factors)
+    signs = factors / np.where(sizes == 0, 1.0, sizes)
+    return float(np.copysign(sizes.min(), np.prod(signs).real))
 
 
 def _side(point: Place) -> float:

@@ -21,6 +21,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Float, Int
 
+from ...numerics.lapack import determinant_sign, solve_any
 from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
@@ -40,6 +41,8 @@ class Ending(enum.IntEnum):
     """No step, however small, led to a further point of the same branch."""
     NO_START = 3
     """No orbit was found at the first frequency."""
+    REST = 4
+    """It reached frequency zero, where nothing repeats."""
 
     @property
     def label(self) -> str:
@@ -182,13 +185,11 @@ def place(
     """
     found = correct(system, method, x, direction, limit)
     along = along_frequency(x.shape[0] - 1, x.dtype)
-    tangent = jnp.linalg.solve(
-        jnp.concatenate([found.jacobian, direction[None]]), along
-    )
+    tangent = solve_any(jnp.concatenate([found.jacobian, direction[None]]), along)
     tangent = tangent / jnp.linalg.norm(tangent)
     tangent = jnp.where(tangent @ towards < 0, -tangent, tangent)
     whole = jnp.concatenate([found.jacobian, tangent[None]])
-    side = jnp.linalg.slogdet(whole)[0]
+    side = determinant_sign(whole)
     z, ratio = found.x[:-1], found.x[-1]
     monodromy = method.monodromy(system, z, ratio, found.jacobian)
     motion, _ = method.motion(system, z, ratio)
@@ -253,7 +254,9 @@ def trace(
         finite = jnp.all(jnp.isfinite(new.monodromy)) & jnp.all(
             jnp.isfinite(new.tangent)
         )
-        solved = (result == int(Result.CONVERGED)) & finite
+        # As at frequency zero, the motion by the phase is no motion below it.
+        rest = (x[-1] <= 0) | (new.x[-1] <= 0)
+        solved = (result == int(Result.CONVERGED)) & finite & ~rest
         short = state.step <= jnp.maximum(_SHORT, 2.0 * steps.smallest)
         smooth = near & straight & ((new.side == state.last.side) | short)
         good = solved & (smooth | first)
@@ -280,6 +283,7 @@ def trace(
         ended = [
             (good & ~first & (at_limit | outside), Ending.LIMIT),
             (~good & first, Ending.NO_START),
+            (rest, Ending.REST),
             (step < steps.smallest, Ending.SMALL_STEP),
             (count >= points, Ending.POINTS),
         ]

@@ -23,6 +23,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ...numerics.implicit import attach_by, recall, stop
+from ...numerics.lapack import expm, solve_any
 from ...numerics.types import Scalar
 from .system import AbstractVibration, inertia, out_of_balance
 
@@ -129,7 +130,7 @@ def _solve(at, begin, slopes, change):
     matrix = matrix + jnp.einsum("ij,ikl->ikjl", at.once, slopes[1])
     matrix = matrix + jnp.einsum("ij,kl->ikjl", own, inertia(begin.system, begin.ratio))
     flat = change.reshape(matrix.shape[0] * matrix.shape[1], -1)
-    found = jnp.linalg.solve(matrix.reshape(len(flat), len(flat)), flat)
+    found = solve_any(matrix.reshape(len(flat), len(flat)), flat)
     return -found.reshape(change.shape)
 
 
@@ -280,9 +281,9 @@ def transition(
         turned = _bracket(middle, slope)
         more = slope - _bracket(middle, 2.0 * bend + turned) / 60.0
         mean = _bracket(-20.0 * middle - bend + turned, more) / 240.0
-        return jax.scipy.linalg.expm(middle + bend / 12.0 + mean)
+        return middle + bend / 12.0 + mean
 
-    each = jax.vmap(step)(_begins(steps, unit.dtype))
+    each = expm(jax.vmap(step)(_begins(steps, unit.dtype)))
     whole, _ = lax.scan(lambda y, one: (one @ y, None), unit, each)
     return whole
 

@@ -17,6 +17,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
+from ...numerics.lapack import eigvals, solve_any
 from ...numerics.types import Scalar, as_count
 from .flow import transition
 from .method import AbstractMethod
@@ -194,8 +195,8 @@ def hill_multipliers(
     first = method.projected((damping, inertia), (at.value, 2.0 * at.rate))
     square = method.projected((inertia,), (at.value,))
     unit = jnp.eye(z.size, dtype=z.dtype)
-    below = -jnp.linalg.solve(square, jnp.concatenate([still, first], 1))
+    below = -solve_any(square, jnp.concatenate([still, first], 1))
     above = jnp.concatenate([jnp.zeros_like(unit), unit], 1)
-    exponents = jnp.linalg.eigvals(jnp.concatenate([above, below], 0))
+    exponents = eigvals(jnp.concatenate([above, below], 0))
     order = jnp.argsort(jnp.abs(exponents.imag))[: 2 * system.scale.shape[0]]
     return jnp.exp(2.0 * jnp.pi * exponents[order])

@@ -10,6 +10,7 @@ from jax import lax
 from jaxtyping import Array, Complex, Float, Int
 
 from ...numerics.implicit import attach_by, stop, unless_failed
+from ...numerics.lapack import eigvals, solve_any
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Flag, Scalar, as_real
 from .method import AbstractMethod, Motion
@@ -133,7 +134,7 @@ def newton(
 
     def evaluated(x):
         left, jacobian = linearised(x)
-        step = -jnp.linalg.solve(jacobian, left)
+        step = -solve_any(jacobian, left)
         return x, left, jacobian, jnp.max(jnp.abs(left)), step
 
     def solved(here):
@@ -240,13 +241,15 @@ def _solved(system, frequency, method, motion, max_steps):
 
     def correction(of_z, z, change, given):
         _, jacobian = method.linearised(given[0], z, given[1])
-        return -jnp.linalg.solve(jacobian[:, :-1], change)
+        return -solve_any(jacobian[:, :-1], change)
 
-    z = attach_by(residual, found.x[:-1], (system, ratio), correction)
-    solved = found.result == int(Result.CONVERGED)
-    x = jnp.append(unless_failed(z, solved), ratio)
-    left = jnp.max(jnp.abs(found.left))
-    return reported(system, method, x, left, found.steps, found.result)
+    def orbit(system, ratio):
+        z = attach_by(residual, found.x[:-1], (system, ratio), correction)
+        left = jnp.max(jnp.abs(found.left))
+        x = jnp.append(z, ratio)
+        return reported(system, method, x, left, found.steps, found.result)
+
+    return unless_failed(orbit, (system, ratio), found.result == int(Result.CONVERGED))
 
 
 def reported(
@@ -268,7 +271,7 @@ def reported(
     z, ratio = x[:-1], x[-1]
     frequency = frequency_of(system, ratio)
     _, jacobian = method.linearised(system, z, ratio)
-    multipliers = jnp.linalg.eigvals(method.monodromy(system, z, ratio, jacobian))
+    multipliers = eigvals(method.monodromy(system, z, ratio, jacobian))
     u, rate = method.motion(system, z, ratio)
     solved = result == int(Result.CONVERGED)
     return PeriodicOrbit(

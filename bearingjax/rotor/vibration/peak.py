@@ -7,6 +7,7 @@ import numpy as np
 from jax import lax
 
 from ...numerics.implicit import attach_by, stop, unless_failed
+from ...numerics.lapack import solve_any
 from ...numerics.result import Result, raise_unless_converged
 from .branch import Branch
 from .continuation import place
@@ -155,9 +156,12 @@ def _found(system, points, freedom, method):
         return jnp.concatenate([left, along, jnp.stack([length, slope])])
 
     def correction(of_y, y, change, _):
-        return -jnp.linalg.solve(jax.jacfwd(of_y)(y), change)
+        return -solve_any(jax.jacfwd(of_y)(y), change)
 
     y = jnp.concatenate([point.x, point.tangent])
-    y = attach_by(residual, y, (system, point.tangent), correction)
-    x, _ = split_up(unless_failed(y, result == int(Result.CONVERGED)))
-    return reported(system, method, x, point.residual, count, result)
+
+    def orbit(system):
+        x, _ = split_up(attach_by(residual, y, (system, point.tangent), correction))
+        return reported(system, method, x, point.residual, count, result)
+
+    return unless_failed(orbit, (system,), result == int(Result.CONVERGED))

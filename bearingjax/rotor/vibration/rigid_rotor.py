@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ...design.checks import positive
+from ...numerics.lapack import cholesky, congruent, eigh
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 from ..damping import ModalDamping
@@ -130,8 +131,7 @@ def natural_frequencies(
     """
     plane = jnp.asarray(np.array([0, 2]))
     m = mass[plane][:, plane]
-    lower = jnp.linalg.inv(jnp.linalg.cholesky(m))
-    squares = jnp.linalg.eigvalsh(lower @ stiffness[plane][:, plane] @ lower.T)
+    squares, _ = eigh(congruent(cholesky(m), stiffness[plane][:, plane]))
     return Natural(jnp.sqrt(squares), jnp.sqrt(stiffness[4, 4] / mass[4, 4]))
 
 

@@ -11,6 +11,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ...numerics.lapack import pseudoinverse
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 from ..held import of_each
@@ -81,7 +82,7 @@ class RotorVibration(AbstractVibration):
             motion: Of all nodes and housings, such as `Settled.motion` (motion,)
                 [m, rad].
         """
-        return jnp.linalg.lstsq(self.motions, motion)[0]
+        return pseudoinverse(self.motions) @ motion
 
 
 def rotor_vibration(

@@ -16,6 +16,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ...numerics.lapack import solve_any
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 
@@ -220,7 +221,8 @@ def rates(
         Function (phase [rad], state) -> derivative; the state holds the freedoms over
         `scale`, then their derivatives with respect to φ [1].
     """
-    inverse = jnp.linalg.inv(inertia(system, ratio))
+    matrix = inertia(system, ratio)
+    inverse = solve_any(matrix, jnp.eye(matrix.shape[0], dtype=matrix.dtype))
 
     def rate(phase, y):
         u, rate = jnp.split(y, 2)

@@ -20,6 +20,7 @@ from ...design.checks import check, count, is_traced, positive
 from ...numerics.implicit import stop
 from ...numerics.in_time import Options
 from ...numerics.in_time import integrated as in_time
+from ...numerics.lapack import solve_any
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
 from .run_up import FrequencyTable, as_frequency_table
@@ -234,7 +235,8 @@ def moved(
     size = jnp.concatenate([system.scale, system.scale * fast])
     root = jnp.sqrt(jnp.diagonal(system.mass))
     unlike = root[:, None] * root[None, :]
-    inverse = jnp.linalg.inv(system.mass / unlike) / unlike
+    unit = jnp.eye(root.shape[0], dtype=root.dtype)
+    inverse = solve_any(system.mass / unlike, unit, "positive") / unlike
     found = in_time(
         _rates,
         (system, inverse, table, force, size),
