@@ -3,6 +3,7 @@
 from typing import Any
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
@@ -84,8 +85,9 @@ class SkiddingBearing(AbstractSystem):
         return f"no end state of skidding after {failure(solved)}"
 
     def warnings(self, cases, solved):
-        rings = cases.inner_speed, cases.outer_speed
-        speed = Speed(*(jnp.zeros(()) if ring is None else ring for ring in rings))
+        still, rings = jnp.zeros(cases.count), (cases.inner_speed, cases.outer_speed)
+        rings = (still if ring is None else jnp.asarray(ring) for ring in rings)
+        speed = jax.vmap(Speed)(*rings)
         balls = is_ball(self.model.bearing)
         state = conditions(self.model, solved, speed) if balls else None
         return skid_warnings(self.model, solved, state)
