@@ -38,7 +38,7 @@ derivatives in either mode (`derivatives="reverse"` or `"forward"`). Loads over 
 time with the balls where they are; a constant load is tabulated around the bearing,
 which is three times faster and does not see balls bunch (`balanced=True` does). Beside
 SciPy's stiff solvers at like errors: benchmarks/skid_transient.py; a map of 1000 end
-states takes a second: benchmarks/skid_map.py. Where others use the processor too, set
+states in one call: benchmarks/skid_map.py. Where others use the processor too, set
 `OPENBLAS_NUM_THREADS=1` for end states under radial loads: LAPACK's threads otherwise
 wait for each other.
 

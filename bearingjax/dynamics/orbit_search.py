@@ -250,9 +250,10 @@ class AbstractOrbit(eqx.Module):
         loads = jnp.maximum(sizes[1], self.least)
         most = jnp.maximum(sizes[0], NO_TRACTION * loads)
         largest = jnp.full(y.size - _RING, most)
+        largest = jnp.concatenate([largest, jnp.full(_RING, loads)])
         return Evaluated(
             self._assembled(out, pulls, ring),
-            jnp.concatenate([largest, jnp.full(_RING, loads)]),
+            jnp.maximum(largest, jnp.finfo(y.dtype).tiny),
             jnp.concatenate([rows[:, :k].reshape(-1, y.size), means, last]),
         )
 
@@ -371,7 +372,9 @@ def _step(orbit, state):
     move = _solve(inertia / state.step - slopes, state.at.out)
     y = jnp.where(first, state.y, state.y + move)
     at = orbit.evaluated(y)
-    ratio = _size(state.at) / jnp.maximum(_size(at), jnp.finfo(y.dtype).tiny)
+    # Relative, or round-off of large tractions would hide a ring out of its place.
+    before, after = (_size(each.out / state.at.sizes) for each in (state.at, at))
+    ratio = before / jnp.maximum(after, jnp.finfo(y.dtype).tiny)
     taken = first | (ratio > 0.5)
     longer = state.step * jnp.clip(2.0 * ratio, 1.5, 10.0)
     step = jnp.where(taken, longer, 0.2 * state.step)
@@ -380,8 +383,8 @@ def _step(orbit, state):
     return lanes.Either(taken, new, kept)
 
 
-def _size(at):
-    return jnp.max(jnp.abs(at.out))
+def _size(out):
+    return jnp.max(jnp.abs(out))
 
 
 def _done(state):
@@ -400,12 +403,10 @@ def _terminate(orbit, state):
 
 
 def _finish(orbit, state):
-    finite = jnp.all(jnp.isfinite(state.y)) & jnp.isfinite(_size(state.at))
+    finite = jnp.all(jnp.isfinite(state.y)) & jnp.isfinite(_size(state.at.out))
     result = jnp.where(_done(state), int(Result.CONVERGED), int(Result.STEP_LIMIT))
     result = jnp.where(finite, result, int(Result.NON_FINITE)).astype(jnp.int32)
-    sizes = jnp.maximum(state.at.sizes, jnp.finfo(state.y.dtype).tiny)
-    residual = jnp.max(jnp.abs(state.at.out) / sizes)
-    return state.y, residual, state.steps, result
+    return state.y, _size(state.at.out / state.at.sizes), state.steps, result
 
 
 def _unbalanced(y, orbit):

@@ -3,10 +3,11 @@
 from typing import Any
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design import n_elements
+from ..design import is_ball, n_elements
 from ..design.checks import instance, number
 from ..element.inertia import Speed
 from ..numerics.result import Result
@@ -18,9 +19,11 @@ from ..optimise.system import AbstractSystem
 from ..statics.cases import Cases, solve_case
 from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
+from .conditions import conditions
 from .model import SkidModel
 from .steady import check_places, end_state, enough_places, failure
 from .steady_results import SteadyMotion
+from .warning import skid_warnings
 
 
 class SkiddingBearing(AbstractSystem):
@@ -80,6 +83,14 @@ class SkiddingBearing(AbstractSystem):
                 f" of {count}"
             )
         return f"no end state of skidding after {failure(solved)}"
+
+    def warnings(self, cases, solved):
+        still, rings = jnp.zeros(cases.count), (cases.inner_speed, cases.outer_speed)
+        rings = (still if ring is None else jnp.asarray(ring) for ring in rings)
+        speed = jax.vmap(Speed)(*rings)
+        balls = is_ball(self.model.bearing)
+        state = conditions(self.model, solved, speed) if balls else None
+        return skid_warnings(self.model, solved, state)
 
 
 class FrictionTorque(AbstractMeasure):

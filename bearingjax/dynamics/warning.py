@@ -36,17 +36,38 @@ def skid_warnings(
     Args:
         model: The bearing, its oil and what surrounds the balls.
         found: How its balls or rollers move, concrete; from `steady_skid` or `skid`.
+            With a leading case axis, as `optimise` has it, each sentence says in how
+            many cases.
         state: From `conditions`; rollers bring their own.
     """
     state = found.conditions if state is None else state
-    found, state = jax.tree.map(np.asarray, (found, state))
+    held = jax.tree.map(np.asarray, (found, state))
+    if not held[0].result.ndim:
+        return [text for text in _doubts(model, *held) if text]
+    cases = range(len(held[0].result))
+    ones = (jax.tree.map(lambda leaf, k=k: leaf[k], held) for k in cases)
+    kinds = zip(*(_doubts(model, *one) for one in ones), strict=True)
+    return [_counted(texts) for texts in kinds if any(texts)]
+
+
+def _counted(texts):
+    """One sentence of those of all cases, of which some are empty."""
+    if len(set(texts)) == 1:
+        return texts[0]
+    doubtful = [k for k, text in enumerate(texts) if text]
+    first, many = doubtful[0], f"{len(doubtful)} of {len(texts)}"
+    return f"in {many} cases, the first of them case {first}: {texts[first]}"
+
+
+def _doubts(model, found, state):
+    """A sentence of each kind, or nothing."""
     loaded = found.contact_load > 1e-9 * np.nanmax(found.contact_load, initial=0.0)
     # Before the rings turn there is no film, and slip means nothing.
     rolling = np.abs(found.rolling_orbit_speed)
     turning = rolling >= STARTED * np.nanmax(rolling, initial=0.0)
     turning &= rolling > 0
     loaded &= turning[..., None]
-    told = (
+    return (
         _pockets(model),
         _wander(model, found),
         _slip(found, turning, loaded.all(axis=-1)),
@@ -55,7 +76,6 @@ def skid_warnings(
         _regimes(state, loaded),
         _mixed(model, state, loaded),
     )
-    return [text for text in told if text]
 
 
 def _pockets(model):

@@ -17,7 +17,7 @@ from ..statics.warning import warnings as warnings_of
 from .constraint import Constraint
 from .life import OfLife
 from .measure import exact_of, least_size_of
-from .system import Design, failure, loads_of, ready, solved_case
+from .system import AbstractSystem, Design, failure, loads_of, ready, solved_case
 from .trials import Trial
 from .variable import Variable, with_values
 
@@ -38,7 +38,8 @@ class Outcome(NamedTuple):
         constraints: The measures that are bounded, smooth (constraint,).
         exact_constraints: The same with true maxima and minima (constraint,).
         solution: Of all cases, leading axis case.
-        doubts: Gives the warnings of the rating life among the measures, if one is.
+        doubts: Gives the warnings of the rating life among the measures, if one is,
+            and of a system.
     """
 
     values: np.ndarray
@@ -135,10 +136,11 @@ class Problem:
         )
 
     def _doubts(self, element, solution) -> Callable[[], list[str]]:
-        for measure in self.measures:
-            if isinstance(measure, OfLife):
-                return partial(measure.warnings, element, solution)
-        return list
+        lives = (m.warnings for m in self.measures if isinstance(m, OfLife))
+        asked = [partial(told, element, solution) for told in lives][:1]
+        if isinstance(element, AbstractSystem):
+            asked.append(partial(element.warnings, self.cases, solution))
+        return lambda: [text for told in asked for text in told()]
 
     def run(self, unit, slopes: bool) -> "Run":
         """Solve the cases of a design, with gradients or without."""

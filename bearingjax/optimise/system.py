@@ -53,6 +53,15 @@ class AbstractSystem(eqx.Module):
             solved: From `solve_case`, concrete.
         """
 
+    def warnings(self, cases: Cases, solved: Any) -> list[str]:
+        """What is doubtful beyond the loads, a sentence each; by default nothing.
+
+        Args:
+            cases: Operating cases.
+            solved: What was solved of them, concrete, leading axis case.
+        """
+        return []
+
 
 Design = BearingElement[Any] | Installed | AbstractSystem
 

@@ -72,7 +72,7 @@ def _mean_torque(run):
     mean, orbits = run.found.mean_friction_torque
     last = float(run.found.friction_torque[-1])
     if not orbits:
-        return _torque(run, last)
+        return _torque(run, last, " at the end, within the first orbit of the cage")
     many = "orbit" if orbits == 1 else f"{orbits} orbits"
     now = f"; at the end {1e3 * _clean(last):.5g} N mm"
     return _torque(run, mean, f", mean of the last {many} of the cage{now}")

@@ -171,8 +171,8 @@ def _solve(
     begin = beginning(rows, frozen, still, stop(case.start))
     minimum = search(frozen, still, begin, options)
 
-    def solution(*given):
-        return solution_of(*given, options, begin, minimum)
+    def solution(element, model, balance, case):
+        return solution_of(element, model, balance, case, options, begin, minimum)
 
     given, solved = (element, model, balance, case), minimum.result == Result.CONVERGED
     return unless_failed(solution, given, solved)

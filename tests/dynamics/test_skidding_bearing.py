@@ -16,7 +16,10 @@ from bearingjax.dynamics import (
     FrictionPower,
     FrictionTorque,
     SkiddingBearing,
+    conditions,
+    skid_warnings,
 )
+from bearingjax.element import Speed
 from bearingjax.optimise.design_problem import Problem
 from bearingjax.statics import SolveOptions
 
@@ -61,13 +64,17 @@ def search(slip=5e-3, cases=None, **choices):
     return bj.optimise(design(), cases, VARIABLES, least, kept(slip), **given)
 
 
+def problem_of(start, cases):
+    options = SolveOptions(tuple(FREE), points=2)
+    return Problem(start, cases, VARIABLES, FrictionTorque(), kept(1.0), options)
+
+
 @pytest.fixture(scope="module")
 def evaluated():
     """Measures, slopes and solutions of a start over cases."""
 
     def one(start, cases, unit=None):
-        options = SolveOptions(tuple(FREE), points=2)
-        problem = Problem(start, cases, VARIABLES, FrictionTorque(), kept(1.0), options)
+        problem = problem_of(start, cases)
         begin = problem.scaled([v.start_in(start) for v in VARIABLES])
         return problem.run(begin if unit is None else begin + unit, True)
 
@@ -155,6 +162,20 @@ def test_an_end_state_that_is_not_found_rejects_the_design(evaluated):
     one = eqx.tree_at(lambda s: (s.steps, s.residual), one, (np.int32(300), 0.2))
     want = "no end state of skidding after 300 steps; force out of balance 2.0e-01"
     assert start.message(one).startswith(want)
+
+
+def test_what_is_doubtful_of_the_best_design():
+    """As of the end state of each case, and in how many cases."""
+    cold = eqx.tree_at(lambda d: d.model.temperature, design(), np.float64(290.0))
+    cases = spectrum(axial=[0.0, 480.0])
+    problem = problem_of(cold, cases)
+    begin = problem.scaled([v.start_in(cold) for v in VARIABLES])
+    element, outcome = problem.outcome(problem.evaluate(begin, True))
+    (text,) = (text for text in outcome.warnings if "times the pressure" in text)
+    assert text.startswith("in 1 of 2 cases, the first of them case 1: shear stresses")
+    one = jax.tree.map(lambda leaf: leaf[1], outcome.solution)
+    state = conditions(element.model, one, Speed(inner=SPEEDS[1]))
+    assert text.split("case 1: ")[1] in skid_warnings(element.model, one, state)
 
 
 def test_wrong_calls(evaluated):

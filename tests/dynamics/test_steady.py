@@ -270,6 +270,17 @@ def test_stiff_oil_does_not_hide_slip(stiff):
     assert float(fast.friction_torque) > 0.5 * drag * speed / float(STIFF.inner)
 
 
+@pytest.mark.parametrize("celsius", [-40.0, -20.0])
+def test_a_ring_finds_its_place_beside_the_tractions_of_a_glass(celsius):
+    """Whose round-off is as large as the load that is not balanced at first."""
+    model = eqx.tree_at(lambda m: m.temperature, MODEL, jnp.asarray(celsius + 273.15))
+    load, speed = np.array([0.0, 0.0, 600.0, 0.0, 0.0, 0.0]), Speed(inner=1047.2)
+    given = dict(speed=speed, free=FREE, places=1, throw=False)
+    end = steady_skid(model, load, **given)
+    assert int(end.result) == Result.CONVERGED
+    assert abs(float(end.imbalance)) < 1e-6
+
+
 def test_stress_beyond_what_oil_bears_is_told(stiff):
     """At 0 °C and 0.91 GPa; the derivative of the torque there is coded right."""
     end = stiff(600.0, SPEED, celsius=0.0)

@@ -126,6 +126,7 @@ def test_motion_in_time(run, history, tmp_path):
     done = run(*RUN_UP, *outputs)
     assert done.status == 0 and done.err == ""
     assert done.out == skid_report(history) + "\n"
+    assert "ring at the end, within the first orbit of the cage" in done.out
     numbers, found = json.loads(out.read_text()), history.found
     assert numbers == skid_as_dict(history)
     np.testing.assert_allclose(
