@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.signal import resample_poly
 
 from ..design.checks import positive
 
@@ -46,6 +45,8 @@ def sound(record: Any, duration: Any) -> np.ndarray:
     sampled = len(record) / float(duration)
     ratio = Fraction(RATE / sampled).limit_denominator(2000)
     record = record - record.mean()
+    from scipy.signal import resample_poly  # a second of import
+
     # Without a step to zero at the ends, at which the filter would ring.
     one = resample_poly(record, ratio.numerator, ratio.denominator, padtype="line")
     fade = min(round(_FADE * RATE), len(one) // 4)

@@ -13,7 +13,6 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from scipy.optimize import least_squares
 
 from ..design import (
     AbstractBallBearing,
@@ -377,6 +376,8 @@ def _part(evaluate, k, sizes):
 
 def _fit(rated, known, count) -> _Fit:
     """The sizes that agree best, with a given number of rolling elements."""
+    from scipy.optimize import least_squares  # half a second of import
+
     seen: dict[bytes, Any] = {}
 
     def evaluate(sizes):
