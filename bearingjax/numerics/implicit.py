@@ -128,7 +128,9 @@ def unless_failed(function, args, solved):
     # No change gets through if not solved, in neither direction.
     gated = jax.tree.map(lambda x: jnp.where(solved, x, lax.stop_gradient(x)), traced)
     found, rest, whole = _parted(function(*joined(gated, others)))
-    return whole(_marked(found, traced, solved), rest)
+    # One by one: what nobody differentiates is not differentiated either.
+    marked = jax.tree.map(lambda effect: _marked(effect, traced, solved), found)
+    return whole(marked, rest)
 
 
 @jax.custom_jvp

@@ -238,7 +238,8 @@ class SetKeys(SpringKeys):
             for key in ("spacing", "preload_offset", "spring_force"):
                 if key in table:
                     raise table.error(key, "is of each row here; write it in `rows`")
-            table.tables("rows")  # which must be there
+            if not self.rows:
+                table.tables("rows")  # which must be there
         else:
             table.quantity("spacing", "length")
         for key in _IN_PAIRS if self.arrangement == "tandem" else ():

@@ -145,7 +145,7 @@ class OptimiseKeys(Keys):
     )
     variables: Any = scene_key(
         "free numbers by their key in the scene, in quotes: `{ from, to, start }`",
-        reader=lambda table, name: table.table(name, required=True),
+        reader=lambda table, name: table.table(name),
         json={"type": "object", "additionalProperties": {"type": "object"}},
     )
     constraints: tuple[ConstraintKeys, ...] = scene_key(
@@ -241,11 +241,13 @@ def _optimisation(
     measured = _Measured(
         keys.exponent, balls, _life(scene, cases, keys.variables.keys())
     )
+    objective = measured.objective(keys)
+    table.table("variables", required=True)
     return Optimisation(
         scene,
         cases,
         _variables(keys.variables, top.table("fit"), scene, begun),
-        measured.objective(keys),
+        objective,
         tuple(measured.constraint(one) for one in keys.constraints),
         keys.method,
         keys.max_steps,

@@ -157,6 +157,8 @@ def respond(
         steps=Steps(frequency=abs(asked.end - asked.begin) / (_PARTS * unit)),
         points=asked.points,
     )
+    for text in branch.warnings:
+        warnings.warn(text, stacklevel=2)
     moved = _at_stations(task, system, branch.displacement)
     stopped = None
     if branch.ending in _ENDINGS:

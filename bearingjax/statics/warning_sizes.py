@@ -438,7 +438,8 @@ def on_land(solution: Solution) -> Any:
             parts.append(sides < -xp.inf)
             continue
         osculations = xp.stack([bearing.outer_osculation, bearing.inner_osculation])
-        x = xp.clip(sides * osculations * bearing.ball_diameter, 0.0, 1.0)
+        radii = (osculations * bearing.ball_diameter)[None, :]
+        x = xp.clip(sides * radii, 0.0, 1.0)
         share = 0.5 - 0.75 * x + 0.25 * x**3
         parts.append(share > LAND_SHARE)
     return xp.concatenate(parts)

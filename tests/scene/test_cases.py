@@ -250,7 +250,7 @@ WRONG = {
         '[cases]\nfile = "."',
         "`cases.file`: .: cannot be read: Is a directory",
     ),
-    "no name": ("[cases]\nfile = 3", "`cases.file`: 3 is not the name of a file"),
+    "no name": ("[cases]\nfile = 3", "`cases.file`: 3 is not a text"),
     "twice in a grid": (
         '[cases.grid]\n"operating.load.Fy" = ["1 N"]\noperating.load.Fy = ["2 N"]',
         "`cases.grid.operating.load.Fy`: stands there twice",

@@ -1,6 +1,5 @@
 """A branch of periodic orbits with its stability and its marked points."""
 
-import warnings
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -85,6 +84,15 @@ class Branch(NamedTuple):
     refused: int
     ending: Ending
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is doubtful, in words: orbits that are unstable."""
+        lost = int((~self.stable).sum())
+        if not lost:
+            return ()
+        words = f"{lost} of {len(self.stable)} periodic vibrations are unstable"
+        return (f"{words}: the system does not stay there",)
+
 
 def follow(
     system: AbstractVibration,
@@ -118,9 +126,6 @@ def follow(
 
     Raises:
         ValueError: If `begin` is not above zero.
-
-    Warns:
-        UserWarning: If some of its orbits are unstable.
     """
     positive("follow", "begin", begin, "rad/s")
     parameter, steps = parameter or Arclength(), steps or Steps()
@@ -131,12 +136,6 @@ def follow(
     scale, unit = np.asarray(system.scale), float(system.reference_frequency)
     multipliers = np.linalg.eigvals(at.monodromy)
     stable = np.abs(multipliers).max(axis=1, initial=0.0) <= 1.0 + STABLE
-    if not stable.all():
-        warnings.warn(
-            f"follow: {int((~stable).sum())} of {len(stable)} periodic vibrations are"
-            " unstable: the system does not stay there",
-            stacklevel=2,
-        )
     return Branch(
         frequency=np.asarray(at.x[:, -1]) * unit,
         amplitude=np.stack([_amplitude(system, u) for u in at.motion])
