@@ -1,7 +1,8 @@
 """`bearingjax catalogue`."""
 
+from .execute import check_outputs, save, write_outputs
 from .options import add_drawing, add_json, add_plot
-from .outputs import check_plot, save, save_drawing, write
+from .status import BAD_INPUT, SOLVED
 
 
 def add(commands):
@@ -43,22 +44,16 @@ def run(options) -> int:
         catalogue_entry,
         catalogue_table,
         catalogue_title,
-        check_outputs,
         select,
         write_numbers,
     )
 
     named = tuple(catalogue_entry(name) for name in options.designation)
-    if options.plot is not None:
-        if not named:
-            raise SceneError("--plot draws the bearings that are named; name some")
-        check_plot(options.plot)
-    if options.drawing is not None:
-        if len(named) != 1:
-            raise SceneError("--drawing draws one bearing; name one")
-        check_plot(options.drawing)
-    names = ("json", "plot", "drawing")
-    check_outputs({f"--{name}": getattr(options, name) for name in names})
+    if options.plot is not None and not named:
+        raise SceneError("--plot draws the bearings that are named; name some")
+    if options.drawing is not None and len(named) != 1:
+        raise SceneError("--drawing draws one bearing; name one")
+    check_outputs(options, inputs=[])
     chosen = select(
         named or catalogue(),
         options.type,
@@ -74,15 +69,18 @@ def run(options) -> int:
         save(cross_sections([entry.bearing for entry in chosen], titles), path)
 
     def draw_all_of_it(path):
-        save_drawing(chosen[0].bearing, catalogue_title(chosen[0]), path)
+        from ..plot import drawing
 
-    drawn = write(
+        save(drawing(chosen[0].bearing, catalogue_title(chosen[0])), path)
+
+    outputs = [
         (options.json, lambda path: write_numbers(path, catalogue_as_dict(chosen))),
         (options.plot, draw if chosen else None),
         (options.drawing, draw_all_of_it if chosen else None),
-    )
+    ]
+    failed = write_outputs(outputs)
     if named and chosen:
         print("\n\n".join(catalogue_details(entry) for entry in chosen), flush=True)
     else:
         print(catalogue_table(chosen), flush=True)
-    return drawn
+    return BAD_INPUT if failed else SOLVED

@@ -1,9 +1,9 @@
 """`bearingjax contact`."""
 
 from . import jax_settings
+from .execute import Outcome, Tools
 from .options import add_plot, add_report, add_scene
-from .outputs import Reporter, check_outputs, save, write
-from .status import NOT_SOLVED, SOLVED, complain, tell_unsolved
+from .solution import why_unsolved
 
 
 def add(commands):
@@ -34,10 +34,12 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options, tools: Tools) -> Outcome:
     """Solve a contact on its own, or one of a bearing."""
     from ..scene import (
         SceneError,
+        as_dict,
+        contact_as_dict,
         contact_report,
         contact_warnings,
         is_bearing,
@@ -46,22 +48,18 @@ def run(options) -> int:
         run_contact,
         run_refined,
         run_scene,
-        write_contact_json,
-        write_json,
     )
 
-    check_outputs(options)
-    page = Reporter(options)
     if is_bearing(options.scene, options.set):
         bearing = read_scene(options.scene, options.set)
         solution = run_scene(bearing, jax_settings.programs())
         if not solution.converged:
-            write(
-                (options.json, lambda path: write_json(path, bearing, solution)),
-                (options.plot, None),
-                (options.report, None),
+            return Outcome(
+                bearing.name,
+                bearing.inputs,
+                lambda: as_dict(bearing, solution),
+                problems=[why_unsolved(bearing, solution)],
             )
-            return tell_unsolved(bearing, solution)
         scene, cases = run_refined(
             bearing, solution, options.roller, options.raceway, options.free_ends
         )
@@ -73,48 +71,38 @@ def run(options) -> int:
     else:
         scene = read_contact(options.scene, options.set)
         cases = run_contact(scene)
-    lost = [case.solution for case in cases if not case.solution.converged]
+    lost = _lost(scene, cases)
 
-    warned = contact_warnings(scene, cases)
-    text = contact_report(scene, cases) if len(lost) < len(cases) else ""
-
-    def draw(path, **format):
+    def draw():
         from ..plot import contact_overview
 
-        figure = contact_overview(
+        return contact_overview(
             [case.solution for case in cases],
             [case.slices for case in cases],
             title=scene.name,
         )
-        save(figure, path, **format)
 
-    def tell(path):
-        texts, draws = {"Contact": text}, {"Pressures": draw}
-        page(path, scene.name, texts, scene.inputs, draws, warnings=warned)
-
-    drawn = write(
-        (options.json, lambda path: write_contact_json(path, scene, cases)),
-        (options.plot, None if lost else draw),
-        (options.report, None if lost else tell),
+    none = len(lost) == len(cases)
+    warned = contact_warnings(scene, cases) if none else []
+    return Outcome(
+        scene.name,
+        scene.inputs,
+        lambda: contact_as_dict(scene, cases),
+        None if none else contact_report(scene, cases),
+        pictures={} if lost else {"Pressures": draw},
+        problems=[*(f"warning: {one}" for one in warned), *lost],
     )
-    if text:
-        print(text, flush=True)
-    for one in warned:
-        complain(f"warning: {one}")
-    return _tell_lost(scene, cases) or drawn
 
 
-def _tell_lost(scene, cases) -> int:
-    """Name the loads of a contact that were not solved; exit status."""
+def _lost(scene, cases) -> list[str]:
+    """Why loads of a contact were not solved, each by its name."""
     from ..contact.halfspace.pressure import message
     from ..numerics import Result
 
-    status = SOLVED
+    found = []
     for given, case in zip(scene.cases, cases, strict=True):
-        if case.solution.converged:
-            continue
-        status = NOT_SOLVED
-        where = f" {given['load']:.5g} N:" if scene.listed else ""
-        label = Result(int(case.solution.result)).label
-        complain(f"{label}:{where} {message(case.solution)}")
-    return status
+        if not case.solution.converged:
+            where = f" {given['load']:.5g} N:" if scene.listed else ""
+            label = Result(int(case.solution.result)).label
+            found.append(f"{label}:{where} {message(case.solution)}")
+    return found

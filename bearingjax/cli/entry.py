@@ -1,7 +1,9 @@
 """`main`: reads the command line, runs a command, tells what stopped it."""
 
 import argparse
+import functools
 import gc
+import inspect
 import io
 import os
 import sys
@@ -22,6 +24,7 @@ from . import (
     solve,
     sweep,
 )
+from .execute import execute
 from .status import BAD_INPUT, INTERRUPTED, SOLVED, complain
 
 _COMMANDS = (
@@ -65,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     gc.disable()
     try:
         jax_settings.configure(options)
-        return options.run(options)
+        return options.execute(options)
     except SceneError as error:
         complain(error)
         return BAD_INPUT
@@ -88,7 +91,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    """Of the command line; `run` of what it parses is what the command does."""
+    """Of the command line; `execute` of what it parses does what the command does."""
     from importlib.metadata import version
 
     top = argparse.ArgumentParser(
@@ -98,7 +101,10 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in _COMMANDS:
         added = command.add(commands)
-        added.set_defaults(run=command.run, refuse=added.error)
+        # Commands that solve a scene take tools, and return what is to be written.
+        solves = "tools" in inspect.signature(command.run).parameters
+        made = functools.partial(execute, command) if solves else command.run
+        added.set_defaults(execute=made, refuse=added.error)
     return top
 
 

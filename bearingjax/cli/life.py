@@ -1,23 +1,10 @@
 """`bearingjax life`."""
 
 import dataclasses
-import sys
-from pathlib import Path
 
-from . import jax_settings
+from .execute import Outcome, Tools
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
-from .outputs import (
-    Reporter,
-    check_outputs,
-    check_table,
-    draws_bearing,
-    draws_solution,
-    save,
-    tells_solution,
-    write,
-)
-from .progress import is_shown
-from .status import NOT_SOLVED, complain, tell_unsolved
+from .solution import solution_outcome
 
 
 def add(commands):
@@ -38,33 +25,17 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options, tools: Tools) -> Outcome:
     """Rating life of the bearing of a scene."""
     from ..scene import has_cases
 
-    check_table(options)
-    check_outputs(options)
     if has_cases(options.scene, options.set):
-        return _life_of_cases(options)
+        return _life_of_cases(options, tools)
     return _life_of_load(options)
 
 
-def _life_of_load(options) -> int:
-    from ..numerics import Result
-    from ..scene import (
-        SceneError,
-        fits_as_dict,
-        fits_text,
-        life_as_dict,
-        life_report,
-        rating_origins,
-        read_scene,
-        run_scene,
-        scene_life,
-        solved_as_dict,
-        with_set_preload,
-        write_numbers,
-    )
+def _life_of_load(options) -> Outcome:
+    from ..scene import SceneError, read_scene, solved_life_as_dict
     from ..statics import LifeConditions
 
     if options.table is not None:
@@ -72,76 +43,42 @@ def _life_of_load(options) -> int:
     scene = read_scene(options.scene, options.set)
     if scene.life is None:
         scene = dataclasses.replace(scene, life=LifeConditions())
-    page = Reporter(options)
-    solution = run_scene(scene, jax_settings.programs())
-    solved = Result(int(solution.result)) is Result.CONVERGED
-    if solved:
-        scene = with_set_preload(scene, jax_settings.programs())
-    life = scene_life(scene, solution) if solved else None
-    numbers = solved_as_dict(scene, solution, life)
-    if life is not None:
-        told = life_as_dict(life, rating_origins(scene))
-        numbers = {**told, **fits_as_dict(scene), **numbers}
-    drawn = write(
-        (options.json, lambda path: write_numbers(path, numbers)),
-        (options.plot, draws_solution(scene, solution) if solved else None),
-        (options.report, tells_solution(scene, solution, page) if solved else None),
-    )
-    if life is None:
-        return tell_unsolved(scene, solution)
-    print(f"{scene.name}\n{life_report(scene, solution, life)}")
-    if scene.fits is not None:
-        print(fits_text(scene))
-    for text in numbers["warnings"]:
-        print(f"warning: {text}")
-    sys.stdout.flush()
-    return drawn
+    brief = "Bearing", "Rating life", "Fits and clearance"
+    return solution_outcome(scene, solved_life_as_dict, brief)
 
 
-def _life_of_cases(options) -> int:
+def _life_of_cases(options, tools: Tools) -> Outcome:
     from ..scene import (
         life_columns,
         read_cases,
         run_life,
         spectrum_as_dict,
         spectrum_report,
-        spectrum_sections,
         unsolved,
-        write_numbers,
     )
-    from ..statics.sweep_table import write_columns
 
     table = read_cases(options.scene, options.set)
-    page = Reporter(options)
-    done = run_life(table, is_shown(options))
+    done, scene = run_life(table, tools.shown), table.scene
+    solved = done.converged
 
-    def draw(path, **format):
+    def draw():
         from ..plot import life_overview
 
-        save(life_overview(done, title=table.scene.name), path, **format)
+        return life_overview(done, title=scene.name)
 
-    text = spectrum_report(done) if done.converged else ""
+    def draw_bearing():
+        from ..plot import drawing
 
-    def tell(path: Path):
-        scene, draws = table.scene, {"Lives and damage of the cases": draw}
-        page(
-            path,
-            scene.name,
-            spectrum_sections(done),
-            table.inputs,
-            draws,
-            life_columns(done),
-            drawing=draws_bearing(scene, scene.running()),
-        )
+        return drawing(scene.running().bearing, scene.name)
 
-    drawn = write(
-        (options.table, lambda path: write_columns(life_columns(done), path)),
-        (options.json, lambda path: write_numbers(path, spectrum_as_dict(done))),
-        (options.plot, draw if done.converged else None),
-        (options.report, tell if done.converged else None),
+    return Outcome(
+        scene.name,
+        table.inputs,
+        lambda: spectrum_as_dict(done),
+        spectrum_report(done) if solved else None,
+        lambda: life_columns(done),
+        {"Lives and damage of the cases": draw} if solved else {},
+        draw_bearing,
+        table_on_page=True,
+        problems=[] if solved else [unsolved(done)],
     )
-    if not done.converged:
-        complain(unsolved(done))
-        return NOT_SOLVED
-    print(text, flush=True)
-    return drawn

@@ -1,10 +1,8 @@
 """`bearingjax optimise`."""
 
 from . import jax_settings
+from .execute import Outcome, Tools
 from .options import add_plot, add_quiet, add_report, add_scene
-from .outputs import Reporter, check_outputs, draws_bearing, save, write
-from .progress import is_shown
-from .status import NOT_SOLVED, complain
 
 
 def add(commands):
@@ -23,7 +21,7 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options, tools: Tools) -> Outcome:
     """Optimise the bearing of a scene."""
     from ..numerics import SolveError
     from ..optimise.system import element_of
@@ -35,49 +33,37 @@ def run(options) -> int:
         scene_of_design,
         unsolved_start_as_dict,
         with_set_preload,
-        write_numbers,
     )
 
-    check_outputs(options)
     task = read_optimisation(options.scene, options.set)
-    page = Reporter(options)
+    name, inputs = task.scene.name, task.inputs
     try:
-        found = run_optimisation(task, progress=is_shown(options))
+        found = run_optimisation(task, progress=tools.shown)
     except SolveError as error:
         numbers = unsolved_start_as_dict(task, error)
-        write(
-            (options.json, lambda path: write_numbers(path, numbers)),
-            (options.plot, None),
-            (options.report, None),
-        )
-        complain(error)
-        return NOT_SOLVED
+        return Outcome(name, inputs, lambda: numbers, problems=[str(error)])
 
+    solved = found.converged
     best = scene_of_design(task, found.element)
-    if found.converged:
+    if solved:
         best = with_set_preload(best, jax_settings.programs())
-    text = optimisation_report(task, found, best) if found.converged else ""
 
-    def draw(path, **format):
+    def draw():
         from ..plot import optimised
 
-        save(optimised(found, title=task.scene.name), path, **format)
+        return optimised(found, title=name)
 
-    def tell(path):
-        texts, draws = {"Optimised design": text}, {"Before and after": draw}
-        drawing = draws_bearing(task.scene, element_of(found.element))
-        page(path, task.scene.name, texts, task.inputs, draws, drawing=drawing)
+    def draw_bearing():
+        from ..plot import drawing
 
-    drawn = write(
-        (
-            options.json,
-            lambda path: write_numbers(path, optimisation_as_dict(task, found, best)),
-        ),
-        (options.plot, draw if found.converged else None),
-        (options.report, tell if found.converged else None),
+        return drawing(element_of(found.element).bearing, name)
+
+    return Outcome(
+        name,
+        inputs,
+        lambda: optimisation_as_dict(task, found, best),
+        optimisation_report(task, found, best) if solved else None,
+        pictures={"Before and after": draw} if solved else {},
+        drawing=draw_bearing,
+        problems=[] if solved else [f"{found.result}: {found.message}"],
     )
-    if not found.converged:
-        complain(f"{found.result}: {found.message}")
-        return NOT_SOLVED
-    print(text, flush=True)
-    return drawn

@@ -1,9 +1,7 @@
 """`bearingjax rotor`."""
 
+from .execute import Outcome, Tools
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
-from .outputs import Reporter, check_outputs, check_table, save, write
-from .progress import stages
-from .status import NOT_SOLVED, complain
 
 
 def add(commands):
@@ -30,57 +28,40 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options, tools: Tools) -> Outcome:
     """A shaft on its bearings."""
     from ..scene import (
         SceneError,
         read_rotor,
+        rotor_as_dict,
         rotor_columns,
         rotor_report,
         rotor_series,
         run_rotor,
-        write_rotor_json,
     )
-    from ..statics.sweep_table import write_columns
 
-    check_table(options)
-    check_outputs(options)
     task = read_rotor(options.scene, options.set)
-    page = Reporter(options)
     if options.table is None and options.series is not None:
         raise SceneError("--series is for a table; name it with --table")
     series = None if options.table is None else rotor_series(task, options.series)
-    with stages(options) as show:
-        done = run_rotor(task, show)
+    done = run_rotor(task, tools.stage)
 
-    def draw(path, **format):
+    def draw():
         from ..plot import rotor_overview
 
-        save(rotor_overview(done, title=task.name), path, **format)
+        return rotor_overview(done, title=task.name)
 
-    lost = [
-        f"{failure.result.label}: {failure.part}: {failure.message}"
-        for failure in done.failures
-    ]
-    text = "" if done.settled is None else rotor_report(done)
-
-    def tell(path):
-        texts, draws = {"Rotor": text}, {"Overview": draw}
-        page(path, task.name, texts, task.inputs, draws, warnings=lost)
-
+    settled = done.settled is not None
     columns = {} if series is None else rotor_columns(done, series)
-
-    def tabulate(path):
-        write_columns(columns, path)
-
-    drawn = write(
-        (options.json, lambda path: write_rotor_json(path, done)),
-        (options.table, tabulate if columns else None),
-        (options.plot, None if done.settled is None else draw),
-        (options.report, None if done.settled is None else tell),
+    return Outcome(
+        task.name,
+        task.inputs,
+        lambda: rotor_as_dict(done),
+        rotor_report(done) if settled else None,
+        (lambda: columns) if columns else None,
+        {"Overview": draw} if settled else {},
+        problems=[
+            f"{failure.result.label}: {failure.part}: {failure.message}"
+            for failure in done.failures
+        ],
     )
-    if text:
-        print(text, flush=True)
-    for one in lost:
-        complain(one)
-    return drawn if done.converged else NOT_SOLVED

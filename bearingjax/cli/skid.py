@@ -1,9 +1,7 @@
 """`bearingjax skid`."""
 
+from .execute import Outcome, Tools
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
-from .outputs import Reporter, check_outputs, check_table, save, write
-from .progress import is_shown
-from .status import NOT_SOLVED, complain
 
 
 def add(commands):
@@ -28,50 +26,32 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options, tools: Tools) -> Outcome:
     """Motion of balls or rollers and their cage."""
     from ..scene import (
         read_skid,
         run_skid,
+        skid_as_dict,
         skid_columns,
         skid_message,
         skid_report,
-        write_skid_json,
     )
-    from ..statics.sweep_table import write_columns
 
-    check_table(options)
-    check_outputs(options)
     task = read_skid(options.scene, options.set, steady=options.steady)
-    page = Reporter(options)
-    done = run_skid(task, shown=is_shown(options))
+    done = run_skid(task, shown=tools.shown)
 
-    def draw(path, **format):
+    def draw():
         from ..plot import skid_overview
 
-        save(
-            skid_overview(task.model, done.found, done.state, title=task.name),
-            path,
-            **format,
-        )
+        return skid_overview(task.model, done.found, done.state, title=task.name)
 
-    text = skid_report(done) if done.converged else ""
-
-    def tell(path):
-        texts, draws = {"Motion of the rolling elements": text}, {"Overview": draw}
-        page(path, task.name, texts, task.inputs, draws)
-
-    def tabulate(path):
-        write_columns(skid_columns(done), path)
-
-    drawn = write(
-        (options.json, lambda path: write_skid_json(path, done)),
-        (options.table, tabulate if done.has_numbers else None),
-        (options.plot, draw if done.converged else None),
-        (options.report, tell if done.converged else None),
+    solved = done.converged
+    return Outcome(
+        task.name,
+        task.inputs,
+        lambda: skid_as_dict(done),
+        skid_report(done) if solved else None,
+        (lambda: skid_columns(done)) if done.has_numbers else None,
+        {"Overview": draw} if solved else {},
+        problems=[] if solved else [f"{done.result.label}: {skid_message(done)}"],
     )
-    if not done.converged:
-        complain(f"{done.result.label}: {skid_message(done)}")
-        return NOT_SOLVED
-    print(text, flush=True)
-    return drawn

@@ -1,16 +1,9 @@
 """`bearingjax solve`."""
 
-from . import jax_settings
+from .execute import Outcome, Tools
 from .options import add_drawing, add_plot, add_report, add_scene
-from .outputs import (
-    Reporter,
-    check_outputs,
-    draws_bearing,
-    draws_solution,
-    tells_solution,
-    write,
-)
-from .status import complain, tell_unsolved
+from .solution import solution_outcome
+from .status import complain
 
 
 def add(commands):
@@ -28,36 +21,11 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options, tools: Tools) -> Outcome:
     """Solve the bearing of a scene."""
-    from ..numerics import Result
-    from ..scene import (
-        has_cases,
-        read_scene,
-        report,
-        run_scene,
-        with_set_preload,
-        write_json,
-    )
+    from ..scene import has_cases, read_scene
 
-    check_outputs(options)
     scene = read_scene(options.scene, options.set)
-    page = Reporter(options)
     if has_cases(options.scene, options.set):
         complain("one load, that of [operating]; [cases] are for sweep, life, optimise")
-    solution = run_scene(scene, jax_settings.programs())
-    solved = Result(int(solution.result)) is Result.CONVERGED
-    if solved:
-        scene = with_set_preload(scene, jax_settings.programs())
-    # Mounted and preloaded where the scene says so.
-    element = solution.element if solved else scene.element
-    drawn = write(
-        (options.json, lambda path: write_json(path, scene, solution)),
-        (options.plot, draws_solution(scene, solution) if solved else None),
-        (options.drawing, draws_bearing(scene, element)),
-        (options.report, tells_solution(scene, solution, page) if solved else None),
-    )
-    if not solved:
-        return tell_unsolved(scene, solution)
-    print(report(scene, solution), flush=True)
-    return drawn
+    return solution_outcome(scene)

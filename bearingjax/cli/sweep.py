@@ -3,15 +3,12 @@
 import shlex
 import signal
 import time
-from pathlib import Path
 
 import numpy as np
 
+from .execute import Outcome, Tools, check_table
 from .jax_settings import devices
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
-from .outputs import Reporter, check_outputs, check_table, save, write
-from .progress import is_shown
-from .status import NOT_SOLVED, complain
 
 
 def add(commands):
@@ -43,7 +40,7 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options, tools: Tools) -> Outcome:
     """Solve the cases of a scene."""
     from ..numerics import Result
     from ..scene import (
@@ -53,66 +50,52 @@ def run(options) -> int:
         read_cases,
         resume_cases,
         run_cases,
+        sweep_as_dict,
         sweep_report,
-        write_sweep_json,
     )
     from ..statics import sweep_table
 
-    check_table(options)
-    check_outputs(options)
     devices(options)
     if options.resume and options.table is None:
         raise SceneError("--resume takes up a table; name it with --table")
     begin = time.perf_counter()
     table = read_cases(options.scene, options.set)
     check_table(options, table.cases.count)
-    page = Reporter(options)
-    shown = is_shown(options)
-    with Interrupt() as interrupt:
-        done = options.table if options.resume else None
-        if done is not None and done.exists():
-            solved = resume_cases(table, done, shown, interrupt)
-        else:
-            solved = run_cases(table, shown, interrupt)
-        summary = sweep_report(table, solved, time.perf_counter() - begin)
+    interrupt = tools.until_written(Interrupt())
+    if options.resume and options.table.exists():
+        solved = resume_cases(table, options.table, tools.shown, interrupt)
+    else:
+        solved = run_cases(table, tools.shown, interrupt)
+    seconds = time.perf_counter() - begin
 
-        def tabulate(path: Path):
-            sweep_table.write(solved, path, design_columns(table))
+    def draw():
+        from ..plot import sweep_overview
 
-        def draw(path, **format):
-            from ..plot import sweep_overview
+        return sweep_overview(solved, design_columns(table), table.scene.name)
 
-            figure = sweep_overview(solved, design_columns(table), table.scene.name)
-            save(figure, path, **format)
-
-        any_solved = bool(solved.converged.any())
-
-        def tell(path: Path):
-            draws = {"Results over the cases": draw} if any_solved else {}
-            found = sweep_table.columns(solved, design_columns(table))
-            name, texts = table.scene.name, {"Cases": summary}
-            page(path, name, texts, table.inputs, draws, found)
-
-        drawn = write(
-            (options.table, tabulate),
-            (options.json, lambda path: write_sweep_json(path, table, solved)),
-            (options.plot, draw if any_solved else None),
-            (options.report, tell),
-        )
-    print(summary, flush=True)
     left = int((np.asarray(solved.result) == Result.NOT_RUN).sum())
-    if left or interrupt.number is not None:
-        _tell_interrupted(options, left, solved.cases.count)
-        return 128 + (interrupt.number or signal.SIGINT)
-    if solved.converged.all():
-        return drawn
     lost = int((~solved.converged).sum())
-    complain(f"{lost} of {solved.cases.count} cases not solved")
-    return NOT_SOLVED
+    problems, status = [], None
+    if left or interrupt.number is not None:
+        problems.append(_how_to_go_on(options, left, solved.cases.count))
+        status = 128 + (interrupt.number or signal.SIGINT)
+    elif lost:
+        problems.append(f"{lost} of {solved.cases.count} cases not solved")
+    return Outcome(
+        table.scene.name,
+        table.inputs,
+        lambda: sweep_as_dict(table, solved),
+        sweep_report(table, solved, seconds),
+        lambda: sweep_table.columns(solved, design_columns(table)),
+        {"Results over the cases": draw} if solved.converged.any() else {},
+        table_on_page=True,
+        problems=problems,
+        status=status,
+    )
 
 
-def _tell_interrupted(options, left: int, count: int) -> None:
-    """Say how an interrupted sweep goes on."""
+def _how_to_go_on(options, left: int, count: int) -> str:
+    """How an interrupted sweep goes on."""
     words = f"interrupted: {left} of {count} cases not run"
     if left and options.table is not None:
         given = [word for word in options.given if word != "--resume"]
@@ -120,4 +103,4 @@ def _tell_interrupted(options, left: int, count: int) -> None:
         words += f"; go on with: {again}"
     elif left:
         words += "; with --table what is solved is kept, and --resume goes on from it"
-    complain(words)
+    return words

@@ -1,6 +1,5 @@
 """What is told of a solved contact: a report for people, JSON in SI for programs."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,9 +8,7 @@ from ..contact.halfspace.pressure import message
 from ..contact.slices import Compared
 from ..numerics.result import Result
 from .contact_table import ContactScene
-from .files import write_numbers
-
-_RULE = "-" * 78
+from .report_model import NEWTONS, Column, Grid, Report
 
 WIDE = 0.2
 """Half width of a contact over the radius of the roller from which it is said."""
@@ -125,17 +122,6 @@ def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any
     }
 
 
-def write_contact_json(
-    path: str | Path, scene: ContactScene, cases: list[Compared]
-) -> None:
-    """Write `contact_as_dict` to a file.
-
-    Raises:
-        OSError: If the file cannot be written.
-    """
-    write_numbers(path, contact_as_dict(scene, cases))
-
-
 def _status(solution) -> dict[str, Any]:
     residual = float(solution.residual)
     return {
@@ -179,7 +165,7 @@ def _numbers(scene, case: Compared) -> dict[str, Any]:
     return numbers
 
 
-def contact_report(scene: ContactScene, cases: list[Compared]) -> str:
+def contact_report(scene: ContactScene, cases: list[Compared]) -> Report:
     """Readable report of a solved contact.
 
     Args:
@@ -187,13 +173,13 @@ def contact_report(scene: ContactScene, cases: list[Compared]) -> str:
         cases: What came of it; those that are not solved are left out.
     """
     solved = [case for case in cases if case.solution.converged]
-    parts = [
-        _contact(scene, solved),
-        _loads(solved),
-        _places(scene, solved),
-        _ending(solved),
-    ]
-    return f"\n{_RULE}\n".join(parts)
+    sections = {
+        "Contact": [_contact(scene, solved)],
+        "Loads and peaks": [_loads(solved)],
+        "Pressures": [_places(scene, solved)],
+        "Solution": [_ending(solved)],
+    }
+    return Report(sections, contact_warnings(scene, cases))
 
 
 def _contact(scene, cases):
@@ -227,39 +213,49 @@ def _contact(scene, cases):
 
 
 def _loads(cases):
-    lines = [
-        "    load  approach    tilt   moment    peak      at  in cell  slices    edge",
-        "       N        µm    mrad      N m     MPa      mm       µm     MPa  factor",
-    ]
-    for case in cases:
-        s, place = case.solution, case.peak
-        tail = f" {'-':>7} {'-':>8} {'-':>7} {'-':>7}"
-        if case.touches:
-            peak, cell = 1e3 * float(s.grid.y[place]), 2e6 * float(s.grid.half_y[place])
-            sliced = 1e-6 * float(case.slices.peak_pressure)
-            tail = f" {peak:7.4g} {cell:8.4g} {sliced:7.0f} {case.edge_factor:7.3f}"
-        lines.append(
-            f"{float(s.load):8.5g} {1e6 * float(s.approach):9.5g}"
-            f" {1e3 * _clean(s.tilt):7.4g} {_clean(s.moment):8.4g}"
-            f" {1e-6 * float(s.peak_pressure):7.0f}{tail}"
-        )
-    return "\n".join(lines)
+    def where_touching(number):
+        return [number(case) if case.touches else None for case in cases]
+
+    def each(name):
+        return [_clean(getattr(case.solution, name)) for case in cases]
+
+    def grid(name, case):
+        return float(getattr(case.solution.grid, name)[case.peak])
+
+    at = where_touching(lambda case: grid("y", case))
+    cell = where_touching(lambda case: 2.0 * grid("half_y", case))
+    sliced = where_touching(lambda case: float(case.slices.peak_pressure))
+    return Grid(
+        [
+            Column("load", each("load"), "N", ".5g", NEWTONS),
+            Column("approach", each("approach"), "m"),
+            Column("tilt", each("tilt"), "rad", ".4g"),
+            Column("moment", each("moment"), "N m", ".4g"),
+            Column("peak", each("peak_pressure"), "Pa", ".0f"),
+            Column("at", at, "m", ".4g", (1e3, "mm")),
+            Column("in cell", cell, "m", ".4g"),
+            Column("slices", sliced, "Pa", ".0f"),
+            Column("edge factor", where_touching(lambda c: c.edge_factor), "", ".3f"),
+        ]
+    )
 
 
 def _places(scene, cases):
     """Pressure at x = 0 at fixed places, which do not depend on the cells there."""
     length = float(scene.contact.roller_length)
     places = np.array(PLACES) * length
-    lines = [
-        "pressure at x = 0 (MPa) at distances from the small end (mm)",
-        f"{'load, N':>8}" + "".join(f"{1e3 * v:9.4g}" for v in places),
-    ]
-    for case in cases:
-        pressure = 1e-6 * _at(case.solution, 0.5 * length - places)
-        lines.append(
-            f"{float(case.solution.load):8.5g}" + "".join(f"{p:9.1f}" for p in pressure)
-        )
-    return "\n".join(lines)
+    pressure = np.array([_at(case.solution, 0.5 * length - places) for case in cases])
+    loads = [float(case.solution.load) for case in cases]
+    return Grid(
+        [
+            Column("load", loads, "N", ".5g", NEWTONS),
+            *(
+                Column(f"{1e3 * place:.4g} mm", pressure[:, k], "Pa", ".1f")
+                for k, place in enumerate(places)
+            ),
+        ],
+        "pressure at x = 0 at distances from the small end",
+    )
 
 
 def _ending(cases):

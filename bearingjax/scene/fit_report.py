@@ -6,6 +6,7 @@ import numpy as np
 
 from ..design import Bearing, BearingSet, TaperedRollerBearing, rows_of
 from .fit_table import Fits, fit_facts
+from .report_model import Column, Grid, Part
 
 ACROSS_TAPERS = "normal to the outer raceway"
 """Along what the clearance of a taper is a number of its design."""
@@ -21,42 +22,36 @@ def outer_cosine(taper: TaperedRollerBearing) -> float:
     return float(np.cos(angle))
 
 
-def fit_report(fits: Fits, bearing: Bearing | BearingSet) -> str:
-    """Readable report of fits: radial clearance from bearing to operation, and seats.
+def fit_report(fits: Fits, bearing: Bearing | BearingSet) -> list[Part]:
+    """Fits for people: radial clearance from bearing to operation, and seats.
 
     Args:
         fits, bearing: As of `fit_facts`.
     """
     facts = fit_facts(fits, bearing)
-    left = facts.operating.radial_clearance
     shaft, housing = (name or "as given" for name in fits.names)
-    lines = [
+    states = {
+        "free": facts.free,
+        "mounted": facts.mounted.radial_clearance,
+        "operating": facts.operating.radial_clearance,
+    }
+    ranges = [None, facts.mounted_range, facts.operating_range]
+    row = rows_of(bearing)[0].bearing
+    columns = [Column("", list(states)), _microns("nominal", list(states.values()))]
+    if isinstance(row, TaperedRollerBearing):
+        across = [float(c) * outer_cosine(row) for c in states.values()]
+        columns.append(_microns(ACROSS_TAPERS, across))
+    for kind in ("probable", "worst"):
+        ends = ["-" if r is None else _ends(getattr(r, kind)) for r in ranges]
+        columns.append(Column(kind, ends, "m"))
+    return [
         f"fits: shaft {shaft}, housing {housing}; sizes of the solve:"
         f" {fits.place.replace('_', ' ')}",
-        f"radial clearance   free {_micron(facts.free)}, mounted"
-        f" {_micron(facts.mounted.radial_clearance)}, operating {_micron(left)} µm",
+        Grid(columns, "radial clearance"),
+        _seats(facts),
+        "hoop stress of the inner ring at its bore, operating"
+        f" {1e-6 * float(facts.operating.ring_stress):.4g} MPa",
     ]
-    row = rows_of(bearing)[0].bearing
-    if isinstance(row, TaperedRollerBearing):
-        states = facts.free, facts.mounted.radial_clearance, left
-        free, cold, warm = (_micron(float(c) * outer_cosine(row)) for c in states)
-        lines.append(
-            f"  {ACROSS_TAPERS}: free {free}, mounted {cold}, operating {warm} µm"
-        )
-    for words, found in (
-        ("mounted", facts.mounted_range),
-        ("operating", facts.operating_range),
-    ):
-        lines.append(
-            f"  {words:<17}probable {_ends(found.probable)}, worst"
-            f" {_ends(found.worst)} µm"
-        )
-    lines += [_seat(facts, seat) for seat in ("shaft", "housing")]
-    stress = 1e-6 * float(facts.operating.ring_stress)
-    lines.append(
-        f"hoop stress of the inner ring at its bore, operating {stress:.4g} MPa"
-    )
-    return "\n".join(lines)
 
 
 def _micron(value) -> str:
@@ -67,15 +62,25 @@ def _ends(limits) -> str:
     return f"{_micron(limits.lower)} to {_micron(limits.upper)}"
 
 
-def _seat(facts, seat) -> str:
-    before, after = (
-        getattr(state, f"{seat}_interference")
-        for state in (facts.mounted, facts.operating)
-    )
-    pressure = 1e-6 * float(getattr(facts.operating, f"{seat}_pressure"))
-    return (
-        f"{seat:<9}interference mounted {_micron(before)}, operating"
-        f" {_micron(after)} µm; pressure operating {pressure:.4g} MPa"
+def _microns(name, values):
+    return Column(name, [round(float(v), 8) for v in values], "m", ".4g")
+
+
+def _seats(facts) -> Grid:
+    """Interference, and the pressure that comes of it, of both seats."""
+
+    def both(state, what):
+        return [getattr(state, f"{seat}_{what}") for seat in seats]
+
+    seats = "shaft", "housing"
+    pressure = both(facts.operating, "pressure")
+    return Grid(
+        [
+            Column("", seats),
+            _microns("interference mounted", both(facts.mounted, "interference")),
+            _microns("operating", both(facts.operating, "interference")),
+            Column("pressure operating", pressure, "Pa", ".4g"),
+        ]
     )
 
 

@@ -1,7 +1,8 @@
 """A report as one HTML file that opens anywhere and prints well.
 
-Nothing in it is fetched: pictures are part of the file, so is the style. Its texts are
-those of the report on the terminal; so whatever that tells stands here too.
+Nothing in it is fetched: pictures are part of the file, so is the style. It shows the
+sections of a `Report`, sentences as paragraphs and grids as tables; so whatever the
+terminal tells stands here too.
 """
 
 import base64
@@ -12,6 +13,8 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+
+from .report_model import Part, Report
 
 MOST_ROWS = 200
 """Most rows of a table that a page shows; `--table` writes them all."""
@@ -26,8 +29,7 @@ h2 { font-size: 1.15rem; margin: 2rem 0 .6rem; padding-bottom: .2rem;
 header p { margin: 0; color: #57606a }
 pre { font: 12.5px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace;
   margin: 0; white-space: pre-wrap; overflow-wrap: break-word }
-pre.columns { white-space: pre; overflow-x: auto }
-hr { border: 0; border-top: 1px solid #d0d7de; margin: .5rem 0 }
+section > p { margin: .3rem 0; white-space: pre-line }
 figure { margin: 0 } figure img { width: 100%; height: auto }
 .warnings { border-left: 5px solid #c77700; background: #fff6e5; padding: .6rem 1rem;
   margin: 1rem 0 }
@@ -39,6 +41,12 @@ th, td { text-align: left; padding: .15rem .6rem .15rem 0; vertical-align: top;
   border-bottom: 1px solid #e3e6ea }
 th[scope=colgroup] { padding-top: .8rem; border-bottom: 1px solid #9aa4ae }
 td.number { font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
+table.grid { width: auto; margin: .5rem 0 }
+.grid caption { text-align: left; padding: .3rem 0 }
+.grid th, .grid td { padding-right: 1.1rem }
+.grid .value { text-align: right; white-space: nowrap;
+  font-variant-numeric: tabular-nums }
+.grid th .unit { font-weight: normal; color: #57606a }
 .cases th, .cases td { font-size: 11px; white-space: nowrap }
 .cases th { white-space: normal; vertical-align: bottom }
 @media screen {
@@ -51,7 +59,6 @@ td.number { font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
   body { max-width: none; padding: 0; font-size: 9pt; line-height: 1.35 }
   h1 { font-size: 16pt } h2 { font-size: 11pt; margin: 5mm 0 2mm; break-after: avoid }
   pre { font-size: 7.2pt; line-height: 1.3; orphans: 6; widows: 6 }
-  pre.columns { overflow: visible } pre + pre.columns { break-before: avoid }
   table { font-size: 8pt } th, td { padding: .3mm 3mm .3mm 0 }
   figure, .warnings, tr { break-inside: avoid } p { break-after: avoid }
   tr:has(th[scope=colgroup]) { break-after: avoid }
@@ -80,7 +87,7 @@ class Origin:
 
 def report_page(
     title: str,
-    texts: Mapping[str, str],
+    report: Report,
     inputs: Mapping[str, Any],
     origin: Origin,
     pictures: Mapping[str, bytes | str] = MappingProxyType({}),
@@ -92,22 +99,24 @@ def report_page(
 
     Args:
         title: Of the page.
-        texts: As on the terminal, by their titles; lines that begin with "warning: "
-            stand at the top of the page too.
+        report: Its sections, and warnings, which stand at the top of the page.
         inputs: All that was read, as a scene writes it.
         origin: Where the report comes from.
         pictures: PNG files by their titles, or why one is missing.
         table: Columns by header, "name [unit]"; its first rows are shown.
-        warnings: Those that are not in the texts.
+        warnings: Those that are not in the report.
         drawing: Likewise that of the bearing, which stands with the inputs.
 
     Returns:
         HTML, a whole document.
     """
     parts = [
-        _warnings("\n".join(texts.values()), warnings),
+        _warnings([*report.warnings, *warnings]),
         *(_picture(name, png) for name, png in pictures.items()),
-        *(_text(name, text) for name, text in texts.items()),
+        *(
+            _section(name, "\n".join(map(_part, parts)))
+            for name, parts in report.sections.items()
+        ),
         "" if table is None else _table(table),
         "" if drawing is None else _picture("Drawing", drawing),
         _inputs(inputs),
@@ -146,35 +155,41 @@ def _section(title: str, content: str, kind: str = "") -> str:
     return f"<section{extra}>\n<h2>{escape(title)}</h2>\n{content}\n</section>"
 
 
-def _text(title: str, text: str) -> str:
-    """A text of the terminal; lines of columns keep them, others may be broken."""
-    blocks: list[tuple[str, list[str]]] = []
-    for line in text.splitlines():
-        ruled = len(line) > 9 and not line.strip("-")
-        aligned = "  " in line.strip() or line.startswith("  ")
-        kind = "rule" if ruled else "columns" if aligned else "lines"
-        if not blocks or blocks[-1][0] != kind:
-            blocks.append((kind, []))
-        blocks[-1][1].append(line)
-    return _section(title, "\n".join(_block(kind, lines) for kind, lines in blocks))
+def _part(part: Part) -> str:
+    """A paragraph of sentences, or a table."""
+    if isinstance(part, str):
+        return f"<p>{escape(part.strip())}</p>" if part.strip() else ""
+    kinds = ["" if column.is_text else ' class="value"' for column in part.columns]
+    title = f"<caption>{escape(part.title)}</caption>\n" if part.title else ""
+    heads = [column.heading for column in part.columns]
+    head = "".join(
+        f'<th scope="col"{kind}>{escape(name)}{_unit(unit)}</th>'
+        for (name, unit), kind in zip(heads, kinds, strict=True)
+    )
+    named = any(map(any, heads))
+    rows = "\n".join(
+        "<tr>"
+        + "".join(
+            f"<td{kind}>{escape(cell)}</td>"
+            for cell, kind in zip(row, kinds, strict=True)
+        )
+        + "</tr>"
+        for row in part.rows()
+    )
+    top = f"<thead>\n<tr>{head}</tr>\n</thead>\n" if named else ""
+    body = f"{title}{top}<tbody>\n{rows}\n</tbody>"
+    return f'<div class="scroll"><table class="grid">\n{body}\n</table></div>'
 
 
-def _block(kind: str, lines: Iterable[str]) -> str:
-    if kind == "rule":
-        return "<hr>"
-    named = ' class="columns"' if kind == "columns" else ""
-    return f"<pre{named}>{escape(chr(10).join(lines))}</pre>"
+def _unit(unit: str) -> str:
+    return f' <span class="unit">{escape(unit)}</span>' if unit else ""
 
 
-def _warnings(text: str, others: Sequence[str]) -> str:
-    """Lines of a text that begin with "warning: ", and others, where nobody overlooks
-    them."""
-    mark = "warning: "
-    told = [t.removeprefix(mark) for t in text.splitlines() if t.startswith(mark)]
-    told = list(dict.fromkeys([*told, *others]))
+def _warnings(told: Sequence[str]) -> str:
+    """Warnings where nobody overlooks them, each once."""
     if not told:
         return ""
-    items = "\n".join(f"<li>{escape(one)}</li>" for one in told)
+    items = "\n".join(f"<li>{escape(one)}</li>" for one in dict.fromkeys(told))
     return _section("Warnings", f"<ul>\n{items}\n</ul>", "warnings")
 
 

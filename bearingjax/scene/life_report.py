@@ -12,6 +12,7 @@ from ..statics.solution import RollerSolution, Solution
 from .life_table import life_conditions, not_published, rating_origins
 from .quantity import SceneError
 from .read import Scene
+from .report_model import Column, Grid, Part
 
 _SOURCES = {
     "dynamic_capacity": "dynamic_source",
@@ -102,8 +103,8 @@ def _plain(value) -> Any:
     return plain.tolist()
 
 
-def life_report(scene: Scene, solution: Solution, life: Life) -> str:
-    """Readable report of a rating life.
+def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
+    """A rating life for people.
 
     Args:
         scene: What was solved.
@@ -111,15 +112,13 @@ def life_report(scene: Scene, solution: Solution, life: Life) -> str:
         life: Its life, in NumPy.
     """
     r, axially = life.ratings, "axial" if life.ratings.axial else "radial"
-    hours = _hours_per_turn(solution)
-    lines = [
-        "rating life                 million rev"
-        + ("            hours" if hours is not None else ""),
-        _line("basic, ISO 281", life.basic_rating_life, hours),
-        _line("reference, ISO/TS 16281", life.reference_rating_life, hours),
-    ]
+    lives = {
+        "basic, ISO 281": life.basic_rating_life,
+        "reference, ISO/TS 16281": life.reference_rating_life,
+    }
+    told = []
     if life.modified_rating_life is not None:
-        lines.append(_line("modified (a1, a_ISO)", life.modified_rating_life, hours))
+        lives["modified (a1, a_ISO)"] = life.modified_rating_life
         factors = {
             "viscosity ratio": life.viscosity_ratio,
             "e_C": life.contamination_factor,
@@ -127,12 +126,15 @@ def life_report(scene: Scene, solution: Solution, life: Life) -> str:
             "a1": life.reliability_factor,
         }
         parts = (f"{name} {np.asarray(x):.4g}" for name, x in factors.items())
-        lines.append(", ".join(parts))
+        told.append(", ".join(parts))
     elif life.reliability_factor < 0.999999:
         a1 = float(life.reliability_factor)
-        asked = a1 * life.reference_rating_life
-        lines.append(_line(f"reference, a1 {a1:.4g}", asked, hours))
-    lines += [
+        lives[f"reference, a1 {a1:.4g}"] = a1 * life.reference_rating_life
+    per_turn = _hours_per_turn(solution)
+    hours = None if per_turn is None else {k: per_turn * x for k, x in lives.items()}
+    return [
+        lives_grid(lives, hours),
+        *told,
         f"{axially} ratings",
         *(
             f"  {words}"
@@ -143,10 +145,25 @@ def life_report(scene: Scene, solution: Solution, life: Life) -> str:
         f" {_kilo(life.reference_load)} kN",
         f"static safety C0/P0 {life_number(life.static_safety)}, P0"
         f" {_kilo(life.static_equivalent_load)} kN (ISO 76)",
+        *limits(solution, life),
+        turning(life.turns_against_load, solution.speed is None),
     ]
-    lines += limits(solution, life)
-    lines.append(turning(life.turns_against_load, solution.speed is None))
-    return "\n".join(lines)
+
+
+def lives_grid(lives: Mapping[str, Any], hours: Mapping[str, Any] | None) -> Grid:
+    """Lives by their names.
+
+    Args:
+        lives: In revolutions.
+        hours: Likewise in hours; `None` at rest.
+    """
+    columns = [
+        Column("rating life", list(lives)),
+        Column("", list(map(float, lives.values())), "rev"),
+    ]
+    if hours is not None:
+        columns.append(Column("", list(map(float, hours.values())), "h"))
+    return Grid(columns)
 
 
 def limits(solution: Solution, life: Life) -> list[str]:
@@ -199,11 +216,6 @@ def _hours_per_turn(solution) -> float | None:
     if speed is None or float(speed.inner) == float(speed.outer):
         return None
     return 2.0 * np.pi / 3600.0 / abs(float(speed.inner) - float(speed.outer))
-
-
-def _line(name, life, hours) -> str:
-    line = f"  {name:<24}{life_number(1e-6 * life):>13}"
-    return line if hours is None else line + f"{life_number(hours * life):>17}"
 
 
 def life_number(value: Any) -> str:

@@ -1,7 +1,6 @@
 """Rating life under the cases of a scene, a load spectrum: running and telling."""
 
 import dataclasses
-import textwrap
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -17,18 +16,23 @@ from ..statics.sweep import Sweep
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .case_words import case_words, differing
 from .cases_table import CaseTable
-from .life_report import life_number, ratings_as_dict, ratings_in_words, turning
+from .life_report import (
+    life_number,
+    lives_grid,
+    ratings_as_dict,
+    ratings_in_words,
+    turning,
+)
 from .life_table import life_conditions, not_published, rating_origins
 from .quantity import SceneError
 from .report import design_sections
+from .report_model import NEWTONS, Column, Grid, Part, Report
 from .scene_file import find_scene, parse_bearing
 from .sweep_run import all_warnings, design_columns, listed_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 _SHOWN = 12
 """Cases that a report lists."""
-_WIDTH = 88
-"""Letters of a line."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -218,59 +222,54 @@ def _finite(value) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def spectrum_report(run: LifeRun) -> str:
-    """Readable report of the life under the cases.
+def spectrum_report(run: LifeRun) -> Report:
+    """Readable report of the life under the cases, of which the terminal shows the
+    lives.
 
     Args:
         run: With all cases solved.
     """
     table = run.table
-    count = table.cases.count
+    sections = {"Rating life": _lives(run), **design_sections(table.scene)}
+    fits = "Fits and clearance"
+    if run.clearance is not None:
+        sections[fits] = [
+            "These are the fits as [operating], [fit] and [temperature] of the scene"
+            f" have them; over the cases {_on_seats(run)}.",
+            *sections[fits],
+        ]
+    told = all_warnings(table, run.solved)
+    return Report(sections, told, brief=["Rating life"])
+
+
+def _lives(run) -> list[Part]:
+    table = run.table
     rated = ratings_in_words(run.ratings, run.origins)
-    lines = [
-        f"{table.scene.name}: life under {count} cases over {', '.join(table.varied)}",
-        rated["C"],
-        rated["C0"],
-        *not_published(table.scene, table.varied),
-        f"\n{'':<24}{'million rev':>14}"
-        + ("" if run.asked.life_hours is None else f"{'hours':>14}"),
-    ]
     lives = {name.removesuffix("_rating_life"): x for name, x in run.lives.items()}
     a1 = float(run.asked.rating_life) / float(lives["reference"].rating_life)
     if "modified" not in lives and a1 < 0.999999:
         lives[f"reference, a1 {a1:.4g}"] = run.asked
-    for words, life in lives.items():
-        line = f"{words:<24}{life_number(1e-6 * life.rating_life):>14}"
-        if life.life_hours is not None:
-            line += f"{life_number(life.life_hours):>14}"
-        lines.append(line)
-    lines.append(
-        f"equivalent load of the spectrum {1e-3 * equivalent_load(run):.5g} kN; least"
-        f" static safety {run.least_safety()}"
+    revolutions, hours = (
+        {name: getattr(life, what) for name, life in lives.items()}
+        for what in ("rating_life", "life_hours")
     )
-    if run.asked.life_hours is None:
+    at_rest = run.asked.life_hours is None
+    told: list[Part] = [
+        f"{table.scene.name}: life under {table.cases.count} cases over"
+        f" {', '.join(table.varied)}",
+        rated["C"],
+        rated["C0"],
+        *not_published(table.scene, table.varied),
+        "",
+        lives_grid(revolutions, None if at_rest else hours),
+        f"equivalent load of the spectrum {1e-3 * equivalent_load(run):.5g} kN; least"
+        f" static safety {run.least_safety()}",
+    ]
+    if at_rest:
         fixed_to = life_conditions(table.scene).load_fixed_to
-        lines.append(turning(turns_against_load(None, fixed_to), True))
-    lines += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
-    lines += _by_case(run)
-    lines += [f"warning: {text}" for text in all_warnings(run.table, run.solved)]
-    return "\n".join(lines)
-
-
-def spectrum_sections(run: LifeRun) -> dict[str, str]:
-    """The texts of a page on the life under the cases, by their titles.
-
-    Args:
-        run: With all cases solved.
-    """
-    texts = {"Rating life": spectrum_report(run)} | design_sections(run.table.scene)
-    fits = "Fits and clearance"
-    if run.clearance is not None:
-        texts[fits] = (
-            "These are the fits as [operating], [fit] and [temperature] of the scene"
-            f" have them; over the cases\n{_on_seats(run)}.\n{texts[fits]}"
-        )
-    return texts
+        told.append(turning(turns_against_load(None, fixed_to), True))
+    told += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
+    return [*told, *_by_case(run)]
 
 
 def _on_seats(run) -> str:
@@ -288,67 +287,39 @@ def _ends(values: np.ndarray) -> str:
     return " to ".join(dict.fromkeys(ends))
 
 
-def _by_case(run) -> list[str]:
-    """A line for each of the worst cases, as if it were alone; what tells them apart
-    below."""
+def _by_case(run) -> list[Part]:
+    """A row for each of the worst cases, as if it were alone, and what tells them
+    apart."""
     order, shares = run.worst(_SHOWN)
     solved, hours = run.solved, run.table.cases.hours
-    words = [name.removesuffix("_rating_life") for name in run.lives]
-    left = _left(run)
-    lines = [
-        f"\n{'each case alone':<18}{'P':>10}"
-        + "".join(f"{word:>12}" for word, _, _ in left)
-        + "".join(f"{word:>12}" for word in words)
-        + f"{'damage %':>12}",
-        f"{'case':>6}{'hours':>12}{'kN':>10}"
-        + "".join(f"{unit:>12}" for _, unit, _ in left)
-        + f"{'million rev':>12}" * len(words)
-        + f"{f'({run.asked_name})':>12}",
+    spent = [None] * len(order) if hours is None else np.asarray(hours)[order]
+    columns = [
+        Column("case", order),
+        Column("hours", spent),
+        Column("P", np.asarray(solved.equivalent_load)[order], "N", ".4g"),
     ]
-    for k, share in zip(order, shares, strict=True):
-        spent = "-" if hours is None else f"{float(hours[k]):.5g}"
-        load = 1e-3 * float(solved.equivalent_load[k])
-        lives = (life_number(1e-6 * getattr(solved, name)[k]) for name in run.lives)
-        lines.append(
-            f"{k:>6}{spent:>12}{load:>10.4g}"
-            + "".join(f"{float(values[k]):>12.4g}" for _, _, values in left)
-            + "".join(f"{life:>12}" for life in lives)
-            + f"{100 * share:>12.4g}"
-        )
+    if run.clearance is not None:
+        columns.append(Column("clearance", run.clearance[order], "m", ".4g"))
+    if run.preload is not None:
+        columns.append(Column("preload", run.preload[order], "N", ".4g", NEWTONS))
+    for name in run.lives:
+        word, values = name.removesuffix("_rating_life"), getattr(solved, name)
+        columns.append(Column(word, np.asarray(values)[order], "rev"))
+    name = f"damage ({run.asked_name})"
+    columns.append(Column(name, shares, "1", ".4g", (100.0, "%")))
+    told: list[Part] = ["", Grid(columns, "each case alone")]
     more = run.table.cases.count - len(order)
     if more:
-        lines.append(f"  and {more} more, {100 * (1 - shares.sum()):.3g} %")
-    return lines + _apart(run, order)
-
-
-def _left(run) -> list[tuple[str, str, np.ndarray]]:
-    """What the seats leave in each case: word, unit, values."""
-    found = []
-    if run.clearance is not None:
-        found.append(("clearance", "µm", 1e6 * run.clearance))
-    if run.preload is not None:
-        found.append(("preload", "N", run.preload))
-    return found
-
-
-def _apart(run, order) -> list[str]:
-    """What tells cases apart, a line each."""
+        told.append(f"and {more} more, {100 * (1 - shares.sum()):.3g} %")
     found = differing(run.table)
-    if not found:
-        return []
-    lines = [f"\n{'case':>6}  what differs"]
-    for k in order:
+    if found:
         # Spaces that do not break keep a setting in one line.
-        told = ", ".join(w.replace(" ", "\xa0") for w in case_words(found, int(k)))
-        parts = textwrap.wrap(
-            told,
-            _WIDTH,
-            initial_indent=f"{k:>6}  ",
-            subsequent_indent=" " * 8,
-            break_on_hyphens=False,
-        )
-        lines += [part.replace("\xa0", " ") for part in parts]
-    return lines
+        apart = [
+            ", ".join(w.replace(" ", "\xa0") for w in case_words(found, int(k)))
+            for k in order
+        ]
+        told += ["", Grid([Column("case", order), Column("what differs", apart)])]
+    return told
 
 
 def unsolved(run: LifeRun) -> str:

@@ -7,7 +7,6 @@ import numpy as np
 
 from ..acoustics import Shares, write_sound
 from ..acoustics.natural import LOOSE
-from .files import write_numbers
 from .noise_run import Many, NoiseRun
 from .noise_scene import DIRECTIONS
 from .tolerance_table import Tighter
@@ -117,15 +116,6 @@ def _many(many: Many, tighter: Tighter) -> dict[str, Any]:
 def parts_of(found: Shares) -> np.ndarray:
     """Part of the mean square that goes without each source (source,) [1]."""
     return np.asarray(found.share) / float(found.mean_square)
-
-
-def write_noise_json(path: str | Path, run: NoiseRun) -> None:
-    """Write `noise_as_dict` to a file.
-
-    Raises:
-        OSError: If the file cannot be written.
-    """
-    write_numbers(path, noise_as_dict(run))
 
 
 def noise_columns(run: NoiseRun) -> dict[str, np.ndarray]:

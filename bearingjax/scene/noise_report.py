@@ -11,24 +11,28 @@ from .noise_output import PERCENTILES, parts_of
 from .noise_run import LARGEST_LINES, NoiseRun
 from .noise_scene import DIRECTIONS
 from .report import bearing_text
+from .report_model import Column, Grid, Report
 
-_RULE = "-" * 78
 _RPM = 30.0 / np.pi
 _WORTH = 0.1
 """Part of a band from which its largest source is named [1]."""
 
 
-def noise_report(run: NoiseRun) -> str:
+def noise_report(run: NoiseRun) -> Report:
     """Readable report of the noise of a bearing.
 
     Args:
         run: From `run_noise`, converged.
     """
-    parts = [_bearing(run), _modes(run), _levels(run), _lines(run), _states(run)]
-    if run.many is not None:
-        parts.append(_many(run))
-    notes = "".join(f"\nwarning: {text}" for text in run.warnings)
-    return f"\n{_RULE}\n".join(parts) + notes
+    sections = {
+        "Bearing and rig": [_bearing(run)],
+        "Natural modes": [_modes(run)],
+        "Levels": [_levels(run)],
+        "Lines": _lines(run),
+        "Contacts": [_states(run)],
+        "Random bearings": [] if run.many is None else _many(run),
+    }
+    return Report(sections, run.warnings)
 
 
 def _bearing(run):
@@ -76,48 +80,46 @@ def _modes(run):
 def _levels(run):
     """Level of every band and direction, beside the norm if there is one."""
     heard, task = run.heard, run.task
-    norm = task.norm
-    head = f"level, dB over {task.reference:.3g} m/s²"
-    lines = [
-        head
-        + "".join(f"{name:>9}" for name in DIRECTIONS)
-        + ("     norm" if norm is not None else ""),
+    bands = [f"{centre:g} Hz" for centre in task.bands.centre]
+    levels = np.vstack([heard.level, heard.band_level])
+    columns = [Column("band", ["all", *bands]), *_by_direction(levels)]
+    if task.norm is not None:
+        columns.append(Column("norm", [None, *task.norm], "dB", ".1f"))
+    return Grid(columns, f"level over {task.reference:.3g} m/s²")
+
+
+def _by_direction(levels):
+    """A column of levels for each direction; nothing of a band that is not held, or
+    where nothing moves."""
+    held = np.where(levels > LOWEST_LEVEL, levels, np.nan)
+    return [
+        Column(name, values, "dB", ".1f")
+        for name, values in zip(DIRECTIONS, held.T, strict=True)
     ]
-    width = len(head)
-    lines.append(f"{'all':>{width}}" + "".join(map(_level, heard.level)))
-    for k, centre in enumerate(task.bands.centre):
-        told = "".join(map(_level, heard.band_level[k]))
-        limit = f"{norm[k]:9.1f}" if norm is not None else ""
-        name = f"{centre:g} Hz"
-        lines.append(f"{name:>{width}}{told}{limit}")
-    return "\n".join(lines)
-
-
-def _level(value):
-    """A level; nothing of a band that is not held, or where nothing moves."""
-    return f"{value:9.1f}" if value > LOWEST_LEVEL else f"{'-':>9}"
 
 
 def _lines(run):
     """The largest lines, what they are and what makes them."""
     pairs = list(zip(run.heard.lines, run.heard.causes, strict=True))
     if not pairs:
-        return "no line stands out of the spectrum"
+        return ["no line stands out of the spectrum"]
     largest = sorted(pairs, key=lambda pair: -pair[0].amplitude)[:LARGEST_LINES]
     total = np.sum(np.asarray(run.heard.spectrum.power)[1:])
     part = sum(0.5 * line.amplitude**2 for line, _ in largest) / total
-    lines = [
-        f"largest {len(largest)} of {len(pairs)} lines, together {100.0 * part:.2g} %"
-        " of the mean square in all directions",
-        f"{'Hz':>10}{'order':>9}{'m/s²':>11}  {'line':<24}made by, to first order",
+    lines = [line for line, _ in largest]
+    made = ["; ".join(c[:2]) + ("; …" if len(c) > 2 else "") for _, c in largest]
+    columns = [
+        Column("frequency", [line.frequency for line in lines], "Hz"),
+        Column("order", [line.order for line in lines], "", ".4g"),
+        Column("amplitude", [line.amplitude for line in lines], "m/s²", ".4g"),
+        Column("line", [line.name for line in lines]),
+        Column("made by, to first order", [words or "-" for words in made]),
     ]
-    for line, causes in largest:
-        made = "; ".join(causes[:2]) + ("; …" if len(causes) > 2 else "")
-        lines.append(
-            f"{line.frequency:10.5g}{line.order:9.4g}{line.amplitude:11.4g}"
-            f"  {line.name:<24}{made or '-'}"
-        )
-    return "\n".join(lines)
+    title = (
+        f"largest {len(largest)} of {len(pairs)} lines, together {100.0 * part:.2g} %"
+        " of the mean square in all directions"
+    )
+    return [Grid(columns, title)]
 
 
 def _states(run):
@@ -136,14 +138,10 @@ def _many(run):
     """Levels of random bearings, and what makes them."""
     many, task = run.many, run.task
     levels = np.asarray(many.levels.percentile(PERCENTILES))
-    head = f"{task.bearings} random bearings, dB"
-    lines = [head + "".join(f"{name:>9}" for name in DIRECTIONS)]
-    for share, row in zip(PERCENTILES, levels, strict=True):
-        name = f"{share:g} % are below"
-        lines.append(f"{name:>{len(head)}}" + "".join(map(_level, row)))
-    if many.shares is None:
-        return "\n".join(lines)
-    return "\n".join([*lines, *_sources(task, many.shares)])
+    names = [f"{share:g} % are below" for share in PERCENTILES]
+    columns = [Column("level", names), *_by_direction(levels)]
+    grid = Grid(columns, f"{task.bearings} random bearings")
+    return [grid, *([] if many.shares is None else _sources(task, many.shares))]
 
 
 def _sources(task, found):
@@ -160,25 +158,22 @@ def _sources(task, found):
     total = float(found.mean_square)
     parts, errors = parts_of(found), np.asarray(found.error) / total
     gains, factors = np.asarray(found.gain()), dict(task.tighter)
-    head = f"what makes the noise {where}, of {found.used} bearings"
-    yield f"{head}"
-    yield f"{'part':>56}{'halved':>12}"
-    unsure = False
-    for k in np.argsort(-parts):
-        name = SOURCES[found.sources[k]]
-        # Twice its standard error, or a single bearing: it may be nothing.
-        doubt = not parts[k] > 2.0 * errors[k]
-        unsure |= doubt
-        spread = f" ± {100.0 * errors[k]:.2g}" if np.isfinite(errors[k]) else ""
-        number = f"{100.0 * parts[k]:.3g}{spread} %"
-        gain = "-" if doubt else f"{-gains[k]:.2g} dB"
-        yield f"  {name:<38}{number:>16}{gain:>12}"
-    yield "  the rest is what all bearings of the scene have: load, `waves`, `spalls`"
-    if unsure:
-        yield "  no gain is told (-) where the part may be chance: take more bearings"
+    order = np.argsort(-parts)
+    # Twice its standard error, or a single bearing: it may be nothing.
+    doubt = ~(parts > 2.0 * errors)
+    spread = [f" ± {100.0 * e:.2g}" if np.isfinite(e) else "" for e in errors]
+    columns = [
+        Column("source", [SOURCES[found.sources[k]] for k in order]),
+        Column("part", [f"{100.0 * parts[k]:.3g}{spread[k]} %" for k in order]),
+        Column("halved", np.where(doubt, np.nan, -gains)[order], "dB", ".2g"),
+    ]
+    yield Grid(columns, f"what makes the noise {where}, of {found.used} bearings")
+    yield "the rest is what all bearings of the scene have: load, `waves`, `spalls`"
+    if doubt.any():
+        yield "no gain is told (-) where the part may be chance: take more bearings"
     for name, ratio in factors.items():
         much = ", ".join(f"{SOURCES[k]} x {v:.2g}" for k, v in ratio.items())
-        yield f"  {name}: {-float(found.gain_together(ratio)):.2g} dB ({much})"
+        yield f"{name}: {-float(found.gain_together(ratio)):.2g} dB ({much})"
     yield from _in_bands(task, found)
 
 
@@ -194,4 +189,4 @@ def _in_bands(task, found):
     for centre, name, part in told:
         by_source.setdefault(name, []).append(f"{centre} ({100.0 * part:.0f} %)")
     for name, bands in by_source.items():
-        yield f"  {name}, the largest part of the bands, Hz: {', '.join(bands)}"
+        yield f"{name}, the largest part of the bands, Hz: {', '.join(bands)}"

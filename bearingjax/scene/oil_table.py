@@ -136,15 +136,15 @@ def _facts(solution, lubricant, temperature, supply, roughness, series, diameter
 
 def oil_report(
     oil: Oil, solution: Solution, catalogue: FromCatalogue | None = None
-) -> str:
-    """Readable report of friction and films; "" at rest.
+) -> list[str]:
+    """Friction and films for people; empty at rest.
 
     Args:
         oil, solution, catalogue: As of `oil_facts`.
     """
     facts = oil_facts(oil, solution, catalogue)
     if facts is None:
-        return ""
+        return []
     friction = facts.friction
     parts = {
         "load": friction.load_torque,
@@ -176,7 +176,7 @@ def oil_report(
         if facts.films.ratio is not None:
             line += f"; over the roughness {np.min(facts.films.ratio):.3g}"
         lines.append(line)
-    return "\n".join(lines)
+    return lines
 
 
 def oil_as_dict(

@@ -12,15 +12,15 @@ from .optimise_design import scene_of_design
 from .optimise_table import WARMTH, Optimisation
 from .output import fits_as_dict
 from .read import Scene
-from .report import fits_text
+from .report import fits_section
+from .report_model import Column, Grid, Report
 
-_RULE = "-" * 78
 _STIFFNESSES = {"N/m": (1e-6, "kN/mm"), "N m": (1e-3, "N m/mrad")}
 
 
 def optimisation_report(
     task: Optimisation, found: Optimised, best: Scene | None = None
-) -> str:
+) -> Report:
     """Readable report, before and after.
 
     Args:
@@ -36,15 +36,19 @@ def optimisation_report(
         f" {len(found.history.objective) - 1} steps,\n{found.n_evaluations} designs"
         f" evaluated, {found.n_gradients} with gradient, {len(found.rejected)} rejected"
     )
-    parts = [head, _variables(found), _measures(found), _pressures(found)]
-    if best.fits is not None:
-        parts.append(f"the best design\n{fits_text(best)}")
-    warned = [f"warning: rejected: {why}" for why in dict.fromkeys(found.rejected)]
-    warned += [f"warning: {text}" for text in (*best.warnings, *found.after.warnings)]
-    warned += [f"warning: before: {text}" for text in _warned_before(task, found)]
+    warned = [f"rejected: {why}" for why in dict.fromkeys(found.rejected)]
+    warned += [*best.warnings, *found.after.warnings]
+    warned += [f"before: {text}" for text in _warned_before(task, found)]
     left = f"gradient left {found.optimality:.1e}, tolerance {task.tolerance:.1e}"
-    ending = f"converged: {found.message}; {left}"
-    return f"\n{_RULE}\n".join([*parts, "\n".join([ending, *warned])])
+    sections = {
+        "Search": [head],
+        "Variables": [_variables(found)],
+        "Measures": [_measures(found)],
+        "Peak pressures": [_pressures(found)],
+        "Fits of the best design": fits_section(best),
+        "Solution": [f"converged: {found.message}; {left}"],
+    }
+    return Report(sections, warned)
 
 
 def _warned_before(task, found) -> list[str]:
@@ -180,13 +184,10 @@ def _measured(outcome: Outcome):
 
 
 def _variables(found):
-    names = [v.name.removeprefix("bearing.") for v in found.variables]
-    width = max(map(len, names))
-    lines = [f"{'':{width}}       before        after   bounds"]
-    rows = zip(
-        names, found.variables, found.before.values, found.after.values, strict=True
-    )
-    for name, v, first, last in rows:
+    rows = []
+    for v, first, last in zip(
+        found.variables, found.before.values, found.after.values, strict=True
+    ):
         scale, unit = display_unit(unit_of(found.element, v.path[0]), v.upper)
         zero = 0.0
         if v.name in WARMTH:
@@ -195,29 +196,34 @@ def _variables(found):
             scale * (x - zero) for x in (v.lower, v.upper, first, last)
         )
         bound = {v.lower: ", at the lower", v.upper: ", at the upper"}.get(last, "")
-        lines.append(
-            f"{name:{width}} {before:12.5g} {after:12.5g}   {low:.5g} to"
-            f" {high:.5g} {unit}".rstrip()
-            + bound
+        name, bounds = (
+            v.name.removeprefix("bearing."),
+            f"{low:.5g} to {high:.5g}{bound}",
         )
-    return "\n".join(lines)
+        rows.append((name, before, after, unit, bounds))
+    names = "variable", "before", "after", "", "bounds"
+    return _grid(names, rows)
 
 
 def _measures(found):
     measures = [found.objective, *(c.measure for c in found.constraints)]
-    lines = [f"{'':29}       before        after"]
+    rows = []
     pairs = zip(_measured(found.before), _measured(found.after), strict=True)
     for k, (measure, values) in enumerate(zip(measures, pairs, strict=True)):
         shown, (first, last) = _told(measure, values)
         scale, unit = _unit(shown)
-        what = f"{label_of(shown)} {f'[{unit}]' if unit else ''}"
-        line = f"{what:29} {scale * first[1]:12.5g} {scale * last[1]:12.5g}"
-        made = "   made least" if shown is measure else "   made largest"
-        lines.append(line + (made if k == 0 else _kept(found, k - 1, scale)))
+        made = "made least" if shown is measure else "made largest"
+        kept = made if k == 0 else _kept(found, k - 1, scale)
+        exact, smooth = ([scale * side[i] for side in (first, last)] for i in (1, 0))
+        rows.append((label_of(shown), *exact, unit, kept))
         if first[0] != first[1]:
-            smooth = f"{'  smooth':29} {scale * first[0]:12.5g} {scale * last[0]:12.5g}"
-            lines.append(smooth)
-    return "\n".join(lines)
+            rows.append(("  smooth", *smooth, "", ""))
+    return _grid(("measure", "before", "after", "", "asked"), rows)
+
+
+def _grid(names, rows):
+    values = zip(*rows, strict=True)
+    return Grid([Column(n, v) for n, v in zip(names, values, strict=True)])
 
 
 def _told(measure, values):
@@ -234,7 +240,7 @@ def _kept(found, k, scale):
     for word, bound in (("at least", constraint.lower), ("at most", constraint.upper)):
         if bound is not None:
             words.append(f"{word} {scale * float(bound):.5g}")
-    return "   " + ", ".join(words)
+    return ", ".join(words)
 
 
 def _unit(measure):
@@ -249,8 +255,10 @@ def _peaks(outcome):
 
 
 def _pressures(found):
-    lines = ["case   peak pressure before    after [MPa]"]
-    pairs = zip(_peaks(found.before), _peaks(found.after), strict=True)
-    for k, (first, last) in enumerate(pairs):
-        lines.append(f"{k:4d}   {1e-6 * first:20.1f} {1e-6 * last:8.1f}")
-    return "\n".join(lines)
+    before, after = _peaks(found.before), _peaks(found.after)
+    columns = [
+        Column("case", range(len(before))),
+        Column("peak pressure before", before, "Pa", ".1f"),
+        Column("after", after, "Pa", ".1f"),
+    ]
+    return Grid(columns)

@@ -121,6 +121,26 @@ def solved_as_dict(
     }
 
 
+def solved_life_as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
+    """The rating life of a solved scene as plain numbers and lists, in SI.
+
+    Args:
+        scene: What was solved.
+        solution: Its solution.
+
+    Returns:
+        What `life_as_dict` and `fits_as_dict` have, and `solved_as_dict`; the latter
+        alone where it did not converge.
+    """
+    solved = Result(int(solution.result)) is Result.CONVERGED
+    life = scene_life(scene, jax.device_get(solution)) if solved else None
+    numbers = solved_as_dict(scene, solution, life)
+    if life is None:
+        return numbers
+    told = life_as_dict(life, rating_origins(scene))
+    return {**told, **fits_as_dict(scene), **numbers}
+
+
 def _oil(scene, solution):
     if scene.oil is None:
         return {}

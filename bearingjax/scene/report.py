@@ -1,11 +1,9 @@
 """A solution as text for people: µm, mrad, kN, N m, MPa.
 
-A report is a list of sections, each a title and a function of scene and solution that
-gives its text. The terminal shows the texts, `html_report` puts them on a page. What
-is new in a report is one more line of `SECTIONS`.
+A report has sections by their titles; what is new in it is one more of them in
+`report`. The terminal shows them as text, `html_report` puts them on a page.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 import jax
@@ -13,61 +11,62 @@ import numpy as np
 
 from ..design import Bearing, BearingSet, TaperedRollerBearing, is_ball, rows_of
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
-from ..numerics.units import display_unit
 from ..statics.life_warning import life_warnings
 from ..statics.solution import BallSolution, Solution
 from ..statics.warning import warnings
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
-from .life_report import life_report, scene_life
+from .life_report import life_section, scene_life
 from .oil_table import oil_report
 from .operation_report import operation
 from .read import Scene
+from .report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
 from .set_preload import preload_report
 
-_RULE = "-" * 78
 
-Section = Callable[[Scene, Solution], str]
-"""Text of a section, of a scene and its solution in NumPy; "": nothing to tell."""
-
-
-def report(scene: Scene, solution: Solution) -> str:
+def report(scene: Scene, solution: Solution) -> Report:
     """Readable report of a solved scene.
 
     Args:
         scene: What was solved.
         solution: Its solution, converged.
-    """
-    return f"\n{_RULE}\n".join(sections(scene, solution).values())
 
-
-def sections(scene: Scene, solution: Solution) -> dict[str, str]:
-    """The texts of a report by their titles, those left out that are empty.
-
-    Args:
-        scene: What was solved.
-        solution: Its solution, converged.
+    Returns:
+        Sections by their titles; `str` of it is the text of the terminal.
     """
     # As NumPy holds it: JAX would compile every small operation on the way.
     solution = jax.device_get(solution)
-    texts = {title: section(scene, solution) for title, section in SECTIONS.items()}
-    return {title: text for title, text in texts.items() if text}
+    life = None if scene.life is None else scene_life(scene, solution)
+    told = [*scene.warnings, *warnings(solution)]
+    if life is not None:
+        told += life_warnings(scene.element.bearing, life.ratings, vars(life))
+    sections = {
+        "Bearing": [bearing_text(scene, solution.element.bearing, solution)],
+        "Operation, materials and laws": [operation(scene, solution)],
+        "Fits and clearance": fits_section(scene),
+        "Displacement and load": _motion(scene, solution),
+        "Stiffness": [_stiffness(scene, solution)],
+        "Rolling elements": _elements(solution),
+        "Rating life": [] if life is None else life_section(scene, solution, life),
+        "Friction and films": _oil(scene, solution),
+        "Solution": [
+            f"converged in {int(solution.stats.iterations)} steps, residual"
+            f" {float(solution.stats.residual):.1e} of the load"
+        ],
+    }
+    return Report(sections, told)
 
 
-def design_sections(scene: Scene) -> dict[str, str]:
-    """The texts by their titles that need no solution: the bearing, and its fits.
+def design_sections(scene: Scene) -> dict[str, Section]:
+    """The sections by their titles that need no solution: the bearing, and its fits.
 
     Args:
         scene: What is asked.
     """
-    texts = {
-        "Bearing": bearing_text(scene, jax.device_get(scene.running().bearing)),
-        "Fits and clearance": _fits(scene, None),
+    bearing = jax.device_get(scene.running().bearing)
+    return {
+        "Bearing": [bearing_text(scene, bearing)],
+        "Fits and clearance": fits_section(scene),
     }
-    return {title: text for title, text in texts.items() if text}
-
-
-def _bearing(scene, solution):
-    return bearing_text(scene, solution.element.bearing, solution)
 
 
 def bearing_text(
@@ -102,30 +101,23 @@ def bearing_text(
     return "\n".join([*lines, *own, *listed])
 
 
-def _fits(scene, solution):
-    return fits_text(scene)
-
-
-def fits_text(scene: Scene) -> str:
-    """Fits of a scene, and what they make of the preload of a set.
+def fits_section(scene: Scene) -> Section:
+    """Fits of a scene, and what they make of the preload of a set; empty without fits.
 
     Args:
         scene: What was asked.
-
-    Returns:
-        Text, empty without fits.
     """
     if scene.fits is None:
-        return ""
-    text = fit_report(scene.fits, scene.element.bearing)
-    if scene.set_preload is None:
-        return text
-    return f"{text}\n{preload_report(scene.set_preload)}"
+        return []
+    found = fit_report(scene.fits, scene.element.bearing)
+    if scene.set_preload is not None:
+        found += preload_report(scene.set_preload)
+    return found
 
 
 def _oil(scene, solution):
     if scene.oil is None:
-        return ""
+        return []
     return oil_report(scene.oil, solution, scene.catalogue)
 
 
@@ -215,35 +207,34 @@ def _ring(scene):
 
 def _motion(scene, solution):
     moving = _ring(scene)
-    displacement = np.asarray(solution.displacement)[moving]
-    force = np.asarray(solution.force)[moving]
-    lines = [f"{scene.moving_ring} ring ({scene.fixed_ring} ring fixed)"]
-    motion, loads = without_round_off(displacement), without_round_off(force)
-    for i in range(6):
-        scale, unit = display_unit(MOTION_UNITS[i])
-        load_scale, load_unit = display_unit(LOAD_UNITS[i])
-        lines.append(
-            f"  {FREEDOMS[i]} {scale * motion[i]:12.5g} {unit:<5}"
-            f"   {LOADS[i]} {load_scale * loads[i]:12.5g} {load_unit}"
-            + ("   reaction of its support" if FREEDOMS[i] in solution.held else "")
-        )
-    return "\n".join(lines)
+    motion, loads = (
+        without_round_off(np.asarray(values)[moving])
+        for values in (solution.displacement, solution.force)
+    )
+    held = ["reaction of its support" if f in solution.held else "" for f in FREEDOMS]
+    columns = [
+        Column("", FREEDOMS),
+        Column("displacement", motion, MOTION_UNITS),
+        Column("", LOADS),
+        Column("load", loads, LOAD_UNITS),
+        *([Column("", held)] if any(held) else []),
+    ]
+    return [Grid(columns, f"{scene.moving_ring} ring ({scene.fixed_ring} ring fixed)")]
 
 
 def _stiffness(scene, solution):
     moving = _ring(scene)
     k = np.asarray(solution.stiffness)[moving, moving]
-    lines = [
-        f"stiffness of the {scene.moving_ring} ring (kN/mm, kN/mrad, N m/mrad)",
-        "     " + "".join(f"{name:>12}" for name in FREEDOMS[:5]),
-    ]
-    # N/m, N/rad and N m/rad in the units of the heading.
+    # N/m, N/rad and N m/rad in the units of the title.
     scale = np.full((5, 5), 1e-6)
     scale[3:, 3:] = 1e-3
     shown = scale * without_round_off(k[:5, :5])
-    for i in range(5):
-        lines.append(f"  {FREEDOMS[i]:<3}" + "".join(f"{v:12.5g}" for v in shown[i]))
-    return "\n".join(lines)
+    names = FREEDOMS[:5]
+    columns = [Column(name, shown[:, j]) for j, name in enumerate(names)]
+    return Grid(
+        [Column("", names), *columns],
+        f"stiffness of the {scene.moving_ring} ring (kN/mm, kN/mrad, N m/mrad)",
+    )
 
 
 def without_round_off(values: Any) -> Any:
@@ -251,112 +242,81 @@ def without_round_off(values: Any) -> Any:
     return np.where(np.abs(values) < 1e-11 * np.abs(values).max(), 0.0, values)
 
 
-def _elements(scene, solution):
-    of_balls = isinstance(solution, BallSolution)
-    return _balls(solution) if of_balls else _rollers(solution)
+def _elements(solution):
+    balls = isinstance(solution, BallSolution)
+    touching, grid = (_balls if balls else _rollers)(solution)
+    kind, open_ = "balls" if balls else "rollers", int((~touching).sum())
+    away = f"{open_} of {len(touching)} {kind} are out of contact"
+    return [*([grid] if touching.any() else []), *([away] if open_ else [])]
+
+
+def _numbered(kind, solution, shown):
+    """Number and azimuth of the rolling elements that are shown."""
+    azimuth = np.asarray(solution.azimuth)[shown] % (2.0 * np.pi)
+    return [
+        Column(kind, shown),
+        Column("azimuth", azimuth, "rad", ".1f", DEGREES),
+    ]
+
+
+def by_ring(name, values, *given):
+    """A column of the outer raceway and one of the inner.
+
+    Args:
+        name: Of the quantity.
+        values: By raceway (row, 2).
+        given: Unit, format and what is shown, as of `Column`.
+    """
+    return [
+        Column(f"{ring} {name}", values[:, k], *given) for k, ring in enumerate(RINGS)
+    ]
 
 
 def _rollers(solution):
     load = np.asarray(solution.roller_load)
     rib = np.asarray(solution.rib_load)
-    touching = 1e-9 * max(load.max(), rib.max())
-    pressure = 1e-6 * np.asarray(solution.roller_pressure)
-    edge = np.any(np.asarray(solution.edge_loaded), axis=(1, 2))
-    ribs = rib.any()
-    head = (
-        " roller azimuth   outer load  inner load   outer pmax  inner pmax"
-        + ("    ribs" if ribs else "")
-        + "\n"
-        + "            deg           kN          kN          MPa         MPa"
-        + ("       N" if ribs else "")
-    )
-    lines = [head]
-    angles = np.rad2deg(np.asarray(solution.azimuth)) % 360.0
-    for i in range(load.shape[0]):
-        if max(load[i].max(), rib[i].max()) <= touching:
-            continue
-        line = (
-            f" {i:6d} {angles[i]:7.1f}  {1e-3 * load[i, 0]:11.4f} "
-            f"{1e-3 * load[i, 1]:11.4f}  {pressure[i, 0]:11.1f} {pressure[i, 1]:11.1f}"
-        )
-        if ribs:
-            line += f" {rib[i].sum():7.1f}"
-        lines.append(line + ("  edge-loaded" if edge[i] else ""))
-    loose = load.shape[0] - (len(lines) - 1)
-    if loose:
-        lines.append(f" {loose} of {load.shape[0]} rollers are out of contact")
-    return "\n".join(lines)
+    largest = np.maximum(load.max(axis=1), rib.max(axis=tuple(range(1, rib.ndim))))
+    touching = largest > 1e-9 * largest.max()
+    shown = np.flatnonzero(touching)
+    pressure = np.asarray(solution.roller_pressure)[shown]
+    edge = np.any(np.asarray(solution.edge_loaded), axis=(1, 2))[shown]
+    columns = [
+        *_numbered("roller", solution, shown),
+        *by_ring("load", load[shown], "N", ".4f"),
+        *by_ring("pmax", pressure, "Pa", ".1f"),
+    ]
+    if rib.any():
+        on_ribs = rib[shown].reshape(len(shown), -1).sum(axis=1)
+        columns.append(Column("ribs", on_ribs, "N", ".1f", NEWTONS))
+    if edge.any():
+        columns.append(Column("", ["edge-loaded" if e else "" for e in edge]))
+    return touching, Grid(columns)
 
 
 def _balls(solution):
     load = np.asarray(solution.contact_load)
-    angle = np.rad2deg(np.asarray(solution.contact_angle))
-    pressure = 1e-6 * np.asarray(solution.contact_pressure)
-    raceway = np.asarray(solution.roller_load)
-    azimuth = np.rad2deg(np.asarray(solution.azimuth)) % 360.0
-    states, touching = np.asarray(solution.n_contacts), 1e-9 * load.max()
+    touching = load.max(axis=1) > 1e-9 * load.max()
+    shown = np.flatnonzero(touching)
+    # Of two arcs on a ring, the one that carries more.
     half = load.shape[1] // 2
-    turning = solution.kinematics
-    head = (
-        "   ball azimuth  outer load inner load  outer angle inner  outer pmax"
-        "  inner  points" + ("  spin/roll" if turning else "") + "\n"
-        "            deg           N          N          deg   deg         MPa"
-        "    MPa" + ("       (larger)" if turning else "")
-    )
-    lines = [head]
-    for i in range(load.shape[0]):
-        if load[i].max() <= touching:
-            continue
-        # Of two arcs on a ring, the one that carries more.
-        o, k = np.argmax(load[i, :half]), half + np.argmax(load[i, half:])
-        line = (
-            f" {i:6d} {azimuth[i]:7.1f}  {raceway[i, 0]:10.5g} {raceway[i, 1]:10.5g}"
-            f"  {angle[i, o]:11.2f} {_angle(angle[i, k], load[i, k], touching)}"
-            f"  {pressure[i, o]:10.0f} {pressure[i, k]:6.0f}  {states[i]:6d}"
-        )
-        if turning:
-            line += f"  {np.asarray(turning.spin_to_roll)[i].max():9.3f}"
-        lines.append(line)
-    loose = load.shape[0] - (len(lines) - 1)
-    if loose:
-        lines.append(f" {loose} of {load.shape[0]} balls are out of contact")
-    return "\n".join(lines)
+    outer, inner = load[:, :half].argmax(axis=1), half + load[:, half:].argmax(axis=1)
+    most = np.stack([outer, inner], axis=1)
 
+    def larger(values):
+        return np.take_along_axis(np.asarray(values), most, axis=1)[shown]
 
-def _angle(angle, load, touching):
-    """An open contact has no angle worth printing."""
-    return f"{angle:5.2f}" if load > touching else "    -"
-
-
-def _life(scene, solution):
-    if scene.life is None:
-        return ""
-    return life_report(scene, solution, scene_life(scene, solution))
-
-
-def _ending(scene, solution):
-    stats = solution.stats
-    lines = [
-        f"converged in {int(stats.iterations)} steps, residual"
-        f" {float(stats.residual):.1e} of the load"
+    # An open contact has no angle worth printing.
+    bears = larger(load) > 1e-9 * load.max()
+    angle = np.where(bears, larger(solution.contact_angle), np.nan)
+    raceway, count = np.asarray(solution.roller_load), np.asarray(solution.n_contacts)
+    columns = [
+        *_numbered("ball", solution, shown),
+        *by_ring("load", raceway[shown], "N", ".5g", NEWTONS),
+        *by_ring("angle", angle, "rad", ".2f", DEGREES),
+        *by_ring("pmax", larger(solution.contact_pressure), "Pa", ".0f"),
+        Column("points", count[shown]),
     ]
-    told = [*scene.warnings, *warnings(solution)]
-    if scene.life is not None:
-        life = scene_life(scene, solution)
-        told += life_warnings(scene.element.bearing, life.ratings, vars(life))
-    lines += [f"warning: {w}" for w in told]
-    return "\n".join(lines)
-
-
-SECTIONS: dict[str, Section] = {
-    "Bearing": _bearing,
-    "Operation, materials and laws": operation,
-    "Fits and clearance": _fits,
-    "Displacement and load": _motion,
-    "Stiffness": _stiffness,
-    "Rolling elements": _elements,
-    "Rating life": _life,
-    "Friction and films": _oil,
-    "Solution and warnings": _ending,
-}
-"""Sections of a report by their titles, in their order."""
+    if solution.kinematics:
+        ratio = np.asarray(solution.kinematics.spin_to_roll).max(axis=1)
+        columns.append(Column("spin/roll (larger)", ratio[shown], "", ".3f"))
+    return touching, Grid(columns)

@@ -1,13 +1,11 @@
 """What other programs read of a rotor: JSON and tables, in SI."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..numerics.result import Result
 from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
-from .files import write_numbers
 from .fit_report import fit_as_dict
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient
@@ -100,15 +98,6 @@ def mode_numbers(found: Modes) -> list[tuple[str, np.ndarray]]:
         ("damping_ratio", np.where(size == 0, 0.0, ratio)),
         ("whirl", np.asarray(found.whirl)),
     ]
-
-
-def write_rotor_json(path: str | Path, run: RotorRun) -> None:
-    """Write `rotor_as_dict` to a file.
-
-    Raises:
-        OSError: If the file cannot be written.
-    """
-    write_numbers(path, rotor_as_dict(run))
 
 
 def rotor_series(task: RotorScene, wanted: str | None) -> str:

@@ -5,38 +5,37 @@ import numpy as np
 from ..rotor import STATION_FREEDOMS
 from .fit_report import fit_report
 from .report import without_round_off
+from .report_model import NEWTONS, Column, Grid, Part, Report, Section
 from .rotor_motion import RotorResponse, RotorTransient
-from .rotor_output import mode_numbers
+from .rotor_output import UNITS, mode_numbers
 from .rotor_run import RotorRun
 
-_RULE = "-" * 78
 _HZ, _RPM = 0.5 / np.pi, 30.0 / np.pi
+_AXES = tuple(enumerate("xyz"))
 _WHIRL = {1: "forward", -1: "backward", 0: "-"}
 _AXIAL = 0.9
 """Share of the largest motion above which a motion along the shaft is the mode [1]."""
 
 
-def rotor_report(run: RotorRun) -> str:
+def rotor_report(run: RotorRun) -> Report:
     """Readable report of a rotor; parts that were not solved are left out.
 
     Args:
         run: From `run_rotor`.
     """
-    parts = [_head(run), *_fits(run.task)]
-    if run.settled is not None:
-        parts += [_stations(run), _bearings(run)]
-    if run.modes is not None:
-        parts.append(_modes(run))
-    if run.critical is not None:
-        parts.append(_critical(run))
-    if run.campbell is not None:
-        parts.append(_campbell(run))
-    if run.response is not None:
-        parts.append(_response(run, run.response))
-    if run.transient is not None:
-        parts.append(_transient(run, run.transient))
-    notes = [f"warning: {text}" for text in run.warnings]
-    return f"\n{_RULE}\n".join(parts) + "".join(f"\n{note}" for note in notes)
+    sections: dict[str, Section] = {
+        "Rotor": [_head(run)],
+        **_fits(run.task),
+        "At rest": [] if run.settled is None else [_stations(run), _bearings(run)],
+        "Modes": [] if run.modes is None else _modes(run),
+        "Critical speeds": [] if run.critical is None else [_critical(run)],
+        "Campbell diagram": [] if run.campbell is None else _campbell(run),
+        "Response": [] if run.response is None else _response(run, run.response),
+        "Motion in time": []
+        if run.transient is None
+        else _transient(run, run.transient),
+    }
+    return Report(sections, run.warnings)
 
 
 def _length(run):
@@ -58,32 +57,36 @@ def _head(run):
 
 
 def _fits(task):
-    """What the fits of each bearing leave."""
+    """What the fits of each bearing leave, by titles of sections."""
+    found = {}
     for mount, stations in task.seats:
         where = "station" + "s" * (len(stations) > 1)
-        yield (
+        head = (
             f"{mount.name} at {where} {', '.join(map(str, stations))}, its inner ring"
-            f" turning at {rpm(task.speed)}\n"
-            + fit_report(mount.fits, mount.element.bearing)
+            f" turning at {rpm(task.speed)}"
         )
+        told = fit_report(mount.fits, mount.element.bearing)
+        found[f"Fits of {mount.name}"] = [head, *told]
+    return found
 
 
 def _stations(run):
     """Where every station goes."""
     task = run.task
     nodes = [task.shaft.node(k) for k in range(task.shaft.n_segments + 1)]
-    moved = np.asarray(run.settled.displacement)[nodes]
-    z = 1e3 * np.asarray(task.shaft.stations)
-    lines = [
-        "at rest under weight, constant forces and preload:",
-        f"{'station':<26}{'z, mm':>8}{'ux, µm':>9}{'uy, µm':>9}{'uz, µm':>9}"
-        f"{'gx, mrad':>9}{'gy, mrad':>9}",
+    moved = np.round(np.asarray(run.settled.displacement)[nodes], 9)
+    z = np.asarray(task.shaft.stations)
+    columns = [
+        Column("station", list(task.station_names)),
+        Column("z", z, "m", ".1f", (1e3, "mm")),
+        *(
+            Column(name, values, unit, ".3f")
+            for name, values, unit in zip(
+                STATION_FREEDOMS, moved.T, UNITS.values(), strict=True
+            )
+        ),
     ]
-    for name, place, motion in zip(task.station_names, z, moved, strict=True):
-        values = [*(1e6 * motion[:3]), *(1e3 * motion[3:])]
-        numbers = "".join(f"{_clean(value, 3):9.3f}" for value in values)
-        lines.append(f"{name[:25]:<26}{place:8.1f}{numbers}")
-    return "\n".join(lines)
+    return Grid(columns, "at rest under weight, constant forces and preload")
 
 
 def _bearings(run):
@@ -91,17 +94,19 @@ def _bearings(run):
     loads, stiffness = (
         np.asarray(part) for part in (run.settled.support_load, run.settled.stiffness)
     )
-    lines = [
-        f"{'bearing':<26}{'load, N':>9}{'':>18}{'stiffness, N/µm':>25}",
-        f"{'':<26}{'Fx':>9}{'Fy':>9}{'Fz':>9}{'x':>9}{'y':>9}{'z':>8}",
+    # A bearing without ribs has none along z.
+    stiff = [np.diagonal(without_round_off(k[:3, :3])) for k in stiffness]
+    names = [
+        f"{mount.station} {mount.name}{', turned' if mount.turned else ''}"
+        for mount in run.task.mounts
     ]
-    for mount, load, k in zip(run.task.mounts, loads, stiffness, strict=True):
-        name = f"{mount.station} {mount.name}{', turned' if mount.turned else ''}"
-        forces = "".join(f"{_clean(f, 1):9.1f}" for f in load[:3])
-        # A bearing without ribs has none along z.
-        x, y, z = np.diagonal(1e-6 * without_round_off(k[:3, :3]))
-        lines.append(f"{name[:25]:<26}{forces}{x:9.4g}{y:9.4g}{z:8.4g}")
-    return "\n".join(lines)
+    forces = np.round(loads[:, :3], 1)
+    columns = [
+        Column("bearing", names),
+        *(Column(f"F{x}", forces[:, k], "N", ".1f", NEWTONS) for k, x in _AXES),
+        *(Column(f"k{x}{x}", np.array(stiff)[:, k], "N/m", ".4g") for k, x in _AXES),
+    ]
+    return Grid(columns)
 
 
 def _whirl(whirl, shape, length):
@@ -121,21 +126,22 @@ def _whirl(whirl, shape, length):
 def _modes(run):
     (_, frequency), (_, ratio), (_, whirl) = mode_numbers(run.modes)
     length = _length(run)
-    lines = [
-        f"modes at {rpm(run.task.speed)}:",
-        f"{'':>4}{'Hz':>12}{'rpm':>12}{'damping':>12}  whirl",
-    ]
     there = frequency > 0
-    shape = np.asarray(run.modes.shape)[there]
-    rows = zip(frequency[there], ratio[there], whirl[there], shape, strict=True)
-    for k, (hertz, damped, sense, moved) in enumerate(rows):
-        lines.append(
-            f"{k + 1:4d}{hertz:12.5g}{60.0 * hertz:12.5g}{_clean(damped):12.4g}"
-            f"  {_whirl(sense, moved, length)}"
-        )
-    if not there.all():
-        lines.append(f"and {int((~there).sum())} that do not oscillate")
-    return "\n".join(lines)
+    hertz, shape = frequency[there], np.asarray(run.modes.shape)[there]
+    senses = zip(whirl[there], shape, strict=True)
+    columns = [
+        Column("mode", range(1, len(hertz) + 1)),
+        Column("frequency", hertz, "Hz"),
+        Column("", 2.0 * np.pi * hertz, "rad/s"),
+        Column("damping ratio", np.round(ratio[there], 12), "", ".4g"),
+        Column("whirl", [_whirl(sense, moved, length) for sense, moved in senses]),
+    ]
+    rest = int((~there).sum())
+    title = f"modes at {rpm(run.task.speed)}"
+    return [
+        *([Grid(columns, title)] if there.any() else []),
+        *([f"{rest} modes do not oscillate"] if rest else []),
+    ]
 
 
 def _critical(run):
@@ -143,39 +149,40 @@ def _critical(run):
     there = np.isfinite(found.speed)
     if not there.any():
         return "critical speeds: none"
-    lines = [
-        "critical speeds:",
-        f"{'':>4}{'rpm':>12}{'rad/s':>12}{'damping':>12}  whirl",
+    speed, ratio, whirl, shape = (
+        np.asarray(part)[there]
+        for part in (found.speed, found.damping_ratio, found.whirl, found.shape)
+    )
+    senses = zip(whirl, shape, strict=True)
+    columns = [
+        Column("critical speed", range(1, len(speed) + 1)),
+        Column("", speed, "rad/s"),
+        Column("", speed, "rad/s", ".5g", (1.0, "rad/s")),
+        Column("damping ratio", np.round(ratio, 12), "", ".4g"),
+        Column("whirl", [_whirl(sense, s, _length(run)) for sense, s in senses]),
     ]
-    parts = (found.speed, found.damping_ratio, found.whirl, found.shape)
-    rows = zip(*(np.asarray(part)[there] for part in parts), strict=True)
-    for k, (speed, ratio, whirl, shape) in enumerate(rows):
-        lines.append(
-            f"{k + 1:4d}{speed * _RPM:12.5g}{speed:12.5g}{_clean(ratio):12.4g}"
-            f"  {_whirl(whirl, shape, _length(run))}"
-        )
-    return "\n".join(lines)
+    return Grid(columns)
 
 
 def _campbell(run):
     (_, frequency), _, (_, whirl) = mode_numbers(run.campbell)
     shape = np.asarray(run.campbell.shape)[-1]
-    first, last = run.task.campbell[0], run.task.campbell[-1]
-    lines = [
-        f"Campbell diagram at {len(run.task.campbell)} speeds, natural frequencies:",
-        f"{'':>4}{rpm(first):>14}{rpm(last):>14}",
+    speeds = run.task.campbell
+    told = np.flatnonzero(frequency.max(axis=0) > 0)
+    senses = [_whirl(whirl[-1, k], shape[k], _length(run)) for k in told]
+    columns = [
+        Column("mode", told + 1),
+        Column(f"at {rpm(speeds[0])}", frequency[0, told], "Hz"),
+        Column(f"at {rpm(speeds[-1])}", frequency[-1, told], "Hz"),
+        Column("whirl", senses),
     ]
-    for k in np.flatnonzero(frequency.max(axis=0) > 0):
-        lines.append(
-            f"{k + 1:4d}{frequency[0, k]:11.5g} Hz{frequency[-1, k]:11.5g} Hz"
-            f"  {_whirl(whirl[-1, k], shape[k], _length(run))}"
-        )
-    for onset in run.onsets:
-        lines.append(
-            f"{onset.mode + 1:4d} is unstable from {rpm(onset.speed)}"
-            f" ({onset.speed:.5g} rad/s) on, at {onset.frequency:.5g} Hz"
-        )
-    return "\n".join(lines)
+    onsets = [
+        f"mode {onset.mode + 1} is unstable from {rpm(onset.speed)}"
+        f" ({onset.speed:.5g} rad/s) on, at {onset.frequency:.5g} Hz"
+        for onset in run.onsets
+    ]
+    title = f"Campbell diagram at {len(speeds)} speeds, natural frequencies"
+    return [Grid(columns, title), *onsets]
 
 
 def _response(run, found: RotorResponse):
@@ -183,62 +190,61 @@ def _response(run, found: RotorResponse):
     span = _HZ * found.frequency
     method = found.method.replace("_", " ")
     head = "linear response" if method == "linear" else f"response by {method}"
-    lines = [
-        f"{head}: {len(span)} points, {span.min():.5g} to"
-        f" {span.max():.5g} Hz; half of peak to peak:",
+    across = np.hypot(*np.moveaxis(found.amplitude[:, :, :2], -1, 0))
+    points = across.argmax(axis=0)
+    ends = found.amplitude[points, np.arange(len(points)), :2]
+    names = [
+        f"{name}{' *' if k == asked.station else ''}"
+        for k, name in enumerate(run.task.station_names)
     ]
-    for k, name in enumerate(run.task.station_names):
-        across = np.hypot(*found.amplitude[:, k, :2].T)
-        point = int(np.argmax(across))
-        x, y = 1e6 * found.amplitude[point, k, :2]
-        mark = " *" if k == asked.station else ""
-        lines.append(
-            f"{name[:25]:<26}largest at {span[point]:.5g} Hz: ux {x:.4g} µm,"
-            f" uy {y:.4g} µm{mark}"
-        )
+    columns = [
+        Column("half of peak to peak", names),
+        Column("largest at", span[points], "Hz"),
+        Column("ux", ends[:, 0], "m", ".4g"),
+        Column("uy", ends[:, 1], "m", ".4g"),
+    ]
+    title = f"{head}: {len(span)} points, {span.min():.5g} to {span.max():.5g} Hz"
+    told: list[Part] = [Grid(columns, title)]
     branch = found.branch
     if branch is None:
-        return "\n".join(lines)
+        return told
     coordinate = STATION_FREEDOMS.index(asked.coordinate)
     factor, unit = (1e6, "µm") if coordinate < 3 else (1e3, "mrad")
     for event, moved in zip(branch.events, found.event_amplitude, strict=True):
         kind = event.kind.replace("_", "-")
-        lines.append(
+        told.append(
             f"{kind} at {_HZ * event.frequency:.6g} Hz ({asked.coordinate} of station"
             f" {asked.station}: {factor * moved[asked.station, coordinate]:.4g} {unit})"
         )
     stable = int(branch.stable.sum())
-    lines.append(
+    told.append(
         f"{stable} of {len(span)} points are stable; the branch ends:"
         f" {branch.ending.label.replace('_', ' ')}"
     )
-    return "\n".join(lines)
+    return told
 
 
 def _transient(run, found: RotorTransient):
     n, time = found.reached, found.time
     if not n:
-        return "motion in time: none"
-    lines = [
-        f"motion in time to {time[n - 1]:.4g} s, {found.steps} steps;"
-        f" {rpm(found.speed[0])} to {rpm(found.speed[n - 1])}:"
+        return ["motion in time: none"]
+    moved = found.displacement[:n, :, :2]
+    half = 0.5 * (moved.max(axis=0) - moved.min(axis=0))
+    radius = np.hypot(*np.moveaxis(moved - moved[0], -1, 0))
+    when = radius.argmax(axis=0)
+    columns = [
+        Column("half of peak to peak", list(run.task.station_names)),
+        Column("ux", half[:, 0], "m", ".4g"),
+        Column("uy", half[:, 1], "m", ".4g"),
+        Column("farthest", radius.max(axis=0), "m", ".4g"),
+        Column("at", time[when], "s", ".4g"),
+        Column("at", found.speed[when], "rad/s"),
     ]
-    for k, name in enumerate(run.task.station_names):
-        moved = 1e6 * found.displacement[:n, k, :2]
-        half = 0.5 * (moved.max(axis=0) - moved.min(axis=0))
-        radius = np.hypot(*(moved - moved[0]).T)
-        when = int(np.argmax(radius))
-        lines.append(
-            f"{name[:25]:<26}half of peak to peak ux {half[0]:.4g} µm, uy"
-            f" {half[1]:.4g} µm; farthest {radius[when]:.4g} µm at {time[when]:.4g} s"
-            f" ({rpm(found.speed[when])})"
-        )
-    return "\n".join(lines)
-
-
-def _clean(value, digits=12):
-    """Rounded, without a minus before a zero."""
-    return round(float(value), digits) + 0.0
+    title = (
+        f"motion in time to {time[n - 1]:.4g} s, {found.steps} steps;"
+        f" {rpm(found.speed[0])} to {rpm(found.speed[n - 1])}"
+    )
+    return [Grid(columns, title)]
 
 
 def rpm(speed: float) -> str:

@@ -16,6 +16,7 @@ from ..statics.preload import is_opposed, remaining_preload
 from ..statics.sweep import stack_designs
 from .fit_table import Fits
 from .programs import called
+from .report_model import Column, Grid, Part
 
 _LEAST = 1e-6
 """Force below which there is none [N]."""
@@ -213,23 +214,26 @@ def _plain(force: float) -> float | None:
     return force if np.isfinite(force) else None
 
 
-def preload_report(found: SetPreload) -> str:
-    """Readable report of the preload of a set.
+def preload_report(found: SetPreload) -> list[Part]:
+    """The preload of a set for people.
 
     Args:
         found: What there is of it.
     """
-    text = (
-        f"preload of the set, unloaded: ground {_newtons(found.ground)}, mounted"
-        f" {_newtons(found.mounted)}, operating {_newtons(found.operating)}"
-    )
-    for words, ends in (
-        ("mounted", found.mounted_range),
-        ("operating", found.operating_range),
-    ):
-        if ends is not None:
-            text += f"\n  {words:<17}{_newtons(ends[0])} to {_newtons(ends[1])}"
-    return text
+    states = {
+        "ground": (found.ground, None),
+        "mounted": (found.mounted, found.mounted_range),
+        "operating": (found.operating, found.operating_range),
+    }
+    columns = [
+        Column("", list(states)),
+        Column("nominal", [_newtons(force) for force, _ in states.values()]),
+    ]
+    ends = [r for _, r in states.values()]
+    if any(ends):
+        told = [" to ".join(map(_newtons, r)) if r else "-" for r in ends]
+        columns.append(Column("over the tolerances", told))
+    return [Grid(columns, "preload of the set, unloaded")]
 
 
 def _newtons(force: float) -> str:

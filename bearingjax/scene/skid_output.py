@@ -1,7 +1,6 @@
 """What other programs read of balls or rollers that skid: JSON and tables, in SI."""
 
 import itertools
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,6 @@ from ..element import RINGS
 from ..numerics.result import Result
 from ..statics.solution import message
 from ..statics.sweep_table import column_header
-from .files import write_numbers
 from .skid_run import SkidRun
 
 UNITS = {
@@ -89,15 +87,6 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
         "inputs": run.task.inputs,
         "version": __version__,
     }
-
-
-def write_skid_json(path: str | Path, run: SkidRun) -> None:
-    """Write `skid_as_dict` to a file.
-
-    Raises:
-        OSError: If the file cannot be written.
-    """
-    write_numbers(path, skid_as_dict(run))
 
 
 def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:

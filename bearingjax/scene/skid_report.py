@@ -6,24 +6,30 @@ from ..design import is_ball
 from ..element.frame import LOADS
 from ..lubrication import Regime
 from .lubricant_table import TRACTIONS, described
-from .report import ball_row, roller_row
+from .report import ball_row, by_ring, roller_row
+from .report_model import DEGREES, NEWTONS, Column, Grid, Report, labelled
 from .skid_output import at_balls, each_ball, rolling_cage_speed
 from .skid_run import SkidRun
 
-_RULE = "-" * 78
 _RPM = 30.0 / np.pi
 _SMALL = 1e-6
 """Load over the largest one up to which a contact counts as open."""
 
 
-def skid_report(run: SkidRun) -> str:
+def skid_report(run: SkidRun) -> Report:
     """Readable report of balls or rollers that skid.
 
     Args:
         run: From `run_skid`, converged.
     """
     whole = _end(run) if run.task.steady else _motion(run)
-    return f"\n{_RULE}\n".join([_bearing(run), whole, _balls(run), _ending(run)])
+    sections = {
+        "Bearing and oil": [_bearing(run)],
+        "Cage, torque and power" if run.task.steady else "Motion": whole,
+        "Balls" if run.state else "Rollers": [_balls(run)],
+        "Solution": [*_films(run), _ending(run)],
+    }
+    return Report(sections, run.warnings)
 
 
 def _bearing(run):
@@ -53,19 +59,16 @@ def _rpm(speed):
 
 def _cage(speed, rolling):
     slip = f", slip {100.0 * (1.0 - speed / rolling):.3g} %" if rolling else ""
-    return (
-        f"cage            {speed:.6g} rad/s ({_rpm(speed)}); pure rolling"
-        f" {rolling:.6g} rad/s{slip}"
-    )
+    told = f"{speed:.6g} rad/s ({_rpm(speed)}); pure rolling {rolling:.6g} rad/s{slip}"
+    return "cage", told
 
 
 def _torque(run, torque, when=""):
     speed = run.task.speed
     faster = abs(float(speed.outer)) > abs(float(speed.inner))
     value, ring = f"{1e3 * _clean(torque):.5g} N mm", "outer" if faster else "inner"
-    return (
-        f"friction torque {value} on the {ring} ring{when} (of sliding and drag alone)"
-    )
+    told = f"{value} on the {ring} ring{when} (of sliding and drag alone)"
+    return "friction torque", told
 
 
 def _mean_torque(run):
@@ -80,28 +83,27 @@ def _mean_torque(run):
 
 def _end(run):
     found, power = run.found, run.found.power
-    lines = [
+    rows = [
         _cage(float(found.cage_speed), float(rolling_cage_speed(run))),
         _torque(run, found.friction_torque),
-        f"power           drive {_clean(power.drive):.5g} W = contacts"
-        f" {_clean(power.contacts):.5g} W + drag {_clean(power.drag):.5g} W + cage"
-        f" {_clean(power.cage):.5g} W",
+        (
+            "power",
+            f"drive {_clean(power.drive):.5g} W = contacts"
+            f" {_clean(power.contacts):.5g} W + drag {_clean(power.drag):.5g} W + cage"
+            f" {_clean(power.cage):.5g} W",
+        ),
     ]
     if hasattr(found, "cage_force"):
         least, most = (
             float(f) for f in (found.cage_force.min(), found.cage_force.max())
         )
-        lines.append(
-            f"cage            pushes a roller with up to {most:.4g} N, holds one back"
-            f" with up to {-least:.4g} N"
-        )
+        words = f"pushes with up to {most:.4g} N, holds back with up to {-least:.4g} N"
+        rows.append(("cage on a roller", words))
     elif len(found.azimuth) > 1:
         play = float(run.task.model.cage.pocket_clearance)
-        lines.append(
-            f"balls wander    {1e6 * float(found.wander):.4g} µm about even motion;"
-            f" pocket clearance {1e6 * play:.4g} µm"
-        )
-    return "\n".join(lines)
+        words = f"{1e6 * float(found.wander):.4g} µm about even motion;"
+        rows.append(("balls wander", f"{words} pocket clearance {1e6 * play:.4g} µm"))
+    return [labelled(rows)]
 
 
 def _motion(run):
@@ -114,59 +116,69 @@ def _motion(run):
     when, _ = np.unravel_index(np.argmax(np.abs(slip)), slip.shape)
     force, kind = np.abs(found.cage_force), "ball" if run.state else "roller"
     pressed = 100.0 * np.mean(force > 0)
-    return "\n".join(
-        [
-            f"after {float(found.time[-1]):.4g} s:",
-            _cage(float(found.cage_speed[-1]), float(rolling_cage_speed(run)[-1])),
-            _mean_torque(run),
-            f"over the time:  work of the drive {_clean(work.drive[-1]):.5g} J ="
+    cage = float(found.cage_speed[-1]), float(rolling_cage_speed(run)[-1])
+    rows = [
+        _cage(*cage),
+        _mean_torque(run),
+        (
+            "work",
+            f"of the drive {_clean(work.drive[-1]):.5g} J ="
             f" contacts {_clean(work.contacts[-1]):.5g} J + drag"
             f" {_clean(work.drag[-1]):.5g} J + motion {_clean(kinetic):.5g} J"
             f" + pockets and weights {_clean(potential):.5g} J",
-            f"slip            of a {kind} at most {100.0 * np.abs(slip).max():.4g} %,"
-            f" at {float(found.time[when]):.4g} s",
-            f"cage            presses on a {kind} with {force.max():.4g} N at most; a"
-            f" {kind} touches its pocket for {pressed:.3g} % of the time",
-        ]
-    )
+        ),
+        (
+            "slip",
+            f"of a {kind} at most {100.0 * np.abs(slip).max():.4g} %, at"
+            f" {float(found.time[when]):.4g} s",
+        ),
+        (
+            f"cage on a {kind}",
+            f"{force.max():.4g} N at most; it touches its pocket for {pressed:.3g} % of"
+            " the time",
+        ),
+    ]
+    return [f"after {float(found.time[-1]):.4g} s:", labelled(rows)]
 
 
 def _balls(run):
-    """A line for each ball or roller, or one where all move alike; in the end."""
+    """A row for each ball or roller, or one where all move alike; in the end."""
     found, steady = run.found, run.task.steady
     balls = run.state is not None
     alike = steady and len(found.azimuth) == 1
     rows = at_balls(run) if steady else slice(None)
     told = {n: (v if steady else v[-1])[rows] for n, v in each_ball(run).items()}
-    own = 100.0 * told["slip"], _pitch(told) if balls else told["cage_force"]
     azimuth = found.solution.azimuth if steady else told["azimuth"]
-    azimuth = np.rad2deg(azimuth) % 360.0
-    small = _SMALL * told["contact_load"].max()
-    pairs = "".join(f"{name:>18}" for name in ("film, µm", "sliding, mm/s", "heat, W"))
-    sides = f"{'outer':>9}{'inner':>9}"
-    lines = [
-        f"{'  ball' if balls else 'roller'} azimuth{'load, N':>18}{'slip':>10}"
-        f"{'pitch' if balls else 'cage':>8}{pairs}",
-        f"{'deg':>14}{sides}{'%':>10}{'deg' if balls else 'N':>8}{3 * sides}",
+    load = told["contact_load"]
+    small = _SMALL * load.max()
+    columns = [
+        Column("ball" if balls else "roller", range(len(azimuth))),
+        Column("azimuth", azimuth % (2.0 * np.pi), "rad", ".1f", DEGREES),
+        *by_ring("load", np.where(load > small, load, 0.0), "N", ".4g", NEWTONS),
+        Column("slip", told["slip"], "1", ".3g", (100.0, "%")),
+        Column("pitch", np.round(_pitch(told), 4), "rad", ".1f", DEGREES)
+        if balls
+        else Column("cage", np.round(told["cage_force"], 1), "N", ".1f", NEWTONS),
     ]
-    for k in range(1 if alike else len(azimuth)):
-        where = "   all       -" if alike else f"{k:6d}{azimuth[k]:8.1f}"
-        load = told["contact_load"][k]
-        film, slide = 1e6 * told["film"][k], 1e3 * told["sliding_speed"][k]
+    for name, what, *scale in (
+        ("film", "film", "m", ".3g"),
+        ("sliding", "sliding_speed", "m/s", ".4g", (1e3, "mm/s")),
+        ("heat", "heat", "W", ".3g"),
+    ):
         # An open contact has no film worth printing.
-        bears = np.tile(load > small, 3)
-        values = zip((*film, *slide, *told["heat"][k]), bears, strict=True)
-        after = "".join(_number(v) if yes else f"{'-':>9}" for v, yes in values)
-        before = "".join(f"{v if v > small else 0.0:9.4g}" for v in load)
-        lines.append(
-            f"{where}{before}{own[0][k]:10.3g}{_clean(round(own[1][k], 1)):8.1f}{after}"
-        )
-    return "\n".join(lines)
+        columns += by_ring(name, np.where(load > small, told[what], np.nan), *scale)
+    if alike:
+        words = ["all"], ["-"]
+        columns = [
+            Column(c.name, w or c.values[:1], c.unit, c.format, c.shown)
+            for c, w in zip(columns, (*words, *[None] * len(columns)), strict=False)
+        ]
+    return Grid(columns)
 
 
 def _pitch(told):
-    """Angles between spin and bearing axis [deg]."""
-    return np.rad2deg(np.arctan2(told["spin"][:, 1], -told["spin"][:, 2]))
+    """Angles between spin and bearing axis [rad]."""
+    return np.arctan2(told["spin"][:, 1], -told["spin"][:, 2])
 
 
 def _films(run):
@@ -194,17 +206,7 @@ def _ending(run):
             f"integrated in {int(found.steps)} steps, {int(found.rejected)} of them"
             f" rejected; {missing:.1e} J of the work not accounted for"
         )
-    return "\n".join(
-        [
-            *_films(run),
-            done,
-            *(f"warning: {text}" for text in run.warnings),
-        ]
-    )
-
-
-def _number(value):
-    return f"{value:9.0f}" if value >= 1e3 else f"{value:9.3g}"
+    return done
 
 
 def _clean(value):

@@ -2,7 +2,6 @@
 
 import dataclasses
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import jax
@@ -17,9 +16,9 @@ from ..statics.sweep import Sweep, sweep
 from ..statics.sweep_program import not_run
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .cases_table import CaseTable, Structure, turns_of
-from .files import write_numbers
 from .life_table import life_conditions
 from .quantity import SceneError
+from .report_model import Column, Grid, Part, Report
 from .set_preload import range_warnings
 
 OUTPUTS = (
@@ -166,7 +165,7 @@ def _merged(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:
     return Sweep(table.cases, outputs, ring, tuple(common.items()))
 
 
-def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
+def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
     """How many cases ended how, and the range of every output over those solved.
 
     Args:
@@ -176,15 +175,15 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
     """
     counts = ", ".join(f"{n} {label}" for label, n in solved.counts().items())
     count = solved.cases.count
-    lines = [
+    told: list[Part] = [
         f"{table.scene.name}: {count} cases over {', '.join(table.varied)}",
         f"{counts}; {seconds:.3g} s, compiling included",
     ]
     if len(table.settings) > 1:
         kinds = len(table.structures)
         of = f" of {kinds} structures, solved one after the other"
-        lines.append(f"{len(table.settings)} designs{of if kinds > 1 else ''}")
-    lines.append(f"\n{'':<38}{'least':>14}{'largest':>14}  unit")
+        told.append(f"{len(table.settings)} designs{of if kinds > 1 else ''}")
+    rows = []
     for header, column in columns(solved).items():
         values = np.asarray(column)
         if values.dtype.kind not in "fi" or header == "design":
@@ -194,10 +193,12 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> str:
             continue
         name, _, unit = header.partition(" [")
         factor, shown = display_unit(unit.rstrip("]"))
-        ends = "".join(f"{factor * x:>14.5g}" for x in (values.min(), values.max()))
-        lines.append(f"{name:<38}{ends}  {shown}".rstrip())
-    lines += [f"warning: {text}" for text in all_warnings(table, solved)]
-    return "\n".join(lines)
+        rows.append((name, factor * values.min(), factor * values.max(), shown))
+    if rows:
+        names = "result", "least", "largest", "unit"
+        given = zip(names, zip(*rows, strict=True), strict=True)
+        told += ["", Grid([Column(name, found) for name, found in given])]
+    return Report({"Cases": told}, all_warnings(table, solved))
 
 
 def all_warnings(table: CaseTable, solved: Sweep) -> list[str]:
@@ -256,12 +257,3 @@ def listed_columns(found: dict[str, Any]) -> dict[str, list]:
         return [float(x) if np.isfinite(x) else None for x in column]
 
     return {name: listed(column) for name, column in found.items()}
-
-
-def write_sweep_json(path: str | Path, table: CaseTable, solved: Sweep) -> None:
-    """Write `sweep_as_dict` to a file.
-
-    Raises:
-        OSError: If the file cannot be written.
-    """
-    write_numbers(path, sweep_as_dict(table, solved))

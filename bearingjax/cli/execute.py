@@ -1,0 +1,307 @@
+"""One way from options to outputs, for every command that writes files.
+
+A command reads and solves, and returns an `Outcome`; `execute` checks the options
+before that, and writes, prints and complains after it.
+"""
+
+import contextlib
+import dataclasses
+import io
+import json
+import shlex
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .status import BAD_INPUT, NOT_SOLVED, SOLVED, complain
+
+if TYPE_CHECKING:
+    from ..scene import Report
+
+Draw = Callable[[], Any]
+"""Draws a picture, a figure of Matplotlib."""
+
+OUTPUTS = "json", "table", "wav", "plot", "drawing", "report"
+"""Options that name a file, in the order in which the files are written."""
+
+_PICTURE = (".png", ".pdf", ".svg"), "a picture ends in .png, .pdf or .svg"
+_ENDINGS = {
+    "plot": _PICTURE,
+    "drawing": _PICTURE,
+    "report": ((".html", ".htm"), "a report ends in .html"),
+    "wav": ((".wav",), "a sound ends in .wav"),
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Outcome:
+    """What a command found, ready for each of its outputs.
+
+    What is `None` there is nothing to be written of, as of what was not solved; a file
+    of an earlier run in its place is removed.
+
+    Attributes:
+        name: Of the scene; heads the page.
+        inputs: All that was read, as a scene writes it.
+        numbers: Gives the JSON.
+        report: What people are told.
+        columns: Gives the table, columns by header.
+        pictures: Of `--plot` (the first) and of the page, by their titles.
+        drawing: Of the bearing, for `--drawing` and the page.
+        sound: Writes `--wav`; returns a line that is told after the report.
+        table_on_page: Whether the page shows the first rows of the table too.
+        problems: Why it was not solved, or not all of it, a line each.
+        status: Exit status of what was solved.
+    """
+
+    name: str
+    inputs: Mapping[str, Any]
+    numbers: Callable[[], Mapping[str, Any]]
+    report: "Report | None" = None
+    columns: Callable[[], Mapping[str, Any]] | None = None
+    pictures: Mapping[str, Draw] = dataclasses.field(default_factory=dict)
+    drawing: Draw | None = None
+    sound: Callable[[Path], str] | None = None
+    table_on_page: bool = False
+    problems: Sequence[str] = ()
+    status: int | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Tools:
+    """What a command may use while it runs.
+
+    Attributes:
+        shown: Whether somebody watches a progress bar.
+        stage: Shows the stage that a run is in; `None` if nobody watches.
+        until_written: Enters a context that ends when all outputs are written.
+    """
+
+    shown: bool
+    stage: "Stage | None"
+    until_written: Callable[[Any], Any]
+
+
+def execute(command: Any, options: Any) -> int:
+    """Run a command: check the options, solve, write, print.
+
+    Args:
+        command: Its module; `run(options, tools)` of it returns an `Outcome`.
+        options: Of the command line.
+
+    Returns:
+        Exit status.
+
+    Raises:
+        SceneError: For bad input, or outputs that cannot be written.
+    """
+    check_table(options)
+    check_outputs(options)
+    origin = _origin(options)
+    shown = not getattr(options, "quiet", False) and sys.stderr.isatty()
+    stage = Stage() if shown else None
+    with contextlib.ExitStack() as stack:
+        try:
+            found = command.run(options, Tools(shown, stage, stack.enter_context))
+        finally:
+            if stage is not None:
+                stage.end()
+        told: list[str] = []
+        failed = _write(found, options, origin, told)
+    if found.report is not None:
+        print("\n".join([str(found.report), *told]), flush=True)
+    for problem in found.problems:
+        complain(problem)
+    if found.status is not None:
+        return found.status
+    return NOT_SOLVED if found.problems else BAD_INPUT if failed else SOLVED
+
+
+def _write(found: Outcome, options, origin, told: list[str]) -> bool:
+    """Write the outputs of a run; whether one of them failed."""
+    from ..scene import write_numbers
+    from ..statics.sweep_table import write_columns
+
+    def tabulate(path):
+        assert found.columns is not None
+        write_columns(found.columns(), path)
+
+    def sound(path):
+        assert found.sound is not None
+        told.append(found.sound(path))
+
+    def picture(draw):
+        return None if draw is None else lambda path: save(draw(), path)
+
+    writers = {
+        "json": lambda path: write_numbers(path, found.numbers()),
+        "table": None if found.columns is None else tabulate,
+        "wav": None if found.sound is None else sound,
+        "plot": picture(next(iter(found.pictures.values()), None)),
+        "drawing": picture(found.drawing),
+        "report": None
+        if found.report is None
+        else lambda path: _write_page(path, found, origin),
+    }
+    return write_outputs([(getattr(options, k, None), writers[k]) for k in OUTPUTS])
+
+
+def write_outputs(outputs) -> bool:
+    """Write files, pairs of a path (`None`: not wanted) and what writes there.
+
+    Says which files of an earlier run were removed, and what could not be made: a
+    picture that fails costs neither tables nor numbers.
+
+    Returns:
+        Whether one of them failed.
+    """
+    from ..scene import write_outputs
+
+    written = write_outputs(outputs)
+    for path in written.removed:
+        complain(f"{path}: of an earlier run, removed")
+    for path, error in written.failed:
+        complain(f"{path}: {_in_words(error)}")
+    return bool(written.failed)
+
+
+def _write_page(path: Path, found: Outcome, origin) -> None:
+    """Write the page of a run.
+
+    Raises:
+        Incomplete: If a picture failed; a line stands in its place.
+    """
+    from ..scene import Incomplete, report_page
+
+    missing: list[str] = []
+
+    def shown(name: str, draw: Draw) -> bytes | str:
+        try:
+            picture = io.BytesIO()
+            save(draw(), picture, format="png")
+            return picture.getvalue()
+        except OSError:
+            raise
+        except Exception as error:
+            missing.append(f"{name}: {_in_words(error)}")
+            return f"This picture {_in_words(error)}"
+
+    assert found.report is not None
+    page = report_page(
+        found.name,
+        found.report,
+        found.inputs,
+        origin,
+        {name: shown(name, draw) for name, draw in found.pictures.items()},
+        found.columns() if found.table_on_page and found.columns else None,
+        found.problems,
+        None if found.drawing is None else shown("Drawing", found.drawing),
+    )
+    path.write_text(page, encoding="utf-8")
+    if missing:
+        raise Incomplete("; ".join(missing))
+
+
+def save(figure, path, **format) -> None:
+    """Write a picture, to a file or a stream."""
+    figure.savefig(path, dpi=150, **format)
+
+
+def _in_words(error: Exception) -> str:
+    """Why an output, or a part of one, is missing."""
+    from ..scene import Incomplete
+
+    if isinstance(error, Incomplete):
+        return str(error)
+    return f"could not be made: {type(error).__name__}: {error}"
+
+
+def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
+    """Fail before anything is solved if outputs cannot be written or hit an input.
+
+    Args:
+        options: Of the command line.
+        inputs: Files that are read; default: those of the scene.
+    """
+    from ..scene import SceneError, check_outputs, scene_files
+
+    outputs = {name: getattr(options, name, None) for name in OUTPUTS}
+    for name, (endings, words) in _ENDINGS.items():
+        path = outputs[name]
+        if path is not None:
+            if name != "wav":
+                check_matplotlib()
+            if path.suffix.lower() not in endings:
+                raise SceneError(f"{path}: {words}")
+    if inputs is None:
+        inputs = scene_files(options.scene, options.set)
+    check_outputs({f"--{name}": path for name, path in outputs.items()}, inputs)
+
+
+def check_table(options, rows: int = 0) -> None:
+    """Fail before anything is solved if a table, of so many rows, cannot be written."""
+    from ..scene import SceneError
+    from ..statics.sweep_table import check_writable
+
+    table = getattr(options, "table", None)
+    if table is None:
+        return
+    try:
+        check_writable(table, rows)
+    except (ValueError, ImportError) as error:
+        raise SceneError(str(error)) from error
+
+
+def check_matplotlib() -> None:
+    """Fail if pictures cannot be drawn."""
+    from ..scene import SceneError
+
+    try:
+        import matplotlib
+    except ImportError as error:
+        problem = 'pictures need matplotlib: pip install "bearingjax[plot]"'
+        raise SceneError(problem) from error
+    matplotlib.use("Agg")
+
+
+def _origin(options):
+    """Where a report comes from; before anything is solved, so that it tells the scene
+    that was read."""
+    import datetime
+
+    from ..scene import Origin
+    from ..scene.scene_file import find_scene
+
+    now = datetime.datetime.now().astimezone()
+    path = find_scene(options.scene)
+    text = path.read_text(encoding="utf-8-sig")
+    if path.suffix.lower() == ".json":  # of an earlier run: without its results
+        inputs = json.loads(text).get("inputs")
+        text = json.dumps({"inputs": inputs}, indent=1, ensure_ascii=False)
+    return Origin(
+        shlex.join(["bearingjax", *options.given]),
+        text,
+        tuple(options.set),
+        now.strftime("%Y-%m-%d %H:%M %z"),
+    )
+
+
+class Stage:
+    """Shows the stage that a run is in, on one line of standard error."""
+
+    def __init__(self):
+        self._used = False
+
+    def __call__(self, name: str) -> None:
+        """Show a stage in place of the one before."""
+        self._used = True
+        self._show(f"{name}…")
+
+    def end(self) -> None:
+        """Leave the line empty."""
+        if self._used:
+            self._show("")
+
+    def _show(self, words: str) -> None:
+        print(f"\r\x1b[K{words}", end="", file=sys.stderr, flush=True)

@@ -1,0 +1,58 @@
+"""The outcome of a solved bearing, of `solve` and what builds on it."""
+
+import dataclasses
+
+from . import jax_settings
+from .execute import Outcome
+
+
+def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
+    """Solve the bearing of a scene for its load.
+
+    Args:
+        scene: From `read_scene`.
+        numbers: Gives the JSON of a scene and its solution; default: `as_dict`.
+        brief: Sections of the report that the terminal shows; default: all.
+    """
+    from ..scene import as_dict, report, run_scene, with_set_preload
+
+    solution = run_scene(scene, jax_settings.programs())
+    solved = bool(solution.converged)
+    if solved:
+        scene = with_set_preload(scene, jax_settings.programs())
+
+    def draw():
+        from ..plot import overview
+
+        return overview(solution.element.bearing, solution, title=scene.name)
+
+    def draw_bearing():
+        from ..plot import drawing
+
+        # Mounted and preloaded where the scene says so.
+        element = solution.element if solved else scene.element
+        return drawing(element.bearing, scene.name)
+
+    return Outcome(
+        scene.name,
+        scene.inputs,
+        lambda: (numbers or as_dict)(scene, solution),
+        dataclasses.replace(report(scene, solution), brief=brief) if solved else None,
+        pictures={"Section, load zone, contacts": draw} if solved else {},
+        drawing=draw_bearing,
+        problems=[] if solved else [why_unsolved(scene, solution)],
+    )
+
+
+def why_unsolved(scene, solution) -> str:
+    """Why a bearing was not solved.
+
+    Args:
+        scene: What was asked.
+        solution: Its solution, not converged.
+    """
+    from ..numerics import Result
+    from ..statics.solution import message
+
+    label = Result(int(solution.result)).label
+    return f"{label}: {message(solution, scene.moving_ring)}"

@@ -1,0 +1,171 @@
+"""What a run tells people, as data: sections of sentences and grids of columns.
+
+The terminal shows a `Report` as text, `html_report` as a page with real tables. Numbers
+stand in it in SI, with their unit; the units that people read are chosen here, by
+`display_unit`.
+"""
+
+import dataclasses
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..numerics.units import display_unit
+
+RULE = "-" * 78
+"""Between the sections of a text."""
+_WIDTH = 100
+"""Letters of a line with words at its end."""
+DEGREES = 180.0 / np.pi, "deg"
+NEWTONS = 1.0, "N"
+"""Factor from SI and unit, where angles are no tilts and forces are small."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Column:
+    """Values of one quantity, a row each.
+
+    Attributes:
+        name: Its heading; empty: none.
+        values: Numbers in SI, or words; what is `None` or no number is shown as "-".
+        unit: SI unit of the numbers, or those of each, which then stand beside them.
+        format: Of a number, after the conversion.
+        shown: Factor from SI and the unit that is shown; default: `display_unit`.
+    """
+
+    name: str
+    values: Sequence[Any] | np.ndarray
+    unit: str | Sequence[str] = ""
+    format: str = ".5g"
+    shown: tuple[float, str] | None = None
+
+    @property
+    def heading(self) -> tuple[str, str]:
+        """The name, and the unit that is shown if all values have one."""
+        return self.name, self._scales()[0][1] if isinstance(self.unit, str) else ""
+
+    @property
+    def is_text(self) -> bool:
+        """Whether it holds words, which stand on the left."""
+        return any(isinstance(v, str) for v in self.values)
+
+    def cells(self) -> list[str]:
+        """The values in words."""
+        beside = not isinstance(self.unit, str)
+        return [
+            self._cell(value, factor) + (f" {unit}" if beside else "")
+            for value, (factor, unit) in zip(self.values, self._scales(), strict=False)
+        ]
+
+    def _scales(self):
+        """Factor and unit that is shown of each value; of none, of what would stand."""
+        if not isinstance(self.unit, str):
+            return [display_unit(unit) for unit in self.unit]
+        one = display_unit(self.unit) if self.shown is None else self.shown
+        return [one] * max(1, len(self.values))
+
+    def _cell(self, value, factor):
+        if isinstance(value, str):
+            return value
+        if value is None or np.isnan(value):
+            return "-"
+        if isinstance(value, int | np.integer):
+            return str(value)
+        if np.isinf(value):
+            return "infinite"
+        # Plus zero: no minus before a zero.
+        return f"{factor * float(value) + 0.0:{self.format}}"
+
+
+@dataclasses.dataclass(frozen=True)
+class Grid:
+    """A table: columns side by side.
+
+    Attributes:
+        columns: All of one length.
+        title: A line above it.
+    """
+
+    columns: Sequence[Column]
+    title: str = ""
+
+    def heading(self) -> list[list[str]]:
+        """Names and, in a second row, units, each if there are any."""
+        rows = zip(*(column.heading for column in self.columns), strict=True)
+        return [list(row) for row in rows if any(row)]
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """The cells of each row."""
+        return list(zip(*(c.cells() for c in self.columns), strict=True))
+
+    def __str__(self) -> str:
+        rows = [*self.heading(), *self.rows()]
+        width = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        left = [column.is_text for column in self.columns]
+        lines = [
+            "  ".join(
+                f"{cell:{'<' if text else '>'}{size}}"
+                for cell, size, text in zip(row, width, left, strict=True)
+            ).rstrip()
+            for row in rows
+        ]
+        if left[-1]:
+            indent = " " * (sum(width[:-1]) + 2 * (len(width) - 1))
+            lines = [part for line in lines for part in _wrapped(line, indent)]
+        return "\n".join([*([self.title] if self.title else []), *lines])
+
+
+def _wrapped(line: str, indent: str) -> list[str]:
+    """A row whose last words go on below themselves where it is too long."""
+    head, words = line[: len(indent)], line[len(indent) :]
+    room = max(_WIDTH - len(indent), _WIDTH // 3)
+    parts = textwrap.wrap(words, room, break_on_hyphens=False) or [""]
+    told = [f"{indent if k else head}{part}".rstrip() for k, part in enumerate(parts)]
+    return [part.replace("\xa0", " ") for part in told]
+
+
+Part = str | Grid
+"""Of a section: a sentence or several lines of them, or a table."""
+Section = Sequence[Part]
+
+
+def labelled(rows: Iterable[tuple[str, str]]) -> Grid:
+    """Facts with a label before each.
+
+    Args:
+        rows: Label and fact.
+    """
+    labels, facts = zip(*rows, strict=True)
+    return Grid([Column("", labels), Column("", facts)])
+
+
+@dataclasses.dataclass(frozen=True)
+class Report:
+    """What a run tells people; `str` of it is the text of the terminal.
+
+    Attributes:
+        sections: By their titles, in their order; those that are empty are left out.
+        warnings: What a reader should know before the numbers are used.
+        brief: Titles of the sections that the terminal shows; default: all.
+    """
+
+    sections: Mapping[str, Section]
+    warnings: Sequence[str] = ()
+    brief: Sequence[str] | None = None
+
+    def __post_init__(self):
+        told = {title: parts for title, parts in self.sections.items() if parts}
+        object.__setattr__(self, "sections", told)
+
+    def __str__(self) -> str:
+        shown = self.sections if self.brief is None else self.brief
+        texts = [section_text(self.sections[t]) for t in shown if t in self.sections]
+        warned = "".join(f"\nwarning: {text}" for text in self.warnings)
+        return f"\n{RULE}\n".join(texts) + warned
+
+
+def section_text(parts: Section) -> str:
+    """A section as text."""
+    return "\n".join(map(str, parts))
