@@ -11,6 +11,7 @@ from .rotor_output import UNITS, mode_numbers
 from .rotor_run import RotorRun
 
 _HZ, _RPM = 0.5 / np.pi, 30.0 / np.pi
+_STIFFNESS = 1e-6, "N/µm"
 _AXES = tuple(enumerate("xyz"))
 _WHIRL = {1: "forward", -1: "backward", 0: "-"}
 _AXIAL = 0.9
@@ -104,7 +105,10 @@ def _bearings(run):
     columns = [
         Column("bearing", names),
         *(Column(f"F{x}", forces[:, k], "N", ".1f", NEWTONS) for k, x in _AXES),
-        *(Column(f"k{x}{x}", np.array(stiff)[:, k], "N/m", ".4g") for k, x in _AXES),
+        *(
+            Column(f"k{x}", np.array(stiff)[:, k], "N/m", ".4g", _STIFFNESS)
+            for k, x in _AXES
+        ),
     ]
     return Grid(columns)
 

@@ -209,7 +209,7 @@ def test_report_needs_no_unit_of_a_plain_measure(scene):
         points=2,
         max_steps=3,
     )
-    assert "\nown " in optimisation_report(task, found)
+    assert "\nown " in str(optimisation_report(task, found))
 
 
 FILES = {

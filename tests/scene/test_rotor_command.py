@@ -304,7 +304,7 @@ def test_a_linear_response_and_what_is_doubtful(monkeypatch):
     half = 0.5 * (moved.max(axis=1) - moved.min(axis=1))
     largest = found.response.amplitude[:, 2, 1]
     assert np.allclose(half[:, 2, 1], largest, rtol=0.01)
-    text = rotor_report(found)
+    text = str(rotor_report(found))
     assert "warning: settle: the bearing on station 0 bears nothing" in text
     assert "43000 rpm lies within 10 % of the forward critical speed of 432" in text
     assert all(words in text for words in rotor_as_dict(found)["warnings"])

@@ -426,4 +426,4 @@ def test_round_off_of_a_bearing_without_ribs_is_no_axial_stiffness(untyped):
         settled=SimpleNamespace(support_load=np.zeros((1, 5)), stiffness=k[None]),
         task=SimpleNamespace(mounts=[mount]),
     )
-    assert _bearings(run).split()[-3:] == ["400", "300", "0"]
+    assert _bearings(run).rows()[0][-3:] == ("400", "300", "0")

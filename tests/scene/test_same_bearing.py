@@ -13,7 +13,9 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.cli.outputs import draws_bearing
+from bearingjax.cli.entry import parser
+from bearingjax.cli.execute import Tools
+from bearingjax.cli.life import run
 from bearingjax.design import Mounting, radial_clearance, rows_of
 from bearingjax.design.fits import FitConditions
 from bearingjax.optimise.system import element_of, ready, solved_case
@@ -153,12 +155,13 @@ def of_rotor(path):
 
 def of_drawing(path, monkeypatch):
     """What the report of `life` under [cases] draws."""
-    drawn = []
-    monkeypatch.setattr("bearingjax.plot.drawing", lambda b, title: drawn.append(b))
-    monkeypatch.setattr("bearingjax.cli.outputs.save", lambda *a, **k: None)
-    scene = read_cases(path).scene
-    draws_bearing(scene, scene.running())(None)
-    return drawn[0]
+    monkeypatch.setattr("bearingjax.plot.drawing", lambda bearing, title: bearing)
+    found = run(
+        parser().parse_args(["life", str(path)]),
+        Tools(False, None, lambda context: None),
+    )
+    assert found.drawing is not None
+    return found.drawing()
 
 
 ENTRIES = {
@@ -197,7 +200,8 @@ def test_reports_show_the_bearing_that_is_solved(written, monkeypatch):
         facts(of_drawing(path, monkeypatch)), facts(solved), rtol=1e-9, atol=1e-15
     )
     angle = np.rad2deg(facts(solved)[0, 2])
-    text = design_sections(read_cases(path).scene)["Bearing"]
+    text: Any
+    (text,) = design_sections(read_cases(path).scene)["Bearing"]
     assert f"free contact angle {angle:.4g} deg" in text
 
 

@@ -1,6 +1,7 @@
 """The preload of a set on its seats, as solve and life tell it."""
 
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -122,7 +123,7 @@ def test_a_sweep_tells_that_of_each_case(scene):
     )
     (text,) = set_warnings(cases, solved)
     assert f"200 N as ground are {wanted[1]:.4g} N to {wanted[0]:.4g} N in op" in text
-    assert f"warning: {text}" in sweep_report(cases, solved, 1.0)
+    assert f"warning: {text}" in str(sweep_report(cases, solved, 1.0))
 
 
 def test_what_is_warned_of():
@@ -151,5 +152,7 @@ def test_what_is_warned_of():
         "1000 N in operation (100 N to not possible over"
         in told(200.0, 250.0, 1000.0, (50.0, nan), (100.0, nan))[0]
     )
-    text = preload_report(SetPreload(200.0, 250.0, 300.0, (50.0, nan), (40.0, nan)))
-    assert text.endswith("operating        40 N to not possible")
+    ends = (50.0, nan), (40.0, nan)
+    grid: Any
+    (grid,) = preload_report(SetPreload(200.0, 250.0, 300.0, *ends))
+    assert grid.rows()[-1] == ("operating", "300 N", "40 N to not possible")

@@ -80,7 +80,7 @@ def test_end_state(run, rerun, end, tmp_path):
     outputs = ("--json", out, "--table", table, "--plot", picture)
     done = run(*SMALL, "--steady", *outputs)
     assert done.status == 0 and done.err == ""
-    assert done.out == skid_report(end) + "\n"
+    assert done.out == f"{skid_report(end)}\n"
     numbers, found = json.loads(out.read_text()), end.found
     assert numbers == skid_as_dict(end)
     # Of the twelve places every other one has a ball.
@@ -125,7 +125,7 @@ def test_motion_in_time(run, history, tmp_path):
     outputs = ("--json", out, "--table", table, "--plot", picture)
     done = run(*RUN_UP, *outputs)
     assert done.status == 0 and done.err == ""
-    assert done.out == skid_report(history) + "\n"
+    assert done.out == f"{skid_report(history)}\n"
     assert "ring at the end, within the first orbit of the cage" in done.out
     numbers, found = json.loads(out.read_text()), history.found
     assert numbers == skid_as_dict(history)
@@ -176,7 +176,7 @@ def test_rollers(run, tmp_path):
     done = run(*FEW, "--steady", *outputs)
     assert done.status == 0 and done.err == ""
     end = run_skid(read_skid("skid_roller", ROLLERS, steady=True))
-    assert done.out == skid_report(end) + "\n"
+    assert done.out == f"{skid_report(end)}\n"
     numbers, found = json.loads(out.read_text()), end.found
     assert numbers == skid_as_dict(end)
     for name in ("orbit_speed", "slip", "film", "sliding_speed", "cage_force", "heat"):
@@ -223,7 +223,7 @@ def test_rollers_in_time(run, tmp_path):
     done = run("skid", "skid_roller", *words, "--plot", picture)
     assert done.status == 0 and picture.stat().st_size > 20_000
     history = run_skid(read_skid("skid_roller", given))
-    assert done.out == skid_report(history) + "\n"
+    assert done.out == f"{skid_report(history)}\n"
     numbers, found = skid_as_dict(history), history.found
     spin = np.array(numbers["spin"])
     assert spin.shape == (9, 7, 3) and not spin[..., :2].any()
@@ -281,7 +281,7 @@ def test_a_motion_that_ends_early_is_told_as_far_as_it_goes(run, history, tmp_pa
 
 
 def test_report(end):
-    text = skid_report(end)
+    text = str(skid_report(end))
     rolling = 12.0 / (1.0 / end.found.rolling_orbit_speed).sum()
     slip = 100.0 * (1.0 - float(end.found.cage_speed) / rolling)
     assert f"pure rolling {rolling:.6g} rad/s, slip {slip:.3g} %" in text
