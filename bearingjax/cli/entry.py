@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 from . import (
     catalogue,
+    compare,
     contact,
     examples,
     jax_settings,
@@ -30,6 +31,7 @@ from .status import BAD_INPUT, INTERRUPTED, SOLVED, complain
 _COMMANDS = (
     solve,
     sweep,
+    compare,
     optimise,
     life,
     contact,

@@ -50,6 +50,7 @@ class Outcome:
         pictures: Of `--plot` (the first) and of the page, by their titles.
         drawing: Of the bearing, for `--drawing` and the page.
         sound: Writes `--wav`; returns a line that is told after the report.
+        page: Gives the report of the page if that has more; default: `report`.
         table_on_page: Whether the page shows the first rows of the table too.
         problems: Why it was not solved, or not all of it, a line each.
         status: Exit status of what was solved.
@@ -63,6 +64,7 @@ class Outcome:
     pictures: Mapping[str, Draw] = dataclasses.field(default_factory=dict)
     drawing: Draw | None = None
     sound: Callable[[Path], str] | None = None
+    page: "Callable[[], Report] | None" = None
     table_on_page: bool = False
     problems: Sequence[str] = ()
     status: int | None = None
@@ -190,7 +192,7 @@ def _write_page(path: Path, found: Outcome, origin) -> None:
     assert found.report is not None
     page = report_page(
         found.name,
-        found.report,
+        found.report if found.page is None else found.page(),
         found.inputs,
         origin,
         {name: shown(name, draw) for name, draw in found.pictures.items()},
@@ -235,7 +237,11 @@ def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
             if path.suffix.lower() not in endings:
                 raise SceneError(f"{path}: {words}")
     if inputs is None:
-        inputs = scene_files(options.scene, options.set)
+        inputs = [
+            path
+            for source in _sources(options)
+            for path in scene_files(source, options.set)
+        ]
     check_outputs({f"--{name}": path for name, path in outputs.items()}, inputs)
 
 
@@ -274,17 +280,25 @@ def _origin(options):
     from ..scene.scene_file import find_scene
 
     now = datetime.datetime.now().astimezone()
-    path = find_scene(options.scene)
-    text = path.read_text(encoding="utf-8-sig")
-    if path.suffix.lower() == ".json":  # of an earlier run: without its results
-        inputs = json.loads(text).get("inputs")
-        text = json.dumps({"inputs": inputs}, indent=1, ensure_ascii=False)
+    texts = []
+    for source in _sources(options):
+        path = find_scene(source)
+        text = path.read_text(encoding="utf-8-sig")
+        if path.suffix.lower() == ".json":  # of an earlier run: without its results
+            inputs = json.loads(text).get("inputs")
+            text = json.dumps({"inputs": inputs}, indent=1, ensure_ascii=False)
+        texts.append(text)
     return Origin(
         shlex.join(["bearingjax", *options.given]),
-        text,
+        "\n".join(texts),
         tuple(options.set),
         now.strftime("%Y-%m-%d %H:%M %z"),
     )
+
+
+def _sources(options) -> list[str]:
+    """The scenes of a command."""
+    return options.scenes if hasattr(options, "scenes") else [options.scene]
 
 
 class Stage:

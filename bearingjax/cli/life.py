@@ -53,6 +53,7 @@ def _life_of_cases(options, tools: Tools) -> Outcome:
         read_cases,
         run_life,
         spectrum_as_dict,
+        spectrum_page,
         spectrum_report,
         unsolved,
     )
@@ -79,6 +80,7 @@ def _life_of_cases(options, tools: Tools) -> Outcome:
         lambda: life_columns(done),
         {"Lives and damage of the cases": draw} if solved else {},
         draw_bearing,
+        page=lambda: spectrum_page(done),
         table_on_page=True,
         problems=[] if solved else [unsolved(done)],
     )

@@ -7,12 +7,17 @@ def add_scene(command) -> None:
     """The scene, changes to it, and numbers out of it."""
     command.add_argument("scene", metavar="SCENE", help=".toml file or a shipped scene")
     add_json(command)
+    add_set(command)
+
+
+def add_set(command, what: str = "change the scene") -> None:
+    """Changes to what is read."""
     command.add_argument(
         "--set",
         metavar="KEY=VALUE",
         action="append",
         default=[],
-        help='change the scene, such as "operating.load.Fz=-6 kN"; may be repeated',
+        help=f'{what}, such as "operating.load.Fz=-6 kN"; may be repeated',
     )
 
 

@@ -12,6 +12,10 @@ from .catalogue_report import catalogue_title as catalogue_title
 from .catalogue_report import new_scene as new_scene
 from .catalogue_report import scene_list as scene_list
 from .catalogue_report import select as select
+from .compare_run import compare_as_dict as compare_as_dict
+from .compare_run import compare_columns as compare_columns
+from .compare_run import compare_report as compare_report
+from .compare_run import run_compare as run_compare
 from .contact_report import contact_as_dict as contact_as_dict
 from .contact_report import contact_report as contact_report
 from .contact_report import contact_warnings as contact_warnings
@@ -36,6 +40,7 @@ from .life_run import has_cases as has_cases
 from .life_run import life_columns as life_columns
 from .life_run import run_life as run_life
 from .life_run import spectrum_as_dict as spectrum_as_dict
+from .life_run import spectrum_page as spectrum_page
 from .life_run import spectrum_report as spectrum_report
 from .life_run import unsolved as unsolved
 from .life_table import rating_origins as rating_origins

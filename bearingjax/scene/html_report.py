@@ -209,15 +209,20 @@ def _inputs(inputs: Mapping[str, Any]) -> str:
         rows.append(f"<tr>{head}</tr>")
         rows += [
             f'<tr><td>{escape(key)}</td><td class="number">{escape(value)}</td></tr>'
-            for key, value in _flat(held)
+            for key, value in flat(held)
         ]
     body = "\n".join(rows)
     note = "<p>All that was read, in SI; what the scene leaves out has its default.</p>"
     return _section("Inputs", f"{note}\n<table>\n{body}\n</table>")
 
 
-def _flat(held: Any, key: str = "") -> list[tuple[str, str]]:
-    """(dotted key, value in words) of nested tables."""
+def flat(held: Any, key: str = "") -> list[tuple[str, str]]:
+    """(dotted key, value in words) of nested tables.
+
+    Args:
+        held: Tables, lists and values, as a scene writes them.
+        key: In which they stand.
+    """
     if isinstance(held, Mapping):
         pairs = held.items()
     elif isinstance(held, Sequence) and any(isinstance(x, Mapping) for x in held):
@@ -227,7 +232,7 @@ def _flat(held: Any, key: str = "") -> list[tuple[str, str]]:
     return [
         pair
         for name, one in pairs
-        for pair in _flat(one, f"{key}.{name}" if key else name)
+        for pair in flat(one, f"{key}.{name}" if key else name)
     ]
 
 

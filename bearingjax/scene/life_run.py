@@ -223,14 +223,23 @@ def _finite(value) -> float | None:
 
 
 def spectrum_report(run: LifeRun) -> Report:
-    """Readable report of the life under the cases, of which the terminal shows the
-    lives.
+    """Readable report of the life under the cases.
 
     Args:
         run: With all cases solved.
     """
-    table = run.table
-    sections = {"Rating life": _lives(run), **design_sections(table.scene)}
+    told = all_warnings(run.table, run.solved)
+    return Report({"Rating life": _lives(run)}, told)
+
+
+def spectrum_page(run: LifeRun) -> Report:
+    """The report of the life under the cases, with the bearing and its fits.
+
+    Args:
+        run: With all cases solved.
+    """
+    report = spectrum_report(run)
+    sections = {**report.sections, **design_sections(run.table.scene)}
     fits = "Fits and clearance"
     if run.clearance is not None:
         sections[fits] = [
@@ -238,8 +247,7 @@ def spectrum_report(run: LifeRun) -> Report:
             f" have them; over the cases {_on_seats(run)}.",
             *sections[fits],
         ]
-    told = all_warnings(table, run.solved)
-    return Report(sections, told, brief=["Rating life"])
+    return Report(sections, report.warnings)
 
 
 def _lives(run) -> list[Part]:

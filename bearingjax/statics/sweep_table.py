@@ -5,7 +5,7 @@ Tables of all commands are written here: CSV, Parquet, and sheets of Excel.
 
 import importlib.util
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -82,7 +82,7 @@ def columns(
         header: column
         for name, values in sweep.outputs.items()
         if name not in ("result", "unrestrained") and not name.startswith(WARNED)
-        for header, column in _spread(name, values, left_out(sweep))
+        for header, column in spread(name, values, left_out(sweep))
         if column is not None and not _is_nothing(sweep, column)
     }
     labels = np.array([code.label for code in Result])
@@ -320,7 +320,7 @@ def restored(
             solved = np.asarray(table["result"]) == Result.CONVERGED.label
             nothing = np.where(solved, 0.0, not_run(name, values.dtype))
             parts = []
-            for header, column in _spread(name, values, zeros):
+            for header, column in spread(name, values, zeros):
                 there = table.get(header)
                 if column is None:
                     there = nothing
@@ -378,9 +378,20 @@ def asked(cases: Cases) -> dict[str, np.ndarray]:
     return out
 
 
-def _spread(name, values, zeros=()):
-    """(header, column) of an output with any number of axes; the column is `None`
-    where all is zero whatever the case."""
+def spread(
+    name: str, values: np.ndarray, zeros: Any = ()
+) -> Iterator[tuple[str, np.ndarray | None]]:
+    """Headers and columns of an output with any number of axes.
+
+    Args:
+        name: Of the output.
+        values: Its values (case, …).
+        zeros: As `left_out`.
+
+    Yields:
+        Header, "name_axis [unit]", and column (case,), or `None` where all is zero
+        whatever the case.
+    """
     values, none = np.asarray(values), dict(zeros).get(name, ())
     axes = _LAST_AXES.get(name, ())
     named = len(axes) > 0 and values.shape[-len(axes) :] == tuple(map(len, axes))

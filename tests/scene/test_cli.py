@@ -12,6 +12,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from pages import missing_on_page
 from tolerances import SOLVER
 
 import bearingjax as bj
@@ -147,9 +148,7 @@ def test_report_that_stands_alone(run, tmp_path):
     ]
     words = "\n".join(page.words)
     # All of the report on the terminal stands there, but for the rules between parts.
-    for line in done.out.splitlines():
-        told = re.split(" {2,}", line.removeprefix("warning: ").strip())
-        assert set(line) == {"-"} or all(cell in words for cell in told)
+    assert not missing_on_page(words, done.out)
     # The pictures are those of --plot and --drawing, and nothing is fetched.
     for image, picture in zip(page.images, pictures, strict=True):
         data = base64.b64decode(image.removeprefix("data:image/png;base64,"))

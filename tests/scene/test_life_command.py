@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from pages import missing_on_page
 from tolerances import SOLVER
 
 import bearingjax as bj
@@ -16,6 +17,7 @@ from bearingjax.scene import read_cases, run_scene, shipped_scenes
 from bearingjax.scene.life_run import (
     LifeRun,
     spectrum_as_dict,
+    spectrum_page,
     spectrum_report,
 )
 from bearingjax.statics.sweep import Sweep
@@ -117,7 +119,7 @@ def test_a_spectrum_adds_up_the_damage_of_its_cases(
     assert told.status == 0, told.err
     assert picture.read_bytes().startswith(b"\x89PNG")
     text = unescape(page.read_text(encoding="utf-8"))
-    assert all(line in text for line in told.out.splitlines())
+    assert not missing_on_page(text, told.out)
     assert "data:image/png;base64," in text and "7 balls of 11.5 mm" in text
     again = read_cases(out)  # the file is a scene again
     np.testing.assert_array_equal(again.cases.hours, [700.0, 250.0, 50.0])
@@ -271,7 +273,9 @@ def test_a_page_says_whose_fits_it_shows(untyped):
     solved = Sweep(table.cases, outputs, "inner", ())
     asked = bj.spectrum_life(table.cases, outputs["damage"])
     run = LifeRun(table, solved, run.lives, asked, run.ratings)
-    sections = spectrum_report(run).sections
+    sections = spectrum_page(run).sections
+    first = spectrum_report(run).sections["Rating life"]
+    assert list(map(str, sections["Rating life"])) == list(map(str, first))
     told = " ".join(map(str, sections["Fits and clearance"]))
     assert "[fit] and [temperature] of the scene have them" in told
     assert "over the cases the operating radial clearance is -3.5 to 8 µm." in told

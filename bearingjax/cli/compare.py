@@ -1,0 +1,58 @@
+"""`bearingjax compare`."""
+
+from . import jax_settings
+from .execute import Outcome, Tools
+from .options import add_json, add_report, add_set, add_table
+from .solution import why_unsolved
+
+
+def add(commands):
+    """What may be written after it."""
+    command = commands.add_parser(
+        "compare",
+        help="several designs side by side",
+        description="Solve the bearings of several scene files, each for its load, and"
+        " set results and inputs that differ side by side, the largest differences"
+        " first.",
+        epilog="Exit status: 0 all solved, 2 bad input, 3 some not solved.",
+    )
+    command.add_argument("scenes", metavar="SCENE", nargs="+", help="two or more")
+    add_json(command)
+    add_set(command, "change all scenes")
+    add_table(command, "result")
+    add_report(command, "differences")
+    return command
+
+
+def run(options, tools: Tools) -> Outcome:
+    """Solve scenes and set them side by side."""
+    from ..scene import (
+        SceneError,
+        compare_as_dict,
+        compare_columns,
+        compare_report,
+        read_scene,
+        run_compare,
+    )
+
+    if len(options.scenes) < 2:
+        raise SceneError("compare: give two scenes or more")
+    scenes = [read_scene(source, options.set) for source in options.scenes]
+    found = run_compare(scenes, jax_settings.programs())
+    named = list(zip(found.names, found.scenes, found.solutions, strict=True))
+    return Outcome(
+        " and ".join(found.names),
+        {
+            f"{name}: {k}": v
+            for name, scene, _ in named
+            for k, v in scene.inputs.items()
+        },
+        lambda: compare_as_dict(found),
+        compare_report(found),
+        lambda: compare_columns(found),
+        problems=[
+            f"{name}: {why_unsolved(scene, solution)}"
+            for name, scene, solution in named
+            if not solution.converged
+        ],
+    )

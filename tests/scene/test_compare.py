@@ -1,0 +1,86 @@
+"""`bearingjax compare`: scenes side by side."""
+
+import json
+
+import numpy as np
+import pytest
+
+import bearingjax as bj
+from bearingjax.scene import as_dict
+from bearingjax.scene.compare_run import difference
+
+SCENE = "cylindrical_rig"
+
+
+@pytest.fixture
+def other(tmp_path):
+    """The shipped rig under twice its load."""
+    text = bj.scene.shipped_scenes()[SCENE].read_text(encoding="utf-8")
+    path = tmp_path / "heavy.toml"
+    path.write_text(text.replace("-10.6 kN", "-21.2 kN"), encoding="utf-8")
+    assert path.read_text(encoding="utf-8") != text
+    return path
+
+
+def test_compare_two_loads(run, other, tmp_path):
+    out, table, page = (tmp_path / f"out.{end}" for end in ("json", "csv", "html"))
+    done = run(
+        "compare", SCENE, other, "--json", out, "--table", table, "--report", page
+    )
+    assert done.status == 0, done.err
+    found = json.loads(out.read_text(encoding="utf-8"))
+    assert found["scenes"] == [SCENE, "heavy"]
+    assert found["result"] == ["converged", "converged"]
+    told = found["quantities"]
+    for k, source in enumerate((SCENE, other)):
+        scene = bj.read_scene(source)
+        numbers = as_dict(scene, bj.run_scene(scene))
+        moved, ring = numbers["displacement"], scene.moving_ring
+        uy = moved[bj.FREEDOMS.index("uy") + 6 * (ring == "inner")]
+        assert told[f"displacement_{ring}_uy [m]"][k] == pytest.approx(uy, rel=1e-12)
+        largest = np.max(numbers["roller_load"])
+        assert told["largest_load [N]"][k] == pytest.approx(largest, rel=1e-12)
+    # The largest differences come first; round-off is none.
+    sizes = list(found["difference"].values())
+    assert sizes == sorted(sizes, reverse=True) and 0.4 < sizes[0] <= 1.0
+    assert "operating.load.Fy  -10600 N         -21200 N" in done.out
+    assert "results are the same" in done.out
+    rows = table.read_text(encoding="utf-8").splitlines()
+    assert len(rows) == 1 + len(told) and "<h2>Results</h2>" in page.read_text("utf-8")
+
+
+def test_compare_a_scene_with_itself(run):
+    done = run("compare", SCENE, SCENE)
+    assert done.status == 0
+    assert done.out.startswith("the scenes are the same\n")
+
+
+def test_compare_tells_which_scene_is_not_solved(run, other, tmp_path):
+    pulled = tmp_path / "pulled.toml"
+    text = other.read_text(encoding="utf-8")
+    pulled.write_text(text.replace("-21.2 kN", "1e300 N"), encoding="utf-8")
+    done = run("compare", SCENE, pulled)
+    assert done.status == 3
+    assert done.err.startswith("bearingjax: pulled: non_finite: ")
+    assert "peak_pressure" in done.out
+
+
+def test_compare_needs_two_scenes(run):
+    done = run("compare", SCENE)
+    assert done == (2, "", "bearingjax: compare: give two scenes or more\n")
+
+
+@pytest.mark.parametrize(
+    "values, expected",
+    [
+        ([1.0, 4.0], 0.75),
+        ([-1.0, 1.0], 2.0),
+        ([0.0, 0.0], 0.0),
+        ([1.0, 1.0 + 1e-12], 0.0),
+        ([np.inf, np.inf], 0.0),
+        ([1.0, np.inf], np.nan),
+        ([1.0, np.nan], np.nan),
+    ],
+)
+def test_difference(values, expected):
+    np.testing.assert_equal(difference(np.array(values)), expected)
