@@ -81,7 +81,9 @@ def parted(told):
     return {re.sub(", in 1 of 1 cases, worst case 0", "", t) for t in own}, kinds
 
 
-@pytest.fixture(scope="module", params=SCENES)
+@pytest.fixture(
+    scope="module", params=[pytest.param("light", marks=pytest.mark.slow), "heavy"]
+)
 def best(request, tmp_path_factory):
     """The scene of a best design, what is told of it, and what `solve` tells."""
     path = tmp_path_factory.mktemp("scenes") / "scene.toml"
