@@ -359,6 +359,7 @@ def free(scene, settings=(), **bounds):
     return read_optimisation(scene(text), settings)
 
 
+@pytest.mark.slow
 def test_slopes_by_temperature_interference_and_clearance(scene):
     """Beside differences; and beside what each does to the clearance, by hand."""
     bounds: Any = {

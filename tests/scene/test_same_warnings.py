@@ -51,6 +51,7 @@ inner_speed = "20 rpm"
 viscosity = "2 mm^2/s"
 contamination = 0.5
 """
+pytestmark = pytest.mark.slow
 SCENES = {"light": LIGHT, "heavy": HEAVY}
 POINT = '[cases]\noutputs = ["n_loaded"]\n[cases.grid]\n"operating.load.Fy" = ["{}"]\n'
 SEARCH = """[optimise]
@@ -81,9 +82,7 @@ def parted(told):
     return {re.sub(", in 1 of 1 cases, worst case 0", "", t) for t in own}, kinds
 
 
-@pytest.fixture(
-    scope="module", params=[pytest.param("light", marks=pytest.mark.slow), "heavy"]
-)
+@pytest.fixture(scope="module", params=SCENES)
 def best(request, tmp_path_factory):
     """The scene of a best design, what is told of it, and what `solve` tells."""
     path = tmp_path_factory.mktemp("scenes") / "scene.toml"
