@@ -160,6 +160,7 @@ def test_shares_by_switching_off_and_by_gradient_agree_for_small_errors():
     assert half.by_gradient is None
 
 
+@pytest.mark.slow
 def test_shares_along_a_line_and_by_band():
     bands, how = octave_bands(), HOW | {"turns": 4}
     found = shares(

@@ -341,6 +341,7 @@ def test_loads_are_those_of_the_orbit_that_is_found(stiff, axial, speed):
     np.testing.assert_allclose(radial[0] - radial[1], pull, rtol=0.02)
 
 
+@pytest.mark.slow
 def test_without_load_drag_stops_the_balls():
     """Nothing is pressed against the ring that turns, so nothing drives."""
     end = steady_skid(MODEL, np.zeros(6), speed=SPEED, free=["uz"], places=1)
