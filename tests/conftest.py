@@ -41,6 +41,11 @@ LONGEST = (
     "test_identities.py",
     "test_benchmarks.py",
     "test_notebooks.py",
+    "test_steady.py",
+    "test_rollers.py",
+    "test_skidding_bearing.py",
+    "test_skid_command.py",
+    "test_load.py",
 )
 """Begun first: at the end one of them would keep one worker at work alone."""
 
