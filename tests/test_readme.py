@@ -41,6 +41,8 @@ def test_two_commands_and_their_scene():
     scene = re.search(r"bearingjax solve (\S+\.toml)", blocks[0])
     assert scene and (ROOT / scene[1]).is_file()
     assert "pytest" in blocks[1]
+    # Continuous integration runs the others after it.
+    assert '-m "not slow"' in blocks[1]
 
 
 @pytest.mark.parametrize("place", ["", "bearingjax/scene"])

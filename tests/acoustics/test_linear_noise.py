@@ -125,6 +125,7 @@ def test_a_peak_stands_at_a_natural_frequency():
     assert size[1] > 50 * max(size[0], size[2])
 
 
+@pytest.mark.slow
 def test_derivatives():
     @jax.jit
     @jax.value_and_grad

@@ -141,6 +141,7 @@ def test_levels_are_those_of_each_bearing_alone():
     assert np.all(middle < jnp.max(found.level, axis=0))
 
 
+@pytest.mark.slow
 def test_shares_by_switching_off_and_by_gradient_agree_for_small_errors():
     found = shares(MODEL, SMALL, 6, KEY, **HOW)
     assert found.used == 6 and found.sources == SMALL.sources
@@ -159,6 +160,7 @@ def test_shares_by_switching_off_and_by_gradient_agree_for_small_errors():
     assert half.by_gradient is None
 
 
+@pytest.mark.slow
 def test_shares_along_a_line_and_by_band():
     bands, how = octave_bands(), HOW | {"turns": 4}
     found = shares(

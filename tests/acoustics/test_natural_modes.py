@@ -168,6 +168,7 @@ def test_modes_that_change_as_equal_balls_pass_are_told():
     assert not list(_wandering_modes(axial))
 
 
+@pytest.mark.slow
 def test_derivatives(radial):
     def highest(values):
         model = dataclasses.replace(RADIAL, mass=values[0], sensor=Sensor(values[1]))

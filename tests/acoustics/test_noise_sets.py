@@ -97,6 +97,7 @@ def test_deviations_push_a_set_as_they_push_its_element(pair):
     np.testing.assert_allclose(ours, theirs, rtol=0, atol=SOLVER * np.max(theirs))
 
 
+@pytest.mark.slow
 def test_a_set_of_one_row_is_the_row():
     """Of both ways to look: mirrored, its errors and its load are mirrored too."""
     errors = FormErrors(inner=RacewayErrors(axial=Harmonics((3, 7), (1e-7, 2e-7))))

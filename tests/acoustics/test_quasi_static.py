@@ -212,6 +212,7 @@ def test_an_eccentric_raceway_turns_the_ring_with_it():
 
 
 @pytest.mark.parametrize("held", [True, False])
+@pytest.mark.slow
 def test_derivatives(held):
     model = with_waves(SEVEN, 8, "raised")(5, 1e-7)
 

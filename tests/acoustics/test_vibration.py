@@ -173,6 +173,7 @@ def slopes():
     return jax.jit(jax.grad(band_level, has_aux=True))
 
 
+@pytest.mark.slow
 def test_derivatives_of_the_level_of_a_band(slopes):
     """By all numbers at once, along two ways through them."""
     gradient = np.asarray(slopes(NUMBERS)[0]) * NUMBERS
@@ -186,6 +187,7 @@ def test_derivatives_of_the_level_of_a_band(slopes):
         assert min(errors) < 10 * DIFFERENCE
 
 
+@pytest.mark.slow
 def test_a_bearing_that_nothing_loads_has_finite_numbers(slopes):
     """With clearance: balls ride on the outer ring, the inner one touches nothing."""
     loose = np.array([1e-8, 2e-8, 0.2, 0.0, 20e-6, 2e-6])

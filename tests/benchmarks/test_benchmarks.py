@@ -18,6 +18,7 @@ HELPERS = {"timing.py", "peers.py"}
 SCRIPTS = sorted({p.name for p in FOLDER.glob("*.py")} - HELPERS)
 
 
+@pytest.mark.slow
 def test_rollers_always_find_their_equilibrium():
     """A seeded, small version of the run over a million rollers."""
     for row in robust_rollers.run(4000, "newton", seed=3):
@@ -29,6 +30,7 @@ RIBS = ("logarithmic, NUP", "taper, large rib")
 
 
 @pytest.mark.parametrize("solver", ["bfgs", "plain"])
+@pytest.mark.slow
 def test_other_methods_never_fail_silently(solver):
     """The paper's method, and Newton's without safeguards: where there are ribs."""
     for row in robust_rollers.run(2000, solver, seed=3, names=RIBS):
@@ -92,6 +94,7 @@ PLAIN = (
 
 @pytest.mark.usefixtures("untyped")
 @pytest.mark.parametrize("script", [*PLAIN, *sorted(NEED_C)])
+@pytest.mark.slow
 def test_smoke(script):
     if script in NEED_C and not any(map(shutil.which, ("cc", "gcc", "clang"))):
         pytest.skip("no C compiler")

@@ -170,6 +170,7 @@ class Power(AbstractSliceLaw):
         return self.factor * approach**self.power
 
 
+@pytest.mark.slow
 def test_a_law_of_ones_own_is_the_built_in_one_of_the_same_power():
     """Of an element: energy, force and stiffness, and derivatives by the law."""
     bearing, q = bearings()["cylindrical, crowned ends"], jnp.asarray(motion())

@@ -285,6 +285,7 @@ def measured(end):
     return 10.0 * end.slip[0] + end.friction_torque + 0.1 * end.cage_force[1]
 
 
+@pytest.mark.slow
 def test_gradients(found):
     """By load, speeds, oil, clearance and diameter."""
     slopes = jax.jit(jax.grad(lambda at: measured(steady(at))))(jnp.asarray(BASE))
@@ -294,6 +295,7 @@ def test_gradients(found):
     np.testing.assert_allclose(slopes, want, rtol=DIFFERENCE)
 
 
+@pytest.mark.slow
 def test_in_time_they_end_where_the_steady_state_is(found):
     """With pockets so tight and stiff that all orbit with the cage; from rolling on,
     the last orbits."""

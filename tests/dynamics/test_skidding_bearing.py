@@ -71,7 +71,10 @@ def problem_of(start, cases):
 
 @pytest.fixture(scope="module")
 def evaluated():
-    """Measures, slopes and solutions of a start over cases."""
+    """Measures, slopes and solutions of a start over cases.
+
+    Their program takes a minute or two to compile: slow is what runs it.
+    """
 
     def one(start, cases, unit=None):
         problem = problem_of(start, cases)
@@ -81,6 +84,7 @@ def evaluated():
     return one
 
 
+@pytest.mark.slow
 def test_measures_of_the_paper_s_bearing(evaluated):
     """Its preload alone loads it: AF001-14, as in the tests of the end state."""
     found = evaluated(design(), spectrum())
@@ -95,6 +99,7 @@ def test_measures_of_the_paper_s_bearing(evaluated):
     assert slip <= found.measures[1] <= slip * 2.0 ** (1.0 / 64.0)
 
 
+@pytest.mark.slow
 def test_a_preload_is_an_axial_load(evaluated):
     loaded, pressed = (
         evaluated(design(force), spectrum(axial=120.0 - force)) for force in (0, 120.0)
@@ -103,6 +108,7 @@ def test_a_preload_is_an_axial_load(evaluated):
     np.testing.assert_allclose(loaded.jacobian, pressed.jacobian, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_gradients_are_those_of_differences(evaluated):
     """Of torque, slip, heat and sliding, with respect to load, design and oil."""
     got, step = np.asarray(evaluated(design(), spectrum()).jacobian), 1e-4
@@ -116,6 +122,7 @@ def test_gradients_are_those_of_differences(evaluated):
         np.testing.assert_allclose(got[:, k], want, rtol=DIFFERENCE)
 
 
+@pytest.mark.slow
 def test_a_case_at_rest_counts_for_nothing(evaluated):
     found = evaluated(design(), spectrum(speeds=np.array([SPEEDS[0], 0.0])))
     assert float(found.solution.cage_slip[1]) == 0.0
@@ -125,6 +132,7 @@ def test_a_case_at_rest_counts_for_nothing(evaluated):
     assert np.all(np.isfinite(found.jacobian))
 
 
+@pytest.mark.slow
 def test_least_torque_has_as_much_slip_as_is_allowed():
     found = search()
     assert found.converged, found.message
@@ -139,6 +147,7 @@ def test_least_torque_has_as_much_slip_as_is_allowed():
     plt.close(figure)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_kept_is_named():
     found = search(1e-6, max_steps=8)
     assert found.result == "infeasible"
@@ -146,6 +155,7 @@ def test_what_cannot_be_kept_is_named():
     assert found.message.endswith(", above its bound 1e-06")
 
 
+@pytest.mark.slow
 def test_designs_that_do_not_solve_say_why():
     with pytest.raises(bj.SolveError, match="case 0: no_load_path"):
         search(cases=spectrum(axial=-200.0))
@@ -153,6 +163,7 @@ def test_designs_that_do_not_solve_say_why():
         search(cases=spectrum(axial=600.0, radial=200.0))
 
 
+@pytest.mark.slow
 def test_an_end_state_that_is_not_found_rejects_the_design(evaluated):
     start = design()
     solved = evaluated(start, spectrum()).solution
@@ -164,6 +175,7 @@ def test_an_end_state_that_is_not_found_rejects_the_design(evaluated):
     assert start.message(one).startswith(want)
 
 
+@pytest.mark.slow
 def test_what_is_doubtful_of_the_best_design():
     """As of the end state of each case, and in how many cases."""
     cold = eqx.tree_at(lambda d: d.model.temperature, design(), np.float64(290.0))
@@ -178,7 +190,7 @@ def test_what_is_doubtful_of_the_best_design():
     assert text.split("case 1: ")[1] in skid_warnings(element.model, one, state)
 
 
-def test_wrong_calls(evaluated):
+def test_wrong_calls():
     still = bj.Cases(np.zeros((2, 6)))
     with pytest.raises(ValueError, match="have no ring speeds"):
         search(cases=still)
@@ -188,6 +200,11 @@ def test_wrong_calls(evaluated):
         design(np.nan)
     with pytest.raises(TypeError, match="`model` is a BearingElement|'model'"):
         SkiddingBearing(ELEMENT)
+
+
+@pytest.mark.slow
+def test_measures_are_of_skidding_bearings(evaluated):
+    still = bj.Cases(np.zeros((2, 6)))
     solved = evaluated(design(), spectrum()).solution.solution
     assert type(solved) is bj.BallSolution
     with pytest.raises(ValueError, match="optimise a `SkiddingBearing`"):

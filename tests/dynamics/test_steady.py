@@ -229,6 +229,11 @@ def test_standstill_and_both_rings():
     np.testing.assert_allclose(back.friction_torque, -forward.friction_torque)
 
 
+def at(celsius):
+    """The model at a temperature; a weak type would be another program."""
+    return eqx.tree_at(lambda m: m.temperature, MODEL, np.array(celsius + 273.15))
+
+
 STIFF = Speed(inner=60e3 * np.pi / 30.0)
 """With these balls the outer raceway makes a glass of the oil."""
 
@@ -273,7 +278,7 @@ def test_stiff_oil_does_not_hide_slip(stiff):
 @pytest.mark.parametrize("celsius", [-40.0, -20.0])
 def test_a_ring_finds_its_place_beside_the_tractions_of_a_glass(celsius):
     """Whose round-off is as large as the load that is not balanced at first."""
-    model = eqx.tree_at(lambda m: m.temperature, MODEL, jnp.asarray(celsius + 273.15))
+    model = at(celsius)
     load, speed = np.array([0.0, 0.0, 600.0, 0.0, 0.0, 0.0]), Speed(inner=1047.2)
     given = dict(speed=speed, free=FREE, places=1, throw=False)
     end = steady_skid(model, load, **given)
@@ -282,12 +287,16 @@ def test_a_ring_finds_its_place_beside_the_tractions_of_a_glass(celsius):
 
 
 def test_stress_beyond_what_oil_bears_is_told(stiff):
-    """At 0 °C and 0.91 GPa; the derivative of the torque there is coded right."""
-    end = stiff(600.0, SPEED, celsius=0.0)
-    model = eqx.tree_at(lambda m: m.temperature, MODEL, jnp.asarray(273.15))
+    """At 0 °C and 0.91 GPa."""
+    end, model = stiff(600.0, SPEED, celsius=0.0), at(0.0)
     state = conditions(model, end, SPEED)
     (text,) = skid_warnings(model, end, state)
     assert text.startswith("shear stresses of 6.6 times the pressure by a Newtonian")
+
+
+@pytest.mark.slow
+def test_derivative_of_the_torque_at_such_stress():
+    model = at(0.0)
 
     def torque(speed):
         load = np.array([0.0, 0.0, 600.0, 0.0, 0.0, 0.0])
@@ -332,6 +341,7 @@ def test_loads_are_those_of_the_orbit_that_is_found(stiff, axial, speed):
     np.testing.assert_allclose(radial[0] - radial[1], pull, rtol=0.02)
 
 
+@pytest.mark.slow
 def test_without_load_drag_stops_the_balls():
     """Nothing is pressed against the ring that turns, so nothing drives."""
     end = steady_skid(MODEL, np.zeros(6), speed=SPEED, free=["uz"], places=1)

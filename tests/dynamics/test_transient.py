@@ -362,6 +362,7 @@ def test_names_of_settings():
         run(SinusoidalLoad(LIGHT, np.zeros(6), 1.0), balanced=False)
 
 
+@pytest.mark.slow
 def test_derivatives():
     """Of the cage's speed, forward and reverse, against differences: viscosity, and
     oil between the rings. (Others: `benchmarks/skid_gradients.py`.)"""

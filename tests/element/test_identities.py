@@ -32,6 +32,24 @@ CASES = [
 
 CASES += [(name, "", speed) for name, (_, speed) in ball_elements().items()]
 
+# One of each kind; every other design compiles programs of its own, as long as these.
+QUICK = {
+    ("cylindrical, crowned ends", "midpoint", "still"),
+    ("taper, large rib", "contact_mapped", "still"),
+    ("taper, large rib", "contact_mapped", "turning"),
+    ("deep groove, clearance", "", "still"),
+    ("four-point, unlike balls, load share", "", "turning"),
+    ("ball pair, O", "", "turning"),
+}
+QUICK_DESIGNS = {"taper, large rib", "deep groove, clearance"}
+
+
+def marked(values, quick):
+    """Parameters, of which all but the quick ones are slow."""
+    slow = pytest.mark.slow
+    return [pytest.param(v, marks=[] if v in quick else slow) for v in values]
+
+
 # Each design once: equal slices have no smooth stiffness, and a program costs seconds.
 DESIGNS = {c[0]: (c, c[2] == "turning") for c in CASES if c[1] != "midpoint"}
 """Name to case, and whether its derivatives see how the turns of the rings carry the
@@ -50,7 +68,7 @@ def made(name, rule, speed):
     return element, speeds()[speed]
 
 
-@pytest.fixture(scope="module", params=CASES, ids=named)
+@pytest.fixture(scope="module", params=marked(CASES, QUICK), ids=named)
 def case(request):
     return made(*request.param)
 
@@ -213,7 +231,10 @@ def test_zero_when_apart():
     assert np.all(np.asarray(gradient) == 0) and np.all(np.asarray(hessian) == 0)
 
 
-@pytest.mark.parametrize("name", ["taper, large rib", "cylindrical NUP, logarithmic"])
+@pytest.mark.parametrize(
+    "name",
+    marked(["taper, large rib", "cylindrical NUP, logarithmic"], {"taper, large rib"}),
+)
 def test_condensed_stiffness_is_the_whole_hessian(name):
     element = mapped(bearings()[name])
     q = jnp.asarray(motion())
@@ -331,7 +352,7 @@ def numbers_of(element, rng):
         yield name, jax.tree.unflatten(structure, changes)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", marked(DESIGNS, QUICK_DESIGNS))
 def test_derivative_by_every_number_of_the_design(name):
     case, cage_torque = DESIGNS[name]
     element, speed = made(*case)

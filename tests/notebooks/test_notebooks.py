@@ -19,6 +19,7 @@ def code(cell):
 
 @pytest.mark.usefixtures("untyped")
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("*.ipynb")), ids=lambda p: p.stem)
+@pytest.mark.slow
 def test_code_runs(path):
     """Cells tagged with a package that is not installed are left out."""
     plt = pytest.importorskip("matplotlib.pyplot")

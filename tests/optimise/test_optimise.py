@@ -88,6 +88,7 @@ def search(straight, one_case, wanted, **choices):
 # Measures.
 
 
+@pytest.mark.slow
 def test_gradients_of_all_measures_are_those_of_differences(fujiwara, cases):
     """All three parameters of the roller's profile, that of a raceway which ends at
     infinity, and the clearance; roller ends carry load on the other raceway."""

@@ -15,7 +15,9 @@ METHODS = {
 STEPS = Steps(first=0.05, largest=0.3)
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize(
+    "name", ["balance", pytest.param("shooting", marks=pytest.mark.slow)]
+)
 def test_peak_of_a_hardening_oscillator(name):
     method, goal = METHODS[name]
     point = jnp.array([0.05, 0.1, 0.05])

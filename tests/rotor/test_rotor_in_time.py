@@ -159,6 +159,7 @@ def test_run_up_through_critical_speeds(history):
     assert np.isclose(history.phase[-1], 180.0, rtol=ROUNDING)
 
 
+@pytest.mark.slow
 def test_gradients_of_a_run_up(history):
     """Backward through the integration, against the differences."""
     at = int(np.abs(history.displacement[:, 0]).argmax())

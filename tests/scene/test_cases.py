@@ -359,6 +359,7 @@ bearing.roller_profile = [{ type = "straight" }, { type = "logarithmic" }]
 """
 
 
+@pytest.mark.slow
 def test_designs_of_several_structures(run, scene, tmp_path):
     """As many programs, one table."""
     path, out, sheet = scene(COUNTS), tmp_path / "t.json", tmp_path / "t.xlsx"

@@ -361,6 +361,7 @@ def free(scene, settings=(), **bounds):
     return read_optimisation(scene(text), settings)
 
 
+@pytest.mark.slow
 def test_slopes_by_temperature_interference_and_clearance(scene):
     """Beside differences; and beside what each does to the clearance, by hand."""
     bounds: Any = {
@@ -800,6 +801,7 @@ objective = "rating_life"
 """
 
 
+@pytest.mark.slow
 def test_command_optimises_a_life_by_its_fit(run, scene, tmp_path):
     """It tells hours, and warns of the seats of the best design, not of the start."""
     turning = BEARING.replace("[operating]", '[operating]\ninner_speed = "1500 rpm"')

@@ -285,6 +285,7 @@ def test_bad_input_is_told_before_anything_is_solved(run, scene, tmp_path):
     assert done.err.startswith("bearingjax: mine.toml: `vibration.mass`: 'heavy'")
 
 
+@pytest.mark.slow
 def test_random_bearings(run, scene, tmp_path):
     out, picture = tmp_path / "a.json", tmp_path / "a.png"
     files = ("--json", out, "--plot", picture)

@@ -102,6 +102,7 @@ def test_command_finds_the_clearance_of_a_stiffness(
     assert numbers["result"] == "step_limit" and "variables" not in numbers
 
 
+@pytest.mark.slow
 def test_start_without_a_solution(run, scene, tmp_path):
     pulled = '"operating.load.Fz=1 kN"'
     setting = ("--set", pulled.strip('"'), "--set", 'operating.free=["uy", "uz"]')

@@ -80,6 +80,7 @@ def read(path):
     return json.loads(path.read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_the_published_rotor_by_command(run, tmp_path):
     """Report, JSON and table of the rotor of method 002, against its table."""
     out, table, picture = (tmp_path / name for name in ("a.json", "a.csv", "a.png"))
@@ -158,6 +159,7 @@ def _same_as_the_library(found):
         "from='640 Hz', to='740 Hz', method='shooting', steps=8, points=200",
     ),
 )
+@pytest.mark.slow
 def test_a_shaft_with_fast_modes_has_its_linear_response_by_every_method(response):
     """Modes of up to 80 times the excitation, peaks between the samples, and
     resonances of some hundred times the preload of a bearing."""

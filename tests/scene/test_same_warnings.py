@@ -51,6 +51,7 @@ inner_speed = "20 rpm"
 viscosity = "2 mm^2/s"
 contamination = 0.5
 """
+pytestmark = pytest.mark.slow
 SCENES = {"light": LIGHT, "heavy": HEAVY}
 POINT = '[cases]\noutputs = ["n_loaded"]\n[cases.grid]\n"operating.load.Fy" = ["{}"]\n'
 SEARCH = """[optimise]

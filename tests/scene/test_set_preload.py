@@ -103,6 +103,7 @@ def test_solve_tells_it(run, scene, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_a_sweep_tells_that_of_each_case(scene):
     """Of cases of two designs at three loads, each as by hand."""
     warmth = '"temperature.inner_ring" = ["45 °C", "30 °C"]'

@@ -170,6 +170,7 @@ def test_motion_in_time(run, history, tmp_path):
     assert picture.stat().st_size > 20_000
 
 
+@pytest.mark.slow
 def test_rollers(run, tmp_path):
     out, table, picture = (tmp_path / f"end.{kind}" for kind in ("json", "csv", "png"))
     outputs = ("--json", out, "--table", table, "--plot", picture)

@@ -197,6 +197,7 @@ def test_tandem_shares_the_thrust(angular):
     assert np.allclose(s.contact_load, one.contact_load[0], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_derivatives_with_respect_to_the_design():
     """Of the stiffness, with everything that has no potential."""
     q = jnp.zeros(12).at[jnp.array([6, 8])].set(jnp.asarray([4e-6, 12e-6]))
@@ -230,6 +231,7 @@ def test_individual_balls_share_unequally():
     assert load.argmax() == 2 and load[6] == 0.0
 
 
+@pytest.mark.slow
 def test_small_robustness_run():
     """Seeded, small version of benchmarks/robust_balls.py."""
     for row in robust_balls.run(2, seed=1, only=["four-point, clearance 20 um"]):

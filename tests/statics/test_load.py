@@ -270,6 +270,7 @@ def test_a_batch_is_its_single_solutions_stacked(bearing):
 
 
 @pytest.mark.parametrize("way", [jax.jacrev, jax.jacfwd])
+@pytest.mark.slow
 def test_gradient_of_a_batch_past_masked_cases(tapered, way):
     """By a number of the design that all cases share, and by their loads."""
 
@@ -355,6 +356,7 @@ DESIGN = {
 }
 
 
+@pytest.mark.slow
 def test_design_gradients_of_displacement_and_stiffness():
     """Forward, reverse and differences, with rollers loaded to their ends."""
     load = jnp.asarray([300.0, -20e3, 0.0, 5.0, 0.0, 0.0])
@@ -484,6 +486,7 @@ def moved_inside_clearance(name):
 
 @pytest.mark.parametrize("speed", [0.0, 1000.0])
 @pytest.mark.parametrize("name", ["balls", "rollers"])
+@pytest.mark.slow
 def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(name, speed):
     """No number at zero load, at speed neither: what turns then presses the outer ring
     alone. Beyond, that of differences, however few elements hold the ring."""
@@ -499,6 +502,7 @@ def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(name, speed
         assert float(moved(force)[0][0]) == pytest.approx(difference, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_second_derivative_of_the_displacement():
     """The curvature of sag against load, by the implicit rule and by differences."""
     element = bj.BearingElement(taper(5), quadrature=bj.Midpoint(8))
@@ -542,6 +546,7 @@ def test_rollers_that_a_crawling_bearing_throws_out():
     assert solved.converged.all() and solved.residual.max() < SOLVER
 
 
+@pytest.mark.slow
 def test_small_robustness_run():
     """Seeded, small version of benchmarks/robust_loads.py."""
     for row in robust_loads.run(2, seed=1, only=["NUP, logarithmic"], beyond=["taper"]):

@@ -200,6 +200,7 @@ def remaining(element):
     return bj.remaining_preload(element, throw=False)
 
 
+@pytest.mark.slow
 def test_slope_of_what_is_left():
     """Of a pair it is the stiffness of one row, for half of the approach."""
 
