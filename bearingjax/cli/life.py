@@ -100,6 +100,7 @@ def _life_of_load(options) -> int:
 
 def _life_of_cases(options) -> int:
     from ..scene import (
+        cases_with_set_preload,
         life_columns,
         read_cases,
         run_life,
@@ -113,6 +114,7 @@ def _life_of_cases(options) -> int:
 
     table = read_cases(options.scene, options.set)
     page = Reporter(options)
+    table = cases_with_set_preload(table, jax_settings.programs())
     done = run_life(table, is_shown(options))
 
     def draw(path, **format):

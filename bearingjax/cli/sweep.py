@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .jax_settings import devices
+from . import jax_settings
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
 from .outputs import Reporter, check_outputs, check_table, save, write
 from .progress import is_shown
@@ -49,6 +49,7 @@ def run(options) -> int:
     from ..scene import (
         Interrupt,
         SceneError,
+        cases_with_set_preload,
         design_columns,
         read_cases,
         resume_cases,
@@ -60,13 +61,14 @@ def run(options) -> int:
 
     check_table(options)
     check_outputs(options)
-    devices(options)
+    jax_settings.devices(options)
     if options.resume and options.table is None:
         raise SceneError("--resume takes up a table; name it with --table")
     begin = time.perf_counter()
     table = read_cases(options.scene, options.set)
     check_table(options, table.cases.count)
     page = Reporter(options)
+    table = cases_with_set_preload(table, jax_settings.programs())
     shown = is_shown(options)
     with Interrupt() as interrupt:
         done = options.table if options.resume else None

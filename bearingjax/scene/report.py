@@ -26,6 +26,9 @@ from .set_preload import preload_report
 
 _RULE = "-" * 78
 
+ROUND_OFF = 1e-11
+"""Size over the largest of its kind below which a number is shown as zero [1]."""
+
 Section = Callable[[Scene, Solution], str]
 """Text of a section, of a scene and its solution in NumPy; "": nothing to tell."""
 
@@ -248,7 +251,7 @@ def _stiffness(scene, solution):
 
 def without_round_off(values: Any) -> Any:
     """Numbers of one kind, those zero that are round-off beside the largest."""
-    return np.where(np.abs(values) < 1e-11 * np.abs(values).max(), 0.0, values)
+    return np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(), 0.0, values)
 
 
 def _elements(scene, solution):

@@ -80,6 +80,20 @@ def test_solve_tells_it(run, scene, tmp_path):
     np.testing.assert_allclose(found["worst"]["operating"], ends, rtol=1e-8)
     assert ends[0] < found["operating"] < ends[1]
     assert f"operating {found['operating']:.4g} N" in done.out
+    # A sweep and a life of one design tell it as well, and warn of the same.
+    cases = tmp_path / "cases.toml"
+    one = (
+        '[cases]\noutputs = ["n_loaded"]\ngrid = { "operating.load.Fz" = ["500 N"] }\n'
+    )
+    cases.write_text(f"{PAIR}{one}", encoding="utf-8")
+    assert f"warning: {numbers['warnings'][-1]}" in done.out
+    assert numbers["warnings"][-1].startswith("preload: ")
+    for command in ("sweep", "life"):
+        assert run(command, cases, "--json", out).status == 0
+        swept = json.loads(out.read_text())
+        assert swept["warnings"] == numbers["warnings"]
+        (left_over,) = swept["columns"]["operating_preload [N]"]
+        assert left_over == pytest.approx(found["operating"], rel=1e-8)
     # With a smaller angle the tightest fit leaves none: that end is not possible.
     shallow = ["bearing.contact_angle=14 deg", "fit.shaft=k5"]
     steep = bj.read_scene(scene, shallow)
