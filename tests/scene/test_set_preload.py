@@ -2,11 +2,19 @@
 
 import json
 
+import equinox as eqx
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import read_cases, run_cases, sweep_report
+from bearingjax.scene import (
+    read_cases,
+    read_optimisation,
+    run_cases,
+    scene_of_design,
+    sweep_report,
+)
 from bearingjax.scene.set_preload import (
     SetPreload,
     preload_report,
@@ -137,6 +145,20 @@ def test_a_sweep_tells_that_of_each_case(scene):
     (text,) = set_warnings(cases, solved)
     assert f"200 N as ground are {wanted[1]:.4g} N to {wanted[0]:.4g} N in op" in text
     assert f"warning: {text}" in sweep_report(cases, solved, 1.0)
+
+
+def test_a_search_may_free_it(scene):
+    free = '"set.preload_force" = { from = "50 N", to = "0.5 kN" }\n'
+    with scene.open("a", encoding="utf-8") as file:
+        file.write(
+            f'[optimise]\nobjective = "peak_pressure"\n[optimise.variables]\n{free}'
+        )
+    task = read_optimisation(scene)
+    (force,) = task.variables
+    assert (force.path, force.lower, force.upper) == (("preload",), 50.0, 500.0)
+    found = eqx.tree_at(lambda d: d.preload, task.scene.installed, jnp.asarray(350.0))
+    best = scene_of_design(task, found)
+    assert best.preload_force == best.installed.preload == 350.0
 
 
 def test_what_is_warned_of():
