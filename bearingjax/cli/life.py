@@ -2,6 +2,7 @@
 
 import dataclasses
 
+from . import jax_settings
 from .execute import Outcome, Tools
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
 from .solution import solution_outcome
@@ -49,6 +50,7 @@ def _life_of_load(options) -> Outcome:
 
 def _life_of_cases(options, tools: Tools) -> Outcome:
     from ..scene import (
+        cases_with_set_preload,
         life_columns,
         read_cases,
         run_life,
@@ -59,6 +61,7 @@ def _life_of_cases(options, tools: Tools) -> Outcome:
     )
 
     table = read_cases(options.scene, options.set)
+    table = cases_with_set_preload(table, jax_settings.programs())
     done, scene = run_life(table, tools.shown), table.scene
     solved = done.converged
 

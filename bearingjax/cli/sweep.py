@@ -6,8 +6,8 @@ import time
 
 import numpy as np
 
+from . import jax_settings
 from .execute import Outcome, Tools, check_table
-from .jax_settings import devices
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
 
 
@@ -46,6 +46,7 @@ def run(options, tools: Tools) -> Outcome:
     from ..scene import (
         Interrupt,
         SceneError,
+        cases_with_set_preload,
         design_columns,
         read_cases,
         resume_cases,
@@ -55,12 +56,13 @@ def run(options, tools: Tools) -> Outcome:
     )
     from ..statics import sweep_table
 
-    devices(options)
+    jax_settings.devices(options)
     if options.resume and options.table is None:
         raise SceneError("--resume takes up a table; name it with --table")
     begin = time.perf_counter()
     table = read_cases(options.scene, options.set)
     check_table(options, table.cases.count)
+    table = cases_with_set_preload(table, jax_settings.programs())
     interrupt = tools.until_written(Interrupt())
     if options.resume and options.table.exists():
         solved = resume_cases(table, options.table, tools.shown, interrupt)

@@ -93,6 +93,7 @@ from .skid_run import SkidRun as SkidRun
 from .skid_run import run_skid as run_skid
 from .skid_table import SkidScene as SkidScene
 from .skid_table import read_skid as read_skid
+from .sweep_run import cases_with_set_preload as cases_with_set_preload
 from .sweep_run import design_columns as design_columns
 from .sweep_run import run_cases as run_cases
 from .sweep_run import sweep_as_dict as sweep_as_dict

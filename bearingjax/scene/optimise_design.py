@@ -23,20 +23,21 @@ def scene_of_design(task: Optimisation, design: Installed) -> Scene:
         design: Best or first design: `Optimised.element`, `initial`.
 
     Returns:
-        Its bearing, seats and temperatures, at the highest speed of the cases; warnings
-        are of these seats.
+        Its bearing, preload, seats and temperatures, at the highest speed of the cases;
+        warnings are of these seats.
     """
-    scene = task.scene
+    force = None if design.preload is None else float(design.preload)
+    scene = dataclasses.replace(task.scene, element=design.drawing, preload_force=force)
     if scene.fits is None:
-        return dataclasses.replace(scene, element=design.drawing)
+        return scene
     bearing = design.drawing.bearing
     fits = _fits(scene.fits, design, {v.name for v in task.variables})
     fits = _turning(fits, task)
     fixed_to = "space" if scene.life is None else scene.life.load_fixed_to
-    old = fit_warnings(scene.fits, scene.element.bearing, fixed_to)
+    old = fit_warnings(scene.fits, task.scene.element.bearing, fixed_to)
     kept = [text for text in scene.warnings if text not in old]
     told = (*kept, *fit_warnings(fits, bearing, fixed_to))
-    return dataclasses.replace(scene, element=design.drawing, fits=fits, warnings=told)
+    return dataclasses.replace(scene, fits=fits, warnings=told)
 
 
 def _fits(fits: Fits, design: Installed, varied: set[str]) -> Fits:

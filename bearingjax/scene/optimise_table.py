@@ -290,6 +290,8 @@ def _variables(
         key: tuple(f"drawing.{path}" for path in paths)
         for key, paths in scene_numbers(scene.element).items()
     }
+    if scene.preload_force is not None:
+        numbers["set.preload_force"] = ("preload",)
     if scene.fits is not None:
         numbers |= {f"fit.{name}": (f"mounting.{name}",) for name in OF_FITS}
         numbers |= {key: (f"conditions.{part}",) for key, part in WARMTH.items()}

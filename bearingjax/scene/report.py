@@ -22,6 +22,9 @@ from .read import Scene
 from .report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
 from .set_preload import preload_report
 
+ROUND_OFF = 1e-11
+"""Size over the largest of its kind below which a number is shown as zero [1]."""
+
 
 def report(scene: Scene, solution: Solution) -> Report:
     """Readable report of a solved scene.
@@ -239,7 +242,7 @@ def _stiffness(scene, solution):
 
 def without_round_off(values: Any) -> Any:
     """Numbers of one kind, those zero that are round-off beside the largest."""
-    return np.where(np.abs(values) < 1e-11 * np.abs(values).max(), 0.0, values)
+    return np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(), 0.0, values)
 
 
 def _elements(solution):

@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import jax
@@ -18,8 +19,10 @@ from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, column
 from .cases_table import CaseTable, Structure, turns_of
 from .life_table import life_conditions
 from .quantity import SceneError
+from .report import ROUND_OFF
 from .report_model import Column, Grid, Part, Report
-from .set_preload import range_warnings
+from .run import with_set_preload
+from .set_preload import preload_warnings, range_warnings
 
 OUTPUTS = (
     "displacement",
@@ -119,9 +122,26 @@ def _on_seats(part: Structure, solved: Sweep) -> Sweep:
     )
 
 
+def cases_with_set_preload(table: CaseTable, programs: Path | None = None) -> CaseTable:
+    """The cases of one design with what `with_set_preload` finds of its set, the ends
+    over the tolerances of its seats included; others as they are.
+
+    Args:
+        table: From `read_cases`.
+        programs: As of `run_scene`.
+    """
+    if table.cases.design is not None:
+        return table
+    scene = with_set_preload(table.scene, programs)
+    part = dataclasses.replace(table.structures[0], scene=scene)
+    return dataclasses.replace(table, scene=scene, structures=(part,))
+
+
 def _preloads(part: Structure, cases: Cases) -> np.ndarray:
     """Force with which the rows of each design press each other, unloaded, at the
     speeds of its first case (design,) [N]."""
+    if part.scene.set_preload is not None:
+        return np.array([part.scene.set_preload.operating])
     if part.designs is None:
         first, design = np.zeros(1, int), None
     else:
@@ -184,21 +204,40 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
         of = f" of {kinds} structures, solved one after the other"
         told.append(f"{len(table.settings)} designs{of if kinds > 1 else ''}")
     rows = []
-    for header, column in columns(solved).items():
-        values = np.asarray(column)
-        if values.dtype.kind not in "fi" or header == "design":
-            continue
-        values = values[solved.converged & np.isfinite(values)]
-        if values.size == 0 or not values.any():
-            continue
+    for header, pair in _spans(solved).items():
         name, _, unit = header.partition(" [")
         factor, shown = display_unit(unit.rstrip("]"))
-        rows.append((name, factor * values.min(), factor * values.max(), shown))
+        rows.append((name, *(factor * x for x in pair), shown))
     if rows:
         names = "result", "least", "largest", "unit"
         given = zip(names, zip(*rows, strict=True), strict=True)
         told += ["", Grid([Column(name, found) for name, found in given])]
     return Report({"Cases": told}, all_warnings(table, solved))
+
+
+def _spans(solved: Sweep) -> dict[str, tuple[float, float]]:
+    """Least and largest number of each result over the cases that were solved; none of
+    what is zero, or round-off beside others of the same result and unit."""
+    spans, sizes = {}, {}
+    for header, column in columns(solved).items():
+        values = np.asarray(column)
+        if values.dtype.kind not in "fi" or header == "design":
+            continue
+        values = values[solved.converged & np.isfinite(values)]
+        if values.any():
+            spans[header] = values.min(), values.max()
+            kind = _kind(header)
+            sizes[kind] = max(sizes.get(kind, 0.0), np.abs(values).max())
+    return {
+        header: ends
+        for header, ends in spans.items()
+        if np.abs(ends).max() >= ROUND_OFF * sizes[_kind(header)]
+    }
+
+
+def _kind(header: str) -> tuple[str, str]:
+    """First word and unit of a header, alike of what can be compared."""
+    return header.partition("_")[0], header.partition(" [")[2]
 
 
 def all_warnings(table: CaseTable, solved: Sweep) -> list[str]:
@@ -208,6 +247,8 @@ def all_warnings(table: CaseTable, solved: Sweep) -> list[str]:
 
 def set_warnings(table: CaseTable, solved: Sweep) -> list[str]:
     """What is odd about the preload that seats leave in the cases, a sentence each."""
+    if table.scene.set_preload is not None:
+        return preload_warnings(table.scene.set_preload)
     preload = solved.outputs.get(OPERATING_PRELOAD)
     if preload is None or not np.isfinite(preload).any():
         return []

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from vibrations import duffing
 
+from bearingjax.numerics import SolveError
 from bearingjax.rotor.vibration import HarmonicBalance, Shooting, Steps, follow, peak
 
 METHODS = {
@@ -56,3 +57,15 @@ def test_peak_of_a_linear_oscillator():
     assert np.isclose(orbit.amplitude[0], 0.15 / (z * np.sqrt(1.0 - z**2)), rtol=1e-9)
     with pytest.raises(ValueError, match="follow the branch further"):
         peak(system, branch, 0, method, between=(1.05, 1.2))
+    # A branch that has stepped over the peak says so, one of small steps finds it.
+    z = 1e-4
+    system = duffing(*jnp.array([0.0, 2.0 * z, z]))
+    branch = follow(system, 0.9, 1.1, method, steps=STEPS, locate=False)
+    assert branch.amplitude.max() < 0.01
+    with pytest.raises(SolveError, match="points of the branch are too far apart"):
+        peak(system, branch, 0, method)
+    fine = Steps(first=1e-4, largest=0.1)
+    branch = follow(system, 0.999, 1.001, method, steps=fine, locate=False)
+    orbit = peak(system, branch, 0, method)
+    assert np.isclose(orbit.frequency, np.sqrt(1.0 - 2.0 * z**2), rtol=1e-9)
+    assert np.isclose(orbit.amplitude[0], 1.0 / np.sqrt(1.0 - z**2), rtol=1e-9)

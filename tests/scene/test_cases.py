@@ -16,8 +16,9 @@ from bearingjax.scene import (
     design_columns,
     read_cases,
     read_scene,
+    sweep_report,
 )
-from bearingjax.statics import sweep_table
+from bearingjax.statics import Sweep, sweep_table
 
 HEAD = """
 [bearing]
@@ -414,3 +415,23 @@ def test_warnings_of_designs_that_differ_in_numbers_are_one():
         ["loose by 0.42 µm"], ["loose by 0.42 µm", "loose by 3e-1 µm", "x"]
     )
     assert told == ("loose by 0.42 µm (2 designs alike)", "x")
+
+
+def test_a_report_shows_no_round_off(scene):
+    """Of stiffness beside it of the same unit; small pure numbers stay."""
+    grid = '[cases]\ngrid = { "operating.load.Fy" = ["-1 kN", "-2 kN"] }\n'
+    table = read_cases(scene(grid))
+    stiffness = np.zeros((2, 12, 12))
+    stiffness[:, 6, [6, 7]], stiffness[:, 9, [9, 10]] = (5e8, 4e-8), (7e3, 2e-5)
+    outputs = {
+        "result": np.zeros(2, int),
+        "stiffness": stiffness,
+        "residual": np.full(2, 3e-16),
+        "iterations": np.full(2, 9),
+    }
+    lines = sweep_report(table, Sweep(table.cases, outputs, "inner"), 1.0).splitlines()
+    told = {line.split()[0]: line.split()[1:] for line in lines if line}
+    assert told["stiffness_inner_ux_inner_ux"] == ["5e+08", "5e+08", "N/m"]
+    assert "stiffness_inner_ux_inner_uy" not in told
+    assert told["stiffness_inner_gx_inner_gy"] == ["2e-05", "2e-05", "N", "m"]
+    assert told["residual"] == ["3e-16", "3e-16"]

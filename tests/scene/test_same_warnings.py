@@ -1,8 +1,5 @@
-"""`sweep` and `optimise` warn of all that `solve` warns of, whatever they keep or seek.
-
-The scene's own sentences are compared word by word, those about a solution and its life
-by their kinds.
-"""
+"""`sweep` and `optimise` warn of all that `solve` warns of, whatever they keep or seek:
+the same sentences, word by word, with the same sizes."""
 
 import re
 
@@ -21,7 +18,7 @@ from bearingjax.scene.optimise_report import optimisation_as_dict
 from bearingjax.scene.output import as_dict
 from bearingjax.scene.sweep_run import all_warnings
 from bearingjax.statics.life_warning import LIFE_KINDS, life_sizes
-from bearingjax.statics.warning import ALL, sizes
+from bearingjax.statics.warning import ALL, counted, sizes
 
 LIGHT = """
 [bearing]
@@ -63,23 +60,21 @@ max_steps = 1
 
 
 def solved(path, settings=()):
-    """Sentences of the scene, and kinds of warning about its solution and life."""
+    """What is told of one case, and kinds of warning about its solution and life."""
     scene = bj.read_scene(path, settings)
     solution = bj.run_scene(scene)
-    told = scene.warnings
     life = scene_life(scene, solution)
     bearing = solution.element.bearing
     found = {**sizes(solution), **life_sizes(bearing, life.ratings, vars(life))}
     kinds = {name for name, size in found.items() if size > ALL[name].limit}
     assert len(as_dict(scene, solution)["warnings"]) == len(scene.warnings) + len(kinds)
-    return told, kinds
+    of_one = counted({name: np.atleast_1d(size) for name, size in found.items()})
+    return alone((*scene.warnings, *of_one)), kinds
 
 
-def parted(told):
-    """Sentences without a kind, as of one case, and the kinds of the others."""
-    kinds = {text.partition(": ")[0] for text in told} & set(ALL)
-    own = [t for t in told if t.partition(": ")[0] not in kinds]
-    return {re.sub(", in 1 of 1 cases, worst case 0", "", t) for t in own}, kinds
+def alone(told):
+    """Sentences without what is said of a case that is the only one."""
+    return {text.removesuffix(", in 1 of 1 cases, worst case 0") for text in told}
 
 
 @pytest.fixture(scope="module", params=SCENES)
@@ -101,14 +96,14 @@ def best(request, tmp_path_factory):
 
 
 def test_a_best_design_is_warned_of_as_solve_does(best):
-    *_, told, (own, kinds) = best
+    *_, told, (wanted, kinds) = best
     assert kinds & set(LIFE_KINDS)
-    assert parted(told) == (set(own), kinds)
+    assert alone(told) == wanted
 
 
 def test_a_sweep_of_one_case_warns_as_solve_does(best):
-    path, settings, _, (own, kinds) = best
+    path, settings, _, (wanted, _) = best
     table = read_cases(path, settings)
     swept = run_cases(table)
     assert not any("life" in output for output in swept.outputs if output[:4] != "warn")
-    assert parted(all_warnings(table, swept)) == (set(own), kinds)
+    assert alone(all_warnings(table, swept)) == wanted

@@ -3,11 +3,19 @@
 import json
 from typing import Any
 
+import equinox as eqx
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import read_cases, run_cases, sweep_report
+from bearingjax.scene import (
+    read_cases,
+    read_optimisation,
+    run_cases,
+    scene_of_design,
+    sweep_report,
+)
 from bearingjax.scene.set_preload import (
     SetPreload,
     preload_report,
@@ -81,6 +89,20 @@ def test_solve_tells_it(run, scene, tmp_path):
     np.testing.assert_allclose(found["worst"]["operating"], ends, rtol=1e-8)
     assert ends[0] < found["operating"] < ends[1]
     assert f"operating {found['operating']:.4g} N" in done.out
+    # A sweep and a life of one design tell it as well, and warn of the same.
+    cases = tmp_path / "cases.toml"
+    one = (
+        '[cases]\noutputs = ["n_loaded"]\ngrid = { "operating.load.Fz" = ["500 N"] }\n'
+    )
+    cases.write_text(f"{PAIR}{one}", encoding="utf-8")
+    assert f"warning: {numbers['warnings'][-1]}" in done.out
+    assert numbers["warnings"][-1].startswith("preload: ")
+    for command in ("sweep", "life"):
+        assert run(command, cases, "--json", out).status == 0
+        swept = json.loads(out.read_text())
+        assert swept["warnings"] == numbers["warnings"]
+        (left_over,) = swept["columns"]["operating_preload [N]"]
+        assert left_over == pytest.approx(found["operating"], rel=1e-8)
     # With a smaller angle the tightest fit leaves none: that end is not possible.
     shallow = ["bearing.contact_angle=14 deg", "fit.shaft=k5"]
     steep = bj.read_scene(scene, shallow)
@@ -125,6 +147,20 @@ def test_a_sweep_tells_that_of_each_case(scene):
     (text,) = set_warnings(cases, solved)
     assert f"200 N as ground are {wanted[1]:.4g} N to {wanted[0]:.4g} N in op" in text
     assert f"warning: {text}" in str(sweep_report(cases, solved, 1.0))
+
+
+def test_a_search_may_free_it(scene):
+    free = '"set.preload_force" = { from = "50 N", to = "0.5 kN" }\n'
+    with scene.open("a", encoding="utf-8") as file:
+        file.write(
+            f'[optimise]\nobjective = "peak_pressure"\n[optimise.variables]\n{free}'
+        )
+    task = read_optimisation(scene)
+    (force,) = task.variables
+    assert (force.path, force.lower, force.upper) == (("preload",), 50.0, 500.0)
+    found = eqx.tree_at(lambda d: d.preload, task.scene.installed, jnp.asarray(350.0))
+    best = scene_of_design(task, found)
+    assert best.preload_force == best.installed.preload == 350.0
 
 
 def test_what_is_warned_of():

@@ -54,7 +54,8 @@ def peak(
             between), where it is no peak.
         SolveError: If the peak was not found and `throw`.
 
-    Fails: `STEP_LIMIT`, where the amplitude has a corner at its largest too;
+    Fails: `STEP_LIMIT`, where the amplitude has a corner at its largest too, or a peak
+        far narrower than the steps of the branch;
         `NON_FINITE`.
     """
     low, high = (-np.inf, np.inf) if between is None else sorted(between)
@@ -79,7 +80,8 @@ def peak(
         lambda: (
             f"peak: not found near {float(branch.frequency[k]):.6g} rad/s"
             f" ({Result(int(orbit.result)).label}): the amplitude has a corner there,"
-            " or the system is not that of the branch."
+            " the points of the branch are too far apart for so narrow a peak (follow"
+            " it with smaller `Steps`), or the system is not that of the branch."
         ),
     )
 
@@ -111,16 +113,16 @@ def _found(system, points, freedom, method):
     span = across @ (there.x - here.x)
 
     def going(state):
-        (a, _), (b, _), _, _, slope, count = state
+        (a, _), (b, _), _, _, slope, _, count = state
         return (jnp.abs(b - a) > _CLOSE) & (slope != 0) & (count < _SPLITS)
 
     def split(state):
-        (a, at_a), (b, at_b), last, _, _, count = state
+        (a, at_a), (b, at_b), last, *_, count = state
         share = at_a / (at_a - at_b)
         # Illinois' method; halves the interval now and then for good.
         share = jnp.where(count % 4 == 3, 0.5, jnp.clip(share, 0.01, 0.99))
         middle = a + share * (b - a)
-        point, slope, _ = on_branch(here.x + middle * across, across)
+        point, slope, found = on_branch(here.x + middle * across, across)
         left = slope * rise > 0
         new = middle, slope
         a_new = jax.tree.map(lambda x, y: jnp.where(left, x, y), new, (a, at_a))
@@ -129,12 +131,13 @@ def _found(system, points, freedom, method):
         half = jnp.where(side == last, 0.5, 1.0)
         a_new = a_new[0], jnp.where(left, a_new[1], half * a_new[1])
         b_new = b_new[0], jnp.where(left, half * b_new[1], b_new[1])
-        return a_new, b_new, side, point, slope, count + 1
+        return a_new, b_new, side, point, slope, found, count + 1
 
     nothing = jnp.zeros_like(span)
-    begin = (nothing, rise), (span, fall), jnp.int32(0), here, rise, jnp.int32(0)
-    *_, point, slope, count = lax.while_loop(going, split, begin)
-    worst = jnp.maximum(first, second)
+    none = jnp.int32(0)
+    begin = (nothing, rise), (span, fall), none, here, rise, first, none
+    *_, point, slope, last, count = lax.while_loop(going, split, begin)
+    worst = jnp.maximum(jnp.maximum(first, second), last)
     smooth = jnp.abs(slope) <= _SMOOTH * (jnp.abs(rise) + jnp.abs(fall))
     bracketed = rise * fall <= 0
     missed = jnp.where(smooth & bracketed, 0, int(Result.STEP_LIMIT))
