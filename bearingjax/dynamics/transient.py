@@ -39,6 +39,15 @@ from .steady_results import driving
 _PLACES = 96
 """Places of the table."""
 
+CAUSES = {
+    Result.NO_LOAD_PATH: "The load over time pulls the ring out of the bearing, where"
+    " nothing holds it: change the load, or fix that freedom.",
+    Result.NON_FINITE: "No step was small enough, or numbers are not finite: a"
+    " Newtonian film of an oil that pressure or cold makes a glass does so; take a law"
+    " of traction that yields, such as a limiting stress.",
+}
+"""Causes and cures of motions in time that end early."""
+
 
 def skid(
     model: SkidModel,
@@ -117,8 +126,9 @@ def skid(
         ValueError: For settings that do not exist.
         SolveError: If the end is not reached, and `throw` is set.
 
-    Fails: codes of the load solve; `STEP_LIMIT`; `NON_FINITE` where steps shrink to
-        nothing, as beside rates that are not numbers.
+    Fails: codes of the load solve; `STEP_LIMIT`; `NO_LOAD_PATH` if a load over time
+        pulls the ring out of the bearing; `NON_FINITE` where steps shrink to nothing,
+        as beside rates that are not numbers.
     """
     _check(axis, derivatives, places, duration, tolerance, max_steps, n_times)
     table, zero = as_table(speed), jnp.zeros_like(as_real(duration))
@@ -191,15 +201,10 @@ def _message(found):
     time, speed = stop((found.time, found.cage_speed))  # being differentiated
     reached = time[np.isfinite(speed)]
     last = f"{float(reached[-1]):.3g} s" if len(reached) else "the first time"
-    cause = ""
-    if int(found.result) == Result.NON_FINITE:
-        cause = (
-            " No step was small enough, or numbers are not finite: a Newtonian film of"
-            " an oil that pressure makes a glass does so."
-        )
+    cause = CAUSES.get(Result(int(found.result)), "")
     return (
         f"skid: {label} after {int(found.steps)} steps, behind {last} of"
-        f" {float(time[-1]):.3g} s.{cause}"
+        f" {float(time[-1]):.3g} s. {cause}".rstrip()
     )
 
 
@@ -245,9 +250,13 @@ def _skid(around, solution, start, times, duration, options):
     moved = integrated(around, start, times, duration, options)
     found: Any = jax.vmap(partial(_reported, around))(times, moved.state)
     q = jnp.broadcast_to(solution.displacement, (times.shape[0], 12))
+    result = jnp.maximum(moved.result, solution.result)
     if isinstance(around.loads, BalancedLoads):
         q = jax.vmap(around.loads.balance.ring_freedoms)(moved.state.ring)
-    result = jnp.maximum(moved.result, solution.result)
+        # Nothing but `_REST` slows a ring that the load pulls away.
+        away = jnp.any(jnp.abs(moved.state.ring) > around.model.bearing.ball_diameter)
+        lost = jnp.where(away, int(Result.NO_LOAD_PATH), int(Result.CONVERGED))
+        result = jnp.maximum(result, lost.astype(result.dtype))
     kind = SkidHistory if is_ball(around.model.bearing) else SkidRollerHistory
     return kind(
         solution=solution,

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..dynamics import by_raceway
+from ..dynamics.transient import CAUSES
 from ..element import RINGS
 from ..numerics.result import Result
 from ..statics.solution import message
@@ -193,7 +194,7 @@ def skid_message(run: SkidRun) -> str:
     where = f"The motion was followed to {last} of {time[-1]:.4g} s in {steps} steps"
     if run.result is Result.STEP_LIMIT:
         return f"{where}. Raise `dynamics.max_steps`, or take a larger tolerance."
-    return f"{where}; there the steps shrink to nothing, as beside what is no number."
+    return f"{where}. {CAUSES[run.result]}"
 
 
 def _residual(run) -> float:

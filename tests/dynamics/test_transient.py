@@ -267,6 +267,15 @@ def test_a_load_that_ceases_and_comes_back():
     assert np.max(np.abs(found.imbalance)) < 1e-5 * float(found.work.drive[-1])
 
 
+def test_a_load_that_pulls_the_ring_away_says_so():
+    """An angular contact bearing bears axial loads of one sense only."""
+    share = np.array([1.0, 1.0, -1.0, -1.0, 1.0])
+    history = LoadHistory(TIMES, np.outer(share, BOTH))
+    still = SinusoidalLoad(np.zeros(6), np.zeros(6), SPEED.inner)
+    with pytest.raises(SolveError, match="no_load_path .* pulls the ring out"):
+        run(Varying(history, still), tolerance=1e-5)
+
+
 def test_a_load_that_does_not_vary_is_that_of_the_table():
     """At the beginning, with the balls where the ring was balanced for the table."""
     still = SinusoidalLoad(BOTH, np.zeros(6), SPEED.inner)

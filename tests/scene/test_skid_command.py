@@ -270,6 +270,12 @@ def test_a_motion_that_ends_early_is_told_as_far_as_it_goes(run, history, tmp_pa
     assert numbers["cage_speed"][:5] == found.cage_speed[:5].tolist()
     assert np.isnan(numbers["cage_speed"][5:]).all()
     assert skid_message(ended).startswith("The motion was followed to 0.001 s of 0.002")
+    for result, cause in (
+        (Result.NON_FINITE, "take a law of traction that yields"),
+        (Result.NO_LOAD_PATH, "pulls the ring out of the bearing"),
+    ):
+        other = eqx.tree_at(lambda f: f.result, half, np.asarray(int(result)))
+        assert cause in skid_message(dataclasses.replace(ended, found=other))
     assert {len(column) for column in skid_columns(ended).values()} == {5}
     out, picture = tmp_path / "half.json", tmp_path / "half.png"
     with pytest.MonkeyPatch.context() as patch:
