@@ -429,7 +429,8 @@ def test_a_report_shows_no_round_off(scene):
         "residual": np.full(2, 3e-16),
         "iterations": np.full(2, 9),
     }
-    lines = sweep_report(table, Sweep(table.cases, outputs, "inner"), 1.0).splitlines()
+    report = sweep_report(table, Sweep(table.cases, outputs, "inner"), 1.0)
+    lines = str(report).splitlines()
     told = {line.split()[0]: line.split()[1:] for line in lines if line}
     assert told["stiffness_inner_ux_inner_ux"] == ["5e+08", "5e+08", "N/m"]
     assert "stiffness_inner_ux_inner_uy" not in told
