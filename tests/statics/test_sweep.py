@@ -66,40 +66,6 @@ def test_a_bad_case_is_named_and_spoils_no_other(swept):
     assert np.isfinite(swept.displacement[swept.converged]).all()
 
 
-def test_neighbours_start_from_each_other(swept):
-    names = ["displacement", "iterations"]
-    warm = bj.sweep(ELEMENT, loads(), outputs=names, neighbours=True, chunk=5)
-    np.testing.assert_array_equal(warm.result, swept.result)
-    good = swept.converged
-    np.testing.assert_allclose(
-        warm.displacement[good], swept.displacement[good], rtol=1e-8, atol=1e-14
-    )
-    # The first of each lane of ten has no neighbour.
-    assert warm.iterations[good].mean() < 0.6 * swept.iterations[good].mean()
-
-
-def test_a_case_lost_from_its_neighbour_is_solved_again(swept, monkeypatch):
-    runs = []
-    honest = sweep_program.Program.run
-
-    def lossy(self, cases, neighbours, progress, stop=None):
-        found = honest(self, cases, neighbours, progress)
-        runs.append(cases.count)
-        if neighbours:
-            found["result"][3] = bj.Result.STEP_LIMIT
-            found["displacement"][3] = np.nan
-        return found
-
-    monkeypatch.setattr(sweep_program.Program, "run", lossy)
-    some = loads()[8:13]
-    names = ["displacement", "iterations"]
-    solved = bj.sweep(ELEMENT, some, outputs=names, neighbours=True, chunk=5)
-    assert runs == [5, 1] and solved.converged.all()
-    np.testing.assert_allclose(
-        solved.displacement[3], swept.displacement[11], rtol=1e-8, atol=1e-14
-    )
-
-
 def test_cases_in_a_queue_are_solved_as_together(swept, monkeypatch):
     """Fewer slots than cases: each bad one leaves its slot to the next."""
     used, honest = [], lanes._queued
@@ -266,7 +232,7 @@ def test_bad_cases():
 
 
 def test_cases_have_the_dtype_of_their_solutions():
-    """Integers and float32 of JAX kept theirs, and `neighbours` ended in the loop."""
+    """Integers and float32 of JAX kept theirs: starts from others ended in the loop."""
     for dtype in (jnp.int32, jnp.float32):
         cases = bj.Cases(jnp.asarray(LOADS, dtype), inner_speed=jnp.arange(3))
         assert cases.load.dtype == cases.inner_speed.dtype == jnp.float64
