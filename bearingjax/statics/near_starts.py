@@ -14,7 +14,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
-from ..design import n_elements, rows_of
+from ..design import CylindricalRollerBearing, NeedleRollerBearing, n_elements, rows_of
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.linear import solve
@@ -46,10 +46,12 @@ class Likeness(NamedTuple):
         free: Which freedoms of the moving ring are free.
         pitch: Angle by which the bearing may be turned and looks the same [rad]; 0:
             none.
+        axial_play: Whether the ring may lie anywhere between ribs.
     """
 
     free: tuple[bool, ...]
     pitch: float
+    axial_play: bool
 
 
 class Known(NamedTuple):
@@ -105,7 +107,12 @@ def likeness(
     round_z = round_z and len(counts) == 1 and not cases.prescribed
     round_z = round_z and cases.fixed_displacement is None
     pitch = 2.0 * np.pi / counts.pop() if round_z else 0.0
-    return Likeness(tuple(name in free for name in FREEDOMS), pitch)
+    cylindrical = CylindricalRollerBearing | NeedleRollerBearing
+    between_ribs = any(
+        isinstance(r.bearing, cylindrical) for r in rows_of(element.bearing)
+    )
+    freedoms = tuple(name in free for name in FREEDOMS)
+    return Likeness(freedoms, pitch, between_ribs and "uz" in free)
 
 
 def others(element: BearingElement[Any], cases: Cases) -> np.ndarray:
@@ -180,7 +187,9 @@ def starts(
     alone = jnp.where(both, stiffness, jnp.eye(6, dtype=load.dtype)[None])
     change = jax.vmap(solve)(alone, jnp.where(free[None], push, held))
     found = _turned(there + change, angle)
-    return jnp.where((apart < FAR**2)[:, None], found, jnp.nan)
+    # Nothing holds it, and it may end at a rib, which it touches and seems held by.
+    adrift = (load[:, 2] == 0) & alike.axial_play
+    return jnp.where(((apart < FAR**2) & ~adrift)[:, None], found, jnp.nan)
 
 
 def _place(load, other):
