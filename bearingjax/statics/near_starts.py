@@ -83,9 +83,10 @@ def nothing_known(lanes: int, devices: int, coordinates: int) -> Known:
         coordinates: Columns of `others`.
     """
     n = devices * (KEPT + lanes)
-    load, other = np.zeros((n, 6)), np.zeros((n, coordinates))
-    none: Any = (load, other, load, np.zeros((n, 6, 6)), np.zeros(n, bool))
-    return Known(*none, np.zeros(devices, np.int32))  # pyright: ignore
+    tails = (6,), (coordinates,), (6,), (6, 6)
+    none: list[Any] = [np.zeros((n, *tail)) for tail in tails]
+    last: list[Any] = [np.zeros(n, bool), np.zeros(devices, np.int32)]
+    return Known(*none, *last)
 
 
 def likeness(
