@@ -30,8 +30,8 @@ from .zero_names import zero_names
 
 CHUNK = 512
 """Most cases of a batch, of which `load_search.SLOTS` are at work at a time. The first
-batch has no solved cases to start from: at most a sixteenth of them, at least 64
-(benchmarks/load_solve_throughput.py)."""
+batch has no solved cases to start from: an eighth of a sweep at most, or 64; smaller
+ones end in slots that wait (benchmarks/load_solve_throughput.py)."""
 
 SUMMARIES: dict[str, Callable[[Solution], Array]] = {
     "peak_pressure": lambda s: jnp.max(s.roller_pressure),
@@ -164,11 +164,15 @@ def sweep(
         outputs: Fields of `Solution` and names of `SUMMARIES` and `LIFE_OUTPUTS` to be
             kept, or a function of one Solution; what is not kept is not computed.
             `None`: all fields of `Solution`.
-        free, fixed_ring, points, tolerance, max_steps: As in `solve_load`.
+        free, fixed_ring, points, max_steps: As in `solve_load`.
+        tolerance: As in `solve_load`. Displacements are off by up to ten times as much,
+            relative to the largest: 1e-6 takes a fifth less time than the default, 1e-4
+            a third (benchmarks/load_solve_throughput.py).
         near: Start each case from the nearest one that is solved by then, moved by
-            its stiffness; what fails, or is held in no direction, is solved again from
-            first contact. False: all cases start from first contact. Answers differ
-            by the tolerance.
+            its stiffness. Cases that fail so, or that have a direction which nothing
+            holds, are solved again from first contact; so answers and result codes are
+            the same to the tolerance, in fewer steps. False: start all cases from first
+            contact.
         warn: Look for warnings (`bj.warnings`) in every case.
         chunk: Cases of a batch, the first of which start from first contact; default
             64 to `CHUNK`, by the number of cases.
@@ -206,7 +210,7 @@ def sweep(
     options.check("sweep")
     every = _with_designs(element, every)
     places = np.array(jax.devices() if devices is None else list(devices))
-    share = max(1, every.count // (16 * places.size))
+    share = max(1, every.count // (8 * places.size))
     size = (
         min(CHUNK, max(64, 2 ** (share.bit_length() - 1))) if chunk is None else chunk
     )

@@ -35,6 +35,9 @@ _PAUSE = 0.005
 ALWAYS = ("result", "unrestrained")
 """Outputs that every sweep has."""
 
+_LOST = "_lost"
+"""Output that says which cases are solved again, from first contact."""
+
 WARNED = "warning_"
 """Before the names of the outputs that are sizes of warnings."""
 
@@ -126,7 +129,7 @@ class Program:
         """
         held = jax.tree.map(np.asarray, (cases, others(self.element, cases)))
         found = self._blocks(held, cases.count, near, progress, stop)
-        lost = np.flatnonzero(found.pop("lost"))
+        lost = np.flatnonzero(found.pop(_LOST))
         if lost.size:
             again = jax.tree.map(lambda a: a[lost], held)
             anew = self._blocks(again, cases.count, False)
@@ -204,7 +207,7 @@ def _solve_block(element, given, known, near, task, lanes, alike, mesh):
             solutions = jax.vmap(solve)(given[0], start)
             known, unsound = added(known, solutions, *given, alike)
             lost = unsound & jnp.isfinite(start[:, 0])
-            return known, jax.vmap(task.outputs)(solutions) | {"lost": lost}
+            return known, jax.vmap(task.outputs)(solutions) | {_LOST: lost}
 
         def cut(a):
             return a[order].reshape(n // lanes, lanes, *a.shape[1:])

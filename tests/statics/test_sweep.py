@@ -95,7 +95,7 @@ def test_a_case_lost_from_a_near_start_is_solved_again(swept, monkeypatch):
         found = honest(self, held, like, near, *choices)
         runs.append((held[0].count, near))
         if near:
-            found["lost"][3] = True
+            found[sweep_program._LOST][3] = True
             found["result"][3] = bj.Result.STEP_LIMIT
             found["displacement"][3] = np.nan
         return found
