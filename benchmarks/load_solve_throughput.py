@@ -19,40 +19,26 @@ axial loads.
 
 Run: python benchmarks/load_solve_throughput.py [--json] [--smoke]
 
-Last run:
+Last run (of ours alone; two cores shared with other work):
 
-straight raceways, random (trace and compile 15.6 s)
+rollers, radial loads
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     192.6     5193    1.00   11.5    21       0   7e-16
-C                         2048      54.0    18531    0.28   11.5    21       0   0e+00
-SciPy root, our stiffness   64   10221.0       98   53.08   50.0    97       1   3e-01
-SciPy root, NumPy bearing   64   12019.3       83   62.42   49.5   107       3   4e-01
+bj.sweep                  2048     349.7     2859    1.00    2.5    12       0   6e-12
+tolerance 1e-6            2048     282.4     3541    0.81    1.6    11       0   8e-07
+tolerance 1e-4            2048     253.9     3939    0.73    1.1    11       0   8e-05
+from first contact        2048     758.3     1319    2.17    8.8    12       0   0e+00
 
-straight raceways, path (trace and compile 12.9 s)
-solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     103.5     9663    1.00    4.4    14       0   1e-10
-C                         2048      28.7    34847    0.28    4.1    13       0   1e-10
-SciPy root, our stiffness   64    9811.2      102   94.80   47.8    86       2   5e-01
-SciPy root, NumPy bearing   64   11262.1       89  108.83   47.0    79       2   5e-01
+rollers, loads with moments
+bj.sweep                  2048     701.9     1425    1.00    4.1    15       0   4e-11
+tolerance 1e-6            2048     550.9     1815    0.78    3.1    14       0   6e-06
+tolerance 1e-4            2048     463.2     2159    0.66    2.4    13       0   9e-04
+from first contact        2048    1083.6      923    1.54    9.7    15       0   0e+00
 
-unlike raceways, random (trace and compile 16.6 s)
-solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     526.5     1899    1.00   11.6    22       0   5e-15
-C                         2048     190.1     5259    0.36   11.6    22       0   0e+00
-SciPy root, our stiffness   64   17061.9       59   32.40   53.3   105       1   3e-01
-SciPy root, NumPy bearing   64   55823.5       18  106.02   49.8    96       5   4e-01
-
-unlike raceways, path (trace and compile 16.2 s)
-solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     264.8     3777    1.00    4.4    13       0   1e-10
-C                         2048      95.0    10530    0.36    4.1    13       0   1e-10
-SciPy root, our stiffness   64   15436.1       65   58.30   48.2    76       2   5e-01
-SciPy root, NumPy bearing   64   58209.4       17  219.85   49.2    76       2   5e-01
-
-time against C, worst: 3.61 (at most 2): MISSED
-times faster than SciPy: 32.4 (at least 100): MISSED
-
-one core; AMD EPYC, 2 cores, load average 1.0; devices: 1 cpu; jax 0.10.1
+balls, radial and axial loads
+bj.sweep                  2048     270.8     3693    1.00    3.5    22       0   2e-11
+tolerance 1e-6            2048     234.4     4267    0.87    2.6    21       0   2e-06
+tolerance 1e-4            2048     209.8     4767    0.77    1.9    21       0   1e-04
+from first contact        2048     941.0     1063    3.48   16.1    23       0   0e+00
 """
 
 import argparse
@@ -262,7 +248,8 @@ def measure(sizes):
                 found[f"{name} raceways, {kind}"] = study(element, make, sizes, folder)
                 if sizes is SMOKE:
                     return found
-    return found | {k: study(*of, sizes) for k, of in alone().items()}
+    of_ours = {k: study(e, make, sizes) for k, (e, make) in alone().items()}
+    return found | of_ours
 
 
 def figures(results):

@@ -230,7 +230,8 @@ def added(
         new = jnp.where(jnp.isfinite(new), new, jnp.zeros_like(new)).astype(old.dtype)
         return lax.dynamic_update_slice_in_dim(old, new, at, 0)
 
-    rows = map(put, known[:5], (_turned(load, back), other, there, k, sound))
+    new = (_turned(load, back), other, there, k, sound)
+    rows: Any = [put(*pair) for pair in zip(known[:5], new, strict=True)]
     return Known(*rows, known.count + len(load)), ~sound
 
 

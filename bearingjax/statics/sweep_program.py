@@ -201,11 +201,12 @@ def _solve_block(element, given, known, near, task, lanes, alike, mesh):
         order = np.random.default_rng(0).permutation(n)
 
         def chunk(known, given):
-            start = starts(known, *given, alike)
+            cases, other = given
+            start = starts(known, cases, other, alike)
             start = jnp.where(near, start, jnp.nan)
             solve = functools.partial(task.solve, element)
-            solutions = jax.vmap(solve)(given[0], start)
-            known, unsound = added(known, solutions, *given, alike)
+            solutions = jax.vmap(solve)(cases, start)
+            known, unsound = added(known, solutions, cases, other, alike)
             lost = unsound & jnp.isfinite(start[:, 0])
             return known, jax.vmap(task.outputs)(solutions) | {_LOST: lost}
 
