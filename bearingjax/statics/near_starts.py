@@ -232,7 +232,7 @@ def added(
 
     new = (_turned(load, back), other, there, k, sound)
     rows: Any = [put(*pair) for pair in zip(known[:5], new, strict=True)]
-    return Known(*rows, known.count + len(load)), ~sound
+    return Known._make([*rows, known.count + len(load)]), ~sound
 
 
 def _angle(load, pitch):
