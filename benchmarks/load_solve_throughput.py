@@ -19,7 +19,7 @@ axial loads.
 
 Run: python benchmarks/load_solve_throughput.py [--json] [--smoke]
 
-Last run (of ours alone; two cores shared with other work):
+Last run (of ours alone, in chunks of 128, now 256; cores shared with other work):
 
 rollers, radial loads
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
