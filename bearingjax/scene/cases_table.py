@@ -96,7 +96,6 @@ class CaseTable:
         settings: Of each design, the settings that make it: by "key [unit]" numbers in
             SI, or what the scene writes where that is no number.
         outputs: Names of what is kept, or `None` for the usual.
-        neighbours: Whether cases that follow each other are alike.
         warnings: What the validation found odd but possible, of all designs.
         inputs: The scene as it was read, in SI (`Scene.inputs`), with its cases as they
             are written.
@@ -108,7 +107,6 @@ class CaseTable:
     varied: tuple[str, ...]
     settings: tuple[dict[str, Any], ...]
     outputs: tuple[str, ...] | None
-    neighbours: bool
     warnings: tuple[str, ...]
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
 
@@ -157,11 +155,6 @@ class CasesKeys(Keys):
     outputs: tuple[str, ...] | None = scene_key(
         "results that are kept", otherwise="the usual ones"
     )
-    neighbours: bool | None = scene_key(
-        "whether cases that follow each other are alike, so that each starts from the"
-        " one before",
-        otherwise="true of a grid",
-    )
 
     def check(self) -> None:
         given = [key for key in ("grid", "file", "spectrum") if key in self.table]
@@ -188,9 +181,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         )
     top = Table(data, path.name)
     keys = read_keys(CasesKeys, top.table("cases"))
-    table, outputs, neighbours = keys.table, keys.outputs, keys.neighbours
-    if neighbours is None:
-        neighbours = keys.grid is not None
+    table, outputs = keys.table, keys.outputs
     if keys.grid is not None:
         columns = _grid(table, keys.grid)
     elif keys.spectrum is not None:
@@ -214,7 +205,6 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         varied=tuple(column.key for column in columns),
         settings=made,
         outputs=outputs,
-        neighbours=neighbours,
         warnings=_alike(scene.warnings, odd),
         inputs=_inputs(scene, columns, _placed(data["cases"], path)),
     )

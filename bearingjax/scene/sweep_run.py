@@ -79,7 +79,6 @@ def _run(table, part, mine, progress, stop) -> Sweep:
             fixed_ring=scene.fixed_ring,
             points=scene.points,
             tolerance=scene.tolerance,
-            neighbours=table.neighbours,
             progress=progress,
             stop=stop,
             life=_life(table, part),

@@ -13,7 +13,7 @@ differentiable), or `spring=PreloadSpring(force, stiffness)` on the row at +z (t
 fit the cache, over all devices and processes of JAX; each case has its own result code,
 and a bad one spoils no other. `outputs` are fields of a solution, or `peak_pressure`,
 `largest_load`, `n_loaded`, `iterations`, `residual`; what is not named is not computed.
-`neighbours=True` starts each case from the one before it. Designs:
+Each case starts from the nearest one that is solved by then (`near`). Designs:
 `stack_designs([...])`, or an element made under `jax.vmap`.
 `jax.config.update("jax_num_cpu_devices", 2)` before all else uses two cores.
 `sweep(..., stop=...)` is asked between blocks.

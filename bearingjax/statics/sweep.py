@@ -28,9 +28,10 @@ from .sweep_program import WARNED, Program, Task
 from .warning import counted, given
 from .zero_names import zero_names
 
-CHUNK, RUNS = 512, 128
-"""Cases of a batch, of which `load_search.SLOTS` are at work at a time, and runs of
-cases that start from their neighbours (benchmarks/load_solve_throughput.py)."""
+CHUNK = 512
+"""Most cases of a batch, of which `load_search.SLOTS` are at work at a time. The first
+batch has no solved cases to start from: an eighth of a sweep at most, or 64; smaller
+ones end in slots that wait (benchmarks/load_solve_throughput.py)."""
 
 SUMMARIES: dict[str, Callable[[Solution], Array]] = {
     "peak_pressure": lambda s: jnp.max(s.roller_pressure),
@@ -146,7 +147,7 @@ def sweep(
     points: int = 101,
     tolerance: float | None = None,
     max_steps: int = 200,
-    neighbours: bool = False,
+    near: bool = True,
     warn: bool = True,
     chunk: int | None = None,
     progress: bool = False,
@@ -163,13 +164,18 @@ def sweep(
         outputs: Fields of `Solution` and names of `SUMMARIES` and `LIFE_OUTPUTS` to be
             kept, or a function of one Solution; what is not kept is not computed.
             `None`: all fields of `Solution`.
-        free, fixed_ring, points, tolerance, max_steps: As in `solve_load`.
-        neighbours: Set it if consecutive cases are similar, as on a fine grid: each
-            case then starts from the solution of the one before. A case that ends at
-            the step limit or at a saddle is solved again without that start.
+        free, fixed_ring, points, max_steps: As in `solve_load`.
+        tolerance: As in `solve_load`. Displacements are off by up to ten times as much,
+            relative to the largest: 1e-6 takes a fifth less time than the default, 1e-4
+            a third (benchmarks/load_solve_throughput.py).
+        near: Start each case from the nearest one that is solved by then, moved by
+            its stiffness. Cases that fail so, or that have a direction which nothing
+            holds, are solved again from first contact; so answers and result codes are
+            the same to the tolerance, in fewer steps. False: start all cases from first
+            contact.
         warn: Look for warnings (`bj.warnings`) in every case.
-        chunk: Cases of a batch; default `CHUNK`. With `neighbours` the number of runs
-            into which the cases are cut; default `RUNS`.
+        chunk: Cases of a batch, the first of which start from first contact; default
+            64 to `CHUNK`, by the number of cases.
         progress: Show a bar.
         devices: Over which the cases are spread; default all of `jax.devices()`, of
             all processes. (`jax.config.update("jax_num_cpu_devices", 2)` before
@@ -203,8 +209,11 @@ def sweep(
     options = SolveOptions(free, fixed_ring, points, tolerance, max_steps)
     options.check("sweep")
     every = _with_designs(element, every)
-    default = RUNS if neighbours else CHUNK
-    size = default if chunk is None else chunk
+    places = np.array(jax.devices() if devices is None else list(devices))
+    share = max(1, every.count // (8 * places.size))
+    size = (
+        min(CHUNK, max(64, 2 ** (share.bit_length() - 1))) if chunk is None else chunk
+    )
     if not isinstance(size, int) or size < 1:
         raise ValueError(f"sweep: `chunk` is {chunk!r}; a whole number of at least 1.")
     check_held("sweep", every.load, every.prescribed, options.free)
@@ -214,18 +223,9 @@ def sweep(
         )
     keep, lives = _kept(outputs)
     life = LifeConditions() if lives and life is None else life
-    places = np.array(jax.devices() if devices is None else list(devices))
     task = Task(options, keep, warn, lives, life)
     program = Program(element, task, size, places)
-    found = program.run(every, neighbours, progress, stop)
-    if neighbours:
-        codes = found["result"]
-        lost = np.flatnonzero((codes == Result.STEP_LIMIT) | (codes == Result.SADDLE))
-        if lost.size:
-            again = jax.tree.map(lambda a: np.asarray(a)[lost], every)
-            anew = program.run(again, False, False)
-            for name, values in found.items():
-                values[lost] = anew[name]
+    found = program.run(every, near, progress, stop)
     return Sweep(every, found, options.moving_ring, zero_names(element, every, options))
 
 

@@ -1,5 +1,6 @@
 """Blocks of cases over devices: the compiled program of a sweep."""
 
+import functools
 import math
 import time
 from collections.abc import Callable
@@ -13,11 +14,11 @@ from jax.experimental import multihost_utils
 from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 
-from ..element.frame import RINGS
 from ..numerics.result import Result
 from .cases import solve_case
 from .life import LifeConditions, life_of, life_outputs
 from .life_warning import life_sizes
+from .near_starts import added, likeness, nothing_known, others, starts
 from .options import SolveOptions
 from .solution import Solution
 from .warning import sizes
@@ -33,6 +34,9 @@ _PAUSE = 0.005
 
 ALWAYS = ("result", "unrestrained")
 """Outputs that every sweep has."""
+
+_LOST = "_lost"
+"""Output that says which cases are solved again, from first contact."""
 
 WARNED = "warning_"
 """Before the names of the outputs that are sizes of warnings."""
@@ -116,15 +120,33 @@ class Program:
         self.element, self.task, self.chunk = element, task, chunk
         self.mesh = Mesh(devices, ("case",))
 
-    def run(self, cases, neighbours, progress, stop=None):
+    def run(self, cases, near=True, progress=False, stop=None):
         """All outputs of all cases, NumPy arrays by name; after `stop` the rest are
-        `NOT_RUN`."""
-        n = cases.count
-        lanes = self.mesh.size * min(self.chunk, math.ceil(n / self.mesh.size))
-        chunks = max(1, BLOCK * self.mesh.size // lanes)
-        block = lanes * min(chunks, math.ceil(n / lanes))
+        `NOT_RUN`.
+
+        What starts near by and ends without a sound answer is solved again from first
+        contact.
+        """
+        held = jax.tree.map(np.asarray, (cases, others(self.element, cases)))
+        found = self._blocks(held, cases.count, near, progress, stop)
+        lost = np.flatnonzero(found.pop(_LOST))
+        if lost.size:
+            again = jax.tree.map(lambda a: a[lost], held)
+            anew = self._blocks(again, cases.count, False)
+            for name, values in found.items():
+                values[lost] = anew[name]
+        return found
+
+    def _blocks(self, held, like, near, progress=False, stop=None):
+        """Outputs of cases, in blocks as of a sweep of `like` cases."""
+        n, devices = held[0].count, self.mesh.size
+        lanes = min(self.chunk, math.ceil(like / devices))
+        chunks = min(max(1, BLOCK // lanes), math.ceil(like / (devices * lanes)))
+        block = devices * lanes * chunks
         shard = NamedSharding(self.mesh, Spec("case"))
-        held = jax.tree.map(np.asarray, cases)
+        alike = likeness(self.element, held[0], self.task.options)
+        known = nothing_known(lanes, devices, held[1].shape[1])
+        known = jax.tree.map(lambda a: _spread(a, shard), known)
         found: dict[str, np.ndarray] = {}
         pending, last = None, 0
         with _bar(n if progress else None) as advance:
@@ -134,19 +156,20 @@ class Program:
                 if begin is not None:
                     end = min(begin + block, n)
                     part = jax.tree.map(lambda a: _padded(a[begin:end], block), held)  # noqa: B023
-                    given = jax.tree.map(lambda a: _spread(a, shard), part)
                     given = (
                         self.element,
-                        given,
+                        jax.tree.map(lambda a: _spread(a, shard), part),
+                        known,
+                        jnp.asarray(near),
                         self.task,
-                        lanes // self.mesh.size,
-                        neighbours,
+                        lanes,
+                        alike,
                         self.mesh,
                     )
                     if not found:
-                        shapes = eqx.filter_eval_shape(_solve_block, *given)
+                        shapes, _ = eqx.filter_eval_shape(_solve_block, *given)
                         found = _room(shapes, n, block)
-                    out = _solve_block(*given)
+                    out, known = _solve_block(*given)
                     submitted = (out, begin, end)
                 else:
                     submitted = None
@@ -167,56 +190,51 @@ class Program:
 
 
 @eqx.filter_jit
-def _solve_block(element, cases, task, lanes, neighbours, mesh):
-    """A block of cases, each device its share in chunks of `lanes`."""
+def _solve_block(element, given, known, near, task, lanes, alike, mesh):
+    """A block of cases, each device its share in chunks of `lanes`, from all over the
+    share and each from what is known by then; and what is known in the end."""
     arrays, static = eqx.partition((element, task), eqx.is_array)
 
-    def share(arrays, cases):
+    def share(arrays, given, known, near):
         element, task = eqx.combine(arrays, static)
+        n = given[0].count
+        order = np.random.default_rng(0).permutation(n)
 
-        def one(case, start=None):
-            return task.solve(element, case, start)
+        def chunk(known, given):
+            cases, other = given
+            start = starts(known, cases, other, alike)
+            start = jnp.where(near, start, jnp.nan)
+            solve = functools.partial(task.solve, element)
+            solutions = jax.vmap(solve)(cases, start)
+            known, unsound = added(known, solutions, cases, other, alike)
+            lost = unsound & jnp.isfinite(start[:, 0])
+            return known, jax.vmap(task.outputs)(solutions) | {_LOST: lost}
 
-        if neighbours:
-            return _in_turn(one, task, cases, lanes)
-        return lax.map(lambda c: task.outputs(one(c)), cases, batch_size=lanes)
+        def cut(a):
+            return a[order].reshape(n // lanes, lanes, *a.shape[1:])
+
+        known, out = lax.scan(chunk, known, jax.tree.map(cut, given))
+        back = np.argsort(order)
+        return jax.tree.map(lambda a: a.reshape(n, *a.shape[2:])[back], out), known
 
     spread = jax.shard_map(
         share,
         mesh=mesh,
-        in_specs=(Spec(), Spec("case")),
+        in_specs=(Spec(), Spec("case"), Spec("case"), Spec()),
         out_specs=Spec("case"),
         check_vma=False,
     )
-    return spread(arrays, cases)
-
-
-def _in_turn(one, task, cases, lanes):
-    """Each lane takes a run of cases, each case from the solution before it."""
-    first = 6 * RINGS.index(task.options.moving_ring)
-    moving = slice(first, first + 6)
-    # (lane, turn) -> turn first, for the scan.
-    runs = jax.tree.map(
-        lambda a: jnp.swapaxes(a.reshape(lanes, -1, *a.shape[1:]), 0, 1), cases
-    )
-
-    def lane(start, case):
-        solution = one(case, start)
-        there = jnp.where(solution.converged, solution.displacement[moving], jnp.nan)
-        return there, task.outputs(solution)
-
-    begin = jnp.full((lanes, 6), jnp.nan, cases.load.dtype)
-    _, outputs = lax.scan(jax.vmap(lane), begin, runs)
-    return jax.tree.map(
-        lambda a: jnp.swapaxes(a, 0, 1).reshape(-1, *a.shape[2:]), outputs
-    )
+    return spread(arrays, given, known, near)
 
 
 def _padded(array, size):
     missing = size - array.shape[0]
     if missing == 0:
         return array
-    return np.concatenate([array, np.repeat(array[-1:], missing, axis=0)])
+    # A case of NaN ends at once.
+    fill = np.repeat(array[-1:], missing, axis=0)
+    fill = np.full_like(fill, np.nan) if array.dtype.kind == "f" else fill
+    return np.concatenate([array, fill])
 
 
 def _spread(array, sharding):

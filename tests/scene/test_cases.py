@@ -77,7 +77,7 @@ def scene(tmp_path):
 def test_grid_runs_its_last_key_fastest(scene):
     table = read_cases(scene(GRID))
     cases = table.cases
-    assert cases.count == 12 and table.neighbours
+    assert cases.count == 12
     assert table.varied == (
         "bearing.radial_internal_clearance",
         "operating.prescribed.gx",
@@ -102,7 +102,7 @@ def test_spectrum_has_hours(scene):
     np.testing.assert_allclose(
         np.array(table.cases.inner_speed), [20 * np.pi, 2 * np.pi]
     )
-    assert table.cases.design is None and not table.neighbours
+    assert table.cases.design is None
 
 
 def test_list_has_units_in_its_header(scene):
@@ -178,7 +178,7 @@ def entry(text):
 
 WRONG = {
     "none": ("", "`cases` is missing"),
-    "nothing": ("[cases]\nneighbours = true", "must have one of `grid`, `file`"),
+    "nothing": ("[cases]\noutputs = ['n_loaded']", "must have one of `grid`, `file`"),
     "two": (GRID + SPECTRUM, "must have one of `grid`, `file`"),
     "empty grid": ("[cases.grid]", "is not a table of keys with their values"),
     "no list": (

@@ -18,7 +18,13 @@ from sweep_in_process import loads, small_element
 
 import bearingjax as bj
 from bearingjax.numerics import lanes
-from bearingjax.statics import SolveOptions, load_search, sweep_program, sweep_table
+from bearingjax.statics import (
+    SolveOptions,
+    load_search,
+    near_starts,
+    sweep_program,
+    sweep_table,
+)
 from bearingjax.statics.sweep import n_designs
 
 COUPLED = """
@@ -33,14 +39,20 @@ assert len(jax.devices()) == 2 and not solved.result.any()
 """
 SCRIPT = Path(__file__).with_name("sweep_in_process.py")
 ELEMENT = small_element()
+NAMES = ["displacement", "stiffness", "largest_load", "iterations"]
 BAD = {5: "non_finite", 7: "no_load_path"}
 
 
 @pytest.fixture(scope="module")
 def swept():
     """Fifty loads, two of them bad, in chunks that do not divide fifty."""
-    names = ["displacement", "stiffness", "largest_load", "iterations"]
-    return bj.sweep(ELEMENT, loads(), outputs=names, chunk=8)
+    return bj.sweep(ELEMENT, loads(), outputs=NAMES, chunk=8)
+
+
+@pytest.fixture(scope="module")
+def from_contact():
+    """The same, each from first contact."""
+    return bj.sweep(ELEMENT, loads(), outputs=NAMES, chunk=8, near=False)
 
 
 def test_each_case_is_the_single_solve(swept):
@@ -66,41 +78,156 @@ def test_a_bad_case_is_named_and_spoils_no_other(swept):
     assert np.isfinite(swept.displacement[swept.converged]).all()
 
 
-def test_neighbours_start_from_each_other(swept):
-    names = ["displacement", "iterations"]
-    warm = bj.sweep(ELEMENT, loads(), outputs=names, neighbours=True, chunk=5)
-    np.testing.assert_array_equal(warm.result, swept.result)
-    good = swept.converged
-    np.testing.assert_allclose(
-        warm.displacement[good], swept.displacement[good], rtol=1e-8, atol=1e-14
-    )
-    # The first of each lane of ten has no neighbour.
-    assert warm.iterations[good].mean() < 0.6 * swept.iterations[good].mean()
+def test_near_starts_save_steps_and_change_no_answer(swept, from_contact):
+    np.testing.assert_array_equal(swept.result, from_contact.result)
+    for name in NAMES[:3]:
+        got, want = getattr(swept, name), getattr(from_contact, name)
+        most = np.nanmax(np.abs(want))
+        np.testing.assert_allclose(got, want, rtol=1e-8, atol=1e-10 * most)
+    assert swept.iterations.mean() < 0.5 * from_contact.iterations.mean()
 
 
-def test_a_case_lost_from_its_neighbour_is_solved_again(swept, monkeypatch):
+def test_a_case_lost_from_a_near_start_is_solved_again(swept, monkeypatch):
     runs = []
-    honest = sweep_program.Program.run
+    honest = sweep_program.Program._blocks
 
-    def lossy(self, cases, neighbours, progress, stop=None):
-        found = honest(self, cases, neighbours, progress)
-        runs.append(cases.count)
-        if neighbours:
+    def lossy(self, held, like, near, *choices):
+        found = honest(self, held, like, near, *choices)
+        runs.append((held[0].count, near))
+        if near:
+            found[sweep_program._LOST][3] = True
             found["result"][3] = bj.Result.STEP_LIMIT
             found["displacement"][3] = np.nan
         return found
 
-    monkeypatch.setattr(sweep_program.Program, "run", lossy)
-    some = loads()[8:13]
-    names = ["displacement", "iterations"]
-    solved = bj.sweep(ELEMENT, some, outputs=names, neighbours=True, chunk=5)
-    assert runs == [5, 1] and solved.converged.all()
+    monkeypatch.setattr(sweep_program.Program, "_blocks", lossy)
+    solved = bj.sweep(ELEMENT, loads(), outputs=NAMES, chunk=8)
+    # Beside it number 7, which nothing can carry.
+    assert runs == [(50, True), (2, False)] and solved.converged[3]
     np.testing.assert_allclose(
-        solved.displacement[3], swept.displacement[11], rtol=1e-8, atol=1e-14
+        solved.displacement[3], swept.displacement[3], rtol=1e-8, atol=1e-14
     )
 
 
-def test_cases_in_a_queue_are_solved_as_together(swept, monkeypatch):
+def known_cases():
+    """Three solved cases by hand; the second did not converge."""
+    rng = np.random.default_rng(0)
+    load, there = np.zeros((3, 6)), 1e-5 * rng.normal(size=(3, 6))
+    load[:, 0], load[:, 1] = [1000.0, 1100.0, 600.0], [0.0, 50.0, 100.0]
+    root = rng.normal(size=(6, 6)) + 3.0 * np.eye(6)
+    size = np.array([1e4, 1e4, 1e4, 3e1, 3e1, 3e1])
+    stiffness = size[:, None] * (root @ root.T) * size
+    known = near_starts.nothing_known(1, 1, 0)
+    for array, rows in zip(known, (load, known.other[:3], there), strict=False):
+        array[:3] = rows
+    known.stiffness[:3] = stiffness
+    known.usable[:3] = [True, False, True]
+    return jax.tree.map(jnp.asarray, known), load, there, stiffness
+
+
+def started_at(known, loads, free, pitch=0.0, prescribed=None, play=False):
+    """Starts by `near_starts`, the names of free freedoms given."""
+    flags = tuple(name in free for name in bj.FREEDOMS)
+    alike = near_starts.Likeness(flags, pitch, play)
+    loads = np.asarray(loads)
+    cases = bj.Cases(loads, prescribed=prescribed)
+    none = jnp.zeros((len(loads), 0))
+    return np.asarray(near_starts.starts(known, cases, none, alike))
+
+
+def test_a_start_is_the_nearest_answer_moved_by_its_stiffness():
+    known, load, there, k = known_cases()
+    free = [0, 1, 3, 4]
+    names = [bj.FREEDOMS[i] for i in free]
+    new = np.array([1100.0, 50.0, 0.0, 0.0, 0.0, 0.0])
+    quarter = np.array([-50.0, 1100.0, 0.0, 0.0, 0.0, 0.0])
+    want = there[0].copy()
+    shift = [i for i in range(6) if i not in free]
+    push = (new - load[0])[free] + k[np.ix_(free, shift)] @ want[shift]
+    want[free] += np.linalg.solve(k[np.ix_(free, free)], push)
+    want[shift] = 0.0
+    start, turned = started_at(known, [new, quarter], names, 0.5 * np.pi)
+    np.testing.assert_allclose(start, want, rtol=1e-9, atol=1e-18)
+    x, y, z, a, b, g = want
+    np.testing.assert_allclose(turned, [-y, x, z, -b, a, g], rtol=1e-9, atol=1e-18)
+    # gx is prescribed: what it pushes is balanced.
+    free, names = [0, 1, 4], ["ux", "uy", "gy"]
+    tilt, want = 3e-4, there[0].copy()
+    shift = [i for i in range(6) if i not in free]
+    given = tilt * (np.array(shift) == 3)
+    held = given - want[shift]
+    push = (new - load[0])[free] - k[np.ix_(free, shift)] @ held
+    want[free] += np.linalg.solve(k[np.ix_(free, free)], push)
+    want[shift] = given
+    (start,) = started_at(known, [new], names, prescribed={"gx": [tilt]})
+    np.testing.assert_allclose(start, want, rtol=1e-9, atol=1e-18)
+
+
+def test_what_has_no_sound_answer_near_starts_from_first_contact():
+    known, load, *_ = known_cases()
+    names = ["ux", "uy", "uz", "gx", "gy"]
+    opposite, axial = -load[0], load[0] + [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+    starts = started_at(known, [load[0], opposite, 1e4 * load[0], axial], names)
+    np.testing.assert_array_equal(np.isnan(starts[:, 0]), [False, True, True, True])
+    assert np.isnan(started_at(known, load, names, play=True)).all()
+    nothing = known._replace(usable=jnp.zeros_like(known.usable))
+    assert np.isnan(started_at(nothing, load, names)).all()
+
+
+def many(count, axial, speed=None):
+    """Loads in all directions, some along the axis of an element, as cases."""
+    rng = np.random.default_rng(1)
+    size, way = 10 ** rng.uniform(1.5, 4, count), rng.uniform(0, 2 * np.pi, count)
+    way[::4] = np.pi / 3 * np.round(way[::4] * 3 / np.pi)
+    loads = np.zeros((count, 6))
+    loads[:, 0], loads[:, 1] = size * np.cos(way), size * np.sin(way)
+    loads[:, 2] = axial * size * rng.uniform(-1, 1, count) * (np.arange(count) % 3 > 0)
+    loads[:, 3:5] = (size * rng.uniform(-1e-3, 1e-3, (2, count))).T
+    return bj.Cases(loads, inner_speed=speed, design=rng.integers(0, 3, count))
+
+
+def ribbed(clearance):
+    ribs = bj.Ribs.arrangement("NUP", bj.Rib(0.3, 1.5e-3), 60e-6)
+    bearing = bj.CylindricalRollerBearing(
+        6, 0.065, 0.01, 0.01, radial_internal_clearance=clearance, ribs=ribs
+    )
+    return bj.BearingElement(bearing, quadrature=bj.Midpoint(8))
+
+
+def grooved(clearance):
+    bearing = bj.DeepGrooveBallBearing(
+        6,
+        0.0385,
+        0.008,
+        outer_osculation=0.52,
+        inner_osculation=0.52,
+        radial_internal_clearance=clearance,
+    )
+    return bj.BearingElement(bearing)
+
+
+@pytest.mark.parametrize(
+    "made, axial, speed",
+    [(ribbed, 0.08, None), (grooved, 0.5, np.linspace(0.0, 3000.0, 48))],
+)
+def test_play_lifted_balls_and_designs_end_where_first_contact_ends(made, axial, speed):
+    """A start must not choose among equilibria: between ribs any uz is one."""
+    element = bj.stack_designs([made(c) for c in (5e-6, 10e-6, 30e-6)])
+    cases = many(48, axial, speed)
+    names = ["displacement", "largest_load", "iterations"]
+    near, contact = (
+        bj.sweep(element, cases, outputs=names, chunk=12, near=flag)
+        for flag in (True, False)
+    )
+    np.testing.assert_array_equal(near.result, contact.result)
+    assert contact.converged.all()
+    size = np.abs(contact.displacement).max(axis=1, keepdims=True)
+    assert (np.abs(near.displacement - contact.displacement) <= 1e-7 * size).all()
+    np.testing.assert_allclose(near.largest_load, contact.largest_load, rtol=1e-8)
+    assert near.iterations.mean() < 0.9 * contact.iterations.mean()
+
+
+def test_cases_in_a_queue_are_solved_as_together(from_contact, monkeypatch):
     """Fewer slots than cases: each bad one leaves its slot to the next."""
     used, honest = [], lanes._queued
 
@@ -111,13 +238,12 @@ def test_cases_in_a_queue_are_solved_as_together(swept, monkeypatch):
     monkeypatch.setattr(lanes, "_queued", seen)
     monkeypatch.setattr(load_search, "SLOTS", 6)
     jax.clear_caches()  # a search traced before has the slots of then
-    names = ["displacement", "stiffness", "largest_load", "iterations"]
-    queued = bj.sweep(ELEMENT, loads(), outputs=names, chunk=50)
+    queued = bj.sweep(ELEMENT, loads(), outputs=NAMES, chunk=50)
     assert 6 in used
-    np.testing.assert_array_equal(queued.result, swept.result)
-    np.testing.assert_array_equal(queued.iterations, swept.iterations)
-    for name in names[:3]:
-        got, want = getattr(queued, name), getattr(swept, name)
+    np.testing.assert_array_equal(queued.result, from_contact.result)
+    np.testing.assert_array_equal(queued.iterations, from_contact.iterations)
+    for name in NAMES[:3]:
+        got, want = getattr(queued, name), getattr(from_contact, name)
         np.testing.assert_allclose(got, want, rtol=1e-9, atol=1e-12 * np.nanmax(want))
 
 
@@ -266,7 +392,7 @@ def test_bad_cases():
 
 
 def test_cases_have_the_dtype_of_their_solutions():
-    """Integers and float32 of JAX kept theirs, and `neighbours` ended in the loop."""
+    """Integers and float32 of JAX kept theirs: starts from others ended in the loop."""
     for dtype in (jnp.int32, jnp.float32):
         cases = bj.Cases(jnp.asarray(LOADS, dtype), inner_speed=jnp.arange(3))
         assert cases.load.dtype == cases.inner_speed.dtype == jnp.float64
