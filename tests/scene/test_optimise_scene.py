@@ -1,5 +1,6 @@
 """[optimise] in a scene, its command, and what is wrong with wrong ones."""
 
+import io
 import json
 import re
 from types import SimpleNamespace
@@ -87,9 +88,8 @@ def test_command_finds_the_clearance_of_a_stiffness(
     assert numbers["history"]["values"][0] == [play["before"]]
     assert numbers["evaluations"] == numbers["gradients"] > 2
     # The report says the same, in its units.
-    assert re.search(r"radial_internal_clearance +10 +15 +0 to 40 µm\n", done.out), (
-        done.out
-    )
+    row = r"radial_internal_clearance +10 +15 +µm +0 to 40\n"
+    assert re.search(row, done.out), done.out
     assert "optimised over 1 operating case in" in done.out
     rerun("optimise", out, pictures=2)
     undrawn("optimised", out, "optimise", tmp_path / "again.json")
@@ -134,8 +134,10 @@ def test_progress_is_shown_to_who_watches_and_wants_it(run, scene, monkeypatch):
 
     monkeypatch.setattr("bearingjax.scene.run.optimise", note)
     run("optimise", scene(GOOD))
-    watched = SimpleNamespace(stderr=SimpleNamespace(isatty=lambda: True))
-    monkeypatch.setattr("bearingjax.cli.progress.sys", watched)
+    told = io.StringIO()
+    told.isatty = lambda: True  # pyright: ignore[reportAttributeAccessIssue]
+    watched = SimpleNamespace(stderr=told)
+    monkeypatch.setattr("bearingjax.cli.execute.sys", watched)
     run("optimise", scene(GOOD))
     run("optimise", scene(GOOD), "--quiet")
     assert asked == [False, True, False]
