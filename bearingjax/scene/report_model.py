@@ -16,6 +16,8 @@ from ..numerics.units import display_unit
 
 RULE = "-" * 78
 """Between the sections of a text."""
+_WHOLE = 1e6
+"""Number below which digits before the point are written out, not as a power of ten."""
 _WIDTH = 100
 """Letters of a line with words at its end."""
 DEGREES = 180.0 / np.pi, "deg"
@@ -75,8 +77,9 @@ class Column:
             return str(value)
         if np.isinf(value):
             return "infinite"
-        # Plus zero: no minus before a zero.
-        return f"{factor * float(value) + 0.0:{self.format}}"
+        number = factor * float(value) + 0.0  # no minus before a zero
+        told = f"{number:{self.format}}"
+        return f"{number:.0f}" if "e+0" in told and abs(number) < _WHOLE else told
 
 
 @dataclasses.dataclass(frozen=True)
