@@ -167,6 +167,7 @@ from .scene import catalogue as catalogue
 from .scene import catalogue_entry as catalogue_entry
 from .scene import load_bearing as load_bearing
 from .scene import read_scene as read_scene
+from .scene import run as run
 from .scene import run_scene as run_scene
 from .statics import BallSolution as BallSolution
 from .statics import Cases as Cases

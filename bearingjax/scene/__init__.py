@@ -1,5 +1,8 @@
 """Scene files: reading, running, reporting."""
 
+from .bearing_run import run_optimisation as run_optimisation
+from .bearing_run import run_scene as run_scene
+from .bearing_run import with_set_preload as with_set_preload
 from .cases_table import CaseTable as CaseTable
 from .cases_table import read_cases as read_cases
 from .catalogue_entry import CatalogueEntry as CatalogueEntry
@@ -81,9 +84,6 @@ from .rotor_run import RotorRun as RotorRun
 from .rotor_run import run_rotor as run_rotor
 from .rotor_scene import RotorScene as RotorScene
 from .rotor_table import read_rotor as read_rotor
-from .run import run_optimisation as run_optimisation
-from .run import run_scene as run_scene
-from .run import with_set_preload as with_set_preload
 from .scene_file import shipped_scenes as shipped_scenes
 from .skid_output import skid_as_dict as skid_as_dict
 from .skid_output import skid_columns as skid_columns
@@ -93,6 +93,9 @@ from .skid_run import SkidRun as SkidRun
 from .skid_run import run_skid as run_skid
 from .skid_table import SkidScene as SkidScene
 from .skid_table import read_skid as read_skid
+from .study import STUDIES as STUDIES
+from .study import run as run
+from .study import study_of as study_of
 from .sweep_run import cases_with_set_preload as cases_with_set_preload
 from .sweep_run import design_columns as design_columns
 from .sweep_run import run_cases as run_cases

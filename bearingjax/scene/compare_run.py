@@ -15,13 +15,13 @@ from ..statics.solution import Solution
 from ..statics.sweep import SUMMARIES
 from ..statics.sweep_table import OPERATING_CLEARANCE, spread
 from ..statics.warning import warnings
+from .bearing_run import run_scene
 from .fit_table import fit_facts
 from .html_report import flat
 from .life_report import scene_life
 from .read import Scene
 from .report import without_round_off
 from .report_model import Column, Grid, Part, Report
-from .run import run_scene
 
 _FIELDS = "displacement", "force", "stiffness"
 _SUMMARIES = "largest_load", "peak_pressure", "n_loaded"

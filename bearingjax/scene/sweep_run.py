@@ -16,12 +16,12 @@ from ..statics.preload import is_opposed, pressed
 from ..statics.sweep import Sweep, sweep
 from ..statics.sweep_program import not_run
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
+from .bearing_run import with_set_preload
 from .cases_table import CaseTable, Structure, turns_of
 from .life_table import life_conditions
 from .quantity import SceneError
 from .report import ROUND_OFF
 from .report_model import Column, Grid, Part, Report
-from .run import with_set_preload
 from .set_preload import preload_warnings, range_warnings
 
 OUTPUTS = (

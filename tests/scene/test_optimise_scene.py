@@ -119,7 +119,7 @@ def test_measure_that_does_not_fit_is_an_error_of_the_scene(run, scene, monkeypa
     def refuse(*_, **__):
         raise ValueError("Displacement: `freedom` is 'ux', which is not free")
 
-    monkeypatch.setattr("bearingjax.scene.run.optimise", refuse)
+    monkeypatch.setattr("bearingjax.scene.bearing_run.optimise", refuse)
     done = run("optimise", scene(GOOD))
     assert done.status == 2 and done.out == ""
     assert "free: Displacement: `freedom` is 'ux'" in done.err
@@ -132,7 +132,7 @@ def test_progress_is_shown_to_who_watches_and_wants_it(run, scene, monkeypatch):
         asked.append(progress)
         raise ValueError("enough")
 
-    monkeypatch.setattr("bearingjax.scene.run.optimise", note)
+    monkeypatch.setattr("bearingjax.scene.bearing_run.optimise", note)
     run("optimise", scene(GOOD))
     told = io.StringIO()
     told.isatty = lambda: True  # pyright: ignore[reportAttributeAccessIssue]

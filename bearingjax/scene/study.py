@@ -1,0 +1,84 @@
+"""Running whatever a scene describes."""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .bearing_run import run_optimisation, run_scene
+from .cases_table import read_cases
+from .contact_run import run_contact
+from .contact_table import read_contact
+from .life_run import run_life
+from .noise_run import run_noise
+from .noise_table import read_noise
+from .optimise_table import read_optimisation
+from .read import read_scene
+from .rotor_run import run_rotor
+from .rotor_table import read_rotor
+from .scene_file import find_scene, parse_scene
+from .skid_run import run_skid
+from .skid_table import read_skid
+from .sweep_run import run_cases
+
+
+class Study(NamedTuple):
+    """What a scene may ask for.
+
+    Attributes:
+        tables: Of a scene that asks for it, all of them.
+        read: Reads such a scene, from its place and settings.
+        run: Runs what was read.
+    """
+
+    tables: frozenset[str]
+    read: Callable[..., Any]
+    run: Callable[[Any], Any]
+
+
+STUDIES = {
+    "rotor": Study(frozenset({"rotor"}), read_rotor, run_rotor),
+    "contact": Study(frozenset({"roller"}), read_contact, run_contact),
+    "noise": Study(frozenset({"vibration"}), read_noise, run_noise),
+    "skid": Study(frozenset({"dynamics"}), read_skid, run_skid),
+    "optimise": Study(frozenset({"optimise"}), read_optimisation, run_optimisation),
+    "life": Study(frozenset({"cases", "life"}), read_cases, run_life),
+    "sweep": Study(frozenset({"cases"}), read_cases, run_cases),
+    "solve": Study(frozenset(), read_scene, run_scene),
+}
+"""By the command that does the same; a scene is the first whose tables it has."""
+
+
+def study_of(source: str | Path, settings: Iterable[str] = ()) -> str:
+    """Which of `STUDIES` a scene describes.
+
+    Args:
+        source, settings: As of `read_scene`.
+
+    Raises:
+        SceneError: If there is no such scene, or it cannot be read.
+    """
+    data = parse_scene(find_scene(source), settings)
+    return next(name for name, study in STUDIES.items() if study.tables <= data.keys())
+
+
+def run(source: str | Path, settings: Iterable[str] = ()) -> Any:
+    """Run whatever a scene describes.
+
+    Args:
+        source: Scene file, or the name of a shipped scene.
+        settings: Changes to it, "key=value", as of `--set`.
+
+    Returns:
+        By the tables of the scene: `RotorRun` of [rotor], a list of `Compared` of
+        [roller], `NoiseRun` of [vibration], `SkidRun` of [dynamics], `Optimised` of
+        [optimise], `LifeRun` of [cases] and [life], `Sweep` of [cases], else the
+        `Solution` of the bearing under its load. Read its result code: nothing is
+        raised for a failed solve, but for the start of an optimisation.
+
+    Raises:
+        SceneError: If the scene cannot be read.
+        SolveError: If the design from which an optimisation starts does not solve.
+    """
+    settings = list(settings)
+    study = STUDIES[study_of(source, settings)]
+    return study.run(study.read(source, settings))
