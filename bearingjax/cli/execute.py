@@ -53,7 +53,8 @@ class Outcome:
         page: Gives the report of the page if that has more; default: `report`.
         table_on_page: Whether the page shows the first rows of the table too.
         problems: Why it was not solved, or not all of it, a line each.
-        status: Exit status of what was solved.
+        interrupted: Asked once all is written whether the run was interrupted: what
+            to say of it in place of the problems, and the exit status.
     """
 
     name: str
@@ -67,7 +68,7 @@ class Outcome:
     page: "Callable[[], Report] | None" = None
     table_on_page: bool = False
     problems: Sequence[str] = ()
-    status: int | None = None
+    interrupted: Callable[[], tuple[str, int] | None] = lambda: None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -111,12 +112,14 @@ def execute(command: Any, options: Any) -> int:
                 stage.end()
         told: list[str] = []
         failed = _write(found, options, origin, told)
+        ended = found.interrupted()
     if found.report is not None:
         print("\n".join([str(found.report), *told]), flush=True)
+    if ended is not None:
+        complain(ended[0])
+        return ended[1]
     for problem in found.problems:
         complain(problem)
-    if found.status is not None:
-        return found.status
     return NOT_SOLVED if found.problems else BAD_INPUT if failed else SOLVED
 
 

@@ -77,12 +77,14 @@ def run(options, tools: Tools) -> Outcome:
 
     left = int((np.asarray(solved.result) == Result.NOT_RUN).sum())
     lost = int((~solved.converged).sum())
-    problems, status = [], None
-    if left or interrupt.number is not None:
-        problems.append(_how_to_go_on(options, left, solved.cases.count))
+
+    def interrupted():
+        if not left and interrupt.number is None:
+            return None
         status = 128 + (interrupt.number or signal.SIGINT)
-    elif lost:
-        problems.append(f"{lost} of {solved.cases.count} cases not solved")
+        return _how_to_go_on(options, left, solved.cases.count), status
+
+    words = f"{lost} of {solved.cases.count} cases not solved"
     return Outcome(
         table.scene.name,
         table.inputs,
@@ -91,8 +93,8 @@ def run(options, tools: Tools) -> Outcome:
         lambda: sweep_table.columns(solved, design_columns(table)),
         {"Results over the cases": draw} if solved.converged.any() else {},
         table_on_page=True,
-        problems=problems,
-        status=status,
+        problems=[words] if lost else [],
+        interrupted=interrupted,
     )
 
 

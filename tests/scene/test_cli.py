@@ -84,7 +84,7 @@ def test_solved(run, tmp_path):
     assert numbers["version"] == bj.__version__
     # The report says the same.
     assert "\nouter ring (inner ring fixed)\n" in done.out
-    (uy,) = re.findall(r"(?m)^  uy +(\S+) µm +Fy +-10\.6 kN$", done.out)
+    (uy,) = re.findall(r"(?m)^uy +(\S+) µm +Fy +-10\.6 kN$", done.out)
     uy_json = numbers["displacement"][1]
     assert 1e-6 * float(uy) == pytest.approx(uy_json, rel=1e-4)
     load = np.max(numbers["roller_load"], axis=1)

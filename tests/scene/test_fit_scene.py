@@ -807,7 +807,7 @@ objective = "rating_life"
 
 
 @pytest.mark.slow
-def test_command_optimises_a_life_by_its_fit(run, scene, tmp_path):
+def test_command_optimises_a_life_by_its_fit(run, scene, tmp_path, untyped):
     """It tells hours, and warns of the seats of the best design, not of the start."""
     turning = BEARING.replace("[operating]", '[operating]\ninner_speed = "1500 rpm"')
     seats = FIT.replace('shaft = "k5"', 'shaft_interference = "20 um"')

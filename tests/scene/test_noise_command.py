@@ -304,10 +304,10 @@ def test_random_bearings(run, scene, tmp_path):
     assert np.allclose(
         found["part"], again.shares.share / again.shares.mean_square, rtol=ROUNDING
     )
-    assert "3 random bearings, dB" in done.out and "50 % are below" in done.out
+    assert "3 random bearings\n" in done.out and "50 % are below" in done.out
     assert "what makes the noise along the sensor (0, 0.6, 0.8), of 3" in done.out
-    assert "  diameters of the rolling elements  " in done.out
-    assert "  eccentricity of the inner raceway  " in done.out
+    assert "\ndiameters of the rolling elements  " in done.out
+    assert "\neccentricity of the inner raceway  " in done.out
     assert np.shape(found["part_by_band"]) == (2, 12)
     assert len(found["part_error"]) == 2 and found["tighter"] == []
     assert picture.stat().st_size > 10_000

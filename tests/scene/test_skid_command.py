@@ -186,7 +186,7 @@ def test_rollers(run, tmp_path):
     spin = np.array(numbers["spin"])  # about the roller axis alone, as that of a ball
     assert spin.shape == (7, 3) and not spin[:, :2].any()
     np.testing.assert_array_equal(spin[:, 2], found.spin[::2])
-    assert "cage            pushes a roller with up to" in done.out
+    assert "\ncage on a roller  pushes with up to" in done.out
     with table.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     column = [float(row["cage_force [N]"]) for row in rows]
