@@ -6,7 +6,7 @@ from .status import BAD_INPUT, SOLVED
 
 
 def add(commands):
-    """What may be written after it."""
+    """Add the command and its options."""
     command = commands.add_parser(
         "catalogue",
         help="bearings by their designation",

@@ -7,7 +7,7 @@ from .solution import why_unsolved
 
 
 def add(commands):
-    """What may be written after it."""
+    """Add the command and its options."""
     command = commands.add_parser(
         "compare",
         help="several designs side by side",

@@ -3,7 +3,6 @@
 import argparse
 import functools
 import gc
-import inspect
 import io
 import os
 import sys
@@ -28,7 +27,7 @@ from . import (
 from .execute import execute
 from .status import BAD_INPUT, INTERRUPTED, SOLVED, complain
 
-_COMMANDS = (
+_SOLVING = (
     solve,
     sweep,
     compare,
@@ -38,11 +37,11 @@ _COMMANDS = (
     skid,
     rotor,
     noise,
-    catalogue,
-    new,
-    examples,
-    schema,
 )
+"""Commands that solve scenes; `execute` writes what they return."""
+
+_LOOKING_UP = (catalogue, new, examples, schema)
+"""Commands that print, and return an exit status themselves."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -93,7 +92,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    """Of the command line; `execute` of what it parses does what the command does."""
+    """Build the parser; `execute` of what it parses runs the command."""
     from importlib.metadata import version
 
     top = argparse.ArgumentParser(
@@ -101,12 +100,12 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=version("bearingjax"))
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for command in _COMMANDS:
+    for command in (*_SOLVING, *_LOOKING_UP):
         added = command.add(commands)
-        # Commands that solve a scene take tools, and return what is to be written.
-        solves = "tools" in inspect.signature(command.run).parameters
-        made = functools.partial(execute, command) if solves else command.run
-        added.set_defaults(execute=made, refuse=added.error)
+        call = command.run
+        if command in _SOLVING:
+            call = functools.partial(execute, command)
+        added.set_defaults(execute=call, refuse=added.error)
     return top
 
 

@@ -4,7 +4,7 @@ from .status import SOLVED
 
 
 def add(commands):
-    """What may be written after it."""
+    """Add the command and its options."""
     command = commands.add_parser(
         "examples",
         help="the scenes that come with the package",

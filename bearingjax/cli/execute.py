@@ -36,7 +36,7 @@ _ENDINGS = {
 
 @dataclasses.dataclass(frozen=True)
 class Outcome:
-    """What a command found, ready for each of its outputs.
+    """Results of a command, ready for each of its outputs.
 
     What is `None` there is nothing to be written of, as of what was not solved; a file
     of an earlier run in its place is removed.
@@ -73,7 +73,7 @@ class Outcome:
 
 @dataclasses.dataclass(frozen=True)
 class Tools:
-    """What a command may use while it runs.
+    """Progress display and contexts for a command while it runs.
 
     Attributes:
         shown: Whether somebody watches a progress bar.

@@ -9,7 +9,7 @@ from .solution import solution_outcome
 
 
 def add(commands):
-    """What may be written after it."""
+    """Add the command and its options."""
     command = commands.add_parser(
         "life",
         help="rating life, of one load or of a load spectrum",

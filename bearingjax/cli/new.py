@@ -4,7 +4,7 @@ from .status import SOLVED
 
 
 def add(commands):
-    """What may be written after it."""
+    """Add the command and its options."""
     command = commands.add_parser(
         "new",
         help="a scene of a bearing of the catalogue, or of one that it does not list",

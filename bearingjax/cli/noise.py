@@ -7,7 +7,7 @@ from .options import add_plot, add_quiet, add_report, add_scene, add_table
 
 
 def add(commands):
-    """What may be written after it."""
+    """Add the command and its options."""
     command = commands.add_parser(
         "noise",
         help="vibration and noise from form errors",

@@ -6,7 +6,7 @@ from .options import add_plot, add_quiet, add_report, add_scene
 
 
 def add(commands):
-    """What may be written after it."""
+    """Add the command and its options."""
     command = commands.add_parser(
         "optimise",
         help="the free numbers of a design that make a measure least",

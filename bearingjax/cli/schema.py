@@ -6,7 +6,7 @@ from .status import SOLVED
 
 
 def add(commands):
-    """What may be written after it."""
+    """Add the command and its options."""
     command = commands.add_parser(
         "schema",
         help="the keys of scene files",

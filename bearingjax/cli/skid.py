@@ -5,7 +5,7 @@ from .options import add_plot, add_quiet, add_report, add_scene, add_table
 
 
 def add(commands):
-    """What may be written after it."""
+    """Add the command and its options."""
     command = commands.add_parser(
         "skid",
         help="balls and rollers that skid: over time, or in the end",

@@ -1,7 +1,5 @@
 """The outcome of a solved bearing, of `solve` and what builds on it."""
 
-import dataclasses
-
 from . import jax_settings
 from .execute import Outcome
 
@@ -21,6 +19,8 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
     if solved:
         scene = with_set_preload(scene, jax_settings.programs())
 
+    told = report(scene, solution) if solved else None
+
     def draw():
         from ..plot import overview
 
@@ -37,7 +37,8 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
         scene.name,
         scene.inputs,
         lambda: (numbers or as_dict)(scene, solution),
-        dataclasses.replace(report(scene, solution), brief=brief) if solved else None,
+        told if brief is None or told is None else told.only(brief),
+        page=None if told is None else lambda: told,
         pictures={"Section, load zone, contacts": draw} if solved else {},
         drawing=draw_bearing,
         problems=[] if solved else [why_unsolved(scene, solution)],

@@ -7,7 +7,7 @@ from .status import complain
 
 
 def add(commands):
-    """What may be written after it."""
+    """Add the command and its options."""
     command = commands.add_parser(
         "solve",
         help="where the rings go under load",

@@ -8,7 +8,9 @@ import numpy as np
 
 from ..element.frame import RINGS
 from ..statics.life import LIFE_OUTPUTS, Life, life_of
+from ..statics.life_warning import life_warnings
 from ..statics.solution import RollerSolution, Solution
+from ..statics.warning import warnings
 from .life_table import life_conditions, not_published, rating_origins
 from .quantity import SceneError
 from .read import Scene
@@ -42,6 +44,25 @@ def scene_life(scene: Scene, solution: Solution) -> Life:
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
     return jax.device_get(life)
+
+
+def solved_warnings(
+    scene: Scene, solution: Solution, life: Life | None = None
+) -> list[str]:
+    """Warnings of a solved scene: of itself, its solution and its life.
+
+    Args:
+        scene: What was solved, with the preload of its set where it has fits.
+        solution: In NumPy; of one that did not converge nothing is told.
+        life: Its rating life, in NumPy; `None`: none is judged.
+    """
+    found = list(scene.warnings)
+    if solution.converged:
+        found += warnings(solution)
+    if life is not None:
+        bearing = scene.element.bearing
+        found += life_warnings(bearing, life.ratings, vars(life))
+    return found
 
 
 def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:

@@ -8,12 +8,10 @@ import numpy as np
 
 from ..numerics.result import Result
 from ..statics.life import Life
-from ..statics.life_warning import life_warnings
 from ..statics.solution import BallSolution, Solution, message
-from ..statics.warning import warnings
 from .files import write_numbers
 from .fit_report import fit_as_dict
-from .life_report import life_as_dict, scene_life
+from .life_report import life_as_dict, scene_life, solved_warnings
 from .life_table import rating_origins
 from .oil_table import oil_as_dict
 from .read import Scene
@@ -102,20 +100,13 @@ def solved_as_dict(
     from .. import __version__
 
     solution = jax.device_get(solution)
-    bearing = scene.element.bearing
-    result = Result(int(solution.result))
-    solved = result is Result.CONVERGED
     residual = float(solution.stats.residual)
     return {
-        "result": result.label,
+        "result": Result(int(solution.result)).label,
         "message": message(solution, scene.moving_ring),
         "residual": residual if np.isfinite(residual) else None,
         "iterations": int(solution.stats.iterations),
-        "warnings": [
-            *scene.warnings,
-            *(warnings(solution) if solved else []),
-            *([] if life is None else life_warnings(bearing, life.ratings, vars(life))),
-        ],
+        "warnings": solved_warnings(scene, solution, life),
         "inputs": scene.inputs,
         "version": __version__,
     }

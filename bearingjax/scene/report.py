@@ -11,11 +11,9 @@ import numpy as np
 
 from ..design import Bearing, BearingSet, TaperedRollerBearing, is_ball, rows_of
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
-from ..statics.life_warning import life_warnings
 from ..statics.solution import BallSolution, Solution
-from ..statics.warning import warnings
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
-from .life_report import life_section, scene_life
+from .life_report import life_section, scene_life, solved_warnings
 from .oil_table import oil_report
 from .operation_report import operation
 from .read import Scene
@@ -39,9 +37,6 @@ def report(scene: Scene, solution: Solution) -> Report:
     # As NumPy holds it: JAX would compile every small operation on the way.
     solution = jax.device_get(solution)
     life = None if scene.life is None else scene_life(scene, solution)
-    told = [*scene.warnings, *warnings(solution)]
-    if life is not None:
-        told += life_warnings(scene.element.bearing, life.ratings, vars(life))
     sections = {
         "Bearing": [bearing_text(scene, solution.element.bearing, solution)],
         "Operation, materials and laws": [operation(scene, solution)],
@@ -56,7 +51,7 @@ def report(scene: Scene, solution: Solution) -> Report:
             f" {float(solution.stats.residual):.1e} of the load"
         ],
     }
-    return Report(sections, told)
+    return Report(sections, solved_warnings(scene, solution, life))
 
 
 def design_sections(scene: Scene) -> dict[str, Section]:

@@ -1,4 +1,4 @@
-"""What a run tells people, as data: sections of sentences and grids of columns.
+"""Reports of runs as data: sections of sentences and grids of columns.
 
 The terminal shows a `Report` as text, `html_report` as a page with real tables. Numbers
 stand in it in SI, with their unit; the units that people read are chosen here, by
@@ -146,29 +146,30 @@ def labelled(rows: Iterable[tuple[str, str]]) -> Grid:
 
 @dataclasses.dataclass(frozen=True)
 class Report:
-    """What a run tells people; `str` of it is the text of the terminal.
+    """Report of a run for people; `str` of it is the text of the terminal.
 
     Attributes:
         sections: By their titles, in their order; those that are empty are left out.
         warnings: What a reader should know before the numbers are used.
-        brief: Titles of the sections that the terminal shows; default: all.
     """
 
     sections: Mapping[str, Section]
     warnings: Sequence[str] = ()
-    brief: Sequence[str] | None = None
 
     def __post_init__(self):
         told = {title: parts for title, parts in self.sections.items() if parts}
         object.__setattr__(self, "sections", told)
 
     def __str__(self) -> str:
-        shown = self.sections if self.brief is None else self.brief
-        texts = [section_text(self.sections[t]) for t in shown if t in self.sections]
+        texts = ["\n".join(map(str, parts)) for parts in self.sections.values()]
         warned = "".join(f"\nwarning: {text}" for text in self.warnings)
         return f"\n{RULE}\n".join(texts) + warned
 
+    def only(self, titles: Sequence[str]) -> "Report":
+        """The report with some of its sections.
 
-def section_text(parts: Section) -> str:
-    """A section as text."""
-    return "\n".join(map(str, parts))
+        Args:
+            titles: Of those that are kept; what there is not is passed over.
+        """
+        kept = {title: self.sections.get(title, ()) for title in titles}
+        return dataclasses.replace(self, sections=kept)

@@ -225,17 +225,21 @@ def _spans(solved: Sweep) -> dict[str, tuple[float, float]]:
         values = values[solved.converged & np.isfinite(values)]
         if values.any():
             spans[header] = values.min(), values.max()
-            kind = _kind(header)
-            sizes[kind] = max(sizes.get(kind, 0.0), np.abs(values).max())
+            alike = kind(header)
+            sizes[alike] = max(sizes.get(alike, 0.0), np.abs(values).max())
     return {
         header: ends
         for header, ends in spans.items()
-        if np.abs(ends).max() >= ROUND_OFF * sizes[_kind(header)]
+        if np.abs(ends).max() >= ROUND_OFF * sizes[kind(header)]
     }
 
 
-def _kind(header: str) -> tuple[str, str]:
-    """First word and unit of a header, alike of what can be compared."""
+def kind(header: str) -> tuple[str, str]:
+    """First word and unit of a header, alike of numbers that can be compared.
+
+    Args:
+        header: "name_axis [unit]".
+    """
     return header.partition("_")[0], header.partition(" [")[2]
 
 

@@ -7,9 +7,28 @@ import pytest
 
 import bearingjax as bj
 from bearingjax.scene import as_dict
-from bearingjax.scene.compare_run import difference
+from bearingjax.scene.compare_run import _side_by_side, difference
 
 SCENE = "cylindrical_rig"
+PAIR = """
+[bearing]
+designation = "7208 BE"
+[operating]
+load = { Fy = "-1 kN" }
+inner_speed = "12000 rpm"
+[set]
+arrangement = "back_to_back"
+spacing = "18 mm"
+preload_force = "300 N"
+[fit]
+shaft = "k5"
+housing = "H7"
+housing_diameter = "120 mm"
+[temperature]
+inner_ring = "60 °C"
+outer_ring = "50 °C"
+[life]
+"""
 
 
 @pytest.fixture
@@ -84,3 +103,24 @@ def test_compare_needs_two_scenes(run):
 )
 def test_difference(values, expected):
     np.testing.assert_equal(difference(np.array(values)), expected)
+
+
+def test_compare_leaves_out_what_is_small_beside_its_kind():
+    first = {"displacement_uy [m]": 1e-5, "displacement_ux [m]": 1e-13, "load [N]": 1.0}
+    other = {"displacement_uy [m]": 2e-5, "displacement_ux [m]": -3e-11}
+    found = _side_by_side([first, other])
+    assert list(found) == ["displacement_uy [m]", "load [N]"]
+
+
+def test_compare_warns_of_each_scene_as_solve_does(run, tmp_path, untyped):
+    """The preload of a set on its seats and the life included."""
+    path = tmp_path / "pair.toml"
+    path.write_text(PAIR, encoding="utf-8")
+    out = tmp_path / "out.json"
+    assert run("solve", path, "--json", out).status == 0
+    told = json.loads(out.read_text(encoding="utf-8"))["warnings"]
+    assert any(text.startswith("preload: 300 N as ground are") for text in told)
+    done = run("compare", path, path, "--json", out)
+    assert done.status == 0, done.err
+    assert json.loads(out.read_text(encoding="utf-8"))["warnings"] == [told, told]
+    assert all(f"(1): {text}\n" in done.out for text in told)

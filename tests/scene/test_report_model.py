@@ -69,5 +69,5 @@ def test_report_text_and_page_hold_the_same():
 
 
 def test_report_shows_the_sections_that_are_asked_for():
-    report = Report({"a": ["first"], "b": ["second"]}, ["odd"], brief=("b", "none"))
+    report = Report({"a": ["first"], "b": ["second"]}, ["odd"]).only(("b", "none"))
     assert str(report) == "second\nwarning: odd"

@@ -398,6 +398,21 @@ def test_cases_have_the_dtype_of_their_solutions():
         assert cases.load.dtype == cases.inner_speed.dtype == jnp.float64
 
 
+def test_sweep_in_float32_starts_from_first_contact(monkeypatch):
+    asked = []
+
+    def noted(program, cases, near, *_):
+        asked.append(near)
+        return {"result": np.zeros(cases.count, int)}
+
+    monkeypatch.setattr(sweep_program.Program, "run", noted)
+    for wide in (True, False):
+        with jax.enable_x64(wide):
+            element = jax.tree.map(lambda a: jnp.asarray(a, float), ELEMENT)
+            bj.sweep(element, bj.Cases(np.asarray(LOADS)))
+    assert asked == [True, False]
+
+
 def test_outputs_of_a_function_are_a_dict_of_arrays():
     """Others ended in an AttributeError of the program; a number passes."""
     solution = SimpleNamespace(converged=jnp.asarray(False), result=1, unrestrained=-1)
