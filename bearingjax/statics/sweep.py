@@ -165,9 +165,9 @@ def sweep(
             kept, or a function of one Solution; what is not kept is not computed.
             `None`: all fields of `Solution`.
         free, fixed_ring, points, max_steps: As in `solve_load`.
-        tolerance: As in `solve_load`. Displacements are off by up to ten times as much,
-            relative to the largest: 1e-6 takes a fifth less time than the default, 1e-4
-            a third (benchmarks/load_solve_throughput.py).
+        tolerance: As in `solve_load`. Displacements are off by up to thirty times as
+            much, relative to the largest: 1e-6 takes a fifth less time than the
+            default, 1e-4 a quarter (benchmarks/load_solve_throughput.py).
         near: Start each case from the nearest one that is solved by then, moved by
             its stiffness. Cases that fail so, or that have a direction which nothing
             holds, are solved again from first contact; so answers and result codes are
