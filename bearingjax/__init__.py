@@ -8,7 +8,7 @@ before the first array is made:
 
 What each part does stands in its own docstring: `help(bearingjax.statics)` (load
 solves, sweeps, what to do when one fails), `element` (choices of numerics, speed),
-`optimise`, `rotor`, `rotor.vibration`, `dynamics`, `acoustics`, `contact.halfspace`.
+`optimise`, `rotor`, `rotor.nonlinear`, `skid`, `noise`, `contact.halfspace`.
 
 Conventions
 -----------
@@ -54,30 +54,16 @@ Conventions
   coated ones a density to match.
 """
 
+import importlib as _importlib
 from importlib.metadata import version as _version
+from typing import TYPE_CHECKING as _TYPE_CHECKING
 
-from . import acoustics as acoustics
 from . import contact as contact
 from . import design as design
-from . import dynamics as dynamics
 from . import element as element
 from . import lubrication as lubrication
 from . import numerics as numerics
-from . import plot as plot
-from . import rotor as rotor
-from . import scene as scene
 from . import statics as statics
-from .acoustics import NoiseModel as NoiseModel
-from .acoustics import natural_modes as natural_modes
-from .acoustics import vibration as vibration
-from .contact import ISO16281 as ISO16281
-from .contact import CoupledSlices as CoupledSlices
-from .contact import FreeAngle as FreeAngle
-from .contact import LineConstant as LineConstant
-from .contact import OperatingAngle as OperatingAngle
-from .contact import Palmgren as Palmgren
-from .contact import PointConstant as PointConstant
-from .contact import ZeroAngle as ZeroAngle
 from .design import AngularContactBallBearing as AngularContactBallBearing
 from .design import BearingSet as BearingSet
 from .design import CircularCrown as CircularCrown
@@ -102,87 +88,17 @@ from .design import Straight as Straight
 from .design import Tabulated as Tabulated
 from .design import TaperedRollerBearing as TaperedRollerBearing
 from .design import ThrustBallBearing as ThrustBallBearing
-from .design import WarmMaterial as WarmMaterial
-from .design import mounted as mounted
-from .design.form_error import FormErrors as FormErrors
-from .design.form_error import Harmonics as Harmonics
 from .element import FREEDOMS as FREEDOMS
 from .element import BearingElement as BearingElement
-from .element import CentrifugalOnly as CentrifugalOnly
-from .element import ConstantAngle as ConstantAngle
-from .element import EqualShare as EqualShare
-from .element import Finite as Finite
-from .element import FrictionLimited as FrictionLimited
-from .element import InnerControl as InnerControl
-from .element import Linearised as Linearised
-from .element import LoadShare as LoadShare
-from .element import OperatingCentrifugal as OperatingCentrifugal
-from .element import OuterControl as OuterControl
 from .element import Speed as Speed
 from .lubrication import Lubricant as Lubricant
-from .numerics import BFGS as BFGS
-from .numerics import ContactMapped as ContactMapped
-from .numerics import Midpoint as Midpoint
 from .numerics import Result as Result
 from .numerics import SolveError as SolveError
-from .numerics import TrustRegionNewton as TrustRegionNewton
-from .optimise import Constraint as Constraint
-from .optimise import Displacement as Displacement
-from .optimise import EdgeLoad as EdgeLoad
-from .optimise import GeometryEstimate as GeometryEstimate
-from .optimise import MeanPressure as MeanPressure
-from .optimise import Optimised as Optimised
-from .optimise import PeakPressure as PeakPressure
-from .optimise import RatingLife as RatingLife
-from .optimise import Stiffness as Stiffness
-from .optimise import StiffnessTarget as StiffnessTarget
-from .optimise import Variable as Variable
-from .optimise import estimate_geometry as estimate_geometry
-from .optimise import optimise as optimise
-from .rotor import BearingSupport as BearingSupport
-from .rotor import Disc as Disc
-from .rotor import Housing as Housing
-from .rotor import LinearSupport as LinearSupport
-from .rotor import ModalDamping as ModalDamping
-from .rotor import PointMass as PointMass
-from .rotor import ProportionalDamping as ProportionalDamping
-from .rotor import Rotor as Rotor
-from .rotor import RotorLoads as RotorLoads
-from .rotor import Shaft as Shaft
-from .rotor import StationForce as StationForce
-from .rotor import Unbalance as Unbalance
-from .rotor import campbell as campbell
-from .rotor import critical_speeds as critical_speeds
-from .rotor import harmonic_response as harmonic_response
-from .rotor import modes as modes
-from .rotor import preload_offset as preload_offset
-from .rotor import settle as settle
-from .rotor import settle_over as settle_over
-from .rotor import stiffness_table as stiffness_table
-from .rotor import to_ross as to_ross
-from .rotor import unbalance_response as unbalance_response
-from .scene import CatalogueEntry as CatalogueEntry
-from .scene import SceneError as SceneError
-from .scene import catalogue as catalogue
-from .scene import catalogue_entry as catalogue_entry
-from .scene import load_bearing as load_bearing
-from .scene import read_scene as read_scene
-from .scene import run as run
-from .scene import run_scene as run_scene
-from .statics import BallSolution as BallSolution
 from .statics import Cases as Cases
-from .statics import Friction as Friction
 from .statics import Installed as Installed
-from .statics import Life as Life
 from .statics import LifeConditions as LifeConditions
-from .statics import OperatingPoint as OperatingPoint
-from .statics import Ratings as Ratings
-from .statics import RollerSolution as RollerSolution
 from .statics import Solution as Solution
-from .statics import SpectrumLife as SpectrumLife
-from .statics import Sweep as Sweep
 from .statics import dynamic_capacity as dynamic_capacity
-from .statics import fatigue_load_limit as fatigue_load_limit
 from .statics import films as films
 from .statics import friction_torque as friction_torque
 from .statics import linearise as linearise
@@ -190,9 +106,6 @@ from .statics import preload as preload
 from .statics import rating_life as rating_life
 from .statics import ratings as ratings
 from .statics import refine as refine
-from .statics import remaining_preload as remaining_preload
-from .statics import restrained_freedoms as restrained_freedoms
-from .statics import skf_friction_torque as skf_friction_torque
 from .statics import solve_load as solve_load
 from .statics import spectrum_life as spectrum_life
 from .statics import stack_designs as stack_designs
@@ -200,4 +113,38 @@ from .statics import static_capacity as static_capacity
 from .statics import sweep as sweep
 from .statics import warnings as warnings
 
+if _TYPE_CHECKING:
+    from . import noise as noise
+    from . import optimise as optimise
+    from . import plot as plot
+    from . import rotor as rotor
+    from . import scene as scene
+    from . import skid as skid
+    from .scene import SceneError as SceneError
+    from .scene import catalogue as catalogue
+    from .scene import catalogue_entry as catalogue_entry
+    from .scene import load_bearing as load_bearing
+    from .scene import read_scene as read_scene
+    from .scene import run as run
+
 __version__ = _version("bearingjax")
+
+# Imported at first use: packages, and names of the top level with their package.
+_LATE = dict.fromkeys("noise optimise plot rotor scene skid".split()) | dict.fromkeys(
+    "SceneError catalogue catalogue_entry load_bearing read_scene run".split(), "scene"
+)
+
+
+def __getattr__(name: str):
+    """Import a package, or what the top level has of it, at its first use (PEP 562)."""
+    if name not in _LATE:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    package = _importlib.import_module(f"{__name__}.{_LATE[name] or name}")
+    value = getattr(package, name) if _LATE[name] else package
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """All public names, imported or not."""
+    return sorted({*globals(), *_LATE})

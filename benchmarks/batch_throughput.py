@@ -75,7 +75,7 @@ from timing import machine, peak_memory, relative, shuffled, verdict  # noqa: E4
 
 import bearingjax as bj  # noqa: E402
 
-RULES = {"mapped": bj.ContactMapped(32), "midpoint": bj.Midpoint(32)}
+RULES = {"mapped": bj.numerics.ContactMapped(32), "midpoint": bj.numerics.Midpoint(32)}
 CHUNKS = {"cpu": (16, 32, 64, 128, 256), "gpu": (1024, 4096, 16384)}
 BLOCK = {"cpu": 1024, "gpu": 16384}  # cases of a device between visits of the host
 FULL = {

@@ -61,7 +61,7 @@ import numpy as np  # noqa: E402
 import bearingjax as bj  # noqa: E402
 
 
-def differences(entry: bj.CatalogueEntry) -> dict:
+def differences(entry: bj.scene.CatalogueEntry) -> dict:
     """Calculated over printed capacities less one, in percent; `None` if unknown."""
     c, c0 = (
         float(bj.dynamic_capacity(entry.bearing)),

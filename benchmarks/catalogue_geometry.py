@@ -233,7 +233,9 @@ def blind(kind, values, size) -> float | None:
     known = kind in ("angular_contact_ball", "four_point_ball", "tapered_roller")
     given = {"contact_angle": contact_angle(kind, values)} if known else {}
     try:
-        found = bj.estimate_geometry(bore, outside, width, kind, c, c0, **given)
+        found = bj.optimise.estimate_geometry(
+            bore, outside, width, kind, c, c0, **given
+        )
     except ValueError:
         return None
     row = bj.design.rows_of(found.bearing)[0].bearing

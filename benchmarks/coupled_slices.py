@@ -49,11 +49,11 @@ MODULUS = 210e9 / 1.82
 SIZES = ((0.010, 0.015), (0.020, 0.020))  # diameter, length
 LOADS = (100.0, 1000.0, 5000.0, 20000.0)
 TILTS = (0.0, 3e-4)
-RULE = bj.ContactMapped()
+RULE = bj.numerics.ContactMapped()
 LAWS = {
-    "independent": bj.Palmgren(),
-    "coupled, 16": bj.CoupledSlices(16),
-    "coupled, 24": bj.CoupledSlices(24),
+    "independent": bj.contact.Palmgren(),
+    "coupled, 16": bj.contact.CoupledSlices(16),
+    "coupled, 24": bj.contact.CoupledSlices(24),
 }
 
 

@@ -111,9 +111,9 @@ class WholeLength(AbstractQuadrature):
 
 
 RULES = {
-    "slices": bj.Midpoint,
+    "slices": bj.numerics.Midpoint,
     "whole length": WholeLength,
-    "mapped": bj.ContactMapped,
+    "mapped": bj.numerics.ContactMapped,
 }
 COLORS = {"slices": "#D55E00", "whole length": "#009E73", "mapped": "#0072B2"}
 FULL = {
@@ -160,7 +160,7 @@ def motion(contact):
 
 
 def element(info, quadrature):
-    law = bj.LineConstant(info["line_constant"])
+    law = bj.contact.LineConstant(info["line_constant"])
     return bj.BearingElement(bearing(info), law, quadrature=quadrature)
 
 
@@ -179,7 +179,7 @@ def references(profiles):
     for profile in profiles:
         info = design(profile)
         truth = oracle.build(info)
-        fine = element(info, bj.ContactMapped(REFERENCE))
+        fine = element(info, bj.numerics.ContactMapped(REFERENCE))
         call = jax.jit(functools.partial(answer, fine))
         for contact in CONTACTS:
             q = motion(contact)

@@ -60,7 +60,10 @@ QUANTITIES = {
     "stiffness": lambda s: s.stiffness[7, 7],
 }
 STEPS = tuple(10.0**-k for k in np.arange(1.5, 8.1, 0.5))
-COMB = {"mapped nodes, 32": bj.ContactMapped(32), "slices, 30": bj.Midpoint(30)}
+COMB = {
+    "mapped nodes, 32": bj.numerics.ContactMapped(32),
+    "slices, 30": bj.numerics.Midpoint(30),
+}
 COLORS = {"mapped nodes, 32": "#0072B2", "slices, 30": "#D55E00"}
 RADII = (0.6, 1.4)  # m
 FULL = {"rounds": 40, "directions": 3, "radii": 600, "quantities": tuple(QUANTITIES)}

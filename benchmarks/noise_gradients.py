@@ -46,13 +46,13 @@ import numpy as np  # noqa: E402
 from timing import machine, verdict  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.acoustics import (  # noqa: E402
+from bearingjax.design import FormErrors, Harmonics, RacewayErrors  # noqa: E402
+from bearingjax.noise import (  # noqa: E402
     NoiseModel,
     level,
     needed_steps,
     vibration,
 )
-from bearingjax.design import FormErrors, Harmonics, RacewayErrors  # noqa: E402
 
 NUMBERS = {
     "outer waves": 0.2e-6,

@@ -34,7 +34,7 @@ from scipy.integrate import solve_ivp  # noqa: E402
 from timing import machine, verdict  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.acoustics import (  # noqa: E402
+from bearingjax.noise import (  # noqa: E402
     NoiseModel,
     RandomWaves,
     Tolerances,
@@ -44,7 +44,7 @@ from bearingjax.acoustics import (  # noqa: E402
     standing,
     vibration,
 )
-from bearingjax.acoustics.stepping import REACH, step_weights  # noqa: E402
+from bearingjax.noise.stepping import REACH, step_weights  # noqa: E402
 
 SAMPLES, FINE = 2048, 8
 """Samples per turn; evaluations of SciPy's solution for each."""

@@ -42,8 +42,8 @@ import numpy as np  # noqa: E402
 from timing import machine, timed, verdict  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.acoustics import Hann, NoiseModel, needed_steps, vibration  # noqa: E402
 from bearingjax.design import FormErrors, RacewayErrors, Spall  # noqa: E402
+from bearingjax.noise import Hann, NoiseModel, needed_steps, vibration  # noqa: E402
 
 INCH, SHAFT = 0.0254, 1797 / 60
 PUBLISHED = {"outer raceway": 3.5848, "inner raceway": 5.4152, "ball": 4.7135}

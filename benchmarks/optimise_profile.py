@@ -62,7 +62,7 @@ NAMES = ("load_factor", "crowned_fraction", "end_drop")
 EDGE = 10e3
 KEPT = 1e-3  # share by which an edge load may pass its bound and still count as kept
 STEPS = {"slsqp": 200, "l-bfgs-b": 200, "nelder-mead": 1000, "rosenbrock": 1000}
-PEAK, ENDS = bj.PeakPressure(), bj.EdgeLoad()
+PEAK, ENDS = bj.optimise.PeakPressure(), bj.optimise.EdgeLoad()
 
 
 def bearing_and_cases():
@@ -85,7 +85,10 @@ def bearing_and_cases():
 
 def variables(start):
     rows = zip(NAMES, LOWER, UPPER, start, strict=True)
-    return [bj.Variable(f"bearing.roller_profile.{n}", a, b, s) for n, a, b, s in rows]
+    return [
+        bj.optimise.Variable(f"bearing.roller_profile.{n}", a, b, s)
+        for n, a, b, s in rows
+    ]
 
 
 def excess(element, cases, solution):
@@ -159,12 +162,12 @@ def turned(axes, gone):
 
 def run(method, element, cases, start, size_of, points):
     """One search from one start."""
-    kept = [bj.Constraint(ENDS, upper=EDGE)] if method == "slsqp" else []
+    kept = [bj.optimise.Constraint(ENDS, upper=EDGE)] if method == "slsqp" else []
     objective = {"slsqp": PEAK, "l-bfgs-b": size_of["smooth"]}.get(
         method, size_of["exact"]
     )
     begin = time.perf_counter()
-    found = bj.optimise(
+    found = bj.optimise.optimise(
         element,
         cases,
         variables(start),
@@ -232,7 +235,7 @@ def check_by_grid(rows, points, n):
     element, cases = bearing_and_cases()
     best = min((r for r in rows if r["kept"]), key=lambda r: r["peak"])
     options = SolveOptions(points=points)
-    kept = (bj.Constraint(ENDS, upper=EDGE),)
+    kept = (bj.optimise.Constraint(ENDS, upper=EDGE),)
     problem = Problem(element, cases, variables(REFERENCE), PEAK, kept, options)
     middle = problem.scaled(best["values"])
     sides = [np.clip(m + np.linspace(-0.1, 0.1, n), 0.0, 1.0) for m in middle]

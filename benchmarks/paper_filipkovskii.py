@@ -72,7 +72,7 @@ from rotor_response import (  # noqa: E402
 from timing import machine, verdict  # noqa: E402
 from vibrations import rotor  # noqa: E402
 
-from bearingjax.rotor.vibration import (  # noqa: E402
+from bearingjax.rotor.nonlinear import (  # noqa: E402
     HarmonicBalance,
     Shooting,
     solve_orbit,

@@ -136,7 +136,9 @@ import numpy as np  # noqa: E402
 from timing import machine, timed  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.acoustics import (  # noqa: E402
+from bearingjax.contact import Ellipse  # noqa: E402
+from bearingjax.design import FormErrors, Harmonics, RacewayErrors  # noqa: E402
+from bearingjax.noise import (  # noqa: E402
     Hann,
     NoiseModel,
     Sensor,
@@ -152,9 +154,7 @@ from bearingjax.acoustics import (  # noqa: E402
     vibration,
     waviness_force,
 )
-from bearingjax.acoustics.reference_levels import MEASURED, NORM, TOTAL  # noqa: E402
-from bearingjax.contact import Ellipse  # noqa: E402
-from bearingjax.design import FormErrors, Harmonics, RacewayErrors  # noqa: E402
+from bearingjax.noise.reference_levels import MEASURED, NORM, TOTAL  # noqa: E402
 
 MASS, OVERSIZE = 0.3716, 24e-6
 SPEED = bj.Speed(inner=1500 * np.pi / 30)
@@ -265,10 +265,10 @@ SCALE = 280e-9
 
 CAGE_MASS = 0.03
 """Lost in the paper: a ring of duralumin, 5 by 16 mm, less its pockets [kg]."""
-CAGE = bj.acoustics.Cage(
+CAGE = bj.noise.Cage(
     CAGE_MASS,
     CAGE_MASS * (0.5 * SIZE[1]) ** 2,
-    bj.acoustics.CageContact(film=1e-6),
+    bj.noise.CageContact(film=1e-6),
     pocket_clearance=0.5e-3,
     land_clearance=0.5e-3,
     load=[0.0, -9.81 * CAGE_MASS],

@@ -67,7 +67,7 @@ NODES = {
     "contact mapped": (8, 12, 16, 24, 32, 48),
 }
 SMOKE = {"midpoint": (20, 300), "contact mapped": (16, 32)}
-RULES = {"midpoint": bj.Midpoint, "contact mapped": bj.ContactMapped}
+RULES = {"midpoint": bj.numerics.Midpoint, "contact mapped": bj.numerics.ContactMapped}
 COLORS = {"midpoint": "#D55E00", "contact mapped": "#0072B2"}
 WHICH = ("worst", "median")
 ROLLERS = 3
@@ -111,7 +111,7 @@ def cases(count, kinds, profiles):
 
 
 def element(info, quadrature):
-    law = bj.LineConstant(info["line_constant"])
+    law = bj.contact.LineConstant(info["line_constant"])
     return bj.BearingElement(bearing(info, True), law, quadrature=quadrature)
 
 

@@ -60,16 +60,16 @@ def designs():
         "deep groove, clearance 20 um": (element(deep(20e-6)), False),
         "deep groove, preload 5 um": (element(deep(-5e-6)), False),
         "deep groove, operating angle": (
-            element(deep(10e-6), point_law=bj.OperatingAngle()),
+            element(deep(10e-6), point_law=bj.contact.OperatingAngle()),
             False,
         ),
         "angular contact, 15 deg": (element(angular(15)), True),
         "angular contact, 40 deg, friction": (
-            element(angular(40), raceway_control=bj.FrictionLimited(0.05)),
+            element(angular(40), raceway_control=bj.element.FrictionLimited(0.05)),
             True,
         ),
         "four-point, clearance 20 um": (
-            element(four, raceway_control=bj.LoadShare()),
+            element(four, raceway_control=bj.element.LoadShare()),
             False,
         ),
         "thrust": (element(bj.ThrustBallBearing(14, PITCH, BALL, **grooves)), True),
@@ -111,7 +111,7 @@ def random_loads(rng, one_sided, decade, count):
 
 @eqx.filter_jit
 def solve(element, loads, speeds):
-    restrained = bj.restrained_freedoms(element.bearing)
+    restrained = bj.statics.restrained_freedoms(element.bearing)
     free = jnp.asarray([name in restrained for name in bj.FREEDOMS])
 
     def one(case):

@@ -79,7 +79,7 @@ def solve(element, loads):
     def one(load):
         s = bj.solve_load(element, load, throw=False, points=3)
         free = jnp.asarray(
-            [n in bj.restrained_freedoms(element.bearing) for n in bj.FREEDOMS]
+            [n in bj.statics.restrained_freedoms(element.bearing) for n in bj.FREEDOMS]
         )
         scale = jnp.where(jnp.arange(6) < 3, 1.0, 2.0 / element.bearing.pitch_diameter)
         fresh = element.model().evaluate(s.displacement)

@@ -47,8 +47,8 @@ import numpy as np  # noqa: E402
 from timing import machine, timed  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.acoustics import NoiseModel, vibration  # noqa: E402
 from bearingjax.design import FormErrors, Harmonics, RacewayErrors  # noqa: E402
+from bearingjax.noise import NoiseModel, vibration  # noqa: E402
 
 SPEED = bj.Speed(inner=1500 * np.pi / 30)
 WAVES = tuple(range(2, 31))
@@ -122,7 +122,9 @@ def random_model(kind, rng):
     element = bj.BearingElement(
         bearing,
         **(
-            {} if hasattr(bearing, "ball_diameter") else {"quadrature": bj.Midpoint(12)}
+            {}
+            if hasattr(bearing, "ball_diameter")
+            else {"quadrature": bj.numerics.Midpoint(12)}
         ),
     )
     load = np.zeros(6)

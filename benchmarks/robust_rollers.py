@@ -56,8 +56,8 @@ class PlainNewton(AbstractMinimiser):
 
 
 SOLVERS = {
-    "newton": bj.TrustRegionNewton(),
-    "bfgs": bj.BFGS(),
+    "newton": bj.numerics.TrustRegionNewton(),
+    "bfgs": bj.numerics.BFGS(),
     "plain": PlainNewton(),
 }
 

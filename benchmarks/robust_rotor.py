@@ -51,7 +51,7 @@ import numpy as np  # noqa: E402
 from timing import machine, verdict  # noqa: E402
 from vibrations import ROTOR, grooves  # noqa: E402
 
-from bearingjax.rotor.vibration import (  # noqa: E402
+from bearingjax.rotor.nonlinear import (  # noqa: E402
     Ending,
     FixedAngle,
     HarmonicBalance,
@@ -61,7 +61,7 @@ from bearingjax.rotor.vibration import (  # noqa: E402
     rigid_rotor,
     simulate,
 )
-from bearingjax.rotor.vibration.continuation import place  # noqa: E402
+from bearingjax.rotor.nonlinear.continuation import place  # noqa: E402
 
 RANGE = 1.3, 0.5
 SOLVED, ASIDE, FINER = 1e-8, 0.2, (16, 64)

@@ -1,9 +1,9 @@
 """Does every run end, or say why not? Random bearings, oils, speeds and loads.
 
-300 runs of `skid`: five balls with a cage, designs, oil temperatures of -40 to 200 °C,
-drag up to an immersed bearing, pockets without clearance, from still stand or rolling,
-ramps of up to 3 million mm/min (D_m n) in 0.1 s, constant loads of 0 to 5 kN with
-radial parts, and loads that drop to nothing and come back, balanced at every time.
+300 runs of `skid.simulate`: five balls with a cage, designs, oil temperatures of -40 to
+200 °C, drag up to an immersed bearing, pockets without clearance, from still stand or
+rolling, ramps of up to 3 million mm/min (D_m n) in 0.1 s, constant loads of 0 to 5 kN
+with radial parts, and loads that drop to nothing and come back, balanced at every time.
 Every third run takes another law of traction, or next to no oil. A run fails if its
 result code is that of a failure; it is wrong if it converged with NaN in it, if its
 power balance is out by more than the tolerance, 1e-4 of the work or of the kinetic
@@ -36,21 +36,21 @@ import numpy as np  # noqa: E402
 from timing import machine  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.dynamics import (  # noqa: E402
+from bearingjax import skid  # noqa: E402
+from bearingjax.lubrication import (  # noqa: E402
+    Eyring,
+    LimitingStress,
+    Newtonian,
+    mil_l_23699,
+)
+from bearingjax.numerics import Result  # noqa: E402
+from bearingjax.skid import (  # noqa: E402
     Cage,
     Drag,
     LoadHistory,
     SkidModel,
     SpeedTable,
-    skid,
 )
-from bearingjax.lubrication import (  # noqa: E402
-    Eyring,
-    LimitingStress,
-    Newtonian,
-    mil_l_23699,  # noqa: E402
-)
-from bearingjax.numerics import Result  # noqa: E402
 
 BALLS = 5
 FREE = ["ux", "uy", "uz", "gx", "gy"]
@@ -142,7 +142,7 @@ def main():
         laws = Newtonian(), LimitingStress(0.08), Eyring(5e6)
         one = model(rng, laws[0] if args.smoke else laws[k % 3])
         load, speed, duration = given(rng, kind, float(one.bearing.pitch_diameter))
-        found = skid(
+        found = skid.simulate(
             one,
             load,
             speed=speed,

@@ -35,7 +35,7 @@ import numpy as np  # noqa: E402
 from timing import machine, shuffled  # noqa: E402
 from vibrations import ROTOR, grooves  # noqa: E402
 
-from bearingjax.rotor.vibration import (  # noqa: E402
+from bearingjax.rotor.nonlinear import (  # noqa: E402
     Arclength,
     Ending,
     FixedAngle,
@@ -44,7 +44,7 @@ from bearingjax.rotor.vibration import (  # noqa: E402
     rigid_rotor,
     trace,
 )
-from bearingjax.rotor.vibration.orbit import amplitudes, beginning  # noqa: E402
+from bearingjax.rotor.nonlinear.orbit import amplitudes, beginning  # noqa: E402
 
 METHOD = HarmonicBalance(5, 32, steps=24)
 LAW = grooves(36).fixed_angle()

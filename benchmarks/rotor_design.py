@@ -61,8 +61,9 @@ CLEAR = 1.2
 TOP, PLACES = 30_000.0 * RPM, 21
 BOUNDS = [(12.0, 35.0), (12.0, 35.0), (2.0, 25.0), (2.0, 25.0)]
 NAMES = ("angle A [deg]", "angle B [deg]", "pressed A [um]", "pressed B [um]")
-LOADS = bj.RotorLoads(
-    gravity=(0.0, -9.80665, 0.0), forces=bj.StationForce(0, [300.0, 0, 200.0, 0, 0])
+LOADS = bj.rotor.RotorLoads(
+    gravity=(0.0, -9.80665, 0.0),
+    forces=bj.rotor.StationForce(0, [300.0, 0, 200.0, 0, 0]),
 )
 
 
@@ -80,16 +81,18 @@ def spindle(x):
         )
         offset = jnp.zeros(5).at[2].set(1e-6 * pressed)
         element = bj.BearingElement(design)
-        return bj.BearingSupport(station, element, offset, turned=turned, inertia=True)
+        return bj.rotor.BearingSupport(
+            station, element, offset, turned=turned, inertia=True
+        )
 
-    shaft = bj.Shaft(
+    shaft = bj.rotor.Shaft(
         [0.0, 0.06, 0.16, 0.30, 0.36],
         [0.045, 0.05, 0.05, 0.045],
         divisions=(1, 2, 2, 1),
     )
-    discs = [bj.Disc(0, 4.0, 0.012, 0.008), bj.Disc(4, 2.0, 0.004, 0.003)]
+    discs = [bj.rotor.Disc(0, 4.0, 0.012, 0.008), bj.rotor.Disc(4, 2.0, 0.004, 0.003)]
     supports = [bearing(1, x[0], x[2], False), bearing(3, x[1], x[3], True)]
-    return bj.Rotor(shaft, discs, supports, bj.ModalDamping(0.02))
+    return bj.rotor.Rotor(shaft, discs, supports, bj.rotor.ModalDamping(0.02))
 
 
 def at_top(places):
@@ -102,8 +105,10 @@ def at_top(places):
 @eqx.filter_jit
 def numbers(x):
     """Bearing loads at the highest working speed [N], then critical speeds [rad/s]."""
-    over = bj.settle_over(spindle(x), LOADS, TOP, places=PLACES, throw=False)
-    critical = bj.critical_speeds(over.rotor, count=3)
+    over = bj.rotor.static_equilibrium_over(
+        spindle(x), LOADS, TOP, places=PLACES, throw=False
+    )
+    critical = bj.rotor.critical_speeds(over.rotor, count=3)
     load = jnp.tensordot(jnp.asarray(at_top(PLACES)), over.support_load, 1)
     size = jnp.linalg.norm(load[:, :3], axis=1)
     values = jnp.concatenate([size, critical.speed])
@@ -220,8 +225,8 @@ def main():
         f"{found.message}; {evaluations} designs with their gradients in"
         f" {seconds:.0f} s, compiling included"
     )
-    settled = bj.settle(spindle(jnp.asarray(x)), LOADS, after[2])
-    again = float(bj.critical_speeds(settled.rotor, count=1).speed[0])
+    settled = bj.rotor.static_equilibrium(spindle(jnp.asarray(x)), LOADS, after[2])
+    again = float(bj.rotor.critical_speeds(settled.rotor, count=1).speed[0])
     print(f"first critical speed, settled there: {again / after[2] - 1.0:+.1e} of it")
     print(
         verdict(

@@ -48,11 +48,11 @@ import numpy as np  # noqa: E402
 from timing import machine  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.rotor.vibration import (  # noqa: E402
+from bearingjax.rotor.nonlinear import (  # noqa: E402
     HarmonicBalance,
     Shooting,
-    rotor_vibration,
     solve_orbit,
+    vibrating_rotor,
 )
 
 NUMBERS = {
@@ -81,22 +81,24 @@ def built(numbers, rigid):
     offset = jnp.zeros(5).at[2].set(preload)
     dampers = jnp.zeros(5).at[:3].set(damping)
     supports = [
-        bj.BearingSupport(k, element, offset, dampers, turned=turned)
+        bj.rotor.BearingSupport(k, element, offset, dampers, turned=turned)
         for k, turned in ((0, False), (2, True))
     ]
-    shaft = bj.Shaft([0.0, 0.12, 0.3], jnp.stack([first, second]))
-    disc = bj.Disc.of_size(1, 0.2, 0.025, 0.025)
-    own = None if rigid else bj.ModalDamping(0.005)
-    rotor = bj.Rotor(shaft, disc, supports, own, rigid=rigid)
-    return rotor, bj.RotorLoads(bj.Unbalance(1, moment), gravity=[0.0, -9.81, 0.0])
+    shaft = bj.rotor.Shaft([0.0, 0.12, 0.3], jnp.stack([first, second]))
+    disc = bj.rotor.Disc.of_size(1, 0.2, 0.025, 0.025)
+    own = None if rigid else bj.rotor.ModalDamping(0.005)
+    rotor = bj.rotor.Rotor(shaft, disc, supports, own, rigid=rigid)
+    return rotor, bj.rotor.RotorLoads(
+        bj.rotor.Unbalance(1, moment), gravity=[0.0, -9.81, 0.0]
+    )
 
 
 def settled(numbers):
     rotor, loads = built(numbers, False)
-    found = bj.settle(rotor, loads, throw=False)
-    modes = bj.modes(found.rotor, SPEED, count=4)
-    critical = bj.critical_speeds(found.rotor, count=2)
-    response = bj.unbalance_response(found.rotor, loads.unbalances, [SPEED])
+    found = bj.rotor.static_equilibrium(rotor, loads, throw=False)
+    modes = bj.rotor.modes(found.rotor, SPEED, count=4)
+    critical = bj.rotor.critical_speeds(found.rotor, count=2)
+    response = bj.rotor.unbalance_response(found.rotor, loads.unbalances, [SPEED])
     return {
         "sag": found.displacement[1, 1],
         "radial stiffness": found.stiffness[0, 1, 1],
@@ -111,7 +113,7 @@ def settled(numbers):
 def orbit(method):
     def results(numbers):
         rotor, loads = built(numbers, True)
-        system = rotor_vibration(
+        system = vibrating_rotor(
             rotor, loads, scale=1e-6, reference_frequency=FAST
         )  # fmt: skip
         found = solve_orbit(system, FAST, method, throw=False)

@@ -70,12 +70,12 @@ from timing import machine, shuffled, verdict  # noqa: E402
 from vibrations import grooves  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.rotor.vibration import (  # noqa: E402
+from bearingjax.rotor.nonlinear import (  # noqa: E402
     HarmonicBalance,
     LawSupport,
-    rotor_vibration,
+    vibrating_rotor,
 )
-from bearingjax.rotor.vibration.orbit import (  # noqa: E402
+from bearingjax.rotor.nonlinear.orbit import (  # noqa: E402
     along_frequency,
     amplitudes,
     beginning,
@@ -90,21 +90,23 @@ GOAL_COST, GOAL_ERROR = 10.0, 1e-3
 
 def rotor(elements, rigid=False):
     law = grooves(26).fixed_angle()
-    shaft = bj.Shaft(
+    shaft = bj.rotor.Shaft(
         [0.0, 0.2, 0.5], 0.03, divisions=(2 * elements // 5, 3 * elements // 5)
     )
     supports = [LawSupport(0, law), LawSupport(2, law, turned=True)]
-    disc = bj.Disc(1, 6.0, 0.02, 0.012)
-    return bj.Rotor(shaft, disc, supports, bj.ModalDamping(0.01), rigid=rigid)
+    disc = bj.rotor.Disc(1, 6.0, 0.02, 0.012)
+    return bj.rotor.Rotor(
+        shaft, disc, supports, bj.rotor.ModalDamping(0.01), rigid=rigid
+    )
 
 
-LOADS = bj.RotorLoads(bj.Unbalance(1, 1e-3), gravity=(0.0, -9.81, 0.0))
+LOADS = bj.rotor.RotorLoads(bj.rotor.Unbalance(1, 1e-3), gravity=(0.0, -9.81, 0.0))
 
 
 def vibration(elements, modes=None, rigid=False):
     whole = rotor(elements, rigid)
-    settled = bj.settle(whole, LOADS)
-    system = rotor_vibration(
+    settled = bj.rotor.static_equilibrium(whole, LOADS)
+    system = vibrating_rotor(
         whole,
         LOADS,
         scale=1e-5,

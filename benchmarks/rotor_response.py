@@ -81,15 +81,15 @@ from scipy.optimize import fsolve  # noqa: E402
 from timing import machine, verdict  # noqa: E402
 from vibrations import grooves, rotor  # noqa: E402
 
-from bearingjax.rotor.vibration import (  # noqa: E402
+from bearingjax.rotor.nonlinear import (  # noqa: E402
     HarmonicBalance,
     Shooting,
     Steps,
     follow,
     solve_orbit,
 )
-from bearingjax.rotor.vibration.continuation import place  # noqa: E402
-from bearingjax.rotor.vibration.orbit import amplitudes  # noqa: E402
+from bearingjax.rotor.nonlinear.continuation import place  # noqa: E402
+from bearingjax.rotor.nonlinear.orbit import amplitudes  # noqa: E402
 
 ANGLES = (12, 15, 26, 36, 40)
 NAMES = ("x at A", "y at A", "x at B", "y at B", "z")

@@ -65,11 +65,11 @@ from rotor.machines import STEEL, friswell  # noqa: E402
 from timing import machine, verdict  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.rotor.vibration import (  # noqa: E402
+from bearingjax.rotor.nonlinear import (  # noqa: E402
     HarmonicBalance,
     Steps,
     follow,
-    rotor_vibration,
+    vibrating_rotor,
 )
 
 GOAL = 1e-6
@@ -79,7 +79,7 @@ SHEAR = float(STEEL.elastic_modulus) / (2.0 * (1.0 + float(STEEL.poisson_ratio))
 def hollow():
     """A stepped shaft, hollow in part, overhung disc, springs with cross terms."""
     stations = np.array([0.0, 0.08, 0.2, 0.4, 0.55, 0.65])
-    shaft = bj.Shaft(
+    shaft = bj.rotor.Shaft(
         stations,
         [0.04, 0.06, 0.07, 0.06, 0.04],
         [0.0, 0.02, 0.03, 0.02, 0.0],
@@ -87,8 +87,8 @@ def hollow():
         (1, 2, 3, 2, 1),
     )
     discs = [
-        bj.Disc.of_size(3, 0.25, 0.04, 0.06, STEEL),
-        bj.Disc.of_size(5, 0.2, 0.03, 0.04, STEEL),
+        bj.rotor.Disc.of_size(3, 0.25, 0.04, 0.06, STEEL),
+        bj.rotor.Disc.of_size(5, 0.2, 0.03, 0.04, STEEL),
     ]
 
     def support(station, stiffness):
@@ -96,9 +96,9 @@ def hollow():
         k[0, 1], k[1, 0] = 0.2, -0.1
         c = np.diag([400.0, 300.0, 100.0, 0.0, 0.0])
         c[0, 1] = c[1, 0] = 50.0
-        return bj.LinearSupport(station, stiffness * k, c)
+        return bj.rotor.LinearSupport(station, stiffness * k, c)
 
-    return bj.Rotor(shaft, discs, [support(1, 5e7), support(4, 2e7)])
+    return bj.rotor.Rotor(shaft, discs, [support(1, 5e7), support(4, 2e7)])
 
 
 ROTORS = {
@@ -143,7 +143,7 @@ def modes_apart(theirs, rotor, speed, count):
 
     Each of ours is compared with the nearest of ROSS.
     """
-    found = bj.modes(rotor, speed, count=count)
+    found = bj.rotor.modes(rotor, speed, count=count)
     ours = np.asarray(found.eigenvalue)[np.asarray(found.oscillates)]
     values = np.linalg.eigvals(np.asarray(theirs.A(speed)))
     nearest = values[np.argmin(np.abs(values[None] - ours[:, None]), axis=1)]
@@ -156,7 +156,9 @@ def modes_apart(theirs, rotor, speed, count):
 def response_apart(theirs, rotor, speeds):
     """Largest difference of the displacements of all nodes over the largest one."""
     station = rotor.discs[0].station
-    ours = bj.unbalance_response(rotor, bj.Unbalance(station, 1e-3, 0.4), speeds)
+    ours = bj.rotor.unbalance_response(
+        rotor, bj.rotor.Unbalance(station, 1e-3, 0.4), speeds
+    )
     found = theirs.run_unbalance_response(
         [rotor.shaft.node(station)], [1e-3], [0.4], frequency=speeds
     ).forced_resp
@@ -216,21 +218,23 @@ def on_bearings(inertia=False):
     preload = [0.0, 0.0, 10e-6, 0.0, 0.0]
     damping = [300.0, 300.0, 300.0, 0.0, 0.0]
     supports = [
-        bj.BearingSupport(k, element, preload, damping, turned=turned, inertia=inertia)
+        bj.rotor.BearingSupport(
+            k, element, preload, damping, turned=turned, inertia=inertia
+        )
         for k, turned in ((0, False), (2, True))
     ]
-    shaft = bj.Shaft([0.0, 0.12, 0.3], 0.025, divisions=(2, 3))
-    disc = bj.Disc.of_size(1, 0.2, 0.025, 0.025)
-    return bj.Rotor(shaft, disc, supports, bj.ModalDamping(0.005))
+    shaft = bj.rotor.Shaft([0.0, 0.12, 0.3], 0.025, divisions=(2, 3))
+    disc = bj.rotor.Disc.of_size(1, 0.2, 0.025, 0.025)
+    return bj.rotor.Rotor(shaft, disc, supports, bj.rotor.ModalDamping(0.005))
 
 
 def loads(moment=0.0):
-    return bj.RotorLoads(bj.Unbalance(1, moment), gravity=[0.0, -9.81, 0.0])
+    return bj.rotor.RotorLoads(bj.rotor.Unbalance(1, moment), gravity=[0.0, -9.81, 0.0])
 
 
 def orbits(rotor, settled, moment, points):
     """Branch of true orbits, and longer half axes of the disc's first harmonic [m]."""
-    system = rotor_vibration(
+    system = vibrating_rotor(
         rotor, loads(moment), scale=3e-5, reference_frequency=1000.0, modes=6,
         about=settled.motion,
     )  # fmt: skip
@@ -258,9 +262,9 @@ def over_speed(smoke):
     rotor = on_bearings(inertia=True)
     print("settled   radial, axial stiffness  first forward mode")
     for speed in (0.0,) if smoke else (0.0, 1000.0, 2000.0, 4000.0):
-        found = bj.settle(rotor, loads(), speed)
+        found = bj.rotor.static_equilibrium(rotor, loads(), speed)
         k = np.asarray(found.stiffness[0])
-        modes = bj.modes(found.rotor, speed, count=6)
+        modes = bj.rotor.modes(found.rotor, speed, count=6)
         # At rest both directions are one mode.
         first = np.flatnonzero(np.asarray(modes.whirl) >= (speed > 0))[0]
         print(f"{RPM * speed:6.0f} rpm {1e-6 * k[1, 1]:9.2f} {1e-6 * k[2, 2]:8.2f} N/um"
@@ -270,15 +274,17 @@ def over_speed(smoke):
 def linear_against_true(smoke):
     """Print where a linear answer is wrong."""
     rotor = on_bearings()
-    settled = bj.settle(rotor, loads())
-    critical = bj.critical_speeds(settled.rotor, count=2)
+    settled = bj.rotor.static_equilibrium(rotor, loads())
+    critical = bj.rotor.critical_speeds(settled.rotor, count=2)
     print("critical speeds, linear: "
           + ", ".join(f"{RPM * float(v):.0f} rpm" for v in critical.speed))  # fmt: skip
     print("unbalance   peak, linear       peak, true        wrong by more than 10 % at")
     for moment in MOMENTS[-1:] if smoke else MOMENTS:
         branch, size = orbits(rotor, settled, moment, 8 if smoke else 400)
         speeds = branch.frequency
-        linear = bj.unbalance_response(settled.rotor, bj.Unbalance(1, moment), speeds)
+        linear = bj.rotor.unbalance_response(
+            settled.rotor, bj.rotor.Unbalance(1, moment), speeds
+        )
         linear = np.asarray(linear.major_axis[:, rotor.shaft.node(1)])
         error = np.where(branch.stable, np.abs(linear / size - 1.0), 0.0)
         top, linear_top = int(np.argmax(size)), int(np.argmax(linear))

@@ -206,7 +206,7 @@ class CLoop:
 
 def scan_points(el):
     """Where C looks for the loaded zone; of equal slices their middles."""
-    if isinstance(el.quadrature, bj.Midpoint):
+    if isinstance(el.quadrature, bj.numerics.Midpoint):
         return el.quadrature.reference()[0]
     t = np.linspace(0.0, 1.0, el.quadrature.scan)
     left, right = t**5, (1.0 - t) ** 5
@@ -232,7 +232,7 @@ def compile_c(folder, el, source=SOURCE):
     sizes = {
         "POINTS": rule.points,
         "SCAN": len(scan_points(el)),
-        "MIDPOINT": int(isinstance(rule, bj.Midpoint)),
+        "MIDPOINT": int(isinstance(rule, bj.numerics.Midpoint)),
     }
     target = os.path.join(folder, f"{source.stem}_{type(rule).__name__}.so")
     given = [f"-D{name}={value}" for name, value in sizes.items()]
@@ -459,7 +459,7 @@ def main():
         }
         others = None
         if not args.smoke:
-            sliced = element(bj.Midpoint(32), **unlike())
+            sliced = element(bj.numerics.Midpoint(32), **unlike())
             *_, (_, q) = cases().values()
             others = beside_peers(compile_c(folder, sliced), sliced, q, rounds)
     if args.json:

@@ -66,16 +66,16 @@ import numpy as np  # noqa: E402
 from quadrature import processor  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.dynamics import (  # noqa: E402
+from bearingjax.element.ball_speed import EqualShare  # noqa: E402
+from bearingjax.lubrication import LimitingStress, iso_vg  # noqa: E402
+from bearingjax.optimise.design_problem import Problem  # noqa: E402
+from bearingjax.skid import (  # noqa: E402
     CageSlip,
     Drag,
     FrictionTorque,
     SkiddingBearing,
     SkidModel,
 )
-from bearingjax.element.ball_speed import EqualShare  # noqa: E402
-from bearingjax.lubrication import LimitingStress, iso_vg  # noqa: E402
-from bearingjax.optimise.design_problem import Problem  # noqa: E402
 from bearingjax.statics import SolveOptions  # noqa: E402
 
 CASES = np.array(  # radial load and axial load [N], speed [rpm], share of the time
@@ -92,15 +92,15 @@ BEARING = "model.element.bearing."
 NAMES = ("preload", "contact angle", "outer osculation", "inner osculation")
 UNITS = (1.0, np.pi / 180.0, 1.0, 1.0)
 VARIABLES = (
-    bj.Variable("preload", 20.0, 1000.0),
-    bj.Variable(BEARING + "contact_angle", *np.radians([12.0, 40.0])),
-    bj.Variable(BEARING + "outer_osculation", 0.51, 0.56),
-    bj.Variable(BEARING + "inner_osculation", 0.51, 0.56),
+    bj.optimise.Variable("preload", 20.0, 1000.0),
+    bj.optimise.Variable(BEARING + "contact_angle", *np.radians([12.0, 40.0])),
+    bj.optimise.Variable(BEARING + "outer_osculation", 0.51, 0.56),
+    bj.optimise.Variable(BEARING + "inner_osculation", 0.51, 0.56),
 )
 CONSTRAINTS = (
-    bj.Constraint(CageSlip(), upper=0.01),
-    bj.Constraint(bj.PeakPressure(), upper=1.6e9),
-    bj.Constraint(bj.Stiffness("uz"), lower=20e6),
+    bj.optimise.Constraint(CageSlip(), upper=0.01),
+    bj.optimise.Constraint(bj.optimise.PeakPressure(), upper=1.6e9),
+    bj.optimise.Constraint(bj.optimise.Stiffness("uz"), lower=20e6),
 )
 STEP = 2e-4  # of the differences, over the ranges
 AROUND = 0.03  # how far random designs are from the best, over the ranges
@@ -221,7 +221,7 @@ def measure(places, finer, points, scan):
     problem.run(first, True)
     compiled = time.perf_counter() - begin
     begin = time.perf_counter()
-    found = bj.optimise(
+    found = bj.optimise.optimise(
         problem.element, spectrum(), VARIABLES, FrictionTorque(), CONSTRAINTS
     )
     seconds = time.perf_counter() - begin

@@ -3,7 +3,7 @@
 A deep groove ball bearing of size 6210 (10 balls of 12.7 mm on 70 mm, C0 = 23.2 kN; its
 osculations, 0.515 inside and 0.525 outside, and its clearance, 14.5 µm, are usual
 values, not the maker's), ISO VG 68 at 70 °C (20 mm²/s), no oil to plough through.
-Beside `steady_skid`, which knows how balls slide and spin in their films, stands what
+Beside `skid.steady`, which knows how balls slide and spin in their films, stands what
 two formulas say that were fitted to measured torques:
 
 SKF: rolling part G_rr (ν n)^0.6 with inlet heating, sliding part G_sl µ, both without
@@ -71,8 +71,9 @@ import numpy as np  # noqa: E402
 from timing import machine  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.dynamics import Drag, SkidModel, steady_skid  # noqa: E402
+from bearingjax import skid  # noqa: E402
 from bearingjax.lubrication import Eyring, LimitingStress, iso_vg  # noqa: E402
+from bearingjax.skid import Drag, SkidModel  # noqa: E402
 
 PITCH, STATIC = 0.070, 23.2e3
 SIDES = 0.090, 0.050
@@ -125,7 +126,7 @@ def solver(law, places):
 
     def one(radial, axial, speed):
         load = jnp.zeros(6).at[0].set(radial).at[2].set(axial)
-        return steady_skid(
+        return skid.steady(
             model,
             load,
             speed=bj.Speed(inner=speed),

@@ -1,14 +1,14 @@
 """Are the derivatives of skidding those of differences, of every real number?
 
 Slip of the cage, friction torque and largest sliding speed, of the bearing of Han & Chu
-at the end state (`steady_skid`, 120 N axial) and after 3 ms from rolling (`skid`, 16 N,
-pockets without clearance), with respect to preload, speeds and every real number of
-design, oil, drag and cage. All in one pass backwards; forwards too, one way. Beside
-them central differences with steps from 1e-2 to 1e-6 of the number: the least of
-the errors over the steps, which form a V. Errors are relative to the derivative, or to
-a thousandth of what is differentiated over the number where that is more (numbers that
-do not matter). In time the clearance of the pockets is left out: it is zero, at its
-bound, and a ball that first has to cross it moves otherwise.
+at the end state (`skid.steady`, 120 N axial) and after 3 ms from rolling
+(`skid.simulate`, 16 N, pockets without clearance), with respect to preload, speeds and
+every real number of design, oil, drag and cage. All in one pass backwards; forwards
+too, one way. Beside them central differences with steps from 1e-2 to 1e-6 of the
+number: the least of the errors over the steps, which form a V. Errors are relative to
+the derivative, or to a thousandth of what is differentiated over the number where that
+is more (numbers that do not matter). In time the clearance of the pockets is left out:
+it is zero, at its bound, and a ball that first has to cross it moves otherwise.
 
 Run: python benchmarks/skid_gradients.py [--smoke]
 
@@ -48,8 +48,7 @@ import numpy as np  # noqa: E402
 from han_chu import FREE, MODEL  # noqa: E402
 from timing import machine  # noqa: E402
 
-from bearingjax import Speed  # noqa: E402
-from bearingjax.dynamics import skid, steady_skid  # noqa: E402
+from bearingjax import Speed, skid  # noqa: E402
 
 WHAT = "slip", "torque", "sliding"
 STEPS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6
@@ -83,7 +82,7 @@ def of_results(found, orbit, rolling):
 
 def end_state(numbers, _):
     load, speed = given(numbers)
-    found = steady_skid(
+    found = skid.steady(
         numbers["model"], load, speed=speed, free=FREE, places=1, throw=False
     )
     return of_results(found, found.cage_speed, found.rolling_orbit_speed[0])
@@ -91,7 +90,7 @@ def end_state(numbers, _):
 
 def in_time(numbers, derivatives):
     load, speed = given(numbers)
-    found = skid(
+    found = skid.simulate(
         numbers["model"],
         load,
         speed=speed,

@@ -1,7 +1,7 @@
 """How much does the cage slip? A map over axial load and speed.
 
 The bearing of Han & Chu, 25 axial loads of 20 to 600 N times 40 speeds of 500 to 12 000
-rpm: 1000 end states in one call of `steady_skid` under `jax.vmap`, load solves
+rpm: 1000 end states in one call of `skid.steady` under `jax.vmap`, load solves
 included. Beside it points solved alone, and how far both differ. Under a radial load
 too, of two thirds of the axial one, 96 places along the orbit: 5 x 8 points.
 
@@ -38,8 +38,7 @@ import numpy as np  # noqa: E402
 from han_chu import FREE, MODEL  # noqa: E402
 from timing import machine, timed  # noqa: E402
 
-from bearingjax import Speed  # noqa: E402
-from bearingjax.dynamics import steady_skid  # noqa: E402
+from bearingjax import Speed, skid  # noqa: E402
 
 RADIAL = 2.0 / 3.0
 
@@ -47,7 +46,7 @@ RADIAL = 2.0 / 3.0
 def end_state(places, share, load, speed):
     """Mean slip, friction torque, result of one point."""
     force = jnp.zeros(6).at[0].set(share * load).at[2].set(load)
-    found = steady_skid(
+    found = skid.steady(
         MODEL, force, speed=Speed(inner=speed), free=FREE, places=places, throw=False
     )
     slip = 1.0 - found.cage_speed / jnp.mean(found.rolling_orbit_speed)

@@ -59,9 +59,10 @@ import numpy as np  # noqa: E402
 from timing import machine  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.dynamics import Drag, SkidModel, steady_skid  # noqa: E402
+from bearingjax import skid  # noqa: E402
 from bearingjax.element import Speed  # noqa: E402
 from bearingjax.lubrication import LimitingStress, mil_l_23699  # noqa: E402
+from bearingjax.skid import Drag, SkidModel  # noqa: E402
 
 ROLLERS = 36
 BEARING = bj.CylindricalRollerBearing(
@@ -83,7 +84,7 @@ def solver(places):
 
     def one(load, inner, fill):
         model = SkidModel(ELEMENT, OIL, 373.15, LimitingStress(), Drag(fill=fill))
-        return steady_skid(
+        return skid.steady(
             model,
             jnp.zeros(6).at[0].set(load),
             speed=Speed(inner=inner),

@@ -3,11 +3,11 @@
 The bearing of Han & Chu, 600 N axial, still outer ring, inner ring at 2000 rpm, radial
 load along +Y, angles from +X. The published words on its slip, turned into numbers.
 
-Over an orbit: `steady_skid`, one ball in its periodic orbit, radial loads of 100 to
+Over an orbit: `skid.steady`, one ball in its periodic orbit, radial loads of 100 to
 500 N. Zones B and D are where it bears more than under axial load alone, A and C lie
 between; A is the one in which the load rises towards B.
 
-In time: `skid` with the ring balanced at every time, radial load 400 N
+In time: `skid.simulate` with the ring balanced at every time, radial load 400 N
 [1 + e sin(w_i t)] with e = 0, 0.2, 0.4, from rolling on; the last 2.5 s, over 30
 orbits. The balls run ahead of even motion and fall behind it by about a millimetre, so
 that the cage, whose pockets leave 0.2 mm, takes part; beside it one that leaves 8 mm.
@@ -19,7 +19,7 @@ Run: python benchmarks/skid_spectrum.py [--smoke] [--json] [--plot OUT.png]
 
 Last run:
 
-over an orbit, by steady_skid; sliding speeds in mm/s
+over an orbit, by skid.steady; sliding speeds in mm/s
        centres, share    load, N      inner, most         inner, middle
 radial     B      D      B      D      A      C   C/A       B      D
  100 N  0.250  0.750  146.4  115.7    0.3    0.3  0.95   0.018  0.116
@@ -90,7 +90,8 @@ from han_chu import FREE, MODEL, SPEED  # noqa: E402
 from timing import machine  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
-from bearingjax.dynamics import SinusoidalLoad, skid, steady_skid  # noqa: E402
+from bearingjax import skid  # noqa: E402
+from bearingjax.skid import SinusoidalLoad  # noqa: E402
 
 AXIAL, RADIAL = 600.0, 400.0
 DRIVE = float(SPEED.inner)
@@ -115,7 +116,7 @@ def over_orbit(radials, places):
     @jax.vmap
     def solve(radial):
         given = {"speed": SPEED, "free": FREE, "places": places}
-        found = steady_skid(MODEL, load(radial), **given)
+        found = skid.steady(MODEL, load(radial), **given)
         sliding, borne = found.sliding_speed, found.contact_load
         return (
             sliding,
@@ -171,7 +172,7 @@ def in_time(model, varying, begin, duration, rate):
     """Sliding speed of ball 0 at the inner raceway at even times, its angle, the cage's
     frequency, cage forces."""
     change = jnp.zeros(6).at[1].set(RADIAL * varying)
-    found = skid(
+    found = skid.simulate(
         model,
         SinusoidalLoad(load(RADIAL), change, DRIVE),
         speed=SPEED,
@@ -236,7 +237,7 @@ def measure(radials, places, shares, pockets, begin, duration, rate):
 
 
 def show(r):
-    print("over an orbit, by steady_skid; sliding speeds in mm/s")
+    print("over an orbit, by skid.steady; sliding speeds in mm/s")
     print("       centres, share    load, N      inner, most         inner, middle")
     print("radial     B      D      B      D      A      C   C/A       B      D")
     for o in r["orbit"]:

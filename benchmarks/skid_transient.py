@@ -8,7 +8,7 @@ Jacobian by differences, as users would. Error: the largest of all orbital speed
 times, relative to the motion at the finest tolerance of ours. Time: the integration,
 median of the rounds, in shuffled order; load solve and table are at hand.
 
-Then the end state by `steady_skid`, its load solve included; error of the orbital speed
+Then the end state by `skid.steady`, its load solve included; error of the orbital speed
 against the motion in time 2 s later (axial), against five times as many places along
 the orbit (both loads). Then 64 loads in one call of ours, load solves and tables
 included.
@@ -63,12 +63,12 @@ from han_chu import ELEMENT, FREE, MODEL, SPEED  # noqa: E402
 from scipy.integrate import solve_ivp  # noqa: E402
 from timing import machine, shuffled, timed  # noqa: E402
 
-from bearingjax.dynamics import skid, steady_skid  # noqa: E402
-from bearingjax.dynamics.beginning import surroundings  # noqa: E402
-from bearingjax.dynamics.integration import Options, integrated  # noqa: E402
-from bearingjax.dynamics.load_table import _pieces  # noqa: E402
-from bearingjax.dynamics.ring_speed import as_table  # noqa: E402
+from bearingjax import skid  # noqa: E402
 from bearingjax.numerics.types import as_real  # noqa: E402
+from bearingjax.skid.beginning import surroundings  # noqa: E402
+from bearingjax.skid.integration import Options, integrated  # noqa: E402
+from bearingjax.skid.load_table import _pieces  # noqa: E402
+from bearingjax.skid.ring_speed import as_table  # noqa: E402
 from bearingjax.statics.load import solve_load  # noqa: E402
 
 CASES = {
@@ -194,7 +194,7 @@ def many(loads, duration, places, tolerance):
     """The whole of it for many loads in one call, with their load solves."""
     return jax.vmap(
         lambda load: (
-            skid(
+            skid.simulate(
                 MODEL,
                 load,
                 speed=SPEED,
@@ -245,7 +245,7 @@ def one_run(name, tolerances, rounds, smoke):
 def end(load, places):
     """End state: mean orbital speed [rad/s]."""
     given = {"speed": SPEED, "free": FREE, "places": places, "throw": False}
-    return steady_skid(MODEL, load, **given).cage_speed
+    return skid.steady(MODEL, load, **given).cage_speed
 
 
 def steady_row(name, smoke):

@@ -75,9 +75,12 @@ def ball_elements():
             bj.SetRow(angular, 0.02, mirrored=True, inner_offset=-30e-6),
         )
     )
-    operating = bj.OperatingAngle()
+    operating = bj.contact.OperatingAngle()
     tapers = bj.BearingSet.face_to_face(taper(5), 0.03, 30e-6)
-    centrifugal, friction = bj.CentrifugalOnly(), bj.FrictionLimited(0.06)
+    centrifugal, friction = (
+        bj.element.CentrifugalOnly(),
+        bj.element.FrictionLimited(0.06),
+    )
     return {
         "deep groove, clearance": (element(deep), "still"),
         "angular contact, outer control": (element(angular), "turning"),
@@ -86,7 +89,7 @@ def ball_elements():
             "still",
         ),
         "four-point, unlike balls, load share": (
-            element(four, raceway_control=bj.LoadShare()),
+            element(four, raceway_control=bj.element.LoadShare()),
             "turning",
         ),
         "thrust": (element(balls(7, bj.ThrustBallBearing)), "still"),
@@ -99,15 +102,21 @@ def ball_elements():
         ),
         "set of unlike rows": (element(unlike, raceway_control=friction), "turning"),
         "taper pair, X": (
-            element(tapers, quadrature=bj.ContactMapped(24)),
+            element(tapers, quadrature=bj.numerics.ContactMapped(24)),
             "still",
         ),
-        "taper, coupled slices": (element(taper(5), bj.CoupledSlices(12)), "turning"),
+        "taper, coupled slices": (
+            element(taper(5), bj.contact.CoupledSlices(12)),
+            "turning",
+        ),
     }
 
 
 def quadratures():
-    return {"midpoint": bj.Midpoint(20), "contact_mapped": bj.ContactMapped(24)}
+    return {
+        "midpoint": bj.numerics.Midpoint(20),
+        "contact_mapped": bj.numerics.ContactMapped(24),
+    }
 
 
 def speeds():

@@ -34,7 +34,7 @@ def case(seed):
 
 
 def element(info, quadrature, uniform=True):
-    law = bj.LineConstant(info["line_constant"])
+    law = bj.contact.LineConstant(info["line_constant"])
     return bj.BearingElement(
         bearing(info, uniform), line_law=law, quadrature=quadrature
     )
@@ -63,7 +63,9 @@ def test_200_random_bearings(start):
         truth, q, info = case(seed)
         slices = oracle.midpoint_slices(truth.roller_length, SLICES)
         want = oracle.evaluate(truth, q, (slices, slices))
-        got, solved = evaluate(element(info, bj.Midpoint(SLICES)), jnp.asarray(q))
+        got, solved = evaluate(
+            element(info, bj.numerics.Midpoint(SLICES)), jnp.asarray(q)
+        )
         assert int(got.result) == bj.Result.CONVERGED, seed
         if not np.any(want["roller_load"] > 0):
             assert np.abs(np.asarray(got.force)).max() < SOLVER, seed
@@ -82,7 +84,9 @@ def test_absent_parts_are_the_same_bearing(seed):
     truth, q, info = case(seed)
     slices = oracle.midpoint_slices(truth.roller_length, SLICES)
     want = oracle.evaluate(truth, q, (slices, slices))
-    got, _ = evaluate(element(info, bj.Midpoint(SLICES), False), jnp.asarray(q))
+    got, _ = evaluate(
+        element(info, bj.numerics.Midpoint(SLICES), False), jnp.asarray(q)
+    )
     force, stiffness = errors(got, want)
     assert force < SOLVER and stiffness < SOLVER
 
@@ -93,7 +97,7 @@ def test_contact_mapped_quadrature_against_graded_reference(start):
     for seed in range(start, start + 8):
         truth, q, info = case(seed)
         want = oracle.evaluate(truth, q, oracle.graded(truth))
-        got, _ = evaluate(element(info, bj.ContactMapped(32)), jnp.asarray(q))
+        got, _ = evaluate(element(info, bj.numerics.ContactMapped(32)), jnp.asarray(q))
         if not np.any(want["roller_load"] > 0):
             continue
         force, stiffness = errors(got, want)

@@ -13,13 +13,13 @@ README = (ROOT / "README.md").read_text()
 GUIDE = (ROOT / "bearingjax" / "scene" / "README.md").read_text()
 DOCUMENTED = (
     "bearingjax",
-    "bearingjax.acoustics",
+    "bearingjax.noise",
     "bearingjax.contact.halfspace",
-    "bearingjax.dynamics",
+    "bearingjax.skid",
     "bearingjax.element",
     "bearingjax.optimise",
     "bearingjax.rotor",
-    "bearingjax.rotor.vibration",
+    "bearingjax.rotor.nonlinear",
     "bearingjax.statics",
 )
 

@@ -20,12 +20,12 @@ from bearingjax.statics.solution import BallSolution, RollerSolution
 from bearingjax.statics.sweep_table import _label
 
 MEASURES = [
-    bj.PeakPressure(),
-    bj.MeanPressure(),
-    bj.EdgeLoad(),
-    *(bj.Displacement(freedom) for freedom in ("ux", "gy")),
-    *(bj.Stiffness(freedom) for freedom in ("uz", "gx")),
-    bj.RatingLife(hours=True),
+    bj.optimise.PeakPressure(),
+    bj.optimise.MeanPressure(),
+    bj.optimise.EdgeLoad(),
+    *(bj.optimise.Displacement(freedom) for freedom in ("ux", "gy")),
+    *(bj.optimise.Stiffness(freedom) for freedom in ("uz", "gx")),
+    bj.optimise.RatingLife(hours=True),
 ]
 
 

@@ -9,7 +9,7 @@ import bearingjax as bj
 from bearingjax.design import Material
 from bearingjax.numerics.power import positive_power
 from bearingjax.numerics.types import as_real
-from bearingjax.rotor.vibration import Grooves, RigidRotor, Vibration, rigid_rotor
+from bearingjax.rotor.nonlinear import Grooves, RigidRotor, VibratingSystem, rigid_rotor
 
 
 class Spring(eqx.Module):
@@ -40,7 +40,7 @@ class Cosine(eqx.Module):
 
 def oscillator(restoring, force=0.0, damping_ratio=0.0):
     """One freedom of mass one."""
-    return Vibration(
+    return VibratingSystem(
         mass=np.eye(1),
         damping=2.0 * damping_ratio * np.eye(1),
         gyroscopic=np.zeros((1, 1)),

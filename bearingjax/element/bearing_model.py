@@ -23,7 +23,7 @@ from ..numerics.minimise import AbstractMinimiser
 from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .constants import TETHER
-from .equilibrium import Near, settle
+from .equilibrium import Near, accept_small
 from .rolling_element import split
 from .row import Row
 from .solved_row import RowResults, SolvedRow
@@ -345,7 +345,7 @@ class BearingModel(eqx.Module):
         """Worst `Result` code, most steps and largest residual of the elements."""
         loads = [s.energies.beside.contact_load for s in solved.groups]
         largest = jnp.max(jnp.stack([jnp.max(load) for load in loads]))
-        states = [settle(s.state, largest) for s in solved.groups]
+        states = [accept_small(s.state, largest) for s in solved.groups]
         codes = [s.result.reshape(-1) for s in states]
         # The balance of a row with its spring has a code too.
         springs = [

@@ -405,7 +405,7 @@ def near_by(placed: Placed, rings: Rings, beside: Beside) -> Near:
     return stop(Near(jnp.where(held, off, jnp.nan), follow, rings))
 
 
-def settle(state: LocalState, load: Scalar) -> LocalState:
+def accept_small(state: LocalState, load: Scalar) -> LocalState:
     """Count rolling elements as converged whose imbalance no result can feel.
 
     A ball in the unloaded half, with no more than a slow orbit's centrifugal force to

@@ -1,8 +1,7 @@
 """Design optimisation: variables, measures, constraints and the searches.
 
-`bearingjax.optimise` is the function of that name. It takes a `BearingElement`, a
-bearing on its seats (`Installed`), or a system such as a skidding bearing. Everything
-else is imported by `from bearingjax.optimise import ...`.
+`optimise(element, cases, variables, objective, constraints)` takes a `BearingElement`,
+a bearing on its seats (`Installed`), or a system such as a skidding bearing.
 
 Any number on the drawing may be free between bounds (`Variable`). One compiled program
 solves all operating cases and pulls the gradient back through them (reverse mode,
@@ -19,7 +18,7 @@ off the ends with `EdgeLoad`. Designs that do not solve are rejected and listed 
 `best.rejected`. `best.converged` says that the first-order conditions of a minimum
 hold, with exact gradients (`best.optimality`, at most `tolerance`; of "nelder-mead" at
 most its root), whatever the method says. What is doubtful in the best design is in
-`best.after.warnings`. Balls and rollers that may skid: see `bearingjax.dynamics`.
+`best.after.warnings`. Balls and rollers that may skid: see `bearingjax.skid`.
 Worked: the notebook roller_bearing.
 
 `estimate_geometry(bore, outside_diameter, width, kind, C, C0)` makes a design of a

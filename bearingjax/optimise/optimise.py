@@ -125,7 +125,7 @@ def optimise(
 
     Args:
         element: The design to start from: an element, or a system, such as
-            `bearingjax.dynamics.SkiddingBearing`, whose balls may slip.
+            `bearingjax.skid.SkiddingBearing`, whose balls may slip.
         cases: Operating cases, all of this design.
         variables: The design variables.
         objective: The measure to be minimised, such as `PeakPressure()`, or any

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..acoustics import (
+from ..noise import (
     REFERENCE_ACCELERATION,
     UNNAMED,
     Bands,
@@ -15,8 +15,8 @@ from ..acoustics import (
     Spectrum,
     Vibration,
 )
-from ..acoustics.level import LOWEST_LEVEL
-from ..acoustics.scatter import SOURCES
+from ..noise.level import LOWEST_LEVEL
+from ..noise.scatter import SOURCES
 from .style import CURVES, GREY, SMALL, axes_or_new
 
 if TYPE_CHECKING:

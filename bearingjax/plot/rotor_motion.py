@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..rotor.vibration import Waterfall
+from ..rotor.nonlinear import Waterfall
 from .rotor_modes import RPM, unit_name, unit_scale
 from .style import CURVES, GREY, OUTER, SMALL, axes_or_new
 
@@ -162,7 +162,7 @@ def steady_spectra(found: Waterfall, freedom: int) -> Spectra:
     """Spectra of steady vibration of a rotor that turns with its excitation.
 
     Args:
-        found: From `rotor.vibration.waterfall`.
+        found: From `rotor.nonlinear.waterfall`.
         freedom: Which; its mean is left out.
     """
     speed = np.asarray(found.frequency)

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..rotor.vibration import Branch
+from ..rotor.nonlinear import Branch
 from .rotor_modes import RPM, unit_name, unit_scale
 from .style import CURVES, GREY, INNER, OUTER, SMALL, axes_or_new
 

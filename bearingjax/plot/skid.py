@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..dynamics import (
+from ..skid import (
     Conditions,
     SkidHistory,
     SkidModel,
@@ -64,7 +64,7 @@ def skid_overview(
 
     Args:
         model: The bearing and its oil.
-        found: From `steady_skid` or `skid`.
+        found: From `skid.steady` or `skid.simulate`.
         state: From `conditions`; of rollers `None`.
         title: Head of the page; the kind of bearing if empty.
 
@@ -157,7 +157,7 @@ def power_bars(
     """Mean power of the drive [W], and where it goes.
 
     Args:
-        found: From `steady_skid`.
+        found: From `skid.steady`.
         ax: Axes; a new figure if `None`.
 
     Returns:
@@ -203,7 +203,7 @@ def cage_speed(
 
     Args:
         load: Of each case (case,) [N].
-        found: From `steady_skid` under `jax.vmap` over loads, leading axis case; cases
+        found: From `skid.steady` under `jax.vmap` over loads, leading axis case; cases
             that did not converge are left out.
         ax: Axes; a new figure if `None`. Curves may be drawn over one another.
         label: Of the curve.

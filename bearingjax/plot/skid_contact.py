@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics import Conditions, SkidModel
 from ..numerics.types import as_real
+from ..skid import Conditions, SkidModel
 from .style import GREY, SMALL, axes_or_new, pyplot
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def sliding_ellipse(
 
     Args:
         model: The bearing and its oil.
-        found: From `steady_skid` or `skid`.
+        found: From `skid.steady` or `skid.simulate`.
         state: From `conditions`.
         at: Indices of the contact: place, contact; or time, ball, contact.
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..dynamics import SteadyRollerSkid, SteadySkid, by_raceway
+from ..skid import SteadyRollerSkid, SteadySkid, by_raceway
 from .style import (
     COLOURS,
     GREY,
@@ -53,7 +53,7 @@ def zones(found: Steady) -> list[Zone]:
     which B has the larger load; A comes before B, in the sense of the orbit.
 
     Args:
-        found: From `steady_skid`.
+        found: From `skid.steady`.
 
     Returns:
         A, B, C, D in this order; empty where the parts are not these four.
@@ -113,7 +113,7 @@ def load_over_orbit(
     """Contact loads [N] against its azimuth [deg], zones B and D shaded.
 
     Args:
-        found: From `steady_skid`, with places.
+        found: From `skid.steady`, with places.
         ax: Axes; a new figure if `None`.
 
     Returns:
@@ -138,7 +138,7 @@ def sliding_over_orbit(
     And, on an axis of its own, the slip of the orbit against pure rolling [%].
 
     Args:
-        found: From `steady_skid`, with places.
+        found: From `skid.steady`, with places.
         ax: Axes; a new figure if `None`.
 
     Returns:
@@ -163,7 +163,7 @@ def spin_over_orbit(
     axes, beside pure rolling.
 
     Args:
-        found: From `steady_skid`, with places.
+        found: From `skid.steady`, with places.
         ax: Axes; a new figure if `None`.
 
     Returns:
@@ -189,7 +189,7 @@ def heat_over_orbit(
     """Heat of the contacts [W] against azimuth [deg].
 
     Args:
-        found: From `steady_skid`, with places.
+        found: From `skid.steady`, with places.
         ax: Axes; a new figure if `None`.
 
     Returns:
@@ -209,7 +209,7 @@ def cage_force_over_orbit(
     """Force of the cage on a roller [N] against azimuth [deg].
 
     Args:
-        found: From `steady_skid`, of rollers.
+        found: From `skid.steady`, of rollers.
         ax: Axes; a new figure if `None`.
 
     Returns:

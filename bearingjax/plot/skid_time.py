@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..dynamics import SkidHistory, SkidRollerHistory, by_raceway
+from ..skid import SkidHistory, SkidRollerHistory, by_raceway
 from .style import (
     COLOURS,
     GREY,
@@ -36,7 +36,7 @@ def speed_over_time(
     """Speed of the cage and orbits of the balls, beside pure rolling [rad/s].
 
     Args:
-        found: From `skid`.
+        found: From `skid.simulate`.
         ax: Axes; a new figure if `None`.
 
     Returns:
@@ -60,7 +60,7 @@ def slip_over_time(
     """Slip of the orbits against pure rolling [%].
 
     Args:
-        found: From `skid`.
+        found: From `skid.simulate`.
         ax: Axes; a new figure if `None`.
 
     Returns:
@@ -77,7 +77,7 @@ def spin_over_time(
     """Spin of a ball in its orbiting frame [rad/s].
 
     Args:
-        found: From `skid`.
+        found: From `skid.simulate`.
         ax: Axes; a new figure if `None`.
         ball: Which.
 
@@ -100,7 +100,7 @@ def load_over_time(
     """Contact loads of a ball [N].
 
     Args:
-        found: From `skid`.
+        found: From `skid.simulate`.
         ax: Axes; a new figure if `None`.
         ball: Which.
 
@@ -119,7 +119,7 @@ def sliding_over_time(
     """Sliding speed of a ball in the middle of its contacts [mm/s].
 
     Args:
-        found: From `skid`.
+        found: From `skid.simulate`.
         ax: Axes; a new figure if `None`.
         ball: Which.
 
@@ -140,7 +140,7 @@ def cage_force_over_time(
     """Forces of the cage on the balls, in the sense in which angles are counted [N].
 
     Args:
-        found: From `skid`.
+        found: From `skid.simulate`.
         ax: Axes; a new figure if `None`.
 
     Returns:
@@ -161,7 +161,7 @@ def power_over_time(
     """Power of the drive [W], and where it goes.
 
     Args:
-        found: From `skid`.
+        found: From `skid.simulate`.
         ax: Axes; a new figure if `None`.
 
     Returns:
@@ -214,7 +214,7 @@ def spectrum(
     """Spectrum of the sliding speed in the middle of a contact.
 
     Args:
-        found: From `skid`, at even times.
+        found: From `skid.simulate`, at even times.
         ball: Which.
         raceway: "outer" or "inner".
         begin: Time from which on [s]; default: a third of all.
@@ -258,7 +258,7 @@ def sliding_spectrum(
     """Spectrum of the sliding speed of a ball [mm/s], multiples of the cage's marked.
 
     Args:
-        found: From `skid`, at even times.
+        found: From `skid.simulate`, at even times.
         ax: Axes; a new figure if `None`.
         ball, raceway, begin: As of `spectrum`.
 

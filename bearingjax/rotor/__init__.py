@@ -37,21 +37,21 @@ makes a `ross.BearingElement` of it (the axes of ROSS are ours).
 At rest in its bearings
 -----------------------
 
-`settle(rotor, RotorLoads(gravity=(0, -9.80665, 0), forces=StationForce(...)), speed)`
-is the equilibrium under weight, constant forces and preload with the bearings' true
-forces: displacements, load and stiffness of each bearing, differentiable with respect
-to every number. It warns of a bearing that bears nothing and of a motion that nothing
-holds, and says along what a load finds no support. `settled.rotor` is the rotor on
-springs of that stiffness, for all linear analyses. Where rolling elements feel the
-speed (`BearingSupport(..., inertia=True)`), `settle_over(rotor, loads,
-top_speed).rotor` has springs that follow it, as polynomials with a measured error. Two
-bearings of one structure are compiled once.
+`static_equilibrium(rotor, RotorLoads(gravity=(0, -9.80665, 0),
+forces=StationForce(...)), speed)` is the equilibrium under weight, constant forces and
+preload with the bearings' true forces: displacements, load and stiffness of each
+bearing, differentiable with respect to every number. It warns of a bearing that bears
+nothing and of a motion that nothing holds, and says along what a load finds no support.
+`settled.rotor` is the rotor on springs of that stiffness, for all linear analyses.
+Where rolling elements feel the speed (`BearingSupport(..., inertia=True)`),
+`static_equilibrium_over(rotor, loads, top_speed).rotor` has springs that follow it, as
+polynomials with a measured error. Two bearings of one structure are compiled once.
 
-Where the linear answer ends, see `bearingjax.rotor.vibration`. Worked: the notebooks
+Where the linear answer ends, see `bearingjax.rotor.nonlinear`. Worked: the notebooks
 linear_rotordynamics, rotor_in_jax and rotor_on_bearings.
 """
 
-from . import vibration as vibration
+from . import nonlinear as nonlinear
 from .bearing_support import BearingSupport as BearingSupport
 from .coefficients import stiffness_table as stiffness_table
 from .critical import CriticalSpeeds as CriticalSpeeds
@@ -85,7 +85,7 @@ from .rotor import RotorMatrices as RotorMatrices
 from .shaft import STATION_FREEDOMS as STATION_FREEDOMS
 from .shaft import Shaft as Shaft
 from .speed_support import SpeedSupport as SpeedSupport
-from .statics import Settled as Settled
-from .statics import settle as settle
-from .statics_over_speed import SettledOver as SettledOver
-from .statics_over_speed import settle_over as settle_over
+from .statics import StaticEquilibrium as StaticEquilibrium
+from .statics import static_equilibrium as static_equilibrium
+from .statics_over_speed import StaticEquilibriumOver as StaticEquilibriumOver
+from .statics_over_speed import static_equilibrium_over as static_equilibrium_over

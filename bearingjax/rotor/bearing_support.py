@@ -42,8 +42,9 @@ class BearingSupport(AbstractSupport):
 
     Loads and angles are quasi-static. Linear analyses of a `Rotor` take its slopes
     where the station has not moved, so at `offset`; a bearing that bears nothing there,
-    such as one with clearance or without preload, leaves the shaft free. `settle`
-    finds where weight and preload put it, and warns of one that bears nothing.
+    such as one with clearance or without preload, leaves the shaft free.
+    `static_equilibrium` finds where weight and preload put it, and warns of one that
+    bears nothing.
 
     Attributes:
         station: Number of the station that it holds.

@@ -22,10 +22,10 @@ def harmonic_response(
     """Vibration over the frequency of the excitation.
 
     Args:
-        rotor: Linear, such as `Settled.rotor`; a bearing is taken by its slopes.
-        loads: Unbalances and acceleration of the base count.
-        frequencies: Of the excitation (speed,) [rad/s].
-        speed: Of the rotor [rad/s]; `None`: that of the excitation.
+        rotor: Linear, such as `StaticEquilibrium.rotor`; a bearing is taken by its
+        slopes. loads: Unbalances and acceleration of the base count. frequencies: Of
+        the excitation (speed,) [rad/s]. speed: Of the rotor [rad/s]; `None`: that of
+        the excitation.
 
     Returns:
         UnbalanceResponse, its `speed` that of the excitation; differentiable with

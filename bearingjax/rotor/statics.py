@@ -34,7 +34,7 @@ _SOLVER = TrustRegionNewton(
 )
 
 
-class Settled(eqx.Module):
+class StaticEquilibrium(eqx.Module):
     """A rotor at rest in its supports, at one speed.
 
     Attributes:
@@ -67,13 +67,13 @@ class Settled(eqx.Module):
     free: Float[Array, " motion"]
 
 
-def settle(
+def static_equilibrium(
     rotor: Any,
     loads: Any = None,
     speed: Any = 0.0,
     *,
     throw: bool = True,
-) -> Settled:
+) -> StaticEquilibrium:
     """Equilibrium under weight, constant forces and the preload of the bearings.
 
     Args:
@@ -83,8 +83,8 @@ def settle(
         throw: Raise if there is none. Static.
 
     Returns:
-        Settled, with first derivatives with respect to all numbers of rotor, loads
-        and speed.
+        StaticEquilibrium, with first derivatives with respect to all numbers of rotor,
+        loads and speed.
 
     Fails: `STEP_LIMIT`, `NO_LOAD_PATH`, `NON_FINITE`.
 
@@ -98,9 +98,9 @@ def settle(
             gives way, or nothing holds the rotor along some motion (which then stays
             what it is).
     """
-    loads = checked_loads("settle", rotor, loads)
+    loads = checked_loads("static_equilibrium", rotor, loads)
     speed = as_real(speed)
-    number("settle", "speed", speed, "rad/s")
+    number("static_equilibrium", "speed", speed, "rad/s")
     found, place = settled_at(rotor, loads, speed)
     if throw:
         found = raise_unless_converged(
@@ -117,10 +117,10 @@ def checked_loads(owner: str, rotor: Any, loads: Any) -> RotorLoads:
 
     Args:
         owner: Function that was called.
-        rotor, loads: As of `settle`.
+        rotor, loads: As of `static_equilibrium`.
 
     Raises:
-        TypeError, ValueError: As `settle`.
+        TypeError, ValueError: As `static_equilibrium`.
     """
     loads = RotorLoads() if loads is None else loads
     for name, value, kind in (("rotor", rotor, Rotor), ("loads", loads, RotorLoads)):
@@ -177,11 +177,13 @@ def _undone(of_y, y, change, parts):
 
 
 @eqx.filter_jit
-def settled_at(rotor, loads, speed) -> tuple[Settled, Float[Array, " motion"]]:
+def settled_at(
+    rotor, loads, speed
+) -> tuple[StaticEquilibrium, Float[Array, " motion"]]:
     """The result, and where the search ended even if it is none (motion,).
 
     Args:
-        rotor, loads, speed: As of `settle`, checked.
+        rotor, loads, speed: As of `static_equilibrium`, checked.
     """
     parts = condensed(rotor, loads, speed)
     length = rotor.shaft.stations[-1] - rotor.shaft.stations[0]
@@ -195,7 +197,7 @@ def settled_at(rotor, loads, speed) -> tuple[Settled, Float[Array, " motion"]]:
     return settled, stop(parts).motion(found.x)
 
 
-def _settled(found, solved, rotor, parts, speed) -> Settled:
+def _settled(found, solved, rotor, parts, speed) -> StaticEquilibrium:
     """What the search found, with derivatives; NaN if it failed."""
     y = attach_by(_balance, found.x, parts, _undone)
     motion = parts.motion(jnp.where(solved, y, jnp.nan))
@@ -208,7 +210,7 @@ def _settled(found, solved, rotor, parts, speed) -> Settled:
         for support, k, c in zip(rotor.supports, stiffness, damping, strict=True)
     ]
     n = N_STATION * rotor.shaft.n_nodes
-    return Settled(
+    return StaticEquilibrium(
         displacement=motion[:n].reshape(-1, N_STATION),
         housing=motion[n:].reshape(-1, N_HOUSING),
         support_load=load,

@@ -19,17 +19,17 @@ from ..numerics.result import Result, raise_unless_converged, worst
 from ..numerics.types import Scalar, as_count, as_real
 from .rotor import Rotor
 from .speed_support import SpeedSupport, chebyshev_analysis
-from .statics import Settled, checked_loads, settled_at
+from .statics import StaticEquilibrium, checked_loads, settled_at
 
 
-class SettledOver(eqx.Module):
+class StaticEquilibriumOver(eqx.Module):
     """A rotor at rest in its supports, at speeds from rest to a top speed.
 
     Attributes:
         rotor: The rotor on springs that follow the speed (`SpeedSupport`), for all
             linear analyses up to the top speed.
-        speed: Where it was settled (place,) [rad/s].
-        displacement, support_load, stiffness: There, as of `Settled`, with `place` as
+        speed: Where it was settled (place,) [rad/s]. displacement, support_load,
+        stiffness: There, as of `StaticEquilibrium`, with `place` as
             first axis.
         error: What the polynomials may miss, over the largest stiffness [1].
         result: Worst `Result` code; the numbers are NaN unless it is `CONVERGED`.
@@ -44,38 +44,38 @@ class SettledOver(eqx.Module):
     result: Int[Array, ""]
 
 
-def settle_over(
+def static_equilibrium_over(
     rotor: Any,
     loads: Any,
     top_speed: Any,
     *,
     places: Any = 13,
     throw: bool = True,
-) -> SettledOver:
+) -> StaticEquilibriumOver:
     """Equilibrium from rest to a top speed, for supports that follow the speed.
 
     The rotor is settled at Chebyshev's points between, and the stiffness of every
     support there made a polynomial of the speed: linear analyses then cost no more than
     on springs. `error` is the size of the last two coefficients; where it is not small
     more places help, unless rolling elements lose contact with the speed, which makes
-    a kink. If no support follows the speed, `settle` tells the same.
+    a kink. If no support follows the speed, `static_equilibrium` tells the same.
 
     Args:
-        rotor, loads: As of `settle`.
+        rotor, loads: As of `static_equilibrium`.
         top_speed: Highest speed, above 0 [rad/s].
         places: Number of points, 3 or more. Static.
         throw: Raise if one is not settled. Static.
 
     Returns:
-        SettledOver, with first derivatives with respect to all numbers.
+        StaticEquilibriumOver, with first derivatives with respect to all numbers.
 
-    Fails, raises: as `settle`.
+    Fails, raises: as `static_equilibrium`.
     """
-    loads = checked_loads("settle_over", rotor, loads)
+    loads = checked_loads("static_equilibrium_over", rotor, loads)
     top_speed, places = as_real(top_speed), as_count(places)
-    positive("settle_over", "top_speed", top_speed, "rad/s")
-    whole("settle_over", "places", places)
-    check("settle_over", "places", places >= 3, "at least 3", places, "")
+    positive("static_equilibrium_over", "top_speed", top_speed, "rad/s")
+    whole("static_equilibrium_over", "places", places)
+    check("static_equilibrium_over", "places", places >= 3, "at least 3", places, "")
     share = 0.5 * (1.0 - np.cos(np.pi * (np.arange(places) + 0.5) / places))
     speeds = top_speed * jnp.asarray(share, top_speed.dtype)
     every = _at_each(rotor, loads, speeds)
@@ -83,12 +83,15 @@ def settle_over(
 
     def message():
         label = Result(int(found.result)).label
-        return f"settle_over: {label} at one of the speeds; `settle` there says more."
+        return (
+            f"static_equilibrium_over: {label} at one of the speeds;"
+            " `static_equilibrium` there says more."
+        )
 
     return raise_unless_converged(found, found.result, message) if throw else found
 
 
-def _at_each(rotor, loads, speeds) -> Settled:
+def _at_each(rotor, loads, speeds) -> StaticEquilibrium:
     """The rotor settled at every speed, without `rotor`; with `place` as first axis."""
 
     def one(speed):
@@ -97,19 +100,20 @@ def _at_each(rotor, loads, speeds) -> Settled:
 
     if any(is_traced(leaf) for leaf in jax.tree.leaves((rotor, loads, speeds))):
         return lax.map(one, speeds)
-    # One after the other by the program of `settle`, which is often there already.
+    # One after the other by the program of `static_equilibrium`, which is often there
+    # already.
     return jax.tree.map(lambda *leaf: jnp.stack(leaf), *map(one, speeds))
 
 
 @eqx.filter_jit
-def _settled_over(rotor, top_speed, speeds, found) -> SettledOver:
+def _settled_over(rotor, top_speed, speeds, found) -> StaticEquilibriumOver:
     series = jnp.asarray(chebyshev_analysis(speeds.shape[0]), top_speed.dtype)
     stiffness = jnp.tensordot(series, found.stiffness, 1)
     springs = [
         SpeedSupport(s.station, stiffness[:, k], d, top_speed, housing=s.housing)
         for k, (s, d) in enumerate(zip(rotor.supports, found.damping[0], strict=True))
     ]
-    return SettledOver(
+    return StaticEquilibriumOver(
         rotor=eqx.tree_at(lambda r: r.supports, rotor, tuple(springs)),
         speed=speeds,
         displacement=found.displacement,

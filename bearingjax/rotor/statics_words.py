@@ -1,4 +1,4 @@
-"""In words: why a rotor did not settle, and what is doubtful where it did."""
+"""In words: why a rotor did not come to rest, and what is doubtful where it did."""
 
 import warnings
 from typing import Any
@@ -34,15 +34,15 @@ def _named(rotor, motion) -> str:
 
 
 def unsettled(rotor: Any, found: Any, place: Any) -> str:
-    """Why a rotor did not settle.
+    """Why a rotor did not come to rest.
 
     Args:
         rotor: The rotor.
-        found: What `settle` found.
+        found: What `static_equilibrium` found.
         place: Where its search ended (motion,).
     """
     result = Result(int(found.result))
-    start = f"settle: {result.label} at {float(found.speed):g} rad/s:"
+    start = f"static_equilibrium: {result.label} at {float(found.speed):g} rad/s:"
     if result is Result.NO_LOAD_PATH and not is_traced(place):
         return (
             f"{start} nothing takes up the load along"
@@ -111,7 +111,7 @@ def warn_of(rotor: Any, found: Any) -> None:
 
     Args:
         rotor: The rotor.
-        found: What `settle` found.
+        found: What `static_equilibrium` found.
     """
     loads = np.asarray(found.support_load)
     idle = [
@@ -121,18 +121,18 @@ def warn_of(rotor: Any, found: Any) -> None:
     ]
     if idle:
         warnings.warn(
-            f"settle: the bearing on station {', '.join(idle)} bears nothing: it has"
-            " no stiffness here; give it a preload or a load",
+            f"static_equilibrium: the bearing on station {', '.join(idle)} bears"
+            " nothing: it has no stiffness here; give it a preload or a load",
             stacklevel=3,
         )
     lost = _lost_preload(rotor, found)
     if lost:
-        warnings.warn(f"settle: {lost}", stacklevel=3)
+        warnings.warn(f"static_equilibrium: {lost}", stacklevel=3)
     free = np.asarray(found.free)
     springs = all(isinstance(support, LinearSupport) for support in rotor.supports)
     if free.any() and not springs:
         warnings.warn(
-            f"settle: nothing holds {_named(rotor, free)}: it stays where it is, and"
-            " a mode of frequency zero goes with it",
+            f"static_equilibrium: nothing holds {_named(rotor, free)}: it stays where"
+            " it is, and a mode of frequency zero goes with it",
             stacklevel=3,
         )

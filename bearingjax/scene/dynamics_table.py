@@ -7,7 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..dynamics import (
+from ..element import Speed
+from ..element.frame import LOADS
+from ..skid import (
     Cage,
     Drag,
     LoadHistory,
@@ -16,8 +18,6 @@ from ..dynamics import (
     SpeedTable,
     ramp,
 )
-from ..element import Speed
-from ..element.frame import LOADS
 from .operating_table import LoadKeys
 from .schema import Keys, scene_key
 

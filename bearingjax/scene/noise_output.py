@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from ..acoustics import Shares, write_sound
-from ..acoustics.natural import LOOSE
+from ..noise import Shares, write_sound
+from ..noise.natural import LOOSE
 from .noise_run import Many, NoiseRun
 from .noise_scene import DIRECTIONS
 from .tolerance_table import Tighter

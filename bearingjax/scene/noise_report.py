@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ..acoustics import ring_modes
-from ..acoustics.level import LOWEST_LEVEL
-from ..acoustics.scatter import SOURCES
 from ..design import is_ball
 from ..element.frame import LOADS
+from ..noise import ring_modes
+from ..noise.level import LOWEST_LEVEL
+from ..noise.scatter import SOURCES
 from .noise_output import PERCENTILES, parts_of
 from .noise_run import LARGEST_LINES, NoiseRun
 from .noise_scene import DIRECTIONS

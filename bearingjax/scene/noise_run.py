@@ -7,7 +7,8 @@ from collections.abc import Callable
 import jax
 import numpy as np
 
-from ..acoustics import (
+from ..design import n_elements, rows_of
+from ..noise import (
     ContactStates,
     Line,
     MonteCarlo,
@@ -33,8 +34,7 @@ from ..acoustics import (
     total_root_mean_square,
     vibration,
 )
-from ..acoustics.standing import why
-from ..design import n_elements, rows_of
+from ..noise.standing import why
 from ..numerics.result import Result
 from .noise_scene import DIRECTIONS, NoiseScene
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..acoustics import AbstractWindow, Bands, NoiseModel, Tolerances
+from ..noise import AbstractWindow, Bands, NoiseModel, Tolerances
 from .read import Scene
 
 DIRECTIONS = ("x", "y", "z")

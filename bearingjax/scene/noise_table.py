@@ -7,7 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ..acoustics import (
+from ..design import BearingSet, FormErrors, n_elements, rows_of
+from ..element import FREEDOMS, RINGS
+from ..element.bearing_element import BearingElement
+from ..noise import (
     REFERENCE_ACCELERATION,
     Hann,
     NoiseModel,
@@ -16,10 +19,7 @@ from ..acoustics import (
     octave_bands,
     third_octave_bands,
 )
-from ..acoustics.reference_levels import NORM
-from ..design import BearingSet, FormErrors, n_elements, rows_of
-from ..element import FREEDOMS, RINGS
-from ..element.bearing_element import BearingElement
+from ..noise.reference_levels import NORM
 from .deviations_table import read_deviations
 from .noise_scene import DIRECTIONS, NoiseScene
 from .read import Scene, scene_of, with_speed_told

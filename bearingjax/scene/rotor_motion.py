@@ -12,22 +12,22 @@ from ..rotor import (
     LinearSupport,
     Modes,
     Rotor,
-    Settled,
+    StaticEquilibrium,
     harmonic_response,
     reduction_error,
 )
-from ..rotor.vibration import (
+from ..rotor.nonlinear import (
     Branch,
     Ending,
     HarmonicBalance,
-    RotorVibration,
     Shooting,
     Steps,
+    VibratingRotor,
     follow,
-    rotor_vibration,
     simulate,
+    vibrating_rotor,
 )
-from ..rotor.vibration.orbit import amplitudes
+from ..rotor.nonlinear.orbit import amplitudes
 from .rotor_scene import RotorScene
 from .rotor_supports import unit_of_length, with_passage
 
@@ -117,7 +117,7 @@ def respond(
     task: RotorScene,
     rotor: Rotor,
     linear: Rotor | None,
-    settled: Settled,
+    settled: StaticEquilibrium,
     modes: Modes,
 ) -> RotorResponse:
     """The periodic vibration that a scene asks for.
@@ -231,7 +231,7 @@ def _linear(task: RotorScene, linear: Rotor) -> RotorResponse:
 
 
 def run_in_time(
-    task: RotorScene, rotor: Rotor, settled: Settled, modes: Modes
+    task: RotorScene, rotor: Rotor, settled: StaticEquilibrium, modes: Modes
 ) -> RotorTransient:
     """The motion in time that a scene asks for, from rest in the equilibrium.
 
@@ -280,10 +280,10 @@ def run_in_time(
     )
 
 
-def _system(task, rotor, settled, modes, scale, speed, reduction) -> RotorVibration:
+def _system(task, rotor, settled, modes, scale, speed, reduction) -> VibratingRotor:
     angular = np.imag(np.asarray(modes.eigenvalue))
     slowest = angular[angular > 0].min(initial=np.inf)
-    return rotor_vibration(
+    return vibrating_rotor(
         rotor,
         task.loads,
         scale=unit_of_length(rotor, settled) if scale is None else scale,

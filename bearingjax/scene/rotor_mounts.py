@@ -11,7 +11,7 @@ import numpy as np
 from ..design import AbstractBallBearing
 from ..element import Speed
 from ..rotor import Housing, Shaft
-from ..rotor.vibration import CubicExpansion, FixedAngle, MovingAngle
+from ..rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
 from ..statics.installed import Installed
 from .bearing_table import BESIDE, designated, read_bearing

@@ -16,13 +16,13 @@ from ..rotor import (
     Modes,
     Onset,
     Rotor,
-    Settled,
+    StaticEquilibrium,
     campbell,
     critical_speeds,
     instability_onsets,
     modes,
-    settle,
-    settle_over,
+    static_equilibrium,
+    static_equilibrium_over,
 )
 from .fit_table import fit_facts, turning
 from .quantity import SceneError
@@ -68,7 +68,7 @@ class RotorRun:
 
     task: RotorScene
     rotor: Rotor | None
-    settled: Settled | None = None
+    settled: StaticEquilibrium | None = None
     modes: Modes | None = None
     critical: CriticalSpeeds | None = None
     campbell: Modes | None = None
@@ -175,7 +175,9 @@ def _rotor(task: RotorScene, parts: _Parts) -> Rotor | None:
 
 def _static(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
     with parts.part("static"):
-        parts.found["settled"] = settle(rotor, task.loads, as_array(task.speed, float))
+        parts.found["settled"] = static_equilibrium(
+            rotor, task.loads, as_array(task.speed, float)
+        )
 
 
 def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
@@ -213,7 +215,7 @@ def _following(task, rotor, settled, highest, parts) -> Rotor | None:
     if not any(mount.inertia for mount in task.mounts):
         return settled.rotor
     with parts.part("static"):
-        over = settle_over(rotor, task.loads, as_array(highest, float))
+        over = static_equilibrium_over(rotor, task.loads, as_array(highest, float))
         if float(over.error) > _COARSE:
             parts.warnings.append(
                 f"the stiffness of the bearings over the speed is known to"

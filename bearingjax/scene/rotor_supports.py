@@ -10,10 +10,10 @@ from ..rotor import (
     BearingSupport,
     LinearSupport,
     Rotor,
-    Settled,
+    StaticEquilibrium,
     preload_offset,
 )
-from ..rotor.vibration import LawSupport
+from ..rotor.nonlinear import LawSupport
 from .rotor_mounts import LAWS
 from .rotor_scene import Mount
 
@@ -66,7 +66,7 @@ def with_passage(support: AbstractSupport) -> AbstractSupport:
     return dataclasses.replace(support, passage=True)
 
 
-def unit_of_length(rotor: Rotor, settled: Settled) -> float:
+def unit_of_length(rotor: Rotor, settled: StaticEquilibrium) -> float:
     """Displacement that is called one: the largest of preload and equilibrium [m].
 
     Args:

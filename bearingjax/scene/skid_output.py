@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from ..dynamics import by_raceway
-from ..dynamics.transient import CAUSES
 from ..element import RINGS
 from ..numerics.result import Result
+from ..skid import by_raceway
+from ..skid.transient import CAUSES
 from ..statics.solution import message
 from ..statics.sweep_table import column_header
 from .skid_run import SkidRun

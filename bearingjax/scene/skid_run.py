@@ -7,15 +7,14 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from .. import skid
 from ..design import is_ball, n_elements
-from ..dynamics import (
+from ..numerics.result import Result
+from ..skid import (
     SkidState,
     conditions,
-    skid,
     skid_warnings,
-    steady_skid,
 )
-from ..numerics.result import Result
 from ..statics.warning import warnings
 from .quantity import SceneError
 from .skid_table import SkidScene
@@ -77,7 +76,7 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
     Raises:
         SceneError: For settings that do not suit the load.
 
-    Fails: as `steady_skid` and `skid`.
+    Fails: as `skid.steady` and `skid.simulate`.
     """
     try:
         found, speed = _end(task) if task.steady else _motion(task, shown)
@@ -114,13 +113,13 @@ def _supports(task):
 
 def _end(task) -> tuple[Any, Any]:
     asked = _supports(task)
-    found = steady_skid(task.model, task.scene.load, speed=task.speed, **asked)
+    found = skid.steady(task.model, task.scene.load, speed=task.speed, **asked)
     return found, task.speed
 
 
 def _motion(task, shown) -> tuple[Any, Any]:
     speed = task.speed if task.speeds is None else task.speeds
-    found = skid(
+    found = skid.simulate(
         task.model,
         task.scene.load if task.loads is None else task.loads,
         speed=speed,

@@ -15,8 +15,8 @@ from ..design import (
     is_ball,
     n_elements,
 )
-from ..dynamics import Cage, Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable
 from ..element import Speed
+from ..skid import Cage, Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable
 from .dynamics_table import CageKeys, DynamicsKeys
 from .lubricant_table import LubricantKeys
 from .read import Scene, scene_of, with_speed_told
@@ -35,7 +35,7 @@ class SkidScene:
         oil: Name of the oil, or of the law of its viscosity.
         speeds: Ring speeds over time, or `None` for the constant ones of the scene.
         loads: Load over time, or `None` for the constant one of the scene.
-        balanced: As of `skid`.
+        balanced: As of `skid.simulate`.
         duration: Of the motion [s]; `None` if the end state is asked for.
         start: "rolling" or "rest": how the balls begin.
         axis: "vertical" or "horizontal".

@@ -4,7 +4,6 @@ import contextlib
 import dataclasses
 from typing import Any
 
-from ..acoustics import RandomWaves, Tolerances
 from ..design import is_ball, rows_of
 from ..design.tolerance import (
     BALL_GRADES,
@@ -14,6 +13,7 @@ from ..design.tolerance import (
     roller_grade,
     running_accuracy,
 )
+from ..noise import RandomWaves, Tolerances
 from .deviations_table import MOST_ORDER
 from .schema import Keys, scene_key
 

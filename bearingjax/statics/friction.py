@@ -2,7 +2,7 @@
 
 One part grows with the load, the other with the speed and the oil. Measured torques
 scatter about them by some tens of per cent; seals are not in them. What rolling
-elements that slip really do is `bearingjax.dynamics`.
+elements that slip really do is `bearingjax.skid`.
 """
 
 from typing import Any, NamedTuple

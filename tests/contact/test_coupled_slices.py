@@ -16,7 +16,7 @@ from bearingjax.contact.halfspace import RollerContact
 
 LENGTH, DIAMETER = 0.015, 0.010
 STEEL = bj.Material(210e9, 0.3)
-RULE = bj.ContactMapped()  # of no use to coupled slices
+RULE = bj.numerics.ContactMapped()  # of no use to coupled slices
 MODULUS = 210e9 / (2 * 0.91)
 PROFILES = {
     "straight": bj.Straight(),
@@ -33,7 +33,7 @@ def coupled(profile, slices=24):
         profile,
         bj.Straight(),
     )
-    law = bj.CoupledSlices(slices)
+    law = bj.contact.CoupledSlices(slices)
     return law.contact(
         plain, lambda s: jnp.full_like(s, 0.5 * DIAMETER), jnp.asarray(MODULUS)
     )
@@ -115,7 +115,7 @@ def test_a_long_even_load_has_lundbergs_approach():
             bj.Straight(),
             bj.Straight(),
         )
-        contact = bj.CoupledSlices(slices).contact(
+        contact = bj.contact.CoupledSlices(slices).contact(
             line, lambda s: jnp.full_like(s, radius), jnp.asarray(MODULUS)
         )
         made = contact.table(RULE)
@@ -159,7 +159,7 @@ def test_derivatives_by_the_design():
             bj.CircularCrown(x[0]),
             bj.Straight(),
         )
-        line = bj.CoupledSlices(16).contact(
+        line = bj.contact.CoupledSlices(16).contact(
             plain, lambda s: jnp.full_like(s, 0.005), x[2]
         )
         got = response(
@@ -210,7 +210,7 @@ def test_the_bearing_has_it():
     bearing = bj.CylindricalRollerBearing(
         9, 0.0725, DIAMETER, LENGTH, radial_internal_clearance=10e-6
     )
-    element = bj.BearingElement(bearing, bj.CoupledSlices(16))
+    element = bj.BearingElement(bearing, bj.contact.CoupledSlices(16))
     load = [8000.0, 0, 0, 0, 0, 0]
     free = ("ux", "uy", "gx", "gy")
     got = bj.solve_load(element, load, free=free, points=16)
@@ -243,7 +243,9 @@ def test_a_measured_profile_counts_by_its_mean_over_a_slice():
 
 def test_what_does_not_fit_is_refused():
     with pytest.raises(ValueError, match="`slices` is 3; it must be a whole number"):
-        bj.CoupledSlices(3)
+        bj.contact.CoupledSlices(3)
     bearing = bj.CylindricalRollerBearing(9, 0.0725, DIAMETER, LENGTH)
     with pytest.raises(ValueError, match="`quadrature` is for independent slices"):
-        bj.BearingElement(bearing, bj.CoupledSlices(), quadrature=bj.Midpoint())
+        bj.BearingElement(
+            bearing, bj.contact.CoupledSlices(), quadrature=bj.numerics.Midpoint()
+        )

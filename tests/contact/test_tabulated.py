@@ -17,7 +17,7 @@ from bearingjax.design import Logarithmic, Straight, Tabulated
 from bearingjax.statics.rollers import approaches
 
 L, D, C = 0.01372, 0.014, 1.3e11
-RULE = bj.ContactMapped()
+RULE = bj.numerics.ContactMapped()
 MOTIONS = np.array(
     [
         [0.6e-6, 0.0],
@@ -124,7 +124,7 @@ def plain(case, motion, samples=4000):
         same = (argument(middle) > 0) == positive[edge]
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     x = np.sort(np.concatenate([x, 0.5 * (low + high)]))
-    tau, weight = bj.ContactMapped(12).reference()
+    tau, weight = bj.numerics.ContactMapped(12).reference()
     half = 0.5 * np.diff(x)[:, None]
     xi, weight = 0.5 * (x[1:] + x[:-1])[:, None] + half * tau, half * weight
     f = np.maximum(argument(xi), 0.0)

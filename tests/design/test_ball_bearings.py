@@ -130,10 +130,10 @@ def test_four_point_geometry():
             lambda: bj.BearingSet.tandem(angular(), 0.005),
             "`position` of row 1 is 0.0025 m and of row 0 -0.0025 m; .* overlap",
         ),
-        (lambda: bj.FrictionLimited(-0.1), "`friction` is -0.1"),
-        (lambda: bj.PointConstant(0.0, 1.0), "`outer` is 0"),
+        (lambda: bj.element.FrictionLimited(-0.1), "`friction` is -0.1"),
+        (lambda: bj.contact.PointConstant(0.0, 1.0), "`outer` is 0"),
         (
-            lambda: bj.BearingElement(deep(), line_law=bj.Palmgren()),
+            lambda: bj.BearingElement(deep(), line_law=bj.contact.Palmgren()),
             "`line_law` is for rollers",
         ),
     ],
@@ -145,9 +145,12 @@ def test_wrong_calls_say_what_is_allowed(make, message):
 
 BAD_CHOICES = {
     "text": ({"kinematics": "finite"}, r"`kinematics` is 'finite'.* Finite\(\)"),
-    "class": ({"kinematics": bj.Finite}, r"`kinematics` is the class Finite; "),
-    "law of rollers": ({"point_law": bj.Palmgren()}, "`point_law` is Palmgren"),
-    "control": ({"raceway_control": bj.InnerControl}, "`raceway_control` is the class"),
+    "class": ({"kinematics": bj.element.Finite}, r"`kinematics` is the class Finite; "),
+    "law of rollers": ({"point_law": bj.contact.Palmgren()}, "`point_law` is Palmgren"),
+    "control": (
+        {"raceway_control": bj.element.InnerControl},
+        "`raceway_control` is the class",
+    ),
     "solver": ({"equilibrium": "bfgs"}, r"`equilibrium` is 'bfgs'.* or BFGS\(\)"),
     "yes": ({"cage_torque": "no"}, "`cage_torque` is 'no'; .*True or False"),
 }

@@ -28,8 +28,8 @@ def surrogate(points=20, equilibrium=None, **change):
     )
     return bj.BearingElement(
         bearing,
-        quadrature=bj.Midpoint(points),
-        equilibrium=equilibrium or bj.TrustRegionNewton(),
+        quadrature=bj.numerics.Midpoint(points),
+        equilibrium=equilibrium or bj.numerics.TrustRegionNewton(),
     )
 
 
@@ -73,7 +73,9 @@ def test_fact_3_gradient_of_the_energy(roller):
     assert np.abs((slopes - gradient) * step).max() < 1e-8 * scale
 
 
-@pytest.mark.parametrize("solver", [bj.BFGS(), bj.TrustRegionNewton()])
+@pytest.mark.parametrize(
+    "solver", [bj.numerics.BFGS(), bj.numerics.TrustRegionNewton()]
+)
 def test_fact_4_quasi_newton_reaches_the_newton_point(roller, solver):
     """By symmetry half of the ring's motion, from the paper's start at rest."""
     model, rings = roller
@@ -100,7 +102,7 @@ def test_fact_4_quasi_newton_reaches_the_newton_point(roller, solver):
 
 def test_fact_6_condensed_stiffness_is_the_derivative_of_the_force(roller):
     model, rings = roller
-    solver = bj.TrustRegionNewton()
+    solver = bj.numerics.TrustRegionNewton()
     magnitude = jnp.asarray(1e-4)
 
     @jax.jit

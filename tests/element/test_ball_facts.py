@@ -40,7 +40,7 @@ def assumed(n=12, **change):
         material=bj.Material(206e9, 0.3, 7850.0),
     )
     bearing = bj.AngularContactBallBearing(n, 0.053285, 0.0127, **(values | change))
-    return bj.BearingElement(bearing, raceway_control=bj.EqualShare())
+    return bj.BearingElement(bearing, raceway_control=bj.element.EqualShare())
 
 
 def shift(element):
@@ -258,7 +258,7 @@ def test_af002_2_and_7_preloaded_bearing(line):
         contact_angle=free_angle,
         material=bj.Material(210e9, 0.3, 7850.0),
     )
-    element = bj.BearingElement(bearing, point_law=bj.OperatingAngle())
+    element = bj.BearingElement(bearing, point_law=bj.contact.OperatingAngle())
     s = bj.solve_load(element, [0, 0, preload, 0, 0, 0])
     # The preload hangs on the fourth digit of R2: 1.5 % for 0.05 um.
     loaded = np.asarray(s.contact_angle)[0]

@@ -21,7 +21,7 @@ def surrogate(n_rollers=12, **change):
         n_rollers, 0.0725, 0.014, 0.01372, **(values | change)
     )
     return bj.BearingElement(
-        bearing, kinematics=bj.Finite(), quadrature=bj.Midpoint(20)
+        bearing, kinematics=bj.element.Finite(), quadrature=bj.numerics.Midpoint(20)
     )
 
 
@@ -34,7 +34,9 @@ def by_autodiff(element, q):
 def test_force_and_stiffness_are_derivatives():
     for element in (
         surrogate(7),
-        bj.BearingElement(bearings()["taper, large rib"], kinematics=bj.Finite()),
+        bj.BearingElement(
+            bearings()["taper, large rib"], kinematics=bj.element.Finite()
+        ),
     ):
         q = jnp.asarray(motion())
         gradient, along = by_autodiff(element, q)
@@ -73,7 +75,7 @@ def test_differences_and_vmap():
 def test_linearised_is_the_limit_of_small_rotations():
     q = jnp.asarray(motion())
     finite = surrogate()
-    straight = eqx.tree_at(lambda e: e.kinematics, finite, bj.Linearised())
+    straight = eqx.tree_at(lambda e: e.kinematics, finite, bj.element.Linearised())
     gaps = []
     for size in (1.0, 0.1):
         # The same compression, smaller turns: the difference is of second order.
@@ -103,7 +105,7 @@ def test_moments_of_the_rings_do_not_balance():
 def sharp(slices, kinematics):
     element = surrogate(1, roller_profile=bj.CircularCrown(0.02))
     return bj.BearingElement(
-        element.bearing, kinematics=kinematics, quadrature=bj.Midpoint(slices)
+        element.bearing, kinematics=kinematics, quadrature=bj.numerics.Midpoint(slices)
     )
 
 
@@ -115,13 +117,13 @@ def result_of(element, push):
 
 def test_saddle_has_its_code():
     """Tilting an upright roller shortens it: on one slice it never stands."""
-    assert result_of(sharp(21, bj.Finite()), 20e-6) is bj.Result.SADDLE
-    assert result_of(sharp(21, bj.Linearised()), 20e-6) is bj.Result.CONVERGED
+    assert result_of(sharp(21, bj.element.Finite()), 20e-6) is bj.Result.SADDLE
+    assert result_of(sharp(21, bj.element.Linearised()), 20e-6) is bj.Result.CONVERGED
 
 
 def test_two_slices_stand_up_to_a_limit():
     """Approach of the two middle slices above 2 n s²/D = 18.7 um: a saddle."""
-    element = sharp(20, bj.Finite())
+    element = sharp(20, bj.element.Finite())
     s = 0.5 * 0.01372 / 20
     drop = float(bj.CircularCrown(0.02).drop(jnp.asarray(s), None, None))
     limit = 2 * (10 / 9) * s**2 / 0.014
@@ -133,7 +135,7 @@ def test_two_slices_stand_up_to_a_limit():
 def test_load_solve_with_finite_kinematics():
     load = [0.0, -10600.0, 0.0, -2.0, 0.0, 0.0]
     finite = surrogate(first_azimuth=np.pi / 2)
-    straight = eqx.tree_at(lambda el: el.kinematics, finite, bj.Linearised())
+    straight = eqx.tree_at(lambda el: el.kinematics, finite, bj.element.Linearised())
     a = bj.solve_load(finite, load, fixed_ring="inner")
     b = bj.solve_load(straight, load, fixed_ring="inner")
     assert float(a.stats.residual) < SOLVER

@@ -16,11 +16,11 @@ ROLLERS = bj.CylindricalRollerBearing(
 )
 FEW = bj.CylindricalRollerBearing(5, 0.065, 0.012, 0.010)
 ELEMENTS = {
-    "rollers": bj.BearingElement(ROLLERS, quadrature=bj.Midpoint(8)),
-    "balls": bj.BearingElement(balls(5), raceway_control=bj.CentrifugalOnly()),
+    "rollers": bj.BearingElement(ROLLERS, quadrature=bj.numerics.Midpoint(8)),
+    "balls": bj.BearingElement(balls(5), raceway_control=bj.element.CentrifugalOnly()),
     "unlike rows": bj.BearingElement(
         bj.BearingSet((bj.SetRow(ROLLERS, -0.01), bj.SetRow(FEW, 0.01))),
-        quadrature=bj.Midpoint(8),
+        quadrature=bj.numerics.Midpoint(8),
     ),
 }
 VELOCITY = np.linspace(-0.02, 0.03, 12)
@@ -84,9 +84,9 @@ def test_force_repeats_with_the_pass_of_the_elements():
     dense = bj.CylindricalRollerBearing(
         14, 0.065, 0.010, 0.010, radial_internal_clearance=4e-6, first_azimuth=0.3
     )
-    mean = 0.5 * bj.BearingElement(dense, quadrature=bj.Midpoint(8)).model(SPEED).force(
-        jnp.asarray(q)
-    )
+    mean = 0.5 * bj.BearingElement(dense, quadrature=bj.numerics.Midpoint(8)).model(
+        SPEED
+    ).force(jnp.asarray(q))
     np.testing.assert_allclose(0.5 * (force[0] + force[10]), mean, atol=SOLVER * size)
     assert mean[7] < -0.1 * size
     # vmap = loop.
@@ -171,8 +171,8 @@ def test_failure_is_not_silent():
     q = pressed()
     q[7] = np.nan
     assert np.isnan(orbiting(q, VELOCITY, 0.0, parameters)).any()
-    hurried = bj.TrustRegionNewton(max_steps=1)
-    element = bj.BearingElement(ROLLERS, None, None, bj.Midpoint(8), hurried)
+    hurried = bj.numerics.TrustRegionNewton(max_steps=1)
+    element = bj.BearingElement(ROLLERS, None, None, bj.numerics.Midpoint(8), hurried)
     function, parameters = element.as_function(SPEED)
     assert (
         element.evaluate(jnp.asarray(pressed()), SPEED).result == bj.Result.STEP_LIMIT

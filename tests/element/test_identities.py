@@ -263,7 +263,7 @@ def test_vmap_is_a_loop_and_jit_is_eager():
         difference = np.abs(np.asarray(batch.stiffness[i] - one.stiffness))
         assert np.max(difference / scale) < SOLVER
     with jax.disable_jit():
-        small = bj.BearingElement(taper(2), quadrature=bj.Midpoint(3))
+        small = bj.BearingElement(taper(2), quadrature=bj.numerics.Midpoint(3))
         eager = np.asarray(small.force(qs[0]))
     jitted = np.asarray(small.force(qs[0]))
     assert np.allclose(eager, jitted, rtol=0, atol=SOLVER * np.abs(jitted).max())
@@ -293,12 +293,12 @@ def test_one_trace_for_ten_designs():
 
     for i in range(10):
         bearing = taper(5, radial_internal_clearance=1e-6 * i)
-        element = bj.BearingElement(bearing, quadrature=bj.Midpoint(4))
+        element = bj.BearingElement(bearing, quadrature=bj.numerics.Midpoint(4))
         force(element, jnp.asarray(motion(i)))
 
 
 def test_no_host_callback_inside():
-    element = bj.BearingElement(taper(3), quadrature=bj.Midpoint(4))
+    element = bj.BearingElement(taper(3), quadrature=bj.numerics.Midpoint(4))
     text = str(jax.make_jaxpr(jax.hessian(element.energy))(jnp.asarray(motion())))
     assert "callback" not in text
 

@@ -125,7 +125,7 @@ class TorusChoices(AbstractChoices):
 
     @classmethod
     def of(cls, rows, kinematics=None):
-        return cls(kinematics=kinematics or bj.Linearised())
+        return cls(kinematics=kinematics or bj.element.Linearised())
 
     def rolling_element(self, part, speed, deviation):
         return TorusRoller(part.bearing)
@@ -249,7 +249,7 @@ class FixedAngleChoices(TorusChoices):
     def rolling_element(self, part, speed, deviation):
         b = part.bearing
         plain = (
-            bj.BearingElement(balls(5), kinematics=bj.ConstantAngle())
+            bj.BearingElement(balls(5), kinematics=bj.element.ConstantAngle())
             .model()
             .rows[0]
             .element
@@ -274,7 +274,7 @@ def test_an_element_without_unknowns_passes_through_the_same_machinery():
     reduced = bj.BearingElement(
         balls(5, FixedAngleBearing, contact_angle=np.deg2rad(25))
     )
-    full = bj.BearingElement(balls(5), kinematics=bj.ConstantAngle())
+    full = bj.BearingElement(balls(5), kinematics=bj.element.ConstantAngle())
     q = jnp.asarray([0.0] * 6 + [2e-6, -3e-6, 20e-6, 1e-4, -5e-5, 0.0])
     got, want = reduced.evaluate(q), full.evaluate(q)
     size, stiff = float(abs(want.force).max()), float(abs(want.stiffness).max())

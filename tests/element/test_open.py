@@ -150,7 +150,8 @@ def test_a_profile_that_stands_out_in_the_middle_says_so():
         cylindrical(roller_profile=Bulged())
     # Two bulges of 2.5 um touch where the straight line is up to 5 um apart.
     element = bj.BearingElement(
-        cylindrical(roller_profile=ToldBulged()), quadrature=bj.ContactMapped(16)
+        cylindrical(roller_profile=ToldBulged()),
+        quadrature=bj.numerics.ContactMapped(16),
     )
     q = jnp.zeros(12).at[7].set(-11e-6)
     load = element.rows(q)[0].contact_load[:, :2]

@@ -35,8 +35,8 @@ def none_of(bearing):
     "element",
     [
         bj.BearingElement(BALLS),
-        bj.BearingElement(BALLS, kinematics=bj.Finite()),
-        bj.BearingElement(TAPER, quadrature=bj.Midpoint(20)),
+        bj.BearingElement(BALLS, kinematics=bj.element.Finite()),
+        bj.BearingElement(TAPER, quadrature=bj.numerics.Midpoint(20)),
     ],
     ids=["balls", "balls, finite", "rollers"],
 )
@@ -66,9 +66,9 @@ def test_raised_on_both_raceways_is_a_larger_element(bearing):
     deviation, of_balls = none_of(bearing), bearing is BALLS
     deviation[:, :, RAISED] = 0.5 * larger[:, None]
     choice = (
-        {"point_law": bj.PointConstant(9e9, 8e9)}
+        {"point_law": bj.contact.PointConstant(9e9, 8e9)}
         if of_balls
-        else {"quadrature": bj.Midpoint(20)}
+        else {"quadrature": bj.numerics.Midpoint(20)}
     )
     name = "ball_deviation" if of_balls else "roller_deviation"
     by_size = dataclasses.replace(bearing, **{name: larger})
@@ -84,7 +84,7 @@ def test_raised_on_both_raceways_is_a_larger_element(bearing):
 
 @pytest.mark.parametrize("bearing", [BALLS, TAPER], ids=["balls", "rollers"])
 def test_derivative_by_each_deviation(bearing):
-    choice = {} if bearing is BALLS else {"quadrature": bj.Midpoint(20)}
+    choice = {} if bearing is BALLS else {"quadrature": bj.numerics.Midpoint(20)}
     rng = np.random.default_rng(3)
     start = 1e-6 * rng.normal(size=none_of(bearing).shape)
     way = rng.normal(size=start.shape)

@@ -11,12 +11,12 @@ from tolerances import DIFFERENCE, ROUNDING, SOLVER
 import bearingjax as bj
 
 N = 5
-TAPER = bj.BearingElement(taper(N), quadrature=bj.Midpoint(8))
+TAPER = bj.BearingElement(taper(N), quadrature=bj.numerics.Midpoint(8))
 Q = jnp.asarray(motion())
 
 
 def with_deviation(**change):
-    return bj.BearingElement(taper(N, **change), quadrature=bj.Midpoint(8))
+    return bj.BearingElement(taper(N, **change), quadrature=bj.numerics.Midpoint(8))
 
 
 def test_rollers_all_larger_are_rollers_of_less_clearance():
@@ -122,7 +122,7 @@ class OnlyForBalls(bj.element.AbstractKinematics):
     """Of one's own; it says nothing of rollers."""
 
     def ball(self, part):
-        return bj.Linearised().ball(part)
+        return bj.element.Linearised().ball(part)
 
 
 def test_elements_near_by_of_other_speeds_are_refused():
@@ -143,7 +143,7 @@ def test_kinematics_of_ones_own_work_or_are_refused():
 def test_methods_under_jit_hold_their_own_design():
     """Of one structure, and so of one hash; numbers tell them apart."""
     bearing = bj.CylindricalRollerBearing(7, 0.0725, 0.014, 0.01372)
-    one = bj.BearingElement(bearing, quadrature=bj.Midpoint(4))
+    one = bj.BearingElement(bearing, quadrature=bj.numerics.Midpoint(4))
     # Not of weak type, which would be another program.
     length = jnp.asarray(np.float64(0.015))
     other = eqx.tree_at(lambda e: e.bearing.roller_length, one, length)

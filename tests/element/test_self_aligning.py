@@ -110,7 +110,7 @@ def test_load_solve_at_a_tilt():
     """Tilt is prescribed: nothing restrains it."""
     bearing = bj.BearingSet.self_aligning(row(10e-6))
     element = bj.BearingElement(bearing)
-    assert bj.restrained_freedoms(bearing) == ("ux", "uy", "uz")
+    assert bj.statics.restrained_freedoms(bearing) == ("ux", "uy", "uz")
     sag = [
         float(
             bj.solve_load(
@@ -128,7 +128,7 @@ def test_finite_and_linearised_agree_to_first_order():
     bearing = balls(contact_angle=0.4)
     both = [
         bj.BearingElement(bearing, kinematics=kind)
-        for kind in (bj.Linearised(), bj.Finite())
+        for kind in (bj.element.Linearised(), bj.element.Finite())
     ]
     off = []
     for size in (1.0, 0.1):
@@ -141,7 +141,7 @@ def test_row_in_a_set_is_placed_exactly():
     """A pair turned as a whole: with finite rotations its rows do not work."""
     angular = balls(contact_angle=0.4)
     pair = bj.BearingSet.back_to_back(angular, 0.03, 10e-6)
-    element = bj.BearingElement(pair, kinematics=bj.Finite())
+    element = bj.BearingElement(pair, kinematics=bj.element.Finite())
     straight = evaluate(element, jnp.zeros(12))[0]
     angle = 0.02
     both = tilted(angle).at[:6].set(tilted(angle)[6:])
@@ -161,7 +161,7 @@ def test_free_tilts_are_warned_of(aligning):
     pair = bj.BearingSet.back_to_back(washer, 0.03, 14e-6)
     finite, small = (
         evaluate(bj.BearingElement(pair, kinematics=kind), jnp.zeros(12))[0]
-        for kind in (bj.Finite(), bj.Linearised())
+        for kind in (bj.element.Finite(), bj.element.Linearised())
     )
     assert float(finite.magnitude) == pytest.approx(float(small.magnitude), rel=1e-9)
 
@@ -182,9 +182,9 @@ def test_bad_input():
     mixed = bj.BearingSet((bj.SetRow(row()), bj.SetRow(balls(), 0.04)))
     for bearing in (bj.BearingSet.self_aligning(row()), mixed):
         with pytest.raises(ValueError, match="resist its tilt"):
-            bj.BearingElement(bearing, kinematics=bj.Linearised())
-        assert isinstance(bj.BearingElement(bearing).kinematics, bj.Finite)
+            bj.BearingElement(bearing, kinematics=bj.element.Linearised())
+        assert isinstance(bj.BearingElement(bearing).kinematics, bj.element.Finite)
     spring = bj.PreloadSpring(300.0)
     pair = bj.BearingSet.back_to_back(balls(), 0.02, spring=spring)
     with pytest.raises(ValueError, match="with Finite"):
-        bj.BearingElement(pair, kinematics=bj.Finite())
+        bj.BearingElement(pair, kinematics=bj.element.Finite())

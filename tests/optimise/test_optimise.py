@@ -49,7 +49,7 @@ def fujiwara():
 
 @pytest.fixture(scope="module")
 def straight():
-    return roller_element(bj.Straight(), quadrature=bj.Midpoint(5))
+    return roller_element(bj.Straight(), quadrature=bj.numerics.Midpoint(5))
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +66,7 @@ def one_case():
 
 
 def play(lower=0.0, upper=40e-6, start=None):
-    return bj.Variable(PLAY, lower, upper, start)
+    return bj.optimise.Variable(PLAY, lower, upper, start)
 
 
 @pytest.fixture(scope="module")
@@ -79,10 +79,10 @@ def wanted(straight, one_case):
 
 
 def search(straight, one_case, wanted, **choices):
-    objective = choices.pop("objective", bj.StiffnessTarget(wanted, "uy"))
+    objective = choices.pop("objective", bj.optimise.StiffnessTarget(wanted, "uy"))
     variables = choices.pop("variables", [play()])
     choices = {"points": 2, **choices}
-    return bj.optimise(straight, one_case, variables, objective, **choices)
+    return bj.optimise.optimise(straight, one_case, variables, objective, **choices)
 
 
 # Measures.
@@ -93,23 +93,23 @@ def test_gradients_of_all_measures_are_those_of_differences(fujiwara, cases):
     """All three parameters of the roller's profile, that of a raceway which ends at
     infinity, and the clearance; roller ends carry load on the other raceway."""
     variables = [
-        bj.Variable(PROFILE + "load_factor", 0.5, 4.0),
-        bj.Variable(PROFILE + "crowned_fraction", 0.3, 0.95),
-        bj.Variable(PROFILE + "end_drop", 5e-6, 15e-6),
-        bj.Variable("bearing.inner_raceway_profile.coefficient", 1e-5, 5e-5),
+        bj.optimise.Variable(PROFILE + "load_factor", 0.5, 4.0),
+        bj.optimise.Variable(PROFILE + "crowned_fraction", 0.3, 0.95),
+        bj.optimise.Variable(PROFILE + "end_drop", 5e-6, 15e-6),
+        bj.optimise.Variable("bearing.inner_raceway_profile.coefficient", 1e-5, 5e-5),
         play(),
     ]
     measures = [
-        bj.PeakPressure(),
-        bj.MeanPressure(16.0),
-        bj.EdgeLoad(),
-        bj.Displacement("uy"),
-        bj.Stiffness("uy"),
-        bj.StiffnessTarget(2e8, "uy"),
-        bj.StiffnessTarget(1e6, "uy", "gx"),
+        bj.optimise.PeakPressure(),
+        bj.optimise.MeanPressure(16.0),
+        bj.optimise.EdgeLoad(),
+        bj.optimise.Displacement("uy"),
+        bj.optimise.Stiffness("uy"),
+        bj.optimise.StiffnessTarget(2e8, "uy"),
+        bj.optimise.StiffnessTarget(1e6, "uy", "gx"),
         lambda element, cases, solution: jnp.sum(solution.roller_load[:, 0, 0]),
     ]
-    constraints = tuple(bj.Constraint(m, upper=1.0) for m in measures[1:])
+    constraints = tuple(bj.optimise.Constraint(m, upper=1.0) for m in measures[1:])
     options = SolveOptions(points=POINTS)
     problem = Problem(fujiwara, cases, variables, measures[0], constraints, options)
     start = problem.scaled([v.start_in(fujiwara) for v in variables])
@@ -227,14 +227,14 @@ def test_step_limit_is_said(straight, one_case, wanted):
 
 def test_constraint_is_active_at_the_optimum(straight, one_case, wanted):
     """More play, more sag: least displacement, but no stiffer than at 15 µm."""
-    kept = bj.Constraint(bj.Stiffness("uy"), upper=wanted)
-    sag = bj.Displacement("uy")
+    kept = bj.optimise.Constraint(bj.optimise.Stiffness("uy"), upper=wanted)
+    sag = bj.optimise.Displacement("uy")
     found = search(straight, one_case, wanted, objective=sag, constraints=[kept])
     assert found.converged and np.isclose(found.values[0], 15e-6, rtol=1e-4)
     assert np.isclose(found.after.constraints[0], wanted, rtol=1e-5)
     assert found.history.violation[0] > 0 and found.history.violation[-1] < 1e-5
     assert found.history.gradient[-1] < 1e-5
-    nothing = bj.Constraint(bj.Stiffness("uy"), lower=100 * wanted)
+    nothing = bj.optimise.Constraint(bj.optimise.Stiffness("uy"), lower=100 * wanted)
     found = search(straight, one_case, wanted, objective=sag, constraints=[nothing])
     assert found.result == "infeasible" and "missed by" in found.message
 
@@ -287,7 +287,7 @@ def test_optimum_behind_rejected_designs_is_not_called_converged(
 
 def test_variable_that_moves_nothing_is_said(straight, one_case, wanted):
     """The density of the rollers counts only where they turn."""
-    density = bj.Variable("bearing.material.density", 7e3, 8e3)
+    density = bj.optimise.Variable("bearing.material.density", 7e3, 8e3)
     found = search(straight, one_case, wanted, variables=[play(), density])
     assert found.converged and np.isclose(found.values[0], 15e-6, rtol=1e-3)
     assert found.message.endswith("; without influence: bearing.material.density")
@@ -321,7 +321,7 @@ def test_start_that_does_not_solve_raises(straight, one_case, wanted):
 def test_many_cases_are_solved_in_chunks(straight, one_case, wanted):
     load = np.tile(one_case.load, (65, 1))
     many = bj.Cases(load, prescribed={"gx": 0.0, "gy": 0.0})
-    target = (bj.StiffnessTarget(wanted, "uy"), ())
+    target = (bj.optimise.StiffnessTarget(wanted, "uy"), ())
     options = SolveOptions(points=2)
     one, all_ = (
         Problem(straight, c, [play()], *target, options).run(jnp.array([0.1]), False)
@@ -336,13 +336,13 @@ def test_balls_and_numbers_in_several_places(one_case):
     ball = bj.DeepGrooveBallBearing(
         5, 0.046, 0.0095, outer_osculation=0.53, inner_osculation=0.53
     )
-    element = bj.BearingElement(ball, point_law=bj.PointConstant(1e10, 1e10))
+    element = bj.BearingElement(ball, point_law=bj.contact.PointConstant(1e10, 1e10))
     both = ("bearing.outer_osculation", "bearing.inner_osculation")
-    found = bj.optimise(
+    found = bj.optimise.optimise(
         element,
         bj.Cases([[0, -500.0, 0, 0, 0, 0]]),
-        [bj.Variable(both, 0.515, 0.54, name="osculation")],
-        bj.PeakPressure(),
+        [bj.optimise.Variable(both, 0.515, 0.54, name="osculation")],
+        bj.optimise.PeakPressure(),
         free=["uy"],
     )
     bearing = found.element.bearing
@@ -350,19 +350,19 @@ def test_balls_and_numbers_in_several_places(one_case):
     assert bearing.outer_osculation == bearing.inner_osculation == 0.515
     assert found.after.exact < found.before.exact
     with pytest.raises(ValueError, match="balls have no ends"):
-        bj.EdgeLoad()(element, one_case, found.after.solution)
+        bj.optimise.EdgeLoad()(element, one_case, found.after.solution)
     # What no design moves is no measure of it.
     with pytest.raises(ValueError, match="is 'uz', which is not free: .*are uy"):
-        bj.Displacement("uz")(element, one_case, found.after.solution)
+        bj.optimise.Displacement("uz")(element, one_case, found.after.solution)
 
 
 def test_searches_are_done_in_float64_whatever_the_bearing_is_solved_in(
     straight, one_case, monkeypatch
 ):
     """SLSQP takes nothing else."""
-    kept = (bj.Constraint(bj.Stiffness("uy"), lower=1e8),)
+    kept = (bj.optimise.Constraint(bj.optimise.Stiffness("uy"), lower=1e8),)
     options = SolveOptions(points=2)
-    sag = bj.Displacement("uy")
+    sag = bj.optimise.Displacement("uy")
     problem = Problem(straight, one_case, [play()], sag, kept, options)
     two, one = np.ones(2, np.float32), np.ones((2, 1), np.float32)
     solved = SimpleNamespace(result=np.zeros(1, int))
@@ -423,15 +423,15 @@ WRONG = {
     "no variable": (dict(variables=[]), "`variables` is empty"),
     "no Variable": (dict(variables=["x"]), "holds a str|parameter 'variables'"),
     "misspelt path": (
-        dict(variables=[bj.Variable("bearing.radial_clearance", 0, 1e-5)]),
+        dict(variables=[bj.optimise.Variable("bearing.radial_clearance", 0, 1e-5)]),
         "'bearing.radial_clearance', where the design has no number .did you mean",
     ),
     "path to a part": (
-        dict(variables=[bj.Variable("bearing.roller_profile", 0, 1)]),
+        dict(variables=[bj.optimise.Variable("bearing.roller_profile", 0, 1)]),
         "has no number.*there are .*bearing.pitch_diameter, bearing.roller_diameter",
     ),
     "path to a count": (
-        dict(variables=[bj.Variable("bearing.n_rollers", 4, 8)]),
+        dict(variables=[bj.optimise.Variable("bearing.n_rollers", 4, 8)]),
         "'bearing.n_rollers', where the design has no number",
     ),
     "start outside": (
@@ -440,7 +440,7 @@ WRONG = {
         " bounds, 0 and 5e-06",
     ),
     "bound not allowed": (
-        dict(variables=[bj.Variable("bearing.roller_length", 0.0, 0.02)]),
+        dict(variables=[bj.optimise.Variable("bearing.roller_length", 0.0, 0.02)]),
         "`lower` of bearing.roller_length is 0, which the design does not allow:"
         " CylindricalRollerBearing: `roller_length` is 0 m; it must be above 0 m",
     ),
@@ -452,12 +452,13 @@ WRONG = {
     "method": (dict(method="newton"), "`method` is 'newton'; it must be one of l-bfgs"),
     "method without constraints": (
         dict(
-            method="l-bfgs-b", constraints=[bj.Constraint(bj.Stiffness("uy"), lower=1)]
+            method="l-bfgs-b",
+            constraints=[bj.optimise.Constraint(bj.optimise.Stiffness("uy"), lower=1)],
         ),
         "keeps no constraints; take 'slsqp'",
     ),
     "constraint": (
-        dict(constraints=[bj.Stiffness("uy")]),
+        dict(constraints=[bj.optimise.Stiffness("uy")]),
         "holds a Stiffness|parameter 'constraints'",
     ),
     "steps": (dict(max_steps=0), "`max_steps` is 0"),
@@ -482,30 +483,51 @@ def test_wrong_calls(straight, one_case, name):
         element=straight,
         cases=one_case,
         variables=[play()],
-        objective=bj.PeakPressure(),
+        objective=bj.optimise.PeakPressure(),
         points=2,
     )
     with pytest.raises((ValueError, TypeError), match=text):
-        bj.optimise(**{**values, **given})
+        bj.optimise.optimise(**{**values, **given})
 
 
 @pytest.mark.parametrize(
     "make, text",
     [
-        (lambda: bj.Variable(PLAY, 1.0, 1.0), "`lower` of .* is 1; it must be below"),
-        (lambda: bj.Variable(PLAY, "0 um", 1.0), "'0 um'; it must be a number in SI"),
         (
-            lambda: bj.Variable(PLAY, 0.0, np.inf),
+            lambda: bj.optimise.Variable(PLAY, 1.0, 1.0),
+            "`lower` of .* is 1; it must be below",
+        ),
+        (
+            lambda: bj.optimise.Variable(PLAY, "0 um", 1.0),
+            "'0 um'; it must be a number in SI",
+        ),
+        (
+            lambda: bj.optimise.Variable(PLAY, 0.0, np.inf),
             "`upper` of .* is inf; it must be fin",
         ),
-        (lambda: bj.Variable((), 0.0, 1.0), "`path` is ()"),
-        (lambda: bj.Variable(PLAY, 0.0, 1.0, 2.0), "is 2; it must lie between"),
-        (lambda: bj.PeakPressure(1.0), "`exponent` is 1; it must be above 1"),
-        (lambda: bj.Stiffness("gz"), "`freedom` is 'gz'; it must be one of ux"),
-        (lambda: bj.StiffnessTarget(0.0, "uy"), "`target` is 0 N/m; it must be other"),
-        (lambda: bj.Constraint(bj.EdgeLoad()), "give `lower`, `upper` or both"),
-        (lambda: bj.Constraint(bj.EdgeLoad(), 2.0, 1.0), "it must be above `lower`"),
-        (lambda: bj.Constraint("edge", 2.0), "`measure` is a str"),
+        (lambda: bj.optimise.Variable((), 0.0, 1.0), "`path` is ()"),
+        (
+            lambda: bj.optimise.Variable(PLAY, 0.0, 1.0, 2.0),
+            "is 2; it must lie between",
+        ),
+        (lambda: bj.optimise.PeakPressure(1.0), "`exponent` is 1; it must be above 1"),
+        (
+            lambda: bj.optimise.Stiffness("gz"),
+            "`freedom` is 'gz'; it must be one of ux",
+        ),
+        (
+            lambda: bj.optimise.StiffnessTarget(0.0, "uy"),
+            "`target` is 0 N/m; it must be other",
+        ),
+        (
+            lambda: bj.optimise.Constraint(bj.optimise.EdgeLoad()),
+            "give `lower`, `upper` or both",
+        ),
+        (
+            lambda: bj.optimise.Constraint(bj.optimise.EdgeLoad(), 2.0, 1.0),
+            "it must be above `lower`",
+        ),
+        (lambda: bj.optimise.Constraint("edge", 2.0), "`measure` is a str"),
     ],
 )
 def test_wrong_parts(make, text):

@@ -24,7 +24,7 @@ def special():
         "self-aligning": element(bj.BearingSet.self_aligning(row)),
         "spring": element(bj.BearingSet.back_to_back(ball, 0.02, spring=spring)),
         "coupled pair": element(
-            bj.BearingSet.face_to_face(taper, 0.03), bj.CoupledSlices(8)
+            bj.BearingSet.face_to_face(taper, 0.03), bj.contact.CoupledSlices(8)
         ),
         "all that a roller has": element(
             registry.taper(
@@ -33,10 +33,10 @@ def special():
                 material=bj.Material(200e9, 0.28, 7e3),
                 ring_material=bj.Material(210e9),
             ),
-            bj.LineConstant(1e10),
-            bj.Finite(),
-            bj.Midpoint(7),
-            bj.BFGS(),
+            bj.contact.LineConstant(1e10),
+            bj.element.Finite(),
+            bj.numerics.Midpoint(7),
+            bj.numerics.BFGS(),
             True,
         ),
         "all that a ball has": element(
@@ -45,11 +45,11 @@ def special():
                 outer_shoulder=2e-3,
                 inner_shoulder=1e-3,
             ),
-            kinematics=bj.Finite(),
-            equilibrium=bj.BFGS(),
+            kinematics=bj.element.Finite(),
+            equilibrium=bj.numerics.BFGS(),
             cage_torque=True,
-            point_law=bj.PointConstant(1e10, 2e10),
-            raceway_control=bj.CentrifugalOnly(),
+            point_law=bj.contact.PointConstant(1e10, 2e10),
+            raceway_control=bj.element.CentrifugalOnly(),
         ),
     }
 

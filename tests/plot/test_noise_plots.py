@@ -7,7 +7,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
 from bearingjax import plot
-from bearingjax.acoustics import (
+from bearingjax.noise import (
     Hann,
     Line,
     Vibration,
@@ -15,7 +15,7 @@ from bearingjax.acoustics import (
     octave_bands,
     spectrum,
 )
-from bearingjax.acoustics.reference_levels import NORM
+from bearingjax.noise.reference_levels import NORM
 
 
 def record(turns=2, samples=256, balls=7):

@@ -13,12 +13,12 @@ def found():
     bearing = bj.CylindricalRollerBearing(
         6, 0.05, 0.010, 0.012, roller_profile=bj.CircularCrown(2.0)
     )
-    element = bj.BearingElement(bearing, quadrature=bj.Midpoint(5))
+    element = bj.BearingElement(bearing, quadrature=bj.numerics.Midpoint(5))
     load = np.zeros((2, 6))
     load[:, 0] = [1e3, 4e3]
-    radius = bj.Variable("bearing.roller_profile.crown_radius", 1.0, 10.0)
-    objective, cases = bj.PeakPressure(), bj.Cases(load)
-    return bj.optimise(
+    radius = bj.optimise.Variable("bearing.roller_profile.crown_radius", 1.0, 10.0)
+    objective, cases = bj.optimise.PeakPressure(), bj.Cases(load)
+    return bj.optimise.optimise(
         element,
         cases,
         [radius],

@@ -11,10 +11,12 @@ import bearingjax as bj
 from bearingjax import plot
 from bearingjax.plot.rotor_parts import disc_size
 from bearingjax.rotor import CriticalSpeeds, Modes
-from bearingjax.rotor.vibration import Branch, Ending, Event, Waterfall
+from bearingjax.rotor.nonlinear import Branch, Ending, Event, Waterfall
 
 STEEL = bj.Material(211e9, 0.3, 7810.0)
-SHAFT = bj.Shaft([0.0, 0.1, 0.3, 0.5], [0.05, 0.07, 0.06], [0.0, 0.02, 0.0], STEEL)
+SHAFT = bj.rotor.Shaft(
+    [0.0, 0.1, 0.3, 0.5], [0.05, 0.07, 0.06], [0.0, 0.02, 0.0], STEEL
+)
 MM, UM, RPM = 1e3, 1e6, 30.0 / np.pi
 
 
@@ -41,15 +43,15 @@ def rotor_on_bearings():
     )
     rollers = bj.CylindricalRollerBearing(7, 0.075, 0.01, 0.01)
     a, b = bj.BearingElement(angular), bj.BearingElement(rollers)
-    housing = bj.Housing(2.0, [1e8, 1e8, 1e8])
-    return bj.Rotor(
+    housing = bj.rotor.Housing(2.0, [1e8, 1e8, 1e8])
+    return bj.rotor.Rotor(
         SHAFT,
-        [bj.Disc.of_size(2, 0.3, 0.04, 0.07, STEEL), bj.PointMass(1, 0.5)],
+        [bj.rotor.Disc.of_size(2, 0.3, 0.04, 0.07, STEEL), bj.rotor.PointMass(1, 0.5)],
         [
-            bj.BearingSupport(0, a),
-            bj.BearingSupport(0, a, turned=True),
-            bj.BearingSupport(3, b, housing=housing),
-            bj.LinearSupport.isotropic(1, 1e7),
+            bj.rotor.BearingSupport(0, a),
+            bj.rotor.BearingSupport(0, a, turned=True),
+            bj.rotor.BearingSupport(3, b, housing=housing),
+            bj.rotor.LinearSupport.isotropic(1, 1e7),
         ],
     )
 
@@ -85,16 +87,16 @@ def test_lines_of_action_tell_how_a_bearing_is_mounted():
 
 @pytest.mark.parametrize("width", [0.02, 0.2])
 def test_a_disc_has_its_size_back(width):
-    disc = bj.Disc.of_size(0, 0.4, width, 0.05, STEEL)
+    disc = bj.rotor.Disc.of_size(0, 0.4, width, 0.05, STEEL)
     found = disc_size(disc, 0.05, STEEL)
     assert found is not None
     assert np.allclose(found, [200.0, 25.0, MM * width], rtol=1e3 * ROUNDING)
     # A thin disc, as of the paper: its mass tells its width.
-    thin = disc_size(bj.Disc(0, 10.0, 0.2, 0.1), 0.025, STEEL)
+    thin = disc_size(bj.rotor.Disc(0, 10.0, 0.2, 0.1), 0.025, STEEL)
     assert thin is not None
     solid = 7810.0 * np.pi * 1e-9 * (thin.outer**2 - thin.bore**2) * thin.width
     assert abs(solid / 10.0 - 1.0) < 1e3 * ROUNDING
-    assert disc_size(bj.Disc(0, 10.0, 0.0, 0.0), 0.025, STEEL) is None
+    assert disc_size(bj.rotor.Disc(0, 10.0, 0.0, 0.0), 0.025, STEEL) is None
 
 
 def by_hand(x=None, y=None):
@@ -116,7 +118,9 @@ def all_modes(value, whirl, shape):
 
 
 def test_mode_shapes_tell_frequency_damping_and_direction():
-    rotor = bj.Rotor(SHAFT, [], [bj.LinearSupport.isotropic(k, 1e7) for k in (0, 2)])
+    rotor = bj.rotor.Rotor(
+        SHAFT, [], [bj.rotor.LinearSupport.isotropic(k, 1e7) for k in (0, 2)]
+    )
     ax = plot.mode_shapes(rotor, by_hand())
     names = [text.get_text() for text in ax.get_yticklabels()]
     assert names == [
@@ -138,7 +142,7 @@ def test_an_inclined_orbit_is_seen_across_its_longer_axis():
     x = along * np.cos(turn) - aside * np.sin(turn)
     y = along * np.sin(turn) + aside * np.cos(turn)
     found = by_hand(x, y)
-    rotor = bj.Rotor(SHAFT)
+    rotor = bj.rotor.Rotor(SHAFT)
     (line,) = named(plot.mode_shapes(rotor, found), "_mode 0")
     moved = line[:, 1] - 2.0
     assert np.allclose(np.abs(moved / moved[0]), [1.0, 0.5, 0.2, 0.0])
@@ -281,7 +285,9 @@ def test_spectra_of_a_run_up():
 
 
 TASK = SimpleNamespace(station=1, coordinate="uy", speed_to=40.0)
-ROTOR = bj.Rotor(SHAFT, [], [bj.LinearSupport.isotropic(k, 1e7) for k in (0, 2)])
+ROTOR = bj.rotor.Rotor(
+    SHAFT, [], [bj.rotor.LinearSupport.isotropic(k, 1e7) for k in (0, 2)]
+)
 
 
 def run(**parts):

@@ -13,7 +13,7 @@ from tolerances import DIFFERENCE, PUBLISHED
 from vibrations import Contact, Spring, duffing, oscillator, rotor
 
 import bearingjax as bj
-from bearingjax.rotor.vibration import HarmonicBalance, Shooting, backbone
+from bearingjax.rotor.nonlinear import HarmonicBalance, Shooting, backbone
 
 # Free Hertz contact, unit frequency of small vibration: largest and least motion,
 # frequency. The contact opens from a largest motion of 0.842 on.

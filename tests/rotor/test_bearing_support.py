@@ -113,13 +113,18 @@ def test_in_a_rotor():
     supports[1] = BearingSupport(
         2, supports[1].element, supports[1].offset, turned=True
     )
-    shaft = bj.Shaft([0.0, 0.125, 0.5], 0.025, material=bj.Material(2.1e11, 0.3, 7850))
-    disc = bj.Disc(1, 10.0, 0.2, 0.1)
+    shaft = bj.rotor.Shaft(
+        [0.0, 0.125, 0.5], 0.025, material=bj.Material(2.1e11, 0.3, 7850)
+    )
+    disc = bj.rotor.Disc(1, 10.0, 0.2, 0.1)
     springs = [
-        bj.LinearSupport(s.station, held(s, jnp.zeros(5), 0.0)[1]) for s in supports
+        bj.rotor.LinearSupport(s.station, held(s, jnp.zeros(5), 0.0)[1])
+        for s in supports
     ]
     of_bearings, of_springs = (
-        bj.modes(bj.Rotor(shaft, [disc], held_by, rigid=True), 0.0).frequency
+        bj.rotor.modes(
+            bj.rotor.Rotor(shaft, [disc], held_by, rigid=True), 0.0
+        ).frequency
         for held_by in (supports, springs)
     )
     np.testing.assert_allclose(of_bearings, of_springs, rtol=1e-9)

@@ -12,7 +12,7 @@ from scipy.special import mathieu_a, mathieu_b
 from tolerances import DIFFERENCE
 from vibrations import Spring, duffing, oscillator, rotor
 
-from bearingjax.rotor.vibration import (
+from bearingjax.rotor.nonlinear import (
     Arclength,
     ChangeOfParameter,
     Ending,
@@ -23,8 +23,8 @@ from bearingjax.rotor.vibration import (
     solve_orbit,
     trace,
 )
-from bearingjax.rotor.vibration.branch import _flip, _pairs
-from bearingjax.rotor.vibration.continuation import Place
+from bearingjax.rotor.nonlinear.branch import _flip, _pairs
+from bearingjax.rotor.nonlinear.continuation import Place
 
 BALANCE, SHOOTING = HarmonicBalance(7, 32, steps=24), Shooting(24)
 STEPS = Steps(first=0.05, largest=0.5)

@@ -11,17 +11,17 @@ from tolerances import DIFFERENCE, SOLVER
 import bearingjax as bj
 from bearingjax.rotor.ross import _coefficients
 
-ELEMENT = bj.BearingElement(balls(8), raceway_control=bj.CentrifugalOnly())
+ELEMENT = bj.BearingElement(balls(8), raceway_control=bj.element.CentrifugalOnly())
 SPEEDS = np.array([0.0, 500.0, 1500.0])
 LOAD = np.array([0.0, -600.0, 900.0, 0.0, 0.0, 0.0])
 
 
 def test_it_is_the_slope_of_the_load_solve_at_each_speed():
     loads = LOAD * np.array([1.0, 0.7, 1.2])[:, None]
-    table = bj.stiffness_table(ELEMENT, SPEEDS, loads, tilts="free")
+    table = bj.rotor.stiffness_table(ELEMENT, SPEEDS, loads, tilts="free")
     assert table.shape == (3, 3, 3)
     # Tilting away makes the bearing softer in every direction.
-    held = bj.stiffness_table(ELEMENT, SPEEDS, loads)
+    held = bj.rotor.stiffness_table(ELEMENT, SPEEDS, loads)
     assert np.linalg.eigvalsh(held - table).min() > 0
 
     @jax.jit
@@ -40,14 +40,16 @@ def test_it_is_the_slope_of_the_load_solve_at_each_speed():
 
 
 def test_symmetry_and_turned_loads():
-    axial = np.asarray(bj.stiffness_table(ELEMENT, SPEEDS, [0, 0, 900.0, 0, 0, 0]))
+    axial = np.asarray(
+        bj.rotor.stiffness_table(ELEMENT, SPEEDS, [0, 0, 900.0, 0, 0, 0])
+    )
     size = abs(axial).max()
     np.testing.assert_allclose(axial[:, 0, 0], axial[:, 1, 1], atol=SOLVER * size)
     off = axial - axial * np.eye(3)
     assert abs(off).max() < SOLVER * size
     # Eight balls: a quarter turn of the load finds the same bearing.
-    along_y = np.asarray(bj.stiffness_table(ELEMENT, SPEEDS, LOAD))
-    along_x = bj.stiffness_table(ELEMENT, SPEEDS, [600.0, 0, 900.0, 0, 0, 0])
+    along_y = np.asarray(bj.rotor.stiffness_table(ELEMENT, SPEEDS, LOAD))
+    along_x = bj.rotor.stiffness_table(ELEMENT, SPEEDS, [600.0, 0, 900.0, 0, 0, 0])
     quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])  # takes -y to +x
     turned = quarter @ along_y @ quarter.T
     np.testing.assert_allclose(along_x, turned, atol=SOLVER * size)
@@ -56,18 +58,20 @@ def test_symmetry_and_turned_loads():
 
 def test_no_load_no_stiffness_is_said():
     with pytest.warns(UserWarning, match="no stiffness in .* at 500 rad/s"):
-        bj.stiffness_table(ELEMENT, SPEEDS, LOAD * np.array([1.0, 0, 1.0])[:, None])
+        bj.rotor.stiffness_table(
+            ELEMENT, SPEEDS, LOAD * np.array([1.0, 0, 1.0])[:, None]
+        )
 
 
 def test_moments_on_held_tilts_are_refused():
     with pytest.raises(ValueError, match="tilts='free'"):
-        bj.stiffness_table(ELEMENT, SPEEDS, LOAD + np.eye(6)[3])
+        bj.rotor.stiffness_table(ELEMENT, SPEEDS, LOAD + np.eye(6)[3])
 
 
 def test_a_failure_names_its_speed():
     loads = np.stack([LOAD, LOAD * [1, 0, -1, 1, 1, 1], LOAD])
     with pytest.raises(bj.SolveError, match="speed 500 rad/s: no_load_path: .*uz"):
-        bj.stiffness_table(ELEMENT, SPEEDS, loads)
+        bj.rotor.stiffness_table(ELEMENT, SPEEDS, loads)
 
 
 @pytest.mark.parametrize(
@@ -84,7 +88,7 @@ def test_a_failure_names_its_speed():
 def test_bad_input_is_named(change, shown):
     arguments = {"speeds": SPEEDS, "load": LOAD} | change
     with pytest.raises(ValueError, match=shown):
-        bj.stiffness_table(ELEMENT, **arguments)
+        bj.rotor.stiffness_table(ELEMENT, **arguments)
 
 
 def given(damping, speeds=SPEEDS):
@@ -93,7 +97,7 @@ def given(damping, speeds=SPEEDS):
 
 def test_coefficients_for_ross():
     """Every coefficient stands in the place that ROSS's K and C read it from."""
-    k = np.asarray(bj.stiffness_table(ELEMENT, SPEEDS, LOAD))
+    k = np.asarray(bj.rotor.stiffness_table(ELEMENT, SPEEDS, LOAD))
     matrix = np.array([[30.0, 4.0, 0.0], [-5.0, 60.0, 0.0], [0.0, 0.0, 7.0]])
     c = matrix * np.array([1.0, 2.0, 3.0])[:, None, None]
     for damping, expected in ((0.0, 0 * c), (9.0, 9 * np.eye(3) + 0 * c), (c, c)):
@@ -117,4 +121,4 @@ def test_bad_damping_and_speeds():
 def test_without_ross_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "ross", None)
     with pytest.raises(ImportError, match=r"bearingjax\[ross\]"):
-        bj.to_ross(ELEMENT, 0, SPEEDS, LOAD)
+        bj.rotor.to_ross(ELEMENT, 0, SPEEDS, LOAD)

@@ -31,8 +31,8 @@ def test_the_table_of_the_paper():
     @jax.vmap
     def found(radial, axial):
         rotor = paper(radial, axial)
-        critical = bj.critical_speeds(rotor, count=5)
-        return bj.modes(rotor).frequency, critical.speed, critical.whirl
+        critical = bj.rotor.critical_speeds(rotor, count=5)
+        return bj.rotor.modes(rotor).frequency, critical.speed, critical.whirl
 
     frequency, speed, whirl = map(
         np.asarray,
@@ -54,10 +54,10 @@ def test_the_table_of_the_paper():
 def test_they_lie_on_the_campbell_diagram():
     """With damping: modes at the speed found vibrate once per revolution."""
     rotor = friswell(1e6, 0.8e6, 5e2)
-    critical = bj.critical_speeds(rotor, count=4)
+    critical = bj.rotor.critical_speeds(rotor, count=4)
     assert (np.asarray(critical.whirl) == [-1, 1, -1, 1]).all()
     for speed, ratio in zip(critical.speed, critical.damping_ratio, strict=True):
-        at = bj.modes(rotor, speed, count=6)
+        at = bj.rotor.modes(rotor, speed, count=6)
         k = np.argmin(abs(2 * np.pi * at.frequency - speed))
         np.testing.assert_allclose(2 * np.pi * at.frequency[k], speed, rtol=SOLVER)
         np.testing.assert_allclose(at.damping_ratio[k], ratio, rtol=DIFFERENCE)
@@ -65,7 +65,7 @@ def test_they_lie_on_the_campbell_diagram():
     near = "^critical_speeds: -.* rpm lies within 10 % of the forward critical speed of"
     with pytest.warns(match=near):
         speed = -1.05 * float(critical.speed[1])
-        bj.critical_speeds(rotor, count=4, operating_speed=speed)
+        bj.rotor.critical_speeds(rotor, count=4, operating_speed=speed)
     # Had the search not found the second one, the count would have told.
     rate = -critical.damping_ratio * critical.speed
     point = jnp.stack([rate, critical.speed], axis=1)
@@ -74,8 +74,8 @@ def test_they_lie_on_the_campbell_diagram():
         assert eqx.filter_jit(_missed)(rotor, found, point) == missed
     # Dampers that all but lock the supports: still all of them, each once, and within
     # what the dampers still give way.
-    locked = bj.critical_speeds(friswell(1e6, 0.8e6, 6e4), count=4)
-    rigid = bj.critical_speeds(friswell(1e10, 0.9e10, 5e2), count=4)
+    locked = bj.rotor.critical_speeds(friswell(1e6, 0.8e6, 6e4), count=4)
+    rigid = bj.rotor.critical_speeds(friswell(1e10, 0.9e10, 5e2), count=4)
     assert (np.asarray(locked.whirl) == [-1, 1, -1, 1]).all()
     np.testing.assert_allclose(locked.speed, rigid.speed, rtol=0.01)
     assert critical.missed == locked.missed == rigid.missed == 0
@@ -83,11 +83,15 @@ def test_they_lie_on_the_campbell_diagram():
 
 def test_coincident_critical_speeds_are_there_as_often_as_they_are():
     """A disc without moments of inertia on supports alike in x and y."""
-    shaft = bj.Shaft([-0.1, 0.0, 0.1], 0.04, material=bj.Material(density=1e-3))
+    shaft = bj.rotor.Shaft([-0.1, 0.0, 0.1], 0.04, material=bj.Material(density=1e-3))
     for damping in (0.0, 300.0):
-        support = bj.LinearSupport.isotropic(1, 4e6, 9e6, 1e5, radial_damping=damping)
-        rotor = bj.Rotor(shaft, [bj.Disc(1, 9.0, 1e-9, 0.03)], [support], rigid=True)
-        found = bj.critical_speeds(rotor, count=4)
+        support = bj.rotor.LinearSupport.isotropic(
+            1, 4e6, 9e6, 1e5, radial_damping=damping
+        )
+        rotor = bj.rotor.Rotor(
+            shaft, [bj.rotor.Disc(1, 9.0, 1e-9, 0.03)], [support], rigid=True
+        )
+        found = bj.rotor.critical_speeds(rotor, count=4)
         natural = np.sqrt(4e6 / 9.0)
         damped = np.sqrt(natural**2 - (damping / 18.0) ** 2)
         exact = [damped, damped, 1000.0, np.sqrt(1e5 / 0.03)]
@@ -107,9 +111,11 @@ class Stiffening(AbstractSupport):
 
 def test_supports_may_follow_the_speed():
     """Of a mass m on k + aΩ², with damping c: Ω² = (k - (c/2)²/m)/(m - a)."""
-    shaft = bj.Shaft([-0.1, 0.0, 0.1], 0.04)
-    rotor = bj.Rotor(shaft, [bj.PointMass(1, 5.0)], [Stiffening(1)], rigid=True)
-    critical = bj.critical_speeds(rotor, count=3)
+    shaft = bj.rotor.Shaft([-0.1, 0.0, 0.1], 0.04)
+    rotor = bj.rotor.Rotor(
+        shaft, [bj.rotor.PointMass(1, 5.0)], [Stiffening(1)], rigid=True
+    )
+    critical = bj.rotor.critical_speeds(rotor, count=3)
     m = float(rotor.mass)
     exact = np.sqrt((1e6 - 20.0**2 / m) / (m - 2.0))
     np.testing.assert_allclose(critical.speed, exact, rtol=SOLVER)
@@ -120,8 +126,8 @@ def test_supports_may_follow_the_speed():
 
 def test_the_unbalance_response_of_ross():
     """ROSS, `test_freq_response_w_force`: 1e-3 kg m on node 2, amplitudes of node 0."""
-    found = bj.unbalance_response(
-        friswell(), bj.Unbalance(2, 1e-3), np.linspace(0.0, 450.0, 4)
+    found = bj.rotor.unbalance_response(
+        friswell(), bj.rotor.Unbalance(2, 1e-3), np.linspace(0.0, 450.0, 4)
     )
     ross = [
         [0.00000000e00, 1.14259057e-06, 1.88932819e-04, 4.50376020e-05],
@@ -138,29 +144,33 @@ def test_the_unbalance_response_of_ross():
 def test_a_jeffcott_rotor_through_its_critical_speed():
     """x + iy = m e Ω²/(k - mΩ² + icΩ) exp(i(Ωt + φ)): a circle, turning forward."""
     k, c, moment, phase = 4e6, 800.0, 1e-3, 0.7
-    shaft = bj.Shaft([-0.1, 0.0, 0.1], 0.04)
-    support = bj.LinearSupport(1, [k, k, 0, k, k], [c, c, 0, 0, 0])
-    rotor = bj.Rotor(shaft, [bj.Disc(1, 9.0, 0.04, 0.03)], [support], rigid=True)
+    shaft = bj.rotor.Shaft([-0.1, 0.0, 0.1], 0.04)
+    support = bj.rotor.LinearSupport(1, [k, k, 0, k, k], [c, c, 0, 0, 0])
+    rotor = bj.rotor.Rotor(
+        shaft, [bj.rotor.Disc(1, 9.0, 0.04, 0.03)], [support], rigid=True
+    )
     m = float(rotor.mass)
     speeds = np.array([0.0, 100.0, np.sqrt(k / m), 5000.0])
-    found = bj.unbalance_response(rotor, [bj.Unbalance(1, moment, phase)], speeds)
+    found = bj.rotor.unbalance_response(
+        rotor, [bj.rotor.Unbalance(1, moment, phase)], speeds
+    )
     x = moment * speeds**2 * np.exp(1j * phase) / (k - m * speeds**2 + 1j * c * speeds)
     motion = np.asarray(found.motion)
     np.testing.assert_allclose(motion[:, 1, 0], x, rtol=SOLVER, atol=1e-20)
     np.testing.assert_allclose(motion[:, 1, 1], -1j * x, rtol=SOLVER, atol=1e-20)
     np.testing.assert_allclose(found.major_axis[:, 1], abs(x), rtol=SOLVER, atol=1e-20)
     # Many speeds, which are solved in batches.
-    many = bj.unbalance_response(
-        rotor, [bj.Unbalance(1, moment, phase)], np.tile(speeds, 10)
+    many = bj.rotor.unbalance_response(
+        rotor, [bj.rotor.Unbalance(1, moment, phase)], np.tile(speeds, 10)
     )
     np.testing.assert_allclose(np.asarray(many.motion)[8:12], motion, rtol=SOLVER)
     # At rest nothing moves, though nothing holds it along z.
     assert not motion[0].any() and np.isfinite(motion).all()
     # The base that shakes along x, while the rotor turns at a speed of its own.
-    shaken = bj.RotorLoads(
-        bj.Unbalance(1, moment, phase), base_acceleration=(2.0, 0, 0)
+    shaken = bj.rotor.RotorLoads(
+        bj.rotor.Unbalance(1, moment, phase), base_acceleration=(2.0, 0, 0)
     )
-    both = bj.harmonic_response(rotor, shaken, speeds, 300.0)
+    both = bj.rotor.harmonic_response(rotor, shaken, speeds, 300.0)
     base = -2.0 * m / (k - m * speeds**2 + 1j * c * speeds)
     motion = np.asarray(both.motion)
     np.testing.assert_allclose(motion[:, 1, 0], x + base, rtol=SOLVER)

@@ -26,7 +26,7 @@ TURN = 2 * np.pi
 
 
 def test_the_campbell_diagram_of_ross():
-    found = bj.campbell(friswell(), [0.0, 150.0, 300.0], count=6)
+    found = bj.rotor.campbell(friswell(), [0.0, 150.0, 300.0], count=6)
     ross = [
         [82.65303734, 86.65811435, 254.52047828, 274.31285391, 679.48903239],
         [82.60929602, 86.68625235, 251.70037114, 276.87787937, 652.85679897],
@@ -38,7 +38,7 @@ def test_the_campbell_diagram_of_ross():
     np.testing.assert_array_equal(found.whirl[1:, :5], [[-1, 1, -1, 1, -1]] * 2)
     assert abs(found.damping_ratio).max() < SOLVER
     # Turning the other way it is its mirror image: forward is with the speed.
-    other = bj.campbell(friswell(), [0.0, -150.0, -300.0], count=6)
+    other = bj.rotor.campbell(friswell(), [0.0, -150.0, -300.0], count=6)
     np.testing.assert_allclose(other.frequency, found.frequency, rtol=SOLVER)
     np.testing.assert_array_equal(other.whirl, found.whirl)
     # Largest motion 1 m, and real.
@@ -48,11 +48,11 @@ def test_the_campbell_diagram_of_ross():
 
 def test_the_tables_of_friswell():
     speed = 4000 * TURN / 60
-    turning = bj.modes(friswell(), speed, count=6)
+    turning = bj.rotor.modes(friswell(), speed, count=6)
     table = [82.33, 86.86, 239.64, 287.25, 583.49, 806.89]
     np.testing.assert_allclose(TURN * turning.frequency, table, rtol=PUBLISHED)
     # Isotropic bearings with damping, at rest: pairs of equal modes.
-    damped = bj.modes(friswell(1e6, 1e6, 3e3), count=6)
+    damped = bj.rotor.modes(friswell(1e6, 1e6, 3e3), count=6)
     table = np.repeat([13.89, 46.54, 103.22], 2)
     np.testing.assert_allclose(damped.frequency, table, rtol=2 * PUBLISHED)
     natural = np.abs(damped.eigenvalue) / TURN
@@ -75,9 +75,9 @@ def test_a_disc_on_a_massless_shaft():
     length, outer, m, polar, diametral, speed = 0.4, 0.03, 8.0, 0.09, 0.05, 900.0
     radial, tilt = 2e8, 5e6
     light = bj.Material(211e9, 0.3, 0.1)
-    shaft = bj.Shaft([0.0, length], outer, material=light, divisions=2)
-    support = bj.LinearSupport.isotropic(0, radial, 1e8, tilt)
-    rotor = bj.Rotor(shaft, [bj.Disc(1, m, polar, diametral)], [support])
+    shaft = bj.rotor.Shaft([0.0, length], outer, material=light, divisions=2)
+    support = bj.rotor.LinearSupport.isotropic(0, radial, 1e8, tilt)
+    rotor = bj.rotor.Rotor(shaft, [bj.rotor.Disc(1, m, polar, diametral)], [support])
     ei = 211e9 * np.pi / 64 * outer**4
     kga = 6 * 1.3 / (7 + 6 * 0.3) * 211e9 / 2.6 * np.pi / 4 * outer**2
     softness = np.array(
@@ -100,14 +100,14 @@ def test_a_disc_on_a_massless_shaft():
     )
     exact = np.linalg.eigvals(state).real
     exact = exact[np.argsort(abs(exact))]
-    found = bj.modes(rotor, speed, count=6)
+    found = bj.rotor.modes(rotor, speed, count=6)
     got = TURN * np.asarray(found.frequency) * np.asarray(found.whirl)
     got = got[got != 0][:4]
     # The shaft has some millionths of the disc's mass.
     np.testing.assert_allclose(got, exact, rtol=DIFFERENCE)
     # Forward critical speed: the disc's inertia is Id - Ip < 0, there is only one.
     squares = np.linalg.eigvals(np.linalg.solve(np.diag([m, diametral - polar]), k))
-    critical = bj.critical_speeds(rotor, count=4)
+    critical = bj.rotor.critical_speeds(rotor, count=4)
     forward = np.asarray(critical.speed)[np.asarray(critical.whirl) == 1]
     np.testing.assert_allclose(forward, np.sqrt(max(squares)), rtol=DIFFERENCE)
     assert min(squares) < 0
@@ -117,7 +117,7 @@ def test_modes_are_followed_through_crossings():
     """Isotropic supports: forward, backward and axial modes never mix."""
     speeds = np.linspace(0.0, 8000.0, 25)
     rotor = paper(1.1592e8, 1.2238e8)
-    found = bj.campbell(rotor, speeds, count=5)
+    found = bj.rotor.campbell(rotor, speeds, count=5)
     whirl = np.asarray(found.whirl)
     assert (whirl[1:] == whirl[-1]).all()
     assert sorted(whirl[-1]) == [-1, -1, 0, 1, 1]
@@ -137,12 +137,12 @@ def test_modes_are_followed_through_crossings():
 
 def veering():
     """Unequal supports and gyroscopic discs: lines cross, and some part again."""
-    rotor = bj.Rotor(
-        bj.Shaft([0.0, 0.15, 0.3, 0.5], 0.035),
-        [bj.Disc(1, 6.0, 0.1, 0.06), bj.Disc(3, 3.0, 0.05, 0.03)],
+    rotor = bj.rotor.Rotor(
+        bj.rotor.Shaft([0.0, 0.15, 0.3, 0.5], 0.035),
+        [bj.rotor.Disc(1, 6.0, 0.1, 0.06), bj.rotor.Disc(3, 3.0, 0.05, 0.03)],
         [
-            bj.LinearSupport(0, [9e7, 2.4e7, 1e7, 0, 0], [420, 420, 0, 0, 0]),
-            bj.LinearSupport(2, [18e7, 2.4e7, 0, 0, 0], [420, 420, 0, 0, 0]),
+            bj.rotor.LinearSupport(0, [9e7, 2.4e7, 1e7, 0, 0], [420, 420, 0, 0, 0]),
+            bj.rotor.LinearSupport(2, [18e7, 2.4e7, 0, 0, 0], [420, 420, 0, 0, 0]),
         ],
     )
     return rotor
@@ -170,7 +170,7 @@ def test_lines_of_a_campbell_diagram_do_not_hang_on_how_many_speeds_it_has():
         left = rows[now]
     exact = value[now].imag / TURN
     for count in (2, 6, 60):
-        found = bj.campbell(rotor, np.linspace(0.0, top, count), count=6)
+        found = bj.rotor.campbell(rotor, np.linspace(0.0, top, count), count=6)
         np.testing.assert_allclose(found.frequency[-1], exact, rtol=DIFFERENCE)
 
 
@@ -184,11 +184,11 @@ def test_a_mode_that_grows_is_told_with_its_cause(cause):
         stiffness[0, 1], stiffness[1, 0] = -share * k, share * k
     else:
         damping[0, 1] = damping[1, 0] = share * np.sqrt(k * mass)
-    ends = [bj.PointMass(n, mass) for n in (0, 1)]
-    supports = [bj.LinearSupport(n, stiffness, damping) for n in (0, 1)]
-    rotor = bj.Rotor(bj.Shaft([0.0, 1.0], 1e-4), ends, supports, rigid=True)
+    ends = [bj.rotor.PointMass(n, mass) for n in (0, 1)]
+    supports = [bj.rotor.LinearSupport(n, stiffness, damping) for n in (0, 1)]
+    rotor = bj.rotor.Rotor(bj.rotor.Shaft([0.0, 1.0], 1e-4), ends, supports, rigid=True)
     with pytest.warns(UserWarning, match=r"unstable at 0 rad/s \(0 rpm\)") as told:
-        found = bj.modes(rotor)
+        found = bj.rotor.modes(rotor)
     (text,) = (str(one.message) for one in told)
     assert ("unsymmetric part" in text) == (cause == "stiffness")
     assert "damping ratio is -4e-06" in text
@@ -207,9 +207,9 @@ class _Stop(AbstractSupport):
 
 
 def test_a_campbell_diagram_says_where_modes_are_not_followed():
-    rotor = bj.Rotor(bj.Shaft([0.0, 0.2, 0.5], 0.03), [], _Stop(0))
+    rotor = bj.rotor.Rotor(bj.rotor.Shaft([0.0, 0.2, 0.5], 0.03), [], _Stop(0))
     with pytest.warns(UserWarning, match="between 400 and 600 rad/s") as told:
-        bj.campbell(rotor, np.linspace(0.0, 1000.0, 6), count=4)
+        bj.rotor.campbell(rotor, np.linspace(0.0, 1000.0, 6), count=4)
     assert len(told) == 1
 
 
@@ -220,10 +220,10 @@ NUMBERS = jnp.array([0.01, 0.17, 2e7, 300.0, 0.02, 5e7])
 def measured(numbers):
     """Frequencies, damping ratios, critical speeds and their damping, amplitudes."""
     rotor = stepped(*numbers)
-    modes = bj.modes(rotor, 700.0, count=5)
-    critical = bj.critical_speeds(rotor, count=4)
-    response = bj.unbalance_response(
-        rotor, bj.Unbalance(1, 1e-3), jnp.array([300.0, 900.0])
+    modes = bj.rotor.modes(rotor, 700.0, count=5)
+    critical = bj.rotor.critical_speeds(rotor, count=4)
+    response = bj.rotor.unbalance_response(
+        rotor, bj.rotor.Unbalance(1, 1e-3), jnp.array([300.0, 900.0])
     )
     return jnp.concatenate(
         [
@@ -257,8 +257,10 @@ def test_derivatives_where_modes_coincide():
     critical speed that is not there spoil the others."""
 
     def speeds(stiffness):
-        rotor = paper(stiffness, 1e8, bj.ModalDamping(0.01))
-        return bj.modes(rotor).frequency, bj.critical_speeds(rotor, count=5).speed
+        rotor = paper(stiffness, 1e8, bj.rotor.ModalDamping(0.01))
+        return bj.rotor.modes(rotor).frequency, bj.rotor.critical_speeds(
+            rotor, count=5
+        ).speed
 
     at = jnp.array(1.2e8)
     slopes, values = with_slopes(speeds)(at)
@@ -273,36 +275,44 @@ def test_derivatives_where_modes_coincide():
 
 def test_a_rotor_that_nothing_holds():
     rotor = friswell(0.0, 0.0)
-    found = bj.modes(rotor, 100.0)
+    found = bj.rotor.modes(rotor, 100.0)
     n = len(found.frequency)
     assert n == 35 and np.isfinite(found.shape).all()
     assert np.isfinite(found.damping_ratio).all()
     # Free in x, y and z; its tilts precess: backward at 0, forward with Ip/Id.
     frequency = np.asarray(found.frequency)
     assert ((frequency == 0).sum(), (frequency > 0).sum()) == (4, 31)
-    slope = jax.grad(lambda k: bj.modes(friswell(k, k), 100.0).frequency.sum())(0.0)
+    slope = jax.grad(lambda k: bj.rotor.modes(friswell(k, k), 100.0).frequency.sum())(
+        0.0
+    )
     assert np.isfinite(slope)
 
 
 @pytest.mark.parametrize(
     "call, error, shown",
     [
-        (lambda r: bj.modes(r, np.nan), ValueError, "modes: `speed`.*finite"),
-        (lambda r: bj.modes(r, count=0), ValueError, "modes: `count` is 0"),
+        (lambda r: bj.rotor.modes(r, np.nan), ValueError, "modes: `speed`.*finite"),
+        (lambda r: bj.rotor.modes(r, count=0), ValueError, "modes: `count` is 0"),
         (
-            lambda r: bj.campbell(r, 3.0),
+            lambda r: bj.rotor.campbell(r, 3.0),
             ValueError,
             r"campbell: `speeds` has shape \(\)",
         ),
-        (lambda r: bj.campbell(r, [0.0, np.inf]), ValueError, "`speeds`.*finite"),
-        (lambda r: bj.critical_speeds(r, count=1.5), TypeError, "`count` is 1.5"),
+        (lambda r: bj.rotor.campbell(r, [0.0, np.inf]), ValueError, "`speeds`.*finite"),
+        (lambda r: bj.rotor.critical_speeds(r, count=1.5), TypeError, "`count` is 1.5"),
         (
-            lambda r: bj.unbalance_response(r, [bj.Unbalance(9, 1.0)], [1.0]),
+            lambda r: bj.rotor.unbalance_response(
+                r, [bj.rotor.Unbalance(9, 1.0)], [1.0]
+            ),
             ValueError,
             "station 9; the last station of the shaft is 2",
         ),
-        (lambda r: bj.unbalance_response(r, [3.0], [1.0]), TypeError, "holds a float"),
-        (lambda r: bj.Unbalance(0, -1.0), ValueError, "`moment` is -1 kg m"),
+        (
+            lambda r: bj.rotor.unbalance_response(r, [3.0], [1.0]),
+            TypeError,
+            "holds a float",
+        ),
+        (lambda r: bj.rotor.Unbalance(0, -1.0), ValueError, "`moment` is -1 kg m"),
     ],
 )
 def test_bad_input_is_named(call, error, shown):
@@ -328,13 +338,15 @@ class Whirling(AbstractSupport):
 
 def test_the_onset_of_instability():
     """A push κΩ across: λ = iω where κΩ = cω. Signs of c and κ as they come."""
-    shaft = bj.Shaft([-0.1, 0.0, 0.1], 0.04)
+    shaft = bj.rotor.Shaft([-0.1, 0.0, 0.1], 0.04)
     speeds = np.linspace(0.0, 600.0, 4)
 
     def onsets(across, constant, damping):
         support = Whirling(1, *map(jnp.asarray, (across, constant, damping)))
-        rotor = bj.Rotor(shaft, [bj.PointMass(1, 5.0)], [support], rigid=True)
-        found = bj.campbell(rotor, speeds, count=3)
+        rotor = bj.rotor.Rotor(
+            shaft, [bj.rotor.PointMass(1, 5.0)], [support], rigid=True
+        )
+        found = bj.rotor.campbell(rotor, speeds, count=3)
         return bj.rotor.instability_onsets(rotor, speeds, found), float(rotor.mass)
 
     (found,), mass = onsets(50.0, 0.0, 40.0)

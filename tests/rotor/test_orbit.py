@@ -14,14 +14,14 @@ from tolerances import DIFFERENCE, ROUNDING, SOLVER
 from vibrations import Contact, Spring, duffing, oscillator, rotor
 
 import bearingjax as bj
-from bearingjax.rotor.vibration import (
+from bearingjax.rotor.nonlinear import (
     HarmonicBalance,
     Shooting,
-    Vibration,
+    VibratingSystem,
     hill_multipliers,
     solve_orbit,
 )
-from bearingjax.rotor.vibration.flow import transition
+from bearingjax.rotor.nonlinear.flow import transition
 
 BALANCE, SHOOTING = HarmonicBalance(9, 48, steps=32), Shooting(48)
 METHODS = {"balance": BALANCE, "shooting": SHOOTING}
@@ -166,7 +166,7 @@ def test_what_has_no_orbit_says_so():
     orbit = solve_orbit(system, 0.9, BALANCE, throw=False)
     assert orbit.result == bj.Result.NON_FINITE and not orbit.stable
     with pytest.raises(ValueError, match="`mass` has the shape"):
-        Vibration(
+        VibratingSystem(
             np.eye(2), np.eye(1), np.eye(1), Contact(), Contact(), np.ones(1), 1.0
         )
     with pytest.raises(ValueError, match="7 harmonics need more than 14"):

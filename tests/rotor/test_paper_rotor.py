@@ -12,7 +12,7 @@ from tolerances import DIFFERENCE, PUBLISHED, ROUNDING, SOLVER
 from vibrations import ROTOR, grooves, of_drawing, rotor
 
 import bearingjax as bj
-from bearingjax.rotor.vibration import (
+from bearingjax.rotor.nonlinear import (
     CubicExpansion,
     FixedAngle,
     HarmonicBalance,
@@ -192,7 +192,7 @@ def test_laws_of_a_bearing_from_its_design_and_preload(angle):
     """
     constant, preload, z0 = TABLE[angle][1:4]
     element = bj.BearingElement(of_drawing(angle))
-    offset = bj.preload_offset(element, preload)
+    offset = bj.rotor.preload_offset(element, preload)
     law = FixedAngle.of_bearing(element, offset)
     assert np.isclose(law.preload(), preload, rtol=SOLVER)
     found = [np.degrees(law.contact_angle), 1e-10 * law.constant]

@@ -7,7 +7,7 @@ import pytest
 from vibrations import duffing
 
 from bearingjax.numerics import SolveError
-from bearingjax.rotor.vibration import HarmonicBalance, Shooting, Steps, follow, peak
+from bearingjax.rotor.nonlinear import HarmonicBalance, Shooting, Steps, follow, peak
 
 METHODS = {
     "balance": (HarmonicBalance(5, 24, steps=16), 1e-6),

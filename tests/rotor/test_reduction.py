@@ -10,11 +10,11 @@ from vibrations import grooves
 
 import bearingjax as bj
 from bearingjax.rotor import craig_bampton, reduction_error
-from bearingjax.rotor.vibration import (
+from bearingjax.rotor.nonlinear import (
     HarmonicBalance,
     LawSupport,
-    rotor_vibration,
     solve_orbit,
+    vibrating_rotor,
 )
 
 BALLS = bj.BearingElement(bearing(6.852, 27.5125))
@@ -44,7 +44,7 @@ def test_frequencies():
 def test_error_of_a_linear_response():
     """Against NumPy, of an unbalance between the supports."""
     rotor, omega = stepped(), 700.0
-    loads = bj.RotorLoads(unbalances=bj.Unbalance(1, 1e-4, 0.3))
+    loads = bj.rotor.RotorLoads(unbalances=bj.rotor.Unbalance(1, 1e-4, 0.3))
     cosine, sine = map(np.asarray, loads.unbalanced(rotor))
     force = omega**2 * (cosine - 1j * sine)
     whole = rotor.linearised(omega)
@@ -76,18 +76,18 @@ def test_error_of_a_linear_response():
 def test_orbit():
     """An orbit on nonlinear bearings, with a fifth of the freedoms."""
     law = grooves(26).fixed_angle()
-    shaft = bj.Shaft([0.0, 0.2, 0.5], 0.03, divisions=(2, 3))
-    rotor = bj.Rotor(
+    shaft = bj.rotor.Shaft([0.0, 0.2, 0.5], 0.03, divisions=(2, 3))
+    rotor = bj.rotor.Rotor(
         shaft,
-        bj.Disc(1, 6.0, 0.02, 0.012),
+        bj.rotor.Disc(1, 6.0, 0.02, 0.012),
         [LawSupport(0, law), LawSupport(2, law, turned=True)],
-        bj.ModalDamping(0.01),
+        bj.rotor.ModalDamping(0.01),
     )
-    loads = bj.RotorLoads(bj.Unbalance(1, 2e-3), gravity=(0.0, -9.81, 0.0))
+    loads = bj.rotor.RotorLoads(bj.rotor.Unbalance(1, 2e-3), gravity=(0.0, -9.81, 0.0))
     method = HarmonicBalance(3, 16, steps=16)
     orbits = []
     for modes in (None, 4):
-        system = rotor_vibration(
+        system = vibrating_rotor(
             rotor, loads, scale=1e-5, reference_frequency=1e3, modes=modes
         )
         orbit = solve_orbit(system, 500.0, method)
@@ -107,15 +107,17 @@ def test_orbit():
     [
         (lambda r: craig_bampton(r, -1), "`modes` is -1"),
         (lambda r: craig_bampton(r, True), "`modes` is True"),
-        (lambda r: craig_bampton(bj.Rotor(r.shaft), 2), "no supports"),
+        (lambda r: craig_bampton(bj.rotor.Rotor(r.shaft), 2), "no supports"),
         (
-            lambda r: craig_bampton(bj.Rotor(r.shaft, (), r.supports, rigid=True), 2),
+            lambda r: craig_bampton(
+                bj.rotor.Rotor(r.shaft, (), r.supports, rigid=True), 2
+            ),
             "is rigid",
         ),
         (
-            lambda r: rotor_vibration(
+            lambda r: vibrating_rotor(
                 r,
-                bj.Unbalance(1, 1e-5),
+                bj.rotor.Unbalance(1, 1e-5),
                 scale=1e-5,
                 reference_frequency=1e3,
                 rotation=0.3,
@@ -123,9 +125,11 @@ def test_orbit():
             "with a `rotation` unbalance",
         ),
         (
-            lambda r: rotor_vibration(
-                bj.Rotor(r.shaft, (), bj.BearingSupport(0, BALLS, passage=True)),
-                bj.RotorLoads(),
+            lambda r: vibrating_rotor(
+                bj.rotor.Rotor(
+                    r.shaft, (), bj.rotor.BearingSupport(0, BALLS, passage=True)
+                ),
+                bj.rotor.RotorLoads(),
                 scale=1e-5,
                 reference_frequency=1e3,
                 speed=100.0,

@@ -13,7 +13,7 @@ from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
 
-ELEMENT = bj.BearingElement(balls(8), raceway_control=bj.CentrifugalOnly())
+ELEMENT = bj.BearingElement(balls(8), raceway_control=bj.element.CentrifugalOnly())
 SPEEDS = np.linspace(0.0, 1500.0, 5)
 LOAD = np.array([200.0, -600.0, 900.0, 0.0, 0.0, 0.0])
 
@@ -28,7 +28,7 @@ def ross():
 @pytest.fixture(scope="module")
 def bearings(ross):
     return [
-        bj.to_ross(ELEMENT, n, SPEEDS, LOAD, damping=150.0, tag=f"at {n}")
+        bj.rotor.to_ross(ELEMENT, n, SPEEDS, LOAD, damping=150.0, tag=f"at {n}")
         for n in (0, 4)
     ]
 
@@ -71,7 +71,7 @@ def test_its_frame_is_ours(ross, bearings, shaft):
 
 
 def test_its_matrices_are_the_table(bearings):
-    table = np.asarray(bj.stiffness_table(ELEMENT, SPEEDS, LOAD))
+    table = np.asarray(bj.rotor.stiffness_table(ELEMENT, SPEEDS, LOAD))
     assert abs(table[:, 0, 1]).max() > 1e-3 * table.max()
     for speed, k in zip(SPEEDS, table, strict=True):
         expected = k.copy()
@@ -87,7 +87,7 @@ def test_a_rotor_in_its_bearings(ross, bearings, shaft):
     """Modes of the rotor from our stiffness put into ROSS's shaft by hand."""
     rotor = ross.Rotor(*shaft, bearings)
     speed = SPEEDS[2]
-    k = np.asarray(bj.stiffness_table(ELEMENT, [speed], LOAD))[0]
+    k = np.asarray(bj.rotor.stiffness_table(ELEMENT, [speed], LOAD))[0]
     bare = ross.Rotor(*shaft, [ross.BearingElement(0, kxx=0.0, cxx=0.0)])
     stiffness, damping = np.array(bare.K(speed)), np.array(bare.C(speed))
     for node in (0, 4):

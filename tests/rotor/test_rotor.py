@@ -76,7 +76,7 @@ def test_symmetry_and_what_a_rotor_weighs():
 
 def test_a_disc_from_its_size_and_a_tilt_of_its_axis():
     outer, bore, wide, rho = 0.3, 0.05, 0.07, 7850.0
-    disc = bj.Disc.of_size(0, outer, wide, bore)
+    disc = bj.rotor.Disc.of_size(0, outer, wide, bore)
     m = rho * np.pi / 4 * (outer**2 - bore**2) * wide
     np.testing.assert_allclose(disc.mass, m, rtol=ROUNDING)
     polar, diametral = (
@@ -90,7 +90,7 @@ def test_a_disc_from_its_size_and_a_tilt_of_its_axis():
     rate = np.array([0, 0, 0, 0.3, 0.7])
     moment = polar * np.array([0, 0, 0, 0.7, -0.3])
     np.testing.assert_allclose(gyroscopic @ rate, moment, rtol=ROUNDING)
-    mass, still = bj.PointMass(0, 2.0).inertia()
+    mass, still = bj.rotor.PointMass(0, 2.0).inertia()
     np.testing.assert_array_equal(mass, np.diag([2.0, 2.0, 2.0, 0.0, 0.0]))
     assert not still.any()
 
@@ -98,11 +98,11 @@ def test_a_disc_from_its_size_and_a_tilt_of_its_axis():
 def test_a_housing_is_in_series():
     """A rigid rotor of mass m on k, on a housing of mass h on kh: two masses."""
     k, kh, h = 3e7, 5e7, 20.0
-    base = bj.Housing(h, [kh, 2 * kh, 3 * kh])
-    shaft = bj.Shaft([-0.1, 0.0, 0.1], 0.1)
-    support = bj.LinearSupport.isotropic(1, k, k, 1e6, housing=base)
-    rotor = bj.Rotor(shaft, (), [support], rigid=True)
-    found = bj.modes(rotor)
+    base = bj.rotor.Housing(h, [kh, 2 * kh, 3 * kh])
+    shaft = bj.rotor.Shaft([-0.1, 0.0, 0.1], 0.1)
+    support = bj.rotor.LinearSupport.isotropic(1, k, k, 1e6, housing=base)
+    rotor = bj.rotor.Rotor(shaft, (), [support], rigid=True)
+    found = bj.rotor.modes(rotor)
     m = float(rotor.mass)
     exact = []
     for factor in (1, 2, 3):
@@ -116,10 +116,10 @@ def test_a_housing_is_in_series():
 
 def test_modal_damping_is_that_of_every_mode():
     for rigid in (True, False):
-        found = bj.modes(paper(1.4e8, 1.3e7, bj.ModalDamping(0.02), rigid))
+        found = bj.rotor.modes(paper(1.4e8, 1.3e7, bj.rotor.ModalDamping(0.02), rigid))
         np.testing.assert_allclose(found.damping_ratio, 0.02, rtol=1e-5)
     # Nothing holds it along z: that motion is not damped.
-    loose = bj.modes(paper(1.4e8, 0.0, bj.ModalDamping(0.02)))
+    loose = bj.rotor.modes(paper(1.4e8, 0.0, bj.rotor.ModalDamping(0.02)))
     np.testing.assert_allclose(loose.damping_ratio[:4], 0.02, rtol=SOLVER)
     assert loose.eigenvalue[4] == 0 and loose.damping_ratio[4] == 0
     assert jnp.isinf(loose.log_decrement[4])
@@ -127,8 +127,10 @@ def test_modal_damping_is_that_of_every_mode():
 
 def test_proportional_damping_of_a_free_shaft():
     a, b = 3.0, 2e-7
-    shaft = bj.Shaft([0.0, 0.5], 0.04, divisions=4)
-    found = bj.modes(bj.Rotor(shaft, damping=bj.ProportionalDamping(a, b)))
+    shaft = bj.rotor.Shaft([0.0, 0.5], 0.04, divisions=4)
+    found = bj.rotor.modes(
+        bj.rotor.Rotor(shaft, damping=bj.rotor.ProportionalDamping(a, b))
+    )
     omega = np.abs(found.eigenvalue)[:6]
     expected = 0.5 * (a / omega + b * omega)
     np.testing.assert_allclose(found.damping_ratio[:6], expected, rtol=DIFFERENCE)
@@ -142,41 +144,53 @@ def test_proportional_damping_of_a_free_shaft():
 @pytest.mark.parametrize(
     "make, error, shown",
     [
-        (lambda: bj.Disc(-1, 1.0, 0.1, 0.1), ValueError, "Disc: `station` is -1"),
-        (lambda: bj.Disc(0, -1.0, 0.1, 0.1), ValueError, "`mass` is -1 kg"),
-        (lambda: bj.Disc(0, 1.0, np.nan, 0.1), ValueError, "`polar_inertia`.*kg m²"),
-        (lambda: bj.Disc.of_size(0, 0.1, 0.0), ValueError, "`width` is 0 m"),
-        (lambda: bj.Disc.of_size(0, 0.1, 0.1, 0.2), ValueError, "`bore` is 0.2 m"),
-        (lambda: bj.PointMass(0.5, 1.0), ValueError, "`station` is 0.5"),
+        (lambda: bj.rotor.Disc(-1, 1.0, 0.1, 0.1), ValueError, "Disc: `station` is -1"),
+        (lambda: bj.rotor.Disc(0, -1.0, 0.1, 0.1), ValueError, "`mass` is -1 kg"),
         (
-            lambda: bj.LinearSupport(0, [1e8, 1e8]),
+            lambda: bj.rotor.Disc(0, 1.0, np.nan, 0.1),
+            ValueError,
+            "`polar_inertia`.*kg m²",
+        ),
+        (lambda: bj.rotor.Disc.of_size(0, 0.1, 0.0), ValueError, "`width` is 0 m"),
+        (
+            lambda: bj.rotor.Disc.of_size(0, 0.1, 0.1, 0.2),
+            ValueError,
+            "`bore` is 0.2 m",
+        ),
+        (lambda: bj.rotor.PointMass(0.5, 1.0), ValueError, "`station` is 0.5"),
+        (
+            lambda: bj.rotor.LinearSupport(0, [1e8, 1e8]),
             ValueError,
             r"`stiffness` has shape \(2, 2\); it must be \(5, 5\), or 5 numbers",
         ),
         (
-            lambda: bj.LinearSupport(0, np.eye(5), -np.eye(5)),
+            lambda: bj.rotor.LinearSupport(0, np.eye(5), -np.eye(5)),
             ValueError,
             "must be finite, and at least 0 on its diagonal",
         ),
         (
-            lambda: bj.LinearSupport(0, np.eye(5), housing=3.0),
+            lambda: bj.rotor.LinearSupport(0, np.eye(5), housing=3.0),
             TypeError,
             "`housing` is a .*; it must be a Housing or None",
         ),
-        (lambda: bj.Housing(0.0, [1.0, 1.0, 1.0]), ValueError, "`mass` is 0 kg"),
-        (lambda: bj.ModalDamping(-0.1), ValueError, "`ratio` is -0.1"),
+        (lambda: bj.rotor.Housing(0.0, [1.0, 1.0, 1.0]), ValueError, "`mass` is 0 kg"),
+        (lambda: bj.rotor.ModalDamping(-0.1), ValueError, "`ratio` is -0.1"),
         (
-            lambda: bj.Rotor(bj.Shaft([0, 1], 0.1), [bj.PointMass(2, 1.0)]),
+            lambda: bj.rotor.Rotor(
+                bj.rotor.Shaft([0, 1], 0.1), [bj.rotor.PointMass(2, 1.0)]
+            ),
             ValueError,
             "`discs` holds a PointMass on station 2; the last station .* is 1",
         ),
         (
-            lambda: bj.Rotor(bj.Shaft([0, 1], 0.1), supports=[bj.PointMass(0, 1.0)]),
+            lambda: bj.rotor.Rotor(
+                bj.rotor.Shaft([0, 1], 0.1), supports=[bj.rotor.PointMass(0, 1.0)]
+            ),
             TypeError,
             "`supports` holds a PointMass; it must hold supports",
         ),
         (
-            lambda: bj.Rotor(bj.Shaft([0, 1], 0.1), damping=0.01),
+            lambda: bj.rotor.Rotor(bj.rotor.Shaft([0, 1], 0.1), damping=0.01),
             TypeError,
             "`damping` is a float; it must be a Damping or None",
         ),
@@ -188,6 +202,6 @@ def test_bad_input_is_named(make, error, shown):
 
 
 def test_a_disc_of_impossible_inertia_is_odd():
-    bj.Disc(0, 1.0, 0.2, 0.1)  # flat
+    bj.rotor.Disc(0, 1.0, 0.2, 0.1)  # flat
     with pytest.warns(UserWarning, match="0.21 kg m².* above twice .*0.1 kg m²"):
-        bj.Disc(0, 1.0, 0.21, 0.1)
+        bj.rotor.Disc(0, 1.0, 0.21, 0.1)

@@ -10,11 +10,11 @@ from tolerances import DIFFERENCE, ROUNDING, SOLVER
 from vibrations import Spring, duffing, oscillator
 
 import bearingjax as bj
-from bearingjax.rotor.vibration import (
+from bearingjax.rotor.nonlinear import (
     FrequencyTable,
     HarmonicLoad,
     Shooting,
-    Vibration,
+    VibratingSystem,
     poincare,
     simulate,
     solve_orbit,
@@ -101,7 +101,7 @@ def turning(stiffness, unbalance):
             unbalance * jnp.array([0.0, 1.0, -1.5, 0.0]),
         ),
     )
-    return Vibration(
+    return VibratingSystem(
         mass=np.diag([MASS, MASS, DIAMETRAL, DIAMETRAL]),
         damping=np.diag(DAMPING),
         gyroscopic=skew,

@@ -10,12 +10,12 @@ from vibrations import ROTOR, grooves, rotor
 import bearingjax as bj
 from bearingjax.numerics.types import Scalar, as_real
 from bearingjax.rotor import AbstractSupport, Housing, Rotor, Shaft, Unbalance
-from bearingjax.rotor.vibration import (
+from bearingjax.rotor.nonlinear import (
     HarmonicBalance,
     HarmonicLoad,
     LawSupport,
-    rotor_vibration,
     solve_orbit,
+    vibrating_rotor,
 )
 
 BALANCE = HarmonicBalance(3, 16, steps=16)
@@ -44,7 +44,7 @@ def test_it_is_the_linear_rotor_where_supports_are_linear():
     ]
     whole = Rotor(shaft, [disc], supports, damping=bj.rotor.ModalDamping(0.01))
     weight = Unbalance(1, 1e-5, 0.3)
-    system = rotor_vibration(whole, weight, scale=1e-5, reference_frequency=1e3)
+    system = vibrating_rotor(whole, weight, scale=1e-5, reference_frequency=1e3)
     orbit = solve_orbit(system, 900.0, BALANCE)
     linear = bj.rotor.unbalance_response(whole, weight, [900.0])
     motions = np.asarray(whole.motions())
@@ -71,7 +71,7 @@ def test_damping_of_modes_counts_supports_as_they_are_at_the_speed():
     )
     unbalance = Unbalance(1, 1e-5)
     for speed in (None, 800.0):
-        system = rotor_vibration(
+        system = vibrating_rotor(
             whole, unbalance, scale=1e-5, reference_frequency=1e3, speed=speed
         )
         wanted = whole.linearised(speed or 0.0).damping
@@ -90,7 +90,7 @@ def test_the_rigid_rotor_is_that_of_the_paper():
     ]
     damping = bj.rotor.ModalDamping(0.01)
     whole = Rotor(shaft, [disc], bearings, damping=damping, rigid=True)
-    system = rotor_vibration(
+    system = vibrating_rotor(
         whole,
         Unbalance(1, 3e-6),
         scale=law.preload_displacement,

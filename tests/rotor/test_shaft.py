@@ -89,7 +89,7 @@ def test_shear_coefficient_of_rod_and_thin_tube():
     np.testing.assert_allclose(tube, 2 * 1.3 / (4 + 3 * 0.3), rtol=ROUNDING)
 
 
-STEPPED = bj.Shaft(
+STEPPED = bj.rotor.Shaft(
     [-0.1, 0.05, 0.3],
     [0.05, 0.03],
     [0.0, 0.01],
@@ -106,7 +106,7 @@ def test_a_stepped_shaft():
     for matrix in (mass, stiffness):
         assert abs(matrix - matrix.T).max() < ROUNDING * abs(matrix).max()
     assert abs(gyroscopic + gyroscopic.T).max() < ROUNDING * abs(gyroscopic).max()
-    rigid = np.asarray(bj.Rotor(STEPPED, rigid=True).motions())
+    rigid = np.asarray(bj.rotor.Rotor(STEPPED, rigid=True).motions())
     # A rigid motion strains nothing.
     assert abs(stiffness @ rigid).max() < ROUNDING * abs(stiffness).max()
     m = float(STEPPED.mass)
@@ -135,7 +135,9 @@ def test_a_cantilever_bends_as_a_beam_with_shear_does():
     length, outer, force = 0.2, 0.04, 100.0
     ei, kga, _, _ = section(outer, 0.0)
     for divisions in (1, 3):
-        shaft = bj.Shaft([0.0, length], outer, material=STEEL, divisions=divisions)
+        shaft = bj.rotor.Shaft(
+            [0.0, length], outer, material=STEEL, divisions=divisions
+        )
         k = np.asarray(matrices_of(shaft)[2])[5:, 5:]
         load = np.zeros(5 * divisions)
         load[-5], load[-4] = force, force
@@ -190,7 +192,8 @@ def errors(length, outer, divisions):
     """Of the first two frequencies, against the beam's."""
     exact = np.array([abs(beam(mode, length, outer)[0]) for mode in (1, 2)])
     shafts = (
-        bj.Shaft([0, length], outer, material=STEEL, divisions=n) for n in divisions
+        bj.rotor.Shaft([0, length], outer, material=STEEL, divisions=n)
+        for n in divisions
     )
     return np.array([whirl(shaft)[:2] / exact - 1 for shaft in shafts])
 
@@ -219,7 +222,7 @@ def test_a_stout_shaft_whirls_as_a_timoshenko_beam():
     speed = 3e4
     backward, forward = beam(1, length, outer, speed)
     assert backward < 0 < forward and forward > -1.02 * backward
-    shaft = bj.Shaft([0, length], outer, material=STEEL, divisions=n)
+    shaft = bj.rotor.Shaft([0, length], outer, material=STEEL, divisions=n)
     got = whirl(shaft, speed)[:2]
     np.testing.assert_allclose(got, [backward, forward], rtol=3 * error[0])
 
@@ -227,8 +230,8 @@ def test_a_stout_shaft_whirls_as_a_timoshenko_beam():
 def test_axial_vibration_of_a_free_shaft():
     """That of n elements between free ends is known, and tends to nπc/L."""
     length, n = 0.8, 16
-    shaft = bj.Shaft([0.0, length], 0.05, 0.02, STEEL, n)
-    got = bj.modes(bj.Rotor(shaft)).frequency
+    shaft = bj.rotor.Shaft([0.0, length], 0.05, 0.02, STEEL, n)
+    got = bj.rotor.modes(bj.rotor.Rotor(shaft)).frequency
     c = np.sqrt(float(STEEL.elastic_modulus / STEEL.density))
     kh = np.pi * np.arange(1, 5) / n
     exact = c * n / length * np.sqrt(6 * (1 - np.cos(kh)) / (2 + np.cos(kh)))
@@ -243,9 +246,9 @@ def test_axial_vibration_of_a_free_shaft():
 
 def test_more_elements_are_no_longer_program():
     def length(n):
-        shaft = bj.Shaft([0.0, 0.4, 1.0], 0.05, divisions=n)
+        shaft = bj.rotor.Shaft([0.0, 0.4, 1.0], 0.05, divisions=n)
         program = jax.make_jaxpr(
-            lambda d: bj.Shaft(shaft.stations, d, divisions=n).matrices()
+            lambda d: bj.rotor.Shaft(shaft.stations, d, divisions=n).matrices()
         )(0.05)
         return len(program.eqns)
 
@@ -255,7 +258,7 @@ def test_more_elements_are_no_longer_program():
 def test_matrices_have_derivatives():
     def strain(numbers):
         place, outer, bore = numbers
-        shaft = bj.Shaft([0.0, place, 0.4], outer, bore, STEEL, 2)
+        shaft = bj.rotor.Shaft([0.0, place, 0.4], outer, bore, STEEL, 2)
         bend = jnp.cos(jnp.arange(25.0))
         mass, gyroscopic, stiffness = shaft.matrices()
         return jnp.stack(
@@ -296,4 +299,4 @@ def test_matrices_have_derivatives():
 def test_bad_input_is_named(change, error, shown):
     given = {"stations": [0.0, 0.1, 0.4], "outer_diameter": [0.05, 0.04]} | change
     with pytest.raises(error, match=f"Shaft: {shown}"):
-        bj.Shaft(**given)
+        bj.rotor.Shaft(**given)

@@ -15,27 +15,28 @@ from vibrations import OUTER
 import bearingjax as bj
 
 STEEL = bj.Material(2.1e11, 0.3, 7850.0)
-WEIGHT = bj.RotorLoads(gravity=(0.0, -9.80665, 0.0))
+WEIGHT = bj.rotor.RotorLoads(gravity=(0.0, -9.80665, 0.0))
 ELEMENT = bj.BearingElement(bearing(23.855, OUTER[26]))
 
 
 def opposed(offset=14e-6, diameter=0.025, load=WEIGHT, inertia=False):
     """The rotor of method 002 on two true bearings of 26°, pressed together."""
-    shaft = bj.Shaft([0.0, 0.125, 0.5], diameter, material=STEEL, divisions=2)
+    shaft = bj.rotor.Shaft([0.0, 0.125, 0.5], diameter, material=STEEL, divisions=2)
     at = jnp.zeros(5).at[2].set(offset)
     supports = [
-        bj.BearingSupport(k, ELEMENT, at, turned=k > 0, inertia=inertia) for k in (0, 2)
+        bj.rotor.BearingSupport(k, ELEMENT, at, turned=k > 0, inertia=inertia)
+        for k in (0, 2)
     ]
-    return bj.Rotor(shaft, bj.Disc(1, 10.0, 0.2, 0.1), supports), load
+    return bj.rotor.Rotor(shaft, bj.rotor.Disc(1, 10.0, 0.2, 0.1), supports), load
 
 
 def test_springs():
     """On springs it is what the whole stiffness matrix says."""
     rotor = stepped()
-    loads = bj.RotorLoads(
-        gravity=(1.0, -9.8, 2.0), forces=bj.StationForce(1, [10, 20, 5, 0.1, 0.2])
+    loads = bj.rotor.RotorLoads(
+        gravity=(1.0, -9.8, 2.0), forces=bj.rotor.StationForce(1, [10, 20, 5, 0.1, 0.2])
     )
-    found = bj.settle(rotor, loads)
+    found = bj.rotor.static_equilibrium(rotor, loads)
     wanted = np.linalg.solve(rotor.linearised().stiffness, loads.constant(rotor))
     np.testing.assert_allclose(found.motion, wanted, atol=1e-11 * np.abs(wanted).max())
     assert not np.asarray(found.free).any()
@@ -47,7 +48,7 @@ def test_springs():
 def test_weight_and_preload():
     """Loads balance weight and each other; the place is one of no left-over force."""
     rotor, loads = opposed()
-    found = bj.settle(rotor, loads)
+    found = bj.rotor.static_equilibrium(rotor, loads)
     load, weight = np.asarray(found.support_load), 9.80665 * float(rotor.mass)
     np.testing.assert_allclose(load.sum(axis=0)[[1, 2]], [-weight, 0], atol=1e-8)
     # Moments about x at z = 0: -y-force times arm, and what the bearings hold.
@@ -67,7 +68,7 @@ def test_derivatives():
 
     def numbers(x):
         rotor, loads = opposed(1e-6 * x[0], 1e-3 * x[1])
-        found = bj.settle(rotor, loads, throw=False)
+        found = bj.rotor.static_equilibrium(rotor, loads, throw=False)
         return jnp.stack(
             [
                 1e6 * found.displacement[1, 1],
@@ -94,9 +95,11 @@ def test_derivatives():
 def test_follows_the_speed():
     """Where balls feel the speed, the rotor over speeds is the one settled at each."""
     rotor, loads = opposed(inertia=True)
-    over = bj.settle_over(rotor, loads, 1000.0)
+    over = bj.rotor.static_equilibrium_over(rotor, loads, 1000.0)
     assert float(over.error) < 1e-7
-    there, rest = (bj.settle(rotor, loads, speed) for speed in (800.0, 0.0))
+    there, rest = (
+        bj.rotor.static_equilibrium(rotor, loads, speed) for speed in (800.0, 0.0)
+    )
     wanted = there.rotor.linearised().stiffness
     scale = np.abs(wanted).max()
     found = over.rotor.linearised(800.0).stiffness
@@ -104,7 +107,11 @@ def test_follows_the_speed():
     other = rest.rotor.linearised().stiffness
     assert np.abs(other - wanted).max() > 1e-5 * scale
     # The same number under trace, where all places go through one program.
-    error = jax.jit(lambda top: bj.settle_over(rotor, loads, top, throw=False).error)
+    error = jax.jit(
+        lambda top: (
+            bj.rotor.static_equilibrium_over(rotor, loads, top, throw=False).error
+        )
+    )
     np.testing.assert_allclose(error(1000.0), over.error, rtol=1e-3)
     # Outside, the ends hold.
     ends = [over.rotor.linearised(speed).stiffness for speed in (1000.0, 2000.0)]
@@ -114,18 +121,20 @@ def test_follows_the_speed():
 def test_nothing_holds_it():
     """A load that nothing takes up, and a bearing that bears nothing, are said."""
     rotor, _ = opposed()
-    rollers = bj.Rotor(
-        rotor.shaft, rotor.discs, [bj.LinearSupport.isotropic(k, 1e8) for k in (0, 2)]
+    rollers = bj.rotor.Rotor(
+        rotor.shaft,
+        rotor.discs,
+        [bj.rotor.LinearSupport.isotropic(k, 1e8) for k in (0, 2)],
     )
-    upright = bj.RotorLoads(gravity=(0.0, 0.0, -9.80665))
+    upright = bj.rotor.RotorLoads(gravity=(0.0, 0.0, -9.80665))
     with pytest.raises(bj.SolveError, match="no_load_path.*along uz of station"):
-        bj.settle(rollers, upright)
-    failed = bj.settle(rollers, upright, throw=False)
+        bj.rotor.static_equilibrium(rollers, upright)
+    failed = bj.rotor.static_equilibrium(rollers, upright, throw=False)
     assert int(failed.result) == bj.Result.NO_LOAD_PATH
     assert np.isnan(failed.motion).all() and np.isnan(failed.stiffness).all()
     idle, _ = opposed(-5e-6)
     with pytest.warns(UserWarning) as said:
-        bj.settle(idle)
+        bj.rotor.static_equilibrium(idle)
     texts = [str(one.message) for one in said]
     assert any("station 0, 2 bears nothing" in text for text in texts)
     assert any("nothing holds" in text for text in texts)
@@ -133,8 +142,10 @@ def test_nothing_holds_it():
 
 def test_settle_says_where_a_preload_is_lost():
     """Two bearings that face the same way push the shaft until neither presses."""
-    rotor, loads = opposed(bj.preload_offset(ELEMENT, 200.0))
-    shoved = bj.RotorLoads(forces=bj.StationForce(1, [0.0, 0.0, 3000.0, 0.0, 0.0]))
+    rotor, loads = opposed(bj.rotor.preload_offset(ELEMENT, 200.0))
+    shoved = bj.rotor.RotorLoads(
+        forces=bj.rotor.StationForce(1, [0.0, 0.0, 3000.0, 0.0, 0.0])
+    )
     alike = eqx.tree_at(lambda r: r.supports[1].turned, rotor, replace_fn=lambda t: ~t)
     both = "station 0 is preloaded by 200 N .* keeps 0 N; the bearing on station 2"
     for one, load, words in (
@@ -142,16 +153,16 @@ def test_settle_says_where_a_preload_is_lost():
         (rotor, shoved, "station 2 is preloaded by 200 N .* is more than the preload"),
     ):
         with pytest.warns(UserWarning) as said:
-            bj.settle(one, load)
+            bj.rotor.static_equilibrium(one, load)
         texts = [str(one.message) for one in said]
         assert any(re.search(words, text) for text in texts), texts
-    bj.settle(rotor, loads)  # warns of nothing
+    bj.rotor.static_equilibrium(rotor, loads)  # warns of nothing
 
 
 def test_clearance():
     """Bearings with clearance take up the weight where they meet it."""
     rotor, loads = opposed(-5e-6, 0.05)
-    found = bj.settle(rotor, loads)
+    found = bj.rotor.static_equilibrium(rotor, loads)
     load, weight = np.asarray(found.support_load), 9.80665 * float(rotor.mass)
     np.testing.assert_allclose(load[:, 1].sum(), -weight, rtol=1e-10)
     assert float(found.displacement[0, 1]) < -5e-6
@@ -160,25 +171,51 @@ def test_clearance():
 @pytest.mark.parametrize(
     "make, error, message",
     [
-        (lambda r: bj.settle(r.shaft), TypeError, "`rotor` is a Shaft"),
-        (lambda r: bj.settle(r, bj.Unbalance(1, 1e-5)), TypeError, "`loads` is a Unba"),
-        (lambda r: bj.settle(bj.Rotor(r.shaft)), ValueError, "no supports"),
         (
-            lambda r: bj.settle(r, bj.RotorLoads(forces=bj.StationForce(7, [0.0] * 5))),
+            lambda r: bj.rotor.static_equilibrium(r.shaft),
+            TypeError,
+            "`rotor` is a Shaft",
+        ),
+        (
+            lambda r: bj.rotor.static_equilibrium(r, bj.rotor.Unbalance(1, 1e-5)),
+            TypeError,
+            "`loads` is a Unba",
+        ),
+        (
+            lambda r: bj.rotor.static_equilibrium(bj.rotor.Rotor(r.shaft)),
+            ValueError,
+            "no supports",
+        ),
+        (
+            lambda r: bj.rotor.static_equilibrium(
+                r, bj.rotor.RotorLoads(forces=bj.rotor.StationForce(7, [0.0] * 5))
+            ),
             ValueError,
             "on station 7; the last station of the shaft is 2",
         ),
-        (lambda r: bj.settle(r, speed=np.nan), ValueError, "`speed`"),
+        (lambda r: bj.rotor.static_equilibrium(r, speed=np.nan), ValueError, "`speed`"),
         (
-            lambda r: bj.RotorLoads(gravity=9.81),
+            lambda r: bj.rotor.RotorLoads(gravity=9.81),
             ValueError,
             r"`gravity` has shape \(\)",
         ),
-        (lambda r: bj.RotorLoads(unbalances=[3.0]), TypeError, "hold Unbalances"),
-        (lambda r: bj.StationForce(1, [1.0, 2.0]), ValueError, "`force` has shape"),
-        (lambda r: bj.StationForce(1, [np.inf] * 5), ValueError, "finite"),
-        (lambda r: bj.settle_over(r, None, 0.0), ValueError, "`top_speed`"),
-        (lambda r: bj.settle_over(r, None, 1.0, places=2), ValueError, "`places`"),
+        (lambda r: bj.rotor.RotorLoads(unbalances=[3.0]), TypeError, "hold Unbalances"),
+        (
+            lambda r: bj.rotor.StationForce(1, [1.0, 2.0]),
+            ValueError,
+            "`force` has shape",
+        ),
+        (lambda r: bj.rotor.StationForce(1, [np.inf] * 5), ValueError, "finite"),
+        (
+            lambda r: bj.rotor.static_equilibrium_over(r, None, 0.0),
+            ValueError,
+            "`top_speed`",
+        ),
+        (
+            lambda r: bj.rotor.static_equilibrium_over(r, None, 1.0, places=2),
+            ValueError,
+            "`places`",
+        ),
     ],
 )
 def test_bad_input(make, error, message):

@@ -142,7 +142,7 @@ def test_command_writes_a_row_per_case(run, undrawn, scene, tmp_path):
         "displacement_inner_gy [rad]",
     ]
     assert table["result"] == ["converged"] * 12
-    one = bj.run_scene(
+    one = bj.scene.run_scene(
         read_scene(
             path,
             [
@@ -370,7 +370,7 @@ def test_designs_of_several_structures(run, scene, tmp_path):
     found = json.loads(out.read_text())["columns"]
     assert found["bearing.n_rollers"] == [6, 6, 7, 7]
     settings = ["bearing.n_rollers=7", "operating.load.Fy=-2 kN"]
-    one = bj.run_scene(read_scene(path, settings))
+    one = bj.scene.run_scene(read_scene(path, settings))
     assert found["largest_load [N]"][3] == pytest.approx(
         float(one.roller_load.max()), rel=1e-8
     )

@@ -283,7 +283,7 @@ def test_a_roller_of_a_bearing(run, tmp_path):
     assert done.out.startswith("cylindrical_rig, roller 0, outer raceway: roller")
     assert "; free end faces" in done.out
     numbers = read(out)
-    solved = bj.run_scene(bj.read_scene("cylindrical_rig"))
+    solved = bj.scene.run_scene(bj.read_scene("cylindrical_rig"))
     assert numbers["load"] == pytest.approx(float(solved.roller_load[0, 0]), rel=1e-9)
     assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
     done = run("contact", "cylindrical_rig", "--roller", "5")

@@ -685,7 +685,7 @@ def test_a_rotor_turns_on_its_fits(scene):
     fit = (11.5e-6 + seat - bore) * d / f
     left = 12.5e-6 - fit - raceway - f * rise
     assert clearance(two.element) == pytest.approx(left, rel=1e-9)
-    assert type(two.element.point_law) is bj.ZeroAngle
+    assert type(two.element.point_law) is bj.contact.ZeroAngle
     # The echo has the bearing of the other scene, with its fits.
     out = path.with_name("away") / "rotor.json"
     out.parent.mkdir()

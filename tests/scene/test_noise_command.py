@@ -12,7 +12,7 @@ import pytest
 from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.acoustics import (
+from bearingjax.noise import (
     Vibration,
     model_warnings,
     natural_modes,
@@ -20,7 +20,7 @@ from bearingjax.acoustics import (
     record_warnings,
     ring_modes,
 )
-from bearingjax.acoustics.warning import _short_waves
+from bearingjax.noise.warning import _short_waves
 from bearingjax.numerics import Result
 from bearingjax.scene import noise_as_dict, noise_run, read_noise, run_noise
 
@@ -160,7 +160,7 @@ def test_a_model_by_hand_vibrates_alike(scene):
     assert found.heard is not None and found.steps > 1
     # Twice the wave, twice the vibration, as long as all balls bear.
     (waves,) = task.model.errors_of_rows[0].inner.outwards
-    assert isinstance(waves, bj.Harmonics)
+    assert isinstance(waves, bj.design.Harmonics)
     amplitude = waves.amplitude
     twice = dataclasses.replace(
         task,
@@ -178,7 +178,7 @@ def test_lines_name_the_wave_that_makes_them(scene):
     task = read_noise(scene)
     modes = jax.device_get(natural_modes(task.model))
     # A record of sixteen turns by hand: the line of the wave alone.
-    kinematic = bj.acoustics.kinematic_frequencies(
+    kinematic = bj.noise.kinematic_frequencies(
         task.model.element.bearing, task.model.speed
     )
     hertz = float(kinematic.inner_passage + kinematic.inner)

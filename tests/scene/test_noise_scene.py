@@ -9,10 +9,10 @@ from tolerances import ROUNDING
 
 import bearingjax as bj
 from bearingjax import SceneError
-from bearingjax.acoustics import NoiseModel, Rectangular, Sensor, Tolerances
-from bearingjax.acoustics.reference_levels import NORM
 from bearingjax.design.form_error import FormErrors, Harmonics, RacewayErrors, Spall
 from bearingjax.design.tolerance import running_accuracy
+from bearingjax.noise import NoiseModel, Rectangular, Sensor, Tolerances
+from bearingjax.noise.reference_levels import NORM
 from bearingjax.scene import read_noise, scene_files, shipped_scenes
 
 SHIPPED = ("noise_cylindrical", "noise_deep_groove", "noise_four_point", "noise_pair")

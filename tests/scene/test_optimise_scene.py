@@ -151,13 +151,13 @@ def test_shipped_scene_says_what_it_wants():
         "end_drop",
     ]
     assert np.isclose(task.variables[2].upper, 60e-6)
-    assert isinstance(task.objective, bj.PeakPressure)
+    assert isinstance(task.objective, bj.optimise.PeakPressure)
     assert task.cases.count == 4
     assert np.allclose(task.cases.load[:, 1], [-18e3, -12e3, -8e3, -4e3])
     assert np.allclose(task.cases.prescribed["gx"], [2e-3, 1.5e-3, 1e-3, 5e-4])
     assert task.cases.hours is not None and task.cases.hours[2] == 4000.0
     (constraint,) = task.constraints
-    assert isinstance(constraint.measure, bj.EdgeLoad)
+    assert isinstance(constraint.measure, bj.optimise.EdgeLoad)
     assert constraint.lower is None and float(constraint.upper) == 10e3
 
 
@@ -202,7 +202,7 @@ def test_report_needs_no_unit_of_a_plain_measure(scene):
     def own(element, cases, solution):
         return jnp.sum(solution.displacement[:, 7] ** 2)
 
-    found = bj.optimise(
+    found = bj.optimise.optimise(
         asked.installed,
         task.cases,
         task.variables,

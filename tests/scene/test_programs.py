@@ -65,7 +65,7 @@ def name_of(monkeypatch):
 
     def call(scene, *settings):
         with pytest.raises(Named) as found:
-            bj.run_scene(bj.read_scene(scene, settings), Path())
+            bj.scene.run_scene(bj.read_scene(scene, settings), Path())
         return found.value.args[0]
 
     return call

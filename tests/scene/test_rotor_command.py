@@ -12,7 +12,7 @@ from tolerances import PUBLISHED, SOLVER
 
 import bearingjax as bj
 from bearingjax.rotor import harmonic_response
-from bearingjax.rotor.vibration import Ending
+from bearingjax.rotor.nonlinear import Ending
 from bearingjax.scene import (
     SceneError,
     read_rotor,
@@ -130,21 +130,23 @@ def test_the_published_rotor_by_command(run, tmp_path):
 def _same_as_the_library(found):
     """The rotor on springs of that stiffness, put together by hand."""
     k = np.array(found["static"]["stiffness"])
-    rotor = bj.Rotor(
-        bj.Shaft([0.0, 0.125, 0.5], 0.025, material=bj.Material(210e9, 0.3, 7850.0)),
-        [bj.Disc(1, 10.0, 0.2, 0.1)],
-        [bj.LinearSupport(0, k[0]), bj.LinearSupport(2, k[1])],
-        damping=bj.ModalDamping(0.01),
+    rotor = bj.rotor.Rotor(
+        bj.rotor.Shaft(
+            [0.0, 0.125, 0.5], 0.025, material=bj.Material(210e9, 0.3, 7850.0)
+        ),
+        [bj.rotor.Disc(1, 10.0, 0.2, 0.1)],
+        [bj.rotor.LinearSupport(0, k[0]), bj.rotor.LinearSupport(2, k[1])],
+        damping=bj.rotor.ModalDamping(0.01),
         rigid=True,
     )
     speed = 6000.0 * RPM
-    modes = bj.modes(rotor, speed, count=5)
+    modes = bj.rotor.modes(rotor, speed, count=5)
     assert np.allclose(found["frequency"], modes.frequency, rtol=SOLVER)
     assert np.allclose(found["damping_ratio"], modes.damping_ratio, rtol=SOLVER)
     assert found["whirl"] == modes.whirl.tolist()
     response = found["response"]
     frequency = TURN * jnp.asarray(response["frequency"])
-    loads = bj.RotorLoads(base_acceleration=(0.0, BASE, 0.0))
+    loads = bj.rotor.RotorLoads(base_acceleration=(0.0, BASE, 0.0))
     linear = harmonic_response(rotor, loads, frequency, speed)
     amplitude = np.reshape(response["amplitude"], (len(frequency), 3, 5))
     assert np.allclose(
@@ -287,10 +289,12 @@ def _without(*names):
 
 def test_a_linear_response_and_what_is_doubtful(monkeypatch):
     def idle(*given):
-        warnings.warn("settle: the bearing on station 0 bears nothing", stacklevel=2)
-        return bj.settle(*given)
+        warnings.warn(
+            "static_equilibrium: the bearing on station 0 bears nothing", stacklevel=2
+        )
+        return bj.rotor.static_equilibrium(*given)
 
-    monkeypatch.setattr(rotor_run, "settle", idle)
+    monkeypatch.setattr(rotor_run, "static_equilibrium", idle)
     task = read_rotor(
         "rotor_paper_12",
         settings(FEW, ON_SPRINGS, LINEAR, {"rotor.speed": "43000 rpm"}),
@@ -307,7 +311,7 @@ def test_a_linear_response_and_what_is_doubtful(monkeypatch):
     largest = found.response.amplitude[:, 2, 1]
     assert np.allclose(half[:, 2, 1], largest, rtol=0.01)
     text = str(rotor_report(found))
-    assert "warning: settle: the bearing on station 0 bears nothing" in text
+    assert "warning: static_equilibrium: the bearing on station 0 bears nothing" in text
     assert "43000 rpm lies within 10 % of the forward critical speed of 432" in text
     assert all(words in text for words in rotor_as_dict(found)["warnings"])
     assert len(rotor_as_dict(found)["warnings"]) == 2
@@ -330,7 +334,7 @@ def test_what_is_not_solved_is_no_result(run, tmp_path, part):
     found = read(out)
     if part == "static":
         assert found["result"] == "no_load_path"
-        assert "no_load_path: static: settle: " in done.err
+        assert "no_load_path: static: static_equilibrium: " in done.err
         assert done.out == "" and set(found) == WORDS and not table.exists()
     else:
         assert found["result"] == "step_limit"

@@ -275,7 +275,7 @@ def test_the_paper_rotor_is_that_of_its_table():
     assert task.rigid and task.axis == "none"
     assert task.station_names == ("0 gost_831", "1 disc", "2 gost_831")
     (disc,) = task.discs
-    assert isinstance(disc, bj.Disc)
+    assert isinstance(disc, bj.rotor.Disc)
     own = [float(disc.mass), float(disc.polar_inertia), float(disc.diametral_inertia)]
     assert own == [10.0, 0.2, 0.1]
     a, b = task.mounts
@@ -287,7 +287,7 @@ def test_the_paper_rotor_is_that_of_its_table():
         23.855, abs=5e-4
     )
     assert np.allclose(task.loads.base_acceleration, [0, 3, 0])
-    assert isinstance(task.damping, bj.ModalDamping)
+    assert isinstance(task.damping, bj.rotor.ModalDamping)
     assert task.speed == pytest.approx(6000.0 * RPM)
     assert task.campbell[-1] == pytest.approx(60000.0 * RPM)
     asked = task.response
@@ -320,12 +320,12 @@ def test_all_keys_of_a_mount_a_disc_and_loads():
         ],
     )
     assert np.allclose(task.loads.gravity, [0.0, 0.0, -9.80665])
-    assert isinstance(task.discs[0], bj.PointMass) and task.discs[0].station == 2
+    assert isinstance(task.discs[0], bj.rotor.PointMass) and task.discs[0].station == 2
     one, other = task.mounts
     assert (one.station, one.offset, one.turned, one.inertia) == (1, 4e-6, True, True)
     assert one.damping == (1.0, 2.0, 3.0, 4.0, 4.0)
-    assert isinstance(one.element.raceway_control, bj.InnerControl)
-    assert isinstance(one.element.point_law, bj.ZeroAngle)
+    assert isinstance(one.element.raceway_control, bj.element.InnerControl)
+    assert isinstance(one.element.point_law, bj.contact.ZeroAngle)
     assert np.allclose(np.diag(one.housing.stiffness), [1e6, 2e6, 3e6])
     assert np.allclose(np.diag(one.housing.damping), 5.0)
     needle = bj.read_scene("needle")
@@ -377,16 +377,19 @@ def test_a_clearance_beside_its_class_is_odd():
 
 def test_rolling_elements_pass_where_there_are_some():
     element = bj.BearingElement(bj.load_bearing("deep_groove"))
-    rotor = bj.Rotor(
-        bj.Shaft([0.0, 1.0], 0.05),
+    rotor = bj.rotor.Rotor(
+        bj.rotor.Shaft([0.0, 1.0], 0.05),
         (),
-        [bj.BearingSupport(0, element, turned=True), bj.LinearSupport(1, [1.0] * 5)],
+        [
+            bj.rotor.BearingSupport(0, element, turned=True),
+            bj.rotor.LinearSupport(1, [1.0] * 5),
+        ],
     )
     passing = dataclasses.replace(
         rotor, supports=tuple(map(with_passage, rotor.supports))
     )
     one, other = passing.supports
-    assert isinstance(one, bj.BearingSupport) and one.passage and bool(one.turned)
+    assert isinstance(one, bj.rotor.BearingSupport) and one.passage and bool(one.turned)
     assert other is rotor.supports[1]
 
 

@@ -121,7 +121,7 @@ def by_hand(pair=True):
         **({"ring_width": 0.015} if pair else {}),
     )
     warm = FitConditions(inner_ring=25.0, shaft=25.0, speed=SPEED)
-    return bj.mounted(element.bearing, mounting, warm)
+    return bj.design.mounted(element.bearing, mounting, warm)
 
 
 def facts(bearing):
@@ -165,7 +165,7 @@ def of_drawing(path, monkeypatch):
 
 
 ENTRIES = {
-    "solve": ("", lambda path: bj.run_scene(bj.read_scene(path)).element.bearing),
+    "solve": ("", lambda path: bj.scene.run_scene(bj.read_scene(path)).element.bearing),
     "sweep of loads": ("cases", lambda p: read_cases(p).structures[0].element.bearing),
     "sweep of designs": (
         "designs",

@@ -62,7 +62,7 @@ max_steps = 1
 def solved(path, settings=()):
     """What is told of one case, and kinds of warning about its solution and life."""
     scene = bj.read_scene(path, settings)
-    solution = bj.run_scene(scene)
+    solution = bj.scene.run_scene(scene)
     life = scene_life(scene, solution)
     bearing = solution.element.bearing
     found = {**sizes(solution), **life_sizes(bearing, life.ratings, vars(life))}

@@ -59,7 +59,7 @@ class Solved:
 
 def solve(name, *settings):
     scene = bj.read_scene(name, settings)
-    solution = bj.run_scene(scene)
+    solution = bj.scene.run_scene(scene)
     return Solved(scene, solution, as_dict(scene, solution))
 
 

@@ -171,10 +171,10 @@ def test_cylindrical_rig():
     assert bearing.ribs.present == ()
     assert fields(bearing.material) == steel()
     assert bearing.ring_material is None
-    assert type(scene.element.line_law) is bj.Palmgren
-    assert type(scene.element.kinematics) is bj.Linearised
-    assert scene.element.quadrature == bj.Midpoint(20)
-    assert type(scene.element.equilibrium) is bj.TrustRegionNewton
+    assert type(scene.element.line_law) is bj.contact.Palmgren
+    assert type(scene.element.kinematics) is bj.element.Linearised
+    assert scene.element.quadrature == bj.numerics.Midpoint(20)
+    assert type(scene.element.equilibrium) is bj.numerics.TrustRegionNewton
     assert scene.load == near((0.0, -10600.0, 0.0, -2.0, 0.0, 0.0))
     assert scene.free == ("ux", "uy", "gx", "gy")
     assert scene.prescribed == {}
@@ -198,8 +198,8 @@ def test_cylindrical_ribs():
     for name in names:
         assert fields(getattr(bearing.ribs, name)) == near(rib)
     assert fields(bearing.material) == steel()
-    assert scene.element.quadrature == bj.ContactMapped(32)
-    assert type(scene.element.equilibrium) is bj.TrustRegionNewton
+    assert scene.element.quadrature == bj.numerics.ContactMapped(32)
+    assert type(scene.element.equilibrium) is bj.numerics.TrustRegionNewton
     assert scene.load == near((0.0, -4000.0, 300.0, 0.0, 0.0, 0.0))
     assert scene.free is None
     assert (scene.fixed_ring, scene.moving_ring) == ("outer", "inner")
@@ -386,10 +386,10 @@ def test_operation_and_numerics(everything):
     assert everything.tolerance == 1e-8
     assert everything.points == 33
     element = everything.element
-    assert type(element.line_law) is bj.ISO16281
-    assert type(element.kinematics) is bj.Finite
-    assert element.quadrature == bj.ContactMapped(12)
-    assert type(element.equilibrium) is bj.BFGS
+    assert type(element.line_law) is bj.contact.ISO16281
+    assert type(element.kinematics) is bj.element.Finite
+    assert element.quadrature == bj.numerics.ContactMapped(12)
+    assert type(element.equilibrium) is bj.numerics.BFGS
 
 
 def test_apexes_apart_are_a_warning_of_the_scene(everything):
@@ -400,7 +400,7 @@ def test_apexes_apart_are_a_warning_of_the_scene(everything):
 def test_line_constant_overrides_the_law():
     setting = "contact.line_constant=35948 N/mm^(19/9)"
     law = bj.read_scene("cylindrical_rig", [setting]).element.line_law
-    assert type(law) is bj.LineConstant
+    assert type(law) is bj.contact.LineConstant
     assert float(law.value) == near(35948.0 * 1e3 ** (19.0 / 9.0))
 
 
@@ -434,7 +434,7 @@ def test_settings_are_toml_or_bare_text():
     assert scene.load == near((0.0, -7000.0, 0.0, 3.0, 0.0, 0.0))
     assert scene.prescribed == near({"uz": 2e-6})
     assert scene.free == ("ux", "uy", "gx")
-    assert scene.element.quadrature == bj.Midpoint(40)
+    assert scene.element.quadrature == bj.numerics.Midpoint(40)
     assert scene.tolerance == 1e-6
     assert float(scene.element.bearing.first_azimuth) == 0.0
     # The shipped scene is as it was.
@@ -515,7 +515,7 @@ def test_published_displacements(force, moment, uy, gx):
         ],
     )
     assert scene.load == near((0.0, -force, 0.0, 1e-3 * moment, 0.0, 0.0))
-    solution = bj.run_scene(scene)
+    solution = bj.scene.run_scene(scene)
     assert bool(solution.converged)
     motion = np.asarray(solution.displacement)
     assert np.all(motion[6:] == 0.0)
@@ -531,12 +531,12 @@ def test_ball_scene():
     assert type(bearing) is bj.AngularContactBallBearing
     assert fields(bearing.material) == near(fields(bj.Material.silicon_nitride()))
     assert float(bearing.contact_angle) == pytest.approx(np.deg2rad(25))
-    assert type(element.point_law) is bj.OperatingAngle
-    assert type(element.raceway_control) is bj.FrictionLimited
+    assert type(element.point_law) is bj.contact.OperatingAngle
+    assert type(element.raceway_control) is bj.element.FrictionLimited
     assert float(element.raceway_control.friction) == pytest.approx(0.06)
     plain = bj.read_scene("deep_groove").element
-    assert type(plain.point_law) is bj.FreeAngle
-    assert type(plain.raceway_control) is bj.OuterControl
+    assert type(plain.point_law) is bj.contact.FreeAngle
+    assert type(plain.raceway_control) is bj.element.OuterControl
 
 
 @pytest.mark.parametrize(
@@ -574,14 +574,14 @@ def test_point_constants():
         "contact.inner_constant=2 N/m^1.5",
     ]
     law = bj.read_scene("deep_groove", settings).element.point_law
-    assert type(law) is bj.PointConstant
+    assert type(law) is bj.contact.PointConstant
     assert [float(law.outer), float(law.inner)] == pytest.approx([3e10, 2.0])
 
 
 def test_slices_that_press_on_each_other():
     setting = ("contact.line_law=coupled_slices", "contact.slices=12")
     element = bj.read_scene("tapered", setting).element
-    assert element.line_law == bj.CoupledSlices(12)
+    assert element.line_law == bj.contact.CoupledSlices(12)
     # The rule of independent slices has no place beside it.
     with pytest.raises(
         bj.SceneError, match="`numerics.points`: is not for coupled slices"

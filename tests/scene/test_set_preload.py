@@ -71,7 +71,7 @@ def left(read, at):
     """What `remaining_preload` says of the set ground by hand and put on its seats."""
     ground = bj.preload(read.element, 200.0)
     seats = at.fits.mounting, at.fits.conditions
-    return float(bj.remaining_preload(bj.Installed(ground, None, *seats).at()))
+    return float(bj.statics.remaining_preload(bj.Installed(ground, None, *seats).at()))
 
 
 def test_solve_tells_it(run, scene, tmp_path):

@@ -15,7 +15,6 @@ from scipy.integrate import simpson
 from tolerances import ROUNDING
 
 from bearingjax import plot
-from bearingjax.dynamics import skid_warnings
 from bearingjax.lubrication import Newtonian, Regime
 from bearingjax.numerics import Result
 from bearingjax.scene import (
@@ -26,6 +25,7 @@ from bearingjax.scene import (
     skid_message,
     skid_report,
 )
+from bearingjax.skid import skid_warnings
 
 # Six balls under axial and radial load, at twelve places.
 GIVEN = (

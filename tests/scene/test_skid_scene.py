@@ -10,15 +10,6 @@ from tolerances import ROUNDING
 
 import bearingjax as bj
 from bearingjax import SceneError
-from bearingjax.dynamics import (
-    Cage,
-    Drag,
-    LoadHistory,
-    SinusoidalLoad,
-    SkidModel,
-    SpeedTable,
-    ramp,
-)
 from bearingjax.lubrication import (
     Barus,
     Density,
@@ -35,6 +26,15 @@ from bearingjax.lubrication import (
     iso_vg,
 )
 from bearingjax.scene import read_skid
+from bearingjax.skid import (
+    Cage,
+    Drag,
+    LoadHistory,
+    SinusoidalLoad,
+    SkidModel,
+    SpeedTable,
+    ramp,
+)
 
 FREE_VOLUME = (
     'lubricant={law="free_volume", temperature="30 °C", B=2.30134, R0=0.728634,'

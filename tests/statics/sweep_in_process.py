@@ -19,7 +19,7 @@ def small_element():
     bearing = bj.CylindricalRollerBearing(
         6, 0.065, 0.010, 0.010, radial_internal_clearance=25e-6
     )
-    return bj.BearingElement(bearing, quadrature=bj.Midpoint(8))
+    return bj.BearingElement(bearing, quadrature=bj.numerics.Midpoint(8))
 
 
 def loads(count=50):

@@ -16,7 +16,7 @@ import bearingjax as bj
 ELEMENT = small_element()
 BEARING = ELEMENT.bearing
 LOAD = [0.0, -1e3, 0.0, 0.0, 0.0, 0.0]
-VARIABLE = bj.Variable("bearing.roller_length", 8e-3, 12e-3)
+VARIABLE = bj.optimise.Variable("bearing.roller_length", 8e-3, 12e-3)
 
 OF_ELEMENTS = {
     "solve_load": (LOAD,),
@@ -26,7 +26,7 @@ OF_ELEMENTS = {
     "refine": (None,),
     "stiffness_table": ([1.0], LOAD),
     "to_ross": (0, [1.0], LOAD),
-    "optimise": (bj.Cases([LOAD]), [VARIABLE], bj.PeakPressure()),
+    "optimise": (bj.Cases([LOAD]), [VARIABLE], bj.optimise.PeakPressure()),
 }
 
 

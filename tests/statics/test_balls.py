@@ -144,7 +144,7 @@ def test_preloaded_pair(angular):
     """Under no load each row presses the other; in the linear part both are felt."""
     pair = bj.BearingElement(bj.BearingSet.back_to_back(angular.bearing, 0.02, 16e-6))
     free = bj.solve_load(pair, [0, 0, 1e-3, 0, 0, 0])
-    assert isinstance(free, bj.BallSolution)
+    assert isinstance(free, bj.statics.BallSolution)
     alone = np.asarray(angular.force(jnp.zeros(12).at[8].set(8e-6)))[8]
     rows = np.split(np.asarray(free.contact_load)[:, 0], 2)
     for row in rows:
@@ -193,7 +193,7 @@ def test_tandem_shares_the_thrust(angular):
     element = bj.BearingElement(bj.BearingSet.tandem(angular.bearing, 0.02, 3))
     s = bj.solve_load(element, [0, 0, 3000.0, 0, 0, 0])
     one = bj.solve_load(angular, [0, 0, 1000.0, 0, 0, 0])
-    assert isinstance(s, bj.BallSolution)
+    assert isinstance(s, bj.statics.BallSolution)
     assert np.allclose(s.contact_load, one.contact_load[0], rtol=1e-9)
 
 
@@ -204,7 +204,7 @@ def test_derivatives_with_respect_to_the_design():
 
     def stiffness(angle, osculation):
         bearing = balls(8, contact_angle=angle, inner_osculation=osculation)
-        element = bj.BearingElement(bearing, point_law=bj.OperatingAngle())
+        element = bj.BearingElement(bearing, point_law=bj.contact.OperatingAngle())
         value = element.stiffness(q, bj.Speed(1500.0))[8, 8] * 1e-6
         return value, value
 

@@ -126,7 +126,9 @@ def pair():
             solution,
             bj.friction_torque(solution, viscosity),
             bj.films(solution, oil, 323.15, 0.2e-6),
-            bj.skf_friction_torque(solution, viscosity, diameters=(0.025, 0.052)),
+            bj.statics.skf_friction_torque(
+                solution, viscosity, diameters=(0.025, 0.052)
+            ),
         )
 
     load = np.array([0.0, 0.0, 300.0, 0.0, 0.0, 0.0])
@@ -210,7 +212,7 @@ def test_what_is_not_allowed(pair):
         bj.friction_torque(solution, 30.0)
     with pytest.raises(ValueError, match="`viscosity` is 0 m²/s"):
         bj.friction_torque(solution, 0.0)
-    skf = bj.skf_friction_torque
+    skf = bj.statics.skf_friction_torque
     with pytest.raises(ValueError, match="skf_friction_torque: `supply` is 'bath'"):
         skf(solution, 30e-6, "bath")
     with pytest.raises(ValueError, match="`series` is '62'; .* other, 72B, 73B"):

@@ -74,7 +74,7 @@ def ball_element(x):
         radial_internal_clearance=x[0],
         material=bj.Material(210e9, 0.3),
     )
-    return bj.BearingElement(bearing, point_law=bj.ZeroAngle())
+    return bj.BearingElement(bearing, point_law=bj.contact.ZeroAngle())
 
 
 def ball_life(x):
@@ -104,8 +104,8 @@ def roller_element(x):
         radial_internal_clearance=x[0],
         roller_profile=bj.Logarithmic(x[4]),
     )
-    quadrature = bj.Midpoint(LAMINAE)
-    return bj.BearingElement(bearing, bj.ISO16281(), quadrature=quadrature)
+    quadrature = bj.numerics.Midpoint(LAMINAE)
+    return bj.BearingElement(bearing, bj.contact.ISO16281(), quadrature=quadrature)
 
 
 def roller_life(x):
@@ -785,14 +785,17 @@ def test_a_search_tells_of_its_lives_what_life_tells():
     solutions = jax.vmap(lambda f: bj.solve_load(element, f, speed=SPEED, throw=False))(
         loads
     )
-    for measure in (bj.RatingLife(hours=True), bj.RatingLife().as_objective):
-        task: Any = SimpleNamespace(measures=(bj.PeakPressure(), measure))
+    for measure in (
+        bj.optimise.RatingLife(hours=True),
+        bj.optimise.RatingLife().as_objective,
+    ):
+        task: Any = SimpleNamespace(measures=(bj.optimise.PeakPressure(), measure))
         told = Problem._doubts(task, element, solutions)()
         heavy, light, moment = told
         assert "in 1 of 3 cases, worst case 1" in heavy and "not vouch" not in light
         assert "% of 0.01 C of balls" in light and "worst case 2" in light
         assert "moment of 20 N m" in moment and "worst case 0" in moment
-    none: Any = SimpleNamespace(measures=(bj.PeakPressure(),))
+    none: Any = SimpleNamespace(measures=(bj.optimise.PeakPressure(),))
     assert Problem._doubts(none, element, solutions)() == []
     for k, text in ((1, heavy), (2, light), (0, moment)):
         one = jax.tree.map(lambda leaf, k=k: leaf[k], solutions)
@@ -949,7 +952,7 @@ def nj_element():
     bearing = bj.CylindricalRollerBearing(
         9, 48e-3, 9e-3, 9e-3, radial_internal_clearance=0.0, ribs=ribs
     )
-    return bj.BearingElement(bearing, quadrature=bj.Midpoint(LAMINAE))
+    return bj.BearingElement(bearing, quadrature=bj.numerics.Midpoint(LAMINAE))
 
 
 def thrust_element():
@@ -1129,7 +1132,7 @@ def test_as_a_measure_it_is_the_life_of_all_cases(balls, untyped):
     cases = bj.Cases(load, inner_speed=speed, hours=hours)
     element = ball_element(jnp.asarray([5e-6]))
     conditions = bj.LifeConditions(23400.0, reliability=0.95)
-    measure = bj.RatingLife(conditions, hours=True)
+    measure = bj.optimise.RatingLife(conditions, hours=True)
 
     @eqx.filter_jit
     def both(element, cases, solution):
@@ -1147,4 +1150,4 @@ def test_as_a_measure_it_is_the_life_of_all_cases(balls, untyped):
     with pytest.raises(ValueError, match="`hours` is True, but the cases have no"):
         measure(element, bj.Cases(load), stacked)
     with pytest.raises(TypeError, match="`conditions` is a float"):
-        bj.RatingLife(23400.0)  # pyright: ignore[reportArgumentType]
+        bj.optimise.RatingLife(23400.0)  # pyright: ignore[reportArgumentType]

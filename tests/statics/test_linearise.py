@@ -10,7 +10,7 @@ import bearingjax as bj
 
 SPEED = bj.Speed(inner=800.0)
 LOAD = np.array([150.0, -900.0, 700.0, 0.0, 0.0, 0.0])
-ELEMENT = bj.BearingElement(balls(5), raceway_control=bj.CentrifugalOnly())
+ELEMENT = bj.BearingElement(balls(5), raceway_control=bj.element.CentrifugalOnly())
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +64,7 @@ def test_a_direction_that_nothing_holds_drops_out():
     rollers = bj.CylindricalRollerBearing(
         7, 0.065, 0.010, 0.010, radial_internal_clearance=-4e-6
     )
-    element = bj.BearingElement(rollers, quadrature=bj.Midpoint(8))
+    element = bj.BearingElement(rollers, quadrature=bj.numerics.Midpoint(8))
     free = ("ux", "uy", "uz", "gx", "gy")  # nothing holds uz
     with pytest.warns(UserWarning, match="linearise: no stiffness in uz"):
         point = bj.linearise(element, [0, -2000.0, 0, 0, 0, 0], free=free)

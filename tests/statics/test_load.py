@@ -223,7 +223,7 @@ def of_solution(solution):
         "solution": solution,
         "life": bj.rating_life(solution, viscosity=2e-5, contamination=0.5),
         "torque": bj.friction_torque(solution, 2e-5),
-        "skf": bj.skf_friction_torque(solution, 2e-5),
+        "skf": bj.statics.skf_friction_torque(solution, 2e-5),
         "films": bj.films(solution, oil, 340.0, 2e-7),
         "warnings": sizes(solution),
     }
@@ -386,7 +386,7 @@ def test_design_gradient_past_a_freedom_that_is_held():
         bearing = bj.CylindricalRollerBearing(
             5, 0.046, 0.0095, 0.0095, radial_internal_clearance=clearance
         )
-        element = bj.BearingElement(bearing, quadrature=bj.Midpoint(5))
+        element = bj.BearingElement(bearing, quadrature=bj.numerics.Midpoint(5))
         load = jnp.array([0.0, -500.0, 0.0, 0.0, 0.0, 0.0])
         return bj.solve_load(element, load, free=["uy"]).displacement[7]
 
@@ -505,7 +505,7 @@ def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(name, speed
 @pytest.mark.slow
 def test_second_derivative_of_the_displacement():
     """The curvature of sag against load, by the implicit rule and by differences."""
-    element = bj.BearingElement(taper(5), quadrature=bj.Midpoint(8))
+    element = bj.BearingElement(taper(5), quadrature=bj.numerics.Midpoint(8))
 
     def sag(factor):
         load = factor * jnp.asarray([500.0, 0.0, 4000.0, 0.0, 0.0, 0.0])

@@ -197,7 +197,7 @@ def test_what_is_left_of_a_preload(pair):
 
 @eqx.filter_jit
 def remaining(element):
-    return bj.remaining_preload(element, throw=False)
+    return bj.statics.remaining_preload(element, throw=False)
 
 
 @pytest.mark.slow
@@ -208,7 +208,7 @@ def test_slope_of_what_is_left():
     def both(offset):
         def force(offset):
             pair = bj.BearingSet.back_to_back(balls(), 0.02, offset)
-            return bj.remaining_preload(bj.BearingElement(pair))
+            return bj.statics.remaining_preload(bj.BearingElement(pair))
 
         return jax.value_and_grad(force)(offset)
 
@@ -222,7 +222,7 @@ def test_slope_of_what_is_left():
 
 def test_a_spring_leaves_its_force(sprung):
     element, spring = sprung
-    left = float(bj.remaining_preload(element))
+    left = float(bj.statics.remaining_preload(element))
     q = bj.solve_load(element, np.zeros(6), free=["uz"]).displacement
     travel = float(evaluate(element, q)[2][1].travel)
     assert left == pytest.approx(push(spring, travel), rel=1e-9)
@@ -248,7 +248,7 @@ def test_bad_input(pair):
             bj.preload(element, 100.0)
         if "spring" not in problem:
             with pytest.raises(ValueError, match=f"remaining_preload: .*{problem}"):
-                bj.remaining_preload(element)
+                bj.statics.remaining_preload(element)
     loose = bj.BearingSet.back_to_back(roller, 0.02, spring=bj.PreloadSpring(10.0))
     with pytest.raises(ValueError, match="row 1 has a spring, but holds no axial"):
         bj.solve_load(bj.BearingElement(loose), [0, -10.0, 0, 0, 0, 0])

@@ -64,7 +64,7 @@ def masta(clearance, **change):
     ],
 )
 def test_6305_displacement(clearance, axis, displacement):
-    element = bj.BearingElement(masta(clearance), point_law=bj.ZeroAngle())
+    element = bj.BearingElement(masta(clearance), point_law=bj.contact.ZeroAngle())
     solution = bj.solve_load(element, 1000.0 * np.eye(6)[axis])
     assert float(solution.displacement[6 + axis]) == pytest.approx(
         displacement, rel=1e-4
@@ -73,14 +73,16 @@ def test_6305_displacement(clearance, axis, displacement):
 
 def test_6305_stiffness():
     true = masta(10e-6)
-    law = bj.ZeroAngle()
+    law = bj.contact.ZeroAngle()
     outer, inner = map(
         float, bj.BearingElement(true, point_law=law).model().rows[0].element.constant
     )
     # The groove centre on the circle of half the pitch diameter.
     lever = 0.02 * 0.0115 * float(true.free_cosine)
     bearing = masta(10e-6, pitch_diameter=0.0435 - 2.0 * lever)
-    element = bj.BearingElement(bearing, point_law=bj.PointConstant(outer, inner))
+    element = bj.BearingElement(
+        bearing, point_law=bj.contact.PointConstant(outer, inner)
+    )
     solution = bj.solve_load(element, [1000.0, 0, 1000.0, 0, 0, 0])
     # Theirs counts from the free contact angle, ours from the centred ring.
     free = float(bearing.centre_distance * jnp.sin(bearing.free_contact_angle))
@@ -223,7 +225,7 @@ HIGH_SPEED = {
 }
 
 
-class Share(bj.OuterControl):
+class Share(bj.element.OuterControl):
     """Outer control with a share of its moment: traced, so compiled once."""
 
     share: jax.Array
@@ -253,7 +255,7 @@ def test_high_speed(name, variant):
     )
     control = Share(jnp.asarray(CONTROLS[variant]))
     element = bj.BearingElement(
-        bearing, point_law=bj.OperatingAngle(), raceway_control=control
+        bearing, point_law=bj.contact.OperatingAngle(), raceway_control=control
     )
     s = bj.solve_load(
         element,
@@ -318,8 +320,8 @@ def test_harris_mindel_equilibrium():
     )
     element = bj.BearingElement(
         bearing,
-        point_law=bj.OperatingAngle(),
-        raceway_control=bj.OperatingCentrifugal(),
+        point_law=bj.contact.OperatingAngle(),
+        raceway_control=bj.element.OperatingCentrifugal(),
     )
     solve = jax.jit(
         lambda speed: bj.solve_load(
@@ -352,7 +354,7 @@ def test_constant_contact_angle_in_closed_form():
         inner_osculation=0.52,
         contact_angle=40 * DEGREE,
     )
-    element = bj.BearingElement(bearing, kinematics=bj.ConstantAngle())
+    element = bj.BearingElement(bearing, kinematics=bj.element.ConstantAngle())
     outer, inner = map(float, element.model().rows[0].element.constant)
     series = (outer ** (-2 / 3) + inner ** (-2 / 3)) ** (-3 / 2)
     sine = np.sin(40 * DEGREE)
@@ -368,7 +370,7 @@ def test_constant_contact_angle_in_closed_form():
     with pytest.raises(ValueError, match="ConstantAngle.*leave out `speed`"):
         element.force(jnp.zeros(12), bj.Speed(100.0))
     with pytest.raises(ValueError, match="ConstantAngle.*one contact angle"):
-        bj.BearingElement(masta(0.0), kinematics=bj.ConstantAngle())
+        bj.BearingElement(masta(0.0), kinematics=bj.element.ConstantAngle())
 
 
 # eps, J_r, J_a of point contact, exact integrals.

@@ -32,8 +32,8 @@ def nu215(laminae):
         radial_internal_clearance=70e-6,
         roller_profile=bj.Logarithmic(),
     )
-    law = bj.LineConstant(35948.0 * SERIES * 17.0 ** (-1 / 9) * PER_METRE)
-    quadrature = bj.Midpoint(laminae)
+    law = bj.contact.LineConstant(35948.0 * SERIES * 17.0 ** (-1 / 9) * PER_METRE)
+    quadrature = bj.numerics.Midpoint(laminae)
     return bj.BearingElement(bearing, line_law=law, quadrature=quadrature)
 
 
@@ -94,7 +94,7 @@ def test_nu215_equilibrium(load, psi, displacement, moment, largest):
 def test_209_roller_bearing(law, clearance, displacement, largest):
     # K of the whole roller [N/mm^(10/9)], as printed.
     whole = {"iso": 268414.0, "palmgren": 278581.0}[law]
-    constant = bj.LineConstant(whole * SERIES / 9.6 * PER_METRE)
+    constant = bj.contact.LineConstant(whole * SERIES / 9.6 * PER_METRE)
     bearing = bj.CylindricalRollerBearing(
         14, 0.065, 0.010, 0.0096, radial_internal_clearance=1e-3 * clearance
     )
@@ -108,10 +108,15 @@ def test_209_constants_are_those_of_the_laws():
     """What is printed as K follows from our laws within their printed digits."""
     length = jnp.asarray(9.6e-3)
     steel = bj.Material()
-    iso = float(bj.ISO16281().constant(steel, steel, length)) / PER_METRE * 9.6 / SERIES
+    iso = (
+        float(bj.contact.ISO16281().constant(steel, steel, length))
+        / PER_METRE
+        * 9.6
+        / SERIES
+    )
     assert iso == pytest.approx(268414.0, rel=2e-6)
     # The case rounds Palmgren's form to 3.84e-5; steel of 206 GPa gives 3.8465e-5.
-    ours = bj.Palmgren().constant(steel, steel, length)
+    ours = bj.contact.Palmgren().constant(steel, steel, length)
     palmgren = float(ours) / PER_METRE * 9.6 / SERIES
     assert palmgren == pytest.approx(278581.0, rel=2.5e-3)
 
@@ -135,8 +140,10 @@ def test_taper_of_kumar(row):
     bearing = bj.TaperedRollerBearing(
         20, 0.081, 0.008, 0.018251, roller_axis_angle=angle
     )
-    constant = bj.LineConstant(whole * SERIES / 18.251 * PER_METRE)
-    element = bj.BearingElement(bearing, line_law=constant, quadrature=bj.Midpoint(10))
+    constant = bj.contact.LineConstant(whole * SERIES / 18.251 * PER_METRE)
+    element = bj.BearingElement(
+        bearing, line_law=constant, quadrature=bj.numerics.Midpoint(10)
+    )
     s = bj.solve_load(
         element, [0, 0, load, 0, 0, 0], free=["uz"], prescribed={"ux": 0.0}
     )

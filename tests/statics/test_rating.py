@@ -295,14 +295,16 @@ def test_given_ratings_are_kept_and_named():
     assert float(rated.fatigue_load_limit) == pytest.approx(limit, rel=ROUNDING)
     roller = EXAMPLES["cylindrical"]
     limit = float(bj.static_capacity(roller)) / 8.2 / 1.035**0.3
-    assert float(bj.fatigue_load_limit(roller)) == pytest.approx(limit, rel=ROUNDING)
+    assert float(bj.statics.fatigue_load_limit(roller)) == pytest.approx(
+        limit, rel=ROUNDING
+    )
 
 
 def test_fatigue_load_limit_of_the_contacts():
     """Annex B by hand, beside C0: its pressure is 2.8 times as high."""
 
     def limit(bearing):
-        return float(bj.fatigue_load_limit(bearing, method="contact"))
+        return float(bj.statics.fatigue_load_limit(bearing, method="contact"))
 
     # At grooves that C0 is counted with all contacts are alike.
     bearing = balls()
@@ -363,15 +365,15 @@ SIZES += ("ball_diameter", "roller_diameter", "roller_length", "roller_axis_angl
             "`dynamic_capacity` is -1",
         ),
         (
-            lambda: bj.fatigue_load_limit(balls(), np.nan),
+            lambda: bj.statics.fatigue_load_limit(balls(), np.nan),
             "`static_capacity` is nan N; it must be a finite",
         ),
         (
-            lambda: bj.fatigue_load_limit(balls(), method="hertz"),
+            lambda: bj.statics.fatigue_load_limit(balls(), method="hertz"),
             "`method` is 'hertz'; it must be 'static' or 'contact'",
         ),
         (
-            lambda: bj.fatigue_load_limit(taper(), method="contact"),
+            lambda: bj.statics.fatigue_load_limit(taper(), method="contact"),
             "'contact' is of ball bearings",
         ),
         (

@@ -21,7 +21,7 @@ FREE = ("ux", "uy", "gx", "gy")
 
 @pytest.fixture(scope="module")
 def tapered():
-    element = bj.BearingElement(taper(9), bj.CoupledSlices())
+    element = bj.BearingElement(taper(9), bj.contact.CoupledSlices())
     return element, bj.solve_load(element, [4000.0, 0, 2500.0, 0, 0, 0])
 
 
@@ -73,9 +73,9 @@ def test_positions_are_those_of_the_bearing():
     Rollers of a set are counted row by row.
     """
     pair = bj.BearingSet.face_to_face(taper(5), 0.03, 30e-6)
-    element = bj.BearingElement(pair, bj.CoupledSlices())
+    element = bj.BearingElement(pair, bj.contact.CoupledSlices())
     solution = bj.solve_load(element, [3000.0, 0, 500.0, 0, 6.0, 0])
-    assert isinstance(solution, bj.RollerSolution)
+    assert isinstance(solution, bj.statics.RollerSolution)
     loads = np.asarray(solution.roller_load[:, 1])
     # One of each row, the second of which is mirrored.
     for roller in (int(loads[:5].argmax()), 5 + int(loads[5:].argmax())):

@@ -33,7 +33,7 @@ jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_num_cpu_devices", 2)
 bearing = bj.CylindricalRollerBearing(14, 0.065, 0.010, 0.010)
 loads = np.outer(np.linspace(100.0, 5000.0, 64), [0.0, -1.0, 0.0, 1e-3, 0.0, 0.0])
-element = bj.BearingElement(bearing, bj.CoupledSlices(30))
+element = bj.BearingElement(bearing, bj.contact.CoupledSlices(30))
 solved = bj.sweep(element, loads, outputs=["displacement"], chunk=32)
 assert len(jax.devices()) == 2 and not solved.result.any()
 """
@@ -191,7 +191,7 @@ def ribbed(clearance):
     bearing = bj.CylindricalRollerBearing(
         6, 0.065, 0.01, 0.01, radial_internal_clearance=clearance, ribs=ribs
     )
-    return bj.BearingElement(bearing, quadrature=bj.Midpoint(8))
+    return bj.BearingElement(bearing, quadrature=bj.numerics.Midpoint(8))
 
 
 def grooved(clearance):
@@ -260,7 +260,7 @@ def test_designs_speeds_and_displacements_vary():
         bearing = bj.CylindricalRollerBearing(
             6, 0.065, 0.010, 0.010, radial_internal_clearance=clearance
         )
-        return bj.BearingElement(bearing, quadrature=bj.Midpoint(8))
+        return bj.BearingElement(bearing, quadrature=bj.numerics.Midpoint(8))
 
     clearances = np.array([0.0, 10e-6, 30e-6])
     stacked = bj.stack_designs([made(c) for c in clearances])

@@ -125,7 +125,7 @@ def test_contact_where_no_groove_is(deep):
 def test_tilts_beyond_small_rotations(deep):
     """Said is about the error that finite rotations show."""
     q = jnp.zeros(12).at[9].set(5e-3)
-    finite = bj.BearingElement(deep.bearing, kinematics=bj.Finite())
+    finite = bj.BearingElement(deep.bearing, kinematics=bj.element.Finite())
     ours, true = (np.asarray(e.force(q))[9] for e in (deep, finite))
     s = solved(deep, [0, -2000.0, 300, 0, 0, 0])
     rows = deep.rows(q)
@@ -344,7 +344,7 @@ def test_the_step_limit_names_no_method_that_is_taken(rollers):
         assert "TrustRegionNewton" not in bj.statics.message(s, "inner")
     limit = eqx.tree_at(lambda s: s.result, s, jnp.asarray(1, jnp.int32))
     assert "TrustRegionNewton" not in bj.statics.message(limit, "inner")
-    other = eqx.tree_at(lambda s: s.element.equilibrium, limit, bj.BFGS())
+    other = eqx.tree_at(lambda s: s.element.equilibrium, limit, bj.numerics.BFGS())
     assert "TrustRegionNewton()" in bj.statics.message(other, "inner")
 
 

@@ -1,0 +1,274 @@
+"""A branch of periodic orbits with its stability and its marked points."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ...design.checks import positive
+from ...numerics.result import Result
+from ...numerics.types import Scalar, as_real
+from .continuation import (
+    Arclength,
+    ChangeOfParameter,
+    Ending,
+    Place,
+    Steps,
+    Traced,
+    place,
+    trace,
+)
+from .method import AbstractMethod
+from .orbit import STABLE, amplitudes, beginning
+from .system import AbstractVibratingSystem
+
+_LOCATED = 1e-7
+"""Length along the branch within which an event is located, of its frequency [1]."""
+
+
+class Event(NamedTuple):
+    """A point of a branch at which something changes.
+
+    Attributes:
+        kind: "fold" (a multiplier passes +1 and the branch turns back in frequency),
+            "flip" (-1), "neimark_sacker" (a pair leaves the unit circle), or
+            "branch_point" (another branch crosses here).
+        frequency: [rad/s].
+        amplitude: Half of peak to peak (n,) [m, rad].
+        displacement: At even phases from 0 on (sample, n) [m, rad].
+        multipliers: (2n,) [1].
+        after: Index of the last point of the branch before it.
+        located: Whether an orbit was found there; if not, numbers are those of the
+            last attempt.
+    """
+
+    kind: str
+    frequency: float
+    amplitude: np.ndarray
+    displacement: np.ndarray
+    multipliers: np.ndarray
+    after: int
+    located: bool
+
+
+class Branch(NamedTuple):
+    """Periodic orbits over the frequency of their excitation, in order.
+
+    Attributes:
+        frequency: (point,) [rad/s].
+        amplitude: Half of peak to peak over the period (point, n) [m, rad].
+        displacement: At even phases from 0 on (point, sample, n) [m, rad].
+        multipliers: Floquet multipliers (point, 2n) [1].
+        stable: Whether none is beyond the unit circle (point,).
+        unknowns: What the method solved for (point, m) [1].
+        residual: Of its equations, largest (point,) [1].
+        newton: Newton steps (point,).
+        events: Marked points, in order.
+        refused: Steps that were tried in vain.
+        ending: Why the branch ends.
+    """
+
+    frequency: np.ndarray
+    amplitude: np.ndarray
+    displacement: np.ndarray
+    multipliers: np.ndarray
+    stable: np.ndarray
+    unknowns: np.ndarray
+    residual: np.ndarray
+    newton: np.ndarray
+    events: tuple[Event, ...]
+    refused: int
+    ending: Ending
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is doubtful, in words: orbits that are unstable."""
+        lost = int((~self.stable).sum())
+        if not lost:
+            return ()
+        words = f"{lost} of {len(self.stable)} periodic vibrations are unstable"
+        return (f"{words}: the system does not stay there",)
+
+
+def follow(
+    system: AbstractVibratingSystem,
+    begin: Scalar | float,
+    end: Scalar | float,
+    method: AbstractMethod,
+    start: Float[Array, "sample n"] | None = None,
+    *,
+    parameter: Arclength | ChangeOfParameter | None = None,
+    steps: Steps | None = None,
+    points: int = 500,
+    locate: bool = True,
+) -> Branch:
+    """Follow a branch of periodic orbits from one frequency towards another.
+
+    Args:
+        system: The system.
+        begin, end: Frequencies [rad/s], `begin` above zero; `end` may be below it. At
+            zero, where nothing repeats, the branch ends.
+        method: `Shooting` or `HarmonicBalance`.
+        start: Displacements at `begin` to start with, at even phases from 0 on, such
+            as an orbit's by any method (sample, n) [m, rad]; `None`: rest.
+        parameter: What is held from point to point; `None`: `Arclength()`.
+        steps: Lengths of steps; `None`: `Steps()`.
+        points: Most points.
+        locate: Whether folds, flips, Neimark-Sacker and branch points are located, to
+            1e-6 in frequency.
+
+    Returns:
+        The branch. It always comes back; `ending` says why it ends.
+
+    Raises:
+        ValueError: If `begin` is not above zero.
+    """
+    positive("follow", "begin", begin, "rad/s")
+    parameter, steps = parameter or Arclength(), steps or Steps()
+    motion, begin, end = beginning(system, start), as_real(begin), as_real(end)
+    found = _traced(system, method, motion, begin, end, parameter, steps, points)
+    *every, count, refused, ending = jax.tree.map(np.asarray, found)
+    at = Place(*(x[:count] for x in every))
+    scale, unit = np.asarray(system.scale), float(system.reference_frequency)
+    multipliers = np.linalg.eigvals(at.monodromy)
+    stable = np.abs(multipliers).max(axis=1, initial=0.0) <= 1.0 + STABLE
+    return Branch(
+        frequency=np.asarray(at.x[:, -1]) * unit,
+        amplitude=np.stack([_amplitude(system, u) for u in at.motion])
+        if count
+        else np.zeros((0, len(scale))),
+        displacement=np.asarray(at.motion) * scale,
+        multipliers=multipliers,
+        stable=stable,
+        unknowns=np.asarray(at.x[:, :-1]),
+        residual=np.asarray(at.residual),
+        newton=np.asarray(at.newton),
+        events=_events(system, method, at) if locate else (),
+        refused=int(refused),
+        ending=Ending(int(ending)),
+    )
+
+
+@eqx.filter_jit
+def _traced(system, method, motion, begin, end, parameter, steps, points) -> Traced:
+    z, unit = method.unknowns(motion), system.reference_frequency
+    return trace(
+        system,
+        method,
+        jnp.append(z, begin / unit),
+        end / unit,
+        parameter,
+        steps,
+        points,
+    )
+
+
+@eqx.filter_jit
+def _along(system, method, x, tangent, length):
+    """Point of the branch at some length along its tangent from `x`."""
+    return place(system, method, x + length * tangent, tangent, tangent)
+
+
+def _fold(point: Place) -> float:
+    return float(point.tangent[-1])
+
+
+def _flip(point: Place) -> float:
+    return _least(np.linalg.eigvals(point.monodromy) + 1.0)
+
+
+def _pairs(point: Place) -> float:
+    """Zero where a pair of multipliers has the product one."""
+    k = np.linalg.eigvals(point.monodromy)
+    i, j = np.triu_indices(len(k), 1)
+    return _least(k[i] * k[j] - 1.0)
+
+
+def _least(factors: np.ndarray) -> float:
+    """Least of some factors with the sign of their product, which is real.
+
+    It changes sign where the product does; that of hundreds is too small a number.
+    """
+    sizes = np.abs(factors)
+    signs = factors / np.where(sizes == 0, 1.0, sizes)
+    return float(np.copysign(sizes.min(), np.prod(signs).real))
+
+
+def _side(point: Place) -> float:
+    return float(point.side)
+
+
+_TESTS: dict[str, Callable[[Place], float]] = {
+    "fold": _fold,
+    "flip": _flip,
+    "neimark_sacker": _pairs,
+    "branch_point": _side,
+}
+"""Numbers that change sign where something happens."""
+
+
+def _events(system, method, points: Place) -> tuple[Event, ...]:
+    every = [Place(*(x[k] for x in points)) for k in range(len(points.x))]
+    events = []
+    for kind, test in _TESTS.items():
+        signs = np.sign([test(point) for point in every])
+        for k in np.nonzero(signs[1:] * signs[:-1] < 0)[0]:
+            found = _located(system, method, every, int(k), kind, test)
+            if found is not None:
+                events.append(found)
+    return tuple(event for _, event in sorted(events, key=lambda found: found[0]))
+
+
+def _located(system, method, every, k, kind, test):
+    """How far along the branch something happens, counted in points, and what."""
+    # Late, so that the package is imported as fast without it.
+    from scipy.optimize import brentq
+
+    here, there = every[k], every[k + 1]
+    if kind == "neimark_sacker" and _beyond(here) == _beyond(there):
+        # Two real multipliers with the product one, or a system without damping.
+        return None
+
+    def at(length):
+        found, result = _along(
+            system, method, here.x, here.tangent, jnp.asarray(length, here.x.dtype)
+        )
+        return jax.tree.map(np.asarray, found), int(result) == Result.CONVERGED
+
+    span = float(here.tangent @ (there.x - here.x))
+    ends = {0.0: here, span: there}
+    length = brentq(
+        lambda length: test(ends[length] if length in ends else at(length)[0]),
+        0.0,
+        span,
+        xtol=_LOCATED * abs(float(here.x[-1])),
+    )
+    point, solved = at(length)
+    event = Event(
+        kind,
+        float(point.x[-1]) * float(system.reference_frequency),
+        _amplitude(system, point.motion),
+        np.asarray(point.motion) * np.asarray(system.scale),
+        np.linalg.eigvals(point.monodromy),
+        k,
+        solved,
+    )
+    return k + float(here.tangent @ (point.x - here.x)) / span, event
+
+
+@jax.jit
+def _half_range(u):
+    return amplitudes(u)
+
+
+def _amplitude(system, u):
+    return np.asarray(_half_range(u)) * np.asarray(system.scale)
+
+
+def _beyond(point: Place) -> int:
+    """How many multipliers are beyond the unit circle."""
+    return int(np.sum(np.abs(np.linalg.eigvals(point.monodromy)) > 1.0 + STABLE))

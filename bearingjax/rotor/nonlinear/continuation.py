@@ -1,0 +1,313 @@
+"""Branches of periodic orbits over the frequency of their excitation.
+
+A branch is followed point by point: predict along it, correct across it with Newton's
+method, take the point or halve the step. All of it is one compiled loop, the same for
+every frequency and step; it batches over systems with `vmap`.
+
+A point is taken only if the equations are solved there, the branch has turned by no
+more than `turn` since the last point, and the correction is no more than half of the
+step: a neighbouring branch cannot be slipped onto by a long step. A smooth branch never
+changes the sign of the determinant of the bordered system: a step that does is halved
+until it is short, and what then still changes it is a crossing of branches, marked as
+`branch_point`.
+"""
+
+import enum
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Float, Int
+
+from ...numerics.lapack import determinant_sign, solve_any
+from ...numerics.result import Result
+from ...numerics.types import Scalar, as_real
+from ...numerics.units import unit
+from .method import AbstractMethod
+from .orbit import along_frequency, correct
+from .system import AbstractVibratingSystem
+
+
+class Ending(enum.IntEnum):
+    """Why a branch ends."""
+
+    LIMIT = 0
+    """It reached the end of the range, or came back to its beginning."""
+    POINTS = 1
+    """As many points as were allowed."""
+    SMALL_STEP = 2
+    """No step, however small, led to a further point of the same branch."""
+    NO_START = 3
+    """No orbit was found at the first frequency."""
+    REST = 4
+    """It reached frequency zero, where nothing repeats."""
+
+    @property
+    def label(self) -> str:
+        """Lower-case name, as files and messages write it."""
+        return self.name.lower()
+
+
+class Arclength(eqx.Module):
+    """Hold the length along the branch (pseudo-arclength)."""
+
+    def direction(
+        self, tangent: Float[Array, " x"], before: Float[Array, " x"]
+    ) -> tuple[Float[Array, " x"], Float[Array, " x"]]:
+        """Where to predict, a unit vector, and the normal of the plane to correct in.
+
+        Args:
+            tangent: Of the branch at the last point, a unit vector.
+            before: From the last point but one to the last, a unit vector.
+        """
+        return tangent, tangent
+
+
+class ChangeOfParameter(eqx.Module):
+    """Predict along the secant; hold the frequency, or the unknown that changes most.
+
+    Source: Filipkovskii & Belomyttsev (2014), eq. (13).
+    """
+
+    def direction(self, tangent, before):
+        """As `Arclength.direction`."""
+        unknowns, ratio = jnp.abs(before[:-1]), jnp.abs(before[-1])
+        fastest = jnp.argmax(unknowns)
+        held = jnp.where(unknowns[fastest] > ratio, fastest, before.shape[0] - 1)
+        return before, (jnp.arange(before.shape[0]) == held).astype(before.dtype)
+
+
+class Steps(eqx.Module):
+    """Lengths of steps along a branch, in units of `scale` and of the frequency ratio.
+
+    The next step is N_opt/N times the last one after N Newton steps, at most twice and
+    at least half of it.
+
+    Attributes:
+        first: First step [1].
+        smallest: Least step; where even that fails the branch ends [1].
+        largest: Longest step [1].
+        newton: N_opt [1].
+        turn: Most by which the branch may turn in a step [rad].
+        frequency: Longest step in the frequency ratio alone, as along the tangent [1].
+
+    Traced: all fields.
+    """
+
+    first: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.01)
+    smallest: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1e-7)
+    largest: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.1)
+    newton: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=3.0)
+    turn: Scalar = eqx.field(converter=as_real, metadata=unit("rad"), default=0.5)
+    frequency: Scalar = eqx.field(
+        converter=as_real, metadata=unit("1"), default=float("inf")
+    )
+
+
+class Traced(NamedTuple):
+    """Points of a branch, and room for more: only the first `count` count.
+
+    Attributes:
+        x: Unknowns and frequency ratio (point, m + 1) [1].
+        tangent: Unit vectors along the branch (point, m + 1).
+        monodromy: (point, 2n, 2n) [1].
+        motion: Freedoms over `scale` at even phases (point, sample, n) [1].
+        residual: Largest, of the method's equations (point,) [1].
+        side: Sign of the determinant of the bordered system (point,).
+        newton: Newton steps (point,).
+        count: Points.
+        refused: Steps that were tried in vain.
+        ending: `Ending` code.
+    """
+
+    x: Float[Array, "point x"]
+    tangent: Float[Array, "point x"]
+    monodromy: Float[Array, "point state state"]
+    motion: Float[Array, "point sample n"]
+    residual: Float[Array, " point"]
+    side: Float[Array, " point"]
+    newton: Int[Array, " point"]
+    count: Int[Array, ""]
+    refused: Int[Array, ""]
+    ending: Int[Array, ""]
+
+
+class Place(NamedTuple):
+    """A point of a branch; fields as of `Traced`."""
+
+    x: Float[Array, " x"]
+    tangent: Float[Array, " x"]
+    monodromy: Float[Array, "state state"]
+    motion: Float[Array, "sample n"]
+    residual: Scalar
+    side: Scalar
+    newton: Int[Array, ""]
+
+
+class _State(NamedTuple):
+    points: Place
+    last: Place
+    before: Float[Array, " x"]
+    step: Scalar
+    count: Int[Array, ""]
+    refused: Int[Array, ""]
+    ending: Int[Array, ""]
+
+
+_GOING = -1
+_SHORT = 1e-3
+"""Step at which a change of the determinant's sign is no jump [1]."""
+_NEWTON = 10
+"""Most Newton steps of a point."""
+_FIRST_NEWTON = 50
+"""And of the first one."""
+
+
+def place(
+    system: AbstractVibratingSystem,
+    method: AbstractMethod,
+    x: Float[Array, " x"],
+    direction: Float[Array, " x"],
+    towards: Float[Array, " x"],
+    limit: int | Int[Array, ""] = _NEWTON,
+) -> tuple[Place, Int[Array, ""]]:
+    """The point of a branch in the plane through `x`, and its `Result` code.
+
+    Args:
+        system: The system.
+        method: How orbits are sought.
+        x: Predicted unknowns and frequency ratio [1].
+        direction: Normal of the plane.
+        towards: The tangent points to its side.
+        limit: Most Newton steps.
+    """
+    found = correct(system, method, x, direction, limit)
+    along = along_frequency(x.shape[0] - 1, x.dtype)
+    tangent = solve_any(jnp.concatenate([found.jacobian, direction[None]]), along)
+    tangent = tangent / jnp.linalg.norm(tangent)
+    tangent = jnp.where(tangent @ towards < 0, -tangent, tangent)
+    whole = jnp.concatenate([found.jacobian, tangent[None]])
+    side = determinant_sign(whole)
+    z, ratio = found.x[:-1], found.x[-1]
+    monodromy = method.monodromy(system, z, ratio, found.jacobian)
+    motion, _ = method.motion(system, z, ratio)
+    residual = jnp.max(jnp.abs(found.left))
+    point = Place(found.x, tangent, monodromy, motion, residual, side, found.steps)
+    return point, found.result
+
+
+def trace(
+    system: AbstractVibratingSystem,
+    method: AbstractMethod,
+    begin: Float[Array, " x"],
+    end: Scalar,
+    parameter: Arclength | ChangeOfParameter,
+    steps: Steps,
+    points: int,
+) -> Traced:
+    """Follow a branch; compiled by the caller.
+
+    Args:
+        system: The system.
+        method: How orbits are sought.
+        begin: Unknowns and frequency ratio to begin with (m + 1,) [1].
+        end: Frequency ratio to go to [1].
+        parameter: What is held from point to point.
+        steps: Lengths of steps.
+        points: Most points. Static.
+
+    Returns:
+        `Traced`; it has no derivatives: see `solve_orbit`.
+    """
+    along = along_frequency(begin.shape[0] - 1, begin.dtype)
+    start = begin[-1]
+    forward = jnp.where(end > start, along, -along)
+    low, high = jnp.minimum(start, end), jnp.maximum(start, end)
+
+    def predicted(state):
+        """Where to correct, in which plane, how far away, and whether it is a limit."""
+        guess, normal = parameter.direction(state.last.tangent, state.before)
+        x = state.last.x
+        new = x + state.step * guess
+        bound = jnp.clip(new[-1], low, high)
+        beyond = bound != new[-1]
+        share = jnp.where(beyond, (bound - x[-1]) / (new[-1] - x[-1]), 1.0)
+        new = (x + share * state.step * guess).at[-1].set(bound)
+        first = state.count == 0
+        return (
+            jnp.where(first, begin, new),
+            jnp.where(beyond | first, along, normal),
+            share * state.step,
+            beyond & ~first,
+        )
+
+    def attempt(state):
+        first = state.count == 0
+        x, normal, length, at_limit = predicted(state)
+        limit = jnp.where(first, _FIRST_NEWTON, _NEWTON)
+        towards = jnp.where(first, forward, state.last.tangent)
+        new, result = place(system, method, x, normal, towards, limit)
+        near = jnp.linalg.norm(new.x - x) <= 0.5 * length
+        straight = new.tangent @ state.last.tangent >= jnp.cos(steps.turn)
+        finite = jnp.all(jnp.isfinite(new.monodromy)) & jnp.all(
+            jnp.isfinite(new.tangent)
+        )
+        # As at frequency zero, the motion by the phase is no motion below it.
+        rest = (x[-1] <= 0) | (new.x[-1] <= 0)
+        solved = (result == int(Result.CONVERGED)) & finite & ~rest
+        short = state.step <= jnp.maximum(_SHORT, 2.0 * steps.smallest)
+        smooth = near & straight & ((new.side == state.last.side) | short)
+        good = solved & (smooth | first)
+
+        taken = jax.tree.map(
+            lambda every, one: jnp.where(good, every.at[state.count].set(one), every),
+            state.points,
+            new,
+        )
+        last = jax.tree.map(lambda a, b: jnp.where(good, a, b), new, state.last)
+        move = new.x - state.last.x
+        moved = jnp.linalg.norm(move)
+        before = jnp.where(
+            first, new.tangent, move / jnp.where(moved > 0, moved, jnp.ones_like(moved))
+        )
+        needed = jnp.maximum(new.newton, 1).astype(x.dtype)
+        factor = jnp.clip(steps.newton / needed, 0.5, 2.0)
+        share = jnp.maximum(jnp.abs(new.tangent[-1]), jnp.finfo(x.dtype).tiny)
+        largest = jnp.minimum(steps.largest, steps.frequency / share)
+        longer = jnp.minimum(state.step * factor, largest)
+        step = jnp.where(good, jnp.where(first, state.step, longer), 0.5 * state.step)
+        count = state.count + good.astype(jnp.int32)
+        outside = (new.x[-1] <= low) | (new.x[-1] >= high)
+        ended = [
+            (good & ~first & (at_limit | outside), Ending.LIMIT),
+            (~good & first, Ending.NO_START),
+            (rest, Ending.REST),
+            (step < steps.smallest, Ending.SMALL_STEP),
+            (count >= points, Ending.POINTS),
+        ]
+        ending = jnp.int32(_GOING)
+        for why, code in reversed(ended):
+            ending = jnp.where(why, jnp.int32(int(code)), ending)
+        refused = state.refused + (~good).astype(jnp.int32)
+        return _State(
+            taken,
+            last,
+            jnp.where(good, before, state.before),
+            step,
+            count,
+            refused,
+            ending,
+        )
+
+    shapes, _ = jax.eval_shape(place, system, method, begin, along, along)
+    blank = jax.tree.map(lambda one: jnp.zeros(one.shape, one.dtype), shapes)
+    room = jax.tree.map(lambda one: jnp.zeros((points, *one.shape), one.dtype), blank)
+    none = jnp.int32(0)
+    state = _State(
+        room, blank, forward, steps.first, none, none,
+        jnp.int32(_GOING),
+    )  # fmt: skip
+    done = lax.while_loop(lambda state: state.ending == _GOING, attempt, state)
+    return Traced(*done.points, done.count, done.refused, done.ending)

@@ -1,0 +1,293 @@
+"""The motion over one period, by Radau's collocation scheme of order 9.
+
+Steps are even in the phase, so that one program serves every frequency and the
+derivatives of the flow are those of what is computed. The scheme is implicit and damps
+what its steps do not resolve: a vibration of three steps per period is met to 1e-6 in
+each of them, and one that is faster, as the stiff modes of a shaft are, follows the
+forces on it as a spring would and asks for no short steps. Where balls lift off, the
+force has a kink in its second derivative (Hertz contact, (3/2) power): the order is
+then 2.5 from those steps on, and more steps are needed for the same error; `flow_error`
+tells it.
+
+Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.5.
+"""
+
+import functools
+from collections.abc import Callable
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Float
+
+from ...numerics.implicit import attach_by, recall, stop
+from ...numerics.lapack import expm, solve_any
+from ...numerics.types import Scalar
+from .system import AbstractVibratingSystem, inertia, out_of_balance
+
+_STAGES = 5
+_NEWTON = 20
+"""Most Newton steps for the stages of one step."""
+_SOLVED = 1e3
+"""Last Newton step over the motion, in units of round-off [1]."""
+
+
+@functools.cache
+def _scheme() -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (stage,) and matrix (stage, stage) of Radau IIA, over the step."""
+    # Nodes: 1 and the roots of the Jacobi polynomial that is orthogonal beside it.
+    legendre = np.polynomial.legendre.Legendre
+    radau = legendre.basis(_STAGES) - legendre.basis(_STAGES - 1)
+    nodes = np.sort(0.5 * (1.0 + radau.roots().real))
+    nodes[-1] = 1.0
+    # Collocation: it integrates all polynomials up to the number of stages exactly.
+    powers = np.arange(_STAGES)
+    values = nodes[:, None] ** powers
+    integrals = nodes[:, None] ** (powers + 1) / (powers + 1)
+    return nodes, integrals @ np.linalg.inv(values)
+
+
+class _Stages(NamedTuple):
+    """How the stages of a step move: u + nodes u' + twice · accelerations.
+
+    Attributes:
+        nodes: Phases behind the beginning of the step (stage,) [rad].
+        once, twice: Integrals over the phase (stage, stage) [rad], [rad²].
+    """
+
+    nodes: np.ndarray
+    once: np.ndarray
+    twice: np.ndarray
+
+
+def _stages_of(steps: int, dtype) -> _Stages:
+    nodes, matrix = _scheme()
+    size = 2.0 * np.pi / steps
+    parts = size * nodes, size * matrix, size**2 * matrix @ matrix
+    return _Stages(*(np.asarray(part, dtype) for part in parts))
+
+
+def _begins(steps, dtype):
+    """Phases at which steps begin [rad]."""
+    return jnp.asarray(2.0 * np.pi / steps * np.arange(steps), dtype)
+
+
+class Beginning(NamedTuple):
+    """Where a step begins.
+
+    Attributes:
+        system: The system.
+        ratio: ν [1].
+        phase: φ [rad].
+        u, rate: Freedoms over `scale`, and their derivatives by φ (n,) [1].
+    """
+
+    system: AbstractVibratingSystem
+    ratio: Scalar
+    phase: Scalar
+    u: Float[Array, " n"]
+    rate: Float[Array, " n"]
+
+
+def _stage_motion(at, begin, second):
+    """Phase, displacement and rate of every stage."""
+    u, rate = begin.u[None], begin.rate[None]
+    u = u + at.nodes[:, None] * rate + at.twice @ second
+    return begin.phase + at.nodes, u, rate + at.once @ second
+
+
+def _out_of_balance(at, begin, second):
+    """Residuals of the equations of motion at every stage (stage, n)."""
+    return jax.vmap(
+        lambda phase, *motion: out_of_balance(begin.system, phase, begin.ratio, *motion)
+    )(*_stage_motion(at, begin, second), second)
+
+
+def _slopes(at, begin, second):
+    """`_out_of_balance`, and its slopes in u, u' and ν of the stage
+    (stage, n, 2n + 1)."""
+    n = begin.u.shape[0]
+
+    def one(phase, u, rate, second):
+        def both(x):
+            u, rate = jnp.split(x[:-1], 2)
+            left = out_of_balance(begin.system, phase, x[-1], u, rate, second)
+            return left, left
+
+        here = jnp.concatenate([u, rate, begin.ratio[None]])
+        return jax.jacfwd(both, has_aux=True)(here)
+
+    slopes, left = jax.vmap(one)(*_stage_motion(at, begin, second), second)
+    return left, (slopes[..., :n], slopes[..., n:-1], slopes[..., -1:])
+
+
+def _solve(at, begin, slopes, change):
+    """Accelerations of the stages that make up for a change (stage, n, …)."""
+    own = jnp.eye(len(at.nodes), dtype=change.dtype)
+    matrix = jnp.einsum("ij,ikl->ikjl", at.twice, slopes[0])
+    matrix = matrix + jnp.einsum("ij,ikl->ikjl", at.once, slopes[1])
+    matrix = matrix + jnp.einsum("ij,kl->ikjl", own, inertia(begin.system, begin.ratio))
+    flat = change.reshape(matrix.shape[0] * matrix.shape[1], -1)
+    found = solve_any(matrix.reshape(len(flat), len(flat)), flat)
+    return -found.reshape(change.shape)
+
+
+def _solved(at, begin, guess):
+    """Accelerations of the stages (stage, n), and `_slopes` there.
+
+    They have the derivatives of the stages; NaN if Newton's method did not find them.
+    """
+    fixed = stop(begin)
+    small = _SOLVED * jnp.finfo(guess.dtype).eps
+
+    def improve(state):
+        second, *_, count = state
+        left, slopes = _slopes(at, fixed, second)
+        move = _solve(at, fixed, slopes, left)
+        second = second + move
+        _, u, rate = _stage_motion(at, fixed, second)
+        # In u and u' alike: in u' alone where a vibration is slow over the step.
+        sizes = (
+            jnp.max(jnp.abs(x)) for x in (at.twice @ move, at.once @ move, u, rate)
+        )
+        moved, turned, far, fast = sizes
+        left_over = (moved > small * far) | (turned > small * (far + fast))
+        going = left_over & jnp.isfinite(moved)
+        found = ~left_over & jnp.isfinite(moved)
+        return second, slopes, going, found, count + 1
+
+    shape = jax.eval_shape(lambda: _slopes(at, fixed, guess)[1])
+    blank = jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shape)
+    start = stop(guess), blank, jnp.asarray(True), jnp.asarray(False), jnp.int32(0)
+    second, slopes, _, found, _ = lax.while_loop(
+        lambda state: state[2] & (state[4] < _NEWTON), improve, start
+    )
+    second = jnp.where(found, second, jnp.nan)
+
+    def correction(_, second, change, begin):
+        return _solve(at, begin, _slopes(at, begin, second)[1], change)
+
+    second = attach_by(
+        lambda second, begin: _out_of_balance(at, begin, second),
+        second,
+        begin,
+        correction,
+    )
+    slopes = recall(
+        lambda begin, second: _slopes(at, begin, second)[1], slopes, (begin, second)
+    )
+    return second, slopes
+
+
+def _ended(at, u, rate, second):
+    """The motion at the end of a step, or of its changes."""
+    parts = at.twice[-1], at.once[-1]
+    moved, turned = (jnp.tensordot(part, second, 1) for part in parts)
+    return u + at.nodes[-1] * rate + moved, rate + turned
+
+
+def integrate(
+    system: AbstractVibratingSystem,
+    start: Float[Array, " state"],
+    ratio: Scalar,
+    steps: int,
+) -> tuple[Float[Array, " state"], Float[Array, "step state"]]:
+    """A motion over one period of the phase.
+
+    Args:
+        system: The system.
+        start: Freedoms over `scale`, then their derivatives by the phase, at phase 0.
+        ratio: ν [1].
+        steps: Even steps. Static.
+
+    Returns:
+        The state at phase 2π, and the states at the beginning of every step; NaN from
+        where a step was not solved.
+    """
+    at = _stages_of(steps, start.dtype)
+
+    def step(state, phase):
+        u, rate, guess = state
+        second, _ = _solved(at, Beginning(system, ratio, phase, u, rate), guess)
+        guess = jnp.broadcast_to(stop(second[-1]), guess.shape)
+        return (*_ended(at, u, rate, second), guess), jnp.concatenate([u, rate])
+
+    u, rate = jnp.split(start, 2)
+    guess = jnp.zeros((_STAGES, *u.shape), u.dtype)
+    (*end, _), states = lax.scan(step, (u, rate, guess), _begins(steps, u.dtype))
+    return jnp.concatenate(end), states
+
+
+def flow_slopes(
+    system: AbstractVibratingSystem,
+    start: Float[Array, " state"],
+    ratio: Scalar,
+    steps: int,
+) -> tuple[Float[Array, " state"], Float[Array, "state x"]]:
+    """The state at phase 2π, and its Jacobian in the state at phase 0 and in ν.
+
+    Args:
+        system, start, ratio, steps: As of `integrate`.
+    """
+    at = _stages_of(steps, start.dtype)
+
+    def step(state, phase):
+        u, rate, du, drate, guess = state
+        begin = Beginning(system, ratio, phase, u, rate)
+        second, slopes = _solved(at, begin, guess)
+        change = slopes[0] @ (du[None] + at.nodes[:, None, None] * drate[None])
+        change = change + slopes[1] @ drate
+        change = change.at[..., -1:].add(slopes[2])
+        grown = _ended(at, du, drate, _solve(at, begin, slopes, change))
+        guess = jnp.broadcast_to(stop(second[-1]), guess.shape)
+        return (*_ended(at, u, rate, second), *grown, guess), None
+
+    u, rate = jnp.split(start, 2)
+    unit = jnp.eye(len(start), len(start) + 1, dtype=start.dtype)
+    du, drate = jnp.split(unit, 2)
+    guess = jnp.zeros((_STAGES, *u.shape), u.dtype)
+    begins = _begins(steps, u.dtype)
+    (u, rate, du, drate, _), _ = lax.scan(step, (u, rate, du, drate, guess), begins)
+    return jnp.concatenate([u, rate]), jnp.concatenate([du, drate])
+
+
+def transition(
+    matrix_at: Callable[[Scalar], Float[Array, "m m"]],
+    unit: Float[Array, "m m"],
+    steps: int,
+) -> Float[Array, "m m"]:
+    """Fundamental matrix over one period of y' = A(φ) y, by Magnus series of order 6.
+
+    A step is the exponential of a mean of A: one that is constant is met exactly,
+    however fast it vibrates, so the stiff modes of a shaft ask for no short steps. The
+    steps are independent of each other: all are taken at once.
+
+    Args:
+        matrix_at: φ [rad] -> A.
+        unit: Unit matrix.
+        steps: Even steps. Static.
+
+    Source: Blanes, Casas & Ros, BIT 40 (2000) 434, Gauss-Legendre points.
+    """
+    size = 2.0 * np.pi / steps
+    points = jnp.asarray(0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0]), unit.dtype)
+
+    def step(begin):
+        first, middle, last = size * jax.vmap(matrix_at)(begin + size * points)
+        slope = np.sqrt(15.0) / 3.0 * (last - first)
+        bend = 10.0 / 3.0 * (last - 2.0 * middle + first)
+        turned = _bracket(middle, slope)
+        more = slope - _bracket(middle, 2.0 * bend + turned) / 60.0
+        mean = _bracket(-20.0 * middle - bend + turned, more) / 240.0
+        return middle + bend / 12.0 + mean
+
+    each = expm(jax.vmap(step)(_begins(steps, unit.dtype)))
+    whole, _ = lax.scan(lambda y, one: (one @ y, None), unit, each)
+    return whole
+
+
+def _bracket(a, b):
+    """Commutator of two matrices."""
+    return a @ b - b @ a

@@ -1,0 +1,202 @@
+"""Periodic orbits by harmonic balance, with alternating frequency and time (AFT).
+
+The motion is a Fourier series with H harmonics. Forces are evaluated at even phases
+over the period, and what the equations of motion leave there is turned into its own
+first H harmonics, which must vanish.
+
+Source: Cameron & Griffin, J. Appl. Mech. 56 (1989) 149; Krack & Gross, Harmonic Balance
+    for Nonlinear Vibration Problems (2019).
+"""
+
+import functools
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Complex, Float
+
+from ...numerics.lapack import eigvals, solve_any
+from ...numerics.types import Scalar, as_count
+from .flow import transition
+from .method import AbstractMethod
+from .system import AbstractVibratingSystem, out_of_balance, rates
+
+
+class Basis(NamedTuple):
+    """Fourier series at even phases: 1, cos kφ, sin kφ (k = 1…H).
+
+    Attributes:
+        phase: Phases (sample,) [rad].
+        value: Series at them (sample, 2H + 1).
+        rate, second: Its derivatives with respect to the phase.
+        analysis: Coefficients from samples (2H + 1, sample).
+        turn: Coefficients of the derivative from those of the series.
+    """
+
+    phase: Any
+    value: Any
+    rate: Any
+    second: Any
+    analysis: Any
+    turn: Any
+
+
+def basis(harmonics: int, samples: int) -> Basis:
+    """Fourier series with `harmonics` harmonics at `samples` even phases."""
+    phase = 2.0 * np.pi * np.arange(samples) / samples
+    k = np.arange(1, harmonics + 1)
+    angle = phase[:, None] * k
+    value = np.concatenate([np.ones((samples, 1)), np.cos(angle), np.sin(angle)], 1)
+    turn = np.zeros((2 * harmonics + 1, 2 * harmonics + 1))
+    cosine, sine = 1 + np.arange(harmonics), 1 + harmonics + np.arange(harmonics)
+    turn[cosine, sine], turn[sine, cosine] = k, -k
+    weight = np.full(2 * harmonics + 1, 2.0 / samples)
+    weight[0] = 1.0 / samples
+    analysis = weight[:, None] * value.T
+    return Basis(phase, value, value @ turn, value @ turn @ turn, analysis, turn)
+
+
+class HarmonicBalance(AbstractMethod):
+    """Unknowns are the Fourier coefficients of all freedoms.
+
+    Attributes:
+        harmonics: H [1].
+        samples: Phases at which forces are evaluated, and samples of the orbit; more
+            than 2H, and some four times as many where balls lift off [1].
+        steps: Steps of the integration of small changes, for the multipliers [1].
+    """
+
+    harmonics: int = eqx.field(static=True, converter=as_count, default=7)
+    samples: int = eqx.field(static=True, converter=as_count, default=64)
+    steps: int = eqx.field(static=True, converter=as_count, default=48)
+
+    def __check_init__(self):
+        if self.samples <= 2 * self.harmonics:
+            raise ValueError(
+                f"`samples` is {self.samples}; {self.harmonics} harmonics need more"
+                f" than {2 * self.harmonics}"
+            )
+
+    def _basis(self, dtype):
+        return Basis(
+            *(jnp.asarray(x, dtype) for x in basis(self.harmonics, self.samples))
+        )
+
+    def _series(self, z):
+        return z.reshape(2 * self.harmonics + 1, -1)
+
+    def unknowns(self, motion):
+        u = motion[0]
+        given = u.shape[0]
+        found = jnp.asarray(
+            basis(min(self.harmonics, (given - 1) // 2), given).analysis, u.dtype
+        )
+        coefficients = found @ u
+        mean, cosine, sine = jnp.split(coefficients, [1, 1 + found.shape[0] // 2])
+        short = jnp.zeros((self.harmonics - cosine.shape[0], u.shape[1]), u.dtype)
+        return jnp.concatenate([mean, cosine, short, sine, short]).reshape(-1)
+
+    def state(self, z):
+        at, series = self._basis(z.dtype), self._series(z)
+        return at.value[0] @ series, at.rate[0] @ series
+
+    def residual(self, system, z, ratio):
+        at, series = self._basis(z.dtype), self._series(z)
+        motion = at.value @ series, at.rate @ series, at.second @ series
+        left = jax.vmap(
+            lambda phase, *motion: out_of_balance(system, phase, ratio, *motion)
+        )(at.phase, *motion)
+        return (at.analysis @ left).reshape(-1)
+
+    def slopes(self, system, z, ratio):
+        """Jacobians of the forces in u, u' and u'', at all phases (sample, n, n)."""
+        at, series = self._basis(z.dtype), self._series(z)
+
+        def one(phase, *motion):
+            return jax.jacfwd(
+                lambda *motion: out_of_balance(system, phase, ratio, *motion), (0, 1, 2)
+            )(*motion)
+
+        motion = at.value @ series, at.rate @ series, at.second @ series
+        return jax.vmap(one)(at.phase, *motion)
+
+    def projected(self, slopes, bases):
+        """Jacobian in the coefficients, of slopes in what `bases` make of them."""
+        pairs = zip(slopes, bases, strict=True)
+        terms = [jnp.einsum("tij,tb->tibj", slope, base) for slope, base in pairs]
+        terms = functools.reduce(jnp.add, terms)
+        analysis = self._basis(terms.dtype).analysis
+        size = terms.shape[1] * terms.shape[2]
+        return jnp.tensordot(analysis, terms, 1).reshape(size, size)
+
+    def linearised(self, system, z, ratio):
+        at = self._basis(z.dtype)
+        slopes = self.slopes(system, z, ratio)
+        columns = self.projected(slopes, (at.value, at.rate, at.second))
+        left, speed = jax.jvp(
+            lambda ratio: self.residual(system, z, ratio),
+            (ratio,),
+            (jnp.ones_like(ratio),),
+        )
+        return left, jnp.concatenate([columns, speed[:, None]], axis=1)
+
+    def motion(self, system, z, ratio):
+        at, series = self._basis(z.dtype), self._series(z)
+        return at.value @ series, at.rate @ series
+
+    def monodromy(self, system, z, ratio, jacobian):
+        series = self._series(z)
+        order = jnp.arange(1, self.harmonics + 1, dtype=z.dtype)
+        turn = jnp.asarray(basis(self.harmonics, 1).turn, z.dtype)
+        rate = rates(system, ratio)
+
+        def matrix_at(phase):
+            angle = order * phase
+            here = jnp.concatenate(
+                [jnp.ones_like(order[:1]), jnp.cos(angle), jnp.sin(angle)]
+            )
+            y = jnp.concatenate([here @ series, here @ turn @ series])
+            return jax.jacfwd(lambda y: rate(phase, y))(y)
+
+        unit = jnp.eye(2 * series.shape[1], dtype=z.dtype)
+        return transition(matrix_at, unit, self.steps)
+
+
+def hill_multipliers(
+    method: HarmonicBalance,
+    system: AbstractVibratingSystem,
+    z: Float[Array, " m"],
+    ratio: Scalar,
+) -> Complex[Array, " state"]:
+    """Floquet multipliers by Hill's method, as a second way beside the integration.
+
+    A small change e^(λφ) p(φ) of the orbit, p periodic: with p a Fourier series like
+    the orbit, λ is an eigenvalue of a quadratic problem of the harmonic balance. Of its
+    2n(2H + 1) values only 2n are exponents, the others repeat them shifted by ik: those
+    of least imaginary part are least spoilt by the harmonics left out.
+
+    Args:
+        method: How the orbit was found.
+        system: The system.
+        z: Unknowns of the orbit (m,) [1].
+        ratio: ν [1].
+
+    Returns:
+        Multipliers e^(2πλ) (2n,) [1].
+
+    Source: Hill (1886); Lazarus & Thomas, C. R. Mecanique 338 (2010) 510.
+    """
+    at = method._basis(z.dtype)
+    restoring, damping, inertia = method.slopes(system, z, ratio)
+    parts = restoring, damping, inertia
+    still = method.projected(parts, (at.value, at.rate, at.second))
+    first = method.projected((damping, inertia), (at.value, 2.0 * at.rate))
+    square = method.projected((inertia,), (at.value,))
+    unit = jnp.eye(z.size, dtype=z.dtype)
+    below = -solve_any(square, jnp.concatenate([still, first], 1))
+    above = jnp.concatenate([jnp.zeros_like(unit), unit], 1)
+    exponents = eigvals(jnp.concatenate([above, below], 0))
+    order = jnp.argsort(jnp.abs(exponents.imag))[: 2 * system.scale.shape[0]]
+    return jnp.exp(2.0 * jnp.pi * exponents[order])

@@ -1,0 +1,73 @@
+"""What shooting and the harmonic balance have in common: the method of periodic orbits.
+
+A method turns "the motion repeats" into equations for some unknowns z, pure numbers:
+residual(z, ν) = 0. Newton's method, continuation and stability are written once, on
+this interface.
+"""
+
+import abc
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from ...numerics.types import Scalar
+from .system import AbstractVibratingSystem
+
+Motion = tuple[Float[Array, "sample n"], Float[Array, "sample n"]]
+"""Freedoms over `scale` and their derivatives with respect to the phase, at even phases
+over the period from 0 on [1]."""
+
+
+class AbstractMethod(eqx.Module):
+    """How an orbit is sought. Static: all fields."""
+
+    @abc.abstractmethod
+    def unknowns(self, motion: Motion) -> Float[Array, " m"]:
+        """Unknowns z of a motion given by its samples [1]."""
+
+    @abc.abstractmethod
+    def state(
+        self, z: Float[Array, " m"]
+    ) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
+        """Freedoms over `scale` and their derivatives by the phase, at phase 0 [1]."""
+
+    @abc.abstractmethod
+    def residual(
+        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+    ) -> Float[Array, " m"]:
+        """Zero where the motion repeats and obeys the equations of motion [1].
+
+        Args:
+            system: The system.
+            z: Unknowns [1].
+            ratio: Frequency over the reference frequency, ν [1].
+        """
+
+    @abc.abstractmethod
+    def linearised(
+        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+    ) -> tuple[Float[Array, " m"], Float[Array, "m x"]]:
+        """`residual`, and its Jacobian in (z, ν)."""
+
+    @abc.abstractmethod
+    def motion(
+        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+    ) -> Motion:
+        """The motion over a period."""
+
+    @abc.abstractmethod
+    def monodromy(
+        self,
+        system: AbstractVibratingSystem,
+        z: Float[Array, " m"],
+        ratio: Scalar,
+        jacobian: Float[Array, "m x"],
+    ) -> Float[Array, "state state"]:
+        """How a small change of the state comes back after a period [1].
+
+        Args:
+            system: The system.
+            z: Unknowns of the orbit [1].
+            ratio: ν [1].
+            jacobian: From `linearised` there.
+        """

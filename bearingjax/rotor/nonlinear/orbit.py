@@ -1,0 +1,332 @@
+"""One periodic orbit: Newton's method, its result, its derivatives, its stability."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Complex, Float, Int
+
+from ...numerics.implicit import attach_by, stop, unless_failed
+from ...numerics.lapack import eigvals, solve_any
+from ...numerics.result import Result, raise_unless_converged
+from ...numerics.types import Flag, Scalar, as_real
+from .method import AbstractMethod, Motion
+from .system import AbstractVibratingSystem, frequency_of
+
+TOLERANCE = {"float64": 1e-10, "float32": 1e-4}
+"""Of the residual of a method, or of Newton's step towards the orbit, pure numbers
+[1]."""
+_ROUND_OFF = 1e3
+"""Largest remainder of forces that cancel, over their sum and round-off [1]."""
+STABLE = 1e-6
+"""By how much a multiplier of a stable orbit may exceed one: round-off [1]."""
+_FINE = 8
+"""Places between two samples at which a peak is sought."""
+_NEARER = 3
+"""Newton steps from there to the peak: its error falls from 1e-2 to round-off."""
+
+
+class PeriodicOrbit(eqx.Module):
+    """A motion that repeats with its excitation.
+
+    Attributes:
+        frequency: Of the excitation [rad/s].
+        displacement: At even phases from 0 on (sample, n) [m, rad].
+        velocity: Likewise (sample, n) [m/s, rad/s].
+        amplitude: Half of peak to peak over the period (n,) [m, rad].
+        multipliers: Floquet multipliers (2n,) [1].
+        stable: Whether none is beyond the unit circle.
+        unknowns: What the method solved for (m,) [1].
+        residual: Of its equations, largest [1].
+        steps: Newton steps.
+        result: `Result` code.
+    """
+
+    frequency: Scalar
+    displacement: Float[Array, "sample n"]
+    velocity: Float[Array, "sample n"]
+    amplitude: Float[Array, " n"]
+    multipliers: Complex[Array, " state"]
+    stable: Flag
+    unknowns: Float[Array, " m"]
+    residual: Scalar
+    steps: Int[Array, ""]
+    result: Int[Array, ""]
+
+
+class Corrected(NamedTuple):
+    """What Newton's method ended with.
+
+    Attributes:
+        x: Unknowns; last of all the frequency ratio [1].
+        left: What is left of the equations [1].
+        jacobian: Of them, in x [1].
+        steps: Newton steps.
+        result: `Result` code.
+    """
+
+    x: Float[Array, " x"]
+    left: Float[Array, " m"]
+    jacobian: Float[Array, "m x"]
+    steps: Int[Array, ""]
+    result: Int[Array, ""]
+
+
+def correct(
+    system: AbstractVibratingSystem,
+    method: AbstractMethod,
+    x: Float[Array, " x"],
+    direction: Float[Array, " x"],
+    limit: int | Int[Array, ""],
+) -> Corrected:
+    """Solve for an orbit in the plane through `x` across `direction`.
+
+    The frequency is an unknown like the others; `direction` says what is held: with
+    its last component alone the frequency, with another one alone that component, with
+    the tangent of a branch the length along it.
+
+    Args:
+        system: The system.
+        method: How the orbit is sought.
+        x: Unknowns and frequency ratio to begin with (m + 1,) [1].
+        direction: Normal of the plane (m + 1,) [1].
+        limit: Most Newton steps.
+
+    Returns:
+        `Corrected`, without derivatives.
+
+    Fails: `STEP_LIMIT`, `NON_FINITE`.
+    """
+
+    def evaluated(x):
+        left, jacobian = method.linearised(system, x[:-1], x[-1])
+        # Every step stays in the plane.
+        within = jnp.zeros_like(left[:1])
+        whole = jnp.concatenate([jacobian, direction[None]])
+        return jnp.concatenate([left, within]), whole
+
+    found = newton(evaluated, x, limit)
+    return found._replace(left=found.left[:-1], jacobian=found.jacobian[:-1])
+
+
+def newton(
+    linearised: Callable[[Any], tuple[Any, Any]],
+    x: Float[Array, " x"],
+    limit: int | Int[Array, ""],
+) -> Corrected:
+    """Newton's method with steps that are halved where they lead away.
+
+    Args:
+        linearised: x -> equations, as many as unknowns, and their Jacobian [1].
+        x: Unknowns to begin with [1].
+        limit: Most steps.
+
+    Returns:
+        `Corrected`, without derivatives.
+
+    Fails: `STEP_LIMIT`, `NON_FINITE`.
+    """
+    tolerance = TOLERANCE[str(x.dtype)]
+    round_off = _ROUND_OFF * jnp.finfo(x.dtype).eps
+
+    def evaluated(x):
+        left, jacobian = linearised(x)
+        step = -solve_any(jacobian, left)
+        return x, left, jacobian, jnp.max(jnp.abs(left)), step
+
+    def solved(here):
+        # Of a stiff shaft the forces that cancel leave more than the tolerance in
+        # round-off; how far that is from the orbit the step tells.
+        x, _, jacobian, size, step = here
+        cancels = round_off * jnp.max(jnp.abs(jacobian) @ jnp.abs(x))
+        near = (size <= cancels) & (jnp.max(jnp.abs(step)) <= tolerance)
+        return (size <= tolerance) | near
+
+    def going(state):
+        here, _, steps = state
+        return ~solved(here) & jnp.isfinite(here[3]) & (steps < limit)
+
+    def step(state):
+        here, move, steps = state
+        there = evaluated(here[0] + move)
+        # Half a step where a whole one leads away; a number that is none does.
+        better = there[3] <= 2.0 * here[3]
+        kept = jax.tree.map(lambda a, b: jnp.where(better, a, b), there, here)
+        return kept, jnp.where(better, there[4], 0.5 * move), steps + 1
+
+    here = evaluated(x)
+    here, _, steps = lax.while_loop(going, step, (here, here[4], jnp.int32(0)))
+    x, left, jacobian, size, _ = here
+    codes = int(Result.CONVERGED), int(Result.STEP_LIMIT)
+    result = jnp.where(solved(here), *codes)
+    result = jnp.where(jnp.isfinite(size), result, int(Result.NON_FINITE))
+    return Corrected(x, left, jacobian, steps, result.astype(jnp.int32))
+
+
+def along_frequency(size: int, dtype) -> Float[Array, " x"]:
+    """Direction that holds the frequency."""
+    return jnp.zeros(size + 1, dtype).at[-1].set(1.0)
+
+
+def solve_orbit(
+    system: AbstractVibratingSystem,
+    frequency: Scalar | float,
+    method: AbstractMethod,
+    start: Float[Array, "sample n"] | None = None,
+    *,
+    max_steps: int = 50,
+    throw: bool = True,
+) -> PeriodicOrbit:
+    """The periodic orbit at one frequency.
+
+    Args:
+        system: The system.
+        frequency: Of the excitation [rad/s].
+        method: `Shooting` or `HarmonicBalance`.
+        start: Displacements to begin with, at even phases from 0 on, such as an
+            orbit's by any method (sample, n) [m, rad]; `None`: rest.
+        max_steps: Most Newton steps. Static.
+        throw: Raise if there is none. Static.
+
+    Returns:
+        The orbit, differentiable with respect to every number of the system and the
+        frequency; also its multipliers and whether it is stable.
+
+    Fails: `STEP_LIMIT`, `NON_FINITE`.
+
+    Raises:
+        SolveError: If it was not found and `throw`.
+    """
+    frequency, motion = as_real(frequency), beginning(system, start)
+    orbit = _solved(system, frequency, method, motion, max_steps)
+    if not throw:
+        return orbit
+    return raise_unless_converged(
+        orbit,
+        orbit.result,
+        lambda: (
+            f"No periodic orbit found at {float(frequency):.6g} rad/s: residual"
+            f" {float(orbit.residual):.3g} after {int(orbit.steps)} steps"
+            f" ({Result(int(orbit.result)).label}). Begin with an orbit nearby"
+            " (`start`), or follow a branch to this frequency."
+        ),
+    )
+
+
+def beginning(
+    system: AbstractVibratingSystem, start: Float[Array, "sample n"] | None
+) -> Motion:
+    """Motion to begin with, from displacements at even phases [m, rad]; or rest."""
+    if start is None:
+        none = jnp.zeros((1, system.scale.shape[0]), system.scale.dtype)
+        return none, none
+    u = jnp.asarray(start) / system.scale[None]
+    order = jnp.arange(u.shape[0] // 2 + 1, dtype=u.dtype)[:, None]
+    turned = lax.complex(jnp.zeros_like(order), order) * jnp.fft.rfft(u, axis=0)
+    return u, jnp.fft.irfft(turned, n=u.shape[0], axis=0)
+
+
+@eqx.filter_jit
+def _solved(system, frequency, method, motion, max_steps):
+    fixed, ratio = stop(system), frequency / system.reference_frequency
+    begin = jnp.append(method.unknowns(stop(motion)), stop(ratio))
+    hold = along_frequency(begin.shape[0] - 1, begin.dtype)
+    found = correct(fixed, method, begin, hold, max_steps)
+
+    def residual(z, given):
+        return method.residual(given[0], z, given[1])
+
+    def correction(of_z, z, change, given):
+        _, jacobian = method.linearised(given[0], z, given[1])
+        return -solve_any(jacobian[:, :-1], change)
+
+    def orbit(system, ratio):
+        z = attach_by(residual, found.x[:-1], (system, ratio), correction)
+        left = jnp.max(jnp.abs(found.left))
+        x = jnp.append(z, ratio)
+        return reported(system, method, x, left, found.steps, found.result)
+
+    return unless_failed(orbit, (system, ratio), found.result == int(Result.CONVERGED))
+
+
+def reported(
+    system: AbstractVibratingSystem,
+    method: AbstractMethod,
+    x: Float[Array, " x"],
+    residual: Scalar,
+    steps: Int[Array, ""],
+    result: Int[Array, ""],
+) -> PeriodicOrbit:
+    """The orbit of unknowns and frequency ratio.
+
+    Args:
+        system: The system.
+        method: How it was sought.
+        x: Unknowns and frequency ratio (m + 1,) [1].
+        residual, steps, result: As of `PeriodicOrbit`.
+    """
+    z, ratio = x[:-1], x[-1]
+    frequency = frequency_of(system, ratio)
+    _, jacobian = method.linearised(system, z, ratio)
+    multipliers = eigvals(method.monodromy(system, z, ratio, jacobian))
+    u, rate = method.motion(system, z, ratio)
+    solved = result == int(Result.CONVERGED)
+    return PeriodicOrbit(
+        frequency=frequency,
+        displacement=u * system.scale[None],
+        velocity=rate * (frequency * system.scale)[None],
+        amplitude=amplitudes(u) * system.scale,
+        multipliers=multipliers,
+        stable=solved & (jnp.max(jnp.abs(multipliers)) <= 1.0 + STABLE),
+        unknowns=z,
+        residual=residual,
+        steps=steps,
+        result=result,
+    )
+
+
+def amplitudes(samples: Float[Array, "sample n"]) -> Float[Array, " n"]:
+    """Half of peak to peak over the period, of the trigonometric interpolant.
+
+    Args:
+        samples: At even phases (sample, n) [any unit].
+    """
+    fine = _FINE * samples.shape[0]
+    spectrum = jnp.fft.rfft(samples, axis=0)
+    every = jnp.fft.irfft(spectrum, n=fine, axis=0) * _FINE
+    step = 2.0 * jnp.pi / fine
+    each = jax.vmap(_extreme, (1, 0, None))
+
+    def highest(sign):
+        at = jnp.argmax(sign * every, axis=0).astype(samples.dtype)
+        return each(samples, step * at, step)
+
+    return 0.5 * (highest(1.0) - highest(-1.0))
+
+
+def _extreme(samples, phase, reach):
+    """Extreme value of the interpolant near a phase, two derivatives of it right."""
+    count = samples.shape[0]
+    series = jnp.fft.rfft(samples) / count
+    k = jnp.arange(series.shape[0], dtype=samples.dtype)
+    # All but the mean, and the highest of an even count, stand for two terms.
+    twice = jnp.where((k == 0) | (2 * k == count), 1.0, 2.0)
+
+    def value(phase):
+        waves = lax.complex(jnp.cos(k * phase), jnp.sin(k * phase))
+        return jnp.sum(twice * (series * waves).real)
+
+    slope = jax.grad(value)
+
+    def nearer(phase):
+        rise, bend = jax.value_and_grad(slope)(phase)
+        flat = bend == 0
+        move = jnp.where(flat, 0.0, -rise / jnp.where(flat, 1.0, bend))
+        return phase + jnp.clip(move, -reach, reach)
+
+    for _ in range(_NEARER):
+        phase = nearer(lax.stop_gradient(phase))
+    return value(phase)

@@ -1,0 +1,232 @@
+"""Equations of motion of what vibrates: all that the solvers of orbits know of it.
+
+    M q'' + D(ω) q' + f(q, q', φ, ω) = e(φ, ω),    φ = ω t
+
+with f and e periodic in the phase φ. Where ω changes, φ is its integral over time and
+terms of its rate join: α ∂D/∂ω q on the left, as the gyroscopic moment is the rate of
+an angular momentum ω G q, and the α that e is given. Freedoms q are measured in `scale`
+and the phase takes the place of time, so that the unknowns of the solvers are pure
+numbers near one.
+"""
+
+import abc
+from collections.abc import Callable
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ...numerics.lapack import solve_any
+from ...numerics.types import Scalar, as_real
+from ...numerics.units import unit
+
+
+class AbstractVibratingSystem(eqx.Module):
+    """A system of n freedoms under forces that are periodic in time.
+
+    Attributes:
+        mass: Mass matrix M, positive definite [kg, kg m²].
+        scale: Size of each freedom that is called one [m, rad].
+        reference_frequency: Frequency that is called one, best a natural one [rad/s].
+    """
+
+    mass: eqx.AbstractVar[Float[Array, "n n"]]
+    scale: eqx.AbstractVar[Float[Array, " n"]]
+    reference_frequency: eqx.AbstractVar[Scalar]
+
+    @abc.abstractmethod
+    def damping_matrix(self, frequency: Scalar) -> Float[Array, "n n"]:
+        """Damping and gyroscopic matrix D [N s/m, N m s/rad].
+
+        What depends on the frequency must be gyroscopic.
+
+        Args:
+            frequency: ω [rad/s].
+        """
+
+    @abc.abstractmethod
+    def force(
+        self,
+        q: Float[Array, " n"],
+        velocity: Float[Array, " n"],
+        phase: Scalar,
+        frequency: Scalar,
+    ) -> Float[Array, " n"]:
+        """Restoring forces f, positive against the displacement [N, N m].
+
+        Args:
+            q: Freedoms [m, rad].
+            velocity: Their rates [m/s, rad/s].
+            phase: φ [rad]; f repeats after 2π.
+            frequency: ω [rad/s].
+        """
+
+    @abc.abstractmethod
+    def excitation(
+        self, phase: Scalar, frequency: Scalar, acceleration: Scalar
+    ) -> Float[Array, " n"]:
+        """Forces e that act from outside [N, N m].
+
+        Args:
+            phase: φ [rad]; e repeats after 2π.
+            frequency: ω [rad/s].
+            acceleration: Rate of ω, zero in all that is periodic [rad/s²].
+        """
+
+
+class VibratingSystem(AbstractVibratingSystem):
+    """A system put together from matrices and functions.
+
+    Attributes:
+        mass: As of `AbstractVibratingSystem` [kg, kg m²].
+        damping: Damping matrix [N s/m, N m s/rad].
+        gyroscopic: Gyroscopic matrix over the speed, skew [kg, kg m²].
+        restoring: (q, velocity, phase, frequency) -> forces (n,) [N, N m]; a Module,
+            so that its numbers are traced.
+        load: (phase, frequency, acceleration) -> forces (n,) [N, N m]; likewise.
+        scale: As of `AbstractVibratingSystem` [m, rad].
+        reference_frequency: As of `AbstractVibratingSystem` [rad/s].
+        speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
+
+    Traced: all numbers.
+    """
+
+    mass: Float[Array, "n n"] = eqx.field(
+        converter=as_real, metadata=unit(("kg", "kg m²"))
+    )
+    damping: Float[Array, "n n"] = eqx.field(
+        converter=as_real, metadata=unit(("N s/m", "N m s/rad"))
+    )
+    gyroscopic: Float[Array, "n n"] = eqx.field(
+        converter=as_real, metadata=unit(("kg", "kg m²"))
+    )
+    restoring: Callable
+    load: Callable
+    scale: Float[Array, " n"] = eqx.field(
+        converter=as_real, metadata=unit(("m", "rad"))
+    )
+    reference_frequency: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"))
+    speed: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad/s"), default=None
+    )
+
+    def __check_init__(self):
+        n = self.scale.shape[0]
+        for name in ("mass", "damping", "gyroscopic"):
+            shape = getattr(self, name).shape
+            if shape != (n, n):
+                raise ValueError(
+                    f"`{name}` has the shape {shape}, but `scale` has {n} freedoms:"
+                    f" a matrix ({n}, {n}) is wanted"
+                )
+
+    def damping_matrix(self, frequency):
+        speed = frequency if self.speed is None else self.speed
+        return self.damping + speed * self.gyroscopic
+
+    def force(self, q, velocity, phase, frequency):
+        return self.restoring(q, velocity, phase, frequency)
+
+    def excitation(self, phase, frequency, acceleration):
+        return self.load(phase, frequency, acceleration)
+
+
+class HarmonicLoad(eqx.Module):
+    """A constant load, a harmonic one, and one that grows with the frequency squared.
+
+    Attributes:
+        constant: Such as weight (n,) [N, N m].
+        cosine, sine: Amplitudes of cos φ and sin φ (n,) [N, N m].
+        unbalance_cosine, unbalance_sine: Likewise, over ω²; they turn with the phase,
+            and where the frequency changes their tangential inertia acts too (n,)
+            [kg m, kg m²].
+
+    Traced: all fields.
+    """
+
+    constant: Float[Array, " n"]
+    cosine: Float[Array, " n"]
+    sine: Float[Array, " n"]
+    unbalance_cosine: Float[Array, " n"]
+    unbalance_sine: Float[Array, " n"]
+
+    @classmethod
+    def none(cls, size: int) -> "HarmonicLoad":
+        """No load on `size` freedoms."""
+        return cls(*(5 * (jnp.zeros(size),)))
+
+    def __call__(self, phase, frequency, acceleration):
+        # -d²/dt² of (unbalance_cosine cos φ + unbalance_sine sin φ).
+        square, c, s = frequency**2, self.unbalance_cosine, self.unbalance_sine
+        cosine = self.cosine + square * c - acceleration * s
+        sine = self.sine + square * s + acceleration * c
+        return self.constant + jnp.cos(phase) * cosine + jnp.sin(phase) * sine
+
+
+def frequency_of(system: AbstractVibratingSystem, ratio: Scalar) -> Scalar:
+    """Frequency ω [rad/s] of its ratio ν to the reference frequency [1]."""
+    return ratio * system.reference_frequency
+
+
+def out_of_balance(
+    system: AbstractVibratingSystem,
+    phase: Scalar,
+    ratio: Scalar,
+    u: Float[Array, " n"],
+    rate: Float[Array, " n"],
+    second: Float[Array, " n"],
+) -> Float[Array, " n"]:
+    """What the equations of motion leave, over M_ii·scale·(reference frequency)² [1].
+
+    Args:
+        system: The system.
+        phase: φ [rad].
+        ratio: ν [1].
+        u: Freedoms over `scale` [1].
+        rate, second: Their derivatives with respect to φ [1].
+    """
+    frequency = frequency_of(system, ratio)
+    scale = system.scale
+    q, velocity = scale * u, frequency * scale * rate
+    inertia = system.mass @ (frequency**2 * scale * second)
+    forces = system.damping_matrix(frequency) @ velocity
+    forces = forces + system.force(q, velocity, phase, frequency)
+    steady = jnp.zeros_like(frequency)
+    left = inertia + forces - system.excitation(phase, frequency, steady)
+    unit_force = jnp.diagonal(system.mass) * scale * system.reference_frequency**2
+    return left / unit_force
+
+
+def inertia(system: AbstractVibratingSystem, ratio: Scalar) -> Float[Array, "n n"]:
+    """Slope of `out_of_balance` in the second derivatives [1].
+
+    Args:
+        system: The system.
+        ratio: ν [1].
+    """
+    weight = jnp.diagonal(system.mass) * system.scale
+    return ratio**2 * system.mass * system.scale[None, :] / weight[:, None]
+
+
+def rates(
+    system: AbstractVibratingSystem, ratio: Scalar
+) -> Callable[[Scalar, Float[Array, " state"]], Float[Array, " state"]]:
+    """Derivative of the state with respect to the phase, at one frequency.
+
+    Args:
+        system: The system.
+        ratio: ν [1].
+
+    Returns:
+        Function (phase [rad], state) -> derivative; the state holds the freedoms over
+        `scale`, then their derivatives with respect to φ [1].
+    """
+    matrix = inertia(system, ratio)
+    inverse = solve_any(matrix, jnp.eye(matrix.shape[0], dtype=matrix.dtype))
+
+    def rate(phase, y):
+        u, rate = jnp.split(y, 2)
+        left = out_of_balance(system, phase, ratio, u, rate, jnp.zeros_like(u))
+        return jnp.concatenate([rate, -inverse @ left])
+
+    return rate

@@ -1,0 +1,99 @@
+"""Spectra of steady vibration over the frequency of the excitation."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from ...design.checks import check, count, real_numbers
+from ...numerics.types import Scalar, as_real
+from .run_up import as_frequency_table
+from .system import AbstractVibratingSystem
+from .transient import Start, beginning, checked, moved
+
+
+class Waterfall(eqx.Module):
+    """Amplitudes of the lines of a spectrum, at every frequency of the excitation.
+
+    Attributes:
+        frequency: Of the excitation (frequency,) [rad/s].
+        order: Frequency of each line over that of the excitation (line,) [1].
+        amplitude: Half of peak to peak of each line; at order zero the mean
+            (frequency, line, n) [m, rad].
+        result: `Result` codes (frequency,).
+    """
+
+    frequency: Float[Array, " frequency"]
+    order: Float[Array, " line"]
+    amplitude: Float[Array, "frequency line n"]
+    result: Int[Array, " frequency"]
+
+
+def waterfall(
+    system: AbstractVibratingSystem,
+    frequencies: Any,
+    *,
+    settle: int = 100,
+    periods: int = 8,
+    samples: int = 32,
+    start: Start | None = None,
+    tolerance: Scalar | float = 1e-6,
+    max_steps: int = 200_000,
+) -> Waterfall:
+    """Spectra of the vibration that is left after some periods.
+
+    Every frequency begins anew, all are integrated at once. Lines are at whole
+    multiples of 1/`periods` of the excitation: subharmonics of up to that many periods
+    stand on lines of their own, almost periodic motion spreads over its neighbours.
+
+    Args:
+        system: The system.
+        frequencies: Of the excitation, above zero (frequency,) [rad/s].
+        settle: Periods until the vibration is taken for steady. Static.
+        periods: Periods that a spectrum is of. Static.
+        samples: A period; lines reach half of it in order. Static.
+        start: As of `simulate`, at every frequency.
+        tolerance, max_steps: As of `simulate`.
+
+    Returns:
+        `Waterfall`; where the end is not reached amplitudes are NaN and `result` says
+        why.
+
+    Fails: as `simulate`.
+    """
+    numbers = {"settle": settle, "periods": periods, "samples": samples}
+    for name, number in numbers.items():
+        count("waterfall", name, number)
+    real_numbers("waterfall", "frequencies", frequencies, "a row of numbers")
+    each = as_real(frequencies)
+    check("waterfall", "frequencies", each > 0, "above zero throughout", each, "rad/s")
+    options = checked("waterfall", tolerance, max_steps, "reverse")
+    begin = beginning("waterfall", system, start)
+    return _spectra(system, each, begin, options, tuple(numbers.values()))
+
+
+@eqx.filter_jit
+def _spectra(system, frequencies, start, options, numbers):
+    settle, periods, samples = numbers
+    total = periods * samples
+    phases = as_real(2.0 * np.pi * (settle + np.arange(total) / samples))
+    end = 2.0 * np.pi * (settle + periods)
+    weight = np.full(total // 2 + 1, 2.0 / total)
+    weight[0] = 1.0 / total
+    if total % 2 == 0:
+        weight[-1] = 1.0 / total
+    weight = as_real(weight)[:, None]
+
+    def one(frequency):
+        table = as_frequency_table("waterfall", frequency)
+        times = phases / frequency
+        found = moved(system, table, start, None, times, end / frequency, options)
+        lines = jnp.fft.rfft(found.displacement, axis=0)
+        return weight * jnp.abs(lines), found.result
+
+    amplitude, result = jax.vmap(one)(frequencies)
+    order = as_real(np.arange(total // 2 + 1) / periods)
+    return Waterfall(frequencies, order, amplitude, result)

@@ -1,0 +1,95 @@
+"""Dynamics: balls and rollers that skid.
+
+`SkidModel(element, lubricant, temperature, traction=..., drag=..., cage=...,
+least_film=..., inlet_heating=...)` is a bearing with its oil.
+
+The state in the end
+--------------------
+
+`skid.steady(model, load, speed=..., free=...)` says how the balls move in the end,
+without the way there: orbit and spin of the balls against pure rolling (`slip`), film,
+sliding and heat of every contact, friction torque and power balance. The torque is that
+of sliding and of drag: resistance to rolling, hysteresis and seals, most of what a
+catalogue's formula gives, are left out (benchmarks/skid_friction.py). Under an axial
+load one ball stands for all; otherwise the motion repeats from orbit to orbit and is
+found at places along it (`places`). It is differentiable with respect to design, oil,
+load and speeds, and a map over loads is one `jax.vmap` (`places=1, throw=False`; read
+`result`). Contact loads, angles and the place of the ring belong to the same
+equilibrium: balls are thrown outwards by the orbit that they have (`load_speed=speed`:
+by that of pure rolling, as in the published method), with the raceway control of the
+bearing (`EqualShare()` there). "Converged" says that forces and powers balance, the
+powers to a millionth (`imbalance`). Balls are free in their pockets: compare `wander`
+with the pocket clearance. No oil bears shear stresses of more than some 0.12 times the
+pressure, which a Newtonian film soon exceeds: `skid_warnings` tells, and
+`traction=Eyring()` or `LimitingStress()` of `bearingjax.lubrication` yields. At
+high speed films are thinner, because the oil is sheared warm before it enters:
+`inlet_heating=True`.
+
+In time
+-------
+
+`skid.simulate(model, load, speed=..., duration=...)` follows every ball and the cage
+from rolling, from rest (`speed=SpeedTable(...)`, `ramp(...)`) or from a motion of your
+own, with pocket contact on both sides, drag and gravity (`axis="horizontal"`), by a
+linearly implicit method with the exact Jacobian. Speeds, slip, films, heat, cage forces
+and friction torque come with a balance of all powers (`imbalance`), a result code, and
+derivatives in either mode (`derivatives="reverse"` or `"forward"`). Loads over time
+(`LoadHistory`, `SinusoidalLoad`, or your own function of time) are balanced at every
+time with the balls where they are; a constant load is tabulated around the bearing,
+which is three times faster and does not see balls bunch (`balanced=True` does). Beside
+SciPy's stiff solvers at like errors: benchmarks/skid_transient.py; a map of 1000 end
+states in one call: benchmarks/skid_map.py. Where others use the processor too, set
+`OPENBLAS_NUM_THREADS=1` for end states under radial loads: LAPACK's threads otherwise
+wait for each other.
+
+Rollers
+-------
+
+Cylindrical and needle rollers skid in the same model: `skid.steady` of a roller bearing
+says how fast its cage turns under light radial load (`cage_speed`, `slip`), how each
+roller spins on its way round, what slides and heats, and with what force the cage
+pushes rollers forwards or holds them back (`cage_force`). All rollers orbit with the
+cage, which those under load drive against the drag of the oil (Harris 1966); inertia of
+the spin is included, friction on ribs and in pockets is not. In time (`skid.simulate`,
+under a constant load) rollers meet front and rear of pockets with clearance; with tight
+and stiff ones they end where `skid.steady` says. Loads over time are those of the
+centrifugal force of pure rolling; where slip is gross, give `load_speed=Speed(w, w)`, w
+the cage speed of the end state. The drag decides: its `fill`, the share of oil between
+the rings, is seldom known (benchmarks/skid_roller.py).
+
+Design
+------
+
+`SkiddingBearing(SkidModel(...), preload=400.0)` is optimised as a bearing is
+(`bearingjax.optimise`), with the measures `FrictionTorque`, `FrictionPower` (weighted
+by hours) and `CageSlip`; variables are then "preload",
+"model.element.bearing.contact_angle", "model.temperature" and the like. Least friction
+torque with at most 1 % slip over a spectrum: benchmarks/skid_design.py. `skid_warnings`
+says what is doubtful: pockets too tight for the end state or too wide for the balls,
+shear stresses that no oil bears, an oil that is a glass, films that are not
+elastohydrodynamic or too thin, gross skidding.
+"""
+
+from .conditions import Conditions as Conditions
+from .conditions import by_raceway as by_raceway
+from .conditions import conditions as conditions
+from .history import SkidHistory as SkidHistory
+from .history import SkidRollerHistory as SkidRollerHistory
+from .model import SkidModel as SkidModel
+from .motion import SkidState as SkidState
+from .ring_load import LoadHistory as LoadHistory
+from .ring_load import SinusoidalLoad as SinusoidalLoad
+from .ring_speed import SpeedTable as SpeedTable
+from .ring_speed import ramp as ramp
+from .skidding_bearing import CageSlip as CageSlip
+from .skidding_bearing import FrictionPower as FrictionPower
+from .skidding_bearing import FrictionTorque as FrictionTorque
+from .skidding_bearing import SkiddingBearing as SkiddingBearing
+from .steady import steady as steady
+from .steady_results import Power as Power
+from .steady_results import SteadyRollerSkid as SteadyRollerSkid
+from .steady_results import SteadySkid as SteadySkid
+from .surroundings import Cage as Cage
+from .surroundings import Drag as Drag
+from .transient import simulate as simulate
+from .warning import skid_warnings as skid_warnings

@@ -1,0 +1,172 @@
+"""Skidding in design: a preloaded bearing with its oil, and measures of its cases."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..design import is_ball, n_elements
+from ..design.checks import instance, number
+from ..element.inertia import Speed
+from ..numerics.result import Result
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit, unit_of
+from ..optimise.measure import AbstractLargest, AbstractMeasure, hour_weights
+from ..optimise.smooth import EXPONENT
+from ..optimise.system import AbstractSystem
+from ..statics.cases import Cases, solve_case
+from ..statics.load_case import load_case
+from ..statics.options import SolveOptions
+from .conditions import conditions
+from .model import SkidModel
+from .steady import check_places, end_state, enough_places, failure
+from .steady_results import SteadyMotion
+from .warning import skid_warnings
+
+
+class SkiddingBearing(AbstractSystem):
+    """A preloaded bearing whose balls or rollers may slip, for `bearingjax.optimise`.
+
+    Every case is solved as by `skid.steady`. Any number may be a variable:
+    "preload", "model.element.bearing.contact_angle", "model.temperature".
+
+    Attributes:
+        model: The bearing, its oil and what surrounds the balls.
+        preload: Axial force on the moving ring, added to that of every case, as of a
+            soft spring: it does not change with speed or load [N].
+        places: Places along the orbit, as of `skid.steady`; `None`: at least 96. 1 will
+            do where all cases load all balls alike.
+
+    Traced: all numbers. Static: places, the classes.
+    """
+
+    model: SkidModel
+    preload: Scalar = eqx.field(converter=as_real, metadata=unit("N"), default=0.0)
+    places: int | None = eqx.field(static=True, default=None)
+
+    def __check_init__(self):
+        instance(self, "model", SkidModel)
+        number(self, "preload")
+        check_places("SkiddingBearing", self.model.bearing, self.places)
+
+    @property
+    def element(self):
+        return self.model.element
+
+    def check(self, cases):
+        if cases.inner_speed is None and cases.outer_speed is None:
+            raise ValueError(
+                "optimise: `cases` have no ring speeds; give `inner_speed` or"
+                " `outer_speed` in rad/s, or nothing skids."
+            )
+
+    def solve_case(self, case: Cases, options: SolveOptions) -> Any:
+        model = self.model
+        load = jnp.asarray(case.load).at[2].add(self.preload)
+        loaded = eqx.tree_at(lambda c: c.load, case, load)
+        solution = solve_case(model.element, loaded, options)
+        still = jnp.zeros_like(self.preload)
+        rings = case.inner_speed, case.outer_speed
+        speed = Speed(*(still if ring is None else ring for ring in rings))
+        places = enough_places(model.bearing) if self.places is None else self.places
+        asked = loaded.load, loaded.prescribed, loaded.fixed_displacement, None, speed
+        whole = load_case(model.bearing, options, *asked)
+        return end_state(model, solution, whole, options, speed, places)
+
+    def message(self, solved):
+        if int(solved.result) == Result.GRID_MISFIT:
+            count = n_elements(self.model.bearing)
+            return (
+                "its balls or rollers bear unlike loads: `places` must be a multiple"
+                f" of {count}"
+            )
+        return f"no end state of skidding after {failure(solved)}"
+
+    def warnings(self, cases, solved):
+        still, rings = jnp.zeros(cases.count), (cases.inner_speed, cases.outer_speed)
+        rings = (still if ring is None else jnp.asarray(ring) for ring in rings)
+        speed = jax.vmap(Speed)(*rings)
+        balls = is_ball(self.model.bearing)
+        state = conditions(self.model, solved, speed) if balls else None
+        return skid_warnings(self.model, solved, state)
+
+
+class FrictionTorque(AbstractMeasure):
+    """Mean, over the hours of the cases, of the size of the friction torque [N m].
+
+    Of sliding, drag and cage; see `SkidModel` for what is left out.
+
+    Without hours all cases count alike. Of a `SkiddingBearing`.
+    """
+
+    def __call__(self, element, cases, solution):
+        torque = _skidding(self, solution).friction_torque
+        return jnp.sum(hour_weights(cases) * jnp.abs(torque))
+
+    @property
+    def label(self):
+        return "friction torque"
+
+    @property
+    def unit(self):
+        return unit_of(SteadyMotion, "friction_torque")
+
+
+class FrictionPower(AbstractMeasure):
+    """Mean, over the hours of the cases, of the power that the bearing turns to heat.
+
+    That of all its parts, in W. Without hours all cases count alike. Of a
+    `SkiddingBearing`.
+    """
+
+    def __call__(self, element, cases, solution):
+        power = _skidding(self, solution).power.drive
+        return jnp.sum(hour_weights(cases) * power)
+
+    @property
+    def label(self):
+        return "friction power"
+
+    @property
+    def unit(self):
+        return "W"
+
+
+class CageSlip(AbstractLargest):
+    """Largest slip of the cage of all cases, whether it lags or leads [1].
+
+    Size of `SteadyMotion.cage_slip`. Hours do not matter. Of a `SkiddingBearing`.
+
+    Both count as skidding. At high speed gyroscopic moments lay the spin axes of the
+    balls flat, towards the bearing axis. Balls then roll past the outer raceway faster
+    than in pure rolling, and the cage leads, although they slide.
+
+    Attributes:
+        exponent: Of the smooth maximum over the cases.
+
+    Static: exponent.
+    """
+
+    exponent: float = eqx.field(static=True, default=EXPONENT)
+
+    def samples(self, solution: Any) -> Float[Array, "..."]:
+        return jnp.abs(_skidding(self, solution).cage_slip)
+
+    @property
+    def label(self):
+        return "slip of the cage"
+
+    @property
+    def unit(self):
+        return ""
+
+
+def _skidding(measure, solution) -> SteadyMotion:
+    if not isinstance(solution, SteadyMotion):
+        raise ValueError(
+            f"{type(measure).__name__}: nothing skids in what was solved; optimise a"
+            " `SkiddingBearing` of bearingjax.skid in place of the element."
+        )
+    return solution
