@@ -310,9 +310,9 @@ def estimate(kind, d, big, b, c, c0, angle=None):
 def inside(bearing):
     """Number, diameter and pitch diameter [mm] of the rolling elements."""
     row = bj.design.rows_of(bearing)[0].bearing
-    kind = "ball" if bj.design.is_ball(bearing) else "roller"
+    kind = "ball" if bearing.is_ball else "roller"
     size = float(getattr(row, f"{kind}_diameter"))
-    return bj.design.n_elements(row), 1e3 * size, 1e3 * float(row.pitch_diameter)
+    return row.n_elements, 1e3 * size, 1e3 * float(row.pitch_diameter)
 
 
 def design(kind, angle, count, size, pitch, length):

@@ -1,5 +1,6 @@
 """Design data: materials, profiles, ribs, bearings. Nothing is solved here."""
 
+from .abstract import AbstractBearing as AbstractBearing
 from .ball import AbstractBallBearing as AbstractBallBearing
 from .ball import Groove as Groove
 from .ball_types import AngularContactBallBearing as AngularContactBallBearing
@@ -11,13 +12,10 @@ from .bearing import AbstractRollerBearing as AbstractRollerBearing
 from .bearing import CylindricalRollerBearing as CylindricalRollerBearing
 from .bearing import NeedleRollerBearing as NeedleRollerBearing
 from .bearing import TaperedRollerBearing as TaperedRollerBearing
-from .bearing_set import Bearing as Bearing
 from .bearing_set import BearingSet as BearingSet
 from .bearing_set import PreloadSpring as PreloadSpring
 from .bearing_set import SetRow as SetRow
-from .bearing_set import is_ball as is_ball
 from .bearing_set import is_self_aligning as is_self_aligning
-from .bearing_set import n_elements as n_elements
 from .bearing_set import pitch_radius as pitch_radius
 from .bearing_set import rows_of as rows_of
 from .deviation import Deviation as Deviation

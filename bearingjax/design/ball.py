@@ -9,7 +9,7 @@ positive contact angle α carries an inner-ring load along +z.
 
 import abc
 import math
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -17,12 +17,11 @@ from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
+from .abstract import AbstractBearing
 from .checks import (
     check,
     concrete,
-    count,
     in_range,
-    instance,
     number,
     positive,
 )
@@ -52,7 +51,7 @@ class Groove(NamedTuple):
     deepest: Scalar
 
 
-class AbstractBallBearing(eqx.Module):
+class AbstractBallBearing(AbstractBearing):
     """Single-row ball bearing: what all types have in common.
 
     Attributes:
@@ -76,6 +75,9 @@ class AbstractBallBearing(eqx.Module):
         material: Material of the balls.
         ring_material: Material of the rings; `None`: as the balls.
     """
+
+    noun: ClassVar[str] = "ball"
+    is_thrust: ClassVar[bool] = False
 
     n_balls: int = eqx.field(static=True, converter=as_count)
     pitch_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
@@ -108,9 +110,19 @@ class AbstractBallBearing(eqx.Module):
     ring_material: Material | None = eqx.field(default=None, kw_only=True)
 
     @property
-    def rings(self) -> Material:
-        """Material of the rings."""
-        return self.material if self.ring_material is None else self.ring_material
+    def n_elements(self) -> int:
+        """Number of balls."""
+        return self.n_balls
+
+    @property
+    def element_diameter(self) -> Scalar:
+        """Diameter of the balls [m]."""
+        return self.ball_diameter
+
+    @property
+    def element_deviation(self) -> Float[Array, " ball"] | None:
+        """Diameter of each ball less the common one [m]; `None`: all equal."""
+        return self.ball_deviation
 
     @property
     def centre_distances(self) -> tuple[Scalar, Scalar]:
@@ -138,11 +150,6 @@ class AbstractBallBearing(eqx.Module):
 
     @property
     @abc.abstractmethod
-    def free_cosine(self) -> Scalar:
-        """Cosine of the free contact angle, at most 1 [1]."""
-
-    @property
-    @abc.abstractmethod
     def clearance(self) -> Scalar:
         """Radial internal clearance, diametral: s = 2A (1 - cos α0) [m]."""
 
@@ -153,7 +160,6 @@ class AbstractBallBearing(eqx.Module):
 
     @property
     def holds_axially(self) -> bool:
-        """Whether it passes axial load from ring to ring, at least in one direction."""
         return True
 
     @property
@@ -163,7 +169,6 @@ class AbstractBallBearing(eqx.Module):
 
     @property
     def play(self) -> Scalar:
-        """Largest play between the rings, radial or axial [m]; may be negative."""
         axial = 2.0 * self.centre_distance * jnp.sin(self.free_contact_angle)
         if self.is_one_sided:
             return jnp.zeros_like(axial)  # the balls touch at zero displacement
@@ -180,14 +185,11 @@ class AbstractBallBearing(eqx.Module):
         return jnp.zeros_like(self.pitch_diameter)
 
     def __check_init__(self):
-        count(self, "n_balls", self.n_balls)
+        self._check_common()
         for name in ("pitch_diameter", "ball_diameter"):
             positive(self, name)
-        number(self, "first_azimuth")
         for ring in ("outer", "inner"):
             self._check_groove(ring)
-        instance(self, "material", Material)
-        instance(self, "ring_material", Material, None)
         self._check_row()
         self._check_deviation()
 

@@ -1,6 +1,7 @@
 """The types of ball bearings: what each adds to `AbstractBallBearing`."""
 
 import math
+from typing import ClassVar
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -140,6 +141,8 @@ class ThrustBallBearing(AbstractBallBearing):
 
     Traced: all fields but `n_balls`.
     """
+
+    is_thrust: ClassVar[bool] = True
 
     @property
     def free_contact_angle(self):

@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from typing import ClassVar
 
 import equinox as eqx
 import jax
@@ -10,14 +11,15 @@ from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
-from .checks import check, concrete, count, in_range, instance, number, positive
+from .abstract import AbstractBearing
+from .checks import check, concrete, in_range, instance, number, positive
 from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
 from .profile import AbstractProfile, Straight
 from .rib import Ribs
 
 
-class AbstractRollerBearing(eqx.Module):
+class AbstractRollerBearing(AbstractBearing):
     """Single-row roller bearing: what all types have in common.
 
     Attributes:
@@ -43,6 +45,9 @@ class AbstractRollerBearing(eqx.Module):
         material: Material of the rollers.
         ring_material: Material of the rings; `None`: as the rollers.
     """
+
+    noun: ClassVar[str] = "roller"
+    is_thrust: ClassVar[bool] = False
 
     n_rollers: int = eqx.field(static=True, converter=as_count)
     pitch_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
@@ -85,29 +90,40 @@ class AbstractRollerBearing(eqx.Module):
         return jnp.zeros_like(self.pitch_diameter)
 
     @property
+    def free_cosine(self) -> Scalar:
+        return jnp.cos(self.axis_angle)
+
+    @property
     def holds_axially(self) -> bool:
-        """Whether it passes axial load from ring to ring, at least in one direction."""
         pairs = ("outer_minus", "inner_plus"), ("outer_plus", "inner_minus")
         return any(set(pair) <= set(self.ribs.present) for pair in pairs)
 
     @property
     def play(self) -> Scalar:
-        """Largest play between the rings, radial or axial [m]; may be negative."""
         ribs = [getattr(self.ribs, name).axial_gap for name in self.ribs.present]
         plays = [0.5 * self.radial_internal_clearance, *(2 * gap for gap in ribs)]
         return jnp.max(jnp.stack(plays))
 
     @property
-    def rings(self) -> Material:
-        """Material of the rings."""
-        return self.material if self.ring_material is None else self.ring_material
+    def n_elements(self) -> int:
+        """Number of rollers."""
+        return self.n_rollers
+
+    @property
+    def element_diameter(self) -> Scalar:
+        """Mean diameter of the rollers [m]."""
+        return self.roller_diameter
+
+    @property
+    def element_deviation(self) -> Float[Array, " roller"] | None:
+        """Diameter of each roller less the common one [m]; `None`: all equal."""
+        return self.roller_deviation
 
     def __check_init__(self):
-        count(self, "n_rollers", self.n_rollers)
+        self._check_common()
         for name in ("pitch_diameter", "roller_diameter", "roller_length"):
             positive(self, name)
         number(self, "radial_internal_clearance")
-        number(self, "first_azimuth")
         self._check_parts()
         self._check_row()
         self._check_deviation()
@@ -121,8 +137,6 @@ class AbstractRollerBearing(eqx.Module):
         for name in profiles:
             instance(self, name, AbstractProfile)
         instance(self, "ribs", Ribs)
-        instance(self, "material", Material)
-        instance(self, "ring_material", Material, None)
         for name in profiles:
             getattr(self, name).check(self.roller_length, self.roller_diameter)
         for name in self.ribs.present:

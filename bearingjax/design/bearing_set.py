@@ -7,14 +7,11 @@ import jax.numpy as jnp
 
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .ball import AbstractBallBearing
+from .abstract import AbstractBearing
 from .ball_types import SelfAligningBallRow
-from .bearing import AbstractRollerBearing
 from .checks import concrete, instance, non_negative, number, positive
 from .checks import count as whole
 from .overlap import overlap
-
-Bearing = AbstractRollerBearing | AbstractBallBearing
 
 
 class PreloadSpring(eqx.Module):
@@ -70,14 +67,14 @@ class SetRow(eqx.Module):
     Traced: position, inner_offset, spring.
     """
 
-    bearing: Bearing
+    bearing: AbstractBearing
     position: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
     mirrored: bool = eqx.field(static=True, default=False)
     inner_offset: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
     spring: PreloadSpring | None = None
 
     def __check_init__(self):
-        if not isinstance(self.bearing, Bearing):
+        if not isinstance(self.bearing, AbstractBearing):
             raise TypeError(
                 f"SetRow: `bearing` is a {type(self.bearing).__name__}; it must be a"
                 " single-row roller or ball bearing."
@@ -108,10 +105,20 @@ class BearingSet(eqx.Module):
 
     rows: tuple[SetRow, ...] = eqx.field(converter=_as_tuple)
 
+    @property
+    def noun(self) -> str:
+        """The rolling elements: "ball" or "roller"."""
+        return self.rows[0].bearing.noun
+
+    @property
+    def is_ball(self) -> bool:
+        """Whether the rolling elements are balls."""
+        return self.rows[0].bearing.is_ball
+
     @classmethod
     def back_to_back(
         cls,
-        bearing: Bearing,
+        bearing: AbstractBearing,
         spacing,
         preload_offset=0.0,
         spring: PreloadSpring | None = None,
@@ -133,7 +140,7 @@ class BearingSet(eqx.Module):
     @classmethod
     def face_to_face(
         cls,
-        bearing: Bearing,
+        bearing: AbstractBearing,
         spacing,
         preload_offset=0.0,
         spring: PreloadSpring | None = None,
@@ -151,7 +158,7 @@ class BearingSet(eqx.Module):
         return cls._pair(bearing, spacing, preload_offset, spring, (True, False))
 
     @classmethod
-    def tandem(cls, bearing: Bearing, spacing, count: int = 2) -> "BearingSet":
+    def tandem(cls, bearing: AbstractBearing, spacing, count: int = 2) -> "BearingSet":
         """Rows that share an axial load along +z.
 
         Args:
@@ -221,7 +228,7 @@ class BearingSet(eqx.Module):
                     f" {numbers[0]:g} m; it must be 0 m: its origin is the middle of"
                     " the bearing."
                 )
-        kinds = {isinstance(row.bearing, AbstractBallBearing) for row in self.rows}
+        kinds = {row.bearing.noun for row in self.rows}
         if len(kinds) > 1:
             raise ValueError(
                 "BearingSet: `rows` mix balls and rollers; a set must be all of balls"
@@ -238,35 +245,23 @@ class BearingSet(eqx.Module):
                     )
 
 
-def rows_of(bearing: Bearing | BearingSet) -> tuple[SetRow, ...]:
+def rows_of(bearing: AbstractBearing | BearingSet) -> tuple[SetRow, ...]:
     """The rows of a set, or the bearing as its only row."""
     if isinstance(bearing, BearingSet):
         return bearing.rows
     return (SetRow(bearing),)
 
 
-def is_ball(bearing: Bearing | BearingSet) -> bool:
-    """Whether the rolling elements are balls."""
-    return isinstance(rows_of(bearing)[0].bearing, AbstractBallBearing)
-
-
-def is_self_aligning(bearing: Bearing | BearingSet) -> bool:
+def is_self_aligning(bearing: AbstractBearing | BearingSet) -> bool:
     """Whether its rings tilt freely, as in a self-aligning bearing."""
     rows = rows_of(bearing)
     return all(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
 
 
-def pitch_radius(bearing: Bearing | BearingSet) -> Scalar:
+def pitch_radius(bearing: AbstractBearing | BearingSet) -> Scalar:
     """Largest pitch radius of the rows [m]."""
     radii = [0.5 * row.bearing.pitch_diameter for row in rows_of(bearing)]
     return jnp.max(jnp.stack(radii))
-
-
-def n_elements(bearing: Bearing) -> int:
-    """Number of rolling elements of a single row."""
-    if isinstance(bearing, AbstractBallBearing):
-        return bearing.n_balls
-    return bearing.n_rollers
 
 
 def _checked_spacing(spacing) -> Scalar:

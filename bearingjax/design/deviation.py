@@ -36,9 +36,7 @@ class Deviation(NamedTuple):
 
 def deviation_of(bearing: Any) -> Deviation:
     """The deviations of the rolling elements of a single row."""
-    diameter = getattr(bearing, "ball_deviation", None)
-    if diameter is None:
-        diameter = getattr(bearing, "roller_deviation", None)
+    diameter = bearing.element_deviation
     return Deviation(diameter, bearing.azimuth_deviation, bearing.raceway_deviation)
 
 
@@ -62,7 +60,7 @@ def largest_deviation(bearing: Any) -> float | None:
     Args:
         bearing: A single row.
     """
-    balls = hasattr(bearing, "centre_distances")
+    balls = bearing.is_ball
     sizes = bearing.centre_distances if balls else (0.5 * bearing.roller_diameter,)
     numbers = concrete(*sizes)
     return None if numbers is None else min(numbers)

@@ -16,8 +16,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .ball import AbstractBallBearing
-from .bearing import AbstractRollerBearing
+from .abstract import AbstractBearing
 from .checks import check, instance, is_real, is_traced
 from .deviation import largest_deviation
 
@@ -457,12 +456,9 @@ class Surfaces(NamedTuple):
     element: Surface
 
     @classmethod
-    def of(cls, bearing: AbstractBallBearing | AbstractRollerBearing) -> "Surfaces":
+    def of(cls, bearing: AbstractBearing) -> "Surfaces":
         """Of a single row, at the free contact angle."""
-        if isinstance(bearing, AbstractRollerBearing):
-            radius, cosine = 0.5 * bearing.roller_diameter, jnp.cos(bearing.axis_angle)
-        else:
-            radius, cosine = 0.5 * bearing.ball_diameter, bearing.free_cosine
+        radius, cosine = 0.5 * bearing.element_diameter, bearing.free_cosine
         pitch = 0.5 * bearing.pitch_diameter
         gamma = radius * cosine / pitch
         # Along the rolling direction, 1/ρ = (1/r)/(1 ± γ).

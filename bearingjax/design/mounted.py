@@ -18,14 +18,14 @@ from .ball_types import (
     AngularContactBallBearing,
     DeepGrooveBallBearing,
     FourPointBallBearing,
-    ThrustBallBearing,
 )
-from .bearing_set import Bearing, BearingSet, SetRow, is_self_aligning, rows_of
+from .bearing import AbstractRollerBearing
+from .bearing_set import AbstractBearing, BearingSet, SetRow, is_self_aligning, rows_of
 from .checks import check, concrete, number
 from .fits import AxialStrains, FitConditions, FitState, Mounting, fit_state
 
 
-def raceway_diameters(bearing: Bearing) -> tuple[Scalar, Scalar]:
+def raceway_diameters(bearing: AbstractBearing) -> tuple[Scalar, Scalar]:
     """Diameters up to which the rings of a row count as thick-walled cylinders [m].
 
     Of deep groove bearings and cylindrical rollers, at the bottom of the raceways. Of
@@ -43,15 +43,16 @@ def raceway_diameters(bearing: Bearing) -> tuple[Scalar, Scalar]:
     """
     check_radial("raceway_diameters", bearing)
     pitch = bearing.pitch_diameter
-    if isinstance(bearing, AbstractBallBearing):
-        size, bottom = bearing.ball_diameter, isinstance(bearing, DeepGrooveBallBearing)
-        across = size if bottom else size * bearing.free_cosine
-        return pitch - across, pitch + across
-    size, axis, half = bearing.roller_diameter, bearing.axis_angle, bearing.half_angle
-    return pitch - size * jnp.cos(axis - half), pitch + size * jnp.cos(axis + half)
+    size = bearing.element_diameter
+    if isinstance(bearing, AbstractRollerBearing):
+        axis, half = bearing.axis_angle, bearing.half_angle
+        return pitch - size * jnp.cos(axis - half), pitch + size * jnp.cos(axis + half)
+    bottom = isinstance(bearing, DeepGrooveBallBearing)
+    across = size if bottom else size * bearing.free_cosine
+    return pitch - across, pitch + across
 
 
-def radial_clearance(bearing: Bearing) -> Scalar:
+def radial_clearance(bearing: AbstractBearing) -> Scalar:
     """Radial internal clearance of a row, between the ends of its radial play [m].
 
     Of angular contact bearings 2A (1 - cos α0), A the distance of the groove centres.
@@ -65,9 +66,10 @@ def radial_clearance(bearing: Bearing) -> Scalar:
         TypeError: If it is a thrust bearing or no bearing.
     """
     check_radial("radial_clearance", bearing)
-    if isinstance(bearing, AbstractBallBearing):
-        return bearing.clearance
-    return bearing.radial_internal_clearance / _outer_cosine(bearing)
+    if isinstance(bearing, AbstractRollerBearing):
+        return bearing.radial_internal_clearance / _outer_cosine(bearing)
+    assert isinstance(bearing, AbstractBallBearing)
+    return bearing.clearance
 
 
 def _outer_angle(rollers):
@@ -79,7 +81,7 @@ def _outer_cosine(rollers):
     return jnp.cos(_outer_angle(rollers))
 
 
-def with_radial_clearance(bearing: Bearing, clearance: Any) -> Any:
+def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
     """The row with another radial internal clearance.
 
     Of an angular contact bearing it is the free contact angle that changes: grooves
@@ -124,7 +126,7 @@ def with_radial_clearance(bearing: Bearing, clearance: Any) -> Any:
     return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, normal)
 
 
-def sized(mounting: Mounting, bearing: Bearing | BearingSet) -> Mounting:
+def sized(mounting: Mounting, bearing: AbstractBearing | BearingSet) -> Mounting:
     """The mounting with the sizes of a bearing where its own are `None`.
 
     Args:
@@ -151,7 +153,7 @@ def sized(mounting: Mounting, bearing: Bearing | BearingSet) -> Mounting:
     return replace(mounting, **missing)
 
 
-def _touching_angle(row: Bearing) -> Scalar:
+def _touching_angle(row: AbstractBearing) -> Scalar:
     """Angle from the radial plane at which elements touch the outer ring [rad].
 
     0 where balls touch at the bottom; and of angular contact, where what balls grow
@@ -165,7 +167,7 @@ def _touching_angle(row: Bearing) -> Scalar:
 
 
 def mounted(
-    bearing: Bearing | BearingSet,
+    bearing: AbstractBearing | BearingSet,
     mounting: Mounting,
     conditions: FitConditions | None = None,
 ) -> Any:
@@ -212,7 +214,7 @@ def _states(bearing: BearingSet, mounting, conditions) -> list[FitState]:
     return [fit_state(sized(mounting, row.bearing), conditions) for row in bearing.rows]
 
 
-def _on_seats(bearing: Bearing, state: FitState) -> Any:
+def _on_seats(bearing: AbstractBearing, state: FitState) -> Any:
     """A row with the clearance that fits leave."""
     new = with_radial_clearance(bearing, state.radial_clearance)
     if not isinstance(new, AngularContactBallBearing | FourPointBallBearing):
@@ -307,7 +309,7 @@ def check_radial(owner: str, bearing: Any) -> None:
     Raises:
         TypeError: If it is a thrust bearing or no single row.
     """
-    if isinstance(bearing, ThrustBallBearing) or not isinstance(bearing, Bearing):
+    if not isinstance(bearing, AbstractBearing) or bearing.is_thrust:
         raise TypeError(
             f"{owner}: `bearing` is a {type(bearing).__name__}; it must be a radial"
             " ball or roller bearing."

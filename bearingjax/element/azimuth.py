@@ -1,9 +1,8 @@
 """Where the rolling elements of a row stand, and how they orbit."""
 
-import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design import AbstractRollerBearing, Bearing, deviation_of, n_elements
+from ..design import AbstractBearing, deviation_of
 from ..numerics.types import Ring, Scalar
 from .frame import FREEDOMS, even_azimuths, orbit, roll_ratio
 from .rolling_element import split
@@ -14,7 +13,7 @@ Azimuth = Float[Array, " element"]
 """Azimuth of every rolling element of a row [rad]."""
 
 
-def azimuths(bearing: Bearing, q: Ring | None = None) -> Azimuth:
+def azimuths(bearing: AbstractBearing, q: Ring | None = None) -> Azimuth:
     """Azimuth of every rolling element of a single row [rad].
 
     Args:
@@ -22,7 +21,7 @@ def azimuths(bearing: Bearing, q: Ring | None = None) -> Azimuth:
         q: Ring freedoms, of which both gz turn the elements [m, rad]; `None`: none.
     """
     deviation = deviation_of(bearing).azimuth
-    found = even_azimuths(bearing.first_azimuth, n_elements(bearing))
+    found = even_azimuths(bearing.first_azimuth, bearing.n_elements)
     if deviation is not None:
         found = found + deviation
     return found if q is None else found + turn(orbit_ratio(bearing), q)
@@ -39,10 +38,7 @@ def turn(ratio: Scalar, q: Ring) -> Scalar:
     return orbit(ratio, outer[_GZ], inner[_GZ])
 
 
-def orbit_ratio(bearing: Bearing) -> Scalar:
+def orbit_ratio(bearing: AbstractBearing) -> Scalar:
     """G = D cos α/d_m of a row, with which its rolling elements orbit [1]."""
-    if isinstance(bearing, AbstractRollerBearing):
-        diameter, cosine = bearing.roller_diameter, jnp.cos(bearing.axis_angle)
-    else:
-        diameter, cosine = bearing.ball_diameter, bearing.free_cosine
-    return roll_ratio(diameter, bearing.pitch_diameter, cosine)
+    size, pitch = bearing.element_diameter, bearing.pitch_diameter
+    return roll_ratio(size, pitch, bearing.free_cosine)

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 from ..contact.line import AbstractLineLaw
 from ..contact.point_law import AbstractPointLaw
 from ..design import (
-    Bearing,
+    AbstractBearing,
     BearingSet,
     SetRow,
     deviation_of,
@@ -48,7 +48,7 @@ def check_element(owner: str, element: object) -> None:
     if isinstance(element, BearingElement):
         return
     cure = "a BearingElement"
-    if isinstance(element, Bearing | BearingSet):
+    if isinstance(element, AbstractBearing | BearingSet):
         cure = "BearingElement(bearing), which holds the contact laws"
     elif isinstance(getattr(element, "element", None), BearingElement):
         cure = "its `element`"
@@ -57,7 +57,7 @@ def check_element(owner: str, element: object) -> None:
     )
 
 
-AnyBearing = TypeVar("AnyBearing", bound=Bearing | BearingSet, covariant=True)
+AnyBearing = TypeVar("AnyBearing", bound=AbstractBearing | BearingSet, covariant=True)
 
 
 class BearingElement(eqx.Module, Generic[AnyBearing]):
@@ -129,7 +129,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 as a text or the class itself.
             ValueError: For a choice that the rolling elements have no use for.
         """
-        if not isinstance(bearing, Bearing | BearingSet):
+        if not isinstance(bearing, AbstractBearing | BearingSet):
             raise TypeError(
                 f"BearingElement: `bearing` is a {type(bearing).__name__}; it must be"
                 " a roller bearing, a ball bearing or a BearingSet."

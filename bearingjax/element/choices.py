@@ -17,7 +17,7 @@ from ..contact.coupled import CoupledSlices
 from ..contact.line import AbstractLineLaw, Palmgren
 from ..contact.point_law import AbstractPointLaw, FreeAngle, balls_of
 from ..design import AbstractBallBearing, AbstractRollerBearing, SetRow
-from ..design.ball_types import SelfAligningBallRow, ThrustBallBearing
+from ..design.ball_types import SelfAligningBallRow
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
@@ -228,7 +228,7 @@ class BallChoices(AbstractChoices):
             reach=jnp.stack([g.radius - 0.5 * diameter for g in grooves]),
             on_outer=tuple(g.on_outer for g in grooves),
             open_side=tuple(g.open_side for g in grooves),
-            washers=isinstance(bearing, ThrustBallBearing),
+            washers=bearing.is_thrust,
             straight=self.kinematics.holds_angles,
         )
         return Ball(

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..design import n_elements, rows_of
+from ..design import rows_of
 from ..design.form_error import FormErrors, Harmonics, RacewayErrors, Spall
 from .lines import Line
 from .model import NoiseModel
@@ -99,13 +99,13 @@ def _of_row(
 ) -> Iterator[_Cause]:
     """Causes in one row, of lines up to a frequency [Hz]."""
     turning = kinematic_frequencies(bearing, model.speed)
-    count = n_elements(bearing)
+    count = bearing.n_elements
     row = bearing, model.speed
     for ring in ("outer", "inner"):
         yield from _of_raceway(row, getattr(errors, ring), ring, turning, highest)
     for shape in errors.elements:
         yield from _of_elements(shape, row, turning, highest)
-    kind = "ball" if hasattr(bearing, "ball_deviation") else "roller"
+    kind = bearing.noun
     cage = float(turning.cage)
     pitch = 0.5 * float(bearing.pitch_diameter)
     for name, words, scale in (
@@ -125,7 +125,7 @@ def _of_row(
 def _of_raceway(
     row, errors: RacewayErrors, ring, turning: KinematicFrequencies, highest: float
 ) -> Iterator[_Cause]:
-    count = n_elements(row[0])
+    count = row[0].n_elements
     passage, beside = (
         (turning.outer_passage, turning.outer)
         if ring == "outer"

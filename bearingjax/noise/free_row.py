@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import n_elements, rows_of
+from ..design import rows_of
 from ..design.form_error import Surfaces
 from ..element.bearing_element import BearingElement
 from ..element.frame import orbit, rotation
@@ -137,7 +137,7 @@ def of_rows(values: Any, bearing: Any, axis: int = 0) -> list[Any]:
         bearing: A single row or a set.
         axis: That axis. Static.
     """
-    counts = [n_elements(row.bearing) for row in rows_of(bearing)]
+    counts = [row.bearing.n_elements for row in rows_of(bearing)]
     cut = jnp if isinstance(values, jax.Array) else np
     return cut.split(values, np.cumsum(counts)[:-1], axis=axis)
 

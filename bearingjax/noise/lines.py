@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..design import Bearing, BearingSet, rows_of
+from ..design import AbstractBearing, BearingSet, rows_of
 from ..design.checks import count, non_negative, positive
 from ..element.inertia import Speed
 from .orders import KinematicFrequencies, kinematic_frequencies
@@ -38,7 +38,7 @@ class Line(NamedTuple):
 
 def name_lines(
     spectrum: Spectrum,
-    bearing: Bearing | BearingSet,
+    bearing: AbstractBearing | BearingSet,
     speed: Speed,
     contact_angle: Any = None,
     *,

@@ -11,9 +11,7 @@ from jaxtyping import Array, Float
 
 from ..design import (
     AbstractBallBearing,
-    is_ball,
     is_self_aligning,
-    n_elements,
     rows_of,
 )
 from ..design.checks import (
@@ -259,7 +257,7 @@ def _surfaces(model: NoiseModel, found: FreeRow) -> tuple[Surfaces, ...]:
     """Where the contacts of each row run, and how they bridge waves."""
     if (widths := model.half_width) is None:
         return found.surfaces
-    p = 1.0 if is_ball(model.element.bearing) else 0.5
+    p = 1.0 if model.element.bearing.is_ball else 0.5
     rows = zip(found.surfaces, widths, strict=True)
     return tuple(one.bridging(b, jnp.full_like(b, p)) for one, b in rows)
 
@@ -287,6 +285,6 @@ def _system(model, points) -> NoiseSystem:
         retardation=model.retardation,
         growth=None,
         moving=RINGS.index(model.moving_ring),
-        counts=tuple(n_elements(row.bearing) for row in rows_of(model.element.bearing)),
+        counts=tuple(row.bearing.n_elements for row in rows_of(model.element.bearing)),
         cage=model.cage,
     )

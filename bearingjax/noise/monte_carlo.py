@@ -159,8 +159,7 @@ def monte_carlo(
 
 def _with(bearing: Any, found: Drawn) -> Any:
     """A single row with differences of its rolling elements beside its own."""
-    balls = hasattr(bearing, "ball_deviation")
-    name = "ball_deviation" if balls else "roller_deviation"
+    name = f"{bearing.noun}_deviation"
     for field, value in ((name, found.diameter), ("azimuth_deviation", found.azimuth)):
         if value is None:
             continue

@@ -11,11 +11,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design import (
-    AbstractBallBearing,
-    AbstractRollerBearing,
-    Bearing,
+    AbstractBearing,
     BearingSet,
-    n_elements,
 )
 from ..design.checks import count, number
 from ..element.azimuth import orbit_ratio
@@ -76,7 +73,7 @@ class WavinessForce(NamedTuple):
 
 
 def kinematic_frequencies(
-    bearing: Bearing, speed: Speed, contact_angle: Any = None
+    bearing: AbstractBearing, speed: Speed, contact_angle: Any = None
 ) -> KinematicFrequencies:
     """Frequencies of cage, passages and rolling elements.
 
@@ -97,14 +94,18 @@ def kinematic_frequencies(
     Source: rolling without slip; Harris, Rolling Bearing Analysis (2001), chapter 8.
     """
     turning = _turning("kinematic_frequencies", bearing, speed, contact_angle)
-    z = n_elements(bearing)
+    z = bearing.n_elements
     passages = z * (turning.cage - turning.outer), z * (turning.inner - turning.cage)
     found = turning.inner, turning.outer, turning.cage, *passages, turning.element
     return KinematicFrequencies(*(jnp.abs(one) / (2.0 * jnp.pi) for one in found))
 
 
 def waviness_force(
-    bearing: Bearing, speed: Speed, part: str, order: int, contact_angle: Any = None
+    bearing: AbstractBearing,
+    speed: Speed,
+    part: str,
+    order: int,
+    contact_angle: Any = None,
 ) -> WavinessForce:
     """Frequencies at which a wave of one order shakes the rings.
 
@@ -143,7 +144,7 @@ def waviness_force(
             axial = [order * turning.element]
             radial = [cage + order * turning.element, cage - order * turning.element]
     else:
-        z = n_elements(bearing)
+        z = bearing.n_elements
         ring = turning.inner if part == "inner" else turning.outer
         passed = order * (cage - ring)
         if order % z == 0:
@@ -173,7 +174,7 @@ def _turning(owner, bearing, speed, contact_angle) -> _Turning:
             f"{owner}: `bearing` is a BearingSet; give one of its rows,"
             " `bearing.rows[0].bearing`."
         )
-    if not isinstance(bearing, AbstractRollerBearing | AbstractBallBearing):
+    if not isinstance(bearing, AbstractBearing):
         raise TypeError(
             f"{owner}: `bearing` is a {type(bearing).__name__}; it must be the design"
             " of a bearing."
@@ -183,19 +184,16 @@ def _turning(owner, bearing, speed, contact_angle) -> _Turning:
             f"{owner}: `speed` is a {type(speed).__name__}; it must be"
             " Speed(inner, outer) in rad/s."
         )
-    if isinstance(bearing, AbstractRollerBearing):
-        if contact_angle is not None:
+    diameter, ratio = bearing.element_diameter, orbit_ratio(bearing)
+    if contact_angle is not None:
+        if not bearing.is_ball:
             raise ValueError(
                 f"{owner}: `contact_angle` is given for rollers, which roll at the"
                 " angle of their axis; leave it out."
             )
-        diameter, ratio = bearing.roller_diameter, orbit_ratio(bearing)
-    else:
-        diameter, ratio = bearing.ball_diameter, orbit_ratio(bearing)
-        if contact_angle is not None:
-            number(owner, "contact_angle", contact_angle, "rad")
-            cosine = jnp.cos(as_real(contact_angle))
-            ratio = roll_ratio(diameter, bearing.pitch_diameter, cosine)
+        number(owner, "contact_angle", contact_angle, "rad")
+        cosine = jnp.cos(as_real(contact_angle))
+        ratio = roll_ratio(diameter, bearing.pitch_diameter, cosine)
     rings = speed.outer, speed.inner
     turned = rotation(ratio, diameter, bearing.pitch_diameter, *rings)
     return _Turning(speed.inner, speed.outer, orbit(ratio, *rings), turned)

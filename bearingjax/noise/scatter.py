@@ -17,11 +17,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design import (
-    AbstractBallBearing,
-    AbstractRollerBearing,
-    Bearing,
+    AbstractBearing,
     BearingSet,
-    n_elements,
     rows_of,
 )
 from ..design.checks import check, concrete, instance, non_negative
@@ -182,7 +179,7 @@ class Tolerances(eqx.Module):
     def of_grade(
         cls,
         grade: str,
-        bearing: Bearing | BearingSet,
+        bearing: AbstractBearing | BearingSet,
         *,
         runout: RunningAccuracy | None = None,
         waviness: Any = None,
@@ -219,16 +216,16 @@ class Tolerances(eqx.Module):
             TypeError: For another bearing.
             ValueError: If there is no such grade.
         """
-        if not isinstance(bearing, Bearing | BearingSet):
+        if not isinstance(bearing, AbstractBearing | BearingSet):
             raise TypeError(
                 f"Tolerances.of_grade: `bearing` is a {type(bearing).__name__}; it must"
                 " be of balls or rollers."
             )
         row = rows_of(bearing)[0].bearing
-        if isinstance(row, AbstractBallBearing):
+        if row.is_ball:
             found = ball_grade(grade)
         else:
-            found = roller_grade(grade, row.roller_diameter)
+            found = roller_grade(grade, row.element_diameter)
 
         def waves(height, low, high):
             if height is None:
@@ -285,14 +282,13 @@ class Tolerances(eqx.Module):
             [one(name) for name in names],
         )
 
-    def check(self, bearing: AbstractBallBearing | AbstractRollerBearing) -> None:
+    def check(self, bearing: AbstractBearing) -> None:
         """Raise if rolling elements of a bearing could overlap around their circle.
 
         Raises:
             ValueError: If neighbours could, with the worst of spacing and diameter.
         """
-        balls = isinstance(bearing, AbstractBallBearing)
-        nominal = bearing.ball_diameter if balls else bearing.roller_diameter
+        nominal = bearing.element_diameter
         zero = jnp.zeros(())
         diameter = zero if self.diameter is None else self.diameter
         spacing = zero if self.spacing is None else self.spacing
@@ -302,14 +298,14 @@ class Tolerances(eqx.Module):
         nominal, pitch, diameter, spacing = numbers
         largest = nominal + 0.5 * diameter
         needed = 2.0 * np.arcsin(min(1.0, largest / pitch))
-        room = 2.0 * np.pi / n_elements(bearing) - needed
+        room = 2.0 * np.pi / bearing.n_elements - needed
         allowed = f"at most {room:.4g} rad, the room between two neighbours"
         check(self, "spacing", spacing <= room, allowed, spacing, "rad")
 
 
 def draw(
     tolerances: Tolerances,
-    bearing: AbstractBallBearing | AbstractRollerBearing,
+    bearing: AbstractBearing,
     key: Array,
 ) -> Drawn:
     """One bearing off the line.
@@ -323,7 +319,7 @@ def draw(
     Returns:
         Drawn, differentiable with respect to the tolerances.
     """
-    count = n_elements(bearing)
+    count = bearing.n_elements
     names = [field.name for field in dataclasses.fields(tolerances)]
     keys = {name: jax.random.fold_in(key, k) for k, name in enumerate(names)}
 

@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..design import n_elements, rows_of
+from ..design import rows_of
 from ..design.form_error import FormErrors, Harmonics, Surfaces
 from ..element.ball_inertia import carried, turning
 from ..element.ball_speed import CentrifugalOnly, OuterControl
@@ -129,7 +129,7 @@ def _few_steps(model, samples, steps) -> Iterator[str]:
 def _wandering_modes(model: NoiseModel) -> Iterator[str]:
     """Natural modes that change as the rolling elements orbit."""
     share = np.arange(_PLACES) / _PLACES
-    count = n_elements(rows_of(model.element.bearing)[0].bearing)
+    count = rows_of(model.element.bearing)[0].bearing.n_elements
     # Of the way round and of the way to the next element, after which equal ones stand
     # as before.
     angles = 2.0 * np.pi / count * (np.floor(count * share) + share)

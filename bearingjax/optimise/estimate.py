@@ -15,9 +15,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design import (
-    AbstractBallBearing,
+    AbstractBearing,
+    AbstractRollerBearing,
     AngularContactBallBearing,
-    Bearing,
     BearingSet,
     CylindricalRollerBearing,
     DeepGrooveBallBearing,
@@ -29,7 +29,6 @@ from ..design import (
     SelfAligningBallRow,
     TaperedRollerBearing,
     ThrustBallBearing,
-    n_elements,
     rows_of,
 )
 from ..design.checks import check, in_range, is_traced, positive
@@ -126,7 +125,7 @@ class GeometryEstimate(eqx.Module):
     Static: all numbers but those of the bearing.
     """
 
-    bearing: Bearing | BearingSet
+    bearing: AbstractBearing | BearingSet
     dynamic_error: float = eqx.field(static=True)
     static_error: float = eqx.field(static=True)
     raised: float = eqx.field(static=True)
@@ -141,13 +140,12 @@ class GeometryEstimate(eqx.Module):
     def report(self) -> str:
         """What it is and how well it fits, in words; this is how it prints."""
         row = rows_of(self.bearing)[0].bearing
-        ball = isinstance(row, AbstractBallBearing)
-        name = "ball" if ball else "roller"
-        size = float(getattr(row, f"{name}_diameter"))
+        name, size = row.noun, float(row.element_diameter)
+        rollers = isinstance(row, AbstractRollerBearing)
         angle = np.rad2deg(float(nominal_contact_angle(row)))
         text = (
-            f"Estimate: {n_elements(row)} {name}s of {1e3 * size:.4g} mm"
-            + ("" if ball else f" by {1e3 * float(row.roller_length):.4g} mm")
+            f"Estimate: {row.n_elements} {name}s of {1e3 * size:.4g} mm"
+            + (f" by {1e3 * float(row.roller_length):.4g} mm" if rollers else "")
             + f" a row, pitch diameter {1e3 * float(row.pitch_diameter):.5g} mm,"
             f" contact angle {angle:.4g}°."
             f" C {100 * self.dynamic_error:+.1f} %, C0 {100 * self.static_error:+.1f} %"
@@ -537,7 +535,7 @@ def _checked(numbers, kind, contact_angle) -> Proportions:
     return typical._replace(angle=Typical(float(contact_angle), 1e-4))
 
 
-def _design(kind, known, fit) -> Bearing | BearingSet:
+def _design(kind, known, fit) -> AbstractBearing | BearingSet:
     sizes = _sizes(_KINDS[kind], known, fit.sizes)
     balls = _KINDS[kind].balls
     diameter, pitch, length, angle = (float(size) for size in sizes)

@@ -8,7 +8,6 @@ from ..design import (
     AbstractBallBearing,
     DeepGrooveBallBearing,
     SelfAligningBallRow,
-    ThrustBallBearing,
 )
 from .ball_section import SHOULDER, ball_row, contour
 from .dimension import (
@@ -107,7 +106,7 @@ def _arc_angle(bearing, groove, name):
 
 def _shoulders(ax, bearing, lines):
     """Height of the shoulders above the bottom of the groove."""
-    thrust = isinstance(bearing, ThrustBallBearing)
+    thrust = bearing.is_thrust
     aside, across = (1, 0) if thrust else (0, 1)
     diameter = 1e3 * float(bearing.ball_diameter)
     for name, sign in (("outer", 1.0), ("inner", -1.0)):

@@ -6,10 +6,9 @@ import numpy as np
 
 from ..design import (
     AbstractBallBearing,
-    Bearing,
+    AbstractBearing,
     BearingSet,
     SelfAligningBallRow,
-    ThrustBallBearing,
     rows_of,
 )
 from .dimension import AXIS, between, contact_angle, pitch_arrow, quantity
@@ -26,7 +25,7 @@ SHOULDER = 0.2
 
 
 def ball_section(
-    bearing: Bearing | BearingSet, ax: "matplotlib.axes.Axes | None" = None
+    bearing: AbstractBearing | BearingSet, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
     """Axial section through the axis of one ball of every row.
 
@@ -162,11 +161,11 @@ def contour(bearing, name, reach=np.inf) -> np.ndarray:
     if isinstance(bearing, SelfAligningBallRow):
         return _aligning(bearing, name)
     line = _raceway(bearing, name, 1.0 if name == "outer" else -1.0, reach)
-    return line[:, ::-1] if isinstance(bearing, ThrustBallBearing) else line
+    return line[:, ::-1] if bearing.is_thrust else line
 
 
 def _rings(ax, bearing, place, reach, apart):
-    across = 0 if isinstance(bearing, ThrustBallBearing) else 1
+    across = 0 if bearing.is_thrust else 1
     thickness = _BODY * 1e3 * float(bearing.ball_diameter)
     outlines = []
     for name, outwards in (("outer", 1.0), ("inner", -1.0)):
@@ -224,7 +223,7 @@ def _raceway(bearing, name, outwards, reach):
     for groove in grooves:
         radius, deepest = 1e3 * float(groove.radius), float(groove.deepest)
         centre = 1e3 * np.array([float(groove.axial), float(groove.radial)])
-        if isinstance(bearing, ThrustBallBearing):
+        if bearing.is_thrust:
             centre = centre[::-1]
         start, edge = np.arccos(np.clip([deepest, deepest - height / radius], -1, 1))
         if len(grooves) == 2:

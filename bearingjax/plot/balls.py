@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design import AbstractBallBearing, Bearing, BearingSet
+from ..design import AbstractBallBearing, AbstractBearing, BearingSet
 from ..statics.solution import BallSolution
 from .style import (
     COLOURS,
@@ -97,7 +97,7 @@ def contact_angles(
 
 
 def ellipses(
-    bearing: Bearing | BearingSet,
+    bearing: AbstractBearing | BearingSet,
     solution: BallSolution,
     *,
     raceway: str = "inner",

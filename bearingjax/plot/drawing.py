@@ -8,8 +8,8 @@ import equinox as eqx
 
 from ..design import (
     RIB_NAMES,
+    AbstractBearing,
     AbstractRollerBearing,
-    Bearing,
     BearingSet,
     Material,
     Straight,
@@ -78,7 +78,7 @@ class _Strip(NamedTuple):
 
 
 def drawing(
-    bearing: Bearing | BearingSet, title: str = ""
+    bearing: AbstractBearing | BearingSet, title: str = ""
 ) -> "matplotlib.figure.Figure":
     """A drawing of a design: every parameter at the place where it is measured.
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design import AbstractBallBearing, Bearing, n_elements
+from ..design import AbstractBearing
 from .dimension import AXIS, angle, between, fit, label
 from .style import CURVES, GREY, RACEWAYS, ROLLER, SMALL, axes_or_new
 
@@ -20,7 +20,7 @@ DEVIATIONS = {
 """How fields that differ from one rolling element to the next are shown."""
 
 
-def face_view(ax: "matplotlib.axes.Axes", bearing: Bearing, size) -> None:
+def face_view(ax: "matplotlib.axes.Axes", bearing: AbstractBearing, size) -> None:
     """Along the axis, to scale: the pitch circle and the rolling elements on it.
 
     Args:
@@ -30,11 +30,9 @@ def face_view(ax: "matplotlib.axes.Axes", bearing: Bearing, size) -> None:
     """
     from matplotlib.patches import Circle
 
-    balls = isinstance(bearing, AbstractBallBearing)
     pitch = 0.5e3 * float(bearing.pitch_diameter)
-    word = "ball" if balls else "roller"
-    own = 0.5e3 * float(getattr(bearing, f"{word}_diameter"))
-    count, first = n_elements(bearing), float(bearing.first_azimuth)
+    word, own = bearing.noun, 0.5e3 * float(bearing.element_diameter)
+    count, first = bearing.n_elements, float(bearing.first_azimuth)
     azimuth = first + 2.0 * np.pi * np.arange(count) / count
     if bearing.azimuth_deviation is not None:
         azimuth = azimuth + np.asarray(bearing.azimuth_deviation)
@@ -100,7 +98,9 @@ def _in_corner(ax, corner, text, at):
     )
 
 
-def deviation_view(ax: "matplotlib.axes.Axes", bearing: Bearing, name: str) -> None:
+def deviation_view(
+    ax: "matplotlib.axes.Axes", bearing: AbstractBearing, name: str
+) -> None:
     """How each rolling element differs from the design.
 
     Args:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..design import Bearing, BearingSet
+from ..design import AbstractBearing, BearingSet
 from ..numerics.result import Result
 from ..statics.solution import BallSolution, RollerSolution, Solution
 from ..statics.warning import warnings
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def overview(
-    bearing: Bearing | BearingSet, solution: Solution, title: str = ""
+    bearing: AbstractBearing | BearingSet, solution: Solution, title: str = ""
 ) -> "matplotlib.figure.Figure":
     """Section, load zone, contacts and the main results on one page.
 

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..design import AbstractBallBearing, Material, is_ball, rows_of
+from ..design import AbstractBallBearing, Material, rows_of
 from ..rotor import AbstractSupport, BearingSupport, Disc
 from .ball_section import ball_row, row_position
 from .outline import section
@@ -78,7 +78,7 @@ def draw_bearing(ax: Any, support: BearingSupport, z: float) -> float:
     outside = 0.0
     for row in rows_of(bearing):
         sense = turned * (-1.0 if row.mirrored else 1.0)
-        if is_ball(bearing):
+        if bearing.is_ball:
             part = row.bearing
             assert isinstance(part, AbstractBallBearing)
             centre = np.array([z + turned * row_position(row), _pitch_radius(part)])

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design import AbstractRollerBearing, Bearing, BearingSet, is_ball, rows_of
+from ..design import AbstractBearing, AbstractRollerBearing, BearingSet, rows_of
 from .ball_section import ball_section
 from .dimension import AXIS, between, contact_angle, on_line, pitch_arrow, quantity
 from .outline import section
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def cross_section(
-    bearing: Bearing | BearingSet, ax: "matplotlib.axes.Axes | None" = None
+    bearing: AbstractBearing | BearingSet, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
     """Axial section of the bearing above its axis, to scale [mm].
 
@@ -30,7 +30,7 @@ def cross_section(
     Returns:
         The axes: z to the right, radius upwards.
     """
-    if is_ball(bearing):
+    if bearing.is_ball:
         return ball_section(bearing, ax)
     ax = axes_or_new(ax, (7.0, 6.0))
     first, *others = rows_of(bearing)

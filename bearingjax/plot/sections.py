@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..design import Bearing, BearingSet
+from ..design import AbstractBearing, BearingSet
 from .section import cross_section
 from .style import pyplot
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def cross_sections(
-    bearings: Sequence[Bearing | BearingSet], titles: Sequence[str]
+    bearings: Sequence[AbstractBearing | BearingSet], titles: Sequence[str]
 ) -> "matplotlib.figure.Figure":
     """Axial sections of bearings, each to its own scale [mm].
 

@@ -8,10 +8,10 @@ from ..design import (
     ARRANGEMENTS,
     MATERIALS,
     RIB_NAMES,
+    AbstractBearing,
     AbstractProfile,
     AbstractRollerBearing,
     AngularContactBallBearing,
-    Bearing,
     BearingSet,
     CircularCrown,
     CrownedEnds,
@@ -80,7 +80,7 @@ PROFILES = {
 
 def read_bearing(
     table: Table, beside: Table
-) -> tuple[Bearing | BearingSet, float | None]:
+) -> tuple[AbstractBearing | BearingSet, float | None]:
     """A bearing, or the set of such bearings, and its preload.
 
     Args:
@@ -139,7 +139,7 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
     return taken_from(entry, given)
 
 
-def _single(table: Table) -> Bearing:
+def _single(table: Table) -> AbstractBearing:
     """A bearing of one row."""
     found = designated(table)
     if found is None and "type" not in table:
@@ -191,7 +191,7 @@ class RowKeys(SpringKeys):
         default=0.0,
     )
 
-    def row(self, common: Bearing) -> SetRow:
+    def row(self, common: AbstractBearing) -> SetRow:
         """The row.
 
         Args:
@@ -247,7 +247,7 @@ class SetKeys(SpringKeys):
                 problem = "is for rows that face each other; those of a tandem do not"
                 raise table.error(key, problem)
 
-    def set_of(self, bearing: Bearing) -> BearingSet:
+    def set_of(self, bearing: AbstractBearing) -> BearingSet:
         """The bearings as a set, before they are ground to `preload_force`.
 
         Args:
@@ -265,7 +265,7 @@ class SetKeys(SpringKeys):
             return build(bearing, spacing, self.preload_offset or 0.0, spring)
 
 
-def _set(table: Table, bearing: Bearing) -> tuple[BearingSet, float | None]:
+def _set(table: Table, bearing: AbstractBearing) -> tuple[BearingSet, float | None]:
     keys = read_keys(SetKeys, table)
     pack, force = keys.set_of(bearing), keys.preload_force
     if force is not None:
@@ -286,7 +286,7 @@ def required_numbers(kind: str) -> tuple[str, ...]:
     return ("outer_osculation",) if grooved else ()
 
 
-def _balls(table: Table, kind: str) -> Bearing:
+def _balls(table: Table, kind: str) -> AbstractBearing:
     values = {
         "n_balls": table.integer("n_balls"),
         **table.fields(BALLS[kind], *required_numbers(kind)),

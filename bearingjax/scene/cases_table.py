@@ -16,7 +16,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..design import n_elements, rows_of
+from ..design import rows_of
 from ..element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit_of
@@ -290,7 +290,7 @@ def _placed(cases, path) -> dict[str, Any]:
 def _check_outputs(table, outputs, structures) -> None:
     """Outputs of each rolling element have no column if their number varies."""
     sizes = {
-        tuple(n_elements(row.bearing) for row in rows_of(part.element.bearing))
+        tuple(row.bearing.n_elements for row in rows_of(part.element.bearing))
         for part in structures
     }
     lives = [name for name in LIFE_OUTPUTS if name != "damage_share"]

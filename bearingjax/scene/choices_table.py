@@ -12,7 +12,7 @@ from ..contact.point_law import (
     PointConstant,
     ZeroAngle,
 )
-from ..design import Bearing, BearingSet, is_ball, n_elements, rows_of
+from ..design import AbstractBearing, BearingSet, rows_of
 from ..element import (
     AbstractRacewayControl,
     CentrifugalOnly,
@@ -208,7 +208,10 @@ class RollerNumericsKeys(BallNumericsKeys):
 
 
 def read_choices(
-    contact: Table, operating: Table, numerics: Table, bearing: Bearing | BearingSet
+    contact: Table,
+    operating: Table,
+    numerics: Table,
+    bearing: AbstractBearing | BearingSet,
 ) -> dict[str, Any]:
     """Keywords of `BearingElement` that a scene chooses.
 
@@ -216,7 +219,7 @@ def read_choices(
         contact, operating, numerics: Tables of the scene.
         bearing: Its bearing.
     """
-    if is_ball(bearing):
+    if bearing.is_ball:
         choices: dict[str, Any] = {
             "point_law": read_keys(PointContactKeys, contact).law,
             "raceway_control": read_keys(ControlKeys, operating).control,
@@ -227,7 +230,7 @@ def read_choices(
         choices = {"line_law": law}
         keys = rollers = read_keys(RollerNumericsKeys, numerics)
         if not isinstance(law, CoupledSlices):
-            count = sum(n_elements(row.bearing) for row in rows_of(bearing))
+            count = sum(row.bearing.n_elements for row in rows_of(bearing))
             choices["quadrature"] = rollers.rule(count)
         else:
             for name in ("quadrature", "points"):

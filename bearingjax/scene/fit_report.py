@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..design import Bearing, BearingSet, TaperedRollerBearing, rows_of
+from ..design import AbstractBearing, BearingSet, TaperedRollerBearing, rows_of
 from .fit_table import Fits, fit_facts
 from .report_model import Column, Grid, Part
 
@@ -22,7 +22,7 @@ def outer_cosine(taper: TaperedRollerBearing) -> float:
     return float(np.cos(angle))
 
 
-def fit_report(fits: Fits, bearing: Bearing | BearingSet) -> list[Part]:
+def fit_report(fits: Fits, bearing: AbstractBearing | BearingSet) -> list[Part]:
     """Fits for people: radial clearance from bearing to operation, and seats.
 
     Args:
@@ -84,7 +84,7 @@ def _seats(facts) -> Grid:
     )
 
 
-def fit_as_dict(fits: Fits, bearing: Bearing | BearingSet) -> dict[str, Any]:
+def fit_as_dict(fits: Fits, bearing: AbstractBearing | BearingSet) -> dict[str, Any]:
     """Fits of a scene as plain numbers, in SI.
 
     Args:

@@ -11,14 +11,13 @@ from ..design import (
     LIMIT_CLASSES,
     PLACES,
     WARM_MATERIALS,
-    Bearing,
+    AbstractBearing,
     BearingSet,
     FitConditions,
     Limits,
     Material,
     Mounting,
     TaperedRollerBearing,
-    ThrustBallBearing,
     WarmMaterial,
     bore_limits,
     clearance_range,
@@ -274,7 +273,7 @@ class FitFacts:
 def read_fits(
     beside: Table,
     own: Table,
-    bearing: Bearing | BearingSet,
+    bearing: AbstractBearing | BearingSet,
     speed: Speed | None,
     catalogue: FromCatalogue | None = None,
 ) -> tuple[Any, Fits | None]:
@@ -303,7 +302,7 @@ def read_fits(
             raise beside.error("temperature", problem)
         return bearing, None
     row = rows_of(bearing)[0].bearing
-    if isinstance(row, ThrustBallBearing):
+    if row.is_thrust:
         problem = "is for radial bearings; a thrust bearing has no play to be changed:"
         raise beside.error("fit", f"{problem} leave [fit] and [temperature] out")
     if len({id(one.bearing) for one in rows_of(bearing)}) > 1 and not is_self_aligning(
@@ -351,7 +350,7 @@ def read_fits(
     return bearing, fits
 
 
-def fit_facts(fits: Fits, bearing: Bearing | BearingSet) -> FitFacts:
+def fit_facts(fits: Fits, bearing: AbstractBearing | BearingSet) -> FitFacts:
     """What the fits of a scene do.
 
     Args:
@@ -372,7 +371,7 @@ def fit_facts(fits: Fits, bearing: Bearing | BearingSet) -> FitFacts:
 
 
 def fit_warnings(
-    fits: Fits, bearing: Bearing | BearingSet, load_fixed_to: str = "space"
+    fits: Fits, bearing: AbstractBearing | BearingSet, load_fixed_to: str = "space"
 ) -> list[str]:
     """What is odd about fits, a sentence each.
 

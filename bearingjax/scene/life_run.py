@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from ..design import is_ball
 from ..numerics.result import Result
 from ..statics.life import LIFE_OUTPUTS, turns_against_load
 from ..statics.rating import Ratings, ratings
@@ -213,7 +212,7 @@ def equivalent_load(run: LifeRun) -> float:
     Args:
         run: With all cases solved.
     """
-    power = 3.0 if is_ball(run.table.scene.element.bearing) else 10.0 / 3.0
+    power = 3.0 if run.table.scene.element.bearing.is_ball else 10.0 / 3.0
     life = float(run.lives["basic_rating_life"].rating_life) / 1e6
     return float(run.ratings.dynamic_capacity) * life ** (-1.0 / power)
 

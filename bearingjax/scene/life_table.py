@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from ..design import Bearing, BearingSet, is_ball, n_elements, rows_of
+from ..design import AbstractBearing, BearingSet, rows_of
 from ..element import Speed
 from ..statics.life import FRAMES, LifeConditions
 from ..statics.life_factor import CLEANLINESS
@@ -69,7 +69,7 @@ class LifeKeys(Keys):
 
 
 def read_life(
-    top: Table, bearing: Bearing | BearingSet, speed: Speed | None, points: int
+    top: Table, bearing: AbstractBearing | BearingSet, speed: Speed | None, points: int
 ) -> LifeConditions | None:
     """Conditions of the rating life, or `None` without a [life] table.
 
@@ -86,7 +86,7 @@ def read_life(
         return None
     keys = read_keys(LifeKeys, top.table("life"))
     table = keys.table
-    if is_ball(bearing):
+    if bearing.is_ball:
         if "edge_stress" in table:
             raise table.error("edge_stress", "is for rollers; balls have no ends")
         table.fill("edge_stress", None)
@@ -108,7 +108,7 @@ _USUAL = {"dynamic_capacity": 1.0, "static_capacity": 1.0, "fatigue_load_limit":
 
 
 def rating_warnings(
-    life: LifeConditions | None, bearing: Bearing | BearingSet
+    life: LifeConditions | None, bearing: AbstractBearing | BearingSet
 ) -> tuple[str, ...]:
     """Ratings twenty times off those that bearings of this size have, a line each.
 
@@ -130,10 +130,10 @@ def rating_warnings(
 
 def _usual_load(row: Any) -> float:
     """18 N for a mm² of all balls, 40 N of rollers: the order of C and C0 [N]."""
-    if is_ball(row):
-        return 18e6 * n_elements(row) * float(row.ball_diameter) ** 2
+    if row.is_ball:
+        return 18e6 * row.n_elements * float(row.ball_diameter) ** 2
     area = float(row.roller_diameter) * float(row.roller_length)
-    return 40e6 * n_elements(row) * area
+    return 40e6 * row.n_elements * area
 
 
 _UNRATED = (
@@ -295,9 +295,11 @@ def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[str, ...]:
     )
 
 
-def _check_points(top: Table, bearing: Bearing | BearingSet, points: int) -> None:
+def _check_points(
+    top: Table, bearing: AbstractBearing | BearingSet, points: int
+) -> None:
     least = 2 * LEAST_LAMINAE + 1
-    if is_ball(bearing) or (points % 2 and points >= least):
+    if bearing.is_ball or (points % 2 and points >= least):
         return
     problem = (
         f"{points} is not allowed with [life]; odd and at least {least}: every second"

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ..design import is_ball
 from ..element.frame import LOADS
 from ..noise import ring_modes
 from ..noise.level import LOWEST_LEVEL
@@ -127,7 +126,7 @@ def _states(run):
     told = ", ".join(
         f"{k}: {100.0 * share:.3g} %" for k, share in enumerate(states.shares) if share
     )
-    kind = "balls" if is_ball(run.task.model.element.bearing) else "rollers"
+    kind = f"{run.task.model.element.bearing.noun}s"
     return (
         f"contacts of the {kind}, share of the time: {told};"
         f" {states.switches_per_turn:.4g} open or close per turn of the shaft"

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import jax
 import numpy as np
 
-from ..design import n_elements, rows_of
+from ..design import rows_of
 from ..noise import (
     ContactStates,
     Line,
@@ -240,7 +240,7 @@ def listen(task: NoiseScene, record: Vibration, modes: NaturalModes) -> Heard:
     bearing = task.model.element.bearing
     speed = task.model.speed
     # Elements that differ make many multiples of the cage's turning.
-    largest = max(n_elements(row.bearing) for row in rows_of(bearing))
+    largest = max(row.bearing.n_elements for row in rows_of(bearing))
     harmonics = max(10, 6 * largest)
     natural = dict(ring_modes(modes, task.model))
     lines = name_lines(

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..design import BearingSet, FormErrors, n_elements, rows_of
+from ..design import BearingSet, FormErrors, rows_of
 from ..element import FREEDOMS, RINGS
 from ..element.bearing_element import BearingElement
 from ..noise import (
@@ -164,7 +164,7 @@ def read_noise(
     _check_operating(operating, scene)
     element = scene.running()
     bearing: Any = element.bearing
-    counts = tuple(n_elements(row.bearing) for row in rows_of(bearing))
+    counts = tuple(row.bearing.n_elements for row in rows_of(bearing))
     errors, common = read_deviations(deviations, counts, path.parent)
     deviations.finish()
     values = {

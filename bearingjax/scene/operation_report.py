@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..design import Bearing, BearingSet, Material, is_ball, rows_of
+from ..design import AbstractBearing, BearingSet, Material, rows_of
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.units import display_unit, unit_of
 from ..statics.options import DEFAULT_TOLERANCE
@@ -71,9 +71,9 @@ def _speeds(solution):
     return f"{', '.join(shown)}; n·dm {float(speed_factor(solution)):.4g} mm/min"
 
 
-def _materials(bearing: Bearing | BearingSet) -> list[str]:
+def _materials(bearing: AbstractBearing | BearingSet) -> list[str]:
     """A line for each material of rolling elements and of rings, each once."""
-    part = "balls" if is_ball(bearing) else "rollers"
+    part = f"{bearing.noun}s"
     lines = []
     for row in rows_of(bearing):
         own, rings = row.bearing.material, row.bearing.rings

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..design import BearingSet, is_ball, rows_of
+from ..design import BearingSet, rows_of
 from ..design.fits import PARTS
 from ..element import FREEDOMS, BearingElement
 from ..numerics.units import unit_of
@@ -235,7 +235,7 @@ def _operating(scene: Scene) -> Cases:
 def _optimisation(
     top: Table, table: Table, scene: Scene, cases: Cases, begun: set[str]
 ) -> Optimisation:
-    keys, balls = read_keys(OptimiseKeys, table), is_ball(scene.element.bearing)
+    keys, balls = read_keys(OptimiseKeys, table), scene.element.bearing.is_ball
     with table.building():
         PeakPressure(keys.exponent)
     measured = _Measured(

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from ..design import Bearing, BearingSet, is_ball, n_elements, rows_of
+from ..design import AbstractBearing, BearingSet, rows_of
 from ..element import (
     RINGS,
     BearingElement,
@@ -207,7 +207,10 @@ def scene_of(data: dict[str, Any], path: Path, varied: Iterable[str] = ()) -> Sc
 
 
 def read_element(
-    bearing: Bearing | BearingSet, contact: Table, operating: Table, numerics: Table
+    bearing: AbstractBearing | BearingSet,
+    contact: Table,
+    operating: Table,
+    numerics: Table,
 ) -> BearingElement[Any]:
     """A bearing with the laws and numerics that a scene chooses.
 
@@ -235,8 +238,8 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
     bearing, fits = read_fits(top, top.table("bearing"), bearing, speed, catalogue)
     element = read_element(bearing, top.table("contact"), operating.table, numerics)
     numerics.fill("tolerance", asked.tolerance or DEFAULT_TOLERANCE["float64"])
-    points = 2 if is_ball(bearing) else _points(top.table("output"), bearing)
-    held = is_ball(bearing) and isinstance(element.kinematics, ConstantAngle)
+    points = 2 if bearing.is_ball else _points(top.table("output"), bearing)
+    held = bearing.is_ball and isinstance(element.kinematics, ConstantAngle)
     if held and speed is not None:
         problem = "constant_angle is for balls at rest; leave out the speeds"
         raise numerics.error("kinematics", problem)
@@ -269,7 +272,7 @@ def _points(output: Table, bearing) -> int:
     """Positions along a roller."""
     points = read_keys(OutputKeys, output).points
     if points > MOST_POINTS:
-        rollers = sum(n_elements(row.bearing) for row in rows_of(bearing))
+        rollers = sum(row.bearing.n_elements for row in rows_of(bearing))
         size = 4 * 20e-6 * rollers * points
         problem = (
             f"{points} is too many, {size:.3g} MB of JSON for {rollers} rollers; at"

@@ -9,7 +9,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..design import Bearing, BearingSet, TaperedRollerBearing, is_ball, rows_of
+from ..design import AbstractBearing, BearingSet, TaperedRollerBearing, rows_of
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..statics.solution import BallSolution, Solution
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
@@ -68,7 +68,9 @@ def design_sections(scene: Scene) -> dict[str, Section]:
 
 
 def bearing_text(
-    scene: Scene, bearing: Bearing | BearingSet, solution: Solution | None = None
+    scene: Scene,
+    bearing: AbstractBearing | BearingSet,
+    solution: Solution | None = None,
 ) -> str:
     """Kind, sizes and arrangement of a bearing.
 
@@ -88,7 +90,7 @@ def bearing_text(
             mounted = "" if scene.fits is None else ", which fits and warmth change"
             lines.append(f"ground to a preload of {scene.preload_force:.5g} N{mounted}")
         lines += [] if solution is None else _springs(bearing, solution)
-    tell = ball_row if is_ball(bearing) else roller_row
+    tell = ball_row if bearing.is_ball else roller_row
     parts = [row.bearing for row in rows_of(bearing)]
     alike = len({"\n".join(tell(part, "")) for part in parts}) == 1
     if alike:

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ..design import is_ball
 from ..element.frame import LOADS
 from ..lubrication import Regime
 from .lubricant_table import TRACTIONS, described
@@ -34,7 +33,7 @@ def skid_report(run: SkidRun) -> Report:
 
 def _bearing(run):
     task, model = run.task, run.task.model
-    row = ball_row if is_ball(model.bearing) else roller_row
+    row = ball_row if model.bearing.is_ball else roller_row
     named = {kind: name for name, kind in TRACTIONS.items()}
     load = ", ".join(
         f"{name} {value:.5g} {'N' if name[0] == 'F' else 'N m'}"

@@ -8,7 +8,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import skid
-from ..design import is_ball, n_elements
 from ..numerics.result import Result
 from ..skid import (
     SkidState,
@@ -82,7 +81,7 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
         found, speed = _end(task) if task.steady else _motion(task, shown)
     except ValueError as error:
         raise SceneError(f"{task.name}: {error}") from error
-    balls = is_ball(task.model.bearing)
+    balls = task.model.bearing.is_ball
     state = conditions(task.model, found, speed) if balls else None
     held, state = jax.tree.map(_held, (found, state))
     told = (*task.warnings, *(_left_out(task) if task.steady else ()))
@@ -141,7 +140,7 @@ def _motion(task, shown) -> tuple[Any, Any]:
 def _still(task) -> SkidState:
     """Balls or rollers and cage at rest, in the middle of their pockets."""
     bearing = task.model.bearing
-    count, spins = n_elements(bearing), 3 if is_ball(bearing) else 1
+    count, spins = bearing.n_elements, 3 if bearing.is_ball else 1
     zero, each = jnp.zeros(()), jnp.zeros(count)
     nothing = jnp.zeros((count, 0)), jnp.zeros(0)
     return SkidState(jnp.zeros((count, spins)), each, each, zero, zero, *nothing)

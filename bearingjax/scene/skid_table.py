@@ -12,8 +12,6 @@ from ..design import (
     BearingSet,
     CylindricalRollerBearing,
     NeedleRollerBearing,
-    is_ball,
-    n_elements,
 )
 from ..element import Speed
 from ..skid import Cage, Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable
@@ -122,7 +120,7 @@ def read_skid(
             least_film=dynamics.least_film,
             inlet_heating=dynamics.inlet_heating,
         )
-    dynamics.check_places(steady, n_elements(model.bearing))
+    dynamics.check_places(steady, model.bearing.n_elements)
     loads = None if dynamics.load is None else dynamics.load.loads(scene.load)
     assert scene.speed is not None  # checked before
     speeds, duration = (
@@ -179,7 +177,7 @@ def _check_dynamics(dynamics: DynamicsKeys, scene: Scene, steady: bool) -> None:
         problem = "is missing; give a time, or ask for the end state with --steady"
         raise dynamics.table.error("duration", problem)
     for key, given in (("balanced", dynamics.balanced), ("load", dynamics.load)):
-        if given and not is_ball(scene.element.bearing):
+        if given and not scene.element.bearing.is_ball:
             problem = "is for balls; rollers have the constant load of [operating]"
             raise dynamics.table.error(key, problem)
 

@@ -4,7 +4,7 @@ import contextlib
 import dataclasses
 from typing import Any
 
-from ..design import is_ball, rows_of
+from ..design import rows_of
 from ..design.tolerance import (
     BALL_GRADES,
     ROLLER_GRADES,
@@ -112,7 +112,7 @@ def read_tolerance(keys: ToleranceKeys, bearing: Any) -> tuple[Tolerances, Tight
     """
     table, grade = keys.table, keys.grade
     if grade is not None:
-        table.choice("grade", BALL_GRADES if is_ball(bearing) else ROLLER_GRADES)
+        table.choice("grade", BALL_GRADES if bearing.is_ball else ROLLER_GRADES)
     runouts = _runouts(keys)
     given: dict[str, Any] = {
         name: value for name in _OWN if (value := getattr(keys, name)) is not None
@@ -148,7 +148,7 @@ def read_tolerance(keys: ToleranceKeys, bearing: Any) -> tuple[Tolerances, Tight
 
 def _next_grade(grade: str | None, bearing: Any) -> Tighter:
     """The grade of rolling elements that is one better, if there is one."""
-    ball = is_ball(bearing)
+    ball = bearing.is_ball
     grades = BALL_GRADES if ball else ROLLER_GRADES
     if grade is None or grade == grades[0]:
         return ()

@@ -11,7 +11,6 @@ from typing import ClassVar
 import jax
 import jax.numpy as jnp
 
-from ..design import n_elements
 from ..element.ball_speed import ball_mass
 from .ball_motion import (
     LEAST_LOAD,
@@ -137,7 +136,7 @@ class BallOrbit(AbstractOrbit):
         time = jnp.where(still, 1.0, 1.0 / jnp.where(still, 1.0, around))
         share = time / jnp.sum(time)
         mean_orbit = jnp.sum(share * around)
-        balls = n_elements(self.model.bearing)
+        balls = self.model.bearing.n_elements
 
         def mean(values):
             return balls * jnp.sum(share * values)

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..design import n_elements, pitch_radius
+from ..design import pitch_radius
 from ..element.inertia import Speed
 from ..element.solved_row import RowResults
 from ..numerics import lanes
@@ -151,7 +151,7 @@ class AbstractOrbit(eqx.Module):
         """Azimuths at which the contacts are solved: the places, or of a single place
         that stands for all, all balls or rollers (element,) [rad]; which of them are
         the balls or rollers of the ring's balance; and their places."""
-        balls, places = n_elements(self.model.bearing), self.azimuth.size
+        balls, places = self.model.bearing.n_elements, self.azimuth.size
         if places > 1:
             stand = np.arange(balls) * places // balls
             return self.azimuth, stand, stand

@@ -15,7 +15,6 @@ from typing import ClassVar
 import jax
 import jax.numpy as jnp
 
-from ..design import n_elements
 from ..element.inertia import Speed, mass_and_inertia
 from .conditions import conditions_of
 from .loaded import loaded_rollers
@@ -74,7 +73,7 @@ class RollerOrbit(AbstractOrbit):
         constants = self.model.element.model(self.speed).rows[0].element.constants
         mass, moment, _ = mass_and_inertia(constants)
         radius, spin = constants.pitch_radius, moment / (0.5 * constants.diameter)
-        rollers, places = n_elements(self.model.bearing), self.azimuth.shape[0]
+        rollers, places = self.model.bearing.n_elements, self.azimuth.shape[0]
         turn = mass * radius + self.model.cage.inertia / (rollers * radius)
         own = jnp.full(places, spin)
         whole = jnp.diag(jnp.append(own, turn)).at[:-1, -1].set(own)
@@ -93,7 +92,7 @@ class RollerOrbit(AbstractOrbit):
 
         found = jax.vmap(one)(roller, own[:, 0])
         state, rolls, moving, pulls, push, lost, told = found
-        rollers = n_elements(self.model.bearing)
+        rollers = self.model.bearing.n_elements
 
         def mean(values):
             return rollers * jnp.mean(values)

@@ -7,7 +7,6 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design import is_ball, n_elements
 from ..design.checks import instance, number
 from ..element.inertia import Speed
 from ..numerics.result import Result
@@ -77,7 +76,7 @@ class SkiddingBearing(AbstractSystem):
 
     def message(self, solved):
         if int(solved.result) == Result.GRID_MISFIT:
-            count = n_elements(self.model.bearing)
+            count = self.model.bearing.n_elements
             return (
                 "its balls or rollers bear unlike loads: `places` must be a multiple"
                 f" of {count}"
@@ -88,7 +87,7 @@ class SkiddingBearing(AbstractSystem):
         still, rings = jnp.zeros(cases.count), (cases.inner_speed, cases.outer_speed)
         rings = (still if ring is None else jnp.asarray(ring) for ring in rings)
         speed = jax.vmap(Speed)(*rings)
-        balls = is_ball(self.model.bearing)
+        balls = self.model.bearing.is_ball
         state = conditions(self.model, solved, speed) if balls else None
         return skid_warnings(self.model, solved, state)
 

@@ -12,7 +12,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..design import is_ball, n_elements, pitch_radius
+from ..design import pitch_radius
 from ..design.checks import is_traced
 from ..element.inertia import Speed
 from ..numerics.result import Result, raise_unless_converged
@@ -115,21 +115,17 @@ def check_places(owner: str, bearing: Any, places: int | None) -> None:
     Raises:
         ValueError: If it is neither 1 nor a multiple of the number of balls.
     """
-    number = n_elements(bearing)
+    number = bearing.n_elements
     if places is None or places == 1 or (places > 0 and places % number == 0):
         return
     raise ValueError(
         f"{owner}: `places` is {places}; it must be 1 or a multiple of the {number}"
-        f" {_kind(bearing)}."
+        f" {f'{bearing.noun}s'}."
     )
 
 
-def _kind(bearing):
-    return "balls" if is_ball(bearing) else "rollers"
-
-
 def _places(bearing, solution, places):
-    number, kind = n_elements(bearing), _kind(bearing)
+    number, kind = bearing.n_elements, f"{bearing.noun}s"
     known = not is_traced(solution.roller_load)
     alike = known and not bool(_unlike(solution))
     if places is None:
@@ -148,7 +144,7 @@ def enough_places(bearing: Any) -> int:
     Args:
         bearing: The design.
     """
-    number = n_elements(bearing)
+    number = bearing.n_elements
     return number * -(-_PLACES // number)
 
 
@@ -207,7 +203,7 @@ def end_state(
     bearing = model.bearing
     turn = jnp.asarray(2.0 * np.pi * np.arange(count) / count, model.temperature.dtype)
     balance = balance_of(case, pitch_radius(bearing), options.moving_ring == "outer")
-    kind = BallOrbit if is_ball(bearing) else RollerOrbit
+    kind = BallOrbit if bearing.is_ball else RollerOrbit
     solved = solution.result == int(Result.CONVERGED)
     ring = solution.displacement[balance.moving] / balance.scale
     rolling = jnp.zeros(count * kind.n_own + kind.n_common, ring.dtype)

@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import is_ball, pitch_radius
+from ..design import pitch_radius
 from ..design.checks import count, is_traced, positive
 from ..element.inertia import Speed
 from ..numerics.gravity import GRAVITY
@@ -260,7 +260,7 @@ def _skid(around, solution, start, times, duration, options):
         away = jnp.any(jnp.abs(moved.state.ring) > around.model.bearing.ball_diameter)
         lost = jnp.where(away, int(Result.NO_LOAD_PATH), int(Result.CONVERGED))
         result = jnp.maximum(result, lost.astype(result.dtype))
-    kind = SkidHistory if is_ball(around.model.bearing) else SkidRollerHistory
+    kind = SkidHistory if around.model.bearing.is_ball else SkidRollerHistory
     return kind(
         solution=solution,
         time=times,
@@ -284,7 +284,7 @@ def _reported(around, time, state):
     inner, outer = (-jnp.sum(torque) for torque in balls.ring_torque)
     rolling = jax.vmap(partial(mechanics(balls.ball).rolling, speed=speed))(balls.ball)
     of_balls = {}
-    if is_ball(around.model.bearing):
+    if around.model.bearing.is_ball:
         angle, spin = balls.ball.angle, balls.moving.spin
         of_balls = {"contact_angle": angle, "contact_spin": spin}
     else:

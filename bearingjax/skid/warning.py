@@ -5,7 +5,6 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..design import is_ball, n_elements
 from ..lubrication import DryFriction, Newtonian, Regime, SlipCurve
 from .conditions import Conditions
 from .history import SkidMotion
@@ -80,13 +79,13 @@ def _doubts(model, found, state):
 
 def _pockets(model):
     bearing, play = model.bearing, float(model.cage.pocket_clearance)
-    size = bearing.ball_diameter if is_ball(bearing) else bearing.roller_diameter
-    apart = np.pi * float(bearing.pitch_diameter) / n_elements(bearing) - float(size)
+    size = float(bearing.element_diameter)
+    apart = np.pi * float(bearing.pitch_diameter) / bearing.n_elements - size
     if not play > apart:
         return
     yield (
         f"a pocket clearance of {1e3 * play:.4g} mm is more than the"
-        f" {1e3 * apart:.3g} mm between two balls or rollers: pockets would overlap"
+        f" {1e3 * apart:.3g} mm between two {bearing.noun}s: pockets would overlap"
     )
 
 

@@ -26,12 +26,11 @@ from jaxtyping import Array, Float
 
 from ..design import (
     AbstractBallBearing,
+    AbstractBearing,
     AngularContactBallBearing,
-    Bearing,
     BearingSet,
     FourPointBallBearing,
     SelfAligningBallRow,
-    ThrustBallBearing,
     rows_of,
 )
 from ..numerics.linear import lengths
@@ -96,7 +95,7 @@ class EquivalentLoad(NamedTuple):
 
 
 def equivalent_load(
-    bearing: Bearing | BearingSet, load: Float[Array | np.ndarray, "..."]
+    bearing: AbstractBearing | BearingSet, load: Float[Array | np.ndarray, "..."]
 ) -> EquivalentLoad:
     """Equivalent dynamic and static load of a bearing or of a set of like rows.
 
@@ -148,7 +147,7 @@ class LeftOut(NamedTuple):
 
 
 def left_out(
-    bearing: Bearing | BearingSet,
+    bearing: AbstractBearing | BearingSet,
     load: Float[Array, "6"],
     free: Sequence[str] = ("gx", "gy"),
 ) -> LeftOut:
@@ -162,7 +161,7 @@ def left_out(
     rows = rows_of(bearing)
     row = rows[0].bearing
     angle = nominal_contact_angle(row)
-    is_thrust = isinstance(row, ThrustBallBearing)
+    is_thrust = row.is_thrust
     straight = jnp.where(angle > 0, 0.0, 1.0)
     if isinstance(row, AbstractBallBearing):
         straight = 0.0 * straight
@@ -181,7 +180,7 @@ def left_out(
     )
 
 
-def load_factors(bearing: Bearing | BearingSet, axial: Scalar) -> Factors:
+def load_factors(bearing: AbstractBearing | BearingSet, axial: Scalar) -> Factors:
     """Factors of ISO 281 and ISO 76 of a bearing or of a set of like rows.
 
     Args:
@@ -193,7 +192,7 @@ def load_factors(bearing: Bearing | BearingSet, axial: Scalar) -> Factors:
     turned = sum(row.mirrored for row in rows)
     double = 0 < turned < len(rows)
     angle = nominal_contact_angle(row)
-    if isinstance(row, ThrustBallBearing):
+    if row.is_thrust:
         # It carries no radial load at all.
         alone = jnp.stack([jnp.zeros_like(angle), jnp.ones_like(angle)])[None]
         return Factors(alone, alone)

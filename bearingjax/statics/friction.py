@@ -13,8 +13,8 @@ from jaxtyping import Array, Float
 
 from ..design import (
     AbstractBallBearing,
+    AbstractBearing,
     AngularContactBallBearing,
-    Bearing,
     BearingSet,
     DeepGrooveBallBearing,
     FourPointBallBearing,
@@ -167,7 +167,7 @@ def check_call(owner: str, solution: Any, viscosity: Any, supply: Any) -> None:
     check(owner, "viscosity", viscosity < 1.0, allowed, viscosity, "m²/s")
 
 
-def units_of(bearing: Bearing | BearingSet) -> list[Any]:
+def units_of(bearing: AbstractBearing | BearingSet) -> list[Any]:
     """What counts as one bearing: a row, or both rows of a self-aligning one."""
     if is_self_aligning(bearing):
         return [bearing]
@@ -212,7 +212,7 @@ def _row_loads(solution) -> list[Any]:
     return found
 
 
-def _of_row(bearing: Bearing | BearingSet, load, flow, supply, capacity):
+def _of_row(bearing: AbstractBearing | BearingSet, load, flow, supply, capacity):
     """Load, viscous and flange torque of one bearing; `flow` is ν ω [m²/s²]."""
     row: Any = rows_of(bearing)[0].bearing
     kind = _KINDS.get(type(row), _CYLINDERS)
@@ -239,7 +239,7 @@ def _of_row(bearing: Bearing | BearingSet, load, flow, supply, capacity):
 
 def _directed(row, radial, axial):
     """Load F of the formula for M1 [N]."""
-    if isinstance(row, ThrustBallBearing):
+    if row.is_thrust:
         return axial
     if isinstance(row, DeepGrooveBallBearing):
         return jnp.maximum(radial, 3.0 * axial - 0.1 * radial)

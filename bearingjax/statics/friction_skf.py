@@ -251,7 +251,7 @@ def _variables(bearing, row, d, radial, axial, rpm, capacity):
     """G_rr and G_sl of a unit, in mm and N."""
     if isinstance(bearing, DeepGrooveBallBearing):
         return _deep_groove(row, d, radial, axial, capacity)
-    if isinstance(bearing, ThrustBallBearing):
+    if bearing.is_thrust:
         r1, s1 = row
         return (
             r1 * d**1.83 * _power(axial, 0.54),
@@ -295,9 +295,8 @@ def _deep_groove(row, d, radial, axial, capacity):
 def _diameters(bearing, kind, given):
     """Mean diameter and D - d [mm]."""
     if given is None:
-        size = getattr(bearing, "ball_diameter", None)
-        size = bearing.roller_diameter if size is None else size
-        return 1e3 * bearing.pitch_diameter, 1e3 * kind.span * size
+        size = 1e3 * bearing.element_diameter
+        return 1e3 * bearing.pitch_diameter, kind.span * size
     bore, outside = (as_real(x) for x in given)
     allowed = "two diameters above 0 m, the bore before the larger outside diameter"
     fits = (bore > 0.0) & (bore < outside)

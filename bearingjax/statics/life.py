@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing, n_elements, pitch_radius, rows_of
+from ..design import AbstractBallBearing, pitch_radius, rows_of
 from ..design.checks import check, in_range, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
@@ -347,7 +347,7 @@ def life_of(
 def _rows_in_words(bearing) -> str:
     """What the rows of a bearing are: all of it that is no number to be traced."""
     rows = [row.bearing for row in rows_of(bearing)]
-    return " and ".join(f"{type(r).__name__} of {n_elements(r)}" for r in rows)
+    return " and ".join(f"{type(r).__name__} of {r.n_elements}" for r in rows)
 
 
 def life_outputs(life: Life, names: Sequence[str]) -> dict[str, Array]:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import jax
 import numpy as np
 
-from ..design import Bearing, BearingSet, is_ball, pitch_radius
+from ..design import AbstractBearing, BearingSet, pitch_radius
 from ..numerics.types import namespace
 from .life_factor import KAPPA
 from .rating import Ratings
@@ -49,7 +49,7 @@ class LifeKind(NamedTuple):
 
 
 def life_warnings(
-    bearing: Bearing | BearingSet, ratings: Ratings, numbers: Mapping[str, Any]
+    bearing: AbstractBearing | BearingSet, ratings: Ratings, numbers: Mapping[str, Any]
 ) -> list[str]:
     """Warnings about one rating life, a sentence each.
 
@@ -75,7 +75,7 @@ def life_warnings(
 
 
 def life_sizes(
-    bearing: Bearing | BearingSet, ratings: Ratings, numbers: Mapping[str, Any]
+    bearing: AbstractBearing | BearingSet, ratings: Ratings, numbers: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Size of every kind of warning about a life that can arise, NaN of a failed one.
 
@@ -132,7 +132,7 @@ def _most(ratings):
 
 
 def _least(bearing, ratings):
-    share = LEAST_LOAD_OF_BALLS if is_ball(bearing) else LEAST_LOAD_OF_ROLLERS
+    share = LEAST_LOAD_OF_BALLS if bearing.is_ball else LEAST_LOAD_OF_ROLLERS
     return share * ratings.dynamic_capacity
 
 
@@ -159,7 +159,7 @@ def _light_words(size, where):
 def _light_numbers(bearing, ratings, numbers):
     least = float(_least(bearing, ratings))
     share = least / float(ratings.dynamic_capacity)
-    kind = "ball" if is_ball(bearing) else "roller"
+    kind = bearing.noun
     return (
         f"of {float(_load(numbers)):.4g} N, below {least:.4g} N, {share:g} C, which"
         f" makers of {kind} bearings ask for: the {kind}s"

@@ -7,7 +7,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import Bearing, BearingSet, pitch_radius, rows_of
+from ..design import AbstractBearing, BearingSet, pitch_radius, rows_of
 from ..design.checks import real_numbers
 from ..element.frame import FREEDOMS, LOADS
 from ..element.inertia import Speed
@@ -49,7 +49,7 @@ class LoadCase(eqx.Module):
 
 
 def load_case(
-    bearing: Bearing | BearingSet,
+    bearing: AbstractBearing | BearingSet,
     options: SolveOptions,
     load: Any,
     prescribed: Any,

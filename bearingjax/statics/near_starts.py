@@ -14,7 +14,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
-from ..design import CylindricalRollerBearing, NeedleRollerBearing, n_elements, rows_of
+from ..design import CylindricalRollerBearing, NeedleRollerBearing, rows_of
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.linear import solve
@@ -103,7 +103,7 @@ def likeness(
     free = options.free
     if free is None:
         free = [name for name in restrained if name not in cases.prescribed]
-    counts = {n_elements(row.bearing) for row in rows_of(element.bearing)}
+    counts = {row.bearing.n_elements for row in rows_of(element.bearing)}
     round_z = all((a in free) == (b in free) for a, b in (("ux", "uy"), ("gx", "gy")))
     round_z = round_z and len(counts) == 1 and not cases.prescribed
     round_z = round_z and cases.fixed_displacement is None

@@ -6,7 +6,7 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..design import Bearing, BearingSet, SetRow, is_self_aligning, rows_of
+from ..design import AbstractBearing, BearingSet, SetRow, is_self_aligning, rows_of
 from ..design.checks import positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.inertia import Speed
@@ -119,7 +119,7 @@ def pressed(solution: Solution) -> Scalar:
     return jnp.where(solution.converged, force, jnp.nan)
 
 
-def check_preload(bearing: Bearing | BearingSet, force: Scalar | float) -> None:
+def check_preload(bearing: AbstractBearing | BearingSet, force: Scalar | float) -> None:
     """Raise unless `preload` can preload this bearing.
 
     Args:
@@ -138,7 +138,7 @@ def check_preload(bearing: Bearing | BearingSet, force: Scalar | float) -> None:
     positive("preload", "force", as_real(force), "N")
 
 
-def check_opposed(owner: str, bearing: Bearing | BearingSet) -> None:
+def check_opposed(owner: str, bearing: AbstractBearing | BearingSet) -> None:
     """Raise unless rows of a set can press each other along the axis.
 
     Args:
@@ -153,7 +153,7 @@ def check_opposed(owner: str, bearing: Bearing | BearingSet) -> None:
         raise ValueError(f"{owner}: {problem}.")
 
 
-def is_opposed(bearing: Bearing | BearingSet) -> bool:
+def is_opposed(bearing: AbstractBearing | BearingSet) -> bool:
     """Whether a bearing is a set whose rows press each other along the axis.
 
     Args:

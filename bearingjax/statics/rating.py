@@ -13,14 +13,12 @@ import numpy as np
 
 from ..design import (
     AbstractBallBearing,
+    AbstractBearing,
     AbstractRollerBearing,
-    Bearing,
     BearingSet,
     DeepGrooveBallBearing,
     FourPointBallBearing,
     SelfAligningBallRow,
-    ThrustBallBearing,
-    n_elements,
     rows_of,
 )
 from ..design.checks import is_traced, positive
@@ -60,7 +58,7 @@ class Ratings(eqx.Module):
 
 
 def ratings(
-    bearing: Bearing | BearingSet,
+    bearing: AbstractBearing | BearingSet,
     dynamic_capacity: Scalar | float | None = None,
     static_capacity: Scalar | float | None = None,
     fatigue_load_limit: Scalar | float | None = None,
@@ -93,7 +91,7 @@ def ratings(
     return Ratings(c, c0, limit, rated_axially(bearing), *sources)
 
 
-def dynamic_capacity(bearing: Bearing | BearingSet) -> Scalar:
+def dynamic_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
     """Basic dynamic load rating C by ISO 281 from the geometry [N].
 
     Nine of ten bearings last a million revolutions under it. Balls count with b_m =
@@ -122,7 +120,7 @@ def dynamic_capacity(bearing: Bearing | BearingSet) -> Scalar:
     return _capacities(*_alike(bearing))[0]
 
 
-def static_capacity(bearing: Bearing | BearingSet) -> Scalar:
+def static_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
     """Basic static load rating C0 by ISO 76 from the geometry [N].
 
     Under it the hardest contact has a peak pressure of 4200 MPa (balls), 4600 MPa
@@ -147,7 +145,7 @@ def static_capacity(bearing: Bearing | BearingSet) -> Scalar:
 
 
 def fatigue_load_limit(
-    bearing: Bearing | BearingSet,
+    bearing: AbstractBearing | BearingSet,
     static_capacity: Scalar | float | None = None,
     *,
     method: str = "static",
@@ -199,7 +197,7 @@ def fatigue_load_limit(
     return _limit(rows.row, value)
 
 
-def rated_axially(bearing: Bearing | BearingSet) -> Flag:
+def rated_axially(bearing: AbstractBearing | BearingSet) -> Flag:
     """Whether the ratings are axial loads: contact angles above 45 degrees.
 
     Raises:
@@ -237,7 +235,7 @@ def _large(row):
 def _row(bearing) -> BallRow | RollerRow:
     """The numbers that a row is rated by."""
     angle, pitch = nominal_contact_angle(bearing), bearing.pitch_diameter
-    count = as_real(n_elements(bearing))
+    count = as_real(bearing.n_elements)
     if isinstance(bearing, AbstractBallBearing):
         osculation = bearing.outer_osculation, bearing.inner_osculation
         return BallRow(count, bearing.ball_diameter, pitch, angle, osculation)
@@ -245,7 +243,7 @@ def _row(bearing) -> BallRow | RollerRow:
     return RollerRow(count, diameter, length, pitch, angle)
 
 
-def nominal_contact_angle(bearing: Bearing) -> Scalar:
+def nominal_contact_angle(bearing: AbstractBearing) -> Scalar:
     """Nominal contact angle of the standards [rad].
 
     Zero of a deep groove ball bearing whatever its clearance; of a taper that of its
@@ -259,13 +257,14 @@ def nominal_contact_angle(bearing: Bearing) -> Scalar:
     rated = getattr(bearing, "rated_contact_angle", None)
     if rated is not None:
         return rated
-    if isinstance(bearing, AbstractBallBearing):
-        return bearing.free_contact_angle
-    # The load of a taper leaves through its outer raceway, which has no rib.
-    return bearing.axis_angle + bearing.half_angle
+    if isinstance(bearing, AbstractRollerBearing):
+        # The load of a taper leaves through its outer raceway, which has no rib.
+        return bearing.axis_angle + bearing.half_angle
+    assert isinstance(bearing, AbstractBallBearing)
+    return bearing.free_contact_angle
 
 
-def arc_rows(bearing: Bearing) -> int:
+def arc_rows(bearing: AbstractBearing) -> int:
     """How many rows the standards count in one row of elements: 2 of four-point balls.
 
     Under radial load each of their balls bears on two pairs of arcs, which tire as the
@@ -291,7 +290,7 @@ def _kind(bearing, several) -> by_row.BallKind | None:
     kind = by_row.ANGULAR_CONTACT
     if isinstance(bearing, SelfAligningBallRow):
         kind = by_row.SELF_ALIGNING
-    elif isinstance(bearing, ThrustBallBearing):
+    elif bearing.is_thrust:
         kind = by_row.THRUST
     elif isinstance(bearing, DeepGrooveBallBearing) and several:
         kind = by_row.RADIAL_CONTACT_ROWS
@@ -300,7 +299,7 @@ def _kind(bearing, several) -> by_row.BallKind | None:
 
 def _alike(bearing) -> tuple[Rows, bool]:
     """The rows, and whether they are of a thrust bearing."""
-    if not isinstance(bearing, Bearing | BearingSet):
+    if not isinstance(bearing, AbstractBearing | BearingSet):
         raise TypeError(
             f"load rating: `bearing` is a {type(bearing).__name__}; it must be a"
             " bearing or a BearingSet."
@@ -319,7 +318,7 @@ def _alike(bearing) -> tuple[Rows, bool]:
     # Of two pairs of arcs each bears one way.
     one_way = count if arcs == 2 else one_way
     numbers = Rows(_row(first), kind, as_real(arcs * count), as_real(one_way))
-    return numbers, isinstance(first, ThrustBallBearing)
+    return numbers, first.is_thrust
 
 
 def _same(one, other) -> bool:

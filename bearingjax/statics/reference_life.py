@@ -31,7 +31,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing, Bearing, n_elements
+from ..design import AbstractBallBearing, AbstractBearing
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar
 from .rating import THRUST_ANGLE
@@ -90,13 +90,13 @@ class RowFatigue(NamedTuple):
     fatigue: Fatigue
 
 
-def exponents_of(bearing: Bearing) -> Fatigue:
+def exponents_of(bearing: AbstractBearing) -> Fatigue:
     """Exponents and constants of its rolling elements."""
-    return BALLS if isinstance(bearing, AbstractBallBearing) else ROLLERS
+    return BALLS if bearing.is_ball else ROLLERS
 
 
 def contact_capacities(
-    bearing: Bearing, capacity: Scalar, angle: Scalar
+    bearing: AbstractBearing, capacity: Scalar, angle: Scalar
 ) -> Float[Array, "2"]:
     """Load of every contact under which a raceway lasts a million revolutions.
 
@@ -113,7 +113,7 @@ def contact_capacities(
     """
     kind = exponents_of(bearing)
     thrust = angle > THRUST_ANGLE
-    many = n_elements(bearing) * jnp.where(thrust, jnp.sin(angle), jnp.cos(angle))
+    many = bearing.n_elements * jnp.where(thrust, jnp.sin(angle), jnp.cos(angle))
     weaker = _ring_ratio(bearing, angle) * jnp.where(thrust, 1.0, kind.ratio)
     outer, inner = (jnp.where(thrust, 1.0, j) for j in kind.radial)
     of_c = capacity / (many * jnp.where(thrust, *reversed(kind.reduction)))
@@ -140,7 +140,7 @@ def _ring_ratio(bearing: Any, angle):
 
 
 def row_fatigue(
-    bearing: Bearing,
+    bearing: AbstractBearing,
     capacity: Scalar,
     angle: Scalar,
     loads: Float[Array, "element 2 track"],

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from ..design import Bearing, BearingSet, rows_of
+from ..design import AbstractBearing, BearingSet, rows_of
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel, Evaluated, Solved
 from ..element.choices import BallChoices, RollerChoices
@@ -237,7 +237,10 @@ def describe(
 
 @functools.singledispatch
 def contact_results(
-    choices: Any, bearing: Bearing | BearingSet, rows: tuple[RowResults, ...], points
+    choices: Any,
+    bearing: AbstractBearing | BearingSet,
+    rows: tuple[RowResults, ...],
+    points,
 ) -> dict:
     """Results of the contacts of solved rows; register a new kind of choices here.
 

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design import (
-    Bearing,
+    AbstractBearing,
     BearingSet,
     is_self_aligning,
     rows_of,
@@ -15,7 +15,7 @@ from ..design.checks import is_traced
 from ..element.frame import FREEDOMS, LOADS
 
 
-def restrained_freedoms(bearing: Bearing | BearingSet) -> tuple[str, ...]:
+def restrained_freedoms(bearing: AbstractBearing | BearingSet) -> tuple[str, ...]:
     """Freedoms that the bearing can restrain, against a load in the right direction.
 
     Never gz. Not gx and gy of a self-aligning bearing. uz with balls and tapered

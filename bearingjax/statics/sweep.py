@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from ..design import Bearing, BearingSet, rows_of
+from ..design import AbstractBearing, BearingSet, rows_of
 from ..design.checks import is_traced
 from ..element.bearing_element import BearingElement, check_element
 from ..numerics.result import Result
@@ -114,7 +114,7 @@ def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any
         TypeError: If one is no BearingElement.
         ValueError: If there are none, or their structures differ.
     """
-    if isinstance(elements, BearingElement | Bearing | BearingSet):
+    if isinstance(elements, BearingElement | AbstractBearing | BearingSet):
         raise TypeError("stack_designs: `elements` is one; it must be a list of them.")
     for element in elements:
         check_element("stack_designs", element)

@@ -12,13 +12,12 @@ import numpy as np
 
 from ..design import (
     AbstractBallBearing,
+    AbstractBearing,
     AngularContactBallBearing,
-    Bearing,
     BearingSet,
     CylindricalRollerBearing,
     NeedleRollerBearing,
     SelfAligningBallRow,
-    is_ball,
     is_self_aligning,
     rows_of,
 )
@@ -89,7 +88,7 @@ _PLAUSIBLE = {
 """Usual ranges: from miniature to slewing bearings, from polymers to hard metal."""
 
 
-def stiffness_scale(bearing: Bearing | BearingSet) -> Any:
+def stiffness_scale(bearing: AbstractBearing | BearingSet) -> Any:
     """E* times the diameter of the rolling elements, the least of all rows [N/m]."""
     scales = [
         _modulus(row.bearing) * _diameter(row.bearing) for row in rows_of(bearing)
@@ -147,7 +146,7 @@ def listed(numbers: Any) -> str:
 
 def of_raceways(solution: Solution, flags: Any) -> str:
     """Raceways and rolling elements where `flags` (element, 2) are set, in words."""
-    noun = "balls" if is_ball(solution.element.bearing) else "rollers"
+    noun = f"{solution.element.bearing.noun}s"
     return "; ".join(
         f"{ring} raceway: {noun} {listed(np.flatnonzero(mine))}"
         for ring, mine in zip(RINGS, np.asarray(flags).T, strict=True)
@@ -228,12 +227,12 @@ def slack_numbers(solution: Solution) -> str:
     return f"row {listed(np.flatnonzero(slack))}"
 
 
-def static_limit(bearing: Bearing | BearingSet) -> float:
+def static_limit(bearing: AbstractBearing | BearingSet) -> float:
     """Contact pressure of the basic static load rating [Pa].
 
     Source: ISO 76:2006, 3.2 and 3.3.
     """
-    if not is_ball(bearing):
+    if not bearing.is_ball:
         return 4000e6
     aligning = [isinstance(r.bearing, SelfAligningBallRow) for r in rows_of(bearing)]
     return 4600e6 if all(aligning) else 4200e6
@@ -315,11 +314,11 @@ def prescribed_tilt(solution: Solution) -> Any:
     return _one(solution, True) * square**0.5 / usual_tilt(solution.element.bearing)
 
 
-def usual_tilt(bearing: Bearing | BearingSet) -> float:
+def usual_tilt(bearing: AbstractBearing | BearingSet) -> float:
     """Largest tilt of ring against ring that makers allow for [rad]."""
     if is_self_aligning(bearing):
         return math.inf
-    return USUAL_TILT_OF_BALLS if is_ball(bearing) else USUAL_TILT_OF_ROLLERS
+    return USUAL_TILT_OF_BALLS if bearing.is_ball else USUAL_TILT_OF_ROLLERS
 
 
 def tilt_in_words(solution: Solution, share: Any) -> str:
@@ -331,14 +330,14 @@ def tilt_in_words(solution: Solution, share: Any) -> str:
     """
     allowed = usual_tilt(solution.element.bearing)
     tilt = float(share) * allowed
-    kind = "ball" if is_ball(solution.element.bearing) else "roller"
+    kind = solution.element.bearing.noun
     return (
         f"{1e3 * tilt:.3g} mrad where makers of {kind} bearings allow for about"
         f" {1e3 * allowed:.2g}"
     )
 
 
-def has_clearance(bearing: Bearing | BearingSet) -> bool:
+def has_clearance(bearing: AbstractBearing | BearingSet) -> bool:
     """Whether it has a radial clearance of its own: a single bearing, one that does not
     need another to be set against."""
     rows = rows_of(bearing)
@@ -354,7 +353,7 @@ def clearance_lost(solution: Solution) -> Any:
     """Radial clearance below zero of a bearing that turns [m]."""
     assert solution.speed is not None
     row: Any = rows_of(solution.element.bearing)[0].bearing
-    clearance = row.clearance if is_ball(row) else row.radial_internal_clearance
+    clearance = row.clearance if row.is_ball else row.radial_internal_clearance
     turns = solution.speed.inner != solution.speed.outer
     return -clearance * _one(solution, turns)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.design import n_elements, rows_of
+from bearingjax.design import rows_of
 
 GROOVES = dict(outer_osculation=0.53, inner_osculation=0.52)
 
@@ -192,7 +192,7 @@ def test_sets():
     # Both rows are pressed: the inner ring moves along +z, and mirrored along -z.
     assert [float(r.inner_offset) for r in pair.rows] == pytest.approx([4e-6, -4e-6])
     assert len(bj.BearingSet.tandem(angular(), 0.02, 3).rows) == 3
-    assert [n_elements(r.bearing) for r in rows_of(pair)] == [12, 12]
+    assert [r.bearing.n_elements for r in rows_of(pair)] == [12, 12]
     assert rows_of(angular())[0].bearing.n_balls == 12  # type: ignore[union-attr]
 
 

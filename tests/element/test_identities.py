@@ -17,7 +17,7 @@ from registry import (
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.design import n_elements, rows_of
+from bearingjax.design import rows_of
 from bearingjax.element import inertia_load
 
 CASES = [
@@ -195,7 +195,7 @@ def test_common_rigid_motion_and_turn_by_one_pitch(case):
 
     # Turning both rings by one pitch angle carries each roller to the next place.
     turned = q.copy()
-    counts = {n_elements(row.bearing) for row in rows_of(element.bearing)}
+    counts = {row.bearing.n_elements for row in rows_of(element.bearing)}
     if len(counts) > 1 or getattr(element.bearing, "ball_deviation", None) is not None:
         return  # no such symmetry
     turned[[5, 11]] = 2 * np.pi / counts.pop()

@@ -34,9 +34,9 @@ PUBLISHED = {
 def inside(bearing):
     """Number, diameter and pitch diameter of the rolling elements."""
     row = bj.design.rows_of(bearing)[0].bearing
-    kind = "ball" if bj.design.is_ball(bearing) else "roller"
+    kind = "ball" if bearing.is_ball else "roller"
     size = float(getattr(row, f"{kind}_diameter"))
-    return bj.design.n_elements(row), size, float(row.pitch_diameter)
+    return row.n_elements, size, float(row.pitch_diameter)
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
@@ -47,7 +47,7 @@ def test_published_bearings_are_found(name):
     )
     number, diameter, _ = inside(found.bearing)
     # Rollers may be fewer and longer: their ratings hardly tell.
-    slack = 0 if bj.design.is_ball(found.bearing) else 1
+    slack = 0 if found.bearing.is_ball else 1
     assert count is None or abs(number - count) <= slack
     assert diameter == pytest.approx(1e-3 * size, rel=0.05)
     assert abs(found.dynamic_error) < 0.02 and abs(found.static_error) < 0.02
@@ -148,7 +148,7 @@ def test_designs_are_found_from_their_own_ratings(kind):
     assert rated == pytest.approx(found.static_error, abs=1e-9)
     number, diameter, pitch = inside(found.bearing)
     wanted, size, circle = inside(bearing)
-    assert abs(number - wanted) <= (1 if bj.design.is_ball(bearing) else 3)
+    assert abs(number - wanted) <= (1 if bearing.is_ball else 3)
     assert diameter == pytest.approx(size, rel=0.05)
     assert pitch == pytest.approx(circle, rel=0.03)
     assert "Estimate" in found.report()

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 import bearingjax as bj
-from bearingjax.design import n_elements, rows_of
+from bearingjax.design import rows_of
 from bearingjax.statics.solution import BallSolution, RollerSolution, Stats
 
 TOP = 1000.0
@@ -22,7 +22,7 @@ def solution(bearing, angles=(), points=21):
         points: Positions along a roller.
     """
     rows = [row.bearing for row in rows_of(bearing)]
-    sizes = tuple(n_elements(row) for row in rows)
+    sizes = tuple(row.n_elements for row in rows)
     azimuth = np.concatenate(
         [
             float(row.first_azimuth) + np.arange(n) * 2 * np.pi / n

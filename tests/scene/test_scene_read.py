@@ -8,7 +8,7 @@ import pytest
 from tolerances import PUBLISHED, ROUNDING
 
 import bearingjax as bj
-from bearingjax.design import n_elements, rows_of
+from bearingjax.design import rows_of
 from bearingjax.scene import shipped_scenes
 
 DEG = np.pi / 180.0
@@ -81,7 +81,7 @@ def test_every_shipped_scene_reads(name):
     raw = tomllib.loads(shipped_scenes()[name].read_text(encoding="utf-8"))
     assert scene.name == name
     assert scene.warnings == ()
-    counts = [n_elements(row.bearing) for row in rows_of(scene.element.bearing)]
+    counts = [row.bearing.n_elements for row in rows_of(scene.element.bearing)]
     written = {raw["bearing"].get(key) for key in ("n_rollers", "n_balls")}
     assert set(counts) == written - {None}
     assert scene.points == (101 if "n_rollers" in raw["bearing"] else 2)
