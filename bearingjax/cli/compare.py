@@ -1,6 +1,5 @@
 """`bearingjax compare`."""
 
-from . import jax_settings
 from .execute import Outcome, Tools
 from .options import add_json, add_report, add_set, add_table
 from .solution import why_unsolved
@@ -38,7 +37,7 @@ def run(options, tools: Tools) -> Outcome:
     if len(options.scenes) < 2:
         raise SceneError("compare: give two scenes or more")
     scenes = [read_scene(source, options.set) for source in options.scenes]
-    found = run_compare(scenes, jax_settings.programs())
+    found = run_compare(scenes)
     named = list(zip(found.names, found.scenes, found.solutions, strict=True))
     return Outcome(
         " and ".join(found.names),

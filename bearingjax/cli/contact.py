@@ -1,6 +1,5 @@
 """`bearingjax contact`."""
 
-from . import jax_settings
 from .execute import Outcome, Tools
 from .options import add_plot, add_report, add_scene
 from .solution import why_unsolved
@@ -52,7 +51,7 @@ def run(options, tools: Tools) -> Outcome:
 
     if is_bearing(options.scene, options.set):
         bearing = read_scene(options.scene, options.set)
-        solution = run_scene(bearing, jax_settings.programs())
+        solution = run_scene(bearing)
         if not solution.converged:
             return Outcome(
                 bearing.name,

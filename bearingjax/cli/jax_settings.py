@@ -11,7 +11,13 @@ from .status import complain
 
 def configure(options) -> None:
     """float64, and compiled programs kept from one run to the next."""
+    # Matrices here are small: threads of LAPACK would only wait for each other, and
+    # thirty times as long beside other work. Read when SciPy is first imported.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
     import jax
+
+    from ..numerics.programs import keep_programs, user_cache
 
     # XLA prints a page of false alarms about CPU features when it loads a kept program.
     jax.config.update("jax_logging_level", "CRITICAL")
@@ -24,7 +30,7 @@ def configure(options) -> None:
     # Where in the sources an operation was written is of no use to a user.
     jax.config.update("jax_include_full_tracebacks_in_locations", False)
     if getattr(jax.config, "jax_compilation_cache_dir", None) is None:
-        cache = _cache() / "jax"
+        cache = user_cache() / "jax"
         # JAX would warn of every program that it cannot keep, among our own warnings.
         with contextlib.suppress(OSError):
             cache.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -34,14 +40,7 @@ def configure(options) -> None:
     warnings.filterwarnings("ignore", message)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)
-
-
-def programs() -> Path | None:
-    """Where the programs of a solve are kept; `None` if JAX is to keep none."""
-    import jax
-
-    kept = jax.config.values["jax_enable_compilation_cache"]
-    return _cache() / "programs" if kept else None
+    keep_programs(keep=jax.config.values["jax_enable_compilation_cache"])
 
 
 def devices(options) -> int:
@@ -57,15 +56,9 @@ def devices(options) -> int:
     return count
 
 
-def _cache() -> Path:
-    """Where this user's files of the package are kept."""
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(base) / "bearingjax"
-
-
 def _is_shared(folder: Path) -> bool:
     """Whether others can write what would be run from there; says so."""
-    from ..scene.programs import is_private
+    from ..numerics.programs import is_private
 
     shared = hasattr(os, "geteuid") and not is_private(folder.lstat())
     if shared:

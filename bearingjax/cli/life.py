@@ -2,7 +2,6 @@
 
 import dataclasses
 
-from . import jax_settings
 from .execute import Outcome, Tools
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
 from .solution import solution_outcome
@@ -61,7 +60,7 @@ def _life_of_cases(options, tools: Tools) -> Outcome:
     )
 
     table = read_cases(options.scene, options.set)
-    table = cases_with_set_preload(table, jax_settings.programs())
+    table = cases_with_set_preload(table)
     done, scene = run_life(table, tools.shown), table.scene
     solved = done.converged
 

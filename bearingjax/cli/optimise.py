@@ -1,6 +1,5 @@
 """`bearingjax optimise`."""
 
-from . import jax_settings
 from .execute import Outcome, Tools
 from .options import add_plot, add_quiet, add_report, add_scene
 
@@ -46,7 +45,7 @@ def run(options, tools: Tools) -> Outcome:
     solved = found.converged
     best = scene_of_design(task, found.element)
     if solved:
-        best = with_set_preload(best, jax_settings.programs())
+        best = with_set_preload(best)
 
     def draw():
         from ..plot import optimised

@@ -1,6 +1,5 @@
 """The outcome of a solved bearing, of `solve` and what builds on it."""
 
-from . import jax_settings
 from .execute import Outcome
 
 
@@ -14,10 +13,10 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
     """
     from ..scene import as_dict, report, run_scene, with_set_preload
 
-    solution = run_scene(scene, jax_settings.programs())
+    solution = run_scene(scene)
     solved = bool(solution.converged)
     if solved:
-        scene = with_set_preload(scene, jax_settings.programs())
+        scene = with_set_preload(scene)
 
     told = report(scene, solution) if solved else None
 

@@ -62,7 +62,7 @@ def run(options, tools: Tools) -> Outcome:
     begin = time.perf_counter()
     table = read_cases(options.scene, options.set)
     check_table(options, table.cases.count)
-    table = cases_with_set_preload(table, jax_settings.programs())
+    table = cases_with_set_preload(table)
     interrupt = tools.until_written(Interrupt())
     if options.resume and options.table.exists():
         solved = resume_cases(table, options.table, tools.shown, interrupt)

@@ -7,6 +7,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ..numerics.implicit import attach_roots, stop
+from ..numerics.programs import program
 from ..numerics.quadrature import ContactMapped
 from ..numerics.types import Scalar, as_real
 from .halfspace.pressure import ContactSolution
@@ -39,7 +40,7 @@ class Slices(eqx.Module):
         return jnp.max(self.pressure)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def slices(
     contact: RollerContact,
     load: Scalar | float,

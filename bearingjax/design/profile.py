@@ -14,6 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .checks import check, in_range, is_traced, positive
@@ -91,7 +92,7 @@ class AbstractProfile(eqx.Module):
         """Checks of this kind of profile; all numbers are concrete."""
 
 
-@eqx.filter_jit
+@program(quick=True)
 def drops(
     profile: AbstractProfile,
     position: Array | np.ndarray,

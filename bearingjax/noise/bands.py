@@ -2,13 +2,13 @@
 
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from ..design.checks import positive
 from ..numerics.implicit import stop
+from ..numerics.programs import program
 from ..numerics.types import as_real
 from .level import REFERENCE_ACCELERATION, level
 from .spectrum import Spectrum
@@ -157,7 +157,7 @@ class Leakage(NamedTuple):
     need: Float[Array, "edge ..."]
 
 
-@eqx.filter_jit
+@program(quick=True)
 def leakage(spectrum: Spectrum, edges: Any) -> Leakage:
     """Estimate what the window of a spectrum spreads over edges of bands.
 
@@ -249,7 +249,7 @@ def band_power(spectrum: Spectrum, bands: Bands) -> tuple[Any, Any, Any, Any]:
     return _powers(spectrum, *_edges(spectrum, bands))
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _powers(spectrum, lower, upper):
     below, above = leakage(spectrum, lower), leakage(spectrum, upper)
     of_lower = below.up + below.down > above.up + above.down
@@ -261,7 +261,7 @@ def _powers(spectrum, lower, upper):
     )
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _by_band(spectrum, lower, upper, highest):
     held = _held(spectrum, lower, upper, highest)
     return jnp.where(held, _root(_sums(spectrum, lower, upper)), jnp.nan)
@@ -287,7 +287,7 @@ def _covers(spectrum, lower, upper, highest):
     return upper - lower >= spectrum.noise_bandwidth, upper <= highest
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _held(spectrum, lower, upper, highest):
     wide, within = _covers(spectrum, lower, upper, highest)
     *powers, _ = _powers(stop(spectrum), lower, upper)

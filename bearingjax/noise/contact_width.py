@@ -16,7 +16,6 @@ Source: integral of cos over the pressures of Hertz, (1 - s²) per width of an e
 import dataclasses
 from typing import Any
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
@@ -24,6 +23,7 @@ from ..contact.line import half_width
 from ..contact.point_law import ball_ellipses, balls_of
 from ..design import AbstractBallBearing, rows_of
 from ..design.material import contact_modulus
+from ..numerics.programs import program
 from .free_row import of_rows
 from .model import NoiseModel
 from .standing import standing
@@ -46,7 +46,7 @@ def bridged(model: NoiseModel) -> NoiseModel:
     return dataclasses.replace(model, half_width=_half_widths(model, model.orbits))
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _half_widths(model, orbits):
     system = model.still_system()
     start, _ = standing(model, system, orbits)
@@ -80,7 +80,7 @@ def contact_half_width(bearing: Any, load: np.ndarray) -> float:
     return float(_half_width(bearing, carried.mean()))
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _half_width(bearing, load):
     if isinstance(bearing, AbstractBallBearing):
         cosine = jnp.atleast_1d(bearing.free_cosine)

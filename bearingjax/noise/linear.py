@@ -15,7 +15,6 @@ where many of them carry alike.
 
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jax import lax
@@ -23,6 +22,7 @@ from jaxtyping import Array, Complex, Float, Int
 
 from ..design.checks import check, real_numbers
 from ..numerics.lapack import solve_any
+from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from .model import NoiseModel
 from .natural import contact_stiffness
@@ -97,7 +97,7 @@ def linear_model(model: NoiseModel) -> LinearModel:
     return _linear_model(model, model.orbits)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _linear_model(model, orbits) -> LinearModel:
     system = model.still_system()
     start, result = standing(model, system, orbits)
@@ -148,7 +148,7 @@ def transfer(model: NoiseModel, frequencies: Any) -> Transfer:
     return _transfer(model, frequency, model.orbits)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _transfer(model, frequency, orbits) -> Transfer:
     linear = _linear_model(model, orbits)
     k, n = len(model.freedoms), linear.mass.shape[0]

@@ -27,6 +27,7 @@ from ..design.form_error import FormErrors, Surfaces
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..element.inertia import Speed
+from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.options import SolveOptions
@@ -262,7 +263,7 @@ def _surfaces(model: NoiseModel, found: FreeRow) -> tuple[Surfaces, ...]:
     return tuple(one.bridging(b, jnp.full_like(b, p)) for one, b in rows)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _system(model, points) -> NoiseSystem:
     found = FreeRow.of(model.small, model.speed)
     some = jax.tree.leaves(model.errors)

@@ -16,6 +16,7 @@ from jaxtyping import Array, Float, Int
 from ..design import BearingSet, rows_of
 from ..design.checks import check, count, is_traced
 from ..design.form_error import FormErrors, RacewayErrors
+from ..numerics.programs import program
 from ..numerics.result import Result
 from .bands import Bands, band_levels, octave_bands, total_root_mean_square
 from .level import REFERENCE_ACCELERATION, level
@@ -234,7 +235,7 @@ class Records:
                 progress(int(at[-1]) + 1, len(keys))
 
 
-@eqx.filter_jit
+@program
 def _records(model, tolerances, factors, keys, counts):
     """Accelerations (bearing, time, 3) and result codes of a batch."""
     turns, settle, samples, steps = counts

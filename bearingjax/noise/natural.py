@@ -20,6 +20,7 @@ from jaxtyping import Array, Float, Int
 from ..design import rows_of
 from ..numerics.implicit import stop
 from ..numerics.lapack import eigh
+from ..numerics.programs import program
 from .model import NoiseModel
 from .standing import standing
 from .system import NoiseSystem
@@ -105,7 +106,7 @@ def natural_modes(model: NoiseModel) -> NaturalModes:
     return _natural_modes(model, model.orbits)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _natural_modes(model, orbits) -> NaturalModes:
     system = model.still_system()
     motion, result = standing(model, system, orbits)

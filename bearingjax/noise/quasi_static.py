@@ -19,6 +19,7 @@ from ..design.checks import check, count
 from ..design.deviation import with_raceways
 from ..element.bearing_element import BearingElement
 from ..element.rolling_element import split
+from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.load import solve
@@ -136,7 +137,7 @@ def at_instant(
     return eqx.tree_at(lambda e: e.bearing, element, bearing)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _excitation(model, turns, samples, held) -> Excitation:
     system = dataclasses.replace(model, cage=None).system()
     options = model.solve_options

@@ -21,6 +21,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import check
+from ..numerics.programs import program
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from .bands import LEAST_SHIFT, Bands, band_power, shift
@@ -258,7 +259,7 @@ def _mean_square(acceleration, along):
     return jnp.sum(jnp.var(acceleration @ along, axis=-2), axis=-1)
 
 
-@eqx.filter_jit
+@program
 def _slopes(model, tolerances, keys, counts, along):
     """Derivatives of every bearing's mean square by the sources' scales."""
     turns, settle, samples, steps = counts

@@ -22,6 +22,7 @@ import numpy as np
 from jaxtyping import Array, Complex, Float
 
 from ..design.checks import check, concrete, positive
+from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real, namespace
 
 WHOLE_TURNS = 1e-3
@@ -230,7 +231,7 @@ def spectrum(
     return _spectrum(signal, duration, shaft_frequency, window)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _spectrum(signal, duration, shaft_frequency, window) -> Spectrum:
     count = signal.shape[0]
     axes = [1] * (signal.ndim - 1)

@@ -17,6 +17,7 @@ from jaxtyping import Array, Float, Int
 
 from ..design.checks import check, count, is_traced
 from ..numerics.implicit import stop
+from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.options import DEFAULT_TOLERANCE
@@ -228,7 +229,7 @@ def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
     return max(1, math.ceil(sample * fastest / STEP))
 
 
-@eqx.filter_jit
+@program
 def _of_cage(model) -> Scalar:
     """Bound of how fast a cage, and the balls along the pitch circle, move [rad/s]."""
     system = model.still_system()
@@ -243,7 +244,7 @@ def _of_cage(model) -> Scalar:
     return jnp.max(jnp.stack(rates))
 
 
-@eqx.filter_jit
+@program
 def _vibration(model, turns, settle, samples, steps) -> Vibration:
     system = model.system()
     start, result = standing(model, system)

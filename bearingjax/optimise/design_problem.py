@@ -5,11 +5,11 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ..numerics.programs import program
 from ..numerics.result import Result, SolveError
 from ..statics.cases import Cases
 from ..statics.options import SolveOptions
@@ -205,7 +205,7 @@ class Run(NamedTuple):
     jacobian: Any
 
 
-@eqx.filter_jit
+@program
 def _program(
     element, cases, measures, paths, options, build, unit, lower, width, slopes
 ) -> Run:

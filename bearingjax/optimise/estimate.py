@@ -32,6 +32,7 @@ from ..design import (
     rows_of,
 )
 from ..design.checks import check, in_range, is_traced, positive
+from ..numerics.programs import program
 from ..numerics.types import as_real
 from ..statics import row_rating
 from ..statics.rating import nominal_contact_angle
@@ -359,7 +360,7 @@ def _residuals(rated, known, sizes, count):
     )
 
 
-@eqx.filter_jit
+@program
 def _with_slopes(rated: _Rated, known, sizes, count):
     def residuals(sizes):
         values = _residuals(rated, known, sizes, count)
@@ -429,7 +430,7 @@ def _envelope(numbers, kind, typical: Proportions) -> _Envelope:
     return _Envelope(*(np.asarray(value, float) for value in values))
 
 
-@eqx.filter_jit
+@program
 def _reach(rated: _Rated, known, shares, length):
     """Ratings [N] of rows of one element, and the most elements, over diameters.
 

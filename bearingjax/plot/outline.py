@@ -2,7 +2,6 @@
 
 from typing import NamedTuple
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
@@ -11,6 +10,7 @@ from ..design.bearing import AbstractRollerBearing
 from ..design.profile import drops
 from ..element.constants import contact_constants
 from ..numerics import Midpoint
+from ..numerics.programs import program
 from .style import RACEWAYS
 
 _BODY = 0.35  # thickness of the schematic rings, roller diameters
@@ -112,7 +112,7 @@ def section(bearing: AbstractRollerBearing) -> Section:
     )
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _rib_contacts(bearing):
     return contact_constants(bearing, Palmgren(), Midpoint()).ribs
 

@@ -3,7 +3,6 @@
 import warnings
 from typing import Any
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -13,6 +12,7 @@ from ..design.checks import check, is_traced, real_numbers
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS, LOADS
 from ..element.inertia import Speed
+from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import as_real
 from ..statics.linearise import OperatingPoint, linearise
@@ -97,7 +97,7 @@ def _warn_of_slack(element, speeds, stiffness):
     )
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _sweep(element, speeds, load, tilts, fixed_ring):
     """Stiffness (speed, 3, 3) and result code (speed,)."""
 

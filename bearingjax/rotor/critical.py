@@ -14,6 +14,7 @@ from ..design.checks import count as whole
 from ..design.checks import is_traced, number
 from ..numerics.implicit import stop
 from ..numerics.lapack import cholesky, congruent, eigh, solve_any
+from ..numerics.programs import program
 from ..numerics.types import as_count
 from .modes import (
     direction,
@@ -115,7 +116,7 @@ def _warn_if_near(found, speed):
         )
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _critical(rotor, count):
     fixed = stop(rotor)
     found, point, right, left = _search(fixed, count + _SPARE)

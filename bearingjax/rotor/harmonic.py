@@ -2,12 +2,12 @@
 
 from typing import Any
 
-import equinox as eqx
 import jax.numpy as jnp
 from jax import lax
 
 from ..design.checks import number
 from ..numerics.lapack import solve_any
+from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from .loads import RotorLoads
 from .modes import speed_list, to_complex
@@ -46,7 +46,7 @@ def harmonic_response(
     return steady(rotor, moments, to_complex(loads.shaken(rotor)), frequencies, speeds)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def reduction_error(
     rotor: Rotor, loads: RotorLoads, frequency: Any, speed: Any, modes: int
 ) -> Scalar:

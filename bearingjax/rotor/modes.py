@@ -24,6 +24,7 @@ from ..design.checks import check, is_traced, number, real_numbers
 from ..design.checks import count as whole
 from ..numerics.implicit import stop
 from ..numerics.lapack import cholesky, congruent, eig, eigvals, solve_any
+from ..numerics.programs import program
 from ..numerics.types import as_count, as_real
 from .rotor import Rotor, RotorMatrices
 
@@ -121,7 +122,7 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
     return found
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _modes(rotor, speed, count):
     """Modes, and by how much unsymmetric stiffness raises Re λ of each [rad/s]."""
     matrices = rotor.linearised(speed)
@@ -215,7 +216,7 @@ def _warn_of_swaps(speeds, overlap):
     )
 
 
-@eqx.filter_jit
+@program(quick=True)
 def followed(
     rotor: Rotor, speeds: Float[Array, " speed"], count: int | None
 ) -> tuple[Modes, Float[Array, "speed mode"]]:

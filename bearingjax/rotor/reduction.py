@@ -2,13 +2,13 @@
 
 from typing import Any
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
 from ..numerics.lapack import cholesky, congruent, eigh, solve_any
+from ..numerics.programs import program
 from ..numerics.types import as_count
 from .rotor import N_HOUSING, N_STATION, Rotor
 
@@ -50,7 +50,7 @@ def craig_bampton(rotor: Rotor, modes: Any) -> Basis:
     return _basis(rotor, modes)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _basis(rotor, modes):
     own = rotor.unsupported()
     kept, rest = held_motions(rotor)

@@ -10,6 +10,7 @@ from jaxtyping import Array, Complex, Float
 
 from ..design.checks import non_negative, number
 from ..numerics.lapack import solve_any
+from ..numerics.programs import program
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 from .modes import speed_list, to_complex
@@ -100,7 +101,7 @@ def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceR
     return steady(rotor, moments, jnp.zeros_like(moments), speeds, speeds)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _moments(rotor, unbalances) -> Complex[Array, " motion"]:
     """Amplitude of the forces of unbalance on all motions, over Ω² [kg m]."""
     moments = to_complex(jnp.zeros_like(rotor.motions()[:, 0]))
@@ -112,7 +113,7 @@ def _moments(rotor, unbalances) -> Complex[Array, " motion"]:
     return moments
 
 
-@eqx.filter_jit
+@program(quick=True)
 def steady(
     rotor: Any,
     moments: Complex[Array, " motion"],

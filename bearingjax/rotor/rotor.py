@@ -10,6 +10,7 @@ from jax import lax
 from jaxtyping import Array, Complex, Float
 
 from ..design.checks import instance
+from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from .damping import AbstractDamping
 from .held import of_each
@@ -252,7 +253,7 @@ class Rotor(eqx.Module):
         )
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _linearised(rotor, speed, motion):
     own, basis, shaft = rotor.unsupported(), rotor.motions(), rotor.shaft
     every = jnp.eye(basis.shape[0], dtype=basis.dtype)

@@ -17,6 +17,7 @@ from ..numerics.implicit import attach_by, recall, stop, unless_failed
 from ..numerics.lapack import eigh
 from ..numerics.linear import solve
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
+from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from .condensed import Condensed, condensed
@@ -176,7 +177,7 @@ def _undone(of_y, y, change, parts):
     return -solve(parts.slope(parts.of_supports(y)[1]), change, False)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def settled_at(
     rotor, loads, speed
 ) -> tuple[StaticEquilibrium, Float[Array, " motion"]]:

@@ -15,6 +15,7 @@ from jaxtyping import Array, Float, Int
 
 from ..design.checks import check, is_traced, positive
 from ..design.checks import count as whole
+from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged, worst
 from ..numerics.types import Scalar, as_count, as_real
 from .rotor import Rotor
@@ -105,7 +106,7 @@ def _at_each(rotor, loads, speeds) -> StaticEquilibrium:
     return jax.tree.map(lambda *leaf: jnp.stack(leaf), *map(one, speeds))
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _settled_over(rotor, top_speed, speeds, found) -> StaticEquilibriumOver:
     series = jnp.asarray(chebyshev_analysis(speeds.shape[0]), top_speed.dtype)
     stiffness = jnp.tensordot(series, found.stiffness, 1)

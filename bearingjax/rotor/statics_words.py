@@ -3,11 +3,11 @@
 import warnings
 from typing import Any
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
 from ..design.checks import is_traced
+from ..numerics.programs import program
 from ..numerics.result import Result
 from .parts import LinearSupport
 from .rotor import N_STATION
@@ -99,7 +99,7 @@ def _lost_preload(rotor, found) -> str:
     return f"{'; '.join(words)}; the shaft goes {1e6 * travel:.4g} µm along z: {cure}"
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _at(support, motion, speed):
     """Force of a support where nothing has moved yet."""
     return support.force(motion, jnp.zeros_like(motion), speed)

@@ -2,8 +2,8 @@
 
 import dataclasses
 from functools import partial
-from pathlib import Path
 
+from ..numerics.programs import called
 from ..numerics.types import as_array
 from ..optimise.life import OfLife, RatingLife
 from ..optimise.optimise import Optimised, optimise
@@ -12,20 +12,16 @@ from ..statics.solution import Solution
 from .cases_table import turns_of
 from .life_table import life_conditions
 from .optimise_table import Optimisation
-from .programs import called
 from .quantity import SceneError
 from .read import Scene
 from .set_preload import preload_warnings, set_preload
 
 
-def run_scene(scene: Scene, programs: Path | None = None) -> Solution:
+def run_scene(scene: Scene) -> Solution:
     """Solve the bearing of a scene.
 
     Args:
         scene: From `read_scene`.
-        programs: Folder in which compiled programs are kept from one run to the next,
-            as the command line has one; `None`: compiled as `solve_load` is. For one
-            solve of a scene: compiled for the shortest wait, not for the fastest solve.
 
     Returns:
         Solution with its result code; nothing is raised for a failed solve.
@@ -41,9 +37,8 @@ def run_scene(scene: Scene, programs: Path | None = None) -> Solution:
             " read_scene."
         )
     return called(
-        programs,
         _solved,
-        scene.running(programs),
+        scene.running(),
         as_array(scene.load, float),
         {name: as_array(value, float) for name, value in scene.prescribed.items()},
         scene.free,
@@ -54,7 +49,7 @@ def run_scene(scene: Scene, programs: Path | None = None) -> Solution:
     )
 
 
-def with_set_preload(scene: Scene, programs: Path | None = None) -> Scene:
+def with_set_preload(scene: Scene) -> Scene:
     """The scene with what its fits make of the preload of a set, and what is odd.
 
     A scene without fits, or whose rows do not press each other, stays as it is:
@@ -62,12 +57,11 @@ def with_set_preload(scene: Scene, programs: Path | None = None) -> Scene:
 
     Args:
         scene: From `read_scene`.
-        programs: As of `run_scene`.
     """
     if scene.fits is None:
         return scene
-    ground = scene.ground(programs).drawing
-    found = set_preload(scene.fits, ground, scene.speed, programs)
+    ground = scene.ground().drawing
+    found = set_preload(scene.fits, ground, scene.speed)
     if found is None:
         return scene
     told = (*scene.warnings, *preload_warnings(found))

@@ -2,7 +2,6 @@
 
 import dataclasses
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import jax
@@ -57,16 +56,15 @@ class Comparison:
     quantities: dict[str, np.ndarray]
 
 
-def run_compare(scenes: Sequence[Scene], programs: Path | None = None) -> Comparison:
+def run_compare(scenes: Sequence[Scene]) -> Comparison:
     """Solve scenes and set their results side by side.
 
     Args:
         scenes: Two or more, from `read_scene`.
-        programs: As of `run_scene`.
     """
-    solutions = [jax.device_get(run_scene(scene, programs)) for scene in scenes]
+    solutions = [jax.device_get(run_scene(scene)) for scene in scenes]
     ready = [
-        with_set_preload(scene, programs) if solution.converged else scene
+        with_set_preload(scene) if solution.converged else scene
         for scene, solution in zip(scenes, solutions, strict=True)
     ]
     pairs = list(zip(ready, solutions, strict=True))

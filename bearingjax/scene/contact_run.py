@@ -10,6 +10,7 @@ from ..contact.halfspace import ConjugateGradients, FreeEnds
 from ..contact.line import Palmgren
 from ..contact.slices import Compared, slices
 from ..element import RINGS
+from ..numerics.programs import program
 from ..statics.refine import refine
 from ..statics.solution import Solution
 from ..statics.warning import warnings
@@ -101,7 +102,7 @@ def run_refined(
     return contact, [found]
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _solved(contact, widths, given, solver, sizes):
     def solve(width, case):
         grid = contact.grid(width, *sizes)
@@ -110,7 +111,7 @@ def _solved(contact, widths, given, solver, sizes):
     return jax.vmap(solve)(widths, given)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _sliced(contact, solved, law):
     def slice_(one):
         return slices(contact, one.load, one.tilt, one.grid.y, law)

@@ -4,12 +4,12 @@ import dataclasses
 import re
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 
 from ..lubrication import Lubricant
+from ..numerics.programs import program
 from ..numerics.types import as_array
 from ..statics.contact_films import Films, films
 from ..statics.friction import Friction, friction_torque
@@ -121,7 +121,7 @@ def _turning(solution):
     return np.asarray(solution.speed.inner) - np.asarray(solution.speed.outer)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _facts(solution, lubricant, temperature, supply, roughness, series, diameters):
     viscosity = lubricant.kinematic_viscosity(temperature)
     skf, more = None, dict(series=series, diameters=diameters)

@@ -13,6 +13,7 @@ from ..element import (
     ConstantAngle,
     Speed,
 )
+from ..numerics.programs import called
 from ..statics.installed import Installed
 from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
@@ -24,7 +25,6 @@ from .fit_table import Fits, fit_warnings, installed, read_fits
 from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
 from .operating_table import MOST_POINTS, OperatingKeys, OutputKeys, SolveKeys
-from .programs import called
 from .quantity import SceneError
 from .scene_file import (
     find_scene,
@@ -93,26 +93,18 @@ class Scene:
         """The bearing with its preload, seats and temperatures."""
         return installed(self.element, self.preload_force, self.fits, self.catalogue)
 
-    def ground(self, programs: Path | None = None) -> Installed:
+    def ground(self) -> Installed:
         """As `installed`, its rows ground to their preload.
-
-        Args:
-            programs: Folder in which compiled programs are kept from one run to the
-                next; `None`: compiled as any JAX function.
 
         Fails: offsets are NaN where the preload was not reached.
         """
         if self.preload_force is None:
             return self.installed
-        return called(programs, _ground, self.installed)
+        return called(_ground, self.installed)
 
-    def running(self, programs: Path | None = None) -> BearingElement[Any]:
-        """The element that every command solves: ground, mounted, warm and turning.
-
-        Args:
-            programs: As of `ground`.
-        """
-        return self.ground(programs).at()
+    def running(self) -> BearingElement[Any]:
+        """The element that every command solves: ground, mounted, warm and turning."""
+        return self.ground().at()
 
 
 def _ground(bearing: Installed) -> Installed:

@@ -1,7 +1,6 @@
 """Preload of a set on its seats: as it is ground, mounted, and in operation."""
 
 import dataclasses
-from pathlib import Path
 from typing import Any
 
 import equinox as eqx
@@ -10,12 +9,12 @@ import numpy as np
 
 from ..design import Limits, Mounting, mounting_at, sized
 from ..element import BearingElement, Speed
+from ..numerics.programs import called
 from ..numerics.types import as_array
 from ..statics.installed import Installed
 from ..statics.preload import is_opposed, remaining_preload
 from ..statics.sweep import stack_designs
 from .fit_table import Fits
-from .programs import called
 from .report_model import Column, Grid, Part
 
 _LEAST = 1e-6
@@ -51,7 +50,6 @@ def set_preload(
     fits: Fits,
     ground: BearingElement[Any],
     speed: Speed | None,
-    programs: Path | None = None,
 ) -> SetPreload | None:
     """Preload of a set on its seats; `None` if its rows do not press each other.
 
@@ -59,7 +57,6 @@ def set_preload(
         fits: Its seats.
         ground: The bearing before it is mounted, ground to its preload.
         speed: Of the rings in operation; `None`: at rest.
-        programs: As of `called`.
     """
     if not is_opposed(ground.bearing):
         return None
@@ -82,7 +79,7 @@ def set_preload(
     if speed is not None:
         given = [Speed(0.0, 0.0) if s is None else s for _, s in possible.values()]
         speeds = jax.tree.map(lambda *x: as_array(np.stack(x), float), *given)
-    found = np.asarray(called(programs, _preloads, elements, speeds))
+    found = np.asarray(called(_preloads, elements, speeds))
     force = dict.fromkeys(states, np.nan)
     # Of round-off there is no preload.
     found = np.where(np.abs(found) < _LEAST, 0.0, found)

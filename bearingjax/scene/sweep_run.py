@@ -2,7 +2,6 @@
 
 import dataclasses
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import jax
@@ -121,17 +120,16 @@ def _on_seats(part: Structure, solved: Sweep) -> Sweep:
     )
 
 
-def cases_with_set_preload(table: CaseTable, programs: Path | None = None) -> CaseTable:
+def cases_with_set_preload(table: CaseTable) -> CaseTable:
     """The cases of one design with what `with_set_preload` finds of its set, the ends
     over the tolerances of its seats included; others as they are.
 
     Args:
         table: From `read_cases`.
-        programs: As of `run_scene`.
     """
     if table.cases.design is not None:
         return table
-    scene = with_set_preload(table.scene, programs)
+    scene = with_set_preload(table.scene)
     part = dataclasses.replace(table.structures[0], scene=scene)
     return dataclasses.replace(table, scene=scene, structures=(part,))
 

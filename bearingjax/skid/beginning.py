@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from functools import partial
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -11,6 +10,7 @@ from jaxtyping import Array, Float
 
 from ..element.inertia import Speed
 from ..numerics.implicit import stop
+from ..numerics.programs import program
 from ..numerics.types import Scalar
 from ..statics.balance import Balance
 from ..statics.solution import BallSolution, RollerSolution
@@ -52,7 +52,7 @@ def tabulated(
     return load_table(balls)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def surroundings(
     model: SkidModel,
     solution: BallSolution | RollerSolution,
@@ -76,7 +76,7 @@ def surroundings(
     return _begun(model, table, solution, speed, gravity, centre, jnp.zeros(0))
 
 
-@eqx.filter_jit
+@program(quick=True)
 def balanced_surroundings(
     model: SkidModel,
     solution: BallSolution,

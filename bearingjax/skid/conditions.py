@@ -2,7 +2,6 @@
 
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..contact.point_law import ball_ellipses, balls_of
 from ..element.inertia import Speed
+from ..numerics.programs import program
 from .ball_motion import BallState, sliding, tractions
 from .loaded import loaded_ball
 from .model import SkidModel
@@ -123,7 +123,7 @@ def by_raceway(values: ArrayLike, load: ArrayLike) -> np.ndarray:
     return np.take_along_axis(values.reshape(shape), busier, axis=-1)[..., 0]
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _conditions(model, load, angle, spin, orbit, inner, outer):
     bearing, law = model.bearing, model.element.point_law
 

@@ -15,6 +15,7 @@ import numpy as np
 from ..design import pitch_radius
 from ..design.checks import is_traced
 from ..element.inertia import Speed
+from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..statics.balance import balance_of
 from ..statics.load import solve_load
@@ -177,7 +178,7 @@ def failure(found: SteadyMotion) -> str:
     return f"{int(found.steps)} steps; {out}, {power}"
 
 
-@eqx.filter_jit
+@program
 def end_state(
     model: SkidModel,
     solution: Any,

@@ -20,6 +20,7 @@ from ..design.checks import count, is_traced, positive
 from ..element.inertia import Speed
 from ..numerics.gravity import GRAVITY
 from ..numerics.implicit import stop
+from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from ..statics.balance import balance_of
@@ -248,7 +249,7 @@ def _balance(model, solution, given):
     return balance_of(case, pitch_radius(bearing), options.moving_ring == "outer")
 
 
-@eqx.filter_jit
+@program
 def _skid(around, solution, start, times, duration, options):
     moved = integrated(around, start, times, duration, options)
     found: Any = jax.vmap(partial(_reported, around))(times, moved.state)

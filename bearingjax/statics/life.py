@@ -21,6 +21,7 @@ from ..element.frame import RINGS
 from ..element.inertia import Speed
 from ..numerics.implicit import unless_failed
 from ..numerics.power import positive_power
+from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .equivalent_load import EquivalentLoad, equivalent_load, left_out
@@ -404,7 +405,7 @@ def solution_loads(
     return load * jnp.asarray(edge_stress(laminae), load.dtype)[None, None]
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _life(bearing, solution, *others) -> Life:
     return unless_failed(_life_of, (bearing, solution, *others), solution.converged)
 

@@ -7,7 +7,6 @@ the search for the equilibrium, and the solution with its result code.
 from collections.abc import Sequence
 from typing import Any, TypedDict, Unpack, overload
 
-import equinox as eqx
 from jaxtyping import Array, Int
 
 from ..design import (
@@ -20,6 +19,7 @@ from ..element.bearing_element import BearingElement, check_element
 from ..element.bearing_model import BearingModel
 from ..element.inertia import Speed
 from ..numerics.implicit import stop, unless_failed
+from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from .balance import balance_of
@@ -158,7 +158,7 @@ def solve(
     return _solve(element, element.model(speed), case, options)
 
 
-@eqx.filter_jit
+@program
 def _solve(
     element: BearingElement, model: BearingModel, case: LoadCase, options: SolveOptions
 ) -> Solution:

@@ -22,6 +22,7 @@ from ..design import (
     rows_of,
 )
 from ..design.checks import is_traced, positive
+from ..numerics.programs import program
 from ..numerics.types import Flag, Scalar, as_real
 from ..numerics.units import unit
 from . import row_rating as by_row
@@ -212,13 +213,13 @@ def rated_axially(bearing: AbstractBearing | BearingSet) -> Flag:
 _capacities = eqx.filter_jit(by_row.capacities)
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _limit(row, static):
     share, power = (22, 0.5) if isinstance(row, BallRow) else (8.2, 0.3)
     return static / share / _large(row) ** power
 
 
-@eqx.filter_jit
+@program(quick=True)
 def _contact_limit(rows, is_thrust):
     row, angle = rows.row, rows.row.contact_angle
     axial = is_thrust | (angle > THRUST_ANGLE)

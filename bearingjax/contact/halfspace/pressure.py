@@ -16,6 +16,7 @@ from ...design.checks import check
 from ...numerics import lanes
 from ...numerics.implicit import attach_by, stop
 from ...numerics.linear import solve_symmetric
+from ...numerics.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Count, Flag, Scalar, as_real
 from .gradients import (
@@ -209,7 +210,7 @@ def solve_pressure(
     return raise_unless_converged(solution, solution.result, lambda: message(solution))
 
 
-@eqx.filter_jit
+@program
 def _solved(problem, solver):
     dtype = problem.gap.dtype
     pressed = lanes.run(solver.loop(), stop(problem))

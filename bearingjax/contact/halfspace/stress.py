@@ -17,6 +17,7 @@ from jaxtyping import Array, Float
 
 from ...design.checks import check
 from ...numerics.lapack import eigh
+from ...numerics.programs import program
 from ...numerics.types import Scalar, as_real
 from .grid import Grid
 from .pressure import ContactSolution
@@ -119,7 +120,7 @@ def stress_below(
     )
 
 
-@eqx.filter_jit
+@program
 def _stress(grid, pressure, places, poisson, shape):
     xs, ys, steps = _corners(grid, pressure)
     points = jnp.stack([place.ravel() for place in places], axis=-1)

@@ -25,6 +25,7 @@ from jaxtyping import Array, Float, Int
 from ...design.checks import real_numbers
 from ...numerics.implicit import attach_by, stop, unless_failed
 from ...numerics.lapack import eig, pseudoinverse, solve_any
+from ...numerics.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
 from .method import AbstractMethod
@@ -225,7 +226,7 @@ def _linear(system, rest, freedom, method, mode):
     )
 
 
-@eqx.filter_jit
+@program
 def _followed(system, peaks, freedom, method, mode):
     fixed, size = stop(system), stop(system.scale[freedom])
     where = _at_rest(system)

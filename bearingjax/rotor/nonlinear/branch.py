@@ -3,13 +3,13 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from ...design.checks import positive
+from ...numerics.programs import program
 from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
 from .continuation import (
@@ -153,7 +153,7 @@ def follow(
     )
 
 
-@eqx.filter_jit
+@program
 def _traced(system, method, motion, begin, end, parameter, steps, points) -> Traced:
     z, unit = method.unknowns(motion), system.reference_frequency
     return trace(
@@ -167,7 +167,7 @@ def _traced(system, method, motion, begin, end, parameter, steps, points) -> Tra
     )
 
 
-@eqx.filter_jit
+@program
 def _along(system, method, x, tangent, length):
     """Point of the branch at some length along its tangent from `x`."""
     return place(system, method, x + length * tangent, tangent, tangent)

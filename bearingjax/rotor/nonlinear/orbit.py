@@ -11,6 +11,7 @@ from jaxtyping import Array, Complex, Float, Int
 
 from ...numerics.implicit import attach_by, stop, unless_failed
 from ...numerics.lapack import eigvals, solve_any
+from ...numerics.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Flag, Scalar, as_real
 from .method import AbstractMethod, Motion
@@ -229,7 +230,7 @@ def beginning(
     return u, jnp.fft.irfft(turned, n=u.shape[0], axis=0)
 
 
-@eqx.filter_jit
+@program
 def _solved(system, frequency, method, motion, max_steps):
     fixed, ratio = stop(system), frequency / system.reference_frequency
     begin = jnp.append(method.unknowns(stop(motion)), stop(ratio))

@@ -1,6 +1,5 @@
 """The largest amplitude along a branch, with its derivatives."""
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -8,6 +7,7 @@ from jax import lax
 
 from ...numerics.implicit import attach_by, stop, unless_failed
 from ...numerics.lapack import solve_any
+from ...numerics.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from .branch import Branch
 from .continuation import place
@@ -95,7 +95,7 @@ def _size(system, freedom, method):
     return of
 
 
-@eqx.filter_jit
+@program
 def _found(system, points, freedom, method):
     fixed = stop(system)
     size = _size(fixed, freedom, method)

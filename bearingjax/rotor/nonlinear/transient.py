@@ -21,6 +21,7 @@ from ...numerics.implicit import stop
 from ...numerics.in_time import Options
 from ...numerics.in_time import integrated as in_time
 from ...numerics.lapack import solve_any
+from ...numerics.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
 from .run_up import FrequencyTable, as_frequency_table
@@ -198,7 +199,7 @@ def beginning(
     return displacement, velocity
 
 
-@eqx.filter_jit
+@program
 def _simulated(*given):
     return moved(*given)
 

@@ -12,6 +12,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...numerics.lapack import pseudoinverse
+from ...numerics.programs import program
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 from ..held import of_each
@@ -141,7 +142,7 @@ def vibrating_rotor(
     )
 
 
-@eqx.filter_jit
+@program
 def _assembled(rotor, scale, speed, modes, about):
     """Matrices without supports, how supports move, sizes, motions unreduced."""
     matrices = rotor.linearised(0.0 if speed is None else speed, about)

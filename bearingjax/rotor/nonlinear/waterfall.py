@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ...design.checks import check, count, real_numbers
+from ...numerics.programs import program
 from ...numerics.types import Scalar, as_real
 from .run_up import as_frequency_table
 from .system import AbstractVibratingSystem
@@ -75,7 +76,7 @@ def waterfall(
     return _spectra(system, each, begin, options, tuple(numbers.values()))
 
 
-@eqx.filter_jit
+@program
 def _spectra(system, frequencies, start, options, numbers):
     settle, periods, samples = numbers
     total = periods * samples

@@ -1,9 +1,9 @@
-"""Compiled programs, kept from one run of the command line to the next.
+"""Compiled programs, kept from one process to the next.
 
-A command that solves one scene spends its time on tracing and compiling, not on
-solving. So its program is compiled with options that save more of the compiler's time
-than they cost in the solve, and the executable itself is kept in a file. A later run
-on inputs of the same structure loads it and neither traces, lowers nor compiles.
+A command, and a script that begins, spend their time on tracing and compiling, not on
+solving. Once `keep_programs` is called, the executable of every `program` of this
+package is kept in a file. A later process that calls it with inputs of the same
+structure loads it and neither traces, lowers nor compiles.
 
 A kept executable is unpickled, and may then do what it likes. So it is read only from
 a folder and a file that belong to the user and that nobody else can write.
@@ -15,15 +15,19 @@ import hashlib
 import os
 import pickle
 import platform
+import re
 import stat
 import sys
 from collections.abc import Callable, Iterator
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+from jax.core import Tracer
 
 from .structure import UnknownStructure, structure
 
@@ -31,9 +35,9 @@ OPTIONS = {
     "xla_backend_optimization_level": 0,
     "xla_cpu_use_fusion_emitters": False,
 }
-"""XLA's options for a program that runs once."""
+"""XLA's options for a program whose run is short beside its compilation."""
 
-LARGEST = 256 * 1024 * 1024
+LARGEST = 512 * 1024 * 1024
 """Size of all that a folder keeps; what was not used for longest goes first [byte]."""
 
 _MARK = b"bearingjax program\n"
@@ -53,55 +57,163 @@ class _Program(NamedTuple):
         inputs: Number of its arguments, all arrays.
         outputs: What the function returns, with a `_Place` for every array.
         count: Number of arrays that it returns.
+        lapack: Whether it calls LAPACK.
     """
 
     executable: bytes
     inputs: int
     outputs: Any
     count: int
+    lapack: bool
+
+
+class _Store:
+    """Where programs are kept, and those that this process has at hand."""
+
+    folder: Path | None = None
+    at_hand: dict[str, Callable]
+
+    def __init__(self):
+        self.at_hand = {}
+
+
+_STORE = _Store()
+F = TypeVar("F", bound=Callable)
+
+
+def keep_programs(folder: str | Path | None = None, *, keep: bool = True) -> None:
+    """Keep the compiled programs of this package from one process to the next.
+
+    Holds for solves, rotors, noise and skidding that are called from Python as they
+    are; what your own `jax.jit` compiles, JAX's cache of compiled programs may keep.
+
+    Args:
+        folder: Where they are kept; `None`: `bearingjax/programs` in the user's cache
+            (`XDG_CACHE_HOME`, or `~/.cache`). It is made if there is none; if others
+            can write there, nothing is read or kept. 512 MB at most, those that were
+            not used for longest go first.
+        keep: Whether to keep them; `False` ends it.
+    """
+    if folder is None:
+        folder = user_cache() / "programs"
+    _STORE.folder = Path(folder) if keep else None
+    _STORE.at_hand.clear()
+
+
+def user_cache() -> Path:
+    """Where this user's files of the package are kept."""
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "bearingjax"
+
+
+def program(function: F | None = None, *, quick: bool = False) -> F:
+    """As `equinox.filter_jit`; its programs are kept once `keep_programs` is called.
+
+    Args:
+        function: Of a module of this package, found there by its name; depends on its
+            arguments alone.
+        quick: Whether kept programs are compiled for the shortest wait, `OPTIONS`, as
+            befits one whose run is short.
+    """
+    if function is None:
+        return functools.partial(program, quick=quick)  # pyright: ignore
+    jitted = eqx.filter_jit(function)
+
+    @functools.wraps(function)
+    def call(*args, **kwargs):
+        if _STORE.folder is None or not _is_eager(args, kwargs):
+            return jitted(*args, **kwargs)
+        given = jax.tree.map(_as_array, (args, kwargs))
+        name = _name(call, given)
+        if name is None:
+            return jitted(*args, **kwargs)
+        flat = _flattened(lambda a, k: function(*a, **k), given)
+        run = _STORE.at_hand.get(name)
+        if run is not None:
+            return run(flat[1])
+        options = OPTIONS if quick else {}
+        run, found = _first_run(flat, name, _STORE.folder, options)
+        _STORE.at_hand[name] = run
+        return found
+
+    return call  # pyright: ignore
+
+
+def called(function: Callable, *arguments: Any) -> Any:
+    """Call a function as it is, or as one program if programs are kept.
+
+    Args:
+        function, arguments: As of `call_once`.
+    """
+    if _STORE.folder is None:
+        return function(*arguments)
+    return call_once(function, *arguments, folder=_STORE.folder)
 
 
 def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
-    """Call a function, compiled for one call, or as an earlier run kept it.
+    """Call a function, compiled for the shortest wait, or as an earlier run kept it.
 
     Args:
         function: Of this package, found by its name; depends on its arguments alone.
         arguments: Nested modules, tuples, dicts; their JAX arrays are traced.
-        folder: Where programs are kept; made if there is none. If others can write
-            there, nothing is read or kept.
+        folder: As of `keep_programs`.
 
     Returns:
         What the function returns.
     """
     if jax.default_backend() != "cpu":
         return eqx.filter_jit(function)(*arguments)
-    flat, arrays, outputs = _flattened(function, arguments)
+    flat = _flattened(function, arguments)
+    return _first_run(flat, _name(function, arguments), folder, OPTIONS)[1]
+
+
+def _is_eager(args: tuple, kwargs: dict) -> bool:
+    """Whether a call is one of its own, on the one device of a CPU."""
+    leaves = [x for x in jax.tree.leaves((args, kwargs)) if isinstance(x, jax.Array)]
+    return jax.default_backend() == "cpu" and not any(
+        isinstance(x, Tracer)
+        or jnp.issubdtype(x.dtype, jax.dtypes.prng_key)
+        or len(x.devices()) > 1
+        for x in leaves
+    )
+
+
+def _as_array(leaf: Any) -> Any:
+    return jnp.asarray(leaf) if isinstance(leaf, np.ndarray | np.generic) else leaf
+
+
+def _first_run(
+    flat: tuple, name: str | None, folder: Path, options: dict
+) -> tuple[Callable, Any]:
+    """A program as it was kept, or compiled; and what it returns.
+
+    Args:
+        flat: From `_flattened`.
+        name: Of its file; `None`: it is not kept.
+        folder: As of `keep_programs`.
+        options: Of the compiler.
+    """
+    function, arrays, outputs = flat
     with _opened(folder) as place:
-        name = None if place is None else _name(function, arguments)
+        name = None if place is None else name
         kept = _loaded(place, name)
         if kept is not None:
             # A program of another jaxlib may lack a function.
             with contextlib.suppress(jax.errors.JaxRuntimeError):
-                return kept(arrays)
-        lowered = jax.jit(flat).lower(*arrays)
-        if name is not None and _calls_out(lowered):
+                return kept, kept(arrays)
+        lowered = jax.jit(function).lower(*arrays)
+        libraries = _libraries(lowered)
+        if not all(library.startswith("lapack_") for library in libraries):
             name = None
-        compiled = _compiled(lowered, keep=name is not None)
+        compiled = _compiled(lowered, options, keep=name is not None)
         if name is not None:
-            _keep(place, name, compiled, len(arrays), outputs[0])
+            kept = len(arrays), outputs[0], bool(libraries)
+            _keep(place, name, compiled, *kept)
+
+    def run(arrays):
         return _filled(outputs[0], compiled(*arrays))
 
-
-def called(programs: Path | None, function: Callable, *arguments: Any) -> Any:
-    """Call a function as it is, or by `call_once`.
-
-    Args:
-        programs: Folder in which compiled programs are kept; `None`: as it is.
-        function, arguments: As of `call_once`.
-    """
-    if programs is None:
-        return function(*arguments)
-    return call_once(function, *arguments, folder=programs)
+    return run, run(arrays)
 
 
 def _flattened(
@@ -138,13 +250,9 @@ def _flattened(
     return flat, arrays, outputs
 
 
-def _calls_out(lowered) -> bool:
-    """Whether a program calls LAPACK, say, as the law of coupled slices does.
-
-    JAX finds the addresses of such libraries when it lowers a program; one that is
-    loaded without that would jump nowhere.
-    """
-    return "custom_call" in lowered.as_text()
+def _libraries(lowered) -> set[str]:
+    """Functions outside of XLA that a program calls: LAPACK, or back into Python."""
+    return set(re.findall(r"custom_call @(\w+)", lowered.as_text()))
 
 
 def _filled(outputs: Any, values: list) -> Any:
@@ -166,13 +274,13 @@ _ANEW = {
 from there lacks functions when it is kept once more (jaxlib 0.10)."""
 
 
-def _compiled(lowered, keep: bool):
+def _compiled(lowered, options: dict, keep: bool):
     """Compile, once in this process; of what is kept here, past JAX's own cache."""
     before = {name: jax.config.values[name] for name in _ANEW}
     for name, value in _ANEW.items() if keep else ():
         jax.config.update(name, value)
     try:
-        return lowered.compile(compiler_options=OPTIONS)
+        return lowered.compile(compiler_options=options)
     except jax.errors.JaxRuntimeError:
         # Another version of XLA, which does not know an option.
         return lowered.compile()
@@ -193,15 +301,19 @@ def _name(function: Callable, arguments: tuple) -> str | None:
 def _surroundings() -> Iterator[str]:
     """All else that the program follows from: sources, versions, settings, machine."""
     yield _sources()
-    yield sys.version
-    for package in ("bearingjax", "jax", "jaxlib", "equinox", "numpy"):
-        yield version(package)
+    yield _versions()
     places = ("jax_compilation_cache_dir", "jax_logging_level")
     yield repr(sorted((k, v) for k, v in jax.config.values.items() if k not in places))
     yield os.environ.get("XLA_FLAGS", "")
     yield repr(sorted(OPTIONS.items()))
     yield repr([device.device_kind for device in jax.devices()])
     yield _processor()
+
+
+@functools.cache
+def _versions() -> str:
+    names = ("bearingjax", "jax", "jaxlib", "equinox", "numpy")
+    return " ".join((sys.version, *map(version, names)))
 
 
 @functools.cache
@@ -215,6 +327,7 @@ def _sources() -> str:
     return digest.hexdigest()
 
 
+@functools.cache
 def _processor() -> str:
     """What the processor can do, or which machine it is."""
     names = ("vendor_id", "cpu family", "model", "stepping", "flags", "Features")
@@ -266,6 +379,10 @@ def _loaded(place: int | None, name: str | None):
         from jax.experimental.serialize_executable import deserialize_and_load
 
         program: _Program = pickle.loads(content)
+        if program.lapack:
+            # Lowering a call of LAPACK finds its addresses, which a program that is
+            # loaded without that does not know.
+            jax.jit(jnp.linalg.cholesky).lower(jnp.eye(1))
         inputs = jax.tree.structure((tuple(range(program.inputs)), {}))
         outputs = jax.tree.structure([0] * program.count)
         device = jax.devices()[0]
@@ -291,14 +408,15 @@ def _read(place: int, name: str) -> bytes | None:
     return content if head == _MARK + hashlib.sha256(content).digest() else None
 
 
-def _keep(place, name, compiled, inputs, outputs) -> None:
+def _keep(place, name, compiled, inputs, outputs, lapack) -> None:
     """Keep a program; without a word if it cannot be, as on a full disk."""
     from jax.experimental.serialize_executable import serialize
 
     beside = f"{name}.{os.getpid()}"
     try:
         executable, _, tree = serialize(compiled)
-        content = pickle.dumps(_Program(executable, inputs, outputs, tree.num_leaves))
+        program = _Program(executable, inputs, outputs, tree.num_leaves, lapack)
+        content = pickle.dumps(program)
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
         file = os.open(beside, flags, 0o600, dir_fd=place)
     except Exception:
