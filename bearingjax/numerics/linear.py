@@ -150,6 +150,27 @@ def _solve_scaled(matrix, rhs):
     return sizes * solve_any(scaled, sizes * rhs)
 
 
+def null_space(matrix: Float[Array, "n n"]) -> Float[Array, "n n"]:
+    """Projector on the directions that a matrix does not hold, (n, n) [1].
+
+    Zero if it holds all. It is not to be differentiated.
+
+    Args:
+        matrix: Symmetric and positive semidefinite, of size 1 [1].
+
+    Source: McWeeny, Rev. Mod. Phys. 32 (1960) 335: 3 P² - 2 P³ takes shares of an
+        eigenvector to 0 or 1; nothing but products, so that it batches.
+    """
+    # Sums over many elements leave more round-off than one product.
+    least = 32.0 * jnp.finfo(matrix.dtype).eps
+    eye = jnp.eye(matrix.shape[-1], dtype=matrix.dtype)
+    share = least * solve_symmetric(0.5 * (matrix + matrix.T) + least * eye, eye)
+    for _ in range(8):
+        square = jnp.matmul(share, share, precision="highest")
+        share = 3.0 * square - 2.0 * jnp.matmul(square, share, precision="highest")
+    return share
+
+
 def smallest_pivot(matrix: Float[Array, "n n"]) -> Float[Array, ""]:
     """Smallest pivot of the matrix scaled to a unit diagonal [1].
 

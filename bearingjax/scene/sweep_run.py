@@ -200,6 +200,9 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
         kinds = len(table.structures)
         of = f" of {kinds} structures, solved one after the other"
         told.append(f"{len(table.settings)} designs{of if kinds > 1 else ''}")
+    if OPERATING_PRELOAD in solved.outputs and table.scene.set_preload is None:
+        words = "at `fit.at` alone, not over the tolerances of the seats"
+        told.append(f"preload of the set in operation: {words} (`solve` tells those)")
     rows = []
     for header, pair in _spans(solved).items():
         name, _, unit = header.partition(" [")

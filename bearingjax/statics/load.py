@@ -106,8 +106,9 @@ def solve_load(
 
     Returns:
         Solution, differentiable with respect to design, load, prescribed values and
-        speeds (implicit function theorem). Derivatives of a failed solve are NaN, and
-        zero where it is masked.
+        speeds (implicit function theorem). By a load in a direction in which the ring
+        floats they are infinite, or NaN; `warnings` tells of such directions.
+        Derivatives of a failed solve are NaN, and zero where it is masked.
 
     Raises:
         TypeError: For a bearing in place of an element, or text in place of numbers.

@@ -56,7 +56,7 @@ def solution_of(
     y = differentiable(model, balance, minimum)
     q = balance.ring_freedoms(y)
     # gz may be prescribed: the results follow it through the azimuths.
-    solved = model.following(q, minimum.memory)
+    solved = model.following(q, minimum.memory.solved)
     fields, evaluated = describe(element, model, q, options.points, solved)
     left = stop(balance.out_of_balance(fields["force"]))
     reference = jnp.where(begin.size > 0, begin.size, evaluated.magnitude)

@@ -18,8 +18,8 @@ from jaxtyping import Array, Float
 from ..design import AbstractBallBearing, SetRow
 from ..element.bearing_model import BearingModel, Solved
 from ..numerics import lanes
-from ..numerics.implicit import attach_by
-from ..numerics.linear import solve
+from ..numerics.implicit import attach_by, stop
+from ..numerics.linear import null_space, solve
 from ..numerics.minimise import (
     Evaluation,
     Minimum,
@@ -33,6 +33,18 @@ from .options import SolveOptions
 
 SLOTS, IDLE = 64, 4
 """Cases of a batch that are at work at a time, and how many of them may be done."""
+
+
+class Known(NamedTuple):
+    """What an evaluation of the energy leaves.
+
+    Attributes:
+        solved: The rolling elements.
+        stiffness: Of the free unknowns, zero of the held ones (6, 6) [N/m].
+    """
+
+    solved: Solved
+    stiffness: Float[Array, "6 6"]
 
 
 class Beginning(NamedTuple):
@@ -129,11 +141,12 @@ def _problem(given: _Given, shapes: Solved) -> Problem:
     model, balance, begin, options = given
     # Nothing carries a load, so no solve starts from it.
     unsolved = jax.tree.map(lambda a: jnp.zeros(a.shape, a.dtype), shapes)
+    none = jnp.zeros((6, 6), balance.radius.dtype)
     return Problem(
         _energy(model, balance),
         begin.y,
         begin.step,
-        memory=unsolved,
+        memory=Known(unsolved, none),
         direction=begin.load / jnp.where(begin.size > 0, begin.size, 1.0),
         limit=begin.limit,
         force=begin.load,
@@ -148,7 +161,7 @@ def _energy(model: BearingModel, balance: Balance) -> Callable[..., Evaluation]:
 
     def function(y, _, before):
         q = balance.ring_freedoms(y)
-        solved = model.solve(q, model.near(before))
+        solved = model.solve(q, model.near(before.solved))
         e = model.evaluate(q, solved)
         h = jnp.outer(weight, weight) * e.stiffness[moving, moving]
         # Round-off of forces that cancel, and of positions in a stiff bearing.
@@ -159,7 +172,7 @@ def _energy(model: BearingModel, balance: Balance) -> Callable[..., Evaluation]:
             hessian=h + jnp.diag(1.0 - balance.free),
             scale=e.magnitude,
             noise=jnp.finfo(y.dtype).eps * floor,
-            memory=solved,
+            memory=Known(solved, h),
         )
 
     return function
@@ -170,67 +183,78 @@ def differentiable(
 ) -> Float[Array, "6"]:
     """The unknowns found, differentiable by the implicit function theorem [m].
 
-    By the load derivatives are infinite if no element
-    bears on both rings, at rest or at speed: the least load moves the ring to the end
-    of its clearance. By all else they are then zero.
+    In directions in which the ring floats, aslant of the axes too, derivatives by a
+    load along them are infinite: the least load moves the ring until other elements
+    bear. By all else they are zero there. If no element bears on both rings, at rest or
+    at speed, it floats in all that is free.
 
     Args:
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        minimum: What the search found; its memory are the solved elements.
+        minimum: What the search found; its memory is `Known`.
     """
     # All that is traced goes through the arguments: a derivative rule must not close
     # over it.
-    args = model, balance, minimum.memory
+    known = minimum.memory
+    apart = model.is_apart(known.solved)
+    stiffness = jnp.where(apart, 0.0, known.stiffness)
+    args = model, balance, known.solved, stiffness
 
-    def correction(of_y, y, change, _):
-        jacobian = jax.jacfwd(of_y)(y)
-        return -_by_stiffness(jacobian, change, model.has_potential)
+    def correction(of_y, y, change, args):
+        model, balance, _, stiffness = args
+        floating = _floating(stiffness, balance.free)
+        return -_by_stiffness(
+            jax.jacfwd(of_y)(y), change, floating, model.has_potential
+        )
 
     y = attach_by(_residual, minimum.x, args, correction)
-    loose = jnp.where(model.is_apart(minimum.memory), balance.free, 0.0)
-    return _without_limit(y, balance.along(balance.load), loose)
+    load = balance.along(balance.load)
+    return _without_limit(y, load, stiffness, balance.free)
 
 
-def _by_stiffness(stiffness, force, symmetric):
-    """How far the unknowns give way [m]; what is as good as not held, as if alone.
+def _floating(stiffness, free):
+    """Projector on the free directions that no more than round-off holds (6, 6) [1]."""
+    size = jnp.max(jnp.diagonal(stiffness))
+    size = jnp.where(size > 0, size, 1.0)
+    return null_space(stop(stiffness / size + jnp.diag(1.0 - free)))
 
-    All unknowns are metres here: a diagonal of round-off beside the others is none, and
-    what it passes on, scaled to its size, would drown them.
+
+def _by_stiffness(stiffness, force, floating, symmetric):
+    """How far the unknowns give way [m], none of it along those that float.
+
+    What nothing holds would else move by round-off over round-off, and drown the rest.
     """
-    diagonal = jnp.diagonal(stiffness)
-    least = 8.0 * jnp.finfo(diagonal.dtype).eps * jnp.max(diagonal)
-    held = ~(diagonal <= least)
-    both = held[:, None] & held[None, :]
-    alone = jnp.diag(jnp.where(held, 0.0, least))
-    return solve(jnp.where(both, stiffness, alone), force, symmetric)
+    size = jnp.max(jnp.diagonal(stiffness))
+    force = force - floating @ force
+    moved = solve(stiffness + size * floating, force, symmetric)
+    return moved - floating @ moved
 
 
 @jax.custom_jvp
-def _without_limit(y, load, loose):
-    """`y`, with infinite derivatives by the load, and no others, where it is loose."""
+def _without_limit(y, load, stiffness, free):
+    """`y`, with infinite derivatives by a load along which it floats."""
     return y
 
 
 def _rule(primals, tangents):
-    change, by_load, _ = tangents
-    y, _, loose = primals
-    if isinstance(change, SymbolicZero):
-        change = jnp.zeros_like(y)
-    change = jnp.where(loose > 0, 0.0, change)
+    change, by_load, *_ = tangents
+    y, _, stiffness, free = primals
+    change = jnp.zeros_like(y) if isinstance(change, SymbolicZero) else change
     if not isinstance(by_load, SymbolicZero):
-        change = change + jnp.where(loose > 0, _infinite(by_load), 0.0)
+        change = change + _infinite(by_load, _floating(stiffness, free))
     return _without_limit(*primals), change
 
 
-def _infinite(rate):
-    """Infinity times `rate`, 0 where that is 0, in forward and in reverse mode.
+def _infinite(rate, floating):
+    """Infinity times the part of `rate` that floats, 0 where that is round-off.
 
     To JAX it is a linear solve, which says itself what its transpose is.
     """
 
     def times(_, rate):
-        return jnp.where(rate == 0, 0.0, jnp.inf * rate)
+        part = floating @ rate
+        least = jnp.sqrt(jnp.finfo(rate.dtype).eps) * jnp.max(jnp.abs(rate))
+        return jnp.where(jnp.abs(part) <= least, 0.0, jnp.inf * part)
 
     return lax.custom_linear_solve(lambda x: 0.0 * x, rate, times, times)
 
@@ -240,7 +264,7 @@ _without_limit.defjvp(_rule, symbolic_zeros=True)
 
 def _residual(y, args):
     """Zero in balance."""
-    model, balance, solved = args
+    model, balance, solved, _ = args
     # A held freedom follows what is prescribed for it, not `y`: between it and the
     # free ones the Jacobian would not be symmetric.
     held = balance.held

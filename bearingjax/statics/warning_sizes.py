@@ -23,6 +23,7 @@ from ..design import (
 )
 from ..design.material import contact_modulus
 from ..element.frame import FREEDOMS, RINGS
+from ..element.kinematics import Linearised
 from ..numerics.types import namespace
 from .balls import above_round_off
 from .rollers import EDGE_PRESSURE
@@ -164,14 +165,37 @@ def _free_stiffness(solution):
     scale = (1.0 - turns) + turns / radius
     k = solution.stiffness[first : first + 6, first : first + 6]
     k = 0.5 * scale[None, :] * (k + k.T) * scale[:, None]
+    # Elements that just touch, where the ring came to rest, hold it to one side only.
+    across = _across(solution)
+    rest = xp.eye(6, dtype=k.dtype) - across[:, None] * across[None, :]
+    k = rest @ k @ rest
     index = np.array([FREEDOMS.index(name) for name in solution.free], dtype=int)
     scale = stiffness_scale(solution.element.bearing)
     nothing = xp.maximum(_ROUND_OFF * abs(k).max(), SOFTEST * scale)
     return k[np.ix_(index, index)], nothing
 
 
+def _across(solution):
+    """Unit vector (6,) of a free shift at right angles to all loaded elements; zero if
+    there is none, or finite kinematics, in which a shift across an element lifts it."""
+    xp = namespace(solution.result)
+    loaded = _one(solution, solution.load_zone)
+    double = 2.0 * solution.azimuth
+    x, y = (loaded * xp.cos(double)).sum(), (loaded * xp.sin(double)).sum()
+    along, count = 0.5 * xp.arctan2(y, x), loaded.sum()
+    shift = xp.stack([-xp.sin(along), xp.cos(along)])
+    # Of azimuths that differ by 1e-6 rad the sum of squares across is 1e-12.
+    one_line = (count > 0) & (0.5 * (count - xp.hypot(x, y)) <= 1e-12 * count)
+    linearised = isinstance(solution.element.kinematics, Linearised)
+    for part, name in zip(shift, FREEDOMS, strict=False):
+        free = linearised and name in solution.free
+        one_line = one_line & (free | (abs(part) <= 1e-6))
+    shift = shift * _one(solution, one_line)
+    return xp.concatenate([shift, xp.zeros(4, shift.dtype)])
+
+
 def loose(solution: Solution) -> Any:
-    """Number of free directions without stiffness.
+    """Number of free directions without stiffness, but of elements that just touch.
 
     Source: Sylvester's law of inertia: as many pivots are negative as eigenvalues.
     """

@@ -7,7 +7,7 @@ import pytest
 from tolerances import ROUNDING, SOLVER
 
 from bearingjax.numerics import smallest_pivot, solve_symmetric
-from bearingjax.numerics.linear import dot, lengths, norm, quadratic, trace
+from bearingjax.numerics.linear import dot, lengths, norm, null_space, quadratic, trace
 
 solve_many = jax.jit(jax.vmap(solve_symmetric))
 pivot_many = jax.jit(jax.vmap(smallest_pivot))
@@ -111,6 +111,18 @@ def test_smallest_pivot_by_hand():
     assert smallest_pivot(negative) < 0
     singular = smallest_pivot(jnp.ones((3, 3)))
     assert abs(singular) < ROUNDING
+
+
+@pytest.mark.parametrize("rank", [0, 3, 5])
+def test_null_space_is_that_of_the_eigenvectors(rank):
+    """Aslant of the axes; what is held softly is held."""
+    turned, _ = np.linalg.qr(np.random.default_rng(rank).normal(size=(5, 5)))
+    held = turned[:, :rank]
+    matrix = held @ np.diag(np.logspace(0, -9, rank)) @ held.T
+    free = turned[:, rank:]
+    found = null_space(jnp.asarray(matrix))
+    # Round-off over the softest that is held turns it a little.
+    np.testing.assert_allclose(found, free @ free.T, rtol=0, atol=1e-6)
 
 
 def test_written_out_products():

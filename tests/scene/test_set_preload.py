@@ -148,7 +148,9 @@ def test_a_sweep_tells_that_of_each_case(scene):
     )
     (text,) = set_warnings(cases, solved)
     assert f"200 N as ground are {wanted[1]:.4g} N to {wanted[0]:.4g} N in op" in text
-    assert f"warning: {text}" in str(sweep_report(cases, solved, 1.0))
+    report = str(sweep_report(cases, solved, 1.0))
+    assert f"warning: {text}" in report
+    assert "operation: at `fit.at` alone, not over the tolerances" in report
 
 
 def test_a_search_may_free_it(scene):

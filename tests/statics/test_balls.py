@@ -158,23 +158,33 @@ def test_preloaded_pair(angular):
     assert free.row_sizes == (12, 12)
 
 
-@pytest.mark.parametrize("make", ["back_to_back", "face_to_face"])
-def test_stiffness_of_a_pair_is_that_of_its_rows(angular, make):
-    """Each row's own stiffness, carried to the middle of the pair as a rigid body."""
+@pytest.mark.parametrize("make", ["back_to_back", "face_to_face", "four rows"])
+def test_stiffness_of_a_set_is_that_of_its_rows(angular, make):
+    """Each row's own stiffness, carried to the middle of the set as a rigid body."""
     single = np.asarray(angular.stiffness(jnp.zeros(12).at[8].set(8e-6)))[6:, 6:]
     expected = np.zeros((6, 6))
-    mirrored = (False, True) if make == "back_to_back" else (True, False)
-    for place, turned in zip((-0.01, 0.01), mirrored, strict=True):
+    if make == "four rows":
+        places, mirrored = (-0.03, -0.01, 0.01, 0.05), (False, True, True, False)
+        rows = [
+            bj.SetRow(angular.bearing, place, turned, -8e-6 if turned else 8e-6)
+            for place, turned in zip(places, mirrored, strict=True)
+        ]
+        bearing = bj.BearingSet(rows)
+    else:
+        places = (-0.01, 0.01)
+        mirrored = (False, True) if make == "back_to_back" else (True, False)
+        bearing = getattr(bj.BearingSet, make)(angular.bearing, 0.02, 16e-6)
+    for place, turned in zip(places, mirrored, strict=True):
         shift = np.eye(6)
         shift[0, 4], shift[1, 3] = place, -place
         turn = np.diag([1, 1, -1, -1, -1, 1.0]) if turned else np.eye(6)
         expected += shift.T @ turn @ single @ turn @ shift
-    pair = getattr(bj.BearingSet, make)(angular.bearing, 0.02, 16e-6)
-    k = np.asarray(bj.BearingElement(pair).stiffness(jnp.zeros(12)))[6:, 6:]
+    k = np.asarray(bj.BearingElement(bearing).stiffness(jnp.zeros(12)))[6:, 6:]
     scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))[:5, :5]
     assert np.abs((k - expected)[:5, :5] / scale).max() < ROUNDING
-    # O is stiff against tilting where X is not.
-    assert (expected[3, 3] > 3 * single[3, 3]) == (make == "back_to_back")
+    if make != "four rows":
+        # O is stiff against tilting where X is not.
+        assert (expected[3, 3] > 3 * single[3, 3]) == (make == "back_to_back")
 
 
 def test_work_on_a_closed_path_is_zero():

@@ -503,6 +503,30 @@ def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(name, speed
 
 
 @pytest.mark.slow
+@pytest.mark.slow
+def test_derivatives_of_a_ring_that_floats_aslant_of_the_axes():
+    """One ball holds it along the load alone: by clearance its derivative is half a
+    unit along, by load across infinite."""
+    direction = -1.1
+    along = np.array([np.cos(direction), np.sin(direction)])
+
+    @with_slopes
+    def moved(x):
+        bearing = balls(
+            8,
+            bj.DeepGrooveBallBearing,
+            first_azimuth=direction,
+            radial_internal_clearance=x[2],
+        )
+        load = jnp.concatenate([x[:2], jnp.zeros(4)])
+        return bj.solve_load(bj.BearingElement(bearing), load).displacement[6:8]
+
+    slopes, _ = moved(np.array([*(5.0 * along), 10e-6]))
+    assert np.all(np.isinf(slopes[:, :2]))
+    # The curvature of its raceway follows the clearance too.
+    np.testing.assert_allclose(slopes[:, 2], 0.5 * along, rtol=1e-5)
+
+
 def test_second_derivative_of_the_displacement():
     """The curvature of sag against load, by the implicit rule and by differences."""
     element = bj.BearingElement(taper(5), quadrature=bj.numerics.Midpoint(8))

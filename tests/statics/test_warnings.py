@@ -90,6 +90,19 @@ def test_no_stiffness_whatever_the_speed(deep, speed):
     assert "ux, uy" in text and "of the inner ring" in text
 
 
+def test_elements_that_just_touch_hold_nothing():
+    """Loaded through one roller aslant of the axes the ring comes to rest against the
+    next one, which is stiff from the first newton, but not loaded."""
+    at = -1.17019755
+    size = dict(radial_internal_clearance=10e-6, first_azimuth=at)
+    bearing = bj.CylindricalRollerBearing(7, 0.0725, 0.014, 0.01372, **size)
+    load = [np.cos(at), np.sin(at), 0, 0, 0, 0]
+    s = bj.solve_load(bj.BearingElement(bearing), load)
+    assert np.count_nonzero(s.load_zone) == 1
+    (text,) = (t for t in bj.warnings(s) if t.startswith("no stiffness"))
+    assert "in ux" in text
+
+
 def test_a_tenth_of_a_newton_holds(deep):
     assert bj.warnings(solved(deep, [0, -0.1, 0.1, 0, 0, 0])) == []
 
