@@ -94,6 +94,7 @@ from .element import Speed as Speed
 from .lubrication import Lubricant as Lubricant
 from .numerics import Result as Result
 from .numerics import SolveError as SolveError
+from .numerics import keep_programs as keep_programs
 from .statics import Cases as Cases
 from .statics import Installed as Installed
 from .statics import LifeConditions as LifeConditions

@@ -15,6 +15,7 @@ from .minimise import TrustRegionNewton as TrustRegionNewton
 from .power import ninth_root as ninth_root
 from .power import positive_power as positive_power
 from .power import smooth_power as smooth_power
+from .programs import keep_programs as keep_programs
 from .quadrature import AbstractQuadrature as AbstractQuadrature
 from .quadrature import ContactMapped as ContactMapped
 from .quadrature import Midpoint as Midpoint

@@ -61,7 +61,6 @@ def rerun(run, tmp_path) -> Callable:
 def run(monkeypatch, capsys):
     """Call `bearingjax` with arguments; programs are those of this process."""
     monkeypatch.setattr(jax_settings, "configure", lambda options: None)
-    monkeypatch.setattr(jax_settings, "programs", lambda: None)
 
     def call(*arguments):
         status = cli.main([str(a) for a in arguments])

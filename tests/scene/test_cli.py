@@ -57,7 +57,7 @@ WORDS = {
 def no_solve(monkeypatch):
     """Whatever is refused is refused before anything is solved."""
 
-    def refuse(scene, programs=None):
+    def refuse(scene):
         raise AssertionError("solved a scene")
 
     monkeypatch.setattr(bj.scene, "run_scene", refuse)
@@ -342,7 +342,6 @@ def test_folder_to_write_to(run, tmp_path, option):
 def test_reader_that_left(monkeypatch):
     """As in `bearingjax solve tapered | true`."""
     monkeypatch.setattr(jax_settings, "configure", lambda options: None)
-    monkeypatch.setattr(jax_settings, "programs", lambda: None)
     back, front = os.pipe()
     os.close(back)
     out = os.fdopen(front, "w")
@@ -368,7 +367,6 @@ def test_full_disk(run, monkeypatch, capsys, what):
         assert done == (2, "", f"bearingjax: {problem}\n")
         return
     monkeypatch.setattr(jax_settings, "configure", lambda options: None)
-    monkeypatch.setattr(jax_settings, "programs", lambda: None)
     with open("/dev/full", "w", encoding="utf-8") as out:
         with monkeypatch.context() as patch:
             patch.setattr(sys, "stdout", out)
@@ -424,11 +422,11 @@ def test_as_a_program_of_its_own(tmp_path):
         assert (done.returncode, done.stderr) == (0, "")
         assert done.stdout.startswith("cylindrical_rig: cylindrical roller bearing")
         assert read(out)["residual"] < SOLVER
-        return done.stdout, list((tmp_path / "cache/bearingjax/programs").iterdir())
+        return done.stdout, set((tmp_path / "cache/bearingjax/programs").iterdir())
 
     scene = ("cylindrical_rig", "--set", "output.points=3")
     first, kept = solve(*scene)
-    assert len(kept) == 1
+    assert kept
     other, still = solve(*scene, "--set", "operating.load.Fy=-9 kN")
     assert still == kept
     assert "-10.6 kN" in first and "-9 kN" in other and "-10.6 kN" not in other

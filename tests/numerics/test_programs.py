@@ -1,9 +1,8 @@
-"""Programs that the command line keeps: told apart, read from safe places only."""
+"""Kept programs: told apart, read from safe places only, loaded by new processes."""
 
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import equinox as eqx
 import jax
@@ -12,8 +11,8 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import programs
-from bearingjax.scene.structure import UnknownStructure, structure
+from bearingjax.numerics import programs
+from bearingjax.numerics.structure import UnknownStructure, structure
 
 # Every choice of a scene that is not a number, beside the choice that it replaces.
 OF_ROLLERS = (
@@ -52,7 +51,15 @@ OF_BALLS = (
 
 
 @pytest.fixture
-def name_of(monkeypatch):
+def store(tmp_path):
+    """Keep all programs in a folder of the test."""
+    programs.keep_programs(tmp_path / "programs")
+    yield tmp_path / "programs"
+    programs.keep_programs(keep=False)
+
+
+@pytest.fixture
+def name_of(monkeypatch, store):
     """Name under which the program of a scene would be kept."""
 
     class Named(Exception):
@@ -65,7 +72,7 @@ def name_of(monkeypatch):
 
     def call(scene, *settings):
         with pytest.raises(Named) as found:
-            bj.scene.run_scene(bj.read_scene(scene, settings), Path())
+            bj.scene.run_scene(bj.read_scene(scene, settings))
         return found.value.args[0]
 
     return call
@@ -172,19 +179,80 @@ def test_a_kept_program_is_not_traced_again(kept):
     assert [file.stat().st_mode & 0o777 for file in files] == [0o600] * 2
 
 
-def test_a_program_that_calls_a_library_is_not_kept(kept, monkeypatch):
-    """JAX sets up LAPACK when it lowers a call of it: loaded alone, it would crash."""
+def test_program_that_calls_back_is_not_kept(store, monkeypatch):
+    """A file cannot hold a function of Python; it runs all the same."""
+    calls = []
 
-    def factor(matrix):
-        return jax.scipy.linalg.cho_factor(matrix, lower=True)[0]
+    def called_back(x):
+        return jax.pure_callback(lambda x: calls.append(1) or 2.0 * x, x, x)
 
-    factor.__module__, factor.__qualname__ = programs.__name__, "factor"
-    monkeypatch.setattr(programs, "factor", factor, raising=False)
-    kept()
-    before = list(kept.folder.iterdir())
-    found = programs.call_once(factor, 4.0 * jnp.eye(2), folder=kept.folder)
-    assert np.array_equal(found, 2.0 * np.eye(2))
-    assert list(kept.folder.iterdir()) == before
+    called_back.__module__, called_back.__qualname__ = programs.__name__, "called_back"
+    called_back = programs.program(called_back)
+    monkeypatch.setattr(programs, "called_back", called_back, raising=False)
+    for _ in range(2):
+        assert called_back(jnp.array(3.0)) == 6.0
+    assert len(calls) == 2 and not list(store.iterdir())
+
+
+def test_program_is_traced_once_for_each_structure(store, monkeypatch):
+    traced = []
+
+    def scaled(x, *, factor):
+        traced.append(factor)
+        return {"scaled": factor * x, "factor": factor}
+
+    scaled.__module__, scaled.__qualname__ = programs.__name__, "scaled"
+    scaled = programs.program(scaled, quick=True)
+    monkeypatch.setattr(programs, "scaled", scaled, raising=False)
+    for x in (np.ones(2), 2.0 * jnp.ones(2)):
+        assert np.array_equal(scaled(x, factor=3)["scaled"], 3 * x)
+    assert traced == [3] and scaled(jnp.ones(2), factor=4)["factor"] == 4
+    programs.keep_programs(store)  # nothing at hand, all in the folder
+    assert np.array_equal(scaled(jnp.ones(2), factor=3)["scaled"], [3.0, 3.0])
+    assert traced == [3, 4] and len(list(store.iterdir())) == 2
+    # Within another program, under transformations, and with keys of random numbers.
+    slope = jax.grad(lambda x: jnp.sum(scaled(x, factor=3)["scaled"]))(jnp.ones(2))
+    assert np.array_equal(slope, [3.0, 3.0])
+    assert jax.vmap(lambda x: scaled(x, factor=3)["scaled"])(jnp.ones(2)).shape == (2,)
+    whole = jax.jit(lambda: scaled(jnp.ones(2), factor=3)["scaled"])
+    assert np.array_equal(whole(), [3.0, 3.0])
+    assert len(list(store.iterdir())) == 2
+
+
+OF_LAPACK = """
+import sys
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import bearingjax as bj
+from bearingjax.numerics import programs
+
+bj.keep_programs(sys.argv[1])
+programs._libraries = lambda lowered: print("lowered") or {"lapack_dgeev_ffi"}
+shaft = bj.rotor.Shaft([0.0, 0.2], outer_diameter=0.02)
+springs = [bj.rotor.LinearSupport(k, 1e6 * jax.numpy.eye(5)) for k in (0, 1)]
+rotor = bj.rotor.Rotor(shaft, supports=springs)
+print(*bj.rotor.modes(rotor, 100.0, count=2).frequency)
+"""
+
+
+def test_program_that_calls_lapack_is_loaded_by_a_new_process(tmp_path):
+    """JAX finds LAPACK when it lowers a call of it; without, the program crashed."""
+    folder = str(tmp_path / "programs")
+    first, second = (
+        subprocess.run(
+            [sys.executable, "-c", OF_LAPACK, folder],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        for _ in range(2)
+    )
+    assert "lowered" in first.stdout and "lowered" not in second.stdout
+    assert first.stdout.splitlines()[-1] == second.stdout
+    assert second.stderr == ""
 
 
 BESIDE_JAX = """
@@ -200,7 +268,7 @@ jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)
 
 import jax.numpy as jnp
 
-from bearingjax.scene import programs
+from bearingjax.numerics import programs
 
 def doubled(a, b):
     print("traced")
