@@ -67,7 +67,7 @@ from bearingjax import skid  # noqa: E402
 from bearingjax.numerics.types import as_real  # noqa: E402
 from bearingjax.skid.beginning import surroundings  # noqa: E402
 from bearingjax.skid.integration import Options, integrated  # noqa: E402
-from bearingjax.skid.load_table import _pieces  # noqa: E402
+from bearingjax.skid.load_table import _as_row, _pieces  # noqa: E402
 from bearingjax.skid.ring_speed import as_table  # noqa: E402
 from bearingjax.statics.load import solve_load  # noqa: E402
 
@@ -88,8 +88,10 @@ class InNumPy:
     """The right-hand side, speeds in units of the inner ring's."""
 
     def __init__(self, around, start, places):
-        around, start = jax.tree.map(np.asarray, (around, start))
-        ball, row = around.loads.like, around.loads.coefficients
+        rows = jax.vmap(lambda row: _as_row(row, around.loads.like))
+        row = rows(around.loads.rows[:, :-1])
+        around, start, row = jax.tree.map(np.asarray, (around, start, row))
+        ball = around.loads.like
         self.table = [row.angle, row.extent, row.log_mean, row.log_film[..., :2]]
         self.pieces, self.count = _pieces(), places
         self.balls, self.place = len(around.place), around.place

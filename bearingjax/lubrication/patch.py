@@ -37,19 +37,21 @@ _OF_MOMENTS = 24
 class Nodes(NamedTuple):
     """Points of a loaded area. x is the rolling direction, y runs across it.
 
+    On one axis or two: slices of a line, rays of an ellipse.
+
     Attributes:
-        x: Positions from the middle of the contact (node,) [m].
-        y: Positions (node,) [m].
-        area: Their shares of the area (node,) [m²].
-        pressure: Pressure (node,) [Pa].
-        viscosity: Viscosity at that pressure (node,) [Pa s].
+        x: Positions from the middle of the contact (*node,) [m].
+        y: Positions (*node,) [m].
+        area: Their shares of the area (*node,) [m²].
+        pressure: Pressure (*node,) [Pa].
+        viscosity: Viscosity at that pressure (*node,) [Pa s].
     """
 
-    x: Float[Array, " node"]
-    y: Float[Array, " node"]
-    area: Float[Array, " node"]
-    pressure: Float[Array, " node"]
-    viscosity: Float[Array, " node"]
+    x: Float[Array, "*node"]
+    y: Float[Array, "*node"]
+    area: Float[Array, "*node"]
+    pressure: Float[Array, "*node"]
+    viscosity: Float[Array, "*node"]
 
 
 class AbstractPatch(eqx.Module):
@@ -162,11 +164,10 @@ class EllipsePatch(AbstractPatch):
             left[:, None] * (inner[:, None] - jnp.outer(2.0 * way, toward))
         )
         area = self.rolling * self.transverse * jnp.outer(step, (1.0 - toward) * turn)
-        pressure = jnp.ravel(self.peak_pressure * share)
+        # Two axes to the end: in one row, the compiler would make no vectors of them.
+        pressure = self.peak_pressure * share
         viscosity = self.lubricant.viscosity(pressure, self.temperature)
-        return Nodes(
-            jnp.ravel(a * x), jnp.ravel(b * y), jnp.ravel(area), pressure, viscosity
-        )
+        return Nodes(a * x, b * y, area, pressure, viscosity)
 
     @property
     def extent(self):

@@ -97,9 +97,9 @@ class AbstractTraction(eqx.Module):
             squared, as_real(film), at.pressure, at.viscosity
         )
         return Resultants(
-            force=-jnp.stack([jnp.dot(resistance, ux), jnp.dot(resistance, uy)]),
-            moment=jnp.dot(resistance, at.y * ux - at.x * uy),
-            heat=jnp.dot(resistance, squared),
+            force=-jnp.stack([jnp.sum(resistance * ux), jnp.sum(resistance * uy)]),
+            moment=jnp.sum(resistance * (at.y * ux - at.x * uy)),
+            heat=jnp.sum(resistance * squared),
         )
 
 

@@ -121,9 +121,9 @@ class BallOrbit(AbstractOrbit):
         whole = jnp.kron(jnp.eye(places, dtype=own.dtype), own)
         return jnp.pad(whole, (0, self.start.size - whole.shape[0]))
 
-    def described(self, y, **known):
+    def described(self, y, solved, **known):
         speed, (own, _, _) = self.speed, self.parts(y)
-        ball, rolls = self.bodies(y)
+        ball, rolls = self.bodies(y, solved)
 
         def one(ball, rolls, own):
             state, moving, pulls, drag = self.forces(ball, rolls, own)

@@ -5,6 +5,7 @@ as the motion would, from pure rolling, and ends as Newton's method.
 """
 
 import abc
+import dataclasses
 from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
@@ -15,7 +16,7 @@ from jaxtyping import Array, Float, Int
 
 from ..design import pitch_radius
 from ..element.inertia import Speed
-from ..element.solved_row import RowResults
+from ..element.solved_row import RowResults, SolvedRow
 from ..numerics import lanes
 from ..numerics.implicit import attach_by, stop, unless_failed
 from ..numerics.lapack import solve_any
@@ -131,11 +132,14 @@ class AbstractOrbit(eqx.Module):
         """Mass matrix that belongs to the forces; the ring has none [kg m]."""
 
     @abc.abstractmethod
-    def described(self, y: Float[Array, " unknown"], **known: Any) -> SteadyMotion:
+    def described(
+        self, y: Float[Array, " unknown"], solved: SolvedRow, **known: Any
+    ) -> SteadyMotion:
         """What is known of the motion.
 
         Args:
             y: Unknowns that fulfil the equations (unknown,) [rad/s, m].
+            solved: Their row, solved there.
             **known: Fields that do not follow from them.
         """
 
@@ -147,7 +151,7 @@ class AbstractOrbit(eqx.Module):
         return own.reshape(places, self.n_own), common, ring
 
     @property
-    def _rows(self) -> tuple[Array, np.ndarray, np.ndarray]:
+    def solved_at(self) -> tuple[Array, np.ndarray, np.ndarray]:
         """Azimuths at which the contacts are solved: the places, or of a single place
         that stands for all, all balls or rollers (element,) [rad]; which of them are
         the balls or rollers of the ring's balance; and their places."""
@@ -158,38 +162,50 @@ class AbstractOrbit(eqx.Module):
         turn = jnp.asarray(2.0 * np.pi * np.arange(balls) / balls, self.azimuth.dtype)
         return self.azimuth + turn, np.arange(balls), np.zeros(balls, int)
 
-    def _solved(self, own, common, ring):
-        """The solved row with its balls or rollers, and what pulls at the ring [N]."""
-        azimuth, stand, _ = self._rows
+    def _turning(self, own, common, ring):
+        """The bearing as it turns, and its ring freedoms."""
         excess = jnp.zeros_like(own[0, 0])
         if self.follows:
             excess = self.pressed * self.excess(own, common)
         if excess.ndim:
-            excess = jnp.broadcast_to(excess, azimuth.shape)
+            excess = jnp.broadcast_to(excess, self.solved_at[0].shape)
         bearing = orbiting(self.model.element, self.carried, excess)
-        (row,), q = bearing.rows, self.balance.ring_freedoms(ring)
-        solved = row.solve(q, azimuth, bearing.equilibrium, None)
-        pulls = ring_forces(row, q, azimuth, solved)[stand, self.balance.moving]
-        pulls = jax.vmap(self.balance.along)(pulls)
-        found = row.at(q, azimuth, solved)
-        places = self.azimuth.size
-        return jax.tree.map(lambda a: a[:places], self.loaded(found)), pulls, found
+        return bearing, self.balance.ring_freedoms(ring)
 
-    def bodies(self, y: Float[Array, " unknown"]) -> tuple[Any, Array]:
-        """Balls or rollers at all places, and their pure rolling, as of `loaded`."""
-        return self._solved(*self.parts(y))[0]
+    def _found(self, row, q, solved):
+        """What is known of the row, with its balls or rollers as of `loaded`."""
+        found = row.at(q, self.solved_at[0], solved)
+        places = self.azimuth.size
+        return jax.tree.map(lambda a: a[:places], self.loaded(found)), found
+
+    def bodies(
+        self, y: Float[Array, " unknown"], solved: SolvedRow
+    ) -> tuple[Any, Array]:
+        """Balls or rollers at all places, and their pure rolling, as of `loaded`.
+
+        Args:
+            y: Unknowns (unknown,) [rad/s, m].
+            solved: Their row, solved there.
+        """
+        bearing, q = self._turning(*self.parts(y))
+        return self._found(bearing.rows[0], q, solved)[0]
 
     def _forces(self, own, common, ring, sloped=None):
         """Forces out of balance of all places, pulls at the ring, and the motion; then
-        the sizes of forces at the places, and on the ring [N]."""
-        (bodies, rolls), pulls, found = self._solved(own, common, ring)
+        the sizes of forces at the places, and on the ring [N], and the solved row."""
+        bearing, q = self._turning(own, common, ring)
+        (row,), (azimuth, stand, _) = bearing.rows, self.solved_at
+        solved = row.solve(q, azimuth, bearing.equilibrium, None)
+        pulls = ring_forces(row, q, azimuth, solved)[stand, self.balance.moving]
+        pulls = jax.vmap(self.balance.along)(pulls)
+        (bodies, rolls), found = self._found(row, q, solved)
         motion = jax.vmap(self.motion)(bodies, rolls, own)
         slope = self.along @ (motion if sloped is None else stop(motion))
         slope = slope if sloped is None else slope + sloped[None]
         each = jax.vmap(self.local, (0, 0, 0, 0, None))
         out, sizes = each(bodies, rolls, own, slope, common)
-        loads = jnp.sum(found.contact_load[self._rows[1]])
-        return (out, pulls, motion), (jnp.max(sizes), loads)
+        loads = jnp.sum(found.contact_load[stand])
+        return (out, pulls, motion), ((jnp.max(sizes), loads), solved)
 
     def _assembled(self, out, pulls, ring):
         k, balance = self.n_own, self.balance
@@ -223,11 +239,12 @@ class AbstractOrbit(eqx.Module):
         def moved(way):
             here, sloped, shared, turned = jnp.split(way, [k, 2 * k, 2 * k + c])
             now = own + here[None], common + shared, ring + turned
-            forces, sizes = self._forces(*now, sloped)
-            return forces, (forces, sizes)
+            forces, beside = self._forces(*now, sloped)
+            return forces, (forces, beside)
 
         way = jnp.zeros(2 * k + c + _RING, y.dtype)
-        slopes, ((out, pulls, _), sizes) = jax.jacfwd(moved, has_aux=True)(way)
+        slopes, (forces, beside) = jax.jacfwd(moved, has_aux=True)(way)
+        (out, pulls, _), (sizes, solved) = forces, beside
         of_places, of_ring, motion = slopes
         here, sloped, shared = jnp.split(of_places, [k, 2 * k], axis=2)
         by_own, by_shared = motion[:, :, :k], motion[:, :, 2 * k :]
@@ -242,7 +259,9 @@ class AbstractOrbit(eqx.Module):
         means = jnp.mean(rows[:, k:], axis=0)
         # The ring, by the places where balls or rollers stand.
         stand = jnp.zeros((_RING, places, k), y.dtype)
-        stand = stand.at[:, self._rows[2]].add(-jnp.moveaxis(of_ring[:, :, :k], 0, 1))
+        stand = stand.at[:, self.solved_at[2]].add(
+            -jnp.moveaxis(of_ring[:, :, :k], 0, 1)
+        )
         turned = -jnp.sum(of_ring[:, :, 2 * k :], axis=0)
         turned = turned.at[:, c:].add(-jnp.diag(1.0 - self.balance.free))
         last = jnp.concatenate([stand.reshape(_RING, -1), turned], axis=1)
@@ -255,6 +274,7 @@ class AbstractOrbit(eqx.Module):
             self._assembled(out, pulls, ring),
             jnp.maximum(largest, jnp.finfo(y.dtype).tiny),
             jnp.concatenate([rows[:, :k].reshape(-1, y.size), means, last]),
+            solved,
         )
 
 
@@ -265,11 +285,13 @@ class Evaluated(NamedTuple):
         out: Forces out of balance (unknown,) [N].
         sizes: What each is measured against (unknown,) [N].
         jacobian: Of the forces (unknown, unknown) [N s/rad, N/m].
+        solved: The row in equilibrium there.
     """
 
     out: Float[Array, " unknown"]
     sizes: Float[Array, " unknown"]
     jacobian: Float[Array, "unknown unknown"]
+    solved: SolvedRow
 
 
 class Found(NamedTuple):
@@ -281,12 +303,14 @@ class Found(NamedTuple):
             to the contact loads [1].
         steps: Steps of the search.
         result: `Result` code.
+        solved: The row in equilibrium there.
     """
 
     y: Float[Array, " unknown"]
     residual: Scalar
     steps: Int[Array, ""]
     result: Int[Array, ""]
+    solved: SolvedRow
 
 
 def search(orbit: AbstractOrbit) -> Found:
@@ -297,7 +321,7 @@ def search(orbit: AbstractOrbit) -> Found:
 
     Fails: `STEP_LIMIT`, `NON_FINITE`.
     """
-    loop = lanes.Loop(_init, _step, _terminate, _finish)
+    loop = lanes.Loop(_init, _step, _terminate, _finish, _blank)
     few = orbit.start.size <= _FEW + _RING
     return Found(*lanes.run(loop, stop(orbit), 16 if few else 2))
 
@@ -358,7 +382,8 @@ def _solve(matrix, right):
 
 def _init(orbit):
     y, n = orbit.start, orbit.start.size
-    nothing = Evaluated(jnp.zeros_like(y), jnp.ones_like(y), jnp.zeros((n, n), y.dtype))
+    none = jnp.zeros_like(y), jnp.ones_like(y), jnp.zeros((n, n), y.dtype)
+    nothing = Evaluated(*none, _unsolved(orbit))
     return _State(y, nothing, jnp.full_like(y[0], _FIRST), jnp.full((), -1, jnp.int32))
 
 
@@ -406,7 +431,18 @@ def _finish(orbit, state):
     finite = jnp.all(jnp.isfinite(state.y)) & jnp.isfinite(_size(state.at.out))
     result = jnp.where(_done(state), int(Result.CONVERGED), int(Result.STEP_LIMIT))
     result = jnp.where(finite, result, int(Result.NON_FINITE)).astype(jnp.int32)
-    return state.y, _size(state.at.out / state.at.sizes), state.steps, result
+    at = state.at
+    return state.y, _size(at.out / at.sizes), state.steps, result, at.solved
+
+
+def _blank(orbit):
+    y, none = orbit.start, jnp.zeros((), jnp.int32)
+    return y, jnp.zeros_like(y[0]), none, none, _unsolved(orbit)
+
+
+def _unsolved(orbit):
+    (row,) = orbit.model.element.model(orbit.carried).rows
+    return dataclasses.replace(row, azimuth=orbit.solved_at[0]).unsolved()
 
 
 def _unbalanced(y, orbit):

@@ -79,9 +79,9 @@ class RollerOrbit(AbstractOrbit):
         whole = jnp.diag(jnp.append(own, turn)).at[:-1, -1].set(own)
         return jnp.pad(whole, (0, self.start.size - whole.shape[0]))
 
-    def described(self, y, **known):
+    def described(self, y, solved, **known):
         speed, (own, common, _) = self.speed, self.parts(y)
-        roller, _ = self.bodies(y)
+        roller, _ = self.bodies(y, solved)
 
         def one(roller, spin):
             state, moving, pulls, drag = self.forces(roller, spin, common[0])

@@ -231,6 +231,7 @@ def end_state(
     y = known(orbit, found.y, result)
     told = orbit.described(
         y,
+        found.solved,
         solution=solution,
         displacement=balance.ring_freedoms(orbit.parts(y)[2]),
         azimuth=orbit.azimuth,

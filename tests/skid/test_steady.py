@@ -13,7 +13,14 @@ from bearingjax import skid
 from bearingjax.element.inertia import Speed
 from bearingjax.lubrication import mil_l_23699
 from bearingjax.numerics.result import Result, SolveError
-from bearingjax.skid import Drag, SkidModel, conditions, skid_warnings
+from bearingjax.skid import (
+    Drag,
+    SkidModel,
+    conditions,
+    orbit_search,
+    skid_warnings,
+)
+from bearingjax.skid.loaded import ring_forces
 from bearingjax.skid.orbit_search import derivatives
 
 # Axial load [N]: slip of the orbit [%], pitch angle of the spin axis [deg], as an
@@ -93,6 +100,24 @@ def test_axial_loads_end_where_they_should(axial):
         if angle is not None:
             got = np.degrees(end.pitch_angle[0])
             np.testing.assert_allclose(got, angle, atol=0.3)
+
+
+def test_the_row_is_solved_in_one_place_of_the_program(monkeypatch):
+    """Its equilibrium is most of what is traced and compiled."""
+    traced = []
+
+    def counted(*given):
+        traced.append(given)
+        return ring_forces(*given)
+
+    monkeypatch.setattr(orbit_search, "ring_forces", counted)
+
+    def end(load):
+        given = dict(speed=SPEED, free=FREE, places=12, throw=False)
+        return skid.steady(MODEL, load, **given)
+
+    jax.jit(end).lower(jnp.zeros(6).at[2].set(80.0))
+    assert len(traced) == 1
 
 
 def test_loads_and_angles_of_the_paper_s_bearing(axial):
