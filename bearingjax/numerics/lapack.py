@@ -310,3 +310,11 @@ def _balanced(matrices):
         share = jnp.where(some, columns, 1.0) / jnp.where(some, rows, 1.0)
         units = units * share**0.25
     return units
+
+
+def prepare() -> None:
+    """Have JAX find the addresses of LAPACK, as it does when it lowers a call of it.
+
+    A program that was compiled in another process crashes without.
+    """
+    jax.jit(jnp.linalg.cholesky).lower(jnp.eye(1))

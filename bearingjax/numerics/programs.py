@@ -29,6 +29,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax.core import Tracer
 
+from . import lapack
 from .structure import UnknownStructure, structure
 
 OPTIONS = {
@@ -380,9 +381,7 @@ def _loaded(place: int | None, name: str | None):
 
         program: _Program = pickle.loads(content)
         if program.lapack:
-            # Lowering a call of LAPACK finds its addresses, which a program that is
-            # loaded without that does not know.
-            jax.jit(jnp.linalg.cholesky).lower(jnp.eye(1))
+            lapack.prepare()
         inputs = jax.tree.structure((tuple(range(program.inputs)), {}))
         outputs = jax.tree.structure([0] * program.count)
         device = jax.devices()[0]
