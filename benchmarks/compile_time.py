@@ -3,7 +3,8 @@
 Fresh processes, one at a time: import of the package; a bearing of 14 rollers and its
 element; first force and stiffness (compiled anew, no cache on disk), all by the clock
 of the process itself, counted from the start of the import; and the command line as a
-whole, by the clock outside: with an empty cache of compiled programs, then again.
+whole, by the clock outside: with an empty cache of compiled programs, then again. So
+for a solve from Python after `keep_programs`, and its gradient under `jax.jit`.
 Medians of the repeats, and of the processor time (both cores: above the wall time where
 the compiler has both, below it where others use the machine). What a process takes that
 imports JAX and adds two arrays tells how quiet the machine is.
@@ -12,7 +13,9 @@ Of the program of every scene also the equations that are traced and the instruc
 that XLA makes of them. `--beside TREE` runs another checkout in turn.
 
 Run: python benchmarks/compile_time.py [--json] [--smoke] [--repeats N]
-         [--scenes NAME...] [--beside TREE]
+         [--scenes NAME...] [--commands] [--beside TREE]
+
+`--commands` runs the other commands in place of `solve`.
 
 Last run, `--repeats 1`, nine scenes, while importing JAX and adding two arrays took
 0.87 s, and the first force and stiffness of the library 4.76 s:
@@ -76,6 +79,37 @@ print(json.dumps([(b[0] - a[0], b[1] - a[1]) for a, b in zip(marks, marks[1:])])
 """
 STEPS = ("import jax", "import bearingjax", "bearing and element", "evaluate", "again")
 COMMAND = "import sys; from bearingjax.cli import main; sys.exit(main())"
+COMMANDS = (
+    "life life_spectrum",
+    "sweep load_map",
+    "rotor rotor_spindle",
+    "rotor rotor_flexible",
+    "skid skid_axial --steady",
+    "skid skid_roller --steady",
+    "noise noise_deep_groove",
+)
+SOLVE = """
+import sys
+import jax
+jax.config.update("jax_enable_x64", True)
+import bearingjax as bj
+
+if sys.argv[1] == "kept":
+    bj.keep_programs()
+bearing = bj.CylindricalRollerBearing(
+    14, 0.065, 0.010, 0.010, radial_internal_clearance=25e-6
+)
+load = jax.numpy.array([4e3, 0.0, 0.0, 0.0, 0.0, 0.0])
+if sys.argv[1] == "gradient":
+    def sag(clearance):
+        changed = bj.CylindricalRollerBearing(
+            14, 0.065, 0.010, 0.010, radial_internal_clearance=clearance
+        )
+        return bj.solve_load(bj.BearingElement(changed), load).displacement[6]
+    print(jax.jit(jax.value_and_grad(sag))(25e-6))
+else:
+    print(bj.solve_load(bj.BearingElement(bearing), load).displacement[6])
+"""
 SIZES = """
 import functools, re, sys
 import equinox as eqx, jax
@@ -154,11 +188,22 @@ def library():
     return steps | {"first force and stiffness": np.sum(needed, axis=0)}
 
 
-def command_line(scene, tree):
-    """(wall, processor) [s] of a first and a second solve with one cache."""
+def command_line(command, tree):
+    """(wall, processor) [s] of a first and a second run with one cache."""
+    given = [COMMAND, *command.split()]
     with tempfile.TemporaryDirectory() as cache:
-        times = [run([COMMAND, "solve", scene], cache, tree)[1] for _ in range(2)]
-    return dict(zip(("solve, first", "solve, second"), times, strict=True))
+        times = [run(given, cache, tree)[1] for _ in range(2)]
+    name = command.split()[0]
+    return dict(zip((f"{name}, first", f"{name}, second"), times, strict=True))
+
+
+def python():
+    """(wall, processor) [s] of scripts that solve: as it is, kept, with a gradient."""
+    with tempfile.TemporaryDirectory() as cache:
+        hows = ("", "kept", "kept", "gradient")
+        times = [run([SOLVE, how], cache)[1] for how in hows]
+    what = ("", ", to be kept", ", kept", " and gradient")
+    return {f"solve_load{w}": t for w, t in zip(what, times, strict=True)}
 
 
 def sizes(scene, tree):
@@ -204,18 +249,19 @@ def import_and_add():
         return {"import jax and add": run([ADD], cache)[1]}
 
 
-def measure(scenes, repeats, trees):
-    """Rows, each as soon as it is measured. Trees take turns within a scene."""
+def measure(commands, repeats, trees):
+    """Rows, each as soon as it is measured. Trees take turns within a command."""
     for tree in trees:
         with tempfile.TemporaryDirectory() as cache:
             run(["import bearingjax.cli"], cache, tree)  # which writes the bytecode
-    for program in (import_and_add, library):
+    for program in (import_and_add, library, python):
         for what, times in gathered(program() for _ in range(repeats)).items():
             yield row(what, times)
-    for scene in scenes:
-        runs = [[command_line(scene, tree) for tree in trees] for _ in range(repeats)]
+    for command in commands:
+        runs = [[command_line(command, tree) for tree in trees] for _ in range(repeats)]
+        name, scene = command.split()[:2]
         for tree, of_tree in zip(trees, zip(*runs, strict=True), strict=True):
-            size = sizes(scene, tree)
+            size = sizes(scene, tree) if name == "solve" else (None, None)
             for what, times in gathered(of_tree).items():
                 yield row(what, times, scene, tree, size)
 
@@ -247,15 +293,17 @@ def main():
     parser.add_argument("--smoke", action="store_true", help="the library alone, once")
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--scenes", nargs="+", metavar="NAME", default=None)
+    parser.add_argument("--commands", action="store_true", help="but solve")
     parser.add_argument("--beside", metavar="TREE", help="another checkout")
     args = parser.parse_args()
     repeats = 1 if args.smoke else args.repeats
     load = os.getloadavg()[0]
     trees = [None] if args.beside is None else [os.path.abspath(args.beside), None]
-    scenes = [] if args.smoke else args.scenes or bearings()
+    commands = [f"solve {scene}" for scene in args.scenes or bearings()]
+    commands = () if args.smoke else COMMANDS if args.commands else commands
     if not args.json:
         print(head())
-    for r in measure(scenes, repeats, trees):
+    for r in measure(commands, repeats, trees):
         print(json.dumps(r) if args.json else line(r), flush=True)
     if not args.json:
         print(

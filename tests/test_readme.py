@@ -26,7 +26,7 @@ DOCUMENTED = (
 
 @pytest.mark.usefixtures("untyped")
 def test_python_example(capsys):
-    block, _ = re.findall(r"```python\n(.*?)```", README, re.S)
+    (block,) = re.findall(r"```python\n(.*?)```", README, re.S)
     names: dict = {}
     exec(block, names)
     assert bool(names["solution"].converged)

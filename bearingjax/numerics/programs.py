@@ -59,6 +59,7 @@ class _Program(NamedTuple):
         outputs: What the function returns, with a `_Place` for every array.
         count: Number of arrays that it returns.
         lapack: Whether it calls LAPACK.
+        devices: Number of devices that it runs on.
     """
 
     executable: bytes
@@ -66,6 +67,7 @@ class _Program(NamedTuple):
     outputs: Any
     count: int
     lapack: bool
+    devices: int
 
 
 class _Store:
@@ -169,12 +171,11 @@ def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
 
 
 def _is_eager(args: tuple, kwargs: dict) -> bool:
-    """Whether a call is one of its own, on the one device of a CPU."""
+    """Whether a call is one of its own, on CPUs of this process."""
     leaves = [x for x in jax.tree.leaves((args, kwargs)) if isinstance(x, jax.Array)]
-    return jax.default_backend() == "cpu" and not any(
-        isinstance(x, Tracer)
-        or jnp.issubdtype(x.dtype, jax.dtypes.prng_key)
-        or len(x.devices()) > 1
+    here = jax.default_backend() == "cpu" and jax.process_count() == 1
+    return here and not any(
+        isinstance(x, Tracer) or jnp.issubdtype(x.dtype, jax.dtypes.prng_key)
         for x in leaves
     )
 
@@ -208,7 +209,8 @@ def _first_run(
             name = None
         compiled = _compiled(lowered, options, keep=name is not None)
         if name is not None:
-            kept = len(arrays), outputs[0], bool(libraries)
+            devices = max((len(array.devices()) for array in arrays), default=1)
+            kept = len(arrays), outputs[0], bool(libraries), devices
             _keep(place, name, compiled, *kept)
 
     def run(arrays):
@@ -384,9 +386,9 @@ def _loaded(place: int | None, name: str | None):
             lapack.prepare()
         inputs = jax.tree.structure((tuple(range(program.inputs)), {}))
         outputs = jax.tree.structure([0] * program.count)
-        device = jax.devices()[0]
+        devices = jax.devices()[: program.devices]
         run = deserialize_and_load(
-            program.executable, inputs, outputs, execution_devices=[device]
+            program.executable, inputs, outputs, execution_devices=devices
         )
     except Exception:  # of whatever a strange file leads to
         return None
@@ -407,14 +409,14 @@ def _read(place: int, name: str) -> bytes | None:
     return content if head == _MARK + hashlib.sha256(content).digest() else None
 
 
-def _keep(place, name, compiled, inputs, outputs, lapack) -> None:
+def _keep(place, name, compiled, inputs, outputs, *more) -> None:
     """Keep a program; without a word if it cannot be, as on a full disk."""
     from jax.experimental.serialize_executable import serialize
 
     beside = f"{name}.{os.getpid()}"
     try:
         executable, _, tree = serialize(compiled)
-        program = _Program(executable, inputs, outputs, tree.num_leaves, lapack)
+        program = _Program(executable, inputs, outputs, tree.num_leaves, *more)
         content = pickle.dumps(program)
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
         file = os.open(beside, flags, 0o600, dir_fd=place)

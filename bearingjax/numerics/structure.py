@@ -43,6 +43,9 @@ def _named(value: Any, static: bool) -> str:
             raise UnknownStructure(f"array of {held.dtype}")
         digest = hashlib.sha256(held.tobytes()).hexdigest()
         return f"numbers{held.shape}{held.dtype}{type(value).__name__}{digest}"
+    if isinstance(value, jax.sharding.Mesh):
+        # The devices themselves are named by what surrounds a program.
+        return f"mesh{value.axis_names}{value.devices.shape}"
     if isinstance(value, enum.Enum):
         return f"{_place(type(value))}.{value.name}"
     if type(value) in (tuple, list):

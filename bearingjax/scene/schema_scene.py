@@ -86,7 +86,7 @@ def key_guide(name: str = "") -> str:
 
 
 def _bearing_scene() -> dict[str, Any]:
-    """Of a bearing: `solve`, `sweep`, `life`, `optimise`, `skid.simulate`, `noise`."""
+    """Of a bearing: `solve`, `sweep`, `life`, `optimise`, `skid`, `noise`."""
     tables = {
         "bearing": _ref("bearing"),
         "set": _ref("set"),

@@ -14,6 +14,7 @@ from jax.experimental import multihost_utils
 from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 
+from ..numerics.programs import program
 from ..numerics.result import Result
 from .cases import solve_case
 from .life import LifeConditions, life_of, life_outputs
@@ -166,10 +167,9 @@ class Program:
                         alike,
                         self.mesh,
                     )
-                    if not found:
-                        shapes, _ = eqx.filter_eval_shape(_solve_block, *given)
-                        found = _room(shapes, n, block)
                     out, known = _solve_block(*given)
+                    if not found:
+                        found = _room(out, n, block)
                     submitted = (out, begin, end)
                 else:
                     submitted = None
@@ -189,7 +189,7 @@ class Program:
         return found
 
 
-@eqx.filter_jit
+@program
 def _solve_block(element, given, known, near, task, lanes, alike, mesh):
     """A block of cases, each device its share in chunks of `lanes`, from all over the
     share and each from what is known by then; and what is known in the end."""
