@@ -265,7 +265,7 @@ SCALE = 280e-9
 
 CAGE_MASS = 0.03
 """Lost in the paper: a ring of duralumin, 5 by 16 mm, less its pockets [kg]."""
-CAGE = bj.noise.Cage(
+CAGE = bj.noise.GuidedCage(
     CAGE_MASS,
     CAGE_MASS * (0.5 * SIZE[1]) ** 2,
     bj.noise.CageContact(film=1e-6),

@@ -29,7 +29,7 @@ from .bands import is_held as is_held
 from .bands import octave_bands as octave_bands
 from .bands import third_octave_bands as third_octave_bands
 from .bands import total_root_mean_square as total_root_mean_square
-from .cage import Cage as Cage
+from .cage import GuidedCage as GuidedCage
 from .cage_contact import CageContact as CageContact
 from .causes import line_causes as line_causes
 from .contact_states import ContactStates as ContactStates

@@ -25,7 +25,7 @@ from ..numerics.units import unit
 from .cage_contact import CageContact
 
 
-class Cage(eqx.Module):
+class GuidedCage(eqx.Module):
     """A cage guided by a ring, for balls.
 
     Attributes:
@@ -65,15 +65,15 @@ class Cage(eqx.Module):
             non_negative(self, name)
         if np.shape(self.load) != (2,):
             raise ValueError(
-                f"Cage: `load` has shape {np.shape(self.load)}; it must be (2,): along"
-                " x and y, in N."
+                f"GuidedCage: `load` has shape {np.shape(self.load)}; it must be (2,):"
+                " along x and y, in N."
             )
         if not is_traced(self.load):
             check(self, "load", np.isfinite(self.load), "finite")
         if self.guiding_ring not in RINGS:
             raise ValueError(
-                f"Cage: `guiding_ring` is {self.guiding_ring!r}; it must be 'outer' or"
-                " 'inner'."
+                f"GuidedCage: `guiding_ring` is {self.guiding_ring!r}; it must be"
+                " 'outer' or 'inner'."
             )
 
 
@@ -92,7 +92,7 @@ class CageForces(NamedTuple):
 
 
 def cage_loads(
-    cage: Cage,
+    cage: GuidedCage,
     place: Float[Array, "3"],
     arcs: Float[Array, " element"],
     ring: Float[Array, "2"],
@@ -147,7 +147,7 @@ def _along(azimuth, pitch_radius):
 
 
 def fastest_of_cage(
-    cage: Cage,
+    cage: GuidedCage,
     push: Scalar,
     count: int,
     ball_mass: Scalar,

@@ -31,7 +31,7 @@ from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.options import SolveOptions
-from .cage import Cage
+from .cage import GuidedCage
 from .free_row import FreeRow, of_small_motions
 from .sensor import Sensor
 from .system import NoiseSystem
@@ -84,14 +84,14 @@ class NoiseModel(eqx.Module):
     retardation: Scalar = eqx.field(converter=as_real, metadata=unit("s"), default=1e-5)
     moving_ring: str = eqx.field(static=True, default="outer")
     tilts: bool = eqx.field(static=True, default=True)
-    cage: Cage | None = None
+    cage: GuidedCage | None = None
     half_width: Float[Array, " row"] | None = eqx.field(
         converter=as_real, metadata=unit("m"), default=None
     )
 
     def __check_init__(self):
         instance(self, "element", BearingElement)
-        instance(self, "cage", Cage, None)
+        instance(self, "cage", GuidedCage, None)
         self._check_rows()
         positive(self, "mass")
         instance(self, "speed", Speed)

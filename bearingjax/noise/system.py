@@ -12,9 +12,9 @@ contact opens.
 Damping over stiffness of whole bearings is some 2.5 to 25 us, and contacts in series
 have the τ of each. The default lies in the middle of that range.
 
-With a `Cage` every ball also has a place along the pitch circle: m s'' = its traction
-and what its pocket does. Its contacts with the raceways move along; that they push it
-along too, by slopes of form errors, is left out.
+With a `GuidedCage` every ball also has a place along the pitch circle: m s'' = its
+traction and what its pocket does. Its contacts with the raceways move along; that they
+push it along too, by slopes of form errors, is left out.
 
 Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011) for balls moving
     radially; here with all freedoms of the section, on the energy of the contacts.
@@ -34,7 +34,7 @@ from ..design.form_error import FormErrors, Surfaces
 from ..element.frame import RINGS, orbit, roll_ratio
 from ..element.row import Row
 from ..numerics.types import Scalar
-from .cage import Cage, cage_forces, cage_loads
+from .cage import GuidedCage, cage_forces, cage_loads
 from .encounter import Encounter, Section
 from .free_balls import ball_forces, is_written_out
 from .free_element import FreeElement, forces
@@ -82,7 +82,7 @@ class NoiseSystem(eqx.Module):
     growth: Scalar | None
     moving: int = eqx.field(static=True)
     counts: tuple[int, ...] = eqx.field(static=True)
-    cage: Cage | None = None
+    cage: GuidedCage | None = None
 
     @property
     def masses(self) -> Float[Array, " n"]:
@@ -303,7 +303,7 @@ class NoiseSystem(eqx.Module):
 
     def traction(
         self,
-        cage: Cage,
+        cage: GuidedCage,
         motion: Float[Array, " n"],
         velocity: Float[Array, " n"],
         encounter: Encounter,

@@ -11,8 +11,8 @@ from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.noise import (
-    Cage,
     CageContact,
+    GuidedCage,
     NoiseModel,
     needed_steps,
     vibration,
@@ -22,7 +22,7 @@ from bearingjax.noise.standing import standing
 from bearingjax.noise.stepping import stepped
 
 RADIUS = 0.026
-CAGE = Cage(0.02, 1.3e-5, CageContact(5e-6), 0.2e-3, 0.1e-3)
+CAGE = GuidedCage(0.02, 1.3e-5, CageContact(5e-6), 0.2e-3, 0.1e-3)
 UNLIKE = balls(7, ball_deviation=1e-6 * np.array([0, 3, 0, -2, 0, 0, 1.0]))
 
 
