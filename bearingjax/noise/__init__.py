@@ -10,15 +10,15 @@ elements' own masses; `excitation` the quasi-static displacement and force of th
 over the turn; `linear_model` and `transfer` the way from there to the sensor.
 
 Levels and bands of the acceleration (`level`, `band_levels`), lines that stand out with
-their names (`name_lines`: `3 BPFO`, `BPFI + shaft`, `2 cage`), the errors that make
-them to first order (`line_causes`), and how many contacts every element has
-(`contact_states`). `model_warnings`, `record_warnings` and `share_warnings` say what is
-doubtful in a record and its levels, as the command line does. `monte_carlo` draws
-bearings within tolerance classes and gives the distribution of their levels, and which
-tolerance makes how much of it.
+their names (`name_lines`: `3 BPFO`, `BPFI + shaft`, `2 cage`), the errors that cause
+them to first order (`line_causes`), and the number of contacts of every element
+(`contact_states`). `model_warnings`, `record_warnings` and `share_warnings` give the
+warnings of the command line on a record and its levels. `monte_carlo` draws
+bearings within tolerance classes and gives the distribution of their levels, and the
+share of every tolerance in it.
 
 Waves and damping are seldom known: levels compare designs and tolerances, they do not
-foretell what a rig reads. Worked: the notebook noise_from_form_errors.
+predict the reading of a rig. Example: the notebook noise_from_form_errors.
 """
 
 from .bands import Bands as Bands

@@ -32,10 +32,10 @@ _R10 = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
 
 
 class Bands(NamedTuple):
-    """Frequency bands, one beside the other.
+    """Adjacent frequency bands.
 
     Attributes:
-        centre: Nominal centres, by which bands are called (band,) [Hz].
+        centre: Nominal centres, the names of the bands (band,) [Hz].
         middle: Exact centres, the geometric mean of the edges (band,) [Hz].
         lower: Lower edges, which belong to the band (band,) [Hz].
         upper: Upper edges, which belong to the next one (band,) [Hz].
@@ -240,7 +240,7 @@ def band_power(spectrum: Spectrum, bands: Bands) -> tuple[Any, Any, Any, Any]:
     """Mean square in each band, and what skirts of strong lines change of it.
 
     Args:
-        spectrum, bands: As of `band_shift`.
+        spectrum, bands: As in `band_shift`.
 
     Returns:
         The mean square, what came in and what went out over the edges (band, ...) [unit
@@ -277,7 +277,7 @@ def _sums(spectrum, lower, upper):
 def covers(spectrum: Spectrum, bands: Bands, highest: Any = None) -> tuple[Any, Any]:
     """Whether bands are at least as wide as a line, and within the record (band,).
 
-    Arguments as of `band_root_mean_square`.
+    Arguments as in `band_root_mean_square`.
     """
     lower, upper = _edges(spectrum, bands)
     return _covers(spectrum, lower, upper, _highest(spectrum, highest))

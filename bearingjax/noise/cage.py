@@ -78,7 +78,7 @@ class GuidedCage(eqx.Module):
 
 
 class CageForces(NamedTuple):
-    """What the contacts of a cage do, on the side of what holds the parts.
+    """Contact forces of a cage on rolling elements, cage and guiding ring.
 
     Attributes:
         arcs: To every rolling element along the pitch circle (element,) [N].
@@ -129,7 +129,7 @@ def cage_forces(
 
     Args:
         pockets, land: From `cage_loads`, or with their damping [N].
-        place, arcs, ring, pitch_radius, azimuth: As of `cage_loads`.
+        place, arcs, ring, pitch_radius, azimuth: As in `cage_loads`.
     """
     off = place[:2] - ring
     distance = lengths(off)
@@ -141,7 +141,7 @@ def cage_forces(
 
 
 def _along(azimuth, pitch_radius):
-    """How far each pocket moves along the pitch circle, per freedom of the cage."""
+    """Return the pocket motion along the pitch circle, per freedom of the cage."""
     sine, cosine = jnp.sin(azimuth), jnp.cos(azimuth)
     return jnp.stack([-sine, cosine, jnp.full_like(sine, 1.0) * pitch_radius], axis=1)
 

@@ -16,7 +16,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 
 _STEPS = 12
-"""Of Newton's method; the slope of the equation changes once, from 1/m to n."""
+"""Newton steps; the slope of the equation changes once, from 1/m to n."""
 _LEAST, _FORCES = -6.0, 128
 """Forces at which the largest stiffness is sought: powers of ten, number."""
 

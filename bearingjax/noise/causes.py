@@ -17,14 +17,14 @@ _PASSAGES = 6
 
 
 class _Cause(NamedTuple):
-    """What makes a line.
+    """Cause of a spectral line.
 
     Attributes:
-        size: Of the error [m].
-        frequency: Of the line [Hz].
-        words: What it is.
-        order: Of waves; 0: none.
-        row: Of a set.
+        size: Size of the error [m].
+        frequency: Frequency of the line [Hz].
+        words: Description.
+        order: Order of waves; 0: none.
+        row: Number of the row in a set.
     """
 
     size: float
@@ -37,13 +37,13 @@ class _Cause(NamedTuple):
 def line_causes(
     lines: Iterable[Line], model: NoiseModel, tolerance: Any
 ) -> tuple[tuple[str, ...], ...]:
-    """What may make each line, to first order.
+    """Return the possible causes of each line, to first order.
 
-    Waves: where `waviness_force` has their lines, of evenly loaded rolling elements
-    (other orders show too, fainter, where elements are loaded unevenly). Spalls:
-    multiples of the passage, with sidebands. Differences of diameter or spacing:
-    multiples of the cage's turning. An uneven load: multiples of the passage of the
-    elements past it. Nonlinear contacts make sums and differences of all these, for
+    Waves: at the lines of `waviness_force`, for evenly loaded rolling elements (other
+    orders appear too, weaker, where elements are loaded unevenly). Spalls: multiples
+    of the passage frequency, with sidebands. Differences of diameter or spacing:
+    multiples of the cage frequency. An uneven load: multiples of the frequency at which
+    elements pass it. Nonlinear contacts make sums and differences of all these, for
     which no cause is given.
 
     Args:

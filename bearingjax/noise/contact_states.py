@@ -1,4 +1,4 @@
-"""How many contacts every rolling element has, and how often that changes."""
+"""Number of contacts of every rolling element, and how often it changes."""
 
 from typing import Any, NamedTuple
 
@@ -27,7 +27,7 @@ class ContactStates(NamedTuple):
 
     @property
     def shares(self) -> np.ndarray:
-        """Of all samples (number,) [1]."""
+        """Share of each number of contacts in all samples (number,) [1]."""
         return self.samples / self.samples.sum()
 
 

@@ -1,4 +1,4 @@
-"""How long contacts are along the rolling direction: which waves they bridge.
+"""Contact width along the rolling direction, and the waves that it averages.
 
 A rolling element follows the mean of a wave over its contact, weighted with the
 pressure. With x = k b, of order k/R around a radius R and the half width b, that is

@@ -29,18 +29,18 @@ class Section(NamedTuple):
 
 
 class Encounter(NamedTuple):
-    """How every rolling element finds the raceways.
+    """Raceway deviations at every rolling element.
 
     The axis of the elements is the last one: a compiler works on neighbours at once.
 
     Attributes:
-        azimuth: Where they are (element,) [rad].
+        azimuth: Azimuths of the elements (element,) [rad].
         cosine, sine: Of the azimuth (element,) [1].
-        axial: How far outer and inner raceway stand along the axis there, (2, element)
-            [m]; `None`: as on the drawing.
-        outwards: Likewise from the axis.
-        raised: How far their surfaces stand towards the element (2, element) [m];
-            `None`: not at all.
+        axial: Axial deviation of outer and inner raceway there, (2, element) [m];
+            `None`: none.
+        outwards: Radial deviation, away from the axis, likewise.
+        raised: Height of their surfaces towards the element (2, element) [m]; `None`:
+            none.
     """
 
     azimuth: Float[Array, " element"]
@@ -58,11 +58,11 @@ class Encounter(NamedTuple):
     def meeting(
         self, met: Float[Array, "element 2 3"], raised: bool = True
     ) -> "Encounter":
-        """The same on raceways with deviations.
+        """Return a copy on raceways with deviations.
 
         Args:
             met: `Deviation.raceway` of every element [m].
-            raised: Whether surfaces stand out anywhere. Static.
+            raised: Whether surfaces are raised anywhere. Static.
         """
         axial, outwards, heights = met.transpose(2, 1, 0)
         return self._replace(
@@ -104,12 +104,12 @@ class Encounter(NamedTuple):
     def push(
         self, forces: Section, freedoms: int, sites: Sites | None = None
     ) -> Float[Array, " k"]:
-        """What forces on the motions of all sections do on the ring [N, N m].
+        """Return the load on the ring from forces on all sections [N, N m].
 
         Args:
             forces: On every element's section [N, N m].
             freedoms: Of the ring, three or five. Static.
-            sites: As of `motion`.
+            sites: As in `motion`.
         """
         axial, outwards, moment = forces
         if sites is not None:

@@ -118,7 +118,7 @@ class _Contact(NamedTuple):
 
 
 def _contact(walls, moved, start, reach, constant) -> _Contact:
-    """As `GrooveGeometry.touch`, with the load."""
+    """Return the contact as `GrooveGeometry.touch` does, with its load."""
     open_side, washers, outwards = walls
     sign = jnp.asarray(outwards, reach.dtype)[:, None]
     (moved_z, moved_r), (start_z, start_r) = moved, start
@@ -177,6 +177,6 @@ def _none(change) -> bool:
 
 
 def _sum(one, other):
-    """Of two changes, either of which may be none."""
+    """Return the sum of two changes, either of which may be absent."""
     some = [x for x in (one, other) if not _none(x)]
     return sum(some[1:], start=some[0]) if some else None

@@ -69,17 +69,17 @@ class FreeElement(eqx.Module):
         return (place - rings.mean[: place.shape[0]]) * self.scale
 
     def raised(self, heights: Float[Array, "2"]) -> "FreeElement":
-        """The same with material added in its contacts [m]."""
+        """Return a copy with material added in its contacts [m]."""
         return dataclasses.replace(self, element=self.element.raised(heights))
 
     def energy(self, rings: RingMotion, place: Float[Array, " n"]) -> Scalar:
-        """Strain energy of its contacts [J]; arguments as of `unknowns`."""
+        """Strain energy of its contacts [J]; arguments as in `unknowns`."""
         return self.element.energy(rings, self.unknowns(rings, place))
 
     def loads(
         self, rings: RingMotion, place: Float[Array, " n"]
     ) -> Float[Array, " contact"]:
-        """Load of each contact [N]; arguments as of `unknowns`."""
+        """Load of each contact [N]; arguments as in `unknowns`."""
         at = self.element.coordinates(rings, self.unknowns(rings, place))
         return self.element.respond(at).beside
 
@@ -89,7 +89,7 @@ class FreeElement(eqx.Module):
         """Sum of a ball's loads [N], and the cosine of its contact angle [1].
 
         The cosine is the mean of its contacts by their loads; 1 of a loose ball.
-        Arguments as of `unknowns`.
+        Arguments as in `unknowns`.
         """
         x = self.unknowns(rings, place)
         load = self.element.respond(self.element.coordinates(rings, x)).beside
@@ -142,7 +142,7 @@ def _(element: Roller, material, pitch_radius, speed, orbit) -> FreeElement:
 
 
 def _own(element):
-    """Of `FreeElement`: at azimuth 0 the section's (u, v, θ) are uz, ux and gy."""
+    """Return `own`: at azimuth 0 the section's (u, v, θ) are uz, ux and gy."""
     at_zero = element.axes(jnp.zeros_like(element.diameter))
     return jnp.stack([at_zero[:, FREEDOMS.index(k)] for k in ("uz", "ux", "gy")], 1)
 

@@ -79,10 +79,10 @@ class FreeRow(NamedTuple):
 
     @classmethod
     def of(cls, element: BearingElement, speed: Speed) -> "FreeRow":
-        """Of a bearing whose rings have these speeds.
+        """Create the free row of a bearing at given ring speeds.
 
         Args:
-            element: The bearing, of small motions.
+            element: The bearing, with linearised kinematics.
             speed: Of the rings.
 
         Raises:
@@ -158,7 +158,7 @@ def _free(row: Row, bearing: Any, speed: Speed) -> FreeRow:
 
 
 def _unlike(row: Row) -> Row:
-    """The same row, its elements with a leading axis."""
+    """Return the row with a leading axis on its elements."""
     if row.unlike:
         return row
     count = row.azimuth.shape[0]

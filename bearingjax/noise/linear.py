@@ -71,12 +71,12 @@ class Transfer(NamedTuple):
 
     @property
     def accelerance(self) -> Complex[Array, "line k k"]:
-        """As `by_force`, of the acceleration [1/kg, rad/(kg m), rad/(kg m²)]."""
+        """Acceleration for loads, as in `by_force` [1/kg, rad/(kg m), rad/(kg m²)]."""
         return self._accelerated(self.by_force)
 
     @property
     def acceleration_by_errors(self) -> Complex[Array, "line k element 2 3"]:
-        """As `by_errors`, of the acceleration [1/s², rad/(m s²)]."""
+        """Acceleration for deviations, as in `by_errors` [1/s², rad/(m s²)]."""
         return self._accelerated(self.by_errors)
 
     def _accelerated(self, motion):
@@ -119,12 +119,12 @@ def _linear_model(model, orbits) -> LinearModel:
 
 
 def transfer(model: NoiseModel, frequencies: Any) -> Transfer:
-    """How far, and by which acceleration, small causes shake the moving ring.
+    """Return the linear response of the moving ring to loads and deviations.
 
     Args:
         model: The bearing.
-        frequencies: (line,) [Hz]; above zero where a rolling element carries nothing,
-            which nothing holds then.
+        frequencies: (line,) [Hz]; above zero where a rolling element is unloaded and
+            so without stiffness.
 
     Returns:
         `Transfer`, differentiable with respect to every number of the model.
@@ -133,7 +133,7 @@ def transfer(model: NoiseModel, frequencies: Any) -> Transfer:
         TypeError: For another model, or frequencies that are no numbers.
         ValueError: For frequencies that are no list.
 
-    Fails: as `solve_load`; the numbers are then those of no balance.
+    Fails: as `solve_load`; the numbers then belong to no equilibrium.
 
     Source: (K + S + iω (τ K + C) - ω² M) x = f - (1 + iωτ) G e.
     """

@@ -14,7 +14,7 @@ from .spectrum import Spectrum
 _FIRST = 10
 """Most multiples of a passage whose sidebands by the other ring have names."""
 _APART = 12.0
-"""What the tolerance counts, beside multiples and sidebands, where a name is chosen."""
+"""Cost of a name one tolerance away, counted in multiples and sidebands."""
 UNNAMED = "unnamed"
 """Name of a line that nothing known makes."""
 
@@ -55,17 +55,17 @@ def name_lines(
     """Lines that stand out of a spectrum, with names from the kinematics.
 
     A line is a local maximum that is both `factor` times the median of its neighbours
-    and `least` times the largest line; the `largest` maxima count whatever is beside
-    them: where lines stand close, as multiples of the cage do, none is far above its
-    neighbours. In a spectrum with Hann's window its frequency
-    and amplitude are those of a lone line between the bins.
+    and `least` times the largest line; the `largest` maxima count whatever their
+    neighbours: where lines are close, as multiples of the cage frequency are, none is
+    far above its neighbours. In a spectrum with Hann's window its frequency
+    and amplitude are those of a single line between the bins.
 
     Names are sought among, with k up to `harmonics` and m up to `sidebands` in size:
     k shaft, k cage, k BPFO, k BPFI ± m shaft, 2k BSF ± m cage, k BPFO ± m shaft. Where
     both rings turn, "inner ring" and "outer ring" stand for the shaft, and both
-    raceways have the sidebands of both. Of all that lie within the tolerance that is
-    taken whose k + m (of sidebands by the other ring one more) and square of the
-    distance, the tolerance counting 12, are least together, then the first as they are
+    raceways have the sidebands of both. Among all within the tolerance the name of
+    least k + m (one more for sidebands by the other ring) plus 12 times the square of
+    distance over tolerance is taken, then the first as they are
     listed here; a natural frequency only if there is no other. With many harmonics
     much of a spectrum lies near some name: a name alone is no proof.
 
@@ -157,7 +157,7 @@ def _single(bearing):
 def _of_all(
     kinematic: list[KinematicFrequencies], harmonics: int, sidebands: int
 ) -> Iterator[tuple[int, float, str]]:
-    """As `_combinations`, of all rows; of rows that roll alike, once."""
+    """Yield `_combinations` of all rows; once for rows of equal frequencies."""
     of_rows = np.array([[float(one) for one in row] for row in kinematic])
     seen: list[np.ndarray] = []
     for k, (row, numbers) in enumerate(zip(kinematic, of_rows, strict=True)):

@@ -38,13 +38,13 @@ from .system import NoiseSystem
 
 
 class NoiseModel(eqx.Module):
-    """A bearing whose vibration from form errors is wanted.
+    """A bearing on its rig, for vibration from form errors.
 
     Attributes:
         element: The bearing or set, with linearised kinematics; a self-aligning one
             with `Finite()`. Whatever its raceway control, balls are carried as with
             `CentrifugalOnly()`: they orbit at the free contact angle, and have no
-            gyroscopic moment; `record_warnings` tells where that moment matters.
+            gyroscopic moment; `record_warnings` warns where that moment matters.
         mass: Of the moving ring, and of what moves with it [kg].
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring (6,) [N, N m]; moments only
             if it tilts.
@@ -54,13 +54,13 @@ class NoiseModel(eqx.Module):
         tilting_inertia: Moment of inertia about a diameter of the moving ring and of
             what moves with it [kg m²]; `None`: `ring_inertia`, as if `mass` were that
             of a ring alone.
-        sensor: What holds the moving ring beside the bearing; `None`: nothing.
+        sensor: Sensor spring on the moving ring; `None`: none.
         retardation: τ of the contacts' damping [s]. Damping ratio of a mode of ω that
             is held by contacts alone: ω τ/2.
         moving_ring: "outer" or "inner". Static.
         tilts: Whether the moving ring tilts, as one on a rig does; a shaft in further
             bearings may not. That of a self-aligning bearing never does. Levels may
-            hang on it by tens of dB. Static.
+            depend on it by tens of dB. Static.
         cage: Of a single row of balls; `None`: the rolling elements go round evenly,
             each in its place.
         half_width: Of the contacts of each row along the rolling direction, over which
@@ -209,7 +209,7 @@ class NoiseModel(eqx.Module):
 
     @property
     def shaft_speed(self) -> Scalar:
-        """Of the ring that turns faster, without its sign [rad/s]."""
+        """Absolute speed of the ring that turns faster [rad/s]."""
         return jnp.maximum(jnp.abs(self.speed.outer), jnp.abs(self.speed.inner))
 
     @property
@@ -226,7 +226,7 @@ class NoiseModel(eqx.Module):
         return _system(self, points)
 
     def still_system(self) -> NoiseSystem:
-        """The same without form errors, the rolling elements carried evenly."""
+        """System without form errors, with rolling elements at uniform orbit."""
         return dataclasses.replace(self.system(8), errors=None, cage=None)
 
 

@@ -50,7 +50,7 @@ class MonteCarlo(eqx.Module):
 
     @property
     def failed(self) -> int:
-        """How many bearings have no levels."""
+        """Number of bearings without levels."""
         return int(np.sum(np.asarray(self.result) != Result.CONVERGED))
 
     def percentile(self, share: Any) -> Float[Array, "... 3"]:
@@ -63,7 +63,7 @@ class MonteCarlo(eqx.Module):
 
 
 def drawn(model: NoiseModel, tolerances: Tolerances, key: Array) -> NoiseModel:
-    """One bearing off the line: the model with random errors beside its own.
+    """Draw one bearing: the model with random errors added to its own.
 
     Args:
         model: The bearing as on the drawing, or with errors that all have.
@@ -159,7 +159,7 @@ def monte_carlo(
 
 
 def _with(bearing: Any, found: Drawn) -> Any:
-    """A single row with differences of its rolling elements beside its own."""
+    """Return a single row with deviations of its elements added to its own."""
     name = f"{bearing.noun}_deviation"
     for field, value in ((name, found.diameter), ("azimuth_deviation", found.azimuth)):
         if value is None:
@@ -191,7 +191,7 @@ class Records:
     """Random bearings in motion, a batch at a time."""
 
     def __init__(self, model, tolerances, n, turns, settle, samples, steps, owner):
-        """Check what was given; arguments as of `monte_carlo`."""
+        """Check what was given; arguments as in `monte_carlo`."""
         if not isinstance(model, NoiseModel):
             raise TypeError(
                 f"{owner}: `model` is a {type(model).__name__}; it must be a"
@@ -216,7 +216,7 @@ class Records:
         self.owner = owner
 
     def parts(self, n: int, batch: int):
-        """How many of each batch count, and the numbers of its bearings."""
+        """Yield the number of bearings of each batch, padding left out, and indices."""
         count(self.owner, "batch", batch)
         size = min(batch, n)
         for begin in range(0, n, size):
@@ -225,7 +225,7 @@ class Records:
             yield min(size, n - begin), at
 
     def batches(self, keys, batch, progress=None, factors=None):
-        """How many of a batch count, their accelerations and result codes."""
+        """Yield the number of bearings, accelerations and result codes by batch."""
         # All sources always: one program.
         names, given = self.given[1].sources, factors or {}
         factors = {name: jnp.asarray(given.get(name, 1.0)) for name in names}

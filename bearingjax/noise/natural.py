@@ -66,7 +66,7 @@ def contact_stiffness(
 
 
 def stiffness(system: NoiseSystem, motion: Float[Array, " n"]) -> Float[Array, "n n"]:
-    """As `contact_stiffness`, the sensor's added."""
+    """Return `contact_stiffness` plus the stiffness of the sensor."""
     k = contact_stiffness(system, motion)
     if system.sensor is None:
         return k
@@ -75,11 +75,11 @@ def stiffness(system: NoiseSystem, motion: Float[Array, " n"]) -> Float[Array, "
 
 
 def orbited(model: NoiseModel, angle: Any) -> NoiseModel:
-    """The same, its rolling elements carried on from where they were at time zero.
+    """Return a copy with its rolling elements orbited on from time zero.
 
     Args:
         model: The bearing.
-        angle: By which they, of a set those of each row, orbited [rad].
+        angle: Orbit angle; of a set one for each row [rad].
     """
 
     def places(model):

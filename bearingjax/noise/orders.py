@@ -45,17 +45,17 @@ class KinematicFrequencies(NamedTuple):
 
     @property
     def twice_rotation(self) -> Scalar:
-        """Of a place on a rolling element over both raceways, 2 BSF [Hz]."""
+        """Frequency of an element defect over both raceways, 2 BSF [Hz]."""
         return 2.0 * self.rotation
 
     @property
     def shaft(self) -> Scalar:
-        """Of the inner ring, or of the outer one if the inner ring stands [Hz]."""
+        """Frequency of the inner ring, or of the outer one if the inner rests [Hz]."""
         return jnp.where(self.inner == 0, self.outer, self.inner)
 
     @property
     def orders(self) -> "KinematicFrequencies":
-        """The same per turn of the shaft [1]."""
+        """Orders: all frequencies over that of the shaft [1]."""
         return KinematicFrequencies(*(one / self.shaft for one in self))
 
 
@@ -110,10 +110,10 @@ def waviness_force(
     """Frequencies at which a wave of one order shakes the rings.
 
     For rigid rings, evenly spaced rolling elements that bear alike, and to first order
-    in the height of the wave. Of z rolling elements the forces then add up for few
+    in the height of the wave. With z rolling elements the forces then add up for few
     orders: on a raceway kz axially and kz ± 1 radially; all other orders balance. On
-    one rolling element even orders squeeze it and shake both ways; of odd ones the
-    contacts opposite to each other cancel.
+    one rolling element even orders act axially and radially; for odd orders the
+    opposite contacts cancel.
 
     Args:
         bearing, speed, contact_angle: As in `kinematic_frequencies`.

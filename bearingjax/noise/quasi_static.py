@@ -1,9 +1,9 @@
-"""What form errors do to the rings of a bearing that turns slowly: no inertia.
+"""Quasi-static excitation by form errors, without inertia.
 
-Every instant is a static problem, solved exactly: the rolling elements stand where they
-are at that instant, on raceways as they meet them there. Two answers bound what the
-vibration of a real ring may be: the force on a ring that is held, and the displacement
-of one that is free under its load.
+Every instant is a static problem, solved exactly, with the positions of the rolling
+elements and the raceway deviations of that instant. Two results bound the vibration of
+a real ring: the force on a ring that is held, and the displacement of one that is free
+under its load.
 """
 
 import dataclasses
@@ -32,15 +32,15 @@ _LANES = 64
 
 
 class Excitation(eqx.Module):
-    """What form errors do to the moving ring, over time; leading axis sample.
+    """Quasi-static excitation of the moving ring over time; leading axis sample.
 
     Samples are even, over whole turns of the shaft, without the end point.
 
     Attributes:
         time: (sample,) [s].
-        force: Of the contacts on the moving ring, beyond what carries its load
+        force: Of the contacts on the moving ring, less the reaction to its load
             (sample, 6) [N, N m]. Of a free ring it is zero in its freedoms.
-        displacement: Of the moving ring from where it stands without form errors
+        displacement: Of the moving ring from its position without form errors
             (sample, 6) [m, rad]. Of a held ring it is zero.
         azimuth: Of every rolling element (sample, element) [rad].
         shaft_frequency: Of the ring that turns faster [Hz].

@@ -1,4 +1,4 @@
-"""What scatters from one bearing to the next as they leave the line.
+"""Scatter of production: random errors of bearings within tolerances.
 
 Sources, each of which may be absent: diameters of the rolling elements, their spacing
 by the cage, eccentricity and waves of both raceways, waves of the elements. A source of
@@ -113,16 +113,16 @@ class RandomWaves(eqx.Module):
         return Harmonics(range(self.low, self.high + 1), amplitude, phase)
 
     def scaled(self, factor: Any) -> "RandomWaves":
-        """The same with `factor` times the amplitudes [1]."""
+        """Return a copy with `factor` times the amplitudes [1]."""
         return eqx.tree_at(lambda w: w.amplitude, self, factor * self.amplitude)
 
 
 class Drawn(NamedTuple):
-    """How one bearing differs from its drawing.
+    """Deviations of one bearing from its design.
 
     Attributes:
-        diameter: Of each rolling element (element,) [m]; `None`: not at all.
-        azimuth: Of each rolling element (element,) [rad]; `None`: not at all.
+        diameter: Of each rolling element (element,) [m]; `None`: none.
+        azimuth: Of each rolling element (element,) [rad]; `None`: none.
         errors: Form errors.
     """
 
@@ -132,11 +132,11 @@ class Drawn(NamedTuple):
 
 
 class Tolerances(eqx.Module):
-    """How bearings of one kind scatter; `None`: not at all.
+    """Random errors of bearings of one design; `None`: none.
 
     Attributes:
-        diameter: Largest less smallest diameter of the rolling elements that may be
-            put into one bearing [m]; they are even in between, about the nominal one.
+        diameter: Range of the diameters of the rolling elements of one bearing [m];
+            they are distributed uniformly about the nominal one.
         spacing: Likewise of the azimuth of a rolling element in its pocket [rad].
         outer_eccentricity: Root mean square over bearings of the eccentricity of the
             outer raceway; its cosine and sine are distributed normally [m].
@@ -254,7 +254,7 @@ class Tolerances(eqx.Module):
         return tuple(name for name in names if getattr(self, name) is not None)
 
     def scaled(self, factors: Mapping[str, Any]) -> "Tolerances":
-        """The same with some sources larger or smaller.
+        """Return a copy with some sources scaled.
 
         Args:
             factors: By the names of sources [1]; 0 switches one off, and leaves the

@@ -1,4 +1,4 @@
-"""What holds the moving ring of a noise rig beside the bearing."""
+"""Sensor that holds the moving ring of a noise rig in addition to the bearing."""
 
 import equinox as eqx
 import jax.numpy as jnp

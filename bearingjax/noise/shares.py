@@ -61,7 +61,7 @@ class Shares(eqx.Module):
 
     @property
     def share(self) -> Float[Array, " source"]:
-        """What each source adds to the mean square (source,) [m²/s⁴].
+        """Share of each source in the mean square (source,) [m²/s⁴].
 
         It is exact for `factor` 0, and for another one as far as the mean square is
         quadratic in the source.
@@ -84,7 +84,7 @@ class Shares(eqx.Module):
 
     @property
     def ranking_by_gradient(self) -> tuple[str, ...]:
-        """Likewise by the derivatives."""
+        """Sources ranked by the derivatives."""
         if self.by_gradient is None:
             raise ValueError("Shares: the derivatives were not asked for.")
         return self._ranked(self.by_gradient)
@@ -133,9 +133,9 @@ def shares(
     batch: int = 16,
     progress: Progress | None = None,
 ) -> Shares:
-    """What every source of scatter adds to the mean square of the acceleration.
+    """Return the share of every source of scatter in the mean square acceleration.
 
-    The same random bearings run once as they are, once for every source with this one
+    The same random bearings run once unchanged, once for every source with this one
     smaller, and once with derivatives.
 
     Args:
@@ -145,7 +145,7 @@ def shares(
             `None`: all directions together.
         bands: Of which the parts are wanted too; `None`: none.
         factor: By which a source is made smaller, from 0 (off) to below 1 [1]: 0.5
-            tells exactly what halving brings.
+            gives the exact effect of halving.
         gradient: Whether shares by derivatives are wanted: about the time of five more
             runs.
         progress: Called after each batch.
@@ -235,7 +235,7 @@ def shares(
 
 
 def _holds(bands: Bands, powers: np.ndarray, duration: float, highest: float):
-    """Which bands records hold, by their mean powers (3, band) as of `band_power`."""
+    """Which bands records hold, by their mean powers (3, band) as in `band_power`."""
     wide = bands.upper - bands.lower >= Hann().noise_bandwidth / duration
     near = np.abs(np.asarray(shift(*powers))) < LEAST_SHIFT
     return wide & (bands.upper <= highest) & near
@@ -255,7 +255,7 @@ def _directions(direction: Any) -> np.ndarray:
 
 
 def _mean_square(acceleration, along):
-    """Of records (..., time, 3) along some directions about their means (...)."""
+    """Return the variance of records (..., time, 3) summed over directions (...)."""
     return jnp.sum(jnp.var(acceleration @ along, axis=-2), axis=-1)
 
 

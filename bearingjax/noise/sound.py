@@ -64,7 +64,7 @@ def write_sound(path: str | Path, record: Any, duration: Any) -> float:
 
     Args:
         path: Of the file.
-        record, duration: As of `sound`.
+        record, duration: As in `sound`.
 
     Returns:
         What full scale is [unit of the record]; 0 of silence.

@@ -7,9 +7,8 @@ A step has four stages at three times, the last of which begins the next step. W
 depends on time alone is worked out once for each of them, for all steps of a sample at
 once: long arrays are filled faster than many short ones.
 
-Samples are fewer than steps. What is told of every sample is a weighted mean over the
-steps around it: taken as they come, frequencies above half of the sampling rate would
-look like lower ones.
+Samples are fewer than steps. Every sample is a weighted mean over the steps around it:
+without it frequencies above half of the sampling rate would be aliased.
 """
 
 from collections.abc import Callable
@@ -27,7 +26,7 @@ from ..numerics.types import Scalar
 Vector = Float[Array, " n"]
 
 REACH = 32
-"""How many samples before and after its own count for a sample."""
+"""Number of samples before and after that contribute to a sample."""
 HELD = 0.7
 """Share of half of the sampling rate up to which frequencies pass: to 1e-7 (140 dB),
 to which those above half of the sampling rate do not."""
@@ -36,7 +35,7 @@ _KAISER = 14.5
 
 
 def step_weights(steps: int) -> np.ndarray:
-    """What a step counts, by the block of steps that it is in (2 REACH, step) [1].
+    """Return the weights of steps, by block of steps (2 REACH, step) [1].
 
     Source: Kaiser's window 0.1102 (A - 8.7) of A dB, whose transition is A/14.36 over
         the length wide; Oppenheim, Schafer, Discrete-Time Signal Processing, 7.4.

@@ -47,27 +47,27 @@ class NoiseSystem(eqx.Module):
 
     Coordinates (n,) are those of the ring, then the first of all rolling elements, the
     second of all and so on: a compiler works best on like neighbours. With a cage
-    follow how far every rolling element is ahead of the even orbit, along the pitch
-    circle, and the cage's x, y and turn beyond that orbit. Those of a rolling element
-    are in the axes of its row, which looks the other way along z if it is mirrored.
+    follow the lead of every rolling element over the uniform orbit, along the pitch
+    circle, and the cage's x, y and turn relative to that orbit. Those of a rolling
+    element are in the axes of its row, whose z is reversed if it is mirrored.
 
     Attributes:
         row: The rolling elements, each a `FreeElement`; of a set, those of all rows.
-        sites: Where the rows of a set stand; `None`: of a single row.
+        sites: Positions of the rows of a set; `None`: of a single row.
         errors: Form errors of each row, tabulated; `None`: none.
-        surfaces: Where the contacts of each row run.
+        surfaces: Contact tracks of each row.
         turning: Speeds of outer ring, inner ring, orbit and of the elements about
             their own axes, against the orbit [rad/s]; of a set the latter two of every
             element.
         mass: Of the ring's freedoms (k,) [kg, kg m²].
         load: On them (k,) [N, N m].
-        growth: Time in which form errors grow from nothing, so that they excite no
-            vibration of their own by being there; `None`: they are there [s].
-        sensor: As of the model.
-        retardation: As of the model [s].
+        growth: Time in which form errors grow from zero, so that their onset excites
+            no vibration; `None`: they are present from the start [s].
+        sensor: As in the model.
+        retardation: As in the model [s].
         moving: 0 for the outer ring, 1 for the inner one. Static.
         counts: Rolling elements of each row. Static.
-        cage: As of the model.
+        cage: As in the model.
     """
 
     row: Row
@@ -86,7 +86,7 @@ class NoiseSystem(eqx.Module):
 
     @property
     def masses(self) -> Float[Array, " n"]:
-        """Of all coordinates [kg, kg m²]."""
+        """Masses of all coordinates [kg, kg m²]."""
         each = self._of_each("mass")
         masses = [self.mass, each.T.ravel()]
         if (cage := self.cage) is not None:
@@ -132,10 +132,10 @@ class NoiseSystem(eqx.Module):
     def met(
         self, azimuth: Float[Array, " element"], time: Scalar
     ) -> Float[Array, "element 2 3"] | None:
-        """How every rolling element finds the raceways, `Deviation.raceway` [m].
+        """Return `Deviation.raceway` at every rolling element [m].
 
         Args:
-            azimuth: Where they are [rad].
+            azimuth: Azimuths of the elements [rad].
             time: [s].
         """
         if self.errors is None:
@@ -156,7 +156,7 @@ class NoiseSystem(eqx.Module):
         return met if self.growth is None else _grown(time / self.growth) * met
 
     def encounter(self, azimuth: Float[Array, " element"], time: Scalar) -> Encounter:
-        """How every rolling element finds the raceways; arguments as of `met`."""
+        """Return the `Encounter` of the elements; arguments as in `met`."""
         found = Encounter.at(azimuth)
         met = self.met(azimuth, time)
         if met is None or self.errors is None:
@@ -181,7 +181,7 @@ class NoiseSystem(eqx.Module):
         return jax.jvp(at, (time,), (jnp.ones_like(time),))
 
     def _passing(self, motion, velocity, time):
-        """As `course`, of a motion with a cage."""
+        """Return `course` of a motion with a cage."""
 
         def at(motion, time):
             return self.encounter(self.azimuth(time, motion), time)
@@ -228,7 +228,7 @@ class NoiseSystem(eqx.Module):
         """Forces of the rolling elements on both raceways, reversed [N, N m].
 
         Args:
-            motion, encounter: As of `resistance`.
+            motion, encounter: As in `resistance`.
         """
         (outer, inner), _ = self._contacts(motion, encounter)
         return outer, inner
@@ -297,7 +297,7 @@ class NoiseSystem(eqx.Module):
     def contact_loads(
         self, motion: Float[Array, " n"], time: Scalar
     ) -> Float[Array, "element contact"]:
-        """Load of every contact [N]; arguments as of `contact_forces`."""
+        """Load of every contact [N]; arguments as in `contact_forces`."""
         encounter = self.encounter(self.azimuth(time, motion), time)
         return self._each(FreeElement.loads, motion, encounter)
 
@@ -341,13 +341,13 @@ class NoiseSystem(eqx.Module):
         start: Float[Array, " n"],
         course: tuple[Encounter, Encounter] | None = None,
     ) -> Float[Array, " n"]:
-        """What acts on every coordinate [N, N m].
+        """Return the forces on all coordinates [N, N m].
 
         Args:
             motion, velocity: [m, rad], [m/s, rad/s].
             time: [s].
-            start: Where the sensor was set [m, rad].
-            course: `course` of the time, if it is at hand.
+            start: Motion at which the sensor is free of force [m, rad].
+            course: `course` at that time, if already known.
         """
         if course is None:
             course = self._passing(motion, velocity, time)

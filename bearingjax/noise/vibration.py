@@ -34,7 +34,7 @@ _TOGETHER = 64
 STEP = 0.5
 """Longest step, of a radian of the fastest mode [rad]."""
 _DOUBLINGS = 3
-"""How often steps that proved too long for the contacts are halved."""
+"""Most halvings of steps that are too long for the contacts."""
 
 
 class CageMotion(NamedTuple):
@@ -89,7 +89,7 @@ class Vibration(eqx.Module):
 
     @property
     def bandwidth(self) -> Scalar:
-        """Frequency up to which the acceleration is told; what is above is cut [Hz]."""
+        """Bandwidth of the acceleration; content above it is removed [Hz]."""
         return bandwidth(self.time.shape[0] // self.turns, self.shaft_frequency)
 
 

@@ -56,7 +56,7 @@ def model_warnings(
         tolerances: How random bearings scatter, if they are wanted.
 
     Returns:
-        A sentence each; empty where nothing is doubtful.
+        A sentence each; empty if there are none.
     """
     told = bandwidth(samples, float(model.shaft_speed) / (2.0 * np.pi))
     return [
@@ -83,7 +83,7 @@ def record_warnings(
         tolerances: How random bearings scatter, if they are wanted.
 
     Returns:
-        A sentence each; empty where nothing is doubtful.
+        A sentence each; empty if there are none.
     """
     return [
         *_silent(model, record, found),

@@ -87,7 +87,7 @@ def _grooves(ax, bearing):
 
 
 def _arc_angle(bearing, groove, name):
-    """Where on its arc a radius is drawn: beside the lines of contact [rad]."""
+    """Return the angle of a radius line on its arc, clear of the contact lines [rad]."""
     turn = float(bearing.free_contact_angle) - float(bearing.groove_axis)
     lines = turn, float(getattr(bearing, "shim_angle", turn))
     height = getattr(bearing, f"{name}_shoulder")
@@ -98,7 +98,7 @@ def _arc_angle(bearing, groove, name):
     # Not opposite each other: they would look like one line.
     shares = (0.5, 0.3, 0.8) if name == "outer" else (0.8, 0.5, 0.3)
     turns = [start + share * (edge - start) for share in shares]
-    # At least 8 degrees beside them, or as far as may be.
+    # At least 8 degrees away from them, or as far as possible.
     beside = [min(abs(turn - line) for line in lines) for turn in turns]
     clear = [turn for turn, far in zip(turns, beside, strict=True) if far > 0.14]
     return clear[0] if clear else turns[int(np.argmax(beside))]
@@ -191,7 +191,7 @@ def ball_clearance_view(ax: "matplotlib.axes.Axes", bearing, size) -> None:
 
 
 def clearance_title(text: str, gap: float, times: float) -> str:
-    """What the view of a clearance shows.
+    """Return the title of the view of a clearance.
 
     Args:
         text: Name and value.

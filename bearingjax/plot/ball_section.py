@@ -99,14 +99,14 @@ def _dimensions(ax, row, low, high, alone):
 
 
 def ball_row(ax, bearing, place, reach=np.inf, apart=0.0) -> np.ndarray:
-    """One ball, its lines of contact without load, and both rings beside it.
+    """Draw one ball, its lines of contact without load, and both rings.
 
     Args:
         ax: Axes.
         bearing: A row of balls.
-        place: Where points (point, 2) about the ball's centre, z and r in mm, stand.
+        place: Map of points (point, 2) about the ball's centre, z and r in mm.
         reach: Most half width of the rings [mm].
-        apart: How far each ring stands further from the ball [mm].
+        apart: Additional distance of each ring from the ball [mm].
 
     Returns:
         Outlines of both rings (point, 2) [mm].

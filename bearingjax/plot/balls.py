@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _MARKERS = ("o", "s", "^", "D")
 _LEAST_SPAN = 2.0
-"""Of the axis of contact angles [deg]: less is no difference that matters."""
+"""Least span of the axis of contact angles [deg]."""
 _BOX = 0.62
 """Height over width of a raceway that is rolled out."""
 _ARC = 0.48
@@ -178,7 +178,7 @@ def _raceway_radius(bearing, ring):
 
 
 def _scale_text(scale, turn):
-    """What scale the ellipses have.
+    """Return a note on the scale of the ellipses.
 
     Args:
         scale: Degrees of the azimuth per mm of width, true to shape and drawn.

@@ -30,11 +30,11 @@ def contact_overview(
     slices: Sequence[Slices],
     title: str = "",
 ) -> "matplotlib.figure.Figure":
-    """Pressure over the contact, and along the roller beside slices.
+    """Plot pressure over the contact, and along the roller compared with slices.
 
     Args:
         solutions: Of one roller under one load or several.
-        slices: What slices give under each.
+        slices: Results of slices under each.
         title: Head of the page.
 
     Returns:
@@ -69,7 +69,7 @@ def contact_overview(
 def contact_map(
     solution: ContactSolution, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Pressure [MPa] over the contact, stretched across the roller.
+    """Map the pressure [MPa] over the contact, stretched across the roller.
 
     White is no contact. End cells that are pressed far more than the rest are off the
     scale of colours; the head gives their value and length.
@@ -79,7 +79,7 @@ def contact_map(
         ax: Axes; a new figure if `None`.
 
     Returns:
-        The axes; the colour bar stands beside it.
+        The axes; the colour bar is next to it.
     """
     ax = axes_or_new(ax, (9.0, 4.0))
     x, pressure = _whole(solution)

@@ -1,4 +1,4 @@
-"""Pressure and load per length along a roller, ends included, beside slices."""
+"""Pressure and load per length along a roller, compared with slices."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -69,7 +69,7 @@ def contact_line_load(
     Each line bears its load.
 
     Args:
-        solutions, ax, slices: As of `centre_pressure`.
+        solutions, ax, slices: As in `centre_pressure`.
     """
     ax = axes_or_new(ax, (8.0, 5.0))
     values = [1e-3 * np.asarray(s.line_load) for s in solutions]

@@ -25,22 +25,22 @@ def contact_stress(
     kind: str = "von_mises",
     poisson: float = 0.3,
 ) -> "matplotlib.axes.Axes":
-    """Von Mises or largest shear stress [MPa] in a section below the contact.
+    """Plot von Mises or largest shear stress [MPa] in a section below the contact.
 
-    Three half widths of the contact deep. A cross marks the largest value drawn; what
-    lies within a tenth of a half width below the surface is left out, where the steps
-    of the pressure show.
+    The depth is three half widths of the contact. A cross marks the largest value
+    drawn; the first tenth of a half width below the surface, where the steps of the
+    pressure are visible, is left out.
 
     Args:
         solution: A single solution with a contact.
         ax: Axes; a new figure if `None`.
         section: "across" the roller, or "along" it at x = 0.
-        y: Where across [m]; `None`: at the centre of the load.
+        y: Position of the "across" section [m]; `None`: at the centre of the load.
         kind: "von_mises" or "greatest_shear".
         poisson: Poisson's ratio of the body [1].
 
     Returns:
-        The axes; the colour bar stands beside it.
+        The axes; the colour bar is next to it.
 
     Raises:
         ValueError: For another section or kind, or without a contact.

@@ -1,4 +1,4 @@
-"""Dimension lines of drawings: what is measured, and labels beside the view."""
+"""Dimension lines of drawings, and labels at the sides of the view."""
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -33,7 +33,7 @@ _SHOWN = {
 
 
 class Label(NamedTuple):
-    """A label beside a view, and the point of the view that it belongs to.
+    """Label at the side of a view, and the point of the view that it belongs to.
 
     Attributes:
         text: The label.
@@ -102,11 +102,11 @@ def fit(ax: "matplotlib.axes.Axes", points, size, middle=(0.48, 0.86)) -> None:
 
 
 def put_labels(ax: "matplotlib.axes.Axes", labels: list[Label], size, column=0.25):
-    """Write labels in two columns beside the view, each with a line to its point.
+    """Write labels in columns at both sides of a view, each with a line to its point.
 
     Args:
         ax: Axes after `fit`.
-        labels: What to write; those of points further left stand on the left.
+        labels: The labels; those of points further left are on the left.
         size: Width and height of the axes [inch].
         column: Width of a column, share of the axes.
     """
@@ -175,7 +175,7 @@ def _cross(one, other):
 
 
 def middle_only(ax: "matplotlib.axes.Axes", column: float) -> None:
-    """Cut off what is drawn beside the middle of a view, where labels stand.
+    """Clip a view to its middle, leaving the columns of labels free.
 
     Args:
         ax: Axes, before labels are written.
@@ -325,7 +325,7 @@ def contact_angle(
     name: str = "contact angle",
     alone: bool = True,
 ) -> None:
-    """The angle of a contact normal to the radial direction, above a section.
+    """Draw the angle of a contact normal to the radial direction, above a section.
 
     Args:
         ax: Axes.
@@ -333,8 +333,8 @@ def contact_angle(
         contact: The angle, below 90 degrees [rad].
         top: Radial place of the arc, and of the end of the lines.
         sense: -1 if the row is mirrored.
-        name: What it is.
-        alone: Whether no other row stands beside it.
+        name: Name of the angle.
+        alone: Whether the row has no neighbour.
     """
     centre = np.asarray(centre, dtype=float)
     arc, end = (place - centre[1] for place in top)
@@ -359,14 +359,14 @@ def contact_angle(
 def on_line(
     ax: "matplotlib.axes.Axes", at, text: str, turn: float = 0.0, ha: str = "center"
 ) -> None:
-    """A label on or beside its dimension line within a rolling element.
+    """Write a label on or next to its dimension line within a rolling element.
 
     Args:
         ax: Axes.
         at: Its middle or end (2,).
         text: The label.
         turn: Of the text [rad].
-        ha: Which end of the text is there, as of matplotlib.
+        ha: Horizontal alignment of the text, as in matplotlib.
     """
     ax.text(
         at[0],

@@ -80,12 +80,12 @@ class _Strip(NamedTuple):
 def drawing(
     bearing: AbstractBearing | BearingSet, title: str = ""
 ) -> "matplotlib.figure.Figure":
-    """A drawing of a design: every parameter at the place where it is measured.
+    """Draw a design, with every parameter at the place where it is measured.
 
     Labels are the names of the Python interface, with values. Sections and the view
     along the axis are to scale; clearances, gaps and profiles, too small to be seen,
-    are magnified by factors that stand beside them. Ring bodies are schematic: they
-    are no part of a design.
+    are magnified by the factors given. Ring bodies are schematic: they are no part of
+    a design.
 
     Args:
         bearing: A bearing, or a set: its arrangement, then every different bearing.
@@ -209,7 +209,7 @@ def _of_balls(bearing):
 
 
 def _of_rollers(bearing):
-    """As `_of_balls`."""
+    """Return views and details of a roller bearing, as `_of_balls`."""
     parts = section(bearing)
     views = [
         _View(lambda ax, size: dimensioned_rollers(ax, bearing, parts, size), _SECTION),
@@ -247,7 +247,7 @@ def _like_ribs(ribs):
 
 
 def _in_words(bearing):
-    """What has no place on a drawing, and deviations that there are not."""
+    """Return labels of fields that cannot be drawn, and of absent deviations."""
     materials = [
         f"{name}: {_of_material(getattr(bearing, name))}" for name in MATERIALS
     ]

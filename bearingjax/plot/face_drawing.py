@@ -17,7 +17,7 @@ DEVIATIONS = {
     "roller_deviation": (1e6, "µm"),
     "raceway_deviation": (1e6, "µm"),
 }
-"""How fields that differ from one rolling element to the next are shown."""
+"""Factor and unit of fields that differ between rolling elements."""
 
 
 def face_view(ax: "matplotlib.axes.Axes", bearing: AbstractBearing, size) -> None:
@@ -101,7 +101,7 @@ def _in_corner(ax, corner, text, at):
 def deviation_view(
     ax: "matplotlib.axes.Axes", bearing: AbstractBearing, name: str
 ) -> None:
-    """How each rolling element differs from the design.
+    """Plot the deviations of each rolling element from the design.
 
     Args:
         ax: Axes.

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import matplotlib.axes
 
 _RADIUS, _TICK_LABEL = 1.6, (0.3, 0.15)
-"""Of a load zone on a page; width and height of the label of a tick [inch]."""
+"""Radius of a load zone on a page; width and height of a tick label [inch]."""
 
 
 def load_zone(

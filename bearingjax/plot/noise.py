@@ -30,7 +30,7 @@ _NAMED = 8
 _COLUMNS = 1600
 """Most columns of a map."""
 _TICKS = 18
-"""Most rolling elements whose numbers stand beside a map."""
+"""Most rolling elements that are numbered on the axis of a map."""
 
 
 def acceleration_over_time(
@@ -149,7 +149,7 @@ def band_bars(
     norm: Any = None,
     reference: float = REFERENCE_ACCELERATION,
 ) -> "matplotlib.axes.Axes":
-    """Level of every band and direction, beside the norm if there is one.
+    """Plot the level of every band and direction, with the norm if there is one.
 
     Args:
         bands: The bands.
@@ -197,7 +197,7 @@ def contact_state_map(
     states: ContactStates,
     ax: "matplotlib.axes.Axes | None" = None,
 ) -> "matplotlib.axes.Axes":
-    """How many contacts every rolling element has, over the turns of the shaft.
+    """Map the number of contacts of every rolling element over turns of the shaft.
 
     Args:
         record: From `vibration`.

@@ -74,7 +74,7 @@ def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
 
 
 def _of_bearings(found):
-    """The same with bearings and their loads in place of systems."""
+    """Return a copy with bearings and their loads in place of systems."""
     before, after = (
         outcome._replace(solution=loads_of(outcome.solution))
         for outcome in (found.before, found.after)

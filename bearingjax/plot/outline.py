@@ -14,7 +14,7 @@ from ..numerics.programs import program
 from .style import RACEWAYS
 
 _BODY = 0.35  # thickness of the schematic rings, roller diameters
-_BESIDE = 0.28  # width of the schematic rings beside roller and ribs, roller diameters
+_BESIDE = 0.28  # width of the schematic rings past roller and ribs, roller diameters
 
 
 class Section(NamedTuple):

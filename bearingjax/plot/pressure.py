@@ -127,7 +127,7 @@ def pressure_map(
     row: int = 0,
     top: float | None = None,
 ) -> "matplotlib.axes.Axes":
-    """Contact pressure [MPa] of all rollers: azimuth by position along the roller.
+    """Map contact pressure [MPa] of all rollers over azimuth and roller position.
 
     White is no contact, or less than a thousandth of the highest pressure.
 
@@ -140,7 +140,7 @@ def pressure_map(
             on this raceway if `None`. Give one to compare raceways.
 
     Returns:
-        The axes; the colour bar stands beside it.
+        The axes; the colour bar is next to it.
 
     Raises:
         ValueError: If `raceway` or `row` is unknown.

@@ -31,9 +31,9 @@ _NEAR = 0.95
 def profile_view(
     ax: "matplotlib.axes.Axes", bearing: AbstractRollerBearing, name: str
 ) -> None:
-    """Drop along the roller, magnified by its axis, with all its parameters.
+    """Draw the drop along the roller, magnified by its axis, with all its parameters.
 
-    Lengths are drawn where they are measured; the others stand beside the curve.
+    Lengths are drawn where they are measured; the others are next to the curve.
 
     Args:
         ax: Axes.

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _GAP = 0.05
 """Gap of a clearance as drawn, roller diameters."""
 _RIB_COLUMN = 0.36
-"""Width of the labels beside a rib, share of its view."""
+"""Width of the column of labels of a rib, share of its view."""
 PROFILES = "roller_profile", "outer_raceway_profile", "inner_raceway_profile"
 
 

@@ -7,13 +7,13 @@ from .style import COLOURS, RACEWAYS, ROLLER, towards_white
 
 
 def roller_row(ax, parts: Section, place=np.asarray, apart=0.0) -> np.ndarray:
-    """One roller and both rings beside it.
+    """Draw one roller and both rings.
 
     Args:
         ax: Axes.
         parts: Of a row of rollers.
-        place: Where points (point, 2), z and r in mm, stand.
-        apart: How far each ring stands further from the roller [mm].
+        place: Map of points (point, 2), z and r in mm.
+        apart: Additional distance of each ring from the roller [mm].
 
     Returns:
         Corners of both rings (point, 2) [mm].

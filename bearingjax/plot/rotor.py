@@ -87,7 +87,7 @@ def _shaft(ax, stations, outer, bore):
 
 
 def _at(outer, station):
-    """Larger radius of the segments beside a station [mm]."""
+    """Return the larger radius of the segments adjacent to a station [mm]."""
     return float(outer[max(station - 1, 0) : station + 1].max())
 
 

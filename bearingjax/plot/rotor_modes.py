@@ -203,7 +203,7 @@ def _critical(ax, critical, rpm, top):
 
 
 def unit_scale(unit: str) -> float:
-    """What a motion in m or rad is multiplied by.
+    """Return the factor from m or rad to a unit.
 
     Args:
         unit: "um" or "mrad".

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import matplotlib.figure
 
 _ACROSS = 3
-"""Pictures beside each other."""
+"""Number of pictures side by side."""
 _LEAST_TIMES = 100
 """Times below which a run-up has no spectra."""
 

@@ -174,7 +174,7 @@ def draw_spring(ax: Any, z: float, ends: tuple[float, float], width: float) -> N
 
 
 def draw_ground(ax: Any, z: float, r: float, size: float) -> None:
-    """What does not move: a line, hatched below.
+    """Draw ground: a line, hatched below.
 
     Args:
         ax: Axes.

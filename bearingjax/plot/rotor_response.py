@@ -102,7 +102,7 @@ def linear_curve(
 
 
 def _at_event(branch, event, amplitude):
-    """Amplitude at an event, between the points of the branch beside it."""
+    """Return the amplitude at an event, interpolated between points of the branch."""
     before, after = event.after, min(event.after + 1, len(amplitude) - 1)
     first = np.asarray(branch.amplitude)[before]
     way = np.asarray(branch.amplitude)[after] - first

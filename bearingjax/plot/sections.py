@@ -1,4 +1,4 @@
-"""Axial sections of several bearings beside each other."""
+"""Axial sections of several bearings side by side."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

@@ -102,7 +102,7 @@ def _positions(ax, bearing, low, step):
 
 
 def _beside(ax, bearing, k, at, side):
-    """The position of a row, beside the end of its dimension."""
+    """Write the position of a row at the end of its dimension line."""
     ax.annotate(
         label(bearing.rows[k], "position", f"rows.{k}."),
         at,
@@ -126,7 +126,7 @@ def _push(ax, row, at, half):
 
 
 def _words(row, k, turned):
-    """What is told of a row, beside its place."""
+    """Return the labels of a row other than its position."""
     name = f"rows.{k}."
     told = "" if float(row.inner_offset) == 0.0 else ", arrow not to scale"
     lines = [
@@ -173,7 +173,7 @@ def _spring(row, name):
 
 
 def _arrangement(bearing):
-    """What the arrangement is called, and the spacing of its rows."""
+    """Return the name of the arrangement, and the spacing of its rows."""
     rows = sorted(bearing.rows, key=_place)
     spacing = np.diff([_place(row) for row in rows])
     turned = tuple(row.mirrored for row in rows)

@@ -199,7 +199,7 @@ def cage_speed(
     *,
     label: str = "",
 ) -> "matplotlib.axes.Axes":
-    """Cage speed over the load, beside that of pure rolling [rad/s].
+    """Plot the cage speed over the load, with that of pure rolling [rad/s].
 
     Args:
         load: Of each case (case,) [N].

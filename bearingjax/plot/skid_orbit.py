@@ -159,8 +159,8 @@ def sliding_over_orbit(
 def spin_over_orbit(
     found: Steady, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Spin in the orbiting frame [rad/s] against azimuth [deg]; of rollers about their
-    axes, beside pure rolling.
+    """Plot spin in the orbiting frame [rad/s] against azimuth [deg]; of rollers about
+    their axes, with that of pure rolling.
 
     Args:
         found: From `skid.steady`, with places.

@@ -25,7 +25,7 @@ History = SkidHistory | SkidRollerHistory
 
 _BAND = 0.25
 _BEYOND = 1.5
-"""How far an axis goes beyond all but the shortest peaks."""
+"""Extent of an axis over all but the shortest peaks, as a factor."""
 _FLOOR = 1e-3
 """Amplitude over the largest one below which a spectrum is not drawn."""
 
@@ -33,7 +33,7 @@ _FLOOR = 1e-3
 def speed_over_time(
     found: History, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Speed of the cage and orbits of the balls, beside pure rolling [rad/s].
+    """Plot cage speed and orbital speeds of the balls, with pure rolling [rad/s].
 
     Args:
         found: From `skid.simulate`.
@@ -260,7 +260,7 @@ def sliding_spectrum(
     Args:
         found: From `skid.simulate`, at even times.
         ax: Axes; a new figure if `None`.
-        ball, raceway, begin: As of `spectrum`.
+        ball, raceway, begin: As in `spectrum`.
 
     Returns:
         The axes.

@@ -1,4 +1,4 @@
-"""What all plots share: matplotlib on demand, colours, labels."""
+"""Common parts of all plots: matplotlib on demand, colours, labels."""
 
 from typing import TYPE_CHECKING, Any
 

@@ -32,16 +32,16 @@ def sweep_overview(
     beside: Mapping[str, np.ndarray] | None = None,
     title: str = "",
 ) -> "matplotlib.figure.Figure":
-    """Every result that differs from case to case, the first nine.
+    """Plot the first nine results that differ from case to case.
 
-    Of a grid over the input with most values, a curve for each setting of the others;
-    its colour tells the first of them that has six values at most. Of other cases over
-    their number. Cases that were not solved are left out, and so is what a case
-    prescribes.
+    For a grid, results are over the input with most values, a curve for each setting
+    of the others; its colour marks the first of them with at most six values. Other
+    cases are over their number. Cases that were not solved are left out, and so are
+    prescribed quantities.
 
     Args:
         solved: From `sweep`, with a case solved.
-        beside: What makes the designs, as in `columns`.
+        beside: Inputs that make the designs, as in `columns`.
         title: Head of the page; "Sweep" if empty.
 
     Returns:

@@ -29,7 +29,7 @@ _INNER = slice(_N_RING, _N_RING + len(STATION_FREEDOMS))
 _TURN = 2 * _N_RING - 1
 """gz of the inner ring."""
 _TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0])
-"""What a half turn about x makes of (ux uy uz gx gy), and of forces and moments."""
+"""Signs from a half turn about x of (ux uy uz gx gy), and of forces and moments."""
 
 
 def _flag(value):
@@ -116,7 +116,7 @@ class BearingSupport(AbstractSupport):
         rolling element did not converge.
 
         Args:
-            motion, velocity, speed, angle: As of `AbstractSupport.force`.
+            motion, velocity, speed, angle: As in `AbstractSupport.force`.
         """
         sense, sign = self._sense(motion.dtype)
         model, rings = self._model(motion, speed)
@@ -129,7 +129,7 @@ class BearingSupport(AbstractSupport):
     def pushed(
         self, motion: Float[Array, "5"], speed: Scalar
     ) -> tuple[Float[Array, "5"], Float[Array, "5 5"], Float[Array, "5 5"]]:
-        """As of `AbstractSupport.pushed`, from one solve of the rolling elements."""
+        """Return `AbstractSupport.pushed` from one solve of the rolling elements."""
         sense, _ = self._sense(motion.dtype)
         model, rings = self._model(motion, speed)
         found = model.evaluate(rings, model.solve(rings))
@@ -138,7 +138,7 @@ class BearingSupport(AbstractSupport):
         return sense * found.force[_INNER] * solved, stiffness * solved, self.damping
 
     def _sense(self, dtype):
-        """What turning round makes of a motion (5,) and of the speed."""
+        """Return signs of a motion (5,) and of the speed if the bearing is turned."""
         sense = jnp.where(self.turned, jnp.asarray(_TURNED, dtype), 1.0)
         # Seen from the other side the rotor turns the other way.
         return sense, sense[2]

@@ -33,7 +33,7 @@ class Condensed(eqx.Module):
         rows: Motion of every support (support, 5, m) [1, 1/m].
         back, there: All motions (motion, m) and what the forces between supports add
             (motion,) [m, rad].
-        supports, speed: As of the rotor.
+        supports, speed: As in the rotor.
     """
 
     stiffness: Float[Array, "m m"]
@@ -57,7 +57,7 @@ class Condensed(eqx.Module):
         )
 
     def nothing(self) -> Supported:
-        """Of the shapes of `of_supports`."""
+        """Return zeros of the shapes of `of_supports`."""
         n, none = len(self.supports), jnp.zeros_like(self.force[0])
         matrices = jnp.tile(none, (n, N_STATION, N_STATION))
         return matrices[:, 0], matrices, matrices

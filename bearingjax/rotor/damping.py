@@ -68,7 +68,7 @@ class ProportionalDamping(AbstractDamping):
 
 
 class ModalDamping(AbstractDamping):
-    """The same damping ratio for every mode of the undamped rotor at rest.
+    """Uniform damping ratio for all modes of the undamped rotor at rest.
 
     Supports count with the stiffness that they have at the speed of the analysis.
 

@@ -50,14 +50,14 @@ def harmonic_response(
 def reduction_error(
     rotor: Rotor, loads: RotorLoads, frequency: Any, speed: Any, modes: int
 ) -> Scalar:
-    """How much a linear response changes by `craig_bampton`, over its largest one [1].
+    """Return the error of `craig_bampton` in a linear response, over its maximum [1].
 
     Args:
         rotor: Linear, with a shaft that bends.
-        loads: As of `harmonic_response`.
+        loads: As in `harmonic_response`.
         frequency: Of the excitation [rad/s].
         speed: Of the rotor [rad/s].
-        modes: As of `craig_bampton`. Static.
+        modes: As in `craig_bampton`. Static.
     """
     cosine, sine = loads.unbalanced(rotor)
     moments, shaken = lax.complex(cosine, -sine), to_complex(loads.shaken(rotor))

@@ -1,4 +1,4 @@
-"""What acts on a rotor from outside: weight, forces, unbalance, a base that shakes."""
+"""External loads on a rotor: weight, forces, unbalance, base excitation."""
 
 from typing import Any
 

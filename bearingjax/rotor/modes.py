@@ -399,7 +399,7 @@ def _state(matrices):
 
 
 def resonances_above(matrices: RotorMatrices, frequency: Any) -> Int[Array, ""]:
-    """How many modes that can resonate oscillate faster than at a frequency.
+    """Count the modes that can resonate above a frequency.
 
     Args:
         matrices: Of the rotor.

@@ -39,7 +39,7 @@ def instability_onsets(rotor: Rotor, speeds: Any, found: Modes) -> tuple[Onset, 
     positive at the speed before, the onset is where it is zero.
 
     Args:
-        rotor: As of `campbell`.
+        rotor: As in `campbell`.
         speeds: (speed,) [rad/s].
         found: From `campbell` at these speeds.
 

@@ -1,4 +1,4 @@
-"""What sits on a shaft: discs, point masses, supports and their housings."""
+"""Parts of a rotor: discs, point masses, supports and their housings."""
 
 import dataclasses
 import warnings
@@ -175,7 +175,7 @@ def check_matrix(owner, name, size):
 
 
 class Housing(eqx.Module):
-    """What a support stands on: a mass on springs and dampers that stand on ground.
+    """Housing of a support: a mass on springs and dampers to ground.
 
     It moves in x, y and z and does not tilt.
 
@@ -204,20 +204,20 @@ class Housing(eqx.Module):
 
 
 def check_support(owner) -> None:
-    """What every support has: a station, damping (5, 5), and a housing or `None`."""
+    """Check fields of a support: station, damping (5, 5), housing or `None`."""
     check_station(owner, owner.station)
     check_matrix(owner, "damping", 5)
     instance(owner, "housing", Housing, None)
 
 
 class AbstractSupport(eqx.Module):
-    """What holds a station of the shaft against ground or against a housing.
+    """Support of a station of the shaft on ground or on a housing.
 
     A support is a force over motion and velocity; linear analyses take its slopes.
 
     Attributes:
-        station: Number of the station that it holds.
-        housing: What it stands on; `None`: ground.
+        station: Number of the supported station.
+        housing: Its housing; `None`: ground.
     """
 
     station: eqx.AbstractVar[int]
@@ -268,7 +268,7 @@ class AbstractSupport(eqx.Module):
         return self.pushed(motion, speed)[1:]
 
     def anywhere(self) -> "AbstractSupport":
-        """The same support on station 0 and on ground: like ones are then alike."""
+        """Return a copy on station 0 and ground, so that like supports compare equal."""
         return dataclasses.replace(self, station=0, housing=None)
 
 

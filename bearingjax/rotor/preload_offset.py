@@ -9,10 +9,10 @@ from ..statics.load import solve_load
 
 
 def preload_offset(element: BearingElement, force: Scalar | float) -> Scalar:
-    """How far an axial force moves the inner ring of a bearing that stands alone [m].
+    """Return the axial displacement of the inner ring of one bearing under a force [m].
 
     It is the `offset` along z of a `BearingSupport`: the force is that of the bearing
-    before the shaft gives way and before its other bearings and its loads share in it.
+    before the shaft yields and before other bearings and loads share it.
     The bearing is at rest, and its rings are held coaxial.
 
     Args:

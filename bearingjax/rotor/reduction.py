@@ -76,7 +76,7 @@ def _basis(rotor, modes):
 
 
 def _sizes(stations):
-    """What counts as 1 m of every freedom of a station."""
+    """Return the scale of every freedom of a station, per 1 m of displacement."""
     one = jnp.ones_like(stations[0])
     tilt = 2.0 / (stations[-1] - stations[0])
     return [one] * N_HOUSING + [tilt] * (N_STATION - N_HOUSING)

@@ -166,7 +166,7 @@ class Rotor(eqx.Module):
         return slice(first, first + N_STATION)
 
     def motions(self) -> Float[Array, "motion freedom"]:
-        """What the freedoms move: every node, then every housing [m, rad]."""
+        """Motions of every node, then every housing, per freedom [m, rad]."""
         if not self.rigid:
             return jnp.eye(self._n_motions, dtype=self.shaft.stations.dtype)
         z = self.shaft.nodes

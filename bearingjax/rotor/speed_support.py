@@ -27,7 +27,7 @@ class SpeedSupport(AbstractSupport):
         stiffness: Coefficients of Chebyshev's polynomials between rest and `top_speed`
             (order, 5, 5) [N/m, N, N m]. Above it stays what it is there; it is the same
             for both senses of turning.
-        damping: As of `LinearSupport` [N s/m, N s, N m s].
+        damping: As in `LinearSupport` [N s/m, N s, N m s].
         top_speed: Speed up to which it is known [rad/s].
         housing: What it stands on; `None`: ground.
 
@@ -61,7 +61,7 @@ class SpeedSupport(AbstractSupport):
         speed: Scalar,
         angle: Scalar | float = 0.0,
     ) -> Float[Array, "5"]:
-        """As of `AbstractSupport.force`: without the load at rest [N, N m]."""
+        """Return `AbstractSupport.force` without the load at rest [N, N m]."""
         share = jnp.minimum(2.0 * jnp.abs(speed) / self.top_speed - 1.0, 1.0)
 
         # Clenshaw's rule. As a loop, for XLA's compiler for CPUs (jaxlib 0.10.1) makes

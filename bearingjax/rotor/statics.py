@@ -118,7 +118,7 @@ def checked_loads(owner: str, rotor: Any, loads: Any) -> RotorLoads:
 
     Args:
         owner: Function that was called.
-        rotor, loads: As of `static_equilibrium`.
+        rotor, loads: As in `static_equilibrium`.
 
     Raises:
         TypeError, ValueError: As `static_equilibrium`.
@@ -184,7 +184,7 @@ def settled_at(
     """The result, and where the search ended even if it is none (motion,).
 
     Args:
-        rotor, loads, speed: As of `static_equilibrium`, checked.
+        rotor, loads, speed: As in `static_equilibrium`, checked.
     """
     parts = condensed(rotor, loads, speed)
     length = rotor.shaft.stations[-1] - rotor.shaft.stations[0]
@@ -199,7 +199,7 @@ def settled_at(
 
 
 def _settled(found, solved, rotor, parts, speed) -> StaticEquilibrium:
-    """What the search found, with derivatives; NaN if it failed."""
+    """Return the result of the search with derivatives; NaN if it failed."""
     y = attach_by(_balance, found.x, parts, _undone)
     motion = parts.motion(jnp.where(solved, y, jnp.nan))
     known = jax.tree.map(lambda leaf: jnp.where(solved, leaf, jnp.nan), found.memory)

@@ -30,7 +30,7 @@ class StaticEquilibriumOver(eqx.Module):
         rotor: The rotor on springs that follow the speed (`SpeedSupport`), for all
             linear analyses up to the top speed.
         speed: Where it was settled (place,) [rad/s]. displacement, support_load,
-        stiffness: There, as of `StaticEquilibrium`, with `place` as
+        stiffness: There, as in `StaticEquilibrium`, with `place` as
             first axis.
         error: What the polynomials may miss, over the largest stiffness [1].
         result: Worst `Result` code; the numbers are NaN unless it is `CONVERGED`.
@@ -62,7 +62,7 @@ def static_equilibrium_over(
     a kink. If no support follows the speed, `static_equilibrium` tells the same.
 
     Args:
-        rotor, loads: As of `static_equilibrium`.
+        rotor, loads: As in `static_equilibrium`.
         top_speed: Highest speed, above 0 [rad/s].
         places: Number of points, 3 or more. Static.
         throw: Raise if one is not settled. Static.

@@ -1,4 +1,4 @@
-"""In words: why a rotor did not come to rest, and what is doubtful where it did."""
+"""Messages on failed rotor equilibria, and warnings on converged ones."""
 
 import warnings
 from typing import Any

@@ -6,8 +6,8 @@ least_film=..., inlet_heating=...)` is a bearing with its oil.
 The state in the end
 --------------------
 
-`skid.steady(model, load, speed=..., free=...)` says how the balls move in the end,
-without the way there: orbit and spin of the balls against pure rolling (`slip`), film,
+`skid.steady(model, load, speed=..., free=...)` finds the steady state of the balls
+without integrating in time: orbit and spin relative to pure rolling (`slip`), film,
 sliding and heat of every contact, friction torque and power balance. The torque is that
 of sliding and of drag: resistance to rolling, hysteresis and seals, most of what a
 catalogue's formula gives, are left out (benchmarks/skid_friction.py). Under an axial
@@ -36,7 +36,7 @@ and friction torque come with a balance of all powers (`imbalance`), a result co
 derivatives in either mode (`derivatives="reverse"` or `"forward"`). Loads over time
 (`LoadHistory`, `SinusoidalLoad`, or your own function of time) are balanced at every
 time with the balls where they are; a constant load is tabulated around the bearing,
-which is three times faster and does not see balls bunch (`balanced=True` does). Beside
+which is three times faster and does not see balls bunch (`balanced=True` does). Against
 SciPy's stiff solvers at like errors: benchmarks/skid_transient.py; a map of 1000 end
 states in one call: benchmarks/skid_map.py. Where others use the processor too, set
 `OPENBLAS_NUM_THREADS=1` for end states under radial loads: LAPACK's threads otherwise
@@ -46,8 +46,8 @@ Rollers
 -------
 
 Cylindrical and needle rollers skid in the same model: `skid.steady` of a roller bearing
-says how fast its cage turns under light radial load (`cage_speed`, `slip`), how each
-roller spins on its way round, what slides and heats, and with what force the cage
+gives its cage speed under light radial load (`cage_speed`, `slip`), the spin of each
+roller along its orbit, sliding and heat, and the force with which the cage
 pushes rollers forwards or holds them back (`cage_force`). All rollers orbit with the
 cage, which those under load drive against the drag of the oil (Harris 1966); inertia of
 the spin is included, friction on ribs and in pockets is not. In time (`skid.simulate`,
@@ -65,7 +65,7 @@ Design
 by hours) and `CageSlip`; variables are then "preload",
 "model.element.bearing.contact_angle", "model.temperature" and the like. Least friction
 torque with at most 1 % slip over a spectrum: benchmarks/skid_design.py. `skid_warnings`
-says what is doubtful: pockets too tight for the end state or too wide for the balls,
+warns of pockets too tight for the end state or too wide for the balls,
 shear stresses that no oil bears, an oil that is a glass, films that are not
 elastohydrodynamic or too thin, gross skidding.
 """

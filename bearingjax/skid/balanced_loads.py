@@ -1,8 +1,8 @@
-"""What balls bear, ring and balls balanced anew at every time, wherever they are.
+"""Contact loads of balls from the equilibrium of ring and balls at every time.
 
 For loads that vary in time, and for balls that are not evenly spaced. Ring and balls
-follow the load without inertia in the sections of the bearing: where they stand is
-unknown, along with the motion, and balanced by the same steps in time.
+follow the load without inertia in the sections of the bearing: their positions are
+unknowns along with the motion, and are balanced by the same time steps.
 """
 
 from collections.abc import Callable
@@ -54,7 +54,7 @@ class BalancedLoads(eqx.Module):
 
     @property
     def mass(self) -> Scalar:
-        """Of a ball [kg]."""
+        """Mass of a ball [kg]."""
         bearing = self.skid.bearing
         return ball_mass(bearing.ball_diameter, bearing.material.density)[0]
 

@@ -38,8 +38,7 @@ LEAST_LOAD = 1e-9
 
 
 class BallState(NamedTuple):
-    """How a ball moves.
-
+    """Motion of a ball.
     Attributes:
         spin: Angular velocity relative to the orbiting frame (3,) [rad/s].
         orbit: Angular velocity of the frame about the bearing axis [rad/s].
@@ -115,7 +114,7 @@ class Sliding(NamedTuple):
 
 
 class Tractions(NamedTuple):
-    """What the raceways do to a ball by traction, leading axis contact.
+    """Traction of the raceways on a ball, leading axis contact.
 
     Attributes:
         film: Film in the middle (contact,) [m].
@@ -154,7 +153,7 @@ def rolling(ball: LoadedBall, speed: Speed) -> BallState:
 
 
 def sliding(ball: LoadedBall, state: BallState, speed: Speed) -> Sliding:
-    """How a ball moves against its raceways.
+    """Return sliding, spin and entrainment of a ball on its raceways.
 
     Args:
         ball: The ball.
@@ -212,7 +211,7 @@ def tractions(ball: LoadedBall, law: AbstractTraction, moving: Sliding) -> Tract
 def rates(
     ball: LoadedBall, state: BallState, drag: Tractions, along_orbit: Scalar
 ) -> BallState:
-    """How the motion of a ball changes, per second.
+    """Return the time derivatives of the motion of a ball.
 
     Args:
         ball: The ball.
@@ -233,7 +232,7 @@ def unbalanced(
     """Moments less those of inertia that turn the spin axis with the orbit, and force.
 
     I (dw/dt + dω/dt e_z) are the moments (3,) [N m], m r dω/dt the force along the
-    orbit [N]. Arguments as of `rates`.
+    orbit [N]. Arguments as in `rates`.
     """
     wx, wy, _ = state.spin
     gyroscopic = ball.moment * state.orbit * jnp.stack([wy, -wx, jnp.zeros_like(wx)])
@@ -242,7 +241,7 @@ def unbalanced(
 
 
 def kinetic_energy(ball: LoadedBall, state: BallState) -> Scalar:
-    """Of the orbit and of the rotation [J]."""
+    """Return the kinetic energy of orbit and rotation of a ball [J]."""
     wx, wy, wz = state.spin
     turning = wx * wx + wy * wy + (wz + state.orbit) ** 2
     orbiting = ball.mass * (ball.pitch_radius * state.orbit) ** 2

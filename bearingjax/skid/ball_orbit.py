@@ -1,4 +1,4 @@
-"""How skidding balls move in the end: each is free in its pocket.
+"""Steady motion of skidding balls, each free in its pocket.
 
 Under an axial load every ball moves evenly: four equations. Otherwise its motion
 repeats from orbit to orbit, and is found as a whole: at places spread evenly over the
@@ -184,7 +184,7 @@ def _axes(ball):
 
 
 def _ahead(share):
-    """How far a ball is ahead of even motion, at the places [rad]."""
+    """Return the lead of a ball over uniform motion, at the places [rad]."""
     count = share.shape[0]
     late = jnp.cumsum(share - 1.0 / count)
     # At the places themselves, by the trapezoidal rule.

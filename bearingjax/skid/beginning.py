@@ -1,4 +1,4 @@
-"""What the balls or rollers of a solved bearing move in, and how they begin."""
+"""Surroundings and initial motion of the balls or rollers of a solved bearing."""
 
 from collections.abc import Callable
 from functools import partial
@@ -31,7 +31,7 @@ from .ring_speed import SpeedTable
 def tabulated(
     model: SkidModel, solution: BallSolution | RollerSolution, speed: Speed, places: int
 ) -> LoadTable:
-    """What the balls or rollers of a solved bearing bear, around it.
+    """Tabulate the loads of balls or rollers around a solved bearing.
 
     Args:
         model: The bearing and its oil.
@@ -61,7 +61,7 @@ def surroundings(
     gravity: Scalar,
     places: int,
 ) -> tuple[Surroundings, SkidState]:
-    """What the balls of a solved bearing move in, and how they begin by rolling.
+    """Return surroundings of the balls of a solved bearing, and pure rolling as start.
 
     Args:
         model: The bearing and its oil.
@@ -85,10 +85,10 @@ def balanced_surroundings(
     speed: SpeedTable,
     gravity: Scalar,
 ) -> tuple[Surroundings, SkidState]:
-    """As `surroundings`, for a ring that is balanced at every time.
+    """Return `surroundings` for a ring that is in equilibrium at every time.
 
     Args:
-        model, solution, speed, gravity: As of `surroundings`.
+        model, solution, speed, gravity: As in `surroundings`.
         balance: Which freedoms are free.
         load: Function of time [s] (6,) [N, N m].
     """
@@ -123,7 +123,7 @@ def rolling_start(
 
     Args:
         around: What the balls move in.
-        centre, ring: As of `SkidState` [m].
+        centre, ring: As in `SkidState` [m].
     """
     speed = around.speed.at(around.speed.time[0] * 0.0)
     ball, _, _ = jax.vmap(lambda at, c: around.loads.at(at, speed, c, ring))(

@@ -1,4 +1,4 @@
-"""In what state the contacts of skidding balls are, and what is doubtful about it."""
+"""Conditions in the contacts of skidding balls and rollers, and warnings on them."""
 
 from typing import Any, NamedTuple
 
@@ -18,7 +18,7 @@ from .ring_speed import SpeedTable
 
 
 class Conditions(NamedTuple):
-    """Conditions in the contacts of balls or rollers; axes as of their loads, contact
+    """Conditions in the contacts of balls or rollers; axes as for their loads, contact
     last.
 
     Attributes:

@@ -61,8 +61,8 @@ class AbstractSystem(eqx.Module):
         own: Float[Array, " k"],
         shared: Float[Array, " m"],
     ) -> tuple[Float[Array, " k"], Float[Array, " m"], Float[Array, " w"]]:
-        """Of one body: its rates (k,), its parts of those of the shared unknowns (m,)
-        and of the sums (w,).
+        """Return rates of one body (k,) and its contributions to those of the shared
+        unknowns (m,) and to the sums (w,).
 
         Args:
             which: The body: a slice of `bodies`.
@@ -75,20 +75,20 @@ class AbstractSystem(eqx.Module):
     def beside(
         self, time: Scalar, shared: Float[Array, " m"]
     ) -> tuple[Float[Array, " m"], Float[Array, " w"]]:
-        """Parts of the rates of shared unknowns and sums that are of no body."""
+        """Return contributions to shared rates and sums that come from no body."""
 
     @property
     @abc.abstractmethod
     def bodies(self) -> Any:
-        """What tells the bodies apart, leading axis body."""
+        """Data that differ between bodies, leading axis body."""
 
     @property
     @abc.abstractmethod
     def masses(self) -> "Masses":
-        """Of all unknowns."""
+        """Masses of all unknowns."""
 
     def rates(self, time: Scalar, state: Coupled) -> Coupled:
-        """All changes per second; of an unknown without mass, what is not balanced."""
+        """Return all rates; for an unknown without mass, its residual."""
         rates, shared, sums = jax.vmap(self.body, (0, None, 0, None))(
             self.bodies, time, state.own, state.shared
         )

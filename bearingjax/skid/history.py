@@ -107,7 +107,7 @@ class SkidMotion(eqx.Module):
 
 
 class SkidHistory(SkidMotion):
-    """Motion of skidding balls over time. Axis contact as of `BallSolution`; pure
+    """Motion of skidding balls over time. Axis contact as in `BallSolution`; pure
     rolling is outer raceway control at the contact angles.
 
     Attributes are those of `SkidMotion`, and

@@ -1,4 +1,4 @@
-"""What balls or rollers bear around the bearing, tabulated for integrations in time.
+"""Loads of balls or rollers around the bearing, tabulated for time integration.
 
 Loads, angles and all else that depends on the load alone are worked out at places
 spread evenly around the bearing, and joined by a periodic spline of fifth degree.
@@ -77,7 +77,7 @@ class LoadTable(eqx.Module):
     def at(
         self, azimuth: Scalar, speed: Speed, centre: Array, ring: Array
     ) -> tuple[LoadedBall | LoadedRoller, Array, Array]:
-        """As of `BalancedLoads`; the azimuth alone counts."""
+        """Return the same as `BalancedLoads.at`; only `azimuth` is used."""
         return self.ball(azimuth), jnp.zeros_like(centre), jnp.zeros_like(ring)
 
     def ball(self, azimuth: Scalar) -> LoadedBall | LoadedRoller:
@@ -187,7 +187,7 @@ def _pieces():
 
 
 def _coefficients(values: Float[Array, "place n"]) -> Float[Array, "place n"]:
-    """Of the periodic spline through values at its knots."""
+    """Return the coefficients of the periodic spline through values at its knots."""
     count = values.shape[0]
     kernel = np.zeros(count)
     for k, weight in enumerate(_pieces()[:, 0]):

@@ -1,4 +1,4 @@
-"""What the contacts of balls and rollers bear, from a solved bearing, and their oil."""
+"""Contact loads of balls and rollers, from a solved bearing, and their oil."""
 
 import dataclasses
 from functools import partial

@@ -1,4 +1,4 @@
-"""What a bearing needs in order to skid: oil, traction, cage, drag."""
+"""Model of a skidding bearing: oil, traction, cage, drag."""
 
 from typing import Any, NamedTuple
 
@@ -37,7 +37,7 @@ class Oil(NamedTuple):
     loading: Scalar | None = None
 
     def inlet(self, modulus: Scalar) -> WarmInlet | None:
-        """What thins films at speed.
+        """Return the inlet heating that thins films at speed.
 
         Args:
             modulus: Contact modulus [Pa].
@@ -106,7 +106,7 @@ class SkidModel(eqx.Module):
 
     @property
     def oil(self) -> Oil:
-        """What the contacts need to know of the oil."""
+        """Properties of the oil that the contacts use."""
         loading = None
         if self.inlet_heating:
             loading = self.lubricant.thermal_loading(self.temperature, 1.0)

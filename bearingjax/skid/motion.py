@@ -76,11 +76,11 @@ class SkidState(NamedTuple):
 
 
 class Surroundings(eqx.Module):
-    """What the balls move in.
+    """Surroundings of the balls.
 
     Attributes:
         model: Traction law, drag, cage.
-        loads: What the balls bear.
+        loads: Contact loads of the balls.
         speed: Of the rings, over time.
         place: Azimuths of the pockets at rest (ball,) [rad].
         density: Of the oil [kg/m³].
@@ -174,7 +174,7 @@ _AXES: Any = (0, 0, 0, None, None, 0, None)
 
 
 def each_ball(around: Surroundings, time: Scalar, state: SkidState) -> OneBall:
-    """All balls at an instant, leading axis ball; arguments as of `one_ball`."""
+    """All balls at an instant, leading axis ball; arguments as in `one_ball`."""
 
     def one(place, state):
         return one_ball(around, time, place, state)
@@ -183,7 +183,7 @@ def each_ball(around: Surroundings, time: Scalar, state: SkidState) -> OneBall:
 
 
 def power(around: Surroundings, time: Scalar, ball: OneBall) -> Work:
-    """Momentary powers of one ball [W]; arguments as of `one_ball`."""
+    """Momentary powers of one ball [W]; arguments as in `one_ball`."""
     speed, (on_inner, on_outer) = around.speed.at(time), ball.ring_torque
     return Work(
         drive=-on_inner * speed.inner - on_outer * speed.outer,
@@ -231,7 +231,7 @@ class SkidSystem(AbstractSystem):
 
     @property
     def _units(self):
-        """Of the unknowns: of a ball, and shared."""
+        """Units of the unknowns: of a ball, and shared."""
         loads, one = self.around.loads, jnp.ones_like(self.speed)
         own = (
             [self.speed] * (loads.n_spins + 1)
@@ -257,7 +257,7 @@ class SkidSystem(AbstractSystem):
         return self._state(packed.own, packed.shared), work
 
     def _state(self, own, shared):
-        """Of one ball or of all, with cage and ring."""
+        """Return the state of one ball or of all, with cage and ring."""
         units = self._units
         own = own * jnp.broadcast_to(units[0], own.shape)
         shared = shared * units[1]
@@ -266,7 +266,7 @@ class SkidSystem(AbstractSystem):
         return SkidState(*of_ball, shared[0], shared[1], own[..., n + 2 :], shared[2:])
 
     def body(self, which, time, own, shared):
-        """As of `AbstractSystem`: a ball."""
+        """Return rates and powers of a ball, as `AbstractSystem`."""
         around, state = self.around, self._state(own, shared)
         ball = one_ball(around, time, which, state)
         force = ball.push + ball.drag + ball.weight
@@ -284,7 +284,7 @@ class SkidSystem(AbstractSystem):
         return own / units[0], shared / units[1], work / self.energy
 
     def beside(self, time, shared):
-        """As of `AbstractSystem`: how the cage turns, and the load on the ring."""
+        """Return rates from cage rotation and ring load, as `AbstractSystem`."""
         loads, units = self.around.loads, self._units[1]
         own = shared * units
         turning = jnp.stack([jnp.zeros_like(own[0]), own[0]])

@@ -37,7 +37,7 @@ NO_TRACTION = 1e-9
 _RING = 6
 """Unknowns of the ring."""
 _FEW = 4
-"""Most unknowns beside them of a system that is solved written out."""
+"""Most further unknowns of a system that is solved by explicit elimination."""
 
 
 class AbstractOrbit(eqx.Module):
@@ -61,8 +61,8 @@ class AbstractOrbit(eqx.Module):
         azimuth: The places, spread evenly (place,) [rad].
         density: Of the oil [kg/m³].
         along: Matrix of derivatives along the orbit (place, place) [1].
-        least: Sum of the contact loads in pure rolling, beside which others are
-            measured that vanish [N].
+        least: Sum of the contact loads in pure rolling, the scale of contact loads
+            that vanish [N].
         start: Unknowns to begin with (unknown,) [rad/s, m].
     """
 
@@ -135,7 +135,7 @@ class AbstractOrbit(eqx.Module):
     def described(
         self, y: Float[Array, " unknown"], solved: SolvedRow, **known: Any
     ) -> SteadyMotion:
-        """What is known of the motion.
+        """Return the results of the steady motion.
 
         Args:
             y: Unknowns that fulfil the equations (unknown,) [rad/s, m].
@@ -173,7 +173,7 @@ class AbstractOrbit(eqx.Module):
         return bearing, self.balance.ring_freedoms(ring)
 
     def _found(self, row, q, solved):
-        """What is known of the row, with its balls or rollers as of `loaded`."""
+        """Return the balls or rollers from `loaded`, and the row at its equilibrium."""
         found = row.at(q, self.solved_at[0], solved)
         places = self.azimuth.size
         return jax.tree.map(lambda a: a[:places], self.loaded(found)), found
@@ -181,7 +181,7 @@ class AbstractOrbit(eqx.Module):
     def bodies(
         self, y: Float[Array, " unknown"], solved: SolvedRow
     ) -> tuple[Any, Array]:
-        """Balls or rollers at all places, and their pure rolling, as of `loaded`.
+        """Balls or rollers at all places, and their pure rolling, as in `loaded`.
 
         Args:
             y: Unknowns (unknown,) [rad/s, m].
@@ -295,7 +295,7 @@ class Evaluated(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What a search ended with.
+    """Result of a search.
 
     Attributes:
         y: Unknowns (unknown,) [rad/s, m].
@@ -367,7 +367,7 @@ class _State(NamedTuple):
 
 
 def _solve(matrix, right):
-    """Of a matrix with positive diagonal; what nothing holds does not move."""
+    """Solve with a matrix of positive diagonal; free unknowns do not move."""
     few = right.shape[0] - _RING
     if few <= _FEW:
         # The ring by itself, then the speeds with a ring that follows them.

@@ -27,7 +27,7 @@ class SpeedTable(eqx.Module):
     outer: Float[Array, " knot"] = eqx.field(converter=as_real, metadata=unit("rad/s"))
 
     def __init__(self, time, inner, outer=None):
-        """As the attributes; no `outer`: it stands still."""
+        """Create from the attributes; without `outer` the outer ring is at rest."""
         self.time, self.inner = as_real(time), as_real(inner)
         self.outer = jnp.zeros_like(self.inner) if outer is None else as_real(outer)
 

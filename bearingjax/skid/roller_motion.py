@@ -23,8 +23,7 @@ from ..numerics.types import Scalar
 
 
 class RollerState(NamedTuple):
-    """How a roller moves.
-
+    """Motion of a roller.
     Attributes:
         spin: About its own axis, relative to the orbiting frame [rad/s].
         orbit: Angular velocity of the frame about the bearing axis [rad/s].
@@ -93,7 +92,7 @@ class RollerSliding(NamedTuple):
 
 
 class RollerTractions(NamedTuple):
-    """What the raceways do to a roller by traction, contacts (outer, inner).
+    """Traction of the raceways on a roller, contacts (outer, inner).
 
     Attributes:
         film: Central film (contact,) [m].
@@ -125,7 +124,7 @@ def rolling(roller: LoadedRoller, speed: Speed) -> RollerState:
 
 
 def sliding(roller: LoadedRoller, state: RollerState, speed: Speed) -> RollerSliding:
-    """How a roller moves against its raceways.
+    """Return sliding and entrainment of a roller on its raceways.
 
     Args:
         roller: The roller.
@@ -171,7 +170,7 @@ def rates(
     drag: RollerTractions,
     along_orbit: Scalar,
 ) -> RollerState:
-    """How the motion of a roller changes, per second.
+    """Return the time derivatives of the motion of a roller.
 
     Args:
         roller: The roller.
@@ -191,12 +190,12 @@ def unbalanced(
     """Moment and force out of balance.
 
     I (dw/dt + dω/dt) is the moment [N m], m r dω/dt the force along the orbit [N].
-    Arguments as of `rates`.
+    Arguments as in `rates`.
     """
     return jnp.sum(drag.moment), along_orbit - jnp.sum(drag.force)
 
 
 def kinetic_energy(roller: LoadedRoller, state: RollerState) -> Scalar:
-    """Of the orbit and of the rotation [J]."""
+    """Return the kinetic energy of orbit and rotation of a roller [J]."""
     orbiting = roller.mass * (roller.pitch_radius * state.orbit) ** 2
     return 0.5 * (orbiting + roller.moment * (state.spin + state.orbit) ** 2)

@@ -1,9 +1,9 @@
-"""How skidding rollers move in the end: they all orbit with the cage.
+"""Steady motion of skidding rollers, which all orbit with the cage.
 
 In a roller bearing under radial load most rollers touch the outer raceway alone, and
 the cage drives them: each has the orbital speed of the cage, and its own spin, which
-repeats from orbit to orbit. The cage pushes a roller forwards or backwards with what
-its tangential balance lacks; these forces add up to nothing.
+repeats from orbit to orbit. The cage force on a roller closes its tangential balance;
+these forces sum to zero.
 
 Source: T. A. Harris, An Analytical Method to Predict Skidding in High Speed Roller
     Bearings, ASLE Transactions 9 (1966) 229-241, for the assumption; here with the

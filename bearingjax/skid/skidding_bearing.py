@@ -33,9 +33,9 @@ class SkiddingBearing(AbstractSystem):
 
     Attributes:
         model: The bearing, its oil and what surrounds the balls.
-        preload: Axial force on the moving ring, added to that of every case, as of a
+        preload: Axial force on the moving ring, added to that of every case, as from a
             soft spring: it does not change with speed or load [N].
-        places: Places along the orbit, as of `skid.steady`; `None`: at least 96. 1 will
+        places: Places along the orbit, as in `skid.steady`; `None`: at least 96. 1 will
             do where all cases load all balls alike.
 
     Traced: all numbers. Static: places, the classes.

@@ -48,19 +48,19 @@ def steady(
     fixed_ring: str = "outer",
     throw: bool = True,
 ) -> Any:
-    """How the balls or rollers of a bearing skid in the end.
+    """Find the steady motion of the balls or rollers of a skidding bearing.
 
     Args:
         model: The bearing, its oil and what surrounds the balls.
-        load: On the moving ring, as of `solve_load` (6,) [N, N m].
+        load: On the moving ring, as in `solve_load` (6,) [N, N m].
         speed: Ring speeds.
         places: Places along the orbit, a multiple of the number of balls or rollers, or
             1 where all bear the same; static. Default: 1 if they do, else at least 96
             (so too if it cannot be known, because the load is traced).
-        load_speed: Ring speeds whose pure rolling throws balls or rollers outwards, as
-            in the published method; default: their orbit does that they have in the
-            end, so that contact loads belong to the slip.
-        prescribed, free, fixed_ring: As of `solve_load`.
+        load_speed: Ring speeds whose pure rolling gives the centrifugal forces, as in
+            the published method; default: the orbit of the steady state gives them,
+            so that contact loads are consistent with the slip.
+        prescribed, free, fixed_ring: As in `solve_load`.
         throw: Raise if it cannot be solved; otherwise read `result`.
 
     Returns:
@@ -72,8 +72,8 @@ def steady(
         with 100, 3e-8 with 200. More slip in a narrow zone needs more. Of the slip of
         36 rollers, against 864 places: 1e-4 with 108, 1e-5 with 432.
 
-    Where nothing is pressed between the rings, as without load, drag stops the balls or
-    rollers: they slip wholly, under the loads of pure rolling.
+    Where no ball or roller is loaded by both rings, as without load, drag stops them:
+    they slip completely, under the loads of pure rolling.
 
     Raises:
         ValueError: For a number of places that does not suit.
@@ -111,7 +111,7 @@ def check_places(owner: str, bearing: Any, places: int | None) -> None:
     Args:
         owner: Function or class that was called.
         bearing: The design.
-        places: As of `skid.steady`.
+        places: As in `skid.steady`.
 
     Raises:
         ValueError: If it is neither 1 nor a multiple of the number of balls.
@@ -168,7 +168,7 @@ def _message(found):
 
 
 def failure(found: SteadyMotion) -> str:
-    """How far a search came that failed, in words.
+    """Describe how far a failed search came.
 
     Args:
         found: One end state, concrete.
@@ -188,7 +188,7 @@ def end_state(
     count: int,
     follows: bool = True,
 ) -> Any:
-    """How the balls or rollers of a solved bearing skid in the end; never raises.
+    """Find the steady motion in a solved bearing; never raises.
 
     Args:
         model: The bearing, its oil and what surrounds the balls.
@@ -199,7 +199,7 @@ def end_state(
         count: Number of places along the orbit. Static.
         follows: Whether loads follow the orbit from that of pure rolling. Static.
 
-    Returns, Fails: As of `skid.steady`.
+    Returns, Fails: As in `skid.steady`.
     """
     bearing = model.bearing
     turn = jnp.asarray(2.0 * np.pi * np.arange(count) / count, model.temperature.dtype)

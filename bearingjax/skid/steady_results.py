@@ -1,4 +1,4 @@
-"""What is known of skidding balls and rollers in the end."""
+"""Results of the steady motion of skidding balls and rollers."""
 
 from typing import Any, NamedTuple
 
@@ -52,7 +52,7 @@ class Power(NamedTuple):
 
 
 class SteadyMotion(eqx.Module):
-    """What is known of balls and of rollers. Axes: place along the orbit; contact.
+    """Results common to balls and rollers. Axes: place along the orbit; contact.
 
     Attributes:
         azimuth: The places (place,) [rad]; one place stands for all where all bear
@@ -118,7 +118,7 @@ class SteadyMotion(eqx.Module):
 
 
 class SteadySkid(SteadyMotion):
-    """How skidding balls move in the end. Axis contact as of `BallResults`; pure
+    """Steady motion of skidding balls. Axis contact as in `BallResults`; pure
     rolling is outer raceway control at the contact angles.
 
     Attributes are those of `SteadyMotion`, and
@@ -129,8 +129,8 @@ class SteadySkid(SteadyMotion):
         sliding: Slip in the middle of the contacts, along the rolling direction and
             across (place, contact, 2) [m/s].
         contact_spin: About the contact normals (place, contact) [rad/s].
-        wander: How far a ball goes ahead of even motion and falls behind it, together
-            [m]: less than the pocket clearance, or the cage takes part.
+        wander: Range of the lead of a ball over uniform motion [m]: the cage is
+            involved if it is not less than the pocket clearance.
     """
 
     solution: BallSolution
@@ -152,7 +152,7 @@ class SteadySkid(SteadyMotion):
 
 
 class SteadyRollerSkid(SteadyMotion):
-    """How skidding rollers move in the end. Contacts (outer, inner).
+    """Steady motion of skidding rollers. Contacts (outer, inner).
 
     All orbit with the cage, so that `orbit_speed` is the same everywhere.
 

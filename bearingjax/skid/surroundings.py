@@ -1,4 +1,4 @@
-"""What surrounds balls and rollers: the oil that they plough through, and the cage."""
+"""Surroundings of balls and rollers: drag of the oil, and the cage."""
 
 import equinox as eqx
 import jax.numpy as jnp

@@ -1,4 +1,4 @@
-"""How balls and rollers begin to skid: a bearing with its cage, integrated in time.
+"""Transient skidding: balls or rollers of a bearing and its cage, integrated in time.
 
 Contacts hold a ball with rates of 1e6 1/s and far beyond, against orbits of some 10 ms:
 the method is implicit, with the exact Jacobian. The powers are integrated with the
@@ -72,7 +72,7 @@ def simulate(
     fixed_ring: str = "outer",
     throw: bool = True,
 ) -> Any:
-    """How the balls or rollers of a bearing and its cage move.
+    """Integrate the motion of the balls or rollers of a bearing and its cage.
 
     Contact loads and angles are quasi-static, with the inertia of pure rolling, however
     far the balls slip (end states of `skid.steady` have that of their orbits). Of a
@@ -87,7 +87,7 @@ def simulate(
 
     Args:
         model: The bearing, its oil and what surrounds the balls.
-        load: On the moving ring, as of `solve_load` (6,) [N, N m]; or over time:
+        load: On the moving ring, as in `solve_load` (6,) [N, N m]; or over time:
             `LoadHistory`, `SinusoidalLoad`, or another pytree that is a function of
             time [s] and returns such a load.
         speed: Of the rings: constant, or over time.
@@ -101,7 +101,7 @@ def simulate(
         load_speed: Ring speeds at which tabulated loads and angles are worked out;
             default: those at the end. Balanced ones are of the speeds of the time.
         axis: "vertical": no gravity along the orbits; "horizontal": it acts against y,
-            along the orbits alone, as its radial part is small beside contact loads.
+            along the orbits only, as its radial part is small against contact loads.
         balanced: Whether the ring is balanced at every time; of balls alone. Static.
             Default: if the load is a function of time.
         places: Of the table, 1 where all balls bear the same, or at least 6; static.
@@ -115,7 +115,7 @@ def simulate(
             differentiated. Where balls meet or leave the cage on the way derivatives
             need a small tolerance: 1e-2 off at 1e-8, 2e-3 at 1e-10 was seen.
         progress: Show a bar.
-        prescribed, free, fixed_ring: As of `solve_load`.
+        prescribed, free, fixed_ring: As in `solve_load`.
         throw: Raise if the end is not reached; otherwise read `result`.
 
     Returns:
@@ -129,7 +129,7 @@ def simulate(
 
     Fails: codes of the load solve; `STEP_LIMIT`; `NO_LOAD_PATH` if a load over time
         pulls the ring out of the bearing; `NON_FINITE` where steps shrink to nothing,
-        as beside rates that are not numbers.
+        as next to rates that are not numbers.
     """
     _check(axis, derivatives, places, duration, tolerance, max_steps, n_times)
     table, zero = as_table(speed), jnp.zeros_like(as_real(duration))
@@ -272,7 +272,7 @@ def _skid(around, solution, start, times, duration, options):
 
 
 def _reported(around, time, state):
-    """What a history holds of an instant."""
+    """Return the entries of a history at one instant."""
     balls = each_ball(around, time, state)
     powers, energy = jax.tree.map(
         lambda of_balls: jnp.sum(of_balls, axis=0),

@@ -30,7 +30,7 @@ MIXED = 3.0
 def skid_warnings(
     model: SkidModel, found: Any, state: Conditions | None = None
 ) -> list[str]:
-    """What is doubtful about a skidding motion, a sentence each.
+    """Return warnings about a skidding motion, a sentence each.
 
     Args:
         model: The bearing, its oil and what surrounds the balls. found: How its balls

@@ -86,7 +86,7 @@ class Branch(NamedTuple):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is doubtful, in words: orbits that are unstable."""
+        """Warnings: orbits that are unstable."""
         lost = int((~self.stable).sum())
         if not lost:
             return ()
@@ -224,7 +224,7 @@ def _events(system, method, points: Place) -> tuple[Event, ...]:
 
 
 def _located(system, method, every, k, kind, test):
-    """How far along the branch something happens, counted in points, and what."""
+    """Locate an event: return its position along the branch, in points, and itself."""
     # Late, so that the package is imported as fast without it.
     from scipy.optimize import brentq
 
@@ -270,5 +270,5 @@ def _amplitude(system, u):
 
 
 def _beyond(point: Place) -> int:
-    """How many multipliers are beyond the unit circle."""
+    """Return the number of multipliers outside the unit circle."""
     return int(np.sum(np.abs(np.linalg.eigvals(point.monodromy)) > 1.0 + STABLE))

@@ -34,15 +34,15 @@ class Ending(enum.IntEnum):
     """Why a branch ends."""
 
     LIMIT = 0
-    """It reached the end of the range, or came back to its beginning."""
+    """The branch reached the end of the range, or closed on its beginning."""
     POINTS = 1
-    """As many points as were allowed."""
+    """The largest number of points was reached."""
     SMALL_STEP = 2
     """No step, however small, led to a further point of the same branch."""
     NO_START = 3
     """No orbit was found at the first frequency."""
     REST = 4
-    """It reached frequency zero, where nothing repeats."""
+    """The branch reached frequency zero, where no orbit is periodic."""
 
     @property
     def label(self) -> str:
@@ -56,7 +56,7 @@ class Arclength(eqx.Module):
     def direction(
         self, tangent: Float[Array, " x"], before: Float[Array, " x"]
     ) -> tuple[Float[Array, " x"], Float[Array, " x"]]:
-        """Where to predict, a unit vector, and the normal of the plane to correct in.
+        """Return the unit vector of prediction and the normal of the correction plane.
 
         Args:
             tangent: Of the branch at the last point, a unit vector.
@@ -72,7 +72,7 @@ class ChangeOfParameter(eqx.Module):
     """
 
     def direction(self, tangent, before):
-        """As `Arclength.direction`."""
+        """Return directions as in `Arclength.direction`."""
         unknowns, ratio = jnp.abs(before[:-1]), jnp.abs(before[-1])
         fastest = jnp.argmax(unknowns)
         held = jnp.where(unknowns[fastest] > ratio, fastest, before.shape[0] - 1)
@@ -135,7 +135,7 @@ class Traced(NamedTuple):
 
 
 class Place(NamedTuple):
-    """A point of a branch; fields as of `Traced`."""
+    """A point of a branch; fields as in `Traced`."""
 
     x: Float[Array, " x"]
     tangent: Float[Array, " x"]

@@ -50,7 +50,7 @@ def _scheme() -> tuple[np.ndarray, np.ndarray]:
 
 
 class _Stages(NamedTuple):
-    """How the stages of a step move: u + nodes u' + twice · accelerations.
+    """Stages of a step, with motions u + nodes u' + twice · accelerations.
 
     Attributes:
         nodes: Phases behind the beginning of the step (stage,) [rad].
@@ -229,7 +229,7 @@ def flow_slopes(
     """The state at phase 2π, and its Jacobian in the state at phase 0 and in ν.
 
     Args:
-        system, start, ratio, steps: As of `integrate`.
+        system, start, ratio, steps: As in `integrate`.
     """
     at = _stages_of(steps, start.dtype)
 

@@ -170,7 +170,7 @@ def hill_multipliers(
     z: Float[Array, " m"],
     ratio: Scalar,
 ) -> Complex[Array, " state"]:
-    """Floquet multipliers by Hill's method, as a second way beside the integration.
+    """Return Floquet multipliers by Hill's method, independent of the integration.
 
     A small change e^(λφ) p(φ) of the orbit, p periodic: with p a Fourier series like
     the orbit, λ is an eigenvalue of a quadratic problem of the harmonic balance. Of its
@@ -178,7 +178,7 @@ def hill_multipliers(
     of least imaginary part are least spoilt by the harmonics left out.
 
     Args:
-        method: How the orbit was found.
+        method: Method of the orbit.
         system: The system.
         z: Unknowns of the orbit (m,) [1].
         ratio: ν [1].

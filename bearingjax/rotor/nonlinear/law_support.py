@@ -18,16 +18,16 @@ from .support_law import AbstractSupportLaw
 
 
 class LawSupport(AbstractSupport):
-    """A support that pushes back as a law does; it does not resist tilting.
+    """A support with the force of a law; it does not resist tilting.
 
     Attributes:
-        station: Number of the station that it holds.
+        station: Number of the supported station.
         law: `FixedAngle`, `CubicExpansion` or `MovingAngle`.
         damping: Against ground or housing (5, 5), or its diagonal (5,) [N s/m, N s,
             N m s].
-        housing: What it stands on; `None`: ground.
-        turned: Whether +z relieves it instead of adding to its preload, as of the
-            other bearing of an opposed pair. Its balls stay where they are.
+        housing: Its housing; `None`: ground.
+        turned: Whether +z relieves it instead of adding to its preload, as for the
+            other bearing of an opposed pair. The position of its balls is unchanged.
 
     Traced: law, damping, housing. Static: station, turned.
     """
@@ -52,7 +52,7 @@ class LawSupport(AbstractSupport):
         speed: Scalar,
         angle: Scalar | float = 0.0,
     ) -> Float[Array, "5"]:
-        """As of `AbstractSupport.force` [N, N m]; the balls stand still."""
+        """Return `AbstractSupport.force` [N, N m]; the balls do not orbit."""
         side = as_real((1.0, 1.0, -1.0 if self.turned else 1.0)).astype(motion.dtype)
         held = side * self.law.force(side * motion[:3])
         return jnp.append(held, jnp.zeros_like(held[:2])) + self.damping @ velocity

@@ -1,6 +1,6 @@
-"""What shooting and the harmonic balance have in common: the method of periodic orbits.
+"""Common interface of shooting and harmonic balance for periodic orbits.
 
-A method turns "the motion repeats" into equations for some unknowns z, pure numbers:
+A method turns periodicity into equations for dimensionless unknowns z:
 residual(z, ν) = 0. Newton's method, continuation and stability are written once, on
 this interface.
 """
@@ -19,7 +19,7 @@ over the period from 0 on [1]."""
 
 
 class AbstractMethod(eqx.Module):
-    """How an orbit is sought. Static: all fields."""
+    """Method to find an orbit. Static: all fields."""
 
     @abc.abstractmethod
     def unknowns(self, motion: Motion) -> Float[Array, " m"]:
@@ -63,7 +63,7 @@ class AbstractMethod(eqx.Module):
         ratio: Scalar,
         jacobian: Float[Array, "m x"],
     ) -> Float[Array, "state state"]:
-        """How a small change of the state comes back after a period [1].
+        """Return the derivative of the state after a period by the initial state [1].
 
         Args:
             system: The system.

@@ -18,7 +18,7 @@ from .method import AbstractMethod, Motion
 from .system import AbstractVibratingSystem, frequency_of
 
 TOLERANCE = {"float64": 1e-10, "float32": 1e-4}
-"""Of the residual of a method, or of Newton's step towards the orbit, pure numbers
+"""Tolerance of the residual of a method, or of the Newton step towards the orbit
 [1]."""
 _ROUND_OFF = 1e3
 """Largest remainder of forces that cancel, over their sum and round-off [1]."""
@@ -59,11 +59,11 @@ class PeriodicOrbit(eqx.Module):
 
 
 class Corrected(NamedTuple):
-    """What Newton's method ended with.
+    """Result of Newton's method.
 
     Attributes:
-        x: Unknowns; last of all the frequency ratio [1].
-        left: What is left of the equations [1].
+        x: Unknowns, the frequency ratio last [1].
+        left: Residual of the equations [1].
         jacobian: Of them, in x [1].
         steps: Newton steps.
         result: `Result` code.
@@ -267,7 +267,7 @@ def reported(
         system: The system.
         method: How it was sought.
         x: Unknowns and frequency ratio (m + 1,) [1].
-        residual, steps, result: As of `PeriodicOrbit`.
+        residual, steps, result: As in `PeriodicOrbit`.
     """
     z, ratio = x[:-1], x[-1]
     frequency = frequency_of(system, ratio)

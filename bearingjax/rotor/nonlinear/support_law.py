@@ -169,7 +169,7 @@ class MovingAngle(AbstractSupportLaw):
 
     @classmethod
     def of_bearing(cls, element: BearingElement, offset: Any) -> "MovingAngle":
-        """The law of a ball bearing; arguments as of `FixedAngle.of_bearing`."""
+        """The law of a ball bearing; arguments as in `FixedAngle.of_bearing`."""
         constant, angle, approach = _preloaded(element, offset)
         bearing = element.bearing
         distance = bearing.centre_distance
@@ -207,7 +207,7 @@ class CubicExpansion(AbstractSupportLaw):
 
     @classmethod
     def of(cls, law: FixedAngle) -> "CubicExpansion":
-        """Of a law with five balls or more."""
+        """Create the expansion of a law with five balls or more."""
         if law.n_balls < 5:
             raise ValueError(
                 f"`n_balls` is {law.n_balls}; the expansion needs 5 or more, with fewer"
@@ -220,7 +220,7 @@ class CubicExpansion(AbstractSupportLaw):
 
     @classmethod
     def of_bearing(cls, element: BearingElement, offset: Any) -> "CubicExpansion":
-        """Of a ball bearing; arguments as of `FixedAngle.of_bearing`."""
+        """Create the law of a ball bearing; arguments as in `FixedAngle.of_bearing`."""
         return cls.of(FixedAngle.of_bearing(element, offset))
 
     def potential(self, motion):
@@ -282,7 +282,7 @@ class Grooves(eqx.Module):
 
     @property
     def centre_distance(self) -> Scalar:
-        """Of the groove centres without load [m]."""
+        """Distance of the groove centres without load [m]."""
         return 2.0 * self.groove_radius - self.ball_diameter
 
     @property

@@ -78,14 +78,14 @@ class VibratingSystem(AbstractVibratingSystem):
     """A system put together from matrices and functions.
 
     Attributes:
-        mass: As of `AbstractVibratingSystem` [kg, kg m²].
+        mass: As in `AbstractVibratingSystem` [kg, kg m²].
         damping: Damping matrix [N s/m, N m s/rad].
         gyroscopic: Gyroscopic matrix over the speed, skew [kg, kg m²].
         restoring: (q, velocity, phase, frequency) -> forces (n,) [N, N m]; a Module,
             so that its numbers are traced.
         load: (phase, frequency, acceleration) -> forces (n,) [N, N m]; likewise.
-        scale: As of `AbstractVibratingSystem` [m, rad].
-        reference_frequency: As of `AbstractVibratingSystem` [rad/s].
+        scale: As in `AbstractVibratingSystem` [m, rad].
+        reference_frequency: As in `AbstractVibratingSystem` [rad/s].
         speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
 
     Traced: all numbers.
@@ -176,7 +176,7 @@ def out_of_balance(
     rate: Float[Array, " n"],
     second: Float[Array, " n"],
 ) -> Float[Array, " n"]:
-    """What the equations of motion leave, over M_ii·scale·(reference frequency)² [1].
+    """Residual of the equations of motion, over M_ii·scale·(reference frequency)² [1].
 
     Args:
         system: The system.

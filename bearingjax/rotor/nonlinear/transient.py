@@ -74,11 +74,11 @@ def simulate(
     derivatives: str = "reverse",
     throw: bool = True,
 ) -> History:
-    """The vibration in time.
+    """Integrate the vibration in time.
 
-    Where the frequency changes, the phase is its exact integral, and inertia of
-    unbalance along the circle and of what turns take part. The torque that speeds the
-    rotor up acts along the z axis, not along the bent shaft.
+    Where the frequency changes, the phase is its exact integral, and the tangential
+    inertia force of unbalance and the rotary inertia are included. The torque that
+    accelerates the rotor acts along the z axis, not along the bent shaft.
 
     Args:
         system: The system.
@@ -107,7 +107,7 @@ def simulate(
     Raises:
         SolveError: If the end is not reached, and `throw` is set.
 
-    Fails: `STEP_LIMIT`; `NON_FINITE` where steps shrink to nothing, as beside forces
+    Fails: `STEP_LIMIT`; `NON_FINITE` where steps shrink to nothing, as next to forces
         that are not numbers.
     """
     positive("simulate", "duration", duration, "s")
@@ -147,7 +147,7 @@ def poincare(
         frequency: Of the excitation [rad/s], or a `FrequencyTable`.
         n_points: Number of points. Static.
         settle: Periods before the first of them. Static.
-        start: As of `simulate`.
+        start: As in `simulate`.
         options: Others of `simulate`.
 
     Returns:

@@ -27,7 +27,7 @@ class VibratingRotor(AbstractVibratingSystem):
     """A rotor with the forces of its supports; see `vibrating_rotor`.
 
     Attributes:
-        mass, scale, reference_frequency: As of `AbstractVibratingSystem`.
+        mass, scale, reference_frequency: As in `AbstractVibratingSystem`.
         damping: Without that of supports (n, n) [N s/m, N s, N m s].
         gyroscopic: Over the speed (n, n) [kg, kg m, kg m²].
         stiffness: Without that of supports (n, n) [N/m, N, N m].
@@ -98,16 +98,16 @@ def vibrating_rotor(
     modes: int | None = None,
     about: Float[Array, " motion"] | None = None,
 ) -> VibratingRotor:
-    """A rotor, ready for `solve_orbit`, `follow` and `simulate`.
+    """Create the system of a rotor for `solve_orbit`, `follow` and `simulate`.
 
     Args:
         rotor: Shaft, discs, supports.
         loads: `RotorLoads`; or `Unbalance`, or several of them; or a function (phase,
             frequency, acceleration) -> forces on all motions (motion,) [N, N m]; of a
             rigid shaft on its five freedoms and those of housings.
-        scale: Displacement that is called one, such as a clearance [m]; tilts are
-            measured in it over the length of the shaft.
-        reference_frequency: Frequency that is called one [rad/s].
+        scale: Unit of displacement, such as a clearance [m]; that of tilts is `scale`
+            over the length of the shaft.
+        reference_frequency: Unit of frequency [rad/s].
         speed: Of the rotor [rad/s]; `None`: that of the excitation.
         rotation: Turns of the rotor in one period of the excitation [1]; `None`: one.
             With 2/(Z(1 - G)) the excitation is the passage of Z rolling elements, G as
@@ -115,8 +115,8 @@ def vibrating_rotor(
         modes: Hold the rotor to `craig_bampton` motions with so many modes; `None`:
             all freedoms stay.
         about: Motions about which supports are linearised for modal damping, such as
-            `StaticEquilibrium.motion` (motion,) [m, rad]; `None`: where they stand.
-            They count as they are at `speed`, without one as at rest.
+            `StaticEquilibrium.motion` (motion,) [m, rad]; `None`: zero. Supports are
+            taken at `speed`; without one, at rest.
 
     Raises:
         ValueError: As `craig_bampton`; for unbalance with a `rotation` of its own, with
@@ -171,7 +171,7 @@ def _assembled(rotor, scale, speed, modes, about):
 
 
 def _sizes(rotor, matrices, size):
-    """What is called one, of every freedom."""
+    """Return the scale of every freedom."""
     tilt = size / matrices.length
     body = jnp.stack([size, size, size, tilt, tilt])
     bodies = 1 if rotor.rigid else matrices.n_nodes
@@ -208,7 +208,7 @@ def _check_rotation(rotor, loads, speed, rotation):
 
 
 class _Reduced(eqx.Module):
-    """A load on all freedoms, as it acts on fewer."""
+    """A load on all freedoms, projected on fewer."""
 
     load: Callable
     basis: Float[Array, "freedom n"]
@@ -218,13 +218,13 @@ class _Reduced(eqx.Module):
 
 
 def _load(rotor, loads, every, motions):
-    """As a function of phase, frequency and its rate, on the freedoms.
+    """Return the load on the freedoms as a function of phase, frequency and its rate.
 
     Args:
         rotor: The rotor.
         loads: `RotorLoads`, or a function.
-        every: How motions follow the freedoms before the reduction (motion, freedom).
-        motions: And after it (motion, n).
+        every: Motions per freedom before the reduction (motion, freedom).
+        motions: The same after it (motion, n).
     """
     if not isinstance(loads, RotorLoads):
         if motions.shape == every.shape:

@@ -56,8 +56,8 @@ def waterfall(
         settle: Periods until the vibration is taken for steady. Static.
         periods: Periods that a spectrum is of. Static.
         samples: A period; lines reach half of it in order. Static.
-        start: As of `simulate`, at every frequency.
-        tolerance, max_steps: As of `simulate`.
+        start: As in `simulate`, at every frequency.
+        tolerance, max_steps: As in `simulate`.
 
     Returns:
         `Waterfall`; where the end is not reached amplitudes are NaN and `result` says
