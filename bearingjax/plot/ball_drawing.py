@@ -87,7 +87,7 @@ def _grooves(ax, bearing):
 
 
 def _arc_angle(bearing, groove, name):
-    """Return the angle of a radius line on its arc, clear of the contact lines [rad]."""
+    """Return the angle of a radius line on its arc, clear of contact lines [rad]."""
     turn = float(bearing.free_contact_angle) - float(bearing.groove_axis)
     lines = turn, float(getattr(bearing, "shim_angle", turn))
     height = getattr(bearing, f"{name}_shoulder")

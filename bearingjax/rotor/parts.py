@@ -29,7 +29,7 @@ DAMPING_UNITS = (
 
 
 def check_station(owner, station) -> None:
-    """A station is named by a whole number from 0."""
+    """Check that a station is a whole number from 0."""
     whole = isinstance(station, int) and not isinstance(station, bool)
     if not whole or station < 0:
         raise ValueError(
@@ -155,7 +155,7 @@ class PointMass(AbstractPart):
 
 
 def square_matrix(value):
-    """Converter: one number or one for each freedom stands on the diagonal."""
+    """Converter: a number, or one per freedom, becomes a diagonal matrix."""
     value = as_real(value)
     return jnp.diag(value) if getattr(value, "ndim", 0) == 1 else value
 
@@ -268,7 +268,7 @@ class AbstractSupport(eqx.Module):
         return self.pushed(motion, speed)[1:]
 
     def anywhere(self) -> "AbstractSupport":
-        """Return a copy on station 0 and ground, so that like supports compare equal."""
+        """Return a copy on station 0 and ground; like supports then compare equal."""
         return dataclasses.replace(self, station=0, housing=None)
 
 
@@ -311,7 +311,7 @@ class LinearSupport(AbstractSupport):
         tilt_damping: Any = 0.0,
         housing: Housing | None = None,
     ) -> "LinearSupport":
-        """A support that is the same in all radial directions, nothing coupled.
+        """Create an isotropic support without coupling.
 
         Args:
             station: Number of the station that it holds.

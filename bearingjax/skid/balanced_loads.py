@@ -27,7 +27,7 @@ from .model import SkidModel
 
 
 class BalancedLoads(eqx.Module):
-    """Loads of the balls from balances at every time.
+    """Loads of the balls from equilibrium at every time.
 
     Attributes:
         skid: The bearing and its oil.
@@ -65,13 +65,13 @@ class BalancedLoads(eqx.Module):
         centre: Float[Array, "2"],
         ring: Float[Array, "6"],
     ) -> tuple[LoadedBall, Float[Array, "2"], Float[Array, "6"]]:
-        """A ball, the force that is not balanced on it, and its share of the force
-        that holds the ring [N].
+        """Return a ball, its force residual, and its share of the force on the
+        ring [N].
 
         Args:
-            azimuth: Where it is [rad].
+            azimuth: Its azimuth [rad].
             speed: Of the rings.
-            centre: Its centre (z, r) from where the rings take it [m].
+            centre: Its centre (z, r) relative to its position between the rings [m].
             ring: Unknowns of the ring's balance [m].
         """
         skid, model = self.skid, self.prepared
@@ -97,8 +97,8 @@ class BalancedLoads(eqx.Module):
         return loaded, -forces[-2:], self.balance.along(axes.T @ moving)
 
     def push(self, time: Scalar, ring: Float[Array, "6"]) -> Float[Array, "6"]:
-        """The load in the balance of the ring; of a held freedom, how far it is from
-        where it is held, as a force [N].
+        """Return the load in the balance of the ring; for a held freedom, its
+        deviation from the prescribed value, as a force [N].
 
         Args:
             time: Time [s].

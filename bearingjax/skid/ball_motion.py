@@ -34,7 +34,7 @@ from ..lubrication import (
 from ..numerics.types import Scalar
 
 LEAST_LOAD = 1e-9
-"""Load far below any that matters, for means of directions without load [N]."""
+"""Negligible load, for means of directions without load [N]."""
 
 
 class BallState(NamedTuple):
@@ -49,7 +49,7 @@ class BallState(NamedTuple):
 
 
 class LoadedBall(eqx.Module):
-    """A ball, what its contacts bear, and the oil in them. Leading axis contact.
+    """A ball with the loads and the oil of its contacts. Leading axis contact.
 
     Attributes:
         mass: Mass [kg].
@@ -93,7 +93,7 @@ class LoadedBall(eqx.Module):
 
     @property
     def frontal_area(self) -> Scalar:
-        """Area that it turns towards the oil along its orbit [m²]."""
+        """Frontal area of a ball along its orbit [m²]."""
         return 0.25 * jnp.pi * self.diameter**2
 
 
@@ -135,7 +135,7 @@ class Tractions(NamedTuple):
 
 
 def rolling(ball: LoadedBall, speed: Speed) -> BallState:
-    """Motion without slip, and without spin at the outer raceway.
+    """Return the motion without slip, and without spin at the outer raceway.
 
     Args:
         ball: The ball.
@@ -176,7 +176,7 @@ def sliding(ball: LoadedBall, state: BallState, speed: Speed) -> Sliding:
 
 
 def tractions(ball: LoadedBall, law: AbstractTraction, moving: Sliding) -> Tractions:
-    """Tractions on a ball.
+    """Return the tractions on a ball.
 
     Args:
         ball: The ball.
@@ -229,7 +229,7 @@ def rates(
 def unbalanced(
     ball: LoadedBall, state: BallState, drag: Tractions, along_orbit: Scalar
 ) -> tuple[Float[Array, "3"], Scalar]:
-    """Moments less those of inertia that turn the spin axis with the orbit, and force.
+    """Return moments, the gyroscopic one included, and the force along the orbit.
 
     I (dw/dt + dω/dt e_z) are the moments (3,) [N m], m r dω/dt the force along the
     orbit [N]. Arguments as in `rates`.

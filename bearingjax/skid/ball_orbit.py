@@ -30,9 +30,9 @@ class BallOrbit(AbstractOrbit):
     spin about x, the slip on the outer raceway over the ball's radius, the spin about
     the normal there, and the orbit.
 
-    Where oil is stiff the ball sticks to the outer raceway, and may yet turn and orbit
-    quite otherwise than in pure rolling: no slip or spin there is a difference of
-    speeds.
+    Where oil is stiff the ball sticks to the outer raceway, although spin and orbit may
+    differ much from pure rolling: so slip and spin there are unknowns, not differences
+    of speeds.
     """
 
     n_own: ClassVar = 4
@@ -75,7 +75,7 @@ class BallOrbit(AbstractOrbit):
         return out, size + jnp.sum(jnp.abs(pulls.resultants.moment)) / radius
 
     def forces(self, ball, rolls, own):
-        """Motion of a ball, that against its raceways, tractions, and drag of the oil
+        """Return the motion of a ball, its sliding, tractions, and drag of the oil
         [N]."""
         whole = self.motion(ball, rolls, own)
         state = BallState(whole[:3], whole[3])
@@ -170,7 +170,7 @@ class BallOrbit(AbstractOrbit):
 
 
 def _axes(ball):
-    """Unit vectors of the outer raceway: its normal n, of several contacts their mean,
+    """Return unit vectors of the outer raceway: normal n, the mean of its contacts,
     and the axis about which a ball turns as it rolls there."""
     if len(ball.outwards) == 2:
         cos, sin = jnp.cos(ball.angle[0]), jnp.sin(ball.angle[0])

@@ -119,7 +119,7 @@ def rolling_start(
     centre: Float[Array, "ball z"],
     ring: Float[Array, " unknown"],
 ) -> SkidState:
-    """Balls that roll with outer raceway control, or rollers, in mid pocket.
+    """Return the state of pure rolling, with balls or rollers in mid pocket.
 
     Args:
         around: What the balls move in.

@@ -44,7 +44,7 @@ class Conditions(NamedTuple):
 def conditions_of(
     model: SkidModel, body: Any, moving: Any, film: Float[Array, " contact"]
 ) -> Conditions:
-    """Conditions in the contacts of one ball or roller.
+    """Return the conditions in the contacts of one ball or roller.
 
     Args:
         model: The bearing and its oil.
@@ -75,7 +75,7 @@ def conditions_of(
 
 
 def conditions(model: SkidModel, found: Any, speed: Speed | SpeedTable) -> Conditions:
-    """Conditions in all contacts.
+    """Return the conditions in all contacts.
 
     Args:
         model: The bearing and its oil.

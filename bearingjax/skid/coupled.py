@@ -1,4 +1,4 @@
-"""Equations of like bodies that meet only through what they share.
+"""Equations of like bodies that are coupled only through shared unknowns.
 
 The Jacobian of bodies and shared unknowns is an arrow: a small block for every body,
 and a border. Its blocks are found and factorised side by side. Sums, such as work,
@@ -20,7 +20,7 @@ from ..numerics.types import Scalar
 
 
 class Coupled(NamedTuple):
-    """State of a system, or its change per second.
+    """State of a system, or its time derivative.
 
     Attributes:
         own: Unknowns of the bodies (body, k).
@@ -34,7 +34,7 @@ class Coupled(NamedTuple):
 
 
 class Masses(NamedTuple):
-    """1, or 0 for an unknown that is balanced at every time.
+    """Masses: 1, or 0 for an unknown in equilibrium at every time.
 
     Attributes:
         own: Of the unknowns of a body (k,).
@@ -45,13 +45,13 @@ class Masses(NamedTuple):
     shared: Float[Array, " m"]
 
     def times(self, change: Coupled) -> Coupled:
-        """M x of a change x; sums have the mass 1."""
+        """Return M x of a change x; sums have the mass 1."""
         own = self.own[None, :] * change.own
         return Coupled(own, self.shared * change.shared, change.sums)
 
 
 class AbstractSystem(eqx.Module):
-    """Like bodies and what they share, to be passed as Diffrax's `args`."""
+    """Like bodies with shared unknowns, passed as Diffrax's `args`."""
 
     @abc.abstractmethod
     def body(
@@ -98,7 +98,7 @@ class AbstractSystem(eqx.Module):
         )
 
     def slopes(self, time: Scalar, state: Coupled) -> "Slopes":
-        """The Jacobian of `rates`, in its blocks."""
+        """Return the Jacobian of `rates` in blocks."""
         k, m = state.own.shape[1], state.shared.shape[0]
 
         def of_body(unknowns, which):
@@ -164,11 +164,11 @@ class Slopes(NamedTuple):
 
 
 _WRITTEN_OUT = 5
-"""Unknowns up to which elimination written out is faster than a call of LAPACK."""
+"""Most unknowns for which explicit elimination is faster than LAPACK."""
 
 
 def _inverse(matrix):
-    """Friction makes the diagonal heavy: elimination needs no search for pivots."""
+    """Invert without pivoting: friction makes the matrix diagonally dominant."""
     n = matrix.shape[0]
     if n > _WRITTEN_OUT:
         return solve_any(matrix, jnp.eye(n, dtype=matrix.dtype))
@@ -176,7 +176,7 @@ def _inverse(matrix):
 
 
 def _times(matrix, vector):
-    """Written as a sum, so that it fuses."""
+    """Return the product as a sum, which XLA fuses."""
     return jnp.sum(matrix * vector[None, :], axis=1)
 
 

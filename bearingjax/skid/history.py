@@ -72,13 +72,13 @@ class SkidMotion(eqx.Module):
 
     @property
     def slip(self) -> Float[Array | np.ndarray, "time ball"]:
-        """1 - orbit/rolling orbit (time, ball) [1]; zero where rings stand still."""
+        """1 - orbit/rolling orbit (time, ball) [1]; zero where rings are at rest."""
         return slip(self.orbit_speed, self.rolling_orbit_speed)
 
     @property
     def mean_friction_torque(self) -> tuple[float, int]:
-        """Mean of the friction torque over the last orbits of the cage [N m], and their
-        number: half of all that it made, at least one; NaN and 0 if it made none.
+        """Mean friction torque over the last orbits of the cage [N m], and their
+        number: half of all orbits, at least one; NaN and 0 without a full orbit.
 
         Of a motion that is concrete, as far as it was reached.
         """
@@ -100,7 +100,7 @@ class SkidMotion(eqx.Module):
 
     @property
     def imbalance(self) -> Float[Array | np.ndarray, " time"]:
-        """Work of the drive that is not accounted for (time,) [J]."""
+        """Residual of the energy balance (time,) [J]."""
         stored = self.kinetic_energy + self.potential_energy
         work = self.work
         return work.drive - work.contacts - work.drag - (stored - stored[0])
@@ -130,7 +130,7 @@ class SkidHistory(SkidMotion):
 
     @property
     def sliding_speed(self) -> Float[Array | np.ndarray, "time ball contact"]:
-        """Sizes of `sliding` (time, ball, contact) [m/s]."""
+        """Magnitudes of `sliding` (time, ball, contact) [m/s]."""
         return lengths(self.sliding)
 
 
@@ -155,5 +155,5 @@ class SkidRollerHistory(SkidMotion):
 
     @property
     def sliding_speed(self) -> Float[Array | np.ndarray, "time roller contact"]:
-        """Sizes of `sliding` (time, roller, contact) [m/s]."""
+        """Magnitudes of `sliding` (time, roller, contact) [m/s]."""
         return abs(self.sliding)

@@ -14,9 +14,9 @@ from .ring_load import LoadHistory
 from .ring_speed import SpeedTable
 
 _STEP = 0.02
-"""Error of a step, of the tolerance: errors of many steps add up [1]."""
+"""Error of a step over the tolerance: errors of many steps add up [1]."""
 _FIRST = 1e-5
-"""First step, of the duration [1]."""
+"""First step over the duration [1]."""
 
 Options = in_time.Options
 """The tolerance: of speeds relative to the fastest ring, of angles in rad, of work
@@ -48,7 +48,7 @@ def integrated(
     duration: Scalar,
     options: Options,
 ) -> Integrated:
-    """The motion of balls and cage.
+    """Integrate the motion of balls and cage.
 
     Args:
         around: What the balls move in.
@@ -78,7 +78,7 @@ def integrated(
 
 
 def _knots(around):
-    """Times at which speeds or loads have a kink, or `None`."""
+    """Return the times at which speeds or loads have a kink, or `None`."""
     tables = [around.speed, getattr(around.loads, "load", None)]
     times = [
         stop(table.time)
@@ -92,7 +92,7 @@ def _knots(around):
 
 
 def _system(around, start):
-    """The motion in units to which the tolerance relates."""
+    """Return the system in units to which the tolerance relates."""
     bearing, count = around.model.bearing, start.orbit.shape[0]
     rings = jnp.concatenate([around.speed.inner, around.speed.outer])
     fastest = jnp.max(jnp.abs(jnp.concatenate([rings, start.orbit])))

@@ -25,7 +25,7 @@ _DEGREE = 5
 
 
 class _Row(NamedTuple):
-    """A `LoadedBall` or `LoadedRoller` in numbers that can be interpolated."""
+    """A `LoadedBall` or `LoadedRoller` as numbers to interpolate."""
 
     load: Array
     angle: Array | None
@@ -62,16 +62,16 @@ class LoadTable(eqx.Module):
 
     @property
     def n_spins(self) -> int:
-        """Number of its spins."""
+        """Number of spin components."""
         return self.like.n_spins
 
     @property
     def mass(self) -> Scalar:
-        """Its mass [kg]."""
+        """Mass of a ball or roller [kg]."""
         return self.like.mass
 
     def push(self, time: Scalar, ring: Array) -> Array:
-        """Nothing is left to balance (0,) [N]."""
+        """Return an empty load, as nothing is to be balanced (0,) [N]."""
         return jnp.zeros_like(ring)
 
     def at(
@@ -81,7 +81,7 @@ class LoadTable(eqx.Module):
         return self.ball(azimuth), jnp.zeros_like(centre), jnp.zeros_like(ring)
 
     def ball(self, azimuth: Scalar) -> LoadedBall | LoadedRoller:
-        """Ball or roller at a place.
+        """Return the ball or roller at an azimuth.
 
         Args:
             azimuth: Any angle [rad].
@@ -103,7 +103,7 @@ class LoadTable(eqx.Module):
 
 
 def load_table(balls: LoadedBall | LoadedRoller) -> LoadTable:
-    """A table.
+    """Create a table.
 
     Args:
         balls: At one place, or at places spread evenly around the bearing from azimuth
@@ -162,7 +162,7 @@ def _ball(numbers, like):
 
 
 def _as_row(numbers, like):
-    """The `_Row` that `ravel_pytree` had laid in one line."""
+    """Return the `_Row` from its flat vector of `ravel_pytree`."""
     leaves, tree = jax.tree.flatten(jax.eval_shape(_row, like))
     ends = np.cumsum([leaf.size for leaf in leaves])[:-1]
     parts = jnp.split(numbers, ends)
@@ -172,7 +172,7 @@ def _as_row(numbers, like):
 
 
 def _pieces():
-    """B-spline of degree p by its pieces (piece, power of the way across a knot span).
+    """Return the polynomial pieces of the B-spline (piece, power over a knot span).
 
     In the order of the coefficients: the oldest one is in its last piece.
     """

@@ -35,13 +35,13 @@ from .model import Oil
 from .roller_motion import LoadedRoller
 
 _SLICES = 16
-"""Slices of a roller, spaced as the nodes of Gauss and Legendre."""
+"""Slices of a roller, at Gauss-Legendre nodes."""
 
 
 def orbiting(
     element: BearingElement, speed: Speed, excess: Float[Array, "..."]
 ) -> BearingModel:
-    """A bearing whose balls or rollers orbit faster than in pure rolling.
+    """Return the bearing with orbits faster than in pure rolling.
 
     They are thrown outwards, and balls held against the turn of their axes, as under
     rings that both turn faster by as much: spins relative to the orbit are those of
@@ -68,7 +68,7 @@ def orbiting(
 def ring_forces(
     row: Row, q: Ring, azimuth: Float[Array, " station"], solved: SolvedRow
 ) -> Float[Array, "station 12"]:
-    """Forces of each ball or roller of a solved row on the rings, reversed: its part of
+    """Return the reversed forces of each ball or roller on the rings: its part of
     the load that holds them.
 
     Args:
@@ -96,7 +96,7 @@ def ring_forces(
 def contact_loads(
     row: RowResults, bearing: AbstractBallBearing, law: AbstractPointLaw
 ) -> tuple[Float[Array, "station contact"], Float[Array, "station contact"]]:
-    """Loads [N] and contact angles [rad] of balls.
+    """Return loads [N] and contact angles [rad] of balls.
 
     Args:
         row: The solved row.
@@ -110,7 +110,7 @@ def contact_loads(
 def at_places(
     model: BearingModel, q: Ring, azimuth: Float[Array, " station"]
 ) -> RowResults:
-    """A ball or roller at places along its orbit.
+    """Return a ball or roller at places along its orbit.
 
     Args:
         model: The bearing, of one row of like balls or rollers.
@@ -126,7 +126,7 @@ def contact_ellipses(
     law: AbstractPointLaw,
     cosine: Float[Array, " contact"],
 ) -> Ellipse:
-    """Contact ellipses of a ball, for any load.
+    """Return the contact ellipses of a ball, for any load.
 
     Args:
         bearing: The design.
@@ -145,7 +145,7 @@ def loaded_ball(
     angle: Float[Array, " contact"],
     ellipses: Ellipse | None = None,
 ) -> LoadedBall:
-    """A ball under given contact loads.
+    """Create a ball under given contact loads.
 
     Args:
         bearing: The design.
@@ -189,7 +189,7 @@ def loaded_ball(
 
 
 def loaded_rollers(row: RowResults, oil: Oil) -> LoadedRoller:
-    """Rollers of a solved row.
+    """Create the rollers of a solved row.
 
     Args:
         row: The row, of like rollers.
@@ -207,7 +207,7 @@ def loaded_roller(
     load: Float[Array, "2"],
     line_load: Float[Array, "2 slice"],
 ) -> LoadedRoller:
-    """A roller under given loads.
+    """Create a roller under given loads.
 
     The film of a contact is the same all along it, that of the line load q averaged
     over the load, ∫ q² ds/∫ q ds: it falls with the 0.17th power of the load alone.
@@ -255,5 +255,5 @@ def loaded_roller(
 
 
 def _slices():
-    """Positions from -1 to 1 along a roller, and their shares of that length."""
+    """Return positions from -1 to 1 along a roller, and their weights."""
     return np.polynomial.legendre.leggauss(_SLICES)

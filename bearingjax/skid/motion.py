@@ -1,4 +1,4 @@
-"""All balls or rollers of a bearing and its cage in motion, and how that changes.
+"""Motion of all balls or rollers of a bearing and its cage, with its derivatives.
 
 Both move by equations of the same names, in `ball_motion` and `roller_motion`: what
 they bear says which. Below, balls are balls or rollers.
@@ -30,13 +30,13 @@ from .ring_speed import SpeedTable
 from .roller_motion import LoadedRoller, RollerState
 
 _REST = 1e-8
-"""Time in which a force out of balance moves ring and balls by their unit [s]: without
-load nothing holds the ring, and the balance alone would be singular. Under a load that
-swings at 200 rad/s the balance is out by some 1e-5 of the largest contact load."""
+"""Time in which a residual force moves ring and balls by their unit [s]: without load
+the ring has no stiffness, and the equilibrium would be singular. Under a load that
+varies at 200 rad/s the residual is some 1e-5 of the largest contact load."""
 
 
 class Work(NamedTuple):
-    """Work [J] or power [W]: the drive's is that of the others and what is stored.
+    """Work [J] or power [W]: that of the drive is the sum of the others and of storage.
 
     Attributes:
         drive: What turns the rings.
@@ -50,7 +50,7 @@ class Work(NamedTuple):
 
 
 class SkidState(NamedTuple):
-    """Motion of all balls and the cage, and where the ring is.
+    """Motion of all balls and the cage, and position of the ring.
 
     Attributes:
         spin: Of each ball relative to its orbiting frame, tangential, radial, axial
@@ -131,14 +131,14 @@ class OneBall(NamedTuple):
 
 
 def mechanics(ball: LoadedBall | LoadedRoller) -> Any:
-    """The module with its equations."""
+    """Return the module of the equations of motion."""
     return roller_motion if isinstance(ball, LoadedRoller) else ball_motion
 
 
 def one_ball(
     around: Surroundings, time: Scalar, place: Scalar, state: SkidState
 ) -> OneBall:
-    """A ball at an instant.
+    """Return a ball at an instant.
 
     Args:
         around: What the balls move in.
@@ -174,7 +174,7 @@ _AXES: Any = (0, 0, 0, None, None, 0, None)
 
 
 def each_ball(around: Surroundings, time: Scalar, state: SkidState) -> OneBall:
-    """All balls at an instant, leading axis ball; arguments as in `one_ball`."""
+    """Return all balls at an instant, leading axis ball; arguments as in `one_ball`."""
 
     def one(place, state):
         return one_ball(around, time, place, state)
@@ -183,7 +183,7 @@ def each_ball(around: Surroundings, time: Scalar, state: SkidState) -> OneBall:
 
 
 def power(around: Surroundings, time: Scalar, ball: OneBall) -> Work:
-    """Momentary powers of one ball [W]; arguments as in `one_ball`."""
+    """Return the powers of one ball [W]; arguments as in `one_ball`."""
     speed, (on_inner, on_outer) = around.speed.at(time), ball.ring_torque
     return Work(
         drive=-on_inner * speed.inner - on_outer * speed.outer,
@@ -193,7 +193,7 @@ def power(around: Surroundings, time: Scalar, ball: OneBall) -> Work:
 
 
 def energies(around: Surroundings, ball: OneBall) -> tuple[Scalar, Scalar]:
-    """Kinetic energy of one ball; potential one of its pocket and weight [J]."""
+    """Return kinetic and potential energy, of pocket and weight, of a ball [J]."""
     of_ball, cage = ball.ball, around.model.cage
     height = of_ball.pitch_radius * jnp.sin(ball.azimuth)
     pressed = ball.push**2 / (2.0 * cage.stiffness)
@@ -222,8 +222,8 @@ class SkidSystem(AbstractSystem):
 
     @property
     def masses(self) -> Masses:
-        """Speeds and angles change; balls and ring are balanced at every time, but for
-        the way that a ring goes which nothing holds."""
+        """Masses: 1 for speeds and angles; balls and ring are in equilibrium at every
+        time, except for a ring without stiffness."""
         loads, real = self.around.loads, self.speed.dtype
         own = [1.0] * (loads.n_spins + 2) + [_REST] * loads.n_own
         shared = [1.0] * 2 + [_REST] * loads.n_shared
@@ -242,7 +242,7 @@ class SkidSystem(AbstractSystem):
         return jnp.stack(own), jnp.stack(shared)
 
     def packed(self, state: SkidState) -> Coupled:
-        """A motion at which no work has been done yet."""
+        """Return the unknowns of a motion, with zero work."""
         of_balls = state.orbit[:, None], state.lead[:, None]
         own = jnp.concatenate([state.spin, *of_balls, state.centre], axis=1)
         of_cage = jnp.stack([state.cage_speed, state.cage_turn])
@@ -252,7 +252,7 @@ class SkidSystem(AbstractSystem):
         return Coupled(own, shared / units[1], jnp.zeros(3, own.dtype))
 
     def unpacked(self, packed: Coupled) -> tuple[SkidState, Work]:
-        """The motion, and the work that has been done."""
+        """Return the motion and the work done."""
         work = Work(*(packed.sums * self.energy))
         return self._state(packed.own, packed.shared), work
 

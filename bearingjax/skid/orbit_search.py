@@ -1,4 +1,4 @@
-"""The search for a motion that repeats from orbit to orbit, of balls and of rollers.
+"""Search for a motion of balls or rollers that is periodic from orbit to orbit.
 
 It is an implicit integration in time with steps that grow as it calms down: it begins
 as the motion would, from pure rolling, and ends as Newton's method.
@@ -33,7 +33,7 @@ _TOLERANCE = {"float64": 1e-10, "float32": 1e-3}
 _FIRST = 1e-5
 """First step in time [s]."""
 NO_TRACTION = 1e-9
-"""Traction over load that counts as none [1]."""
+"""Traction over load below which it counts as zero [1]."""
 _RING = 6
 """Unknowns of the ring."""
 _FEW = 4
@@ -41,18 +41,18 @@ _FEW = 4
 
 
 class AbstractOrbit(eqx.Module):
-    """Equations of a motion that repeats from orbit to orbit, and of the ring.
+    """Equations of a motion that is periodic from orbit to orbit, and of the ring.
 
     Unknowns are those of each place along the orbit, counted from pure rolling, then
     those that all places share, then those of the balance of the ring. Where oil is
     stiff, slips are smaller than the round-off of the speeds: so they are no
-    differences of speeds. Balls and rollers are thrown outwards by the orbit that they
-    have, so that their loads and the place of the ring are part of the equations.
+    differences of speeds. Centrifugal forces are those of the actual orbit, so that
+    contact loads and the position of the ring are part of the equations.
 
     Attributes:
         model: The bearing, its oil and what surrounds the balls or rollers.
         speed: Ring speeds.
-        carried: Ring speeds of the loads: their pure rolling throws outwards.
+        carried: Ring speeds of the loads: their pure rolling gives centrifugal forces.
         follows: Whether the loads follow the orbit beyond that. Static.
         pressed: 1 where something is pressed between the rings, 0 where not: balls or
             rollers then come to rest, and without the centrifugal force of their orbit
@@ -88,12 +88,12 @@ class AbstractOrbit(eqx.Module):
     def excess(
         self, own: Float[Array, "place k"], common: Float[Array, " c"]
     ) -> Float[Array, "..."]:
-        """Orbital speeds beyond pure rolling (place,), or one of all () [rad/s]."""
+        """Return orbital speeds relative to pure rolling (place,) or () [rad/s]."""
 
     @abc.abstractmethod
     def loaded(self, row: RowResults) -> tuple[Any, Array]:
-        """The balls or rollers of a solved row, and what of their pure rolling belongs
-        to the unknowns (element, k) [rad/s].
+        """Return the balls or rollers of a solved row, and the values of the unknowns
+        in pure rolling (element, k) [rad/s].
 
         Args:
             row: The row.
@@ -102,7 +102,7 @@ class AbstractOrbit(eqx.Module):
     def motion(
         self, body: Any, rolls: Float[Array, " k"], own: Float[Array, " k"]
     ) -> Float[Array, " k"]:
-        """Speeds of one place, whose changes along the orbit `local` wants [rad/s].
+        """Return the speeds at one place, whose derivatives `local` takes [rad/s].
 
         Args:
             body, rolls: From `loaded`.
@@ -119,17 +119,17 @@ class AbstractOrbit(eqx.Module):
         slope: Float[Array, " k"],
         common: Float[Array, " c"],
     ) -> tuple[Float[Array, " k+c"], Scalar]:
-        """Forces out of balance of one place [N], and how large those are that cancel.
+        """Return residual forces of one place [N], and the size of those that cancel.
 
         Args:
             body, rolls: From `loaded`.
             own, common: Unknowns [rad/s].
-            slope: How the motion changes along the orbit.
+            slope: Derivative of the motion along the orbit.
         """
 
     @abc.abstractmethod
     def inertia(self) -> Float[Array, "unknown unknown"]:
-        """Mass matrix that belongs to the forces; the ring has none [kg m]."""
+        """Return the mass matrix of the forces; the ring has no mass [kg m]."""
 
     @abc.abstractmethod
     def described(
@@ -144,7 +144,7 @@ class AbstractOrbit(eqx.Module):
         """
 
     def parts(self, y: Float[Array, " unknown"]) -> tuple[Array, Array, Array]:
-        """Unknowns of the places (place, k), of all (c,) and of the ring (6,)."""
+        """Split unknowns: of places (place, k), common (c,) and of the ring (6,)."""
         places = self.azimuth.shape[0]
         end = places * self.n_own
         own, common, ring = jnp.split(y, [end, end + self.n_common])
@@ -163,7 +163,7 @@ class AbstractOrbit(eqx.Module):
         return self.azimuth + turn, np.arange(balls), np.zeros(balls, int)
 
     def _turning(self, own, common, ring):
-        """The bearing as it turns, and its ring freedoms."""
+        """Return the bearing at its orbital speed, and its ring freedoms."""
         excess = jnp.zeros_like(own[0, 0])
         if self.follows:
             excess = self.pressed * self.excess(own, common)
@@ -181,7 +181,7 @@ class AbstractOrbit(eqx.Module):
     def bodies(
         self, y: Float[Array, " unknown"], solved: SolvedRow
     ) -> tuple[Any, Array]:
-        """Balls or rollers at all places, and their pure rolling, as in `loaded`.
+        """Return balls or rollers at all places, and their pure rolling, from `loaded`.
 
         Args:
             y: Unknowns (unknown,) [rad/s, m].
@@ -191,8 +191,8 @@ class AbstractOrbit(eqx.Module):
         return self._found(bearing.rows[0], q, solved)[0]
 
     def _forces(self, own, common, ring, sloped=None):
-        """Forces out of balance of all places, pulls at the ring, and the motion; then
-        the sizes of forces at the places, and on the ring [N], and the solved row."""
+        """Return residual forces of all places, forces on the ring, and the motion;
+        then the sizes of forces at the places and on the ring [N], and the row."""
         bearing, q = self._turning(own, common, ring)
         (row,), (azimuth, stand, _) = bearing.rows, self.solved_at
         solved = row.solve(q, azimuth, bearing.equilibrium, None)
@@ -216,7 +216,7 @@ class AbstractOrbit(eqx.Module):
         )
 
     def unbalanced(self, y: Float[Array, " unknown"]) -> Float[Array, " unknown"]:
-        """Forces out of balance [N].
+        """Return the residual forces [N].
 
         Args:
             y: Unknowns (unknown,) [rad/s, m].
@@ -226,7 +226,7 @@ class AbstractOrbit(eqx.Module):
         return self._assembled(out, pulls, ring)
 
     def evaluated(self, y: Float[Array, " unknown"]) -> "Evaluated":
-        """`unbalanced` with its Jacobian.
+        """Return `unbalanced` with its Jacobian.
 
         Args:
             y: Unknowns (unknown,) [rad/s, m].
@@ -314,7 +314,7 @@ class Found(NamedTuple):
 
 
 def search(orbit: AbstractOrbit) -> Found:
-    """The motion that repeats; without derivatives, see `known`.
+    """Find the periodic motion; without derivatives, see `known`.
 
     Args:
         orbit: Its equations.
@@ -329,7 +329,7 @@ def search(orbit: AbstractOrbit) -> Found:
 def known(
     orbit: AbstractOrbit, y: Float[Array, " unknown"], result: Int[Array, ""]
 ) -> Float[Array, " unknown"]:
-    """Unknowns that were found, with their derivatives; NaN if they failed.
+    """Return the unknowns found, with derivatives; NaN if the search failed.
 
     Args:
         orbit: The equations.
@@ -344,7 +344,7 @@ def known(
 
 
 def derivatives(count: int) -> np.ndarray:
-    """Matrix of d/dφ on an even grid: of the trigonometric interpolant.
+    """Return the matrix of d/dφ of the trigonometric interpolant on an even grid.
 
     Args:
         count: Number of places around the orbit.

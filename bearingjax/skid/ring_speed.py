@@ -43,7 +43,7 @@ class SpeedTable(eqx.Module):
         rising_and_finite(self, self.time, ("time", "inner", "outer"))
 
     def at(self, time: Scalar) -> Speed:
-        """Speeds at a time [s]."""
+        """Return the speeds at a time [s]."""
         return Speed(
             inner=jnp.interp(time, self.time, self.inner),
             outer=jnp.interp(time, self.time, self.outer),
@@ -51,7 +51,7 @@ class SpeedTable(eqx.Module):
 
 
 def ramp(duration, end: Speed, start: Speed | None = None) -> SpeedTable:
-    """From one speed evenly to another, then constant.
+    """Create a table with a linear ramp between two speeds, then constant.
 
     Args:
         duration: Of the change [s].
@@ -67,7 +67,7 @@ def ramp(duration, end: Speed, start: Speed | None = None) -> SpeedTable:
 
 
 def as_table(speed: Speed | SpeedTable) -> SpeedTable:
-    """A table, of constant speed too."""
+    """Return a speed table, also for a constant speed."""
     if isinstance(speed, SpeedTable):
         return speed
     return SpeedTable(jnp.zeros(1), speed.inner[None], speed.outer[None])

@@ -34,7 +34,7 @@ class RollerState(NamedTuple):
 
 
 class LoadedRoller(eqx.Module):
-    """A roller, what its contacts bear, and the oil in them. Contacts (outer, inner).
+    """A roller with the loads and the oil of its contacts. Contacts (outer, inner).
 
     Attributes:
         mass: Mass [kg].
@@ -74,7 +74,7 @@ class LoadedRoller(eqx.Module):
 
     @property
     def frontal_area(self) -> Scalar:
-        """Area that it turns towards the oil along its orbit [m²]."""
+        """Frontal area of a roller along its orbit [m²]."""
         return self.diameter * self.length
 
 
@@ -110,7 +110,7 @@ class RollerTractions(NamedTuple):
 
 
 def rolling(roller: LoadedRoller, speed: Speed) -> RollerState:
-    """Motion without slip at both raceways.
+    """Return the motion without slip at both raceways.
 
     Args:
         roller: The roller.
@@ -141,7 +141,7 @@ def sliding(roller: LoadedRoller, state: RollerState, speed: Speed) -> RollerSli
 def tractions(
     roller: LoadedRoller, law: AbstractTraction, moving: RollerSliding
 ) -> RollerTractions:
-    """Tractions on a roller.
+    """Return the tractions on a roller.
 
     Args:
         roller: The roller.
@@ -187,7 +187,7 @@ def rates(
 def unbalanced(
     roller: LoadedRoller, drag: RollerTractions, along_orbit: Scalar
 ) -> tuple[Scalar, Scalar]:
-    """Moment and force out of balance.
+    """Return the residual moment and force.
 
     I (dw/dt + dω/dt) is the moment [N m], m r dω/dt the force along the orbit [N].
     Arguments as in `rates`.

@@ -44,7 +44,7 @@ class RollerOrbit(AbstractOrbit):
         return roller, jax.vmap(self.rolls)(roller).spin[:, None]
 
     def rolls(self, roller: LoadedRoller) -> RollerState:
-        """Its motion in pure rolling."""
+        """Motion of a roller in pure rolling."""
         return rolling(roller, self.speed)
 
     def local(self, body, rolls, own, slope, common):
@@ -56,7 +56,7 @@ class RollerOrbit(AbstractOrbit):
         return jnp.stack([out, force]), size
 
     def forces(self, roller, spin, orbit):
-        """Motion of a roller, that against its raceways, tractions, and the force of
+        """Return the motion of a roller, its sliding, tractions, and the force of
         the oil between the rings [N]; `spin` and `orbit` from pure rolling."""
         rolls = self.rolls(roller)
         state = RollerState(rolls.spin + spin, rolls.orbit + orbit)

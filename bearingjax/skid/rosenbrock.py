@@ -1,4 +1,4 @@
-"""An integrator for stiff motion: a linearly implicit method, for Diffrax.
+"""Linearly implicit integrator for stiff motion, for Diffrax.
 
 A step solves linear systems alone, with one matrix and the exact Jacobian at its
 beginning. Newton's method in an implicit Runge-Kutta step cannot follow contacts whose
@@ -54,7 +54,7 @@ _DENSE = np.array(
 
 
 class Cubic(diffrax.AbstractLocalInterpolation):
-    """A step's motion between its ends, third order."""
+    """Cubic interpolation of the motion within a step."""
 
     t0: Any
     t1: Any
@@ -63,7 +63,7 @@ class Cubic(diffrax.AbstractLocalInterpolation):
     bend: Any
 
     def evaluate(self, t0, t1=None, left=True):
-        """Motion at a time, or its change between two."""
+        """Return the motion at a time, or its change between two."""
         if t1 is not None:
             return jax.tree.map(jnp.subtract, self.evaluate(t1), self.evaluate(t0))
         x = (t0 - self.t0) / jnp.where(self.t1 == self.t0, 1.0, self.t1 - self.t0)
@@ -96,7 +96,7 @@ class Rodas(diffrax.AbstractAdaptiveSolver):
         return 4.0
 
     def init(self, terms, t0, t1, y0, args):
-        """Nothing is kept from step to step."""
+        """Return no state: nothing is kept from step to step."""
         return None
 
     def func(self, terms, t0, y0, args):
@@ -104,7 +104,7 @@ class Rodas(diffrax.AbstractAdaptiveSolver):
         return args.rates(t0, y0)
 
     def step(self, terms, t0, t1, y0, args, solver_state, made_jump):
-        """A step; as Diffrax wants it."""
+        """Make a step, by Diffrax's interface."""
         h, real = t1 - t0, y0.own.dtype
         slopes, masses = args.slopes(t0, y0), args.masses
         solve = slopes.solver(masses, 1.0 / (h * _GAMMA))

@@ -93,7 +93,7 @@ class SkiddingBearing(AbstractSystem):
 
 
 class FrictionTorque(AbstractMeasure):
-    """Mean, over the hours of the cases, of the size of the friction torque [N m].
+    """Mean magnitude of the friction torque over the hours of the cases [N m].
 
     Of sliding, drag and cage; see `SkidModel` for what is left out.
 
@@ -114,7 +114,7 @@ class FrictionTorque(AbstractMeasure):
 
 
 class FrictionPower(AbstractMeasure):
-    """Mean, over the hours of the cases, of the power that the bearing turns to heat.
+    """Mean friction power over the hours of the cases.
 
     That of all its parts, in W. Without hours all cases count alike. Of a
     `SkiddingBearing`.
@@ -134,7 +134,7 @@ class FrictionPower(AbstractMeasure):
 
 
 class CageSlip(AbstractLargest):
-    """Largest slip of the cage of all cases, whether it lags or leads [1].
+    """Largest magnitude of cage slip over all cases [1].
 
     Size of `SteadyMotion.cage_slip`. Hours do not matter. Of a `SkiddingBearing`.
 

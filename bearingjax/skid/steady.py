@@ -1,4 +1,4 @@
-"""The state in which skidding balls and rollers end, without the way there.
+"""Steady state of skidding balls and rollers, without time integration.
 
 Balls are free in their pockets: the cage keeps out of it, and `SteadySkid.wander` says
 whether the pockets are wide enough for that (`ball_orbit`). Rollers are carried round
@@ -30,10 +30,10 @@ from .steady_results import SteadyMotion
 _PLACES = 96
 """Least number of places along an orbit."""
 _PRESSED = 1e-7
-"""Load of a ball or roller on both rings, over the largest, that is no round-off [1].
+"""Load of a ball or roller on both rings, over the largest, above round-off [1].
 """
 _IMBALANCE = {"float64": 1e-6, "float32": 1e-2}
-"""Share of the power that may be missing in an end state [1]."""
+"""Largest relative error of the power balance in a steady state [1]."""
 
 
 def steady(
@@ -106,7 +106,7 @@ def steady(
 
 
 def check_places(owner: str, bearing: Any, places: int | None) -> None:
-    """Raise for a number of places that does not suit.
+    """Raise for an invalid number of places.
 
     Args:
         owner: Function or class that was called.
@@ -140,7 +140,7 @@ def _places(bearing, solution, places):
 
 
 def enough_places(bearing: Any) -> int:
-    """Default number of places along an orbit, where loads are unlike.
+    """Return the default number of places along an orbit, where loads differ.
 
     Args:
         bearing: The design.
@@ -150,14 +150,14 @@ def enough_places(bearing: Any) -> int:
 
 
 def _unlike(solution):
-    """Whether the balls or rollers bear unlike loads."""
+    """Return whether the loads of balls or rollers differ."""
     loads = solution.roller_load
     spread = jnp.max(loads, axis=0) - jnp.min(loads, axis=0)
     return jnp.any(spread > 1e-6 * jnp.max(loads))
 
 
 def _is_pressed(solution):
-    """Whether anything is pressed between the rings, rather than thrown outwards."""
+    """Return whether any ball or roller is loaded by both rings."""
     loads = solution.roller_load
     return jnp.max(jnp.min(loads, axis=1)) > _PRESSED * jnp.max(loads)
 
@@ -247,7 +247,7 @@ def end_state(
 
 
 def _missing(found, speed, orbit):
-    """`imbalance`; losses of which no load at that speed would tell are none [1]."""
+    """Return `imbalance`, relative to at least a negligible loss [1]."""
     power, fastest = (
         found.power,
         jnp.maximum(jnp.abs(speed.inner), jnp.abs(speed.outer)),

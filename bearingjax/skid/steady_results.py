@@ -16,7 +16,7 @@ from .conditions import Conditions
 
 
 def slip(orbit: Any, rolling: Any) -> Any:
-    """1 - orbit/rolling, zero where nothing rolls [1].
+    """Return 1 - orbit/rolling, zero where nothing rolls [1].
 
     Args:
         orbit, rolling: Arrays of NumPy or of JAX [rad/s].
@@ -26,7 +26,7 @@ def slip(orbit: Any, rolling: Any) -> Any:
 
 
 def driving(outer: Scalar, inner: Scalar, speed: Speed) -> Scalar:
-    """Torque on the ring that turns faster, of like speeds on the inner one [N m].
+    """Return the torque on the faster ring, for equal speeds on the inner [N m].
 
     Args:
         outer, inner: Torques on the rings [N m].
@@ -36,7 +36,7 @@ def driving(outer: Scalar, inner: Scalar, speed: Speed) -> Scalar:
 
 
 class Power(NamedTuple):
-    """Mean powers [W]: the drive's is the sum of the others.
+    """Mean powers [W]: that of the drive is the sum of the others.
 
     Attributes:
         drive: What turns the rings.
@@ -93,12 +93,12 @@ class SteadyMotion(eqx.Module):
 
     @property
     def slip(self) -> Float[Array | np.ndarray, "*n place"]:
-        """1 - orbit/rolling orbit (place,) [1]; zero where rings stand still."""
+        """1 - orbit/rolling orbit (place,) [1]; zero where rings are at rest."""
         return slip(self.orbit_speed, self.rolling_orbit_speed)
 
     @property
     def imbalance(self) -> Float[Array | np.ndarray, "*n"]:
-        """Power of the drive that is not accounted for, over all losses [1]."""
+        """Residual of the power balance over all losses [1]."""
         power, xp = self.power, namespace(self.power.drive)
         losses = power.contacts + power.drag + power.cage
         still = losses == 0
@@ -107,7 +107,7 @@ class SteadyMotion(eqx.Module):
 
     @property
     def cage_slip(self) -> Float[Array | np.ndarray, "*n"]:
-        """1 - cage speed/that of pure rolling [1]; zero where rings stand still.
+        """1 - cage speed/that of pure rolling [1]; zero where rings are at rest.
 
         Both are means in time.
         """

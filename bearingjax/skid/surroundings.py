@@ -9,7 +9,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 
 _REST = 1e-3
-"""Speed below which drag falls as its square [m/s]."""
+"""Speed below which drag is quadratic [m/s]."""
 
 
 class Drag(eqx.Module):
@@ -40,7 +40,7 @@ class Drag(eqx.Module):
     def force(
         self, orbit: Scalar, area: Scalar, pitch_radius: Scalar, density: Scalar
     ) -> Scalar:
-        """Force on a ball or roller, in the sense in which angles are counted [N].
+        """Return the force on a ball or roller, in the sense of angles [N].
 
         Args:
             orbit: Orbital speed [rad/s].
@@ -55,7 +55,7 @@ class Drag(eqx.Module):
 
 
 class Cage(eqx.Module):
-    """A rigid cage, guided by nothing: balls or rollers push it, and it pushes them.
+    """Rigid cage guided by the balls or rollers through pocket contact.
 
     Attributes:
         pocket_clearance: Play of a ball or roller in its pocket along the orbit, from
@@ -80,7 +80,7 @@ class Cage(eqx.Module):
         positive(self, "inertia")
 
     def force(self, lag: Scalar) -> Scalar:
-        """On a ball or roller, in the sense in which angles are counted [N].
+        """Return the force on a ball or roller, in the sense of angles [N].
 
         Args:
             lag: How far its pocket is ahead of it, along the orbit [m].

@@ -38,7 +38,7 @@ from .ring_speed import SpeedTable, as_table
 from .steady_results import driving
 
 _PLACES = 96
-"""Places of the table."""
+"""Number of places of the table."""
 
 CAUSES = {
     Result.NO_LOAD_PATH: "The load over time pulls the ring out of the bearing, where"
@@ -47,7 +47,7 @@ CAUSES = {
     " Newtonian film of an oil that pressure or cold makes a glass does so; take a law"
     " of traction that yields, such as a limiting stress.",
 }
-"""Causes and cures of motions in time that end early."""
+"""Causes and remedies of integrations that end early."""
 
 
 def simulate(
@@ -193,7 +193,7 @@ def _check(axis, derivatives, places, duration, tolerance, max_steps, n_times):
 
 
 def _alike(loads):
-    """Whether all balls are known to bear the same."""
+    """Return whether all balls are known to carry equal loads."""
     if is_traced(loads):
         return False
     least, most = np.min(loads, axis=0), np.max(loads, axis=0)
@@ -213,7 +213,7 @@ def _message(found):
 
 
 class _Constant(eqx.Module):
-    """A load that does not vary."""
+    """Constant load."""
 
     load: Float[Array, "6"]
 
@@ -235,14 +235,14 @@ def _solved(model, load, speed, given, throw) -> Any:
 
 
 def _taken_up(start, rolling):
-    """A motion to go on from; ring and balls from rolling unless they are balanced."""
+    """Return the start of a motion, with ring and balls of rolling if tabulated."""
     if start.ring.shape == rolling.ring.shape:
         return start
     return start._replace(centre=rolling.centre, ring=rolling.ring)
 
 
 def _balance(model, solution, given):
-    """The balance of the ring; its load is given apart."""
+    """Return the balance of the ring, without its load."""
     prescribed, free, fixed_ring = given
     bearing, options = model.bearing, SolveOptions(free, fixed_ring)
     case = load_case(bearing, options, None, prescribed, None, None, None)

@@ -1,4 +1,4 @@
-"""Warnings about what skids: one list for the library and the command line."""
+"""Warnings on skidding: one list for the library and the command line."""
 
 from typing import Any
 
@@ -11,20 +11,20 @@ from .history import SkidMotion
 from .model import SkidModel
 
 MOST_SHEAR = 0.12
-"""Shear stress over pressure that no oil exceeds [1]. Oils yield at 0.03 to 0.12 of the
+"""Largest shear stress over pressure of any oil [1]. Oils yield at 0.03 to 0.12 of the
 pressure: Bair & Winer (1979)."""
 
 GROSS = 0.1
-"""Slip of a ball or roller from which skidding is gross [1]."""
+"""Slip of a ball or roller above which skidding is gross [1]."""
 
 PRESSED = 1e-2
-"""Share of the largest contact load from which the stress of a contact counts [1]."""
+"""Share of the largest contact load above which a contact's stress counts [1]."""
 
 STARTED = 0.1
 """Share of the fastest rolling from which times count, of a motion in time [1]."""
 
 MIXED = 3.0
-"""Least film over what remains of a film at rest below which surfaces touch [1]."""
+"""Least film over the residual film at rest below which surfaces touch [1]."""
 
 
 def skid_warnings(
@@ -52,7 +52,7 @@ def skid_warnings(
 
 
 def _counted(doubts):
-    """The sentence of the worst of all cases, of which some have none."""
+    """Return the sentence of the worst case, with the number of cases."""
     doubtful = [k for k, doubt in enumerate(doubts) if doubt]
     worst = max(doubtful, key=lambda k: doubts[k][0])
     many = f"{len(doubtful)} of {len(doubts)}"
@@ -60,7 +60,7 @@ def _counted(doubts):
 
 
 def _doubts(model, found, state):
-    """Size and sentence of each kind, or `None`."""
+    """Yield size and sentence of each kind of warning, or `None`."""
     loaded = found.contact_load > 1e-9 * np.nanmax(found.contact_load, initial=0.0)
     # Before the rings turn there is no film, and slip means nothing.
     rolling = np.abs(found.rolling_orbit_speed)
