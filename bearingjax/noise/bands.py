@@ -14,19 +14,19 @@ from .level import REFERENCE_ACCELERATION, level
 from .spectrum import Spectrum
 
 LEAST_SHIFT = 0.5
-"""Change of a band's level by skirts of lines from which it is not held [dB]."""
+"""Change of a band level by skirts of lines above which the band is invalid [dB]."""
 _REACH = 64
-"""Bins to either side of an edge whose lines may reach over it.
+"""Bins to either side of an edge whose lines may leak over it.
 
-Of lines further off Hann's window leaves less than 2e-11 of their power beyond.
+Hann's window spreads less than 2e-11 of the power of lines further off over it.
 """
 _AROUND = np.arange(-_REACH, _REACH, dtype=np.int32)[None]
 _STRONG = 5.0
-"""Ratio of a line to the geometric mean of its neighbours, from which it is strong [1].
+"""Ratio of a strong line to the geometric mean of its neighbours [1].
 
-Of noise, whose lines have sizes by Rayleigh's distribution, one in 10^6 is."""
+Of noise, whose amplitudes follow Rayleigh's distribution, one line in 10^6 is."""
 _NEIGHBOURS = 25
-"""Their number to either side."""
+"""Number of neighbours to either side."""
 _R10 = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
 """Preferred numbers of the series R 10: nominal centres of third-octaves."""
 
@@ -48,7 +48,7 @@ class Bands(NamedTuple):
 
 
 def octave_bands(lowest: float = 4.0, highest: float = 8000.0) -> Bands:
-    """Octave bands, by default the twelve of the rigs for bearing noise.
+    """Return octave bands, by default the twelve of the rigs for bearing noise.
 
     Args:
         lowest: Nominal centre of the first band [Hz].
@@ -67,7 +67,7 @@ def octave_bands(lowest: float = 4.0, highest: float = 8000.0) -> Bands:
 
 
 def third_octave_bands(lowest: float = 4.0, highest: float = 10000.0) -> Bands:
-    """Third-octave bands: centres 1000 G^(x/3) Hz, edges G^(±1/6) from there.
+    """Return third-octave bands: centres 1000 G^(x/3) Hz, edges G^(±1/6) from there.
 
     Args:
         lowest, highest: As in `octave_bands`; such as 25, 31.5, 40.
@@ -83,7 +83,7 @@ def third_octave_bands(lowest: float = 4.0, highest: float = 10000.0) -> Bands:
 def band_root_mean_square(
     spectrum: Spectrum, bands: Bands, highest: Any = None
 ) -> Float[Array, "band ..."]:
-    """Root mean square of what a record has in each band.
+    """Return the root mean square of a record in each band.
 
     A line belongs to the band that its frequency lies in; of a windowed record it
     counts by its power, which does not depend on the window.
@@ -112,7 +112,7 @@ def band_levels(
     reference: Any = REFERENCE_ACCELERATION,
     highest: Any = None,
 ) -> Float[Array, "band ..."]:
-    """Level of a record of acceleration in each band [dB].
+    """Return the level of an acceleration record in each band [dB].
 
     Args:
         spectrum: Of the record, amplitudes (line, ...) [m/s²].
@@ -126,7 +126,7 @@ def band_levels(
 
 
 def total_root_mean_square(spectrum: Spectrum) -> Float[Array, "..."]:
-    """Root mean square of a record about its mean (...) [unit of the record].
+    """Return the root mean square of a record about its mean (...) [its unit].
 
     It is of all lines, those outside of any bands too.
     """
@@ -136,13 +136,13 @@ def total_root_mean_square(spectrum: Spectrum) -> Float[Array, "..."]:
 def is_held(
     spectrum: Spectrum, bands: Bands, highest: Any = None
 ) -> Bool[Array, "band ..."]:
-    """Which bands a record holds, as `band_root_mean_square` has it (band, ...)."""
+    """Return which bands a record covers, see `band_root_mean_square` (band, ...)."""
     lower, upper = _edges(spectrum, bands)
     return _held(spectrum, lower, upper, _highest(spectrum, highest))
 
 
 class Leakage(NamedTuple):
-    """Power of lines that a window spreads over edges between bands.
+    """Power of lines that a window leaks over edges between bands.
 
     Attributes:
         up: Of lines below each edge, above it (edge, ...) [unit of the record,
@@ -159,11 +159,11 @@ class Leakage(NamedTuple):
 
 @program(quick=True)
 def leakage(spectrum: Spectrum, edges: Any) -> Leakage:
-    """Estimate what the window of a spectrum spreads over edges of bands.
+    """Estimate the leakage of a spectrum's window over edges of bands.
 
-    Lines are the local maxima of the spectrum that stand out of it; each is taken for a
-    lone one, with the frequency and amplitude that its neighbours tell
-    (`AbstractWindow.peak`). Of noise as much comes over an edge as goes.
+    Lines are the prominent local maxima of the spectrum; each is taken for a
+    single one, with the frequency and amplitude from its neighbours
+    (`AbstractWindow.peak`). Leakage of noise over an edge balances.
 
     Args:
         spectrum: Of the record, amplitudes (line, ...).
@@ -197,7 +197,7 @@ def leakage(spectrum: Spectrum, edges: Any) -> Leakage:
 
 
 def _strong(amplitude):
-    """Which lines stand out of their neighbours (line, ...)."""
+    """Return which lines are strong against their neighbours (line, ...)."""
     tiny = jnp.finfo(amplitude.dtype).tiny
     logs = jnp.log(jnp.maximum(amplitude, tiny))
     wide = min(_NEIGHBOURS, len(amplitude) - 1)
@@ -208,7 +208,7 @@ def _strong(amplitude):
 
 
 def shift(power: Any, gained: Any, lost: Any) -> Any:
-    """By how much a level is changed by power that came in and went out [dB].
+    """Return the change of a level by power gained and lost [dB].
 
     Args:
         power, gained, lost: Mean squares (...) [unit of the record, squared].
@@ -222,28 +222,28 @@ def shift(power: Any, gained: Any, lost: Any) -> Any:
 def band_shift(
     spectrum: Spectrum, bands: Bands
 ) -> tuple[Float[Array, "band ..."], Float[Array, "band ..."]]:
-    """By how much skirts of strong lines change the level of each band.
+    """Return the change of each band level by skirts of strong lines.
 
     Args:
         spectrum: Of the record, amplitudes (line, ...).
         bands: From `octave_bands` or `third_octave_bands`.
 
     Returns:
-        The change (band, ...) [dB], and the distance of the line that makes most of it
-        from the edge that it reaches over (band, ...) [Hz].
+        The change (band, ...) [dB], and the distance of the line with the largest share
+        from the edge that it leaks over (band, ...) [Hz].
     """
     *powers, need = band_power(spectrum, bands)
     return shift(*powers), need
 
 
 def band_power(spectrum: Spectrum, bands: Bands) -> tuple[Any, Any, Any, Any]:
-    """Mean square in each band, and what skirts of strong lines change of it.
+    """Return the mean square in each band, and its change by skirts of strong lines.
 
     Args:
         spectrum, bands: As in `band_shift`.
 
     Returns:
-        The mean square, what came in and what went out over the edges (band, ...) [unit
+        The mean square, the gain and the loss over the edges (band, ...) [unit
         of the record, squared], and the distance of `band_shift` [Hz].
     """
     return _powers(spectrum, *_edges(spectrum, bands))
@@ -268,14 +268,14 @@ def _by_band(spectrum, lower, upper, highest):
 
 
 def _sums(spectrum, lower, upper):
-    """Mean square of what lies between the edges (band, ...)."""
+    """Return the mean square between the edges (band, ...)."""
     frequency, power = spectrum.frequency[None], spectrum.power
     inside = (frequency >= lower[:, None]) & (frequency < upper[:, None])
     return jnp.tensordot(inside.astype(power.dtype), power, axes=1)
 
 
 def covers(spectrum: Spectrum, bands: Bands, highest: Any = None) -> tuple[Any, Any]:
-    """Whether bands are at least as wide as a line, and within the record (band,).
+    """Return whether bands are at least as wide as a line and in the record (band,).
 
     Arguments as in `band_root_mean_square`.
     """
@@ -306,7 +306,7 @@ def _edges(spectrum, bands):
 
 
 def _root(square):
-    """Square root; where there is nothing its derivative is 0."""
+    """Return the square root, with the derivative 0 at 0."""
     none = square == 0
     return jnp.where(none, 0.0, jnp.sqrt(jnp.where(none, 1.0, square)))
 

@@ -1,4 +1,4 @@
-"""A cage that rolling elements push round, and that they run against.
+"""Cage in contact with rolling elements and a guiding ring.
 
 The cage is a rigid ring with three freedoms of its own: its centre's x and y, and how
 far it has turned beyond the even orbit. Every rolling element has a place of its own
@@ -99,7 +99,7 @@ def cage_loads(
     pitch_radius: Scalar,
     azimuth: Float[Array, " element"],
 ) -> tuple[Float[Array, " element"], Scalar]:
-    """Forces of pockets along the pitch circle, and of the land along its normal [N].
+    """Return forces of pockets along the pitch circle, and of the land normally [N].
 
     Args:
         cage: The cage.
@@ -125,7 +125,7 @@ def cage_forces(
     pitch_radius: Scalar,
     azimuth: Float[Array, " element"],
 ) -> CageForces:
-    """Forces of pockets and land, reversed: as derivatives of an energy.
+    """Return reversed forces of pockets and land, as derivatives of an energy.
 
     Args:
         pockets, land: From `cage_loads`, or with their damping [N].
@@ -154,9 +154,9 @@ def fastest_of_cage(
     ring_mass: Scalar,
     pitch_radius: Scalar,
 ) -> Scalar:
-    """Bound of the angular frequency at which cage, balls and ring move [rad/s].
+    """Return an upper bound of the angular frequency of cage, balls and ring [rad/s].
 
-    As if all pockets and the land bore at once, each as stiff as it ever becomes.
+    All pockets and the land are taken as loaded at once, at their largest stiffness.
 
     Args:
         cage: The cage.

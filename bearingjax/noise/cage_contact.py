@@ -51,7 +51,7 @@ class CageContact(eqx.Module):
             positive(self, name)
 
     def force(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
-        """Force of the contact, zero where the parts are apart (...) [N].
+        """Return the contact force, zero where the parts are apart (...) [N].
 
         Finite, with three derivatives, for every approach that is.
 
@@ -68,7 +68,7 @@ class CageContact(eqx.Module):
         return jnp.where(apart, 0.0, jnp.exp(jnp.minimum(root, most)))
 
     def approach(self, force: Float[Array, "..."]) -> Float[Array, "..."]:
-        """Approach under a force of more than zero, the inverse of `force` [m].
+        """Return the approach under a positive force, the inverse of `force` [m].
 
         Args:
             force: (...) [N].
@@ -77,7 +77,7 @@ class CageContact(eqx.Module):
         return elastic + self.film * force ** (1.0 / self.film_exponent)
 
     def stiffest(self, force: Scalar) -> Scalar:
-        """Largest stiffness dF/dd of the contact under forces up to one [N/m].
+        """Return the largest stiffness dF/dd under forces up to a given one [N/m].
 
         A film that ends stiffens it, an elastic exponent above 1 makes it softer again.
 
@@ -92,7 +92,7 @@ class CageContact(eqx.Module):
 
 
 def _excess(y, args):
-    """ln((c Fⁿ + a F^(1/m))/d) with y = ln F: rising, and convex."""
+    """Return ln((c Fⁿ + a F^(1/m))/d) with y = ln F: increasing and convex."""
     contact, approach = args
     elastic = jnp.log(contact.elastic) + contact.elastic_exponent * y
     film = jnp.log(contact.film) + y / contact.film_exponent
@@ -100,7 +100,7 @@ def _excess(y, args):
 
 
 def _logarithm(contact, approach):
-    """Root of `_excess`, from above: no step passes it."""
+    """Return the root of `_excess`, from above: no step overshoots it."""
     contact = stop(contact)
     logarithm = jnp.log(approach)
     elastic = (logarithm - jnp.log(contact.elastic)) / contact.elastic_exponent

@@ -1,4 +1,4 @@
-"""Which errors of form make a line of a spectrum."""
+"""Form errors as causes of the lines of a spectrum."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ from .orders import KinematicFrequencies, kinematic_frequencies, waviness_force
 
 _SIDEBANDS = 2
 _PASSAGES = 6
-"""Multiples of the cage's turning, in passages of the elements."""
+"""Multiples of the cage frequency, in passages of the elements."""
 
 
 class _Cause(NamedTuple):
@@ -69,7 +69,7 @@ def line_causes(
 
 
 def _told(causes: list[_Cause], rows: int) -> tuple[str, ...]:
-    """Each cause once, with the orders of its waves and its rows in a set."""
+    """Return each cause once, with the orders of its waves and its rows in a set."""
     found: dict[str, dict[int, set[int]]] = {}
     for one in causes:
         found.setdefault(one.words, {}).setdefault(one.row, set()).add(one.order)
@@ -97,7 +97,7 @@ def _known(model: NoiseModel, highest: float) -> Iterator[_Cause]:
 def _of_row(
     bearing: Any, errors: FormErrors, model: NoiseModel, highest: float
 ) -> Iterator[_Cause]:
-    """Causes in one row, of lines up to a frequency [Hz]."""
+    """Yield causes in one row, of lines up to a frequency [Hz]."""
     turning = kinematic_frequencies(bearing, model.speed)
     count = bearing.n_elements
     row = bearing, model.speed
@@ -166,7 +166,7 @@ def _of_wave(row, part, order, size, words) -> Iterator[_Cause]:
 
 
 def _multiples(frequency: float, highest: float) -> range:
-    """Numbers of all multiples of a frequency up to another one."""
+    """Return the numbers of all multiples of a frequency up to another one."""
     return range(1, int(highest / frequency) + 1 if frequency > 0.0 else 0)
 
 

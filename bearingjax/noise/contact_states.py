@@ -7,7 +7,7 @@ import numpy as np
 from .vibration import Vibration
 
 OPEN = 1e-9
-"""Load over the largest one up to which a contact counts as open [1]."""
+"""Largest relative load of an open contact [1]."""
 
 
 class ContactStates(NamedTuple):
@@ -32,7 +32,7 @@ class ContactStates(NamedTuple):
 
 
 def contact_states(record: Vibration) -> ContactStates:
-    """Which contacts of a record are closed.
+    """Return which contacts of a record are closed.
 
     A four-point ball bears in up to four contacts, other balls and rollers in two. A
     contact that opens and closes again between two samples is not seen.

@@ -30,10 +30,10 @@ from .standing import standing
 
 
 def bridged(model: NoiseModel) -> NoiseModel:
-    """Return the bearing with contacts that bridge waves shorter than they are long.
+    """Return the model with waves averaged over the width of its contacts.
 
-    Contacts are as wide as under their mean load where the bearing stands; waves of
-    random bearings, which `drawn` adds, are bridged too. Spalls are not.
+    Contacts have the width under their mean load in static equilibrium; waves of
+    random bearings, which `drawn` adds, are averaged too. Spalls are not.
 
     Args:
         model: The bearing.
@@ -41,7 +41,7 @@ def bridged(model: NoiseModel) -> NoiseModel:
     Returns:
         The model with `half_width`, differentiable.
 
-    Fails: as `standing`; the width is then NaN or that of no balance.
+    Fails: as `standing`; the width is then NaN or belongs to no equilibrium.
     """
     return dataclasses.replace(model, half_width=_half_widths(model, model.orbits))
 
@@ -65,7 +65,7 @@ def _half_widths(model, orbits):
 
 
 def contact_half_width(bearing: Any, load: np.ndarray) -> float:
-    """Half width along the rolling direction, of a contact with the mean load [m].
+    """Return the half width along the rolling direction under the mean load [m].
 
     Args:
         bearing: A single row.

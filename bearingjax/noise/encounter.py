@@ -1,4 +1,4 @@
-"""Where rolling elements are at a time, and the form errors that they meet there."""
+"""Positions of rolling elements at a time, and the form errors there."""
 
 from typing import NamedTuple
 
@@ -23,7 +23,7 @@ class Section(NamedTuple):
 
     @property
     def stacked(self) -> Float[Array, "element 3"]:
-        """All three."""
+        """All three components."""
         tilt = jnp.zeros_like(self.axial) if self.tilt is None else self.tilt
         return jnp.stack([self.axial, self.outwards, tilt], axis=1)
 
@@ -52,7 +52,7 @@ class Encounter(NamedTuple):
 
     @classmethod
     def at(cls, azimuth: Float[Array, " element"]) -> "Encounter":
-        """On raceways as on the drawing."""
+        """Create encounters on raceways without deviations."""
         return cls(azimuth, jnp.cos(azimuth), jnp.sin(azimuth))
 
     def meeting(
@@ -75,7 +75,7 @@ class Encounter(NamedTuple):
         raceway: int,
         sites: Sites | None = None,
     ) -> Section:
-        """Motion of a raceway in the axial section of every element [m, rad].
+        """Return raceway motions in the axial section of every element [m, rad].
 
         Args:
             ring: Motion of the ring, three freedoms or five [m, rad]; `None`: none.

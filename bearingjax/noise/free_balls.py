@@ -1,4 +1,4 @@
-"""Forces of all free balls of a row at once, written out.
+"""Explicit forces of all free balls of a row at once.
 
 The derivatives of `FreeElement.energy` of balls whose contact constants do not follow
 the angle. Arrays have the axes (contact, element): a compiler works on many contacts
@@ -25,7 +25,7 @@ _N, _D = EXPONENT
 
 
 def is_written_out(free: FreeElement) -> bool:
-    """Whether `ball_forces` holds for elements of this kind. Static."""
+    """Return whether `ball_forces` is valid for elements of this kind. Static."""
     ball = free.element
     return (
         isinstance(ball, Ball)
@@ -41,7 +41,7 @@ def ball_forces(
     places: Float[Array, "element 2"],
     raised: Float[Array, "2 element"] | None,
 ) -> tuple[tuple[Section, Section], Float[Array, "element 2"]]:
-    """Derivatives of the energy of all balls [N, N m].
+    """Return the derivatives of the energy of all balls [N, N m].
 
     Args:
         free: One ball, or balls with a leading axis.
@@ -144,7 +144,7 @@ def _contact(walls, moved, start, reach, constant) -> _Contact:
 
 @partial(jax.custom_jvp, nondiff_argnums=(0,))
 def _forces(walls, moved, start, reach, constant):
-    """Forces (z, r) on the balls, reversed [N]; arrays (contact, element).
+    """Return reversed forces (z, r) on the balls [N]; arrays (contact, element).
 
     Its derivative is written out, because that of every quotient and root in turn
     costs three times as much.

@@ -1,4 +1,4 @@
-"""Rolling elements whose places are freedoms of their own, with mass.
+"""Rolling elements with mass and freedoms of their own.
 
 The energy of a rolling element stands in terms of the rings and of its place against
 them. Here its place p is counted in space: along z and r for a ball, along and across
@@ -26,13 +26,13 @@ from ..numerics.types import Scalar
 
 
 class FreeElement(eqx.Module):
-    """One rolling element with a place of its own.
+    """One rolling element with freedoms of its own.
 
     Attributes:
         element: The rolling element.
         mass: Of each coordinate of its place (n,) [kg, kg m²].
         force: Of inertia, from its orbit, at the drawing's place (n,) [N, N m].
-        scale: What x counts for a unit of p (n,) [1, m].
+        scale: x per unit of p (n,) [1, m].
         own: Motion of a ring in the element's axes, from that in the axial section
             (h, 3) [1, m, 1/m].
 
@@ -46,7 +46,7 @@ class FreeElement(eqx.Module):
     own: Float[Array, "h 3"]
 
     def seen(self, outer: Float[Array, "3"], inner: Float[Array, "3"]) -> RingMotion:
-        """Motions of the rings in its axes, from those in the axial section [m, rad].
+        """Return ring motions in its axes, from those in the axial section [m, rad].
 
         Args:
             outer, inner: (u, v, θ) of each ring [m, rad].
@@ -54,13 +54,13 @@ class FreeElement(eqx.Module):
         return RingMotion(combined(self.own.T, outer), combined(self.own.T, inner))
 
     def in_section(self, forces: Float[Array, " h"]) -> Float[Array, "3"]:
-        """Forces on (u, v, θ) of a ring, from those in its axes [N, N m]."""
+        """Return forces on (u, v, θ) of a ring, from those in its axes [N, N m]."""
         return combined(self.own, forces)
 
     def unknowns(
         self, rings: RingMotion, place: Float[Array, " n"]
     ) -> Float[Array, " n"]:
-        """Own unknowns x of the rolling element [m].
+        """Return the own unknowns x of the rolling element [m].
 
         Args:
             rings: Motions of the rings in its axes [m, rad].
@@ -73,20 +73,20 @@ class FreeElement(eqx.Module):
         return dataclasses.replace(self, element=self.element.raised(heights))
 
     def energy(self, rings: RingMotion, place: Float[Array, " n"]) -> Scalar:
-        """Strain energy of its contacts [J]; arguments as in `unknowns`."""
+        """Return the strain energy of its contacts [J]; arguments as in `unknowns`."""
         return self.element.energy(rings, self.unknowns(rings, place))
 
     def loads(
         self, rings: RingMotion, place: Float[Array, " n"]
     ) -> Float[Array, " contact"]:
-        """Load of each contact [N]; arguments as in `unknowns`."""
+        """Return the load of each contact [N]; arguments as in `unknowns`."""
         at = self.element.coordinates(rings, self.unknowns(rings, place))
         return self.element.respond(at).beside
 
     def carried(
         self, rings: RingMotion, place: Float[Array, " n"]
     ) -> tuple[Scalar, Scalar]:
-        """Sum of a ball's loads [N], and the cosine of its contact angle [1].
+        """Return the sum of a ball's loads [N] and the cosine of its contact angle [1].
 
         The cosine is the mean of its contacts by their loads; 1 of a loose ball.
         Arguments as in `unknowns`.
@@ -104,7 +104,7 @@ class FreeElement(eqx.Module):
 def free_element(
     element: Any, material: Material, pitch_radius: Scalar, speed: Speed, orbit: Scalar
 ) -> FreeElement:
-    """A rolling element with its inertia.
+    """Create a rolling element with its inertia.
 
     Args:
         element: The rolling element, made without speed.
@@ -150,5 +150,5 @@ def _own(element):
 def forces(
     free: FreeElement, rings: RingMotion, place: Float[Array, " n"]
 ) -> tuple[RingMotion, Float[Array, " n"]]:
-    """Derivatives of its energy by both rings' motions and by its place [N, N m]."""
+    """Return derivatives of the energy by both ring motions and by place [N, N m]."""
     return jax.grad(FreeElement.energy, argnums=(1, 2))(free, rings, place)

@@ -1,4 +1,4 @@
-"""All rolling elements of a bearing as one row, each free on its own.
+"""All rolling elements of a bearing as one row, each with its own freedoms.
 
 Rows of a set differ in where they stand and which way they look; an element needs no
 more of that than three numbers. One long row costs fewer operations than several.
@@ -24,7 +24,7 @@ from .free_element import free_element
 
 
 class Untilted(Linearised):
-    """Small motions of rings that do not tilt: self-aligning bearings may have them."""
+    """Linearised kinematics of rings without tilt, also for self-aligning bearings."""
 
     @property
     def turns_far(self):
@@ -32,7 +32,7 @@ class Untilted(Linearised):
 
 
 def of_small_motions(element: BearingElement) -> BearingElement:
-    """The bearing for small motions; the ring of a self-aligning one may only shift.
+    """Return the bearing for small motions, of a self-aligning one without tilt.
 
     Args:
         element: With `Linearised()` or, of a self-aligning bearing, `Finite()`.
@@ -45,12 +45,12 @@ def of_small_motions(element: BearingElement) -> BearingElement:
 
 
 class Sites(NamedTuple):
-    """Where the rows of a set stand, for each of their elements.
+    """Positions of the rows of a set, for each of their elements.
 
     Attributes:
         position: z of the origin of its row in the set (element,) [m].
-        sign: -1 in a row that is turned round, else 1 (element,) [1].
-        offset: Axial place of the inner ring against the outer one, in the row's own
+        sign: -1 in a mirrored row, else 1 (element,) [1].
+        offset: Axial position of the inner ring relative to the outer, in the row's
             axes (element,) [m].
     """
 
@@ -130,7 +130,7 @@ class FreeRow(NamedTuple):
 
 
 def of_rows(values: Any, bearing: Any, axis: int = 0) -> list[Any]:
-    """The values of all elements parted into those of each row.
+    """Split the values of all elements by row.
 
     Args:
         values: With an axis element.
@@ -143,7 +143,7 @@ def of_rows(values: Any, bearing: Any, axis: int = 0) -> list[Any]:
 
 
 def _free(row: Row, bearing: Any, speed: Speed) -> FreeRow:
-    """One row of free elements."""
+    """Return one row of free elements."""
     surfaces = Surfaces.of(bearing)
     rings = speed.outer, speed.inner
     carried = orbit(row.ratio, *rings)

@@ -18,13 +18,13 @@ Source: Kurushin, Kurushin, Zhilnikov, Murashkin, Vestnik SGAU (2011), which pri
 """
 
 LOWEST_LEVEL = -300.0
-"""Level of an acceleration of zero, and of any below 1e-15 of the reference [dB]."""
+"""Level of accelerations below 1e-15 of the reference, zero included [dB]."""
 
 
 def level(
     acceleration: Any, reference: Any = REFERENCE_ACCELERATION
 ) -> Float[Array, "..."]:
-    """Level L = 20 lg(a/a₀) of an acceleration [dB].
+    """Return the level L = 20 lg(a/a₀) of an acceleration [dB].
 
     Args:
         acceleration: Root mean square of an acceleration, or its amplitude; the level
@@ -53,7 +53,7 @@ def level(
 def acceleration_of(
     level: Any, reference: Any = REFERENCE_ACCELERATION
 ) -> Float[Array, "..."]:
-    """Acceleration a = a₀ 10^(L/20) of a level [m/s²].
+    """Return the acceleration a = a₀ 10^(L/20) of a level [m/s²].
 
     Args:
         level: Level (...) [dB].
@@ -67,7 +67,7 @@ def acceleration_of(
 
 
 def combined(levels: Any) -> Float[Array, "..."]:
-    """Level of parts that are heard together, 10 lg Σ 10^(L/10) [dB].
+    """Return the sum of incoherent levels, 10 lg Σ 10^(L/10) [dB].
 
     The parts are of different frequencies, or without relation to each other: their
     mean squares add.

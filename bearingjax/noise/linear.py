@@ -1,4 +1,4 @@
-"""Small vibration of a bearing: linear, with constant coefficients, over frequency.
+"""Linear vibration of a bearing with constant coefficients, over frequency.
 
 Near the place where the bearing stands under its load
 
@@ -87,10 +87,10 @@ class Transfer(NamedTuple):
 
 
 def linear_model(model: NoiseModel) -> LinearModel:
-    """The equations of small motions of a bearing under its load.
+    """Return the linearised equations of motion of a bearing under its load.
 
     Args:
-        model: The bearing; its form errors do not count.
+        model: The bearing; its form errors are ignored.
 
     Fails: as `solve_load`.
     """

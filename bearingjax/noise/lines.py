@@ -1,4 +1,4 @@
-"""Lines that stand out of a spectrum, and what makes them."""
+"""Prominent lines of a spectrum and their names."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -12,11 +12,11 @@ from .orders import KinematicFrequencies, kinematic_frequencies
 from .spectrum import Spectrum
 
 _FIRST = 10
-"""Most multiples of a passage whose sidebands by the other ring have names."""
+"""Most multiples of a passage frequency with sidebands of the other ring."""
 _APART = 12.0
 """Cost of a name one tolerance away, counted in multiples and sidebands."""
 UNNAMED = "unnamed"
-"""Name of a line that nothing known makes."""
+"""Name of a line without a known cause."""
 
 
 class Line(NamedTuple):
@@ -52,7 +52,7 @@ def name_lines(
     floor: float = 0.0,
     largest: int = 0,
 ) -> tuple[Line, ...]:
-    """Lines that stand out of a spectrum, with names from the kinematics.
+    """Return the prominent lines of a spectrum, with names from the kinematics.
 
     A line is a local maximum that is both `factor` times the median of its neighbours
     and `least` times the largest line; the `largest` maxima count whatever their
@@ -127,7 +127,7 @@ def name_lines(
 def _peaks(
     spectrum: Spectrum, factor: float, neighbours: int, least: float, largest: int
 ) -> Iterator[tuple[float, float]]:
-    """Frequency and amplitude of the local maxima above the floor."""
+    """Yield frequency and amplitude of the local maxima above the floor."""
     amplitude = np.asarray(spectrum.amplitude)
     size = np.sqrt((np.abs(amplitude.reshape(len(amplitude), -1)) ** 2).sum(axis=1))
     size[0] = 0.0  # the mean is no line
@@ -148,7 +148,7 @@ def _peaks(
 
 
 def _single(bearing):
-    """The rows of a set; what is no bearing is left as it is, to be refused."""
+    """Return the rows of a set; anything else unchanged, for later checks."""
     if not isinstance(bearing, BearingSet):
         return [bearing]
     return [row.bearing for row in rows_of(bearing)]
@@ -171,7 +171,7 @@ def _of_all(
 def _combinations(
     kinematic: KinematicFrequencies, harmonics: int, sidebands: int
 ) -> Iterator[tuple[int, float, str]]:
-    """Cost, frequency and name of all that a line may be."""
+    """Yield cost, frequency and name of all possible lines."""
     inner, outer, cage, over_outer, over_inner, turned = map(float, kinematic)
     both = inner > 0 and outer > 0
     names = ("inner ring", "outer ring") if both else ("shaft", "shaft")
@@ -206,7 +206,7 @@ def _times(k: int, name: str) -> str:
 
 
 def _name(frequency, known, own, tolerance) -> str:
-    """Name of a line: of the simplest combination that is near enough."""
+    """Return the name of a line: the simplest combination within the tolerance."""
     near = [
         (cost + _APART * ((one - frequency) / tolerance) ** 2, place)
         for place, (cost, one, _) in enumerate(known)

@@ -1,4 +1,4 @@
-"""A bearing on a noise rig: one ring turns, the other one may move."""
+"""Bearing on a noise rig: one ring turns, the other one may move."""
 
 import dataclasses
 from typing import Any
@@ -180,7 +180,7 @@ class NoiseModel(eqx.Module):
 
     @property
     def small(self) -> BearingElement:
-        """The bearing for the small motions that its ring may make here."""
+        """Bearing with linearised kinematics and the freedoms of the ring here."""
         return of_small_motions(self.element)
 
     @property
@@ -204,7 +204,7 @@ class NoiseModel(eqx.Module):
 
     @property
     def orbits(self) -> bool:
-        """Whether a ring turns; speeds that are traced count as such."""
+        """Whether a ring turns; traced speeds count as turning."""
         return concrete(self.speed.outer, self.speed.inner) != [0.0, 0.0]
 
     @property
@@ -214,11 +214,11 @@ class NoiseModel(eqx.Module):
 
     @property
     def solve_options(self) -> SolveOptions:
-        """Settings of the load solve that finds where the ring stands."""
+        """Settings of the load solve for the equilibrium of the ring."""
         return SolveOptions(free=self.freedoms, fixed_ring=self.fixed_ring, points=2)
 
     def system(self, points: int = 4096) -> NoiseSystem:
-        """The equations of motion, all constants worked out.
+        """Return the equations of motion, with all constants evaluated.
 
         Args:
             points: Angles at which form errors are tabulated. Static.
@@ -231,7 +231,7 @@ class NoiseModel(eqx.Module):
 
 
 def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
-    """Moment of inertia about a diameter of a ring of a given mass [kg m²].
+    """Return the moment of inertia about a diameter of a ring of given mass [kg m²].
 
     Its section is a square about the circle of contact, as large as the mass asks for;
     in a set the mass is that of all rings, which tilt about the middle of the set.
@@ -255,7 +255,7 @@ def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
 
 
 def _surfaces(model: NoiseModel, found: FreeRow) -> tuple[Surfaces, ...]:
-    """Where the contacts of each row run, and how they bridge waves."""
+    """Return the contact tracks of each row, with their averaging of waves."""
     if (widths := model.half_width) is None:
         return found.surfaces
     p = 1.0 if model.element.bearing.is_ball else 0.5

@@ -1,4 +1,4 @@
-"""Noise of many bearings as they leave the line, and which tolerance makes it.
+"""Noise of random bearings within tolerances.
 
 Bearings are drawn and shaken a batch at a time, all by one compiled program. Spectra
 are taken outside of it, and of a record only its levels are kept.
@@ -27,11 +27,11 @@ from .vibration import bandwidth, needed_steps, vibration
 
 _DIRECTIONS = 3
 Progress = Callable[[int, int], Any]
-"""Called with how many bearings are done, and of how many."""
+"""Callback with the number of bearings done and the total."""
 
 
 class MonteCarlo(eqx.Module):
-    """Levels of many bearings; of those that failed they are NaN.
+    """Levels of many bearings; NaN for those that failed.
 
     Attributes:
         level: Of all frequencies, along x, y, z (bearing, 3) [dB].
@@ -39,7 +39,7 @@ class MonteCarlo(eqx.Module):
             does not hold.
         centre: Nominal centres of the bands (band,) [Hz].
         result: `Result` codes (bearing,).
-        keys: With which `drawn` makes each bearing again (bearing,).
+        keys: Keys with which `drawn` reproduces each bearing (bearing,).
     """
 
     level: Float[Array, "bearing 3"]
@@ -54,7 +54,7 @@ class MonteCarlo(eqx.Module):
         return int(np.sum(np.asarray(self.result) != Result.CONVERGED))
 
     def percentile(self, share: Any) -> Float[Array, "... 3"]:
-        """Total levels that a share of the bearings does not exceed [dB].
+        """Return total levels that a share of the bearings does not exceed [dB].
 
         Args:
             share: From 0 to 100 (...) [%].
@@ -106,7 +106,7 @@ def monte_carlo(
     reference: Any = REFERENCE_ACCELERATION,
     progress: Progress | None = None,
 ) -> MonteCarlo:
-    """Noise of many random bearings.
+    """Return the noise of many random bearings.
 
     This is a loop over batches, no function for `jit`.
 
@@ -188,10 +188,10 @@ def _together(one: FormErrors, other: FormErrors) -> FormErrors:
 
 
 class Records:
-    """Random bearings in motion, a batch at a time."""
+    """Vibration records of random bearings, batch by batch."""
 
     def __init__(self, model, tolerances, n, turns, settle, samples, steps, owner):
-        """Check what was given; arguments as in `monte_carlo`."""
+        """Check the arguments, which are those of `monte_carlo`."""
         if not isinstance(model, NoiseModel):
             raise TypeError(
                 f"{owner}: `model` is a {type(model).__name__}; it must be a"
@@ -237,7 +237,7 @@ class Records:
 
 @program
 def _records(model, tolerances, factors, keys, counts):
-    """Accelerations (bearing, time, 3) and result codes of a batch."""
+    """Return accelerations (bearing, time, 3) and result codes of a batch."""
     turns, settle, samples, steps = counts
     tolerances = tolerances.scaled(factors)
 

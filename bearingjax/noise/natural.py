@@ -26,13 +26,13 @@ from .standing import standing
 from .system import NoiseSystem
 
 LOOSE = 1.0
-"""Frequency below which a mode is that of an element that nothing holds [Hz]."""
+"""Frequency below which a mode is that of an unloaded element [Hz]."""
 _RING = 0.5
-"""Share of the ring in the motion from which a mode is called its own [1]."""
+"""Least share of the ring in the motion of a ring mode [1]."""
 
 
 class NaturalModes(NamedTuple):
-    """Natural modes, with rising frequency.
+    """Natural modes, in order of frequency.
 
     Attributes:
         frequency: (mode,) [Hz].
@@ -54,7 +54,7 @@ class NaturalModes(NamedTuple):
 def contact_stiffness(
     system: NoiseSystem, motion: Float[Array, " n"]
 ) -> Float[Array, "n n"]:
-    """Second derivatives of the energy of all contacts [N/m, N, N m].
+    """Return the second derivatives of the energy of all contacts [N/m, N, N m].
 
     Args:
         system: The equations of motion; without form errors.
@@ -89,7 +89,7 @@ def orbited(model: NoiseModel, angle: Any) -> NoiseModel:
 
 
 def natural_modes(model: NoiseModel) -> NaturalModes:
-    """Natural modes of a bearing under its load.
+    """Return the natural modes of a bearing under its load.
 
     Rolling elements stand where they are at time zero; for another place, as modes
     change on the way where elements differ or few of them carry, see `orbited`.
@@ -123,7 +123,7 @@ def _natural_modes(model, orbits) -> NaturalModes:
 
 
 def ring_modes(modes: NaturalModes, model: NoiseModel) -> list[tuple[str, float]]:
-    """Name and frequency [Hz] of the modes in which the moving ring moves most.
+    """Return name and frequency [Hz] of the modes with mostly ring motion.
 
     Args:
         modes: As NumPy holds them.

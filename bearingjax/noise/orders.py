@@ -1,4 +1,4 @@
-"""Frequencies that follow from how a bearing rolls: where lines of a spectrum lie.
+"""Kinematic frequencies of a bearing: the lines of its spectrum.
 
 All rolling elements roll without slip, at one contact angle on both raceways. A wave
 of order n on a part has n periods around it.
@@ -60,7 +60,7 @@ class KinematicFrequencies(NamedTuple):
 
 
 class WavinessForce(NamedTuple):
-    """Frequencies of the forces on the rings that a wave makes [Hz].
+    """Frequencies of the ring forces caused by a wave [Hz].
 
     Attributes:
         axial: Of axial forces (line,).
@@ -75,7 +75,7 @@ class WavinessForce(NamedTuple):
 def kinematic_frequencies(
     bearing: AbstractBearing, speed: Speed, contact_angle: Any = None
 ) -> KinematicFrequencies:
-    """Frequencies of cage, passages and rolling elements.
+    """Return the frequencies of cage, passages and rolling elements.
 
     Args:
         bearing: Design of a single row.
@@ -107,7 +107,7 @@ def waviness_force(
     order: int,
     contact_angle: Any = None,
 ) -> WavinessForce:
-    """Frequencies at which a wave of one order shakes the rings.
+    """Return the frequencies of the ring forces from waviness of one order.
 
     For rigid rings, evenly spaced rolling elements that bear alike, and to first order
     in the height of the wave. With z rolling elements the forces then add up for few

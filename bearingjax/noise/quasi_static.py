@@ -28,7 +28,7 @@ from .model import NoiseModel
 from .system import NoiseSystem
 
 _LANES = 64
-"""Instants that are solved side by side."""
+"""Number of instants solved in parallel."""
 
 
 class Excitation(eqx.Module):
@@ -63,7 +63,7 @@ def excitation(
     held: bool = True,
     throw: bool = True,
 ) -> Excitation:
-    """Force on a held ring, or displacement of a free one, over some turns.
+    """Return force on a held ring, or displacement of a free one, over some turns.
 
     A bearing without form errors too shakes its ring where few rolling elements carry
     the load and move on (variable compliance); both are in the answer. Masses,
@@ -110,7 +110,7 @@ def excitation(
 def at_instant(
     element: BearingElement, system: NoiseSystem, time: Scalar
 ) -> BearingElement:
-    """The bearing as it is at a time: elements orbited, raceways as they meet them.
+    """Return the bearing at a time, with element positions and raceway deviations.
 
     Args:
         element: Of the model.

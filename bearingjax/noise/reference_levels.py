@@ -1,4 +1,4 @@
-"""Levels of a four-point ball bearing: a norm, and measurements, to compare with.
+"""Reference levels of a four-point ball bearing: norm and measurements.
 
 Bearing 85-176211D1 (55 x 100 x 21 mm, 14 balls of 14.288 mm) at 1500 rev/min on the rig
 KVP-104, with no ball, one ball or two balls 24 µm larger than the others. Levels are
@@ -43,7 +43,7 @@ MEASURED = {
         *(53.0, 60.0, 67.0, 70.0, 73.0, 71.0),
     ),
 }
-"""Measured level in each octave band, by which balls are large [dB]."""
+"""Measured level in each octave band, by the arrangement of large balls [dB]."""
 
 TOTAL = {
     "serial": 80.0,
@@ -55,7 +55,7 @@ TOTAL = {
     "two, 4 balls between": 77.0,
     "two, 5 balls between": 77.0,
 }
-"""Measured total level of a bearing of the series, and of those with large balls [dB].
+"""Measured total level of a series bearing, and of those with large balls [dB].
 
 The octave bands of the norm sum to that of the series, 79.6 dB.
 """

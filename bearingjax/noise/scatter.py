@@ -28,7 +28,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 
 PEAKS_IN_RMS = 6.0
-"""Peak to valley of random waves over their root mean square [1]: ±3 of the latter."""
+"""Peak to valley of random waves over their root mean square [1]: ±3 of it."""
 
 
 SOURCES = {
@@ -42,12 +42,12 @@ SOURCES = {
     "inner_outwards": "radial waves of the inner raceway",
     "elements": "form of the rolling elements",
 }
-"""Sources of `Tolerances` by their names, in words."""
+"""Descriptions of the sources of `Tolerances` by name."""
 _WAVES = "outer_axial", "outer_outwards", "inner_axial", "inner_outwards", "elements"
 
 
 class RandomWaves(eqx.Module):
-    """Waves of one kind of surface: a_k = amplitude (low/k)^slope, times a random size.
+    """Random waves of a surface: a_k = amplitude (low/k)^slope, times a random size.
 
     Sizes and phases of all orders are independent: cosine and sine of a wave are each
     distributed normally, so that its size has Rayleigh's distribution with mean square
@@ -82,7 +82,7 @@ class RandomWaves(eqx.Module):
     def of_root_mean_square(
         cls, height: Any, low: int, high: int, slope: Any = 1.0, varies: bool = True
     ) -> "RandomWaves":
-        """Waves whose heights have a given root mean square, over turn and bearings.
+        """Create waves of a given root mean square over circumference and bearings.
 
         Args:
             height: That root mean square [m]: its square is Σ a_k²/2.
@@ -96,7 +96,7 @@ class RandomWaves(eqx.Module):
         return (self.low / jnp.arange(self.low, self.high + 1)) ** self.slope
 
     def draw(self, key: Array, shape: tuple[int, ...] = ()) -> Harmonics:
-        """Random waves.
+        """Draw random waves.
 
         Args:
             key: Of `jax.random`.
@@ -189,7 +189,7 @@ class Tolerances(eqx.Module):
         highest_of_elements: int = 40,
         slope: Any = 1.0,
     ) -> "Tolerances":
-        """Tolerances of a grade of rolling elements, read as distributions.
+        """Create tolerances from a grade of rolling elements, read as distributions.
 
         A standard bounds parts and says nothing of how they scatter. Here:
 
@@ -249,7 +249,7 @@ class Tolerances(eqx.Module):
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """Names of the sources that are there."""
+        """Names of the sources present."""
         names = (field.name for field in dataclasses.fields(self))
         return tuple(name for name in names if getattr(self, name) is not None)
 
@@ -308,7 +308,7 @@ def draw(
     bearing: AbstractBearing,
     key: Array,
 ) -> Drawn:
-    """One bearing off the line.
+    """Draw the random errors of one bearing.
 
     Args:
         tolerances: How bearings scatter.

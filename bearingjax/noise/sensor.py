@@ -11,7 +11,7 @@ from ..numerics.units import unit
 
 
 class Sensor(eqx.Module):
-    """A spring and a dashpot that hold the moving ring along a line.
+    """Spring and dashpot between the moving ring and ground along a line.
 
     The spring is set when the bearing is loaded: it carries no part of the load.
 

@@ -1,4 +1,4 @@
-"""Which tolerance makes the noise, and what to tighten first.
+"""Shares of tolerances in the noise, and their ranking.
 
 The motion follows small form errors in proportion: the mean square of the acceleration
 is then P₀ + Σ s² P over the sources of scale s, once it is averaged over bearings,
@@ -45,8 +45,8 @@ class Shares(eqx.Module):
             [1]; NaN for bands that the record does not hold. `None`: not asked for.
         by_gradient: Half of the derivative by the logarithm of a source's scale
             (source,) [m²/s⁴]; `None`: not asked for.
-        factor: By which sources were made smaller [1].
-        used: How many bearings of those drawn count: with a result in all runs.
+        factor: Factor of the reduced sources [1].
+        used: Number of bearings with a result in all runs.
         sources: Their names. Static.
     """
 
@@ -72,14 +72,14 @@ class Shares(eqx.Module):
     def together(self) -> Scalar:
         """Sum of all shares over the mean square [1].
 
-        Beyond 1 by products of sources, which count for each of them; below 1 by what
-        bearings without these sources have too.
+        Products of sources, which count for each of them, raise it above 1; vibration
+        without these sources lowers it below 1.
         """
         return jnp.sum(self.share) / self.mean_square
 
     @property
     def ranking(self) -> tuple[str, ...]:
-        """Sources, the one to tighten first in front."""
+        """Sources in order of decreasing share."""
         return self._ranked(self.share)
 
     @property
@@ -90,18 +90,18 @@ class Shares(eqx.Module):
         return self._ranked(self.by_gradient)
 
     def gain(self, factor: Any = 0.5) -> Float[Array, " source"]:
-        """By how much the level falls if one source is tightened (source,) [dB].
+        """Return the reduction of the level if one source is tightened (source,) [dB].
 
         Args:
-            factor: To which part of what it was [1].
+            factor: New size of the source over its old one [1].
         """
         return self._fall((1.0 - factor**2) * self.share)
 
     def gain_together(self, factors: Mapping[str, Any]) -> Scalar:
-        """By how much the level falls if some sources are tightened together [dB].
+        """Return the reduction of the level if several sources are tightened [dB].
 
         Args:
-            factors: By the names of sources, to which part of what they were [1].
+            factors: New size over the old one, by the names of sources [1].
         """
         named = [factors.get(name, 1.0) for name in self.sources]
         less = 1.0 - jnp.asarray(named, self.share.dtype) ** 2
@@ -172,7 +172,7 @@ def shares(
             progress(done + count, whole * n)
 
     def of_bands(acceleration, result):
-        """Mean square of each band, and what came in and went out over its edges."""
+        """Return the mean square of each band, and gain and loss over its edges."""
         if bands is None:
             return np.zeros((len(result), 3, 0))
         solved = (result == int(Result.CONVERGED))[:, None, None]
@@ -235,14 +235,14 @@ def shares(
 
 
 def _holds(bands: Bands, powers: np.ndarray, duration: float, highest: float):
-    """Which bands records hold, by their mean powers (3, band) as in `band_power`."""
+    """Return which bands records cover, by mean powers (3, band) of `band_power`."""
     wide = bands.upper - bands.lower >= Hann().noise_bandwidth / duration
     near = np.abs(np.asarray(shift(*powers))) < LEAST_SHIFT
     return wide & (bands.upper <= highest) & near
 
 
 def _directions(direction: Any) -> np.ndarray:
-    """Unit vectors along which accelerations count, (3, n)."""
+    """Return unit vectors of the directions of acceleration, (3, n)."""
     three = np.eye(3)
     if direction is None:
         return three
@@ -261,7 +261,7 @@ def _mean_square(acceleration, along):
 
 @program
 def _slopes(model, tolerances, keys, counts, along):
-    """Derivatives of every bearing's mean square by the sources' scales."""
+    """Return derivatives of every bearing's mean square by the scales of sources."""
     turns, settle, samples, steps = counts
     one = jnp.ones((), model.mass.dtype)
     factors = {name: one for name in tolerances.sources}

@@ -10,16 +10,16 @@ import numpy as np
 from ..design.checks import positive
 
 RATE = 48_000
-"""Samples per second of a file [Hz]."""
+"""Sampling rate of a file [Hz]."""
 LEAST = 3.0
 """Shortest file [s]."""
 _FADE = 0.01
-"""Time over which a repetition is blended into the one before [s]."""
+"""Time of the cross-fade between repetitions [s]."""
 _FULL = 32_767
 
 
 def sound(record: Any, duration: Any) -> np.ndarray:
-    """A record at `RATE`, repeated until it lasts for `LEAST` or more.
+    """Resample a record to `RATE`, repeated to last `LEAST` or more.
 
     Its mean is taken off. Where it begins anew, end and begin are blended over 10 ms
     (of a short record over a quarter of it), so that no click is heard there.
@@ -60,7 +60,7 @@ def sound(record: Any, duration: Any) -> np.ndarray:
 
 
 def write_sound(path: str | Path, record: Any, duration: Any) -> float:
-    """Write a record as a WAV file: 16 bit, one channel, as loud as it can be.
+    """Write a record as a WAV file: 16 bit, one channel, full amplitude.
 
     Args:
         path: Of the file.

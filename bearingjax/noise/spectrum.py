@@ -26,7 +26,7 @@ from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real, namespace
 
 WHOLE_TURNS = 1e-3
-"""Most that a record may differ from a whole number of turns, without a window [1].
+"""Largest deviation of a record from a whole number of turns, without a window [1].
 
 A line next to that of the shaft then has this share of its amplitude, or less.
 """
@@ -35,7 +35,7 @@ _LEAST = 4  # samples
 
 
 class AbstractWindow(eqx.Module):
-    """Weights by which the samples of a record are multiplied, of mean 1.
+    """Window: weights of the samples of a record, of mean 1.
 
     With this mean a line on a bin has its own amplitude. Of the power of all bins it
     has `noise_bandwidth` times its share, because the window spreads it.
@@ -52,7 +52,7 @@ class AbstractWindow(eqx.Module):
 
     @abc.abstractmethod
     def beyond(self, distance: Any) -> Any:
-        """Share of the power of a lone line in all bins from a distance on [1].
+        """Return the share of the power of a single line beyond a distance in bins [1].
 
         Args:
             distance: From the line to the first of these bins, above 0 (...) [bins].
@@ -60,7 +60,7 @@ class AbstractWindow(eqx.Module):
 
     @abc.abstractmethod
     def peak(self, left: Any, middle: Any, right: Any) -> tuple[Any, Any]:
-        """Where a lone line lies that is largest in the middle one of three bins.
+        """Return the position of a single line, largest in the middle of three bins.
 
         Args:
             left, middle, right: Amplitudes of the bins [any unit].
@@ -72,7 +72,7 @@ class AbstractWindow(eqx.Module):
 
 
 class Rectangular(AbstractWindow):
-    """No window: for records that repeat themselves, of which every line is on a bin.
+    """Rectangular window, for periodic records, whose lines all lie on bins.
 
     A line between two bins leaks into all others.
     """
@@ -153,7 +153,7 @@ class Spectrum(eqx.Module):
 
     @property
     def noise_bandwidth(self) -> Scalar:
-        """Width in which a line collects broad-band power [Hz]."""
+        """Equivalent noise bandwidth of a line [Hz]."""
         return self.window.noise_bandwidth * self.resolution
 
     @property
@@ -180,7 +180,7 @@ def spectrum(
     *,
     window: AbstractWindow | None = None,
 ) -> Spectrum:
-    """Spectrum of a record in time.
+    """Return the spectrum of a record in time.
 
     It is a small program of its own, compiled once per shape of the record. Call it
     outside of other compiled programs.
@@ -197,7 +197,7 @@ def spectrum(
         Spectrum, differentiable with respect to signal, duration and shaft frequency.
 
     Raises:
-        TypeError: If the window is none, such as a text.
+        TypeError: If `window` is no window, such as a string.
         ValueError: For an odd number of samples, or fewer than four; a duration or
             shaft frequency not above zero; a record without a window that does not
             cover a whole number of turns (to `WHOLE_TURNS`).

@@ -1,4 +1,4 @@
-"""Where a bearing stands on its rig before anything turns."""
+"""Static equilibrium of a bearing on its rig."""
 
 import dataclasses
 
@@ -18,28 +18,28 @@ from .model import NoiseModel
 from .system import NoiseSystem
 
 _CARRIES = 1e-7
-"""Load of a rolling element over the largest of a contact below which it carries
-nothing [1]: round-off of where a search without load ends."""
+"""Load of a rolling element over the largest contact load below which it is unloaded
+[1]: round-off of a search without load."""
 
 
 def standing(
     model: NoiseModel, system: NoiseSystem, orbits: bool = True
 ) -> tuple[Float[Array, " n"], Int[Array, ""]]:
-    """Where ring and rolling elements stand under the load, without form errors.
+    """Return the equilibrium of ring and elements under load, without form errors.
 
     The inertia of the orbit acts as it does in the equations of motion.
 
     Args:
         model: The bearing.
         system: Its equations of motion.
-        orbits: Whether the rolling elements orbit; without, those that carry nothing
-            are in no contact at all. Static.
+        orbits: Whether the rolling elements orbit; if not, unloaded ones are in no
+            contact. Static.
 
     Returns:
         Coordinates (n,) [m, rad] and the `Result` code; differentiable.
 
-    Fails: as `solve_load`; `NO_LOAD_PATH` too where no rolling element is pressed
-    between both rings: the moving one then lies anywhere.
+    Fails: as `solve_load`; `NO_LOAD_PATH` too where no rolling element is loaded by
+    both rings: the position of the moving one is then arbitrary.
     """
     element = model.small
     if orbits and isinstance(element.choices, BallChoices):
@@ -69,7 +69,7 @@ def standing(
 
 
 def _carried(system, motion) -> tuple[Scalar, Scalar]:
-    """Largest load that goes through a rolling element, and largest of all [N]."""
+    """Return the largest load through an element, and the largest of all [N]."""
     motion = stop(motion)
     found = Encounter.at(system.azimuth(jnp.zeros((), motion.dtype)))
     outer, inner = (
@@ -80,7 +80,7 @@ def _carried(system, motion) -> tuple[Scalar, Scalar]:
 
 
 def why(model: NoiseModel) -> str:
-    """Why a bearing finds no place under its load, in words.
+    """Describe why a bearing has no equilibrium under its load.
 
     Args:
         model: The bearing; concrete.

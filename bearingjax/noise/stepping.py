@@ -1,4 +1,4 @@
-"""Motion of masses in even steps of time.
+"""Integration of motion with constant time steps.
 
 Runge's and Kutta's classical method of order 4. A batch of systems takes the same
 steps, and a record of even samples needs no interpolation.
@@ -28,8 +28,8 @@ Vector = Float[Array, " n"]
 REACH = 32
 """Number of samples before and after that contribute to a sample."""
 HELD = 0.7
-"""Share of half of the sampling rate up to which frequencies pass: to 1e-7 (140 dB),
-to which those above half of the sampling rate do not."""
+"""Pass band over half of the sampling rate; frequencies above half of the sampling
+rate are attenuated to 1e-7 (140 dB)."""
 _KAISER = 14.5
 """Shape of Kaiser's window for 140 dB."""
 
@@ -49,12 +49,12 @@ def step_weights(steps: int) -> np.ndarray:
 
 
 class Stepped(NamedTuple):
-    """A motion in even samples.
+    """Motion at equidistant samples.
 
     Attributes:
         motion: (sample, n) [m, rad].
-        acceleration: What was kept of it, frequencies above half of the sampling rate
-            taken off; leading axis sample. Before the start it counts as zero.
+        acceleration: Kept part of it, without frequencies above half of the sampling
+            rate; leading axis sample. Before the start it counts as zero.
         end: Motion and velocity some samples later.
     """
 
@@ -72,7 +72,7 @@ def stepped(
     kept: Callable[[Vector], Any] = lambda acceleration: acceleration,
     given: Callable[[Scalar], Any] = lambda time: time,
 ) -> Stepped:
-    """A motion from time zero on.
+    """Integrate a motion from time zero on.
 
     Args:
         acceleration: (motion, velocity, given(time)) -> (n,).
@@ -80,8 +80,8 @@ def stepped(
         step: Of the integration [s].
         steps: Per sample. Static.
         samples: Their number. Static.
-        kept: What is kept of the acceleration of every sample.
-        given: What the acceleration needs to know of a time [s].
+        kept: Function of the acceleration that is kept at every sample.
+        given: Function of time [s] with data for the acceleration.
 
     Returns:
         The motion; the first sample is the start.

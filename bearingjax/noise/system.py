@@ -1,4 +1,4 @@
-"""Equations of motion of a bearing on a noise rig: one ring moves, the other is held.
+"""Equations of motion of a bearing on a noise rig: one ring moves, one is held.
 
 M q'' + ∂E/∂q + sensor = load for the moving ring, m p'' + ∂E/∂p = inertia of the orbit
 for every rolling element, with E(q, p, t) the strain energy of all contacts. Its time
@@ -95,13 +95,13 @@ class NoiseSystem(eqx.Module):
         return jnp.concatenate(masses)
 
     def _of_each(self, name):
-        """A number of the rolling elements, with leading axis element."""
+        """Return a property of the rolling elements, with leading axis element."""
         return self.row.each(lambda free, _: getattr(free, name), self.row.azimuth)
 
     def parted(
         self, motion: Float[Array, " n"]
     ) -> tuple[Float[Array, " k"], Float[Array, "element m"]]:
-        """Ring's and rolling elements' coordinates."""
+        """Split coordinates into those of ring and rolling elements."""
         k = self.mass.shape[0]
         count = self.row.azimuth.shape[0]
         end = k + count * self.row.element.mass.shape[-1]
@@ -110,14 +110,14 @@ class NoiseSystem(eqx.Module):
     def caged(
         self, motion: Float[Array, " n"]
     ) -> tuple[Float[Array, " element"], Float[Array, "3"]]:
-        """Places along the pitch circle, and the cage's coordinates, where it is."""
+        """Return places along the pitch circle and the coordinates of the cage."""
         count = self.row.azimuth.shape[0]
         return motion[-3 - count : -3], motion[-3:]
 
     def azimuth(
         self, time: Scalar, motion: Float[Array, " n"] | None = None
     ) -> Float[Array, " element"]:
-        """Where the rolling elements are [rad].
+        """Return the azimuths of the rolling elements [rad].
 
         Args:
             time: [s].
@@ -164,13 +164,13 @@ class NoiseSystem(eqx.Module):
         return found.meeting(met, any(one.raise_surfaces for one in self.errors))
 
     def course(self, time: Scalar) -> tuple[Encounter, Encounter] | None:
-        """Encounters at a time and their rates, as far as time alone decides on them.
+        """Return encounters at a time and their rates, if they depend on time alone.
 
         Args:
             time: [s].
 
         Returns:
-            `None` with a cage: the elements are then where their motion takes them.
+            `None` with a cage: element positions then depend on the motion.
         """
         if self.cage is not None:
             return None
@@ -189,14 +189,14 @@ class NoiseSystem(eqx.Module):
         return jax.jvp(at, (motion, time), (velocity, jnp.ones_like(time)))
 
     def _motions(self, motion, encounter):
-        """Motions of both rings at the elements, and these's own places."""
+        """Return motions of both rings at the elements, and places of the elements."""
         ring, places = self.parted(motion)
         moved = (None, ring) if self.moving else (ring, None)
         outer, inner = (encounter.motion(q, k, self.sites) for k, q in enumerate(moved))
         return outer, inner, places
 
     def _each(self, function, motion, encounter):
-        """Map function(free, rings, place) over the elements, as they are met."""
+        """Map function(free, rings, place) over the elements at their encounters."""
         outer, inner, places = self._motions(motion, encounter)
         rings = outer.stacked, inner.stacked
         raised = encounter.raised
@@ -210,7 +210,7 @@ class NoiseSystem(eqx.Module):
         return self.row.each(one, *rings, places, *heights)
 
     def _contacts(self, motion, encounter):
-        """Derivatives of the energy by both rings' sections, and by places."""
+        """Return derivatives of the energy by both ring sections, and by places."""
         if is_written_out(self.row.element):
             given = self._motions(motion, encounter)
             return ball_forces(self.row.element, *given, encounter.raised)
@@ -225,7 +225,7 @@ class NoiseSystem(eqx.Module):
     def on_raceways(
         self, motion: Float[Array, " n"], encounter: Encounter
     ) -> tuple[Section, Section]:
-        """Forces of the rolling elements on both raceways, reversed [N, N m].
+        """Return reversed forces of the rolling elements on both raceways [N, N m].
 
         Args:
             motion, encounter: As in `resistance`.
@@ -239,7 +239,7 @@ class NoiseSystem(eqx.Module):
         time: Scalar,
         met: Float[Array, "element 2 3"] | None = None,
     ) -> Float[Array, " n"]:
-        """∂E/∂(q, p) at a time [N, N m].
+        """Return ∂E/∂(q, p) at a time [N, N m].
 
         Args:
             motion: Coordinates (n,) [m, rad].
@@ -254,7 +254,7 @@ class NoiseSystem(eqx.Module):
     def resistance(
         self, motion: Float[Array, " n"], encounter: Encounter
     ) -> Float[Array, " n"]:
-        """∂E/∂(q, p) where the rolling elements find the raceways so [N, N m].
+        """Return ∂E/∂(q, p) at given encounters [N, N m].
 
         Args:
             motion: Coordinates (n,) [m, rad].
@@ -263,7 +263,7 @@ class NoiseSystem(eqx.Module):
         return self._assembled(motion, encounter, self._pressed(motion, encounter))
 
     def _pressed(self, motion, encounter) -> "_Pressed":
-        """Forces in the axes of the rolling elements, and along the cage's normals."""
+        """Return forces in the axes of the elements, and along normals of the cage."""
         on_rings, on_places = self._contacts(motion, encounter)
         on_ring = on_rings[self.moving]
         pockets = land = None
@@ -273,7 +273,7 @@ class NoiseSystem(eqx.Module):
         return _Pressed(on_ring, on_places - self._of_each("force"), pockets, land)
 
     def _assembled(self, motion, encounter, pressed: "_Pressed") -> Float[Array, " n"]:
-        """Those forces on all coordinates."""
+        """Assemble these forces on all coordinates."""
         on_ring = encounter.push(pressed.on_ring, self.mass.shape[0], self.sites)
         parts = [on_ring, pressed.on_places.T.ravel()]
         cage, pockets, land = self.cage, pressed.pockets, pressed.land
@@ -297,7 +297,7 @@ class NoiseSystem(eqx.Module):
     def contact_loads(
         self, motion: Float[Array, " n"], time: Scalar
     ) -> Float[Array, "element contact"]:
-        """Load of every contact [N]; arguments as in `contact_forces`."""
+        """Return the load of every contact [N]; arguments as in `contact_forces`."""
         encounter = self.encounter(self.azimuth(time, motion), time)
         return self._each(FreeElement.loads, motion, encounter)
 
@@ -308,7 +308,7 @@ class NoiseSystem(eqx.Module):
         velocity: Float[Array, " n"],
         encounter: Encounter,
     ) -> Float[Array, " element"]:
-        """Force of both raceways on every ball along the pitch circle [N].
+        """Return the traction of both raceways on every ball on its orbit [N].
 
         It draws the ball to the orbit on which it would roll: that of its own diameter
         and contact angle, the mean of its contacts by their loads. Between the two it
@@ -371,7 +371,7 @@ class NoiseSystem(eqx.Module):
 
 
 class _Pressed(NamedTuple):
-    """Forces that the contacts damp, on the side of what holds the parts.
+    """Forces of the damped contacts, reversed.
 
     Attributes:
         on_ring: Of the moving ring's raceway, in the elements' axial sections [N, N m].
@@ -386,6 +386,6 @@ class _Pressed(NamedTuple):
 
 
 def _grown(share):
-    """From 0 at 0 to 1 at 1 and beyond, with two derivatives."""
+    """Return a smooth step from 0 at 0 to 1 at 1, with two derivatives."""
     t = jnp.clip(share, 0.0, 1.0)
     return t * t * t * (10.0 - t * (15.0 - 6.0 * t))

@@ -28,9 +28,9 @@ from .standing import standing, why
 from .stepping import HELD, stepped
 
 _STABLE = 2.5
-"""Steps at which the method is stable, of a radian of the fastest mode: 2.78 [rad]."""
+"""Stability limit of the step: 2.78 radians of the fastest mode [rad]."""
 _TOGETHER = 64
-"""Samples whose contact loads are worked out together."""
+"""Number of samples whose contact loads are evaluated together."""
 STEP = 0.5
 """Longest step, of a radian of the fastest mode [rad]."""
 _DOUBLINGS = 3
@@ -38,7 +38,7 @@ _DOUBLINGS = 3
 
 
 class CageMotion(NamedTuple):
-    """A record of a cage: along x, along y, and along the pitch circle.
+    """Record of a cage: along x, along y, and along the pitch circle.
 
     Attributes:
         displacement: From the bearing's axis and from the even orbit (time, 3) [m].
@@ -50,13 +50,13 @@ class CageMotion(NamedTuple):
 
 
 class Vibration(eqx.Module):
-    """A record of a bearing's vibration; leading axis time.
+    """Record of the vibration of a bearing; leading axis time.
 
     Samples are even, over whole turns of the shaft, without the end point.
 
     Attributes:
         time: (time,) [s].
-        displacement: Of the moving ring from where it stands without form errors, its
+        displacement: Of the moving ring from equilibrium without form errors, its
             freedoms (time, k) [m, rad].
         acceleration: Likewise, of frequencies up to `bandwidth` (time, k)
             [m/s², rad/s²].
@@ -84,7 +84,7 @@ class Vibration(eqx.Module):
 
     @property
     def duration(self) -> Scalar:
-        """[s]."""
+        """Duration of the record [s]."""
         return self.turns / self.shaft_frequency
 
     @property
@@ -94,7 +94,7 @@ class Vibration(eqx.Module):
 
 
 def bandwidth(samples: int, shaft_frequency: Any) -> Any:
-    """Frequency up to which a record tells the vibration [Hz].
+    """Return the largest frequency of the vibration in a record [Hz].
 
     Args:
         samples: Per turn of the shaft.
@@ -104,7 +104,7 @@ def bandwidth(samples: int, shaft_frequency: Any) -> Any:
 
 
 def rounding(model: NoiseModel, record: Vibration) -> float:
-    """Acceleration that forces out of balance by round-off may make [m/s²].
+    """Return the acceleration from residual forces of round-off [m/s²].
 
     Args:
         model: The bearing.
@@ -127,7 +127,7 @@ def vibration(
     steps: int | None = None,
     throw: bool = True,
 ) -> Vibration:
-    """The vibration of a bearing over some turns of its shaft.
+    """Integrate the vibration of a bearing over some turns of its shaft.
 
     It begins where the bearing without form errors stands, at rest. While it settles
     they grow from nothing, so slowly that hardly any vibration of its own is left.
@@ -176,7 +176,7 @@ def vibration(
 
 
 def _with_enough_steps(model, turns, settle, samples) -> Vibration:
-    """With as many steps as needed, or more where the contacts prove stiffer."""
+    """Integrate with `needed_steps`, or more where contacts become stiffer."""
     steps = needed_steps(model, samples)
     found = _vibration(model, turns, settle, samples, steps)
     if int(natural_modes(model).result) != Result.CONVERGED:
@@ -190,7 +190,7 @@ def _with_enough_steps(model, turns, settle, samples) -> Vibration:
 
 
 def _failure(model: NoiseModel, result: int, steps: int) -> str:
-    """Why a run failed, in words."""
+    """Return the message of a failed run."""
     if result == Result.NON_FINITE:
         return f"vibration: the motion is not finite; with more `steps` than {steps}?"
     if result == Result.STEP_LIMIT:
@@ -202,11 +202,11 @@ def _failure(model: NoiseModel, result: int, steps: int) -> str:
 
 
 def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
-    """Steps per sample, such that one is at most half a radian of the fastest mode.
+    """Return steps per sample of at most half a radian of the fastest mode.
 
-    That of the bearing under its load, without form errors. Of a cage counts the
-    stiffest that its contacts become up to the force with which friction on all balls,
-    and the cage's own load, can press them.
+    The mode is that of the loaded bearing without form errors. With a cage its contacts
+    have their largest stiffness under forces up to friction on all balls plus the load
+    of the cage.
 
     Args:
         model: The bearing; none of its numbers traced.
@@ -231,7 +231,7 @@ def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
 
 @program
 def _of_cage(model) -> Scalar:
-    """Bound of how fast a cage, and the balls along the pitch circle, move [rad/s]."""
+    """Return a bound of the frequency of cage and balls on the pitch circle [rad/s]."""
     system = model.still_system()
     start, _ = standing(model, system)
     loads = system.contact_loads(start, jnp.zeros_like(model.mass))
@@ -302,7 +302,7 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
 
 
 def _fastest(system, motion, time) -> Scalar:
-    """Bound of how fast anything moves at a place, by the rows of M^-½ K M^-½ [rad/s].
+    """Return a bound of all frequencies at a place, from rows of M^-½ K M^-½ [rad/s].
 
     Source: Gershgorin.
     """

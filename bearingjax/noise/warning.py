@@ -27,16 +27,16 @@ from .spectrum import Spectrum
 from .vibration import Vibration, bandwidth, needed_steps, rounding
 
 UNEVEN = 3.0
-"""Difference of both halves of a record that is worth a word [dB]."""
+"""Difference of both halves of a record above which to warn [dB]."""
 _PLACES = 8
-"""Places of the rolling elements on their way round at which modes are compared."""
+"""Number of orbit positions at which modes are compared."""
 _WANDERING = 0.02
-"""Change of a natural frequency on that way that is worth a word [1]."""
+"""Change of a natural frequency along the orbit above which to warn [1]."""
 _OVERLAP = 0.1
-"""Sum of shares beyond the whole that is worth a word [1]."""
+"""Excess of the sum of shares above which to warn [1]."""
 _GYROSCOPIC = 0.05
-"""Tractions that the gyroscopic moment of balls asks for, over loads, that are worth a
-word: they turn contact angles by as much in radians [1]."""
+"""Traction over load from the gyroscopic moment of balls above which to warn [1]: it
+changes contact angles by as much in radians."""
 _LOBE = 2.0
 """Half width of a line with Hann's window [bins]."""
 
@@ -47,7 +47,7 @@ def model_warnings(
     steps: int | None = None,
     tolerances: Tolerances | None = None,
 ) -> list[str]:
-    """Warnings about a bearing and the record that is asked of it.
+    """Return warnings about a bearing and its requested record.
 
     Args:
         model: The bearing; concrete.
@@ -73,7 +73,7 @@ def record_warnings(
     bands: Bands,
     tolerances: Tolerances | None = None,
 ) -> list[str]:
-    """Warnings about a record and its levels.
+    """Return warnings about a record and its levels.
 
     Args:
         model: The bearing; concrete.
@@ -97,7 +97,7 @@ def record_warnings(
 
 
 def share_warnings(found: Shares) -> list[str]:
-    """Warnings about shares of sources.
+    """Return warnings about shares of sources.
 
     Args:
         found: From `shares`.
@@ -127,7 +127,7 @@ def _few_steps(model, samples, steps) -> Iterator[str]:
 
 
 def _wandering_modes(model: NoiseModel) -> Iterator[str]:
-    """Natural modes that change as the rolling elements orbit."""
+    """Warn of natural modes that change as the rolling elements orbit."""
     share = np.arange(_PLACES) / _PLACES
     count = rows_of(model.element.bearing)[0].bearing.n_elements
     # Of the way round and of the way to the next element, after which equal ones stand
@@ -152,7 +152,7 @@ def _wandering_modes(model: NoiseModel) -> Iterator[str]:
 
 
 def _above(model, told, tolerances) -> Iterator[str]:
-    """Modes and waves above what the samples tell."""
+    """Warn of modes and waves above the bandwidth of the samples."""
     cut = (
         f"above {told:.5g} Hz, up to which the samples tell the vibration; raise"
         " `vibration.samples` to hear what they make there"
@@ -179,7 +179,7 @@ def _above(model, told, tolerances) -> Iterator[str]:
 
 
 def _silent(model, record, found) -> Iterator[str]:
-    """A record of nothing but round-off."""
+    """Warn of a record of round-off only."""
     size = np.sqrt(np.sum(np.asarray(found.power)[1:]))
     if not size > rounding(model, record):
         yield (
@@ -190,7 +190,7 @@ def _silent(model, record, found) -> Iterator[str]:
 
 
 def _bands(record, found, bands) -> Iterator[str]:
-    """Bands that the record does not hold, and what helps."""
+    """Warn of bands that the record does not cover, with remedies."""
     duration = f"the record of {float(record.duration):.4g} s"
     centre = bands.centre
     wide, within = (np.asarray(a) for a in covers(found, bands, record.bandwidth))
@@ -220,7 +220,7 @@ def _bands(record, found, bands) -> Iterator[str]:
 
 
 def _total(model, record, found) -> Iterator[str]:
-    """A total level that the window changes."""
+    """Warn of a total level that the window changes."""
     own = np.asarray(record.acceleration)[:, :3].std(axis=0)
     heard = own > rounding(model, record)
     if not heard.any():
@@ -238,7 +238,7 @@ def _total(model, record, found) -> Iterator[str]:
 
 
 def _short_waves(model, load, tolerances) -> Iterator[str]:
-    """Waves that contacts bridge, but that elements of the model follow."""
+    """Warn of waves shorter than the contacts that the model does not average."""
     if model.half_width is not None:
         return
     drawn = _highest_drawn(tolerances)
@@ -264,7 +264,7 @@ def _short_waves(model, load, tolerances) -> Iterator[str]:
 
 
 def _gyroscopic(model, load) -> Iterator[str]:
-    """Balls so fast that the gyroscopic moment, which is left out, moves them.
+    """Warn of balls on which the omitted gyroscopic moment matters.
 
     At the free contact angle, or that which the axial load asks for if it is larger.
     """
@@ -319,7 +319,7 @@ def _lost(record) -> Iterator[str]:
 
 
 def _rows(model: NoiseModel) -> Iterator[tuple[str, Any, FormErrors]]:
-    """Words for each row, its design and its form errors."""
+    """Return the label of each row, its design and its form errors."""
     parts = rows_of(model.element.bearing)
     for k, (row, errors) in enumerate(zip(parts, model.errors_of_rows, strict=True)):
         yield "" if len(parts) == 1 else f" of row {k}", row.bearing, errors
@@ -334,7 +334,7 @@ def _parts(errors: FormErrors) -> dict[str, Any]:
 
 
 def _highest_drawn(tolerances: Tolerances | None) -> dict[str, int]:
-    """Highest order of waves that random bearings have, by part."""
+    """Return the highest order of random waves, by part."""
     found = {"outer raceway": 0, "inner raceway": 0, "elements": 0}
     for name, part in (
         ("outer_axial", "outer raceway"),
@@ -350,7 +350,7 @@ def _highest_drawn(tolerances: Tolerances | None) -> dict[str, int]:
 
 
 def _highest(errors: Any) -> int:
-    """Highest order of waves."""
+    """Return the highest order of waves."""
     shapes = jax.tree.leaves(errors, is_leaf=lambda x: isinstance(x, Harmonics))
     orders = [max(one.order) for one in shapes if isinstance(one, Harmonics)]
     return max(orders, default=0)

@@ -1,4 +1,4 @@
-"""The dimensions of one row of balls, on its axial section."""
+"""Dimensions of one row of balls, on its axial section."""
 
 from typing import TYPE_CHECKING
 
@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     import matplotlib.axes
 
 _GAP = 0.07
-"""Gap of the clearance as drawn, ball diameters."""
+"""Drawn gap of the clearance, ball diameters."""
 
 
 def dimensioned_balls(
     ax: "matplotlib.axes.Axes", bearing: AbstractBallBearing, size
 ) -> None:
-    """Axial section of a row, to scale, with every dimension that shows in it.
+    """Draw the axial section of a row, to scale, with all its dimensions.
 
     Args:
         ax: Axes.
@@ -67,7 +67,7 @@ def _diameter(ax, bearing, left):
 
 
 def _grooves(ax, bearing):
-    """Radius of a groove of each ring, from its centre."""
+    """Draw the radius of a groove of each ring, from its centre."""
     for name, sign in (("outer", 1.0), ("inner", -1.0)):
         field = f"{name}_osculation"
         groove = next(g for g in bearing.grooves if g.on_outer is (name == "outer"))
@@ -105,7 +105,7 @@ def _arc_angle(bearing, groove, name):
 
 
 def _shoulders(ax, bearing, lines):
-    """Height of the shoulders above the bottom of the groove."""
+    """Draw the height of the shoulders above the bottom of the groove."""
     thrust = bearing.is_thrust
     aside, across = (1, 0) if thrust else (0, 1)
     diameter = 1e3 * float(bearing.ball_diameter)
@@ -157,7 +157,7 @@ def _offset(ax, bearing, high):
 
 
 def ball_clearance_view(ax: "matplotlib.axes.Axes", bearing, size) -> None:
-    """The clearance of a row of balls, magnified: the rings stand apart.
+    """Draw the clearance of a row of balls, magnified.
 
     Args:
         ax: Axes.

@@ -21,13 +21,13 @@ _BODY = 0.30  # thickness of the schematic rings under the groove, ball diameter
 _WIDTH = 0.75  # half width of the schematic rings, ball diameters
 _STEEP = np.deg2rad(75.0)  # contact angles beyond have no room above the section
 SHOULDER = 0.2
-"""Schematic height of a shoulder that is not given, ball diameters."""
+"""Schematic height of an unspecified shoulder, ball diameters."""
 
 
 def ball_section(
     bearing: AbstractBearing | BearingSet, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Axial section through the axis of one ball of every row.
+    """Draw the axial section through one ball of every row.
 
     Balls and raceways are to scale, unloaded; the ring bodies are schematic.
 
@@ -69,7 +69,7 @@ def ball_section(
 
 
 def _dimensions(ax, row, low, high, alone):
-    """Ball, pitch circle and free contact angle, of the row at the left."""
+    """Draw ball, pitch circle and free contact angle of the left row."""
     part = row.bearing
     sign = -1.0 if row.mirrored else 1.0
     angle = float(part.free_contact_angle)
@@ -117,7 +117,7 @@ def ball_row(ax, bearing, place, reach=np.inf, apart=0.0) -> np.ndarray:
 
 
 def row_position(row) -> float:
-    """z of the circle of ball centres [mm].
+    """Return z of the circle of ball centres [mm].
 
     Args:
         row: A `SetRow` of balls.
@@ -148,7 +148,7 @@ def _ball(ax, bearing, place):
 
 
 def contour(bearing, name, reach=np.inf) -> np.ndarray:
-    """Outline of a ring on the side of the ball, from end to end (point, 2) [mm].
+    """Return the outline of a ring on the side of the ball (point, 2) [mm].
 
     Args:
         bearing: A row of balls.
@@ -192,7 +192,7 @@ def _light(colour):
 
 
 def _aligning(bearing, name):
-    """Contour of a ring of a self-aligning bearing, from its middle outwards [mm]."""
+    """Return the contour of a ring of a self-aligning bearing, from its middle [mm]."""
     diameter = 1e3 * float(bearing.ball_diameter)
     middle, reach = -1e3 * float(bearing.row_offset), _WIDTH * diameter
     groove = bearing.grooves[0 if name == "outer" else 1]
@@ -211,7 +211,7 @@ def _aligning(bearing, name):
 
 
 def _raceway(bearing, name, outwards, reach):
-    """Contour of a ring on the side of the ball, along and across the raceway [mm].
+    """Return the contour of a ring, along and across the raceway [mm].
 
     Across points from the inner to the outer ring: along r, for washers along z.
     """

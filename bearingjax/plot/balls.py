@@ -26,16 +26,16 @@ _MARKERS = ("o", "s", "^", "D")
 _LEAST_SPAN = 2.0
 """Least span of the axis of contact angles [deg]."""
 _BOX = 0.62
-"""Height over width of a raceway that is rolled out."""
+"""Height over width of a developed raceway."""
 _ARC = 0.48
-"""Half of the least arc of the groove that is shown, ball diameters."""
+"""Half of the least arc of the groove shown, ball diameters."""
 _AZIMUTHS = (-15.0, 375.0)
 
 
 def contact_angles(
     solution: BallSolution, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Contact angle of every loaded contact [deg] against azimuth [deg].
+    """Plot the contact angle of every loaded contact [deg] against azimuth [deg].
 
     The area of a marker grows with the load of the contact. Markers of the outer
     raceway are hollow, those of the inner one full and smaller, so that neither hides
@@ -104,7 +104,7 @@ def ellipses(
     row: int = 0,
     ax: "matplotlib.axes.Axes | None" = None,
 ) -> "matplotlib.axes.Axes":
-    """Contact ellipses on a raceway that is rolled out, with its shoulders.
+    """Draw contact ellipses on a developed raceway, with its shoulders.
 
     Upwards runs the arc of the groove from its bottom [mm], to the right the azimuth.
     The ellipses have their true shape, to the scale of the upward axis; how many times
@@ -171,7 +171,7 @@ def ellipses(
 
 
 def _raceway_radius(bearing, ring):
-    """Distance of the middle of a raceway from the axis [mm]."""
+    """Return the distance of the middle of a raceway from the axis [mm]."""
     side = np.cos(float(bearing.groove_axis)) * (1.0 if ring == 0 else -1.0)
     ball = 0.5e3 * float(bearing.ball_diameter)
     return 0.5e3 * float(bearing.pitch_diameter) + side * ball

@@ -117,7 +117,7 @@ def contact_map(
 def contact_surface(
     solution: ContactSolution, ax: Any = None
 ) -> "mpl_toolkits.mplot3d.axes3d.Axes3D":
-    """Pressure [MPa] as a surface above the contact.
+    """Plot the pressure [MPa] as a surface above the contact.
 
     Drawn up to the scale of `contact_map`, where the ends may be cut off.
 
@@ -173,7 +173,7 @@ def contact_surface(
 
 
 def _whole(solution):
-    """Middles of cells across (m,) [m], and pressure on both sides (m, n) [MPa]."""
+    """Return cell centres across (m,) [m], and pressure on both sides (m, n) [MPa]."""
     grid = solution.grid
     x = (
         2.0
@@ -184,7 +184,7 @@ def _whole(solution):
 
 
 def _results(solution, slices):
-    """Two lines on the largest load."""
+    """Return two lines of text on the largest load."""
     peak = 1e-6 * float(solution.peak_pressure)
     sliced = 1e-6 * float(slices.peak_pressure)
     place = int(np.argmax(np.asarray(solution.pressure).max(axis=0)))

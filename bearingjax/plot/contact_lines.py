@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import matplotlib.axes
 
 _NEAR = 0.02
-"""Share of the length at each end whose values do not set the scale."""
+"""Share of the length at each end that is ignored for the scale."""
 
 _SHARP = 1.5
 """End values so many times above the scale are left out of it."""
@@ -33,7 +33,7 @@ def centre_pressure(
     ax: "matplotlib.axes.Axes | None" = None,
     slices: Sequence[Slices] = (),
 ) -> "matplotlib.axes.Axes":
-    """Pressure [MPa] at x = 0 along the roller, for several loads.
+    """Plot the pressure [MPa] at x = 0 along the roller, for several loads.
 
     The legend gives the values of the end cells, and their length. A triangle marks
     those off the scale.
@@ -64,7 +64,7 @@ def contact_line_load(
     ax: "matplotlib.axes.Axes | None" = None,
     slices: Sequence[Slices] = (),
 ) -> "matplotlib.axes.Axes":
-    """Load per length [N/mm] along the roller, for several loads.
+    """Plot the load per length [N/mm] along the roller, for several loads.
 
     Each line bears its load.
 
@@ -125,7 +125,7 @@ def _lines(solutions, values, others, ax, told):
 def scale(
     solution: ContactSolution, largest: np.ndarray, floor: float = 1.0
 ) -> tuple[float, bool]:
-    """Top of a scale, and whether values near the ends are above it.
+    """Return the top of a scale, and whether values near the ends exceed it.
 
     Args:
         solution: For its cells.
@@ -143,16 +143,16 @@ def scale(
 
 
 def ends(solution: ContactSolution) -> str:
-    """Pressure at x = 0 of both end cells [MPa], as text."""
+    """Return the pressure at x = 0 of both end cells [MPa], as text."""
     first, last = 1e-6 * np.asarray(solution.centre_pressure)[[0, -1]]
     return f"{first:.0f}, {last:.0f}"
 
 
 def load_text(solution: ContactSolution) -> str:
-    """Load, as text."""
+    """Return the load as text."""
     return force_text(float(solution.load))
 
 
 def end_length(solution: ContactSolution) -> str:
-    """Length of an end cell, as text."""
+    """Return the length of an end cell as text."""
     return f"{2e6 * float(solution.grid.half_y[0]):.3g} µm"

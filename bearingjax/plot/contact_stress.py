@@ -1,4 +1,4 @@
-"""Stress below the contact of a roller, over a section of it."""
+"""Stress below the contact of a roller, in a section."""
 
 from typing import TYPE_CHECKING
 

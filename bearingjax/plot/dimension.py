@@ -45,7 +45,7 @@ class Label(NamedTuple):
 
 
 def quantity(value: Any, unit: str) -> str:
-    """A number as it stands on a drawing: lengths in mm, or µm below 0.1 mm.
+    """Return a number as text of a drawing: lengths in mm, or µm below 0.1 mm.
 
     Args:
         value: The number, in SI units.
@@ -59,7 +59,7 @@ def quantity(value: Any, unit: str) -> str:
 
 
 def label(owner: Any, name: str, prefix: str = "") -> str:
-    """Name and value of a field: "pitch_diameter = 46 mm".
+    """Return name and value of a field: "pitch_diameter = 46 mm".
 
     Args:
         owner: Instance with the field.
@@ -75,7 +75,7 @@ def label(owner: Any, name: str, prefix: str = "") -> str:
 
 
 def width(text: str) -> float:
-    """Width of a label, of its longest line [inch]."""
+    """Return the width of the longest line of a label [inch]."""
     from matplotlib.textpath import TextPath
 
     lines = (TextPath((0.0, 0.0), line, size=SMALL) for line in text.splitlines())
@@ -83,7 +83,7 @@ def width(text: str) -> float:
 
 
 def fit(ax: "matplotlib.axes.Axes", points, size, middle=(0.48, 0.86)) -> None:
-    """Set the limits of a view, to scale: its parts stand in the middle.
+    """Set the limits of a view, to scale, with its parts in the middle.
 
     Args:
         ax: Axes; they lose their frame, and their sides get the ratio of `size`.
@@ -161,7 +161,7 @@ def _uncrossed(labels, low_high, left_right, edge, height):
 
 
 def _cross(one, other):
-    """Whether two lines from labels to points meet, or would a little beyond these."""
+    """Return whether two lines from labels to points cross, or nearly so."""
     one, other = ((start, end + 0.2 * (end - start)) for start, end in (one, other))
 
     def side(line, point):
@@ -191,7 +191,7 @@ def middle_only(ax: "matplotlib.axes.Axes", column: float) -> None:
 
 
 def spread(wanted, heights) -> np.ndarray:
-    """Middles of labels in a column from 0 to 1, near those that are wanted.
+    """Return centres of labels in a column from 0 to 1, near given ones.
 
     Args:
         wanted: Ascending places (n,).
@@ -216,7 +216,7 @@ def spread(wanted, heights) -> np.ndarray:
 
 
 def between(ax: "matplotlib.axes.Axes", start, stop, shift=(0.0, 0.0)) -> np.ndarray:
-    """A dimension line between two points, moved aside with extension lines.
+    """Draw a dimension line between two points, offset by extension lines.
 
     Args:
         ax: Axes.
@@ -237,7 +237,7 @@ def between(ax: "matplotlib.axes.Axes", start, stop, shift=(0.0, 0.0)) -> np.nda
 
 
 def squeeze(ax: "matplotlib.axes.Axes", start, stop, tail: float) -> None:
-    """Both ends of a short distance, by arrows from outside.
+    """Draw the dimension of a short distance by arrows from outside.
 
     Args:
         ax: Axes.
@@ -254,7 +254,7 @@ def squeeze(ax: "matplotlib.axes.Axes", start, stop, tail: float) -> None:
 
 
 def radius(ax: "matplotlib.axes.Axes", centre, point) -> np.ndarray:
-    """An arrow from the centre of an arc to the arc.
+    """Draw an arrow from the centre of an arc to the arc.
 
     Returns:
         A point on it, for the label.
@@ -267,7 +267,7 @@ def radius(ax: "matplotlib.axes.Axes", centre, point) -> np.ndarray:
 
 
 def angle(ax: "matplotlib.axes.Axes", centre, size: float, ends) -> np.ndarray:
-    """An angle between two lines through a point.
+    """Draw the angle between two lines through a point.
 
     Args:
         ax: Axes.
@@ -288,7 +288,7 @@ def angle(ax: "matplotlib.axes.Axes", centre, size: float, ends) -> np.ndarray:
 
 
 def pitch_arrow(ax: "matplotlib.axes.Axes", at, diameter: Any) -> None:
-    """An arrow from the axis, that is not seen, to the pitch circle.
+    """Draw an arrow from the axis, which is out of view, to the pitch circle.
 
     Args:
         ax: Axes.
@@ -387,7 +387,7 @@ def _way(turn):
 
 
 def magnification(true: float, wanted: float) -> float:
-    """A round factor that makes a length about as large as wanted, at least 1.
+    """Return a round factor, at least 1, that scales a length to about a given one.
 
     Args:
         true: The length.

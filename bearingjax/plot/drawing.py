@@ -1,4 +1,4 @@
-"""Drawings: every number of a design where it is measured, to scale."""
+"""Drawings of a design to scale, with all its dimensions."""
 
 import dataclasses
 from collections.abc import Callable, Sequence
@@ -33,15 +33,15 @@ if TYPE_CHECKING:
 
 MATERIALS = "material", "ring_material"
 IN_WORDS = (*MATERIALS, "rated_contact_angle")
-"""Fields of a bearing that have no place on a drawing: they stand below it."""
+"""Fields of a bearing that are listed below a drawing, as they cannot be drawn."""
 _WIDTH = 13.2
 _SECTION, _FACE = (8.8, 5.2), (4.4, 5.2)
 _ACROSS = 3
 _SMALL = (_WIDTH / _ACROSS, 3.4)
 _HEAD, _PART, _FOOT = 0.35, 0.4, 0.6
-"""Room of the page's head, of the head of a bearing in a set, of words [inch]."""
+"""Height of the page's title, of a bearing's title in a set, of text [inch]."""
 _MARGINS = {False: (0.05, 0.05, 0.5, 0.05), True: (0.75, 0.15, 0.5, 0.6)}
-"""Left, right, above and below a view; a framed one has ticks there [inch]."""
+"""Margins left, right, above and below a view, with ticks if framed [inch]."""
 
 
 class _View(NamedTuple):
@@ -62,7 +62,7 @@ class _View(NamedTuple):
 
 
 class _Strip(NamedTuple):
-    """Views over the width of the page, or words.
+    """Views over the width of the page, or text.
 
     Attributes:
         height: Of the strip [inch].
@@ -129,7 +129,7 @@ def _page(strips):
 
 
 def _set_strips(bearing):
-    """The arrangement, then each different bearing under the names of its rows."""
+    """Return strips of the arrangement and of each different bearing."""
     kinds = _different([row.bearing for row in bearing.rows])
     turned = [
         row
@@ -148,7 +148,7 @@ def _set_strips(bearing):
 
 
 def _different(bearings):
-    """Each bearing with its rows; those that differ in the first azimuth are alike."""
+    """Return each bearing with its rows, ignoring the first azimuth."""
     kinds: list[tuple[Any, list[int]]] = []
     for row, bearing in enumerate(bearings):
         for one, rows in kinds:
@@ -168,7 +168,7 @@ def _alike(one, other):
 
 
 def _strips(bearing):
-    """Section and view along the axis, the smaller views below, words at the foot."""
+    """Return strips: section and view along the axis, smaller views, text."""
     rollers = isinstance(bearing, AbstractRollerBearing)
     first, others = _of_rollers(bearing) if rollers else _of_balls(bearing)
     others += [
@@ -189,7 +189,7 @@ def _strips(bearing):
 
 
 def _of_balls(bearing):
-    """Views of the first strip, and smaller ones with whether they are framed."""
+    """Return views of the first strip, and smaller ones with a flag for a frame."""
     views = [_View(lambda ax, size: dimensioned_balls(ax, bearing, size), _SECTION)]
     wide, high = _FACE
     if hasattr(bearing, "radial_internal_clearance"):
@@ -236,7 +236,7 @@ def _face(bearing, size):
 
 
 def _like_ribs(ribs):
-    """Names of the ribs, those of the same dimensions together."""
+    """Return names of the ribs, grouped by equal dimensions."""
     groups: dict[tuple, list[str]] = {}
     for name in RIB_NAMES:
         rib = getattr(ribs, name)

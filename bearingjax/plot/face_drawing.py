@@ -1,4 +1,4 @@
-"""A row of rolling elements seen along the axis, and how they differ."""
+"""View of a row of rolling elements along the axis, and their deviations."""
 
 from typing import TYPE_CHECKING
 
@@ -21,7 +21,7 @@ DEVIATIONS = {
 
 
 def face_view(ax: "matplotlib.axes.Axes", bearing: AbstractBearing, size) -> None:
-    """Along the axis, to scale: the pitch circle and the rolling elements on it.
+    """Draw the pitch circle and its rolling elements along the axis, to scale.
 
     Args:
         ax: Axes.
@@ -78,7 +78,7 @@ def face_view(ax: "matplotlib.axes.Axes", bearing: AbstractBearing, size) -> Non
 
 
 def _in_corner(ax, corner, text, at):
-    """Text in a corner of the axes, with a line to a point."""
+    """Write text in a corner of the axes, with a line to a point."""
     low, left = corner.startswith("lower"), corner.endswith("left")
     ax.annotate(
         text,

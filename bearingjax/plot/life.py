@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     import matplotlib.figure
 
 _MOST = 16
-"""Cases that are drawn."""
+"""Most cases drawn."""
 _RANGE = 1e5
-"""Life over the shortest one up to which bars have their true height [1]."""
+"""Life over the shortest above which bars are cut off [1]."""
 _NAMED = 5
-"""Cases up to which what tells them apart stands below."""
+"""Most cases with their distinguishing settings below."""
 _ACROSS, _DOWN = 65, 7
-"""Letters that fit under a plot, and lines of the settings of a case."""
+"""Most letters in a line under a plot, and most lines of settings of a case."""
 
 _COLOURS = {
     "basic_rating_life": GREY,
@@ -27,7 +27,7 @@ _COLOURS = {
 
 
 def life_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
-    """Life of every case if it were alone, and its share in time and damage.
+    """Plot the life of every case alone, and its share in time and damage.
 
     Of many cases those that use most of the life.
 
@@ -54,7 +54,7 @@ def life_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
 
 
 def _lives(run, order, ax):
-    """Life of each case alone, in million revolutions."""
+    """Plot the life of each case alone, in million revolutions."""
     width = 0.8 / len(run.lives)
     every = {
         name: 1e-6 * np.asarray(getattr(run.solved, name), dtype=float)[order]
@@ -86,7 +86,7 @@ def _lives(run, order, ax):
 
 
 def _shares(run, order, ax):
-    """Shares of the cases in time, and in damage, in percent."""
+    """Plot shares of the cases in time, and in damage, in percent."""
     hours, damage = run.table.cases.hours, run.asked.damage_share
     count = run.table.cases.count
     time = np.ones(count) if hours is None else np.asarray(hours, dtype=float)
@@ -137,7 +137,7 @@ def _named(case, words, across: int) -> str:
 
 
 def _results(run: Any) -> str:
-    """Two lines: the lives under all cases; load and static safety."""
+    """Return two lines of text: the lives under all cases; load and static safety."""
     lives = []
     for name, life in run.lives.items():
         words = f"{_word(name)} {1e-6 * float(life.rating_life):.4g} million rev"

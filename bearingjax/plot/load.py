@@ -27,7 +27,7 @@ _RADIUS, _TICK_LABEL = 1.6, (0.3, 0.15)
 def load_zone(
     solution: Solution, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Load of every roller or ball on both raceways at its azimuth, in N or kN.
+    """Plot the load of every roller or ball on both raceways at its azimuth, N or kN.
 
     Azimuth 0 is +x, to the right; it grows counter-clockwise, towards +y.
 
@@ -101,7 +101,7 @@ def load_zone(
 
 
 def _step(azimuth, count):
-    """Angle that the bars at one azimuth may take [rad]; rows may be staggered."""
+    """Return the angle available to the bars at one azimuth [rad]."""
     even = 2.0 * np.pi / count
     gaps = np.diff(np.sort(azimuth % (2.0 * np.pi)), append=np.inf)
     return min([even, *gaps[gaps > 0.3 * even]])
@@ -167,7 +167,7 @@ def load_displacement(
     converged: ArrayLike | None = None,
     ax: "matplotlib.axes.Axes | None" = None,
 ) -> "matplotlib.axes.Axes":
-    """Displacement of a ring against its load.
+    """Plot the displacement of a ring against its load.
 
     Args:
         load: Load of every case (case,) [N or N m].
@@ -234,7 +234,7 @@ def stiffness_over_speed(
     moving_ring: str = "inner",
     ax: "matplotlib.axes.Axes | None" = None,
 ) -> "matplotlib.axes.Axes":
-    """Axial and radial stiffness of a ring against speed.
+    """Plot axial and radial stiffness of a ring against speed.
 
     Args:
         speed: Of the turning ring, for every case (case,) [rad/s]; drawn in rpm.

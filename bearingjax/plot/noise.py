@@ -1,4 +1,4 @@
-"""Pictures of a bearing's noise: record, spectrum, bands, contact states."""
+"""Plots of bearing noise: record, spectrum, bands, contact states."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -26,7 +26,7 @@ DIRECTIONS = ("x", "y", "z")
 STATES = ("#D55E00", "#E69F00", "#F0F0F0", "#56B4E9", "#0072B2")
 """Colours of 0, 1, 2, 3, 4 contacts."""
 _NAMED = 8
-"""Lines of a spectrum that have their names."""
+"""Most named lines of a spectrum."""
 _COLUMNS = 1600
 """Most columns of a map."""
 _TICKS = 18
@@ -36,7 +36,7 @@ _TICKS = 18
 def acceleration_over_time(
     record: Vibration, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Acceleration of the moving ring over the turns of the shaft [m/s²].
+    """Plot the acceleration of the moving ring over the turns of the shaft [m/s²].
 
     Args:
         record: From `vibration`.
@@ -72,7 +72,7 @@ def noise_spectrum(
     *,
     reference: float = REFERENCE_ACCELERATION,
 ) -> "matplotlib.axes.Axes":
-    """Level of every line of a spectrum, all directions together, over the frequency.
+    """Plot the level of every line of a spectrum, summed over directions.
 
     Args:
         spectrum: Of the acceleration, amplitudes (line, ...) [m/s²].
@@ -116,7 +116,7 @@ def noise_spectrum(
 
 
 def _names(ax, lines, decibel, top):
-    """Names above the spectrum, apart from each other."""
+    """Write names above the spectrum without overlap."""
     if not lines:
         return
     lines = sorted(lines, key=lambda line: line.frequency)
@@ -259,7 +259,7 @@ def level_distribution(
     *,
     reference: float = REFERENCE_ACCELERATION,
 ) -> "matplotlib.axes.Axes":
-    """Share of bearings whose level is below each level [%].
+    """Plot the cumulative distribution of levels over bearings [%].
 
     Args:
         level: Of each bearing (bearing, direction) [dB]; NaN of those that failed.
@@ -287,7 +287,7 @@ def level_distribution(
 def source_bars(
     shares: Shares, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Part of the mean square of the acceleration that goes without each source [%].
+    """Plot the share of each source in the mean square of the acceleration [%].
 
     Args:
         shares: From `shares`.

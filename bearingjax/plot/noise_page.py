@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def noise_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
-    """Record, spectrum with named lines, bands and contact states on one page.
+    """Plot record, spectrum with named lines, bands and contact states on one page.
 
     Of random bearings also the distribution of their levels, and what makes it.
 

@@ -1,4 +1,4 @@
-"""A design before and after it was optimised."""
+"""Plots of a design before and after optimisation."""
 
 import dataclasses
 from typing import TYPE_CHECKING, Any
@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     import matplotlib.figure
 
 _FAR = 50.0
-"""Longest over shortest life of cases from which their axis is logarithmic."""
+"""Longest over shortest life above which the axis is logarithmic."""
 
 _SIDES = {"before": (GREY, "--"), "after": (ROLLER, "-")}
 
 
 def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
-    """Profile, pressure and the way of the search, before and after.
+    """Plot profile, pressure and history of the search, before and after.
 
     Top left the profile, roller and the busier raceway together; top right the
     pressure along the roller with the highest pressure, of the case where that was
@@ -86,7 +86,7 @@ def _of_bearings(found):
 
 
 def worst(solution: Any) -> tuple[int, int, int]:
-    """Case, rolling element and raceway of the highest pressure of rollers.
+    """Return case, rolling element and raceway of the highest pressure of rollers.
 
     Args:
         solution: With a leading case axis.
@@ -98,7 +98,7 @@ def worst(solution: Any) -> tuple[int, int, int]:
 
 
 def _profiles(found, roller, raceway, ax):
-    """Drop of the pair [µm], on the row of a roller; it points downwards."""
+    """Plot the drop of the pair [µm] in the row of a roller, downwards."""
     ring = RACEWAYS[raceway]
     row = next(
         k
@@ -128,7 +128,7 @@ def _profiles(found, roller, raceway, ax):
 
 
 def _pressures(found, case, ax):
-    """Pressure [MPa] along the roller that is pressed most, in one case."""
+    """Plot the pressure [MPa] along the most loaded roller, in one case."""
     for side, outcome in (("before", found.before), ("after", found.after)):
         one = _one(outcome.solution, case)
         pressure = np.asarray(one.contact_pressure)
@@ -155,7 +155,7 @@ def _pressures(found, case, ax):
 
 
 def _cases(found, ax):
-    """Peak pressure [MPa] of every case, or its life if that is the objective."""
+    """Plot peak pressure [MPa] of every case, or its life if it is the objective."""
     wanted = found.objective
     lives = isinstance(wanted, Damage)
     sides = {"before": (-0.2, found.initial), "after": (0.2, found.element)}
@@ -200,7 +200,7 @@ def _life_label(value):
 
 
 def _history(found, ax):
-    """Objective over its start and, where there are constraints, their miss."""
+    """Plot the objective over its start and, if any, the violation of constraints."""
     without_offset(ax)
     history, measure = found.history, found.objective
     steps, values = np.arange(len(history.objective)), history.objective

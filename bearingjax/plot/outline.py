@@ -46,7 +46,7 @@ class Section(NamedTuple):
 
 
 def section(bearing: AbstractRollerBearing) -> Section:
-    """Outlines of roller and rings in the section plane.
+    """Return outlines of roller and rings in the section plane.
 
     Args:
         bearing: The design.
@@ -59,7 +59,7 @@ def section(bearing: AbstractRollerBearing) -> Section:
     across = np.array([-np.sin(tilt), np.cos(tilt)])
 
     def to_plane(points):
-        """(z, r) of points in the roller's axes (t, m)."""
+        """Return (z, r) of points in the roller's axes (t, m)."""
         points = np.asarray(points)
         return (
             np.array([0.0, pitch_radius])
@@ -118,7 +118,7 @@ def _rib_contacts(bearing):
 
 
 def _ribs(bearing):
-    """Contact point, normal, height and sphere radius of every rib, in mm."""
+    """Return contact point, normal, height and sphere radius of every rib, in mm."""
     contacts = _rib_contacts(bearing)
     if contacts is None:
         return {}
@@ -134,7 +134,7 @@ def _ribs(bearing):
 
 
 def _rib_line(name, rib, to_plane, along, across, diameter):
-    """Foot and top of a rib's face (2, 2), in (z, r)."""
+    """Return foot and top of a rib face (2, 2), in (z, r)."""
     sign = 1.0 if name.startswith("outer") else -1.0
     normal = rib["normal"]
     # Square to the normal, from the raceway towards the roller axis.
@@ -146,7 +146,7 @@ def _rib_line(name, rib, to_plane, along, across, diameter):
 
 
 def _roller_outline(bearing, ribs):
-    """Closed outline of the roller in (t, m), with profile and end spheres, in mm."""
+    """Return the outline of the roller (t, m), with profile and end spheres, in mm."""
     length, half = 1e3 * float(bearing.roller_length), float(bearing.half_angle)
     diameter = 1e3 * float(bearing.roller_diameter)
     s = -0.5 * length * np.cos(np.linspace(0.0, np.pi, 401))

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def overview(
     bearing: AbstractBearing | BearingSet, solution: Solution, title: str = ""
 ) -> "matplotlib.figure.Figure":
-    """Section, load zone, contacts and the main results on one page.
+    """Plot section, load zone, contacts and the main results on one page.
 
     Args:
         bearing: The design.
@@ -77,7 +77,7 @@ def overview(
 
 
 def _results(solution):
-    """Two lines: displacement, largest load and pressure, state."""
+    """Return two lines of text: displacement, largest load and pressure, state."""
     q = np.asarray(solution.displacement)
     shift, tilt = np.split(q[6:] - q[:6], 2)
     load = np.asarray(solution.roller_load)

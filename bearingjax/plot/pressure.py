@@ -31,7 +31,7 @@ def pressure_profiles(
     raceway: str = "inner",
     row: int = 0,
 ) -> "matplotlib.axes.Axes":
-    """Contact pressure [MPa] along the most loaded rollers.
+    """Plot contact pressure [MPa] along the most loaded rollers.
 
     A triangle marks a roller end that carries load: there the line contact knows no
     end pressure peak.
@@ -115,7 +115,7 @@ def _of_row(solution, row):
 
 
 def _position(solution, mine):
-    """Positions along the rollers of a row [mm]."""
+    """Return positions along the rollers of a row [mm]."""
     position = 1e3 * np.asarray(solution.position)
     return position if position.ndim == 1 else position[mine.start]
 
@@ -181,7 +181,7 @@ def pressure_map(
 
 
 def _edges(centres):
-    """Edges of the cells around ascending centres."""
+    """Return edges of the cells around ascending centres."""
     middle = 0.5 * (centres[1:] + centres[:-1])
     return np.concatenate(
         [[2.0 * centres[0] - middle[0]], middle, [2.0 * centres[-1] - middle[-1]]]

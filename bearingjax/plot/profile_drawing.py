@@ -1,4 +1,4 @@
-"""A profile with the parameters that make it."""
+"""Drawing of a profile with its parameters."""
 
 import dataclasses
 from typing import TYPE_CHECKING, Any
@@ -25,7 +25,7 @@ _COLOURS = {
     "inner_raceway_profile": COLOURS["inner"],
 }
 _NEAR = 0.95
-"""Share of the length beyond which a profile does not set the scale."""
+"""Share of the length beyond which a profile is ignored for the scale."""
 
 
 def profile_view(
@@ -99,7 +99,7 @@ def profile_view(
 
 
 def _end(ax, x, drop, height, text):
-    """The drop at the end of the roller."""
+    """Draw the drop at the end of the roller."""
     at = 1.06 * x
     for level in (0.0, drop):
         ax.plot([x, 1.08 * x], [level] * 2, color=GREY, linewidth=0.7)
@@ -129,7 +129,7 @@ def _text(profile, field):
 
 
 def _spans(profile, length):
-    """Fields that are lengths along the roller, with their ends [m]."""
+    """Return fields that are lengths along the roller, with their ends [m]."""
     half = 0.5 * length
     if isinstance(profile, CrownedEnds):
         straight = 0.5 * float(profile.straight_length)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def profile(
     bearing: AbstractRollerBearing, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Drop [µm] of the roller and of both raceways along the roller.
+    """Plot the drop [µm] of the roller and of both raceways along the roller.
 
     The drop points downwards, as the material falls away. Profiles that grow without
     limit at their very end are cut there.

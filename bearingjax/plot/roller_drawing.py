@@ -1,4 +1,4 @@
-"""The dimensions of one row of rollers: section, clearance, ribs and profiles."""
+"""Dimensions of one row of rollers: section, clearance, ribs and profiles."""
 
 from typing import TYPE_CHECKING
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import matplotlib.axes
 
 _GAP = 0.05
-"""Gap of a clearance as drawn, roller diameters."""
+"""Drawn gap of a clearance, roller diameters."""
 _RIB_COLUMN = 0.36
 """Width of the column of labels of a rib, share of its view."""
 PROFILES = "roller_profile", "outer_raceway_profile", "inner_raceway_profile"
@@ -37,7 +37,7 @@ PROFILES = "roller_profile", "outer_raceway_profile", "inner_raceway_profile"
 def dimensioned_rollers(
     ax: "matplotlib.axes.Axes", bearing: AbstractRollerBearing, parts: Section, size
 ) -> None:
-    """Axial section of a row, to scale, with every dimension that shows in it.
+    """Draw the axial section of a row, to scale, with all its dimensions.
 
     Args:
         ax: Axes.
@@ -75,7 +75,7 @@ def _sizes(ax, bearing, parts):
 
 
 def _straight(bearing, parts):
-    """Labels of what has no profile; the others have a view of their own."""
+    """Return labels of surfaces without a profile; the others have views."""
     at = parts.roller[0], parts.raceways[0, 1], parts.raceways[1, 1]
     for name, point in zip(PROFILES, at, strict=True):
         if isinstance(getattr(bearing, name), Straight):
@@ -101,7 +101,7 @@ def _angles(ax, bearing, parts):
 def roller_clearance_view(
     ax: "matplotlib.axes.Axes", bearing: AbstractRollerBearing, parts: Section, size
 ) -> None:
-    """The clearance of a row of rollers, magnified: the rings stand apart.
+    """Draw the clearance of a row of rollers, magnified.
 
     Args:
         ax: Axes.
@@ -132,7 +132,7 @@ def rib_view(
     names: list[str],
     size,
 ) -> None:
-    """A rib and the end of a roller; the gap between them magnified.
+    """Draw a rib and the end of a roller, with the gap magnified.
 
     Args:
         ax: Axes.

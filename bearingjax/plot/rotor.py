@@ -1,4 +1,4 @@
-"""A rotor to scale: shaft, discs, bearings, housings, numbers of its stations."""
+"""Drawing of a rotor to scale: shaft, discs, bearings, housings, stations."""
 
 from typing import TYPE_CHECKING
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 _STEEL = "#B0B0B0"
 _LEAST = 0.022
-"""Distance of stations, over the length of the shaft, at which all have numbers."""
+"""Least distance of numbered stations, over the length of the shaft."""
 
 
 def rotor_section(
     rotor: Rotor, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Axial section of a rotor, to scale [mm].
+    """Draw the axial section of a rotor, to scale [mm].
 
     A disc is the cylinder on the shaft with its mass and moments of inertia, a point
     mass a ball of the shaft's material. Bearings have their true rolling elements, and
@@ -71,7 +71,7 @@ def rotor_section(
 
 
 def _shaft(ax, stations, outer, bore):
-    """Segments in section: cut solid, or two walls about a bore."""
+    """Draw segments in section: solid, or two walls about a bore."""
     for k, (left, right) in enumerate(zip(stations[:-1], stations[1:], strict=True)):
         pieces = [(bore[k], outer[k]), (-outer[k], -bore[k])]
         for low, high in pieces if bore[k] > 0 else [(-outer[k], outer[k])]:
@@ -92,7 +92,7 @@ def _at(outer, station):
 
 
 def _part(ax, rotor, part, stations, outer):
-    """A disc or a point mass; the radius that it reaches."""
+    """Draw a disc or a point mass; return its largest radius."""
     from matplotlib.patches import Circle
 
     z, radius = stations[part.station], _at(outer, part.station)
@@ -119,7 +119,7 @@ def _part(ax, rotor, part, stations, outer):
 
 
 def _support(ax, support, stations, outer, size):
-    """A bearing and what it stands on; the radius that this reaches below."""
+    """Draw a bearing and its housing or ground; return the largest radius below."""
     z, radius = stations[support.station], _at(outer, support.station)
     if isinstance(support, BearingSupport):
         outside = draw_bearing(ax, support, z)
@@ -132,7 +132,7 @@ def _support(ax, support, stations, outer, size):
 
 
 def _numbers(ax, stations, length):
-    """Stations on the upper axis, as many as there is room for."""
+    """Number stations on the upper axis, as space allows."""
     shown, last = [], -np.inf
     for k, z in enumerate(stations):
         if z - last >= _LEAST * length:

@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     import matplotlib.axes
 
 WHIRLS = {1: ("forward", INNER), -1: ("backward", OUTER), 0: ("planar, axial", ROLLER)}
-"""Names and colours of the directions of whirl; 0 is in a plane, axial or a mixture."""
+"""Names and colours of whirl directions; 0 is planar, axial or mixed."""
 RPM = 30.0 / np.pi
 """Revolutions per minute in 1 rad/s."""
 _UNITS = {"um": (1e6, "µm"), "mrad": (1e3, "mrad")}
 """Units of motions, over m or rad, and their names."""
 _HALF = 0.42
-"""Half height of a mode on its lane [1]."""
+"""Half height of a mode in its lane [1]."""
 _AXIAL = 0.99
 """Share of axial motion above which a mode is drawn as axial [1]."""
 
@@ -29,7 +29,7 @@ def mode_shapes(
     *,
     count: int = 6,
 ) -> "matplotlib.axes.Axes":
-    """Shapes of the lowest modes over the axis [mm], one above the other.
+    """Plot shapes of the lowest modes over the axis [mm], one above the other.
 
     A line is the shaft at the moment of its largest displacement, seen across the
     direction of that; the band behind it is what the orbits of all sections sweep.
@@ -85,13 +85,13 @@ def _percent(ratio):
 
 
 def _axial(shape):
-    """Whether modes (..., node, 5) are motions along the axis but for a trace."""
+    """Return whether modes (..., node, 5) are almost purely axial."""
     squares = np.sum(np.abs(np.asarray(shape)) ** 2, axis=-2)
     return squares[..., 2] > _AXIAL * squares[..., :3].sum(axis=-1)
 
 
 def _drawn(shape, axial):
-    """Line and half width of the band of a mode, largest one."""
+    """Return line and half width of the band of a mode, at most one."""
     x, y, z = shape[:, 0], shape[:, 1], shape[:, 2]
     if axial:
         line, band = _at_most(z), np.abs(z)
@@ -106,18 +106,18 @@ def _drawn(shape, axial):
 
 
 def _at_most(motion):
-    """Real part at the moment at which the largest motion is real."""
+    """Return the real part at the phase at which the largest motion is real."""
     return np.real(motion * np.exp(-1j * np.angle(motion[np.argmax(np.abs(motion))])))
 
 
 def _direction(x, y):
-    """Angle of the longer axis of the orbit Re (x, y) exp(iωt) from +x [rad]."""
+    """Return the angle of the major axis of Re (x, y) exp(iωt) from +x [rad]."""
     forward, backward = x + 1j * y, np.conj(x - 1j * y)
     return 0.5 * (np.angle(forward) + np.angle(backward))
 
 
 def major_axis(x: Any, y: Any) -> np.ndarray:
-    """Longer half axis of the orbits Re (x, y) exp(iωt).
+    """Return the major half axis of the orbits Re (x, y) exp(iωt).
 
     Args:
         x, y: Complex amplitudes [m].
@@ -131,7 +131,7 @@ def campbell_diagram(
     critical: CriticalSpeeds | None = None,
     ax: "matplotlib.axes.Axes | None" = None,
 ) -> "matplotlib.axes.Axes":
-    """Natural frequencies [Hz] over the speed [rpm], and the line of the speed itself.
+    """Plot natural frequencies [Hz] over the speed [rpm], with the synchronous line.
 
     Args:
         speeds: At which `found` is (speed,) [rad/s].
@@ -172,14 +172,14 @@ def campbell_diagram(
 
 
 def _runs(chosen):
-    """First and last point of every run of segments that are chosen."""
+    """Yield first and last point of every run of chosen segments."""
     edges = np.diff(np.concatenate([[0], chosen.astype(int), [0]]))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return zip(starts, ends, strict=True)
 
 
 def _critical(ax, critical, rpm, top):
-    """Dots on the line of the speed, and the numbers of those of forward whirl."""
+    """Mark critical speeds on the synchronous line, with numbers for forward whirl."""
     label = "critical speed"
     sense = np.where(_axial(critical.shape), 0, critical.whirl)
     for speed, whirl in zip(np.asarray(critical.speed), sense, strict=True):
@@ -214,7 +214,7 @@ def unit_scale(unit: str) -> float:
 
 
 def unit_name(unit: str) -> str:
-    """A unit as labels write it.
+    """Return the label of a unit.
 
     Args:
         unit: "um" or "mrad".

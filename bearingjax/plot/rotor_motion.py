@@ -1,4 +1,4 @@
-"""Motions of a rotor: orbits, waveforms, spectra over the speed."""
+"""Plots of rotor motion: orbits, waveforms, spectra over the speed."""
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -22,7 +22,7 @@ def orbits(
     points: Any = None,
     closed: bool = True,
 ) -> "matplotlib.axes.Axes":
-    """Paths of stations in the plane across the axis, x over y [µm].
+    """Plot orbits of stations in the plane across the axis, x over y [µm].
 
     Args:
         motion: x and y over the time (time, station, 2) [m].
@@ -68,7 +68,7 @@ def waveforms(
     names: tuple[str, ...] = (),
     unit: str = "um",
 ) -> "matplotlib.axes.Axes":
-    """Displacements over the time [s], or over a period of the excitation [deg].
+    """Plot displacements over time [s], or over a period of the excitation [deg].
 
     Args:
         motion: (sample, curve) [m, rad].
@@ -123,7 +123,7 @@ class Spectra(NamedTuple):
 
 
 def spectra_over_time(time: Any, speed: Any, motion: Any, count: int = 24) -> Spectra:
-    """Spectra of a run-up: its time in windows that overlap by a half.
+    """Return spectra of a run-up, in time windows that overlap by a half.
 
     Args:
         time: Even (time,) [s].
@@ -159,7 +159,7 @@ def spectra_over_time(time: Any, speed: Any, motion: Any, count: int = 24) -> Sp
 
 
 def steady_spectra(found: Waterfall, freedom: int) -> Spectra:
-    """Spectra of steady vibration of a rotor that turns with its excitation.
+    """Return spectra of steady vibration of a rotor with synchronous excitation.
 
     Args:
         found: From `rotor.nonlinear.waterfall`.
@@ -177,7 +177,7 @@ def waterfall(
     highest: float | None = None,
     unit: str = "um",
 ) -> "matplotlib.axes.Axes":
-    """Spectra over the frequency [Hz], lifted to the speed [rpm] of each.
+    """Plot spectra over the frequency [Hz], each offset to its speed [rpm].
 
     The largest line of all is as high as four steps between spectra; its amplitude is
     said. Dashed lines are the speed and twice the speed.

@@ -1,4 +1,4 @@
-"""One page on a rotor: what its scene asked for."""
+"""One page on a rotor with the results of its scene."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 _ACROSS = 3
 """Number of pictures side by side."""
 _LEAST_TIMES = 100
-"""Times below which a run-up has no spectra."""
+"""Least number of times for spectra of a run-up."""
 
 
 def rotor_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
-    """The rotor, and of modes, Campbell diagram, response and motion what there is.
+    """Plot the rotor with available modes, Campbell diagram, response and motion.
 
     Args:
         run: What came of the scene of a rotor; parts that are `None` are not drawn.

@@ -1,4 +1,4 @@
-"""Parts of a rotor as its drawing shows them: discs, bearings, springs, housings."""
+"""Drawn parts of a rotor: discs, bearings, springs, housings."""
 
 from typing import Any, NamedTuple
 
@@ -14,7 +14,7 @@ _LIGHT = 0.85
 
 
 class Cylinder(NamedTuple):
-    """A disc as it is drawn.
+    """Drawn shape of a disc.
 
     Attributes:
         outer, bore: Radii [mm].
@@ -27,7 +27,7 @@ class Cylinder(NamedTuple):
 
 
 def disc_size(disc: Disc, shaft_diameter: float, material: Material) -> Cylinder | None:
-    """The cylinder on the shaft that has the disc's mass and moments of inertia.
+    """Return the cylinder on the shaft with the disc's mass and moments of inertia.
 
     Its outer diameter follows from the polar moment of inertia, its width from the
     diametral one; where that is one of a thin disc, from the mass.
@@ -53,7 +53,7 @@ def disc_size(disc: Disc, shaft_diameter: float, material: Material) -> Cylinder
 
 
 def ball_radius(mass: float, material: Material) -> float:
-    """Radius of a ball of a mass [mm].
+    """Return the radius of a ball of given mass [mm].
 
     Args:
         mass: [kg].
@@ -63,7 +63,7 @@ def ball_radius(mass: float, material: Material) -> float:
 
 
 def draw_bearing(ax: Any, support: BearingSupport, z: float) -> float:
-    """Rolling elements, rings and contact lines above and below the shaft, to scale.
+    """Draw rolling elements, rings and contact lines at both sides of the shaft.
 
     Args:
         ax: Axes.
@@ -121,7 +121,7 @@ def _draw_rollers(ax, bearing, sense, at):
 
 
 def _line_of_action(ax, angle, sense, centre):
-    """From the rolling element to the axis, along which it bears."""
+    """Draw the line of action from the rolling element to the axis."""
     foot = centre[0] - sense * centre[1] * np.tan(angle)
     for side in (1.0, -1.0):
         ax.plot(
@@ -133,7 +133,7 @@ def _line_of_action(ax, angle, sense, centre):
 def draw_law(
     ax: Any, support: Any, z: float, shaft_radius: float, size: float
 ) -> float:
-    """A bearing of which only its law is known: balls and their line of contact.
+    """Draw a bearing given by its law: balls and their line of contact.
 
     Args:
         ax: Axes.
@@ -159,7 +159,7 @@ def draw_law(
 
 
 def draw_spring(ax: Any, z: float, ends: tuple[float, float], width: float) -> None:
-    """A spring across the shaft.
+    """Draw a spring across the shaft.
 
     Args:
         ax: Axes.
@@ -195,7 +195,7 @@ def draw_ground(ax: Any, z: float, r: float, size: float) -> None:
 def draw_below(
     ax: Any, support: AbstractSupport, z: float, outside: float, size: float
 ) -> float:
-    """Housing, its springs and the ground below a support.
+    """Draw housing, springs and ground below a support.
 
     Args:
         ax: Axes.

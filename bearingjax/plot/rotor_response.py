@@ -1,4 +1,4 @@
-"""Amplitudes of a rotor over the frequency of its excitation, and over its speed."""
+"""Plots of rotor amplitudes over the frequency of excitation, and over speed."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,7 @@ EVENTS = {
     "neimark_sacker": ("Neimark-Sacker", "D"),
     "branch_point": ("branch point", "*"),
 }
-"""Names and marks of what happens along a branch."""
+"""Names and markers of events along a branch."""
 
 
 def response_curve(
@@ -28,7 +28,7 @@ def response_curve(
     unit: str = "um",
     linear: tuple[Any, Any] | None = None,
 ) -> "matplotlib.axes.Axes":
-    """Amplitude of a branch of periodic orbits over the frequency [Hz].
+    """Plot the amplitude of a branch of periodic orbits over the frequency [Hz].
 
     Stable parts are full lines, unstable ones dashed; folds, flips, Neimark-Sacker and
     branch points are marked where they were located.
@@ -82,7 +82,7 @@ def linear_curve(
     *,
     unit: str = "um",
 ) -> "matplotlib.axes.Axes":
-    """Amplitude of a linear response over the frequency [Hz].
+    """Plot the amplitude of a linear response over the frequency [Hz].
 
     Args:
         frequency: Of the excitation (point,) [rad/s].
@@ -114,7 +114,7 @@ def _at_event(branch, event, amplitude):
 def envelope(
     time: Any, speed: Any, motion: Any, count: int = 80
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Amplitude over the speed of a run-up: half of peak to peak, part by part.
+    """Return half of peak to peak over the speed of a run-up, by windows.
 
     All parts have the same number of revolutions, at least one.
 
@@ -147,7 +147,7 @@ def speed_curve(
     names: tuple[str, ...] = (),
     title: str = "Unbalance response",
 ) -> "matplotlib.axes.Axes":
-    """Amplitudes over the speed [rpm]: a linear response, or that of a run-up.
+    """Plot amplitudes over the speed [rpm], of a linear response or a run-up.
 
     Args:
         speed: (point,) [rad/s].

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def cross_section(
     bearing: AbstractBearing | BearingSet, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Axial section of the bearing above its axis, to scale [mm].
+    """Draw the axial section of the bearing above its axis, to scale [mm].
 
     Dimensions of the rings beyond raceways and ribs are not part of the design: they
     are schematic.
@@ -131,7 +131,7 @@ def _name_rings(ax, parts):
 
 
 def _dimensions(ax, bearing, parts, left, right, high, height):
-    """Centre lines and dimensions with their labels."""
+    """Draw centre lines and dimensions with their labels."""
     centre = np.array([0.0, parts.pitch_radius])
     angle = float(bearing.axis_angle)
     along = (parts.axis[1] - parts.axis[0]) / np.linalg.norm(
@@ -165,7 +165,7 @@ def _dimensions(ax, bearing, parts, left, right, high, height):
 
 
 def _set_section(ax, rows):
-    """All rows of a set; the pitch circle and contact angle of the first one."""
+    """Draw all rows of a set; pitch circle and contact angle of the first one."""
     corners = []
     for row in rows:
         at = np.array([1e3 * float(row.position), 0.0])

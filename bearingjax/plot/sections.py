@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def cross_sections(
     bearings: Sequence[AbstractBearing | BearingSet], titles: Sequence[str]
 ) -> "matplotlib.figure.Figure":
-    """Axial sections of bearings, each to its own scale [mm].
+    """Draw axial sections of bearings, each to its own scale [mm].
 
     Args:
         bearings: At least one.

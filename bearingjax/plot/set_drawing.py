@@ -1,4 +1,4 @@
-"""The arrangement of the rows of a set."""
+"""Drawing of the arrangement of the rows of a set."""
 
 from typing import TYPE_CHECKING
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     import matplotlib.axes
 
 _APART = 0.25
-"""Between the words on two rows that stand side by side [inch]."""
+"""Gap between the labels of adjacent rows [inch]."""
 
 
 def arrangement_view(
     ax: "matplotlib.axes.Axes", bearing: BearingSet, turned: list[int], size
 ) -> None:
-    """Axial section of all rows, to scale, with the numbers of each row of the set.
+    """Draw the axial section of all rows, to scale, with their dimensions in the set.
 
     Args:
         ax: Axes.
@@ -81,7 +81,7 @@ def arrangement_view(
 
 
 def _positions(ax, bearing, low, step):
-    """Dimensions of the rows from the origin, the nearest first; how deep they go."""
+    """Draw positions of rows from the origin, the nearest first; return their depth."""
     depth = low - step
     for side in (-1.0, 1.0):
         places = [
@@ -117,7 +117,7 @@ def _beside(ax, bearing, k, at, side):
 
 
 def _push(ax, row, at, half):
-    """An arrow on the inner ring where it stands aside."""
+    """Draw an arrow on an inner ring with an offset."""
     if float(row.inner_offset) == 0.0:
         return
     way = np.array([np.sign(float(row.inner_offset)) * half, 0.0])
@@ -141,7 +141,7 @@ def _words(row, k, turned):
 
 
 def _draw(ax, row, bearing):
-    """Draw a row; corners of what it takes (point, 2)."""
+    """Draw a row; return its corners (point, 2)."""
     sign = -1.0 if row.mirrored else 1.0
     part = row.bearing
     if isinstance(part, AbstractBallBearing):
@@ -190,7 +190,7 @@ def _arrangement(bearing):
 
 
 def _place(row):
-    """z of the middle of the rolling elements of a row [mm]."""
+    """Return z of the middle of the rolling elements of a row [mm]."""
     if isinstance(row.bearing, AbstractBallBearing):
         return row_position(row)
     return 1e3 * float(row.position)

@@ -1,4 +1,4 @@
-"""Pages on balls and rollers that skid, and the cage speed over the load."""
+"""Pages on skidding balls and rollers, and cage speed over the load."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -55,7 +55,7 @@ def skid_overview(
     state: Conditions | None,
     title: str = "",
 ) -> "matplotlib.figure.Figure":
-    """One page on balls or rollers that skid.
+    """Plot one page on skidding balls or rollers.
 
     Of an end state: load, sliding and spin along the orbit, sliding and heat over the
     hottest contact, powers; where all balls move alike, both contacts of a ball; of
@@ -117,7 +117,7 @@ def _rollers(found):
 
 
 def _spectrum(found, ax):
-    """Or why there is none."""
+    """Plot the sliding spectrum, or the reason why there is none."""
     try:
         sliding_spectrum(found, ax)
     except ValueError as error:
@@ -154,7 +154,7 @@ def _end(model, found, state):
 def power_bars(
     found: SteadySkid | SteadyRollerSkid, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Mean power of the drive [W], and where it goes.
+    """Plot the mean power of the drive and of all losses [W].
 
     Args:
         found: From `skid.steady`.
@@ -245,7 +245,7 @@ def _balls(found: Any) -> int:
 
 
 def _contact(model, found, state, at, slip, heat):
-    """Both maps of one contact, named in their titles."""
+    """Draw both maps of one contact, named in their titles."""
     place, contact = at
     half = np.asarray(found.heat).shape[-1] // 2
     where = f"{RACEWAYS[contact // half]} raceway"
@@ -262,7 +262,7 @@ def _watt(power):
 
 
 def _text(ax, found):
-    """Main numbers of balls that all move alike."""
+    """Write the main results of balls in equal motion."""
     load, film, slide = (
         by_raceway(v, found.contact_load)[0]
         for v in (found.contact_load, found.film, found.sliding_speed)

@@ -1,4 +1,4 @@
-"""Sliding and heat over the contact ellipse of a ball that skids."""
+"""Sliding and heat over the contact ellipse of a skidding ball."""
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,7 +16,7 @@ _MAP = "viridis"
 
 
 class Ellipse(NamedTuple):
-    """A contact at points of a grid of ellipses (ring, around).
+    """Contact values on a grid of ellipses (ring, around).
 
     Attributes:
         x: Along the rolling direction [m].
@@ -35,7 +35,7 @@ class Ellipse(NamedTuple):
 def sliding_ellipse(
     model: SkidModel, found: Any, state: Conditions, at: tuple[int, ...]
 ) -> Ellipse:
-    """Slip and heat over one contact.
+    """Return slip and heat over one contact.
 
     Args:
         model: The bearing and its oil.
@@ -66,7 +66,7 @@ def sliding_ellipse(
 def sliding_map(
     ellipse: Ellipse, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Sliding speed over a contact [mm/s], its direction as arrows.
+    """Map the sliding speed over a contact [mm/s], with its direction as arrows.
 
     Args:
         ellipse: From `sliding_ellipse`.
@@ -104,7 +104,7 @@ def sliding_map(
 def heat_map(
     ellipse: Ellipse, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Heat of the traction over a contact [W/mm²].
+    """Map the heat of the traction over a contact [W/mm²].
 
     Args:
         ellipse: From `sliding_ellipse`.

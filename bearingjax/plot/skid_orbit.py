@@ -1,4 +1,4 @@
-"""Balls and rollers that skid, along their orbit: load, sliding, spin, cage force."""
+"""Skidding balls and rollers along their orbit: load, sliding, spin, cage force."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
 _LOADED = "0.88"
 """Colour of zones B and D."""
 _HEADROOM = 0.14
-"""Room for the legend, over that of the curves."""
+"""Height of the legend over that of the curves."""
 _PAD = 20
-"""Room for the names of the zones below a title [pt]."""
+"""Height of the names of the zones below a title [pt]."""
 
 
 Steady = SteadySkid | SteadyRollerSkid
 
 
 class Zone(NamedTuple):
-    """A part of the orbit.
+    """Zone of the orbit.
 
     Attributes:
         name: "A" to "D".
@@ -47,7 +47,7 @@ class Zone(NamedTuple):
 
 
 def zones(found: Steady) -> list[Zone]:
-    """Parts of the orbit in which balls bear more than under the axial load alone.
+    """Return parts of the orbit with loads above those of the axial load alone.
 
     Under axial and radial load on a ring that may tilt there are two, B and D, of
     which B has the larger load; A comes before B, in the sense of the orbit.
@@ -110,7 +110,7 @@ def zones(found: Steady) -> list[Zone]:
 def load_over_orbit(
     found: Steady, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Contact loads [N] against its azimuth [deg], zones B and D shaded.
+    """Plot contact loads [N] against azimuth [deg], zones B and D shaded.
 
     Args:
         found: From `skid.steady`, with places.
@@ -133,7 +133,7 @@ def load_over_orbit(
 def sliding_over_orbit(
     found: Steady, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Sliding speed in the middle of the contacts [mm/s] against azimuth [deg].
+    """Plot sliding speed at contact centres [mm/s] against azimuth [deg].
 
     And, on an axis of its own, the slip of the orbit against pure rolling [%].
 
@@ -186,7 +186,7 @@ def spin_over_orbit(
 def heat_over_orbit(
     found: Steady, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Heat of the contacts [W] against azimuth [deg].
+    """Plot heat of the contacts [W] against azimuth [deg].
 
     Args:
         found: From `skid.steady`, with places.
@@ -206,7 +206,7 @@ def heat_over_orbit(
 def cage_force_over_orbit(
     found: SteadyRollerSkid, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Force of the cage on a roller [N] against azimuth [deg].
+    """Plot the force of the cage on a roller [N] against azimuth [deg].
 
     Args:
         found: From `skid.steady`, of rollers.
@@ -231,7 +231,7 @@ def _raceways(ax, found, values):
 
 
 def _closed(found, values):
-    """Azimuth [deg] from 0 to 360 and values at it, the first one again at the end."""
+    """Return azimuth [deg] from 0 to 360 and values, the first repeated at the end."""
     azimuth = np.rad2deg(np.asarray(found.azimuth)) % 360.0
     azimuth = np.where(azimuth > 360.0 - 1e-9, 0.0, azimuth)
     order = np.argsort(azimuth)

@@ -1,4 +1,4 @@
-"""Balls and rollers that skid, over time: speeds, slip, forces, powers, spectrum."""
+"""Skidding balls and rollers over time: speeds, slip, forces, powers, spectrum."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -57,7 +57,7 @@ def speed_over_time(
 def slip_over_time(
     found: History, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Slip of the orbits against pure rolling [%].
+    """Plot slip of the orbits against pure rolling [%].
 
     Args:
         found: From `skid.simulate`.
@@ -74,7 +74,7 @@ def slip_over_time(
 def spin_over_time(
     found: History, ax: "matplotlib.axes.Axes | None" = None, *, ball: int = 0
 ) -> "matplotlib.axes.Axes":
-    """Spin of a ball in its orbiting frame [rad/s].
+    """Plot spin of a ball in its orbiting frame [rad/s].
 
     Args:
         found: From `skid.simulate`.
@@ -97,7 +97,7 @@ def spin_over_time(
 def load_over_time(
     found: History, ax: "matplotlib.axes.Axes | None" = None, *, ball: int = 0
 ) -> "matplotlib.axes.Axes":
-    """Contact loads of a ball [N].
+    """Plot contact loads of a ball [N].
 
     Args:
         found: From `skid.simulate`.
@@ -116,7 +116,7 @@ def load_over_time(
 def sliding_over_time(
     found: History, ax: "matplotlib.axes.Axes | None" = None, *, ball: int = 0
 ) -> "matplotlib.axes.Axes":
-    """Sliding speed of a ball in the middle of its contacts [mm/s].
+    """Plot sliding speed of a ball at the centres of its contacts [mm/s].
 
     Args:
         found: From `skid.simulate`.
@@ -158,7 +158,7 @@ def cage_force_over_time(
 def power_over_time(
     found: History, ax: "matplotlib.axes.Axes | None" = None
 ) -> "matplotlib.axes.Axes":
-    """Power of the drive [W], and where it goes.
+    """Plot the power of the drive and of all losses [W].
 
     Args:
         found: From `skid.simulate`.
@@ -294,7 +294,7 @@ def sliding_spectrum(
 
 
 def _spread(ax, found, values, colour, label):
-    """Mean of the balls, and a band between the least and the largest."""
+    """Plot the mean over the balls, and a band from the least to the largest."""
     values = np.asarray(values)
     low, high = values.min(axis=1), values.max(axis=1)
     ax.fill_between(found.time, low, high, color=colour, alpha=_BAND, linewidth=0)

@@ -46,7 +46,7 @@ def pyplot():
 def axes_or_new(
     ax: "matplotlib.axes.Axes | None", size=(7.0, 5.0), polar: bool = False
 ) -> "matplotlib.axes.Axes":
-    """The given axes, or those of a new figure; ticks tell values, without an offset.
+    """Return given axes, or those of a new figure, without an offset of ticks.
 
     Args:
         ax: Axes or `None`.
@@ -65,7 +65,7 @@ def axes_or_new(
 
 
 def without_offset(ax: "matplotlib.axes.Axes") -> "matplotlib.axes.Axes":
-    """The axes, whose ticks tell values, not what is to be added to a number."""
+    """Return the axes after switching off the offset of tick labels."""
     for axis in (ax.xaxis, ax.yaxis):
         formatter: Any = axis.get_major_formatter()
         if hasattr(formatter, "set_useOffset"):
@@ -77,7 +77,7 @@ _POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def power_of_ten(largest: float) -> tuple[float, str]:
-    """Factor that leaves numbers of at most five digits, and what they are counted in.
+    """Return a factor to numbers of at most five digits, and its power of ten.
 
     Args:
         largest: The largest number, without a sign.
@@ -92,7 +92,7 @@ def power_of_ten(largest: float) -> tuple[float, str]:
 
 
 def widened(values, least: float, share: float = 0.08) -> tuple[float, float]:
-    """Limits of an axis around values, so far apart that round-off does not fill it.
+    """Return limits of an axis around values, wide enough to hide round-off.
 
     Args:
         values: What is drawn.
@@ -107,7 +107,7 @@ def widened(values, least: float, share: float = 0.08) -> tuple[float, float]:
 
 
 def raceway_index(raceway: str) -> int:
-    """Place of a raceway on the ring axis of a solution.
+    """Return the index of a raceway on the ring axis of a solution.
 
     Raises:
         ValueError: If it is neither "outer" nor "inner".
@@ -118,7 +118,7 @@ def raceway_index(raceway: str) -> int:
 
 
 def row_slices(solution) -> list[slice]:
-    """Where the rolling elements of each row stand on the element axis.
+    """Return the slices of the rows on the element axis.
 
     Args:
         solution: A single solution.
@@ -130,7 +130,7 @@ def row_slices(solution) -> list[slice]:
 
 
 def row_slice(solution, row: int) -> slice:
-    """Where the rolling elements of one row stand on the element axis.
+    """Return the slice of one row on the element axis.
 
     Args:
         solution: A single solution.
@@ -146,7 +146,7 @@ def row_slice(solution, row: int) -> slice:
 
 
 def degrees(azimuth) -> np.ndarray:
-    """Azimuth from 0 up to 360 degrees, without rounding noise at the seam.
+    """Return azimuths from 0 up to 360 degrees, without round-off at the seam.
 
     Args:
         azimuth: Angle [rad].
@@ -156,7 +156,7 @@ def degrees(azimuth) -> np.ndarray:
 
 
 def force_text(force: float) -> str:
-    """A force with its unit, N below 1 kN.
+    """Return a force with its unit as text, N below 1 kN.
 
     Args:
         force: Force [N].
@@ -167,7 +167,7 @@ def force_text(force: float) -> str:
 
 
 def towards_white(colour, share: float) -> tuple[float, ...]:
-    """A colour made lighter.
+    """Return a lighter colour.
 
     Args:
         colour: As matplotlib takes it.
@@ -179,5 +179,5 @@ def towards_white(colour, share: float) -> tuple[float, ...]:
 
 
 def head(figure, title: str, **place) -> None:
-    """Title of a page, as it stands: a file may have a dollar in its name."""
+    """Write the title of a page literally: file names may contain a dollar."""
     figure.suptitle(title, fontsize=14, fontweight="bold", parse_math=False, **place)

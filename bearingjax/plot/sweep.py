@@ -1,4 +1,4 @@
-"""The results of a sweep over what its cases vary."""
+"""Plots of the results of a sweep over its inputs."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
@@ -122,7 +122,7 @@ def _varying(found, good) -> dict[str, np.ndarray]:
 
 
 def _curves(inputs, good) -> tuple[str, list[_Curve]]:
-    """Label of the abscissa, and the curves."""
+    """Return the label of the abscissa, and the curves."""
     solved = np.flatnonzero(good)
     by_number = _NUMBER, [_Curve(solved, solved, 0, "")]
     if not inputs:
@@ -164,7 +164,7 @@ def _unit(header):
 
 
 def _shown(header, values) -> tuple[str, float]:
-    """Header with the unit for people, and the factor to it."""
+    """Return the header with its display unit, and the factor to it."""
     name = header.partition(" [")[0]
     largest = float(np.nanmax(np.abs(values)))
     scale, shown = display_unit(_unit(header), largest)

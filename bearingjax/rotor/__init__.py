@@ -1,4 +1,4 @@
-"""The bearing in a rotor: modes, critical speeds, unbalance, equilibrium, vibration.
+"""Bearings in rotors: modes, critical speeds, unbalance, equilibrium, vibration.
 
 A rotor (`Rotor`) is a `Shaft` of Timoshenko beam elements between stations (stepped,
 hollow, of several materials), `Disc`s and `PointMass`es, and supports, on ground or on

@@ -1,4 +1,4 @@
-"""A bearing of the library as what holds a rotor."""
+"""Rotor support by a bearing of the library."""
 
 from typing import Any
 
@@ -33,7 +33,7 @@ _TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0])
 
 
 def _flag(value):
-    """Converter of a flag that is traced, so that bearings either way are alike."""
+    """Converter: traced flag, so that both orientations share one program."""
     return jnp.asarray(value) if isinstance(value, bool) else value
 
 
@@ -110,7 +110,7 @@ class BearingSupport(AbstractSupport):
         speed: Scalar,
         angle: Scalar | float = 0.0,
     ) -> Float[Array, "5"]:
-        """Force that moves the station against the bearing (5,) [N, N m].
+        """Return the force that moves the station against the bearing (5,) [N, N m].
 
         With the preload's share: it is not zero where nothing has moved. NaN where a
         rolling element did not converge.
@@ -144,7 +144,7 @@ class BearingSupport(AbstractSupport):
         return sense, sense[2]
 
     def _model(self, motion, speed):
-        """The bearing at the speed, and the freedoms of its rings (12,)."""
+        """Return the bearing at the speed, and the freedoms of its rings (12,)."""
         sense, sign = self._sense(motion.dtype)
         rings = jnp.zeros(2 * _N_RING, motion.dtype)
         rings = rings.at[_INNER].set(self.offset + sense * motion)

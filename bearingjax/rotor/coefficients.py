@@ -1,4 +1,4 @@
-"""Stiffness over rotor speed, as programs of linear rotordynamics read it."""
+"""Stiffness over rotor speed, for programs of linear rotordynamics."""
 
 import warnings
 from typing import Any
@@ -32,7 +32,7 @@ def stiffness_table(
     tilts: str = "held",
     fixed_ring: str = "outer",
 ) -> Float[Array, "speed 3 3"]:
-    """Stiffness of the moving ring in x, y and z at each rotor speed.
+    """Return the stiffness of the moving ring in x, y and z at each rotor speed.
 
     At every speed the bearing is put in its equilibrium under the load, with the
     inertia of its rolling elements, and linearised there. The other ring stands
@@ -80,7 +80,7 @@ def stiffness_table(
 
 
 def _warn_of_slack(element, speeds, stiffness):
-    """Say where nothing holds the ring: about 0 N/m is no stiffness to go on with."""
+    """Warn where the ring has no stiffness: about 0 N/m is useless further on."""
     nothing = SOFTEST_SHIFT * float(stiffness_scale(element.bearing))
     own = np.diagonal(np.asarray(stiffness), axis1=1, axis2=2)
     held = [name in restrained_freedoms(element.bearing) for name in FREEDOMS[:3]]
@@ -99,7 +99,7 @@ def _warn_of_slack(element, speeds, stiffness):
 
 @program(quick=True)
 def _sweep(element, speeds, load, tilts, fixed_ring):
-    """Stiffness (speed, 3, 3) and result code (speed,)."""
+    """Return stiffness (speed, 3, 3) and result code (speed,)."""
 
     def one(speed, load):
         point = _point(element, speed, load, tilts, fixed_ring)
@@ -121,7 +121,7 @@ def _point(element, speed, load, tilts, fixed_ring) -> OperatingPoint:
 
 
 def _checked(element, speeds, load, tilts, fixed_ring):
-    """Speeds (speed,) and loads (speed, 6), or the error that they deserve."""
+    """Return checked speeds (speed,) and loads (speed, 6)."""
     name = "stiffness_table"
     SolveOptions(fixed_ring=fixed_ring).check(name)
     if tilts not in TILTS:

@@ -26,7 +26,7 @@ Supported = tuple[
 
 
 class Condensed(eqx.Module):
-    """A linear rotor as seen from the motions of its supported stations.
+    """Linear rotor condensed to the motions of its supported stations.
 
     Attributes:
         stiffness, force: On them, per unit of `scale` (m, m), (m,) [N].
@@ -45,7 +45,7 @@ class Condensed(eqx.Module):
     speed: Scalar
 
     def motion(self, y):
-        """All motions [m, rad]."""
+        """Return all motions [m, rad]."""
         return self.back @ y + self.there
 
     def of_supports(self, y) -> Supported:
@@ -63,18 +63,18 @@ class Condensed(eqx.Module):
         return matrices[:, 0], matrices, matrices
 
     def out_of_balance(self, y, force):
-        """Force that springs and supports take up less that which acts (m,) [N]."""
+        """Return the force of springs and supports less the applied one (m,) [N]."""
         along = jnp.einsum("sim,si->m", self.rows, force)
         return along + self.stiffness @ y - self.force
 
     def slope(self, stiffness):
-        """Stiffness against all motions, from that of the supports (m, m) [N/m]."""
+        """Return the total stiffness, from that of the supports (m, m) [N/m]."""
         rows = self.rows
         return jnp.einsum("sim,sij,sjn->mn", rows, stiffness, rows) + self.stiffness
 
 
 def condensed(rotor: Rotor, loads: RotorLoads, speed: Scalar) -> Condensed:
-    """A rotor as seen from there.
+    """Return a rotor condensed to its supported stations.
 
     Shifts of supported stations are in m, tilts in m at the end of half the shaft.
 

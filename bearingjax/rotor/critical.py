@@ -1,4 +1,4 @@
-"""Critical speeds: where a natural frequency is the speed itself."""
+"""Critical speeds, at which a natural frequency equals the speed."""
 
 import warnings
 from typing import Any
@@ -27,23 +27,23 @@ from .modes import (
 from .rotor import Rotor, RotorMatrices
 
 _RISING, _FULL = 12, 5
-"""Newton steps while the damping rises from none to all of it, and then."""
+"""Newton steps while the damping rises from zero to its full value, and after."""
 _SPARE = 4
-"""Starts above those asked for: strong dampers let others take the lowest places."""
+"""Additional starts: strong dampers may change the order of the lowest modes."""
 _SETTLED = 1e-9
-"""Relative size of the last step of a critical speed that is found [1]."""
+"""Largest relative last step of a converged critical speed [1]."""
 _SAME, _PARALLEL = 1e-7, 0.03
-"""Relative distance of two that are one, if their motions differ by less than so."""
+"""Relative distance, and difference of motions, of coincident critical speeds."""
 
 _NEAR = 0.1
-"""Share of a critical speed within which an operating speed is warned of [1]."""
+"""Relative distance to a critical speed below which to warn [1]."""
 _RPM = 30.0 / np.pi
 
 
 class CriticalSpeeds(eqx.Module):
     """Critical speeds of a rotor, lowest first.
 
-    Where there are fewer than were asked for the speed is NaN.
+    Speeds beyond those found are NaN.
 
     Attributes:
         speed: Ω = Im λ(Ω) (mode,) [rad/s].
@@ -51,8 +51,8 @@ class CriticalSpeeds(eqx.Module):
             forward and backward at one speed (mode,).
         damping_ratio: -Re λ/|λ| there (mode,) [1].
         shape: (ux uy uz gx gy) of every node (mode, node, 5) [m, rad], as in `Modes`.
-        missed: How many more there may be below the last one found, of a damping
-            ratio below √½; 0 unless the search went wrong.
+        missed: Number of further ones below the last one found, of a damping ratio
+            below √½; 0 unless the search failed.
     """
 
     speed: Float[Array, " mode"]
@@ -65,7 +65,7 @@ class CriticalSpeeds(eqx.Module):
 def critical_speeds(
     rotor: Rotor, *, count: Any = 6, operating_speed: Any = None
 ) -> CriticalSpeeds:
-    """Speeds at which a mode vibrates once per revolution.
+    """Return the speeds at which a mode vibrates once per revolution.
 
     Without damping and with supports of constant stiffness they are the solutions of
     K v = Ω² (M - iG) v, a Hermitian problem that has them all. From there, as damping
@@ -141,7 +141,7 @@ def _critical(rotor, count):
 
 
 def _search(rotor, count):
-    """All that Newton's method finds, from two sets of starts."""
+    """Run Newton's method from two sets of starts."""
     rest = rotor.linearised(0.0)
     speed, shape = _undamped(rest, count)
     there = speed > 0
@@ -162,7 +162,7 @@ def _search(rotor, count):
 
 
 def _missed(rotor, found, point):
-    """Modes that can resonate and become slower than the speed, less those found."""
+    """Return the number of resonances passed by the speed but not found."""
     rate, speed = point.T
     last = (1.0 - 1e-6) * jnp.max(jnp.where(found, speed, 0.0))
     first = 1e-3 * jnp.min(jnp.where(found, speed, jnp.maximum(last, 1.0)))
@@ -173,9 +173,9 @@ def _missed(rotor, found, point):
 
 
 def _once(found, point, right):
-    """Those found, each once: two searches may end at the same one.
+    """Return which results to keep, each once: two searches may end at the same one.
 
-    Where several lie at one speed, as many as there are independent motions.
+    Of several at one speed, as many as there are independent motions are kept.
     """
     near = jnp.max(jnp.abs(point[:, None] - point[None, :]), axis=-1)
     near = near <= _SAME * jnp.abs(point[:, 1])[:, None]
@@ -195,7 +195,7 @@ def _once(found, point, right):
 
 
 def _undamped(matrices: RotorMatrices, count):
-    """Critical speeds without damping, and their motions; 0 where there are no more.
+    """Return critical speeds without damping and their motions; 0 where none is left.
 
     In the modes at rest, of frequency ω, the problem is that of the matrix
     S/(ωᵢ ωⱼ) with S = 1 - iG and eigenvalues 1/Ω². Motions that nothing holds (ω = 0)
@@ -229,10 +229,10 @@ def _undamped(matrices: RotorMatrices, count):
 
 
 def _followed(rotor, point, right, left, least):
-    """Newton's method, with inverse iteration for both vectors, as damping rises.
+    """Run Newton's method with inverse iteration for both vectors, as damping rises.
 
-    It rises with the third power of the steps, because dampers that are strong change
-    the mode while they are still a small share of themselves.
+    It rises with the third power of the steps, because strong dampers change the mode
+    already at a small share of the damping.
 
     Args:
         rotor: The rotor.
@@ -258,12 +258,12 @@ def _followed(rotor, point, right, left, least):
 
 
 def _damped(matrices, share):
-    """With a share of the damping."""
+    """Return the matrices with a share of the damping."""
     return eqx.tree_at(lambda m: m.damping, matrices, replace_fn=lambda c: share * c)
 
 
 def _newton(rotor, point, right, left, share: Any = 1.0):
-    """One step for (Re λ, Ω) of wᵀP(λ, Ω)v = 0, λ = Re λ + iΩ, with its derivative."""
+    """Make a Newton step of (Re λ, Ω) for wᵀP(λ, Ω)v = 0, λ = Re λ + iΩ."""
 
     def residual(point):
         matrices = _damped(rotor.linearised(point[1]), share)
@@ -275,7 +275,7 @@ def _newton(rotor, point, right, left, share: Any = 1.0):
 
 
 def _vectors(matrices, point, right, left):
-    """One step of inverse iteration for both vectors at λ."""
+    """Make a step of inverse iteration for both vectors at λ."""
     # Off the eigenvalue by so little that the system is just not singular.
     value = lax.complex(point[0], point[1] * (1.0 + 1e-10))
     rates, mass = to_complex(matrices.rates), to_complex(matrices.mass)

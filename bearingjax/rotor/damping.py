@@ -1,4 +1,4 @@
-"""Damping of a rotor that is not a damper of a support."""
+"""Damping of a rotor other than that of its supports."""
 
 from abc import abstractmethod
 
@@ -16,7 +16,7 @@ Matrix = Float[Array, "freedom freedom"]
 
 
 class AbstractDamping(eqx.Module):
-    """Damping as a matrix made of masses and stiffnesses.
+    """Damping matrix from mass and stiffness matrices.
 
     It acts against the motion as seen from the ground. Damping inside a turning shaft
     acts otherwise: above the first critical speed it drives the whirl, and is not
@@ -86,7 +86,7 @@ class ModalDamping(AbstractDamping):
     def matrix(
         self, shaft: tuple[Matrix, Matrix], rotor: tuple[Matrix, Matrix]
     ) -> Matrix:
-        """Damping matrix [N s/m, N s, N m s]: 2 ζ ω m for every mode."""
+        """Return the damping matrix [N s/m, N s, N m s]: 2 ζ ω m for every mode."""
         mass, stiffness = rotor
         factor = cholesky(mass)
         modal = congruent(factor, 0.5 * (stiffness + stiffness.T))
@@ -95,7 +95,7 @@ class ModalDamping(AbstractDamping):
 
 @jax.custom_jvp
 def square_root(matrix: Matrix) -> Matrix:
-    """Square root of a symmetric positive semidefinite matrix.
+    """Return the square root of a symmetric positive semidefinite matrix.
 
     Its derivative exists where eigenvalues coincide too; in a space where the matrix
     is zero it is taken as zero.
@@ -115,7 +115,7 @@ def _square_root_rule(primals, tangents):
 
 
 def _roots(matrix):
-    """Roots of the eigenvalues, and eigenvectors; round-off about zero is zero."""
+    """Return roots of the eigenvalues, and eigenvectors; round-off counts as zero."""
     values, vectors = eigh(matrix)
     size = values.shape[0]
     floor = 10.0 * size * jnp.finfo(matrix.dtype).eps * values[-1]

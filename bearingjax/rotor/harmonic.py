@@ -1,4 +1,4 @@
-"""Vibration of a linear rotor under all harmonic loads: unbalance, a shaking base."""
+"""Vibration of a linear rotor under harmonic loads: unbalance, base excitation."""
 
 from typing import Any
 
@@ -19,7 +19,7 @@ from .rotor import Rotor
 def harmonic_response(
     rotor: Rotor, loads: RotorLoads, frequencies: Any, speed: Any = None
 ) -> UnbalanceResponse:
-    """Vibration over the frequency of the excitation.
+    """Return the vibration over the frequency of the excitation.
 
     Args:
         rotor: Linear, such as `StaticEquilibrium.rotor`; a bearing is taken by its

@@ -1,4 +1,4 @@
-"""All supports of a rotor at once: like ones share one program.
+"""Evaluation of all supports of a rotor: like ones share one program.
 
 The program of a bearing is by far the largest part of a rotor's; two bearings of one
 structure, whatever their numbers, are traced and compiled once.
@@ -17,7 +17,7 @@ from .parts import AbstractSupport
 def of_each(
     function: Callable, supports: tuple[AbstractSupport, ...], *arrays: Any
 ) -> Any:
-    """function(support, *its arrays) of every support.
+    """Map function(support, *its arrays) over all supports.
 
     Args:
         function: It must not read station or housing of the support.
@@ -59,7 +59,7 @@ def _of_kind(function, alike, given):
 
 
 def _alike(one, other):
-    """Whether two supports differ in numbers only."""
+    """Return whether two supports differ in numbers only."""
     if jax.tree.structure(one) != jax.tree.structure(other):
         return False
     (a, rest), (b, others) = (eqx.partition(s, eqx.is_array) for s in (one, other))

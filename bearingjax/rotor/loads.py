@@ -84,7 +84,7 @@ class RotorLoads(eqx.Module):
         _vector(self, "base_acceleration", 3)
 
     def check(self, rotor: Rotor) -> None:
-        """Raise unless the rotor has all stations that are loaded.
+        """Raise unless the rotor has all loaded stations.
 
         Args:
             rotor: The rotor.
@@ -103,7 +103,7 @@ class RotorLoads(eqx.Module):
 
     @eqx.filter_jit
     def constant(self, rotor: Rotor) -> Motions:
-        """Weight and constant forces on all motions (motion,) [N, N m].
+        """Return weight and constant forces on all motions (motion,) [N, N m].
 
         Args:
             rotor: The rotor.
@@ -115,7 +115,7 @@ class RotorLoads(eqx.Module):
 
     @eqx.filter_jit
     def unbalanced(self, rotor: Rotor) -> tuple[Motions, Motions]:
-        """Amplitudes of cos φ and sin φ of the unbalance forces, over Ω² [kg m].
+        """Return amplitudes of cos φ and sin φ of unbalance forces, over Ω² [kg m].
 
         U (cos(φ + β), sin(φ + β)) at the station of every unbalance.
 
@@ -133,7 +133,7 @@ class RotorLoads(eqx.Module):
 
     @eqx.filter_jit
     def shaken(self, rotor: Rotor) -> Motions:
-        """Amplitude of cos φ of the inertia forces of a shaking base [N, N m].
+        """Return the amplitude of cos φ of the forces of base excitation [N, N m].
 
         Args:
             rotor: The rotor.
@@ -142,7 +142,7 @@ class RotorLoads(eqx.Module):
 
 
 def accelerated(rotor: Rotor, acceleration: Any) -> Motions:
-    """Mass times one acceleration of all that the rotor is (motion,) [N, N m].
+    """Return the mass times a uniform acceleration of the rotor (motion,) [N, N m].
 
     Args:
         rotor: The rotor.

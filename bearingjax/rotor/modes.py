@@ -29,30 +29,30 @@ from ..numerics.types import as_count, as_real
 from .rotor import Rotor, RotorMatrices
 
 _COINCIDENT = 1e-7
-"""Relative distance below which two eigenvalues are one, of several modes [1]."""
+"""Relative distance below which eigenvalues of modes coincide [1]."""
 _PLANAR = 1e-6
 """Share of whirl below which a mode has no direction [1]."""
 _STILL = 7.0
-"""In roots of the round-off: the share of the largest frequency of the model below
-which a mode counts as still, since round-off hides whether it oscillates [1]."""
+"""Share of the largest frequency below which a mode counts as not oscillating, over
+the square root of the round-off [1]."""
 _GROWS = 1e-9
-"""Growth over the frequency above which a mode is unstable, not by round-off [1]."""
+"""Growth over frequency above which a mode is unstable, beyond round-off [1]."""
 _ALONE = 0.01
-"""Share of a growth that another cause than the main one may have [1]."""
+"""Largest share of a growth from secondary causes [1]."""
 _ALIKE = 0.7
 """Overlap of a mode with itself at the next speed, below which the step is halved."""
 _HALVINGS = 10
 """Most halvings of a step between two speeds of a Campbell diagram."""
 _CROSSING = 2e-3
-"""Step within which frequencies may cross, over all speeds: a longer one would step
-over modes that approach and part again [1]."""
+"""Step within which frequencies may cross, over the range of speeds: a longer one
+would miss modes that approach and veer [1]."""
 
 
 class Modes(eqx.Module):
-    """Modes of a rotor, those that oscillate first, with rising frequency.
+    """Modes of a rotor: oscillating ones first, in order of frequency.
 
-    Behind them follow those that do not: rigid-body motions, and motions damped so
-    much that they creep. Over speeds every field has `speed` as first axis.
+    Rigid-body and overdamped motions follow. Over speeds every field has `speed` as
+    first axis.
 
     Attributes:
         eigenvalue: λ; the motion goes as exp(λ t) (mode,) [rad/s].
@@ -98,7 +98,7 @@ class Modes(eqx.Module):
 
 
 def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
-    """Modes of a rotor that turns at a speed.
+    """Return the modes of a rotor at a speed.
 
     Args:
         rotor: The rotor.
@@ -124,7 +124,7 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
 
 @program(quick=True)
 def _modes(rotor, speed, count):
-    """Modes, and by how much unsymmetric stiffness raises Re λ of each [rad/s]."""
+    """Return modes, and the part of unsymmetric stiffness in Re λ of each [rad/s]."""
     matrices = rotor.linearised(speed)
     pairs = eigenpairs(matrices, count)
     fixed, known = stop(matrices), stop(pairs)
@@ -136,7 +136,7 @@ def _modes(rotor, speed, count):
 
 
 def _warn_of_growth(found, speed, driven):
-    """Warn of the first mode that grows.
+    """Warn of the first unstable mode.
 
     Args:
         found: Modes at the speed.
@@ -165,7 +165,7 @@ def _warn_of_growth(found, speed, driven):
 
 
 def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
-    """Modes over speeds, each followed from one speed to the next.
+    """Return modes over speeds, each followed from one speed to the next.
 
     Modes are numbered by their frequencies at the first speed. A mode is followed by
     its shape: its overlap with each mode of the next speed is the product of two
@@ -193,7 +193,7 @@ def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
 
 
 def _warn_of_swaps(speeds, overlap):
-    """Warn of modes that were not followed for certain.
+    """Warn of modes that were not followed reliably.
 
     Args:
         speeds: (speed,) [rad/s].
@@ -220,7 +220,7 @@ def _warn_of_swaps(speeds, overlap):
 def followed(
     rotor: Rotor, speeds: Float[Array, " speed"], count: int | None
 ) -> tuple[Modes, Float[Array, "speed mode"]]:
-    """Modes over speeds, and the least overlap of each on the way there.
+    """Return modes over speeds, and the least overlap of each between them.
 
     Args:
         rotor, speeds, count: As in `campbell`.
@@ -232,7 +232,7 @@ def followed(
     crossing = _CROSSING * stop(jnp.max(speeds) - jnp.min(speeds))
 
     def at_speed(speed, before):
-        """Eigenpairs in the order of those before, and their overlaps."""
+        """Return eigenpairs, their order by those before, and the overlaps."""
         there = fixed.linearised(speed)
         now = _biorthogonal(eigenpairs(there, None), there)
         return now, *_matched(before, now, there)
@@ -282,8 +282,8 @@ def followed(
 
 
 def _products(left, right, matrices):
-    """w·((λ + λ') M + C + Ω G) v of left vectors of some modes and right ones of others
-    (mode, mode): zero for different modes of one speed [kg/s]."""
+    """Return w·((λ + λ') M + C + Ω G) v of left and right vectors (mode, mode): zero
+    for different modes of one speed [kg/s]."""
     mass, rates = (to_complex(part) for part in (matrices.mass, matrices.rates))
     w, v = left.left.conj(), right.right.T
     sums = left.value[:, None] + right.value[None, :]
@@ -291,14 +291,14 @@ def _products(left, right, matrices):
 
 
 def _same(pairs):
-    """Which modes have the eigenvalue of which (mode, mode)."""
+    """Return which modes have coincident eigenvalues (mode, mode)."""
     apart = jnp.abs(pairs.value[:, None] - pairs.value[None, :])
     return apart <= _COINCIDENT * jnp.abs(pairs.value)[:, None]
 
 
 def _biorthogonal(pairs, matrices):
-    """With left vectors of which `_products` with the right ones is the unit matrix,
-    among modes that coincide too; those that do not oscillate stay what they are."""
+    """Scale left vectors so that `_products` is the unit matrix, also for coincident
+    modes; modes that do not oscillate are unchanged."""
     swings = pairs.value.imag > 0
     own = _same(pairs) & swings[:, None] & swings[None, :]
     products = jnp.where(own, _products(pairs, pairs, matrices), 0.0)
@@ -308,8 +308,8 @@ def _biorthogonal(pairs, matrices):
 
 
 def _matched(before, now, matrices):
-    """For each mode its number among those of the next speed, each once, and how much
-    of it that one is; of modes that coincide, how much they are those before [1]."""
+    """Match each mode to one of the next speed; return their numbers and overlaps, of
+    coincident modes those of their subspaces [1]."""
     shares = _products(before, now, matrices) * _products(now, before, matrices).T
     order = _pairing(jnp.where(jnp.isfinite(shares), jnp.abs(shares), 0.0))
     one, other = _same(before), _same(now)
@@ -322,7 +322,7 @@ def _matched(before, now, matrices):
 
 
 def _crossed(before, now, count):
-    """Whether the frequency of one of the first modes crosses that of another."""
+    """Return whether the frequency of one of the first modes crosses another."""
     one, other = before.value.imag, now.value.imag
     gaps = (x[:count, None] - x[None, :] for x in (one, other))
     swing = (one > 0) & (other > 0)
@@ -332,7 +332,7 @@ def _crossed(before, now, count):
 
 
 def _pairing(likeness):
-    """For each row the column that is most like it, each column once."""
+    """Return the most similar column of each row, each column once."""
     n = likeness.shape[0]
 
     def pick(_, state):
@@ -345,7 +345,7 @@ def _pairing(likeness):
 
 
 class Pairs(eqx.Module):
-    """Eigenvalues and vectors in the freedoms of the rotor.
+    """Eigenvalues and eigenvectors in the freedoms of the rotor.
 
     Attributes:
         value: Eigenvalues (mode,) [rad/s].
@@ -360,7 +360,7 @@ class Pairs(eqx.Module):
 
 
 def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
-    """The first modes; vectors have no derivative."""
+    """Return the first modes; vectors have no derivative."""
     fixed = stop(matrices)
     n = fixed.mass.shape[0]
     factor, stiffness, state = _state(fixed)
@@ -390,7 +390,7 @@ def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
 
 
 def _state(matrices):
-    """Factor of the mass matrix, stiffness and state matrix in mass-normal freedoms."""
+    """Return mass factor, stiffness and state matrix in mass-normal freedoms."""
     factor = cholesky(matrices.mass)
     stiffness = congruent(factor, matrices.stiffness)
     eye = jnp.eye(factor.shape[0], dtype=factor.dtype)
@@ -411,7 +411,7 @@ def resonances_above(matrices: RotorMatrices, frequency: Any) -> Int[Array, ""]:
 
 
 def resonates(value: Complex[Array, "*mode"]) -> Bool[Array, "*mode"]:
-    """Whether the damping ratio is below √½: a response with a peak.
+    """Return whether the damping ratio is below √½: a response with a peak.
 
     Args:
         value: Eigenvalues [rad/s].
@@ -420,7 +420,7 @@ def resonates(value: Complex[Array, "*mode"]) -> Bool[Array, "*mode"]:
 
 
 def _refined(matrices, value, right, left):
-    """One Newton step of an eigenvalue, with its derivative."""
+    """Make one Newton step of an eigenvalue, with its derivative."""
     left = left.conj()
     rates = to_complex(matrices.rates) @ right
     slope = left @ (2.0 * value * (to_complex(matrices.mass) @ right) + rates)
@@ -434,7 +434,7 @@ def _refined(matrices, value, right, left):
 
 
 def shown(pairs: Pairs, matrices: RotorMatrices, speed: Any) -> Modes:
-    """Modes as they are reported.
+    """Return `Modes` from eigenpairs.
 
     Args:
         pairs: Eigenvalues and vectors.
@@ -454,7 +454,7 @@ def shown(pairs: Pairs, matrices: RotorMatrices, speed: Any) -> Modes:
 def largest_real(
     shape: Complex[Array, "mode node 5"], length: Any
 ) -> tuple[Complex[Array, "mode 1 1"], Complex[Array, "mode node 5"]]:
-    """Largest motion of each mode, and the modes divided by it.
+    """Return the largest motion of each mode, and the modes divided by it.
 
     Args:
         shape, length: As in `direction`.
@@ -468,9 +468,9 @@ def largest_real(
 
 
 def direction(shape: Complex[Array, "*mode node 5"], length) -> Int[Array, "*mode"]:
-    """+1 from x towards y, -1 the other way, 0 neither: how most of a mode whirls.
+    """Return the whirl of a mode: +1 from x towards y, -1 opposite, 0 neither.
 
-    Neither is a mode in a plane, and one of which half or more goes along the shaft.
+    Neither is a planar mode, and one that is at least half axial.
 
     A motion (x, y) = Re (a, b) exp(iωt) is the sum of a circle from x towards y of
     radius |a + ib|/2 and of one the other way of radius |a - ib|/2.
@@ -491,7 +491,7 @@ def direction(shape: Complex[Array, "*mode node 5"], length) -> Int[Array, "*mod
 
 
 def speed_list(owner: str, speeds: Any) -> Float[Array, " speed"]:
-    """Speeds as an array, or the error that they deserve."""
+    """Return speeds as a checked array."""
     real_numbers(owner, "speeds", speeds, "speeds in rad/s")
     speeds = as_real(speeds)
     if speeds.ndim != 1 or speeds.shape[0] == 0:
@@ -511,5 +511,5 @@ def _counted(owner, count):
 
 
 def to_complex(matrix: Any) -> Any:
-    """A real array as a complex one."""
+    """Return a real array as complex."""
     return lax.complex(matrix, jnp.zeros_like(matrix))

@@ -1,4 +1,4 @@
-"""Onset of instability: the speed from which on a mode grows."""
+"""Onset of instability: the speed at which a mode becomes unstable."""
 
 from typing import Any, NamedTuple
 
@@ -10,14 +10,14 @@ from .modes import Modes, followed, speed_list
 from .rotor import Rotor
 
 _UNSTABLE = 1e-5
-"""Damping ratio below which, negative, a mode grows, and not by the small unsymmetric
-part that the tangent of a bearing has [1]."""
+"""Negative damping ratio below which a mode is unstable, beyond the small unsymmetric
+part of a bearing's tangent stiffness [1]."""
 _LOCATED = 1e-8
 """Accuracy of an onset, over the highest speed [1]."""
 
 
 class Onset(NamedTuple):
-    """Where a mode becomes unstable.
+    """Onset of instability of a mode.
 
     Attributes:
         mode: Its number in the Campbell diagram, from 0.
@@ -32,7 +32,7 @@ class Onset(NamedTuple):
 
 
 def instability_onsets(rotor: Rotor, speeds: Any, found: Modes) -> tuple[Onset, ...]:
-    """Where modes of a Campbell diagram first become unstable.
+    """Return where modes of a Campbell diagram first become unstable.
 
     A mode is unstable if its damping ratio is below -1e-5: round-off, and what the
     tangent of a bearing lacks in symmetry, stay above. Where its damping ratio was
@@ -62,13 +62,13 @@ def instability_onsets(rotor: Rotor, speeds: Any, found: Modes) -> tuple[Onset, 
 
 
 def _ratio(value):
-    """Damping ratios of those that oscillate, 0 of others."""
+    """Return damping ratios of oscillating modes, 0 for others."""
     swings = value.imag > 0
     return np.where(swings, -value.real, 0.0) / np.where(swings, np.abs(value), 1.0)
 
 
 def _crossing(rotor, ends, before):
-    """Speed between two at which a mode begins to grow, and its eigenvalue there.
+    """Return the onset speed of a mode between two speeds, and its eigenvalue.
 
     Args:
         rotor: The rotor.

@@ -100,7 +100,7 @@ class Disc(AbstractPart):
         bore: Any = 0.0,
         material: Material | None = None,
     ) -> "Disc":
-        """A cylindrical disc.
+        """Create a cylindrical disc.
 
         Args:
             station: Number of the station that it sits on.
@@ -273,7 +273,7 @@ class AbstractSupport(eqx.Module):
 
 
 class LinearSupport(AbstractSupport):
-    """Springs and dampers of constant stiffness.
+    """Linear springs and dampers.
 
     Attributes:
         station: Number of the station that it holds.

@@ -1,4 +1,4 @@
-"""A flexible rotor with few freedoms: Craig-Bampton reduction at its supports."""
+"""Craig-Bampton reduction of a flexible rotor at its supports."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ Basis = Float[Array, "motion fewer"]
 
 
 def craig_bampton(rotor: Rotor, modes: Any) -> Basis:
-    """Motions that a rotor is held to: `rotor.linearised(...).projected(basis)`.
+    """Return the reduced basis, for `rotor.linearised(...).projected(basis)`.
 
     The motions of supported stations and of housings stay freedoms as they are; each
     takes the rest of the shaft along as without inertia. To these come the slowest
@@ -83,7 +83,7 @@ def _sizes(stations):
 
 
 def held_motions(rotor: Rotor) -> tuple[np.ndarray, np.ndarray]:
-    """Places of the motions of supported stations and housings, and of all others.
+    """Return indices of the motions of supported stations and housings, and of others.
 
     Args:
         rotor: The rotor.

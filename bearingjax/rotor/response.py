@@ -18,13 +18,13 @@ from .parts import check_station
 from .rotor import Rotor
 
 _HELD = 1e-6
-"""Stiffness over mass that everything has at frequency zero [1/s²]."""
+"""Stiffness over mass added to everything at frequency zero [1/s²]."""
 _BATCH = 16
-"""Speeds that are solved at once."""
+"""Number of speeds solved at once."""
 
 
 class Unbalance(eqx.Module):
-    """A mass off the axis.
+    """Unbalance: a mass off the axis.
 
     Attributes:
         station: Number of the station that it sits on.
@@ -71,7 +71,7 @@ class UnbalanceResponse(eqx.Module):
 
 
 def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceResponse:
-    """Vibration under unbalance, speed by speed.
+    """Return the vibration under unbalance, speed by speed.
 
     The force of an unbalance U at azimuth φ is U Ω² (cos(Ωt + φ), sin(Ωt + φ)).
 
@@ -103,7 +103,7 @@ def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceR
 
 @program(quick=True)
 def _moments(rotor, unbalances) -> Complex[Array, " motion"]:
-    """Amplitude of the forces of unbalance on all motions, over Ω² [kg m]."""
+    """Return amplitudes of unbalance forces on all motions, over Ω² [kg m]."""
     moments = to_complex(jnp.zeros_like(rotor.motions()[:, 0]))
     for one in unbalances:
         x, y = one.moment * jnp.cos(one.phase), one.moment * jnp.sin(one.phase)
@@ -121,7 +121,7 @@ def steady(
     frequencies: Float[Array, " speed"],
     speeds: Float[Array, " speed"],
 ) -> UnbalanceResponse:
-    """Vibration of a linear rotor under Re((moments ω² + forces) exp(iωt)).
+    """Return the vibration of a linear rotor under Re((moments ω² + forces) exp(iωt)).
 
     Args:
         rotor: The rotor.

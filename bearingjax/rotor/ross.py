@@ -24,7 +24,7 @@ def to_ross(
     n_link: int | None = None,
     tag: str | None = None,
 ) -> Any:
-    """A `ross.BearingElement` with the stiffness of the bearing over rotor speed.
+    """Return a `ross.BearingElement` with bearing stiffness over rotor speed.
 
     Axes: those of ROSS are ours. Its rotor axis is z along rising node numbers, its
     freedoms of a node are (x, y, z, alpha, beta, theta) with alpha about +x and beta
@@ -73,7 +73,7 @@ def to_ross(
 
 
 def _coefficients(element, speeds, load, damping, tilts, fixed_ring) -> dict:
-    """Arguments of `ross.BearingElement`, each over speed."""
+    """Return arguments of `ross.BearingElement`, each over speed."""
     speeds = np.asarray(speeds, dtype=float)
     if speeds.ndim == 1 and not (np.diff(speeds) > 0).all():
         raise ValueError("to_ross: `speeds` must rise from each to the next [rad/s].")

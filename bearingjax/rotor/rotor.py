@@ -1,4 +1,4 @@
-"""A rotor: shaft, discs and supports, put together as matrices."""
+"""Rotor of shaft, discs and supports, assembled as matrices."""
 
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -53,13 +53,13 @@ class RotorMatrices(eqx.Module):
 
     @property
     def rates(self) -> Matrix:
-        """C + Ω G, what multiplies the velocity."""
+        """C + Ω G, the coefficient of the velocity."""
         return self.damping + self.speed * self.gyroscopic
 
     def dynamic_stiffness(
         self, eigenvalue: Complex[Array, ""]
     ) -> Complex[Array, "freedom freedom"]:
-        """λ² M + λ (C + Ω G) + K: the force over a motion that grows like exp(λ t).
+        """Return λ² M + λ (C + Ω G) + K: force over a motion proportional to exp(λ t).
 
         Args:
             eigenvalue: λ [rad/s].
@@ -71,7 +71,7 @@ class RotorMatrices(eqx.Module):
         return eigenvalue**2 * mass + eigenvalue * rates + stiffness
 
     def projected(self, basis: Float[Array, "freedom fewer"]) -> "RotorMatrices":
-        """The rotor held to motions q = basis · p, with p as its freedoms."""
+        """Return the rotor reduced to motions q = basis · p, with freedoms p."""
 
         def within(matrix):
             return basis.T @ matrix @ basis
@@ -88,7 +88,7 @@ class RotorMatrices(eqx.Module):
         )
 
     def split(self, motion: Any) -> tuple[Any, Any]:
-        """Motions (..., motion) as those of nodes (..., node, 5) and housings."""
+        """Split motions (..., motion) into nodes (..., node, 5) and housings."""
         n, lead = N_STATION * self.n_nodes, motion.shape[:-1]
         nodes = motion[..., :n].reshape(*lead, self.n_nodes, N_STATION)
         return nodes, motion[..., n:].reshape(*lead, -1, N_HOUSING)
@@ -112,7 +112,7 @@ class Unsupported(NamedTuple):
 
 
 class Rotor(eqx.Module):
-    """A shaft with what sits on it and what holds it.
+    """Rotor: a shaft with discs and supports.
 
     Attributes:
         shaft: The shaft.
@@ -157,7 +157,7 @@ class Rotor(eqx.Module):
         return sum((part.mass for part in self.discs), start=self.shaft.mass)
 
     def at(self, station: int) -> slice:
-        """Where the five motions of a station stand among all motions.
+        """Return the slice of the five motions of a station in all motions.
 
         Args:
             station: Number of the station.
@@ -181,7 +181,7 @@ class Rotor(eqx.Module):
         return full.at[N_STATION * n :, N_STATION:].set(jnp.eye(n_more, dtype=z.dtype))
 
     def at_supports(self) -> Float[Array, "support 5 motion"]:
-        """Motion of each supported station less that of its housing, from all motions.
+        """Return motions of supported stations less their housings, from all motions.
 
         The force of a support acts on the rotor through the transpose.
         """
@@ -200,7 +200,7 @@ class Rotor(eqx.Module):
         return N_STATION * self.shaft.n_nodes + N_HOUSING * housings
 
     def _housings(self):
-        """Where each support's housing stands among all motions; `None`: nowhere."""
+        """Yield the slice of each support's housing in all motions; `None`: none."""
         first = N_STATION * self.shaft.n_nodes
         for support in self.supports:
             if support.housing is None:
@@ -212,7 +212,7 @@ class Rotor(eqx.Module):
     def linearised(
         self, speed: Any = 0.0, motion: Float[Array, " motion"] | None = None
     ) -> RotorMatrices:
-        """The rotor as matrices.
+        """Return the rotor as matrices, linearised.
 
         Args:
             speed: Of the rotor, positive from x towards y [rad/s].
@@ -226,7 +226,7 @@ class Rotor(eqx.Module):
 
     @eqx.filter_jit
     def unsupported(self) -> "Unsupported":
-        """Matrices on all motions of what there is without supports and `damping`."""
+        """Return matrices on all motions without supports and `damping`."""
         n_shaft, n = N_STATION * self.shaft.n_nodes, self._n_motions
         nothing = jnp.zeros((n, n), dtype=self.shaft.stations.dtype)
 

@@ -32,7 +32,7 @@ Matrices = tuple[
 
 
 class Shaft(eqx.Module):
-    """A shaft of cylindrical segments, solid or hollow.
+    """Shaft of cylindrical segments, solid or hollow.
 
     A segment lies between two neighbouring stations and is divided into elements. A
     disc, a support or an unbalance sits on a station, named by its number from 0; the
@@ -137,7 +137,7 @@ class Shaft(eqx.Module):
         return sum(self.divisions) + 1
 
     def node(self, station: int) -> int:
-        """Number of the node at a station."""
+        """Return the number of the node at a station."""
         return sum(self.divisions[:station])
 
     @property
@@ -158,11 +158,11 @@ class Shaft(eqx.Module):
 
     @property
     def _segment(self) -> np.ndarray:
-        """Segment of each element."""
+        """Index of the segment of each element."""
         return np.repeat(np.arange(self.n_segments), self.divisions)
 
     def _material_numbers(self):
-        """Modulus, Poisson's ratio and density of each segment."""
+        """Return modulus, Poisson's ratio and density of each segment."""
         given = self.material
         listed = given if isinstance(given, tuple) else (given,) * self.n_segments
         return tuple(
@@ -171,7 +171,7 @@ class Shaft(eqx.Module):
         )
 
     def matrices(self):
-        """Mass, gyroscopic and stiffness matrix of the free shaft.
+        """Return mass, gyroscopic and stiffness matrix of the free shaft.
 
         Returns:
             Three matrices (5 node, 5 node), node after node; the gyroscopic one is
@@ -190,7 +190,7 @@ class Shaft(eqx.Module):
 
 
 def shear_coefficient(bore_ratio: Scalar, poisson_ratio: Scalar) -> Scalar:
-    """Timoshenko's shear coefficient of a circular section, solid or hollow [1].
+    """Return Timoshenko's shear coefficient of a solid or hollow circle [1].
 
     Args:
         bore_ratio: Bore over outer diameter [1].
@@ -213,7 +213,7 @@ def element_matrices(
     poisson_ratio: Scalar,
     density: Scalar,
 ) -> Matrices:
-    """Mass, gyroscopic and stiffness matrix of one cylindrical element.
+    """Return mass, gyroscopic and stiffness matrix of one cylindrical element.
 
     Bending with shear, rotary inertia and gyroscopic moments in both planes, and
     stretching, from the energies of the motion that the ends impose on an element
@@ -261,7 +261,7 @@ def element_matrices(
 
 
 def _planes():
-    """Freedoms of an element that bend it in x and in y, and that stretch it."""
+    """Return freedoms of an element in bending in x and in y, and in tension."""
     x, y, z = np.zeros((4, 10)), np.zeros((4, 10)), np.zeros((2, 10))
     x[range(4), [0, 4, 5, 9]] = 1.0
     y[range(4), [1, 3, 6, 8]] = [1.0, -1.0, 1.0, -1.0]
@@ -273,7 +273,7 @@ _PLANES = _planes()
 
 
 def _shapes(length, phi):
-    """Deflection, slope, curvature and shear strain of a bent element, and weights.
+    """Return deflection, slope, curvature and shear of a bent element, and weights.
 
     Each (point, 4), for deflection and slope at either end, at the nodes of a Gauss
     rule that integrates their products exactly.

@@ -1,4 +1,4 @@
-"""A support whose stiffness follows the speed of the rotor, as a polynomial."""
+"""Support with stiffness as a polynomial of the rotor speed."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -20,7 +20,7 @@ from .parts import (
 
 
 class SpeedSupport(AbstractSupport):
-    """Springs whose stiffness follows the speed, and dampers.
+    """Springs with speed-dependent stiffness, and dampers.
 
     Attributes:
         station: Number of the station that it holds.
@@ -79,7 +79,7 @@ class SpeedSupport(AbstractSupport):
 
 
 def chebyshev_analysis(places: int) -> np.ndarray:
-    """Coefficients of Chebyshev's polynomials from values at roots (order, place).
+    """Return the matrix from values at roots to Chebyshev coefficients (order, place).
 
     The roots are those of the first polynomial left out, rising.
 

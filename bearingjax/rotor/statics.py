@@ -1,4 +1,4 @@
-"""Where weight, constant forces and preload put a rotor in its bearings.
+"""Static equilibrium of a rotor in its bearings under weight, forces and preload.
 
 Of the motions of the supported stations, on which the linear shaft is condensed, the
 balance is solved by the trust-region Newton method that solves single bearings too,
@@ -29,14 +29,14 @@ from .statics_words import unsettled, warn_of
 _FIRST_STEP = 1e-5
 """First bound of the steps [m]."""
 _FREE = 1e-9
-"""Stiffness over the largest one below which a motion counts as free [1]."""
+"""Stiffness over the largest below which a motion counts as free [1]."""
 _SOLVER = TrustRegionNewton(
     tolerance=1e-11, max_steps=200, symmetric=False, softest=0.03
 )
 
 
 class StaticEquilibrium(eqx.Module):
-    """A rotor at rest in its supports, at one speed.
+    """Static equilibrium of a rotor in its supports, at one speed.
 
     Attributes:
         displacement: (ux uy uz gx gy) of every node (node, 5) [m, rad].
@@ -75,7 +75,7 @@ def static_equilibrium(
     *,
     throw: bool = True,
 ) -> StaticEquilibrium:
-    """Equilibrium under weight, constant forces and the preload of the bearings.
+    """Find the equilibrium under weight, constant forces and bearing preload.
 
     Args:
         rotor: `Rotor`: shaft, discs, supports; one support at least.
@@ -114,7 +114,7 @@ def static_equilibrium(
 
 
 def checked_loads(owner: str, rotor: Any, loads: Any) -> RotorLoads:
-    """The loads, or the error that they or the rotor deserve.
+    """Return the loads after a check of loads and rotor.
 
     Args:
         owner: Function that was called.
@@ -137,7 +137,7 @@ def checked_loads(owner: str, rotor: Any, loads: Any) -> RotorLoads:
 
 
 def _searched(parts: Condensed, length) -> Minimum:
-    """Where the supports carry the load, and they themselves. Without derivatives."""
+    """Return equilibrium and state of the supports, without derivatives."""
     load = parts.force
     size = jnp.linalg.norm(load)
 
@@ -181,7 +181,7 @@ def _undone(of_y, y, change, parts):
 def settled_at(
     rotor, loads, speed
 ) -> tuple[StaticEquilibrium, Float[Array, " motion"]]:
-    """The result, and where the search ended even if it is none (motion,).
+    """Return the result, and the end point of the search even if it failed (motion,).
 
     Args:
         rotor, loads, speed: As in `static_equilibrium`, checked.
@@ -228,7 +228,7 @@ def _settled(found, solved, rotor, parts, speed) -> StaticEquilibrium:
 
 
 def _free(parts, slope):
-    """The softest motion, if it is free."""
+    """Return the softest motion, if it is free."""
     known = jnp.where(jnp.isfinite(slope), slope, 0.0)
     values, vectors = eigh(known)
     moved = parts.back @ vectors[:, 0]

@@ -1,4 +1,4 @@
-"""Where weight, constant forces and preload put a rotor, over its speed.
+"""Static equilibrium of a rotor under weight, forces and preload, over its speed.
 
 For supports that follow the speed: a rotor settles at some speeds, and springs whose
 stiffness is a polynomial between stand for its supports at all others.
@@ -24,7 +24,7 @@ from .statics import StaticEquilibrium, checked_loads, settled_at
 
 
 class StaticEquilibriumOver(eqx.Module):
-    """A rotor at rest in its supports, at speeds from rest to a top speed.
+    """Static equilibria of a rotor at speeds from rest to a top speed.
 
     Attributes:
         rotor: The rotor on springs that follow the speed (`SpeedSupport`), for all
@@ -53,7 +53,7 @@ def static_equilibrium_over(
     places: Any = 13,
     throw: bool = True,
 ) -> StaticEquilibriumOver:
-    """Equilibrium from rest to a top speed, for supports that follow the speed.
+    """Find equilibria from rest to a top speed, for supports that follow the speed.
 
     The rotor is settled at Chebyshev's points between, and the stiffness of every
     support there made a polynomial of the speed: linear analyses then cost no more than
@@ -93,7 +93,7 @@ def static_equilibrium_over(
 
 
 def _at_each(rotor, loads, speeds) -> StaticEquilibrium:
-    """The rotor settled at every speed, without `rotor`; with `place` as first axis."""
+    """Return equilibria at all speeds, without `rotor`; first axis `place`."""
 
     def one(speed):
         found = settled_at(rotor, loads, speed)[0]

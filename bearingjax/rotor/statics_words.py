@@ -14,12 +14,12 @@ from .rotor import N_STATION
 from .shaft import STATION_FREEDOMS
 
 _SUSPECT, _KEPT = 0.2, 0.05
-"""Axial force over that before the shaft moved, by tangent and as it is: below it the
-preload is looked at, and is lost [1]."""
+"""Axial force over that before the shaft moved, by tangent and exact, below which the
+preload is checked, and is lost [1]."""
 
 
 def _named(rotor, motion) -> str:
-    """The freedom of a station or housing that a motion moves most."""
+    """Return the name of the freedom with the largest motion."""
     n = N_STATION * rotor.shaft.n_nodes
     length = float(rotor.shaft.stations[-1] - rotor.shaft.stations[0])
     nodes = np.abs(motion[:n].reshape(-1, N_STATION)) * ([1.0] * 3 + [length] * 2)
@@ -34,12 +34,12 @@ def _named(rotor, motion) -> str:
 
 
 def unsettled(rotor: Any, found: Any, place: Any) -> str:
-    """Why a rotor did not come to rest.
+    """Return the message on a failed equilibrium of a rotor.
 
     Args:
         rotor: The rotor.
-        found: What `static_equilibrium` found.
-        place: Where its search ended (motion,).
+        found: Result of `static_equilibrium`.
+        place: End point of its search (motion,).
     """
     result = Result(int(found.result))
     start = f"static_equilibrium: {result.label} at {float(found.speed):g} rad/s:"
@@ -58,7 +58,7 @@ def unsettled(rotor: Any, found: Any, place: Any) -> str:
 
 
 def _lost_preload(rotor, found) -> str:
-    """Which bearings lost their preload, and why; empty if none did."""
+    """Return which bearings lost their preload, and why; empty if none did."""
     moved = np.asarray(rotor.at_supports()) @ np.asarray(found.motion)
     left, slopes = (np.asarray(x) for x in (found.support_load, found.stiffness))
     preloaded = [
@@ -101,13 +101,13 @@ def _lost_preload(rotor, found) -> str:
 
 @program(quick=True)
 def _at(support, motion, speed):
-    """Force of a support where nothing has moved yet."""
+    """Return the force of a support at zero velocity."""
     return support.force(motion, jnp.zeros_like(motion), speed)
 
 
 def warn_of(rotor: Any, found: Any) -> None:
-    """Warn of bearings that bear nothing or lost their preload, and of a motion that
-    nothing holds.
+    """Warn of bearings without load or that lost their preload, and of an
+    unsupported motion.
 
     Args:
         rotor: The rotor.

@@ -37,17 +37,17 @@ _PHASES = 64
 _STEPS = 20
 """Most Newton steps of a point."""
 _TRIES = 40
-"""Most points between two peaks, with those that are refused."""
+"""Most points between two peaks, rejected ones included."""
 _NEAR = 0.2
-"""Most that a point may be off its guess, of the step to it [1]."""
+"""Largest deviation of a point from its guess, over the step [1]."""
 _SMALL = 1e-3
-"""Peak that is linear, over the first one that is wanted [1]."""
+"""Peak of linear vibration, over the first requested one [1]."""
 _SAME = 1e-8
-"""Distance of unknowns below which a guess was right [1]."""
+"""Distance of unknowns below which a guess is exact [1]."""
 
 
 class Backbone(eqx.Module):
-    """Free vibrations over their amplitude.
+    """Backbone curve: free vibrations over their amplitude.
 
     Attributes:
         frequency: (point,) [rad/s].
@@ -72,7 +72,7 @@ class Backbone(eqx.Module):
 
 
 class _Free(AbstractVibratingSystem):
-    """A system without excitation, and with some damping taken away."""
+    """System without excitation, with reduced damping."""
 
     mass: Float[Array, "n n"]
     scale: Float[Array, " n"]
@@ -93,7 +93,7 @@ class _Free(AbstractVibratingSystem):
 
 
 def _free(system, damping_ratio):
-    """Excitation: the mean over a period of what does not grow with the frequency."""
+    """Return the free system, loaded by the mean excitation at zero frequency."""
     phases = as_real(2.0 * np.pi * np.arange(_PHASES) / _PHASES)
     none = jnp.zeros_like(damping_ratio)
     every = jax.vmap(lambda phase: system.excitation(phase, none, none))(phases)
@@ -116,7 +116,7 @@ def backbone(
     mode: int = 0,
     throw: bool = True,
 ) -> Backbone:
-    """Free vibrations that begin as a linear mode and grow.
+    """Return free vibrations that begin as a linear mode, at increasing peaks.
 
     Args:
         system: The system. If its rotor turns with the excitation, it turns with the
@@ -163,7 +163,7 @@ def _message(found, peaks):
 
 
 def _equations(method, given, freedom):
-    """(z, ζ, ν) -> what is left: the method's, and a peak of a height at phase 0."""
+    """Return (z, ζ, ν) -> residual: the method's, and that of a peak at phase 0."""
     system, peak, rest = given
 
     def left(x):
@@ -178,7 +178,7 @@ def _equations(method, given, freedom):
 
 
 def _at_rest(system):
-    """Where the freedoms rest, over `scale` (n,); NaN if Newton's method finds none."""
+    """Return the equilibrium over `scale` (n,); NaN if Newton's method fails."""
 
     def left(u, system):
         one = jnp.ones_like(system.reference_frequency)
@@ -199,7 +199,7 @@ def _at_rest(system):
 
 
 def _linear(system, rest, freedom, method, mode):
-    """Unknowns at rest, and their growth with the peak over the freedom's scale."""
+    """Return unknowns at rest, and their derivative by the scaled peak."""
     free = _free(system, jnp.zeros_like(system.reference_frequency))
     count = system.scale.shape[0]
     one = jnp.ones_like(free.damping_ratio)

@@ -27,11 +27,11 @@ from .orbit import STABLE, amplitudes, beginning
 from .system import AbstractVibratingSystem
 
 _LOCATED = 1e-7
-"""Length along the branch within which an event is located, of its frequency [1]."""
+"""Tolerance of the position of an event along the branch, over its frequency [1]."""
 
 
 class Event(NamedTuple):
-    """A point of a branch at which something changes.
+    """Event on a branch: a bifurcation point.
 
     Attributes:
         kind: "fold" (a multiplier passes +1 and the branch turns back in frequency),
@@ -169,7 +169,7 @@ def _traced(system, method, motion, begin, end, parameter, steps, points) -> Tra
 
 @program
 def _along(system, method, x, tangent, length):
-    """Point of the branch at some length along its tangent from `x`."""
+    """Return the point of the branch at a length along its tangent from `x`."""
     return place(system, method, x + length * tangent, tangent, tangent)
 
 
@@ -182,16 +182,16 @@ def _flip(point: Place) -> float:
 
 
 def _pairs(point: Place) -> float:
-    """Zero where a pair of multipliers has the product one."""
+    """Return a function that is zero if two multipliers have the product one."""
     k = np.linalg.eigvals(point.monodromy)
     i, j = np.triu_indices(len(k), 1)
     return _least(k[i] * k[j] - 1.0)
 
 
 def _least(factors: np.ndarray) -> float:
-    """Least of some factors with the sign of their product, which is real.
+    """Return the least of some factors with the sign of their real product.
 
-    It changes sign where the product does; that of hundreds is too small a number.
+    It changes sign where the product does, which would underflow for many factors.
     """
     sizes = np.abs(factors)
     signs = factors / np.where(sizes == 0, 1.0, sizes)
@@ -208,7 +208,7 @@ _TESTS: dict[str, Callable[[Place], float]] = {
     "neimark_sacker": _pairs,
     "branch_point": _side,
 }
-"""Numbers that change sign where something happens."""
+"""Test functions, which change sign at events."""
 
 
 def _events(system, method, points: Place) -> tuple[Event, ...]:

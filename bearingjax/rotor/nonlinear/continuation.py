@@ -107,7 +107,7 @@ class Steps(eqx.Module):
 
 
 class Traced(NamedTuple):
-    """Points of a branch, and room for more: only the first `count` count.
+    """Points of a branch in arrays of fixed size: the first `count` are valid.
 
     Attributes:
         x: Unknowns and frequency ratio (point, m + 1) [1].
@@ -135,7 +135,7 @@ class Traced(NamedTuple):
 
 
 class Place(NamedTuple):
-    """A point of a branch; fields as in `Traced`."""
+    """Point of a branch; fields as in `Traced`."""
 
     x: Float[Array, " x"]
     tangent: Float[Array, " x"]
@@ -158,11 +158,11 @@ class _State(NamedTuple):
 
 _GOING = -1
 _SHORT = 1e-3
-"""Step at which a change of the determinant's sign is no jump [1]."""
+"""Largest step at which a sign change of the determinant is not a jump [1]."""
 _NEWTON = 10
 """Most Newton steps of a point."""
 _FIRST_NEWTON = 50
-"""And of the first one."""
+"""Most Newton steps of the first point."""
 
 
 def place(
@@ -173,7 +173,7 @@ def place(
     towards: Float[Array, " x"],
     limit: int | Int[Array, ""] = _NEWTON,
 ) -> tuple[Place, Int[Array, ""]]:
-    """The point of a branch in the plane through `x`, and its `Result` code.
+    """Return the point of a branch in the plane through `x`, and its `Result` code.
 
     Args:
         system: The system.
@@ -227,7 +227,7 @@ def trace(
     low, high = jnp.minimum(start, end), jnp.maximum(start, end)
 
     def predicted(state):
-        """Where to correct, in which plane, how far away, and whether it is a limit."""
+        """Return prediction, correction plane, step, and whether it is at a limit."""
         guess, normal = parameter.direction(state.last.tangent, state.before)
         x = state.last.x
         new = x + state.step * guess

@@ -1,4 +1,4 @@
-"""The motion over one period, by Radau's collocation scheme of order 9.
+"""Motion over one period, by Radau collocation of order 9.
 
 Steps are even in the phase, so that one program serves every frequency and the
 derivatives of the flow are those of what is computed. The scheme is implicit and damps
@@ -31,7 +31,7 @@ _STAGES = 5
 _NEWTON = 20
 """Most Newton steps for the stages of one step."""
 _SOLVED = 1e3
-"""Last Newton step over the motion, in units of round-off [1]."""
+"""Largest last Newton step over the motion, in units of round-off [1]."""
 
 
 @functools.cache
@@ -70,12 +70,12 @@ def _stages_of(steps: int, dtype) -> _Stages:
 
 
 def _begins(steps, dtype):
-    """Phases at which steps begin [rad]."""
+    """Return the phases at which steps begin [rad]."""
     return jnp.asarray(2.0 * np.pi / steps * np.arange(steps), dtype)
 
 
 class Beginning(NamedTuple):
-    """Where a step begins.
+    """Motion at the beginning of a step.
 
     Attributes:
         system: The system.
@@ -92,14 +92,14 @@ class Beginning(NamedTuple):
 
 
 def _stage_motion(at, begin, second):
-    """Phase, displacement and rate of every stage."""
+    """Return phase, displacement and rate of every stage."""
     u, rate = begin.u[None], begin.rate[None]
     u = u + at.nodes[:, None] * rate + at.twice @ second
     return begin.phase + at.nodes, u, rate + at.once @ second
 
 
 def _out_of_balance(at, begin, second):
-    """Residuals of the equations of motion at every stage (stage, n)."""
+    """Return residuals of the equations of motion at every stage (stage, n)."""
     return jax.vmap(
         lambda phase, *motion: out_of_balance(begin.system, phase, begin.ratio, *motion)
     )(*_stage_motion(at, begin, second), second)
@@ -124,7 +124,7 @@ def _slopes(at, begin, second):
 
 
 def _solve(at, begin, slopes, change):
-    """Accelerations of the stages that make up for a change (stage, n, …)."""
+    """Return accelerations of the stages that balance a change (stage, n, …)."""
     own = jnp.eye(len(at.nodes), dtype=change.dtype)
     matrix = jnp.einsum("ij,ikl->ikjl", at.twice, slopes[0])
     matrix = matrix + jnp.einsum("ij,ikl->ikjl", at.once, slopes[1])
@@ -135,7 +135,7 @@ def _solve(at, begin, slopes, change):
 
 
 def _solved(at, begin, guess):
-    """Accelerations of the stages (stage, n), and `_slopes` there.
+    """Return accelerations of the stages (stage, n), and `_slopes` there.
 
     They have the derivatives of the stages; NaN if Newton's method did not find them.
     """
@@ -182,7 +182,7 @@ def _solved(at, begin, guess):
 
 
 def _ended(at, u, rate, second):
-    """The motion at the end of a step, or of its changes."""
+    """Return the motion at the end of a step, or its changes."""
     parts = at.twice[-1], at.once[-1]
     moved, turned = (jnp.tensordot(part, second, 1) for part in parts)
     return u + at.nodes[-1] * rate + moved, rate + turned
@@ -194,7 +194,7 @@ def integrate(
     ratio: Scalar,
     steps: int,
 ) -> tuple[Float[Array, " state"], Float[Array, "step state"]]:
-    """A motion over one period of the phase.
+    """Integrate a motion over one period of the phase.
 
     Args:
         system: The system.
@@ -226,7 +226,7 @@ def flow_slopes(
     ratio: Scalar,
     steps: int,
 ) -> tuple[Float[Array, " state"], Float[Array, "state x"]]:
-    """The state at phase 2π, and its Jacobian in the state at phase 0 and in ν.
+    """Return the state at phase 2π, and its Jacobian in the state at phase 0 and ν.
 
     Args:
         system, start, ratio, steps: As in `integrate`.
@@ -258,7 +258,7 @@ def transition(
     unit: Float[Array, "m m"],
     steps: int,
 ) -> Float[Array, "m m"]:
-    """Fundamental matrix over one period of y' = A(φ) y, by Magnus series of order 6.
+    """Return the monodromy matrix of y' = A(φ) y, by Magnus series of order 6.
 
     A step is the exponential of a mean of A: one that is constant is met exactly,
     however fast it vibrates, so the stiff modes of a shaft ask for no short steps. The
@@ -289,5 +289,5 @@ def transition(
 
 
 def _bracket(a, b):
-    """Commutator of two matrices."""
+    """Return the commutator of two matrices."""
     return a @ b - b @ a

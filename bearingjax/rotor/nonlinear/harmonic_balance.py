@@ -111,7 +111,7 @@ class HarmonicBalance(AbstractMethod):
         return (at.analysis @ left).reshape(-1)
 
     def slopes(self, system, z, ratio):
-        """Jacobians of the forces in u, u' and u'', at all phases (sample, n, n)."""
+        """Return Jacobians of forces in u, u' and u'' at all phases (sample, n, n)."""
         at, series = self._basis(z.dtype), self._series(z)
 
         def one(phase, *motion):
@@ -123,7 +123,7 @@ class HarmonicBalance(AbstractMethod):
         return jax.vmap(one)(at.phase, *motion)
 
     def projected(self, slopes, bases):
-        """Jacobian in the coefficients, of slopes in what `bases` make of them."""
+        """Return the Jacobian in the coefficients, from slopes in values of `bases`."""
         pairs = zip(slopes, bases, strict=True)
         terms = [jnp.einsum("tij,tb->tibj", slope, base) for slope, base in pairs]
         terms = functools.reduce(jnp.add, terms)

@@ -1,4 +1,4 @@
-"""A law of a preloaded ball bearing as what holds a station of a shaft."""
+"""Support of a shaft station by the law of a preloaded ball bearing."""
 
 import equinox as eqx
 import jax.numpy as jnp

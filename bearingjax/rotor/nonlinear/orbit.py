@@ -1,4 +1,4 @@
-"""One periodic orbit: Newton's method, its result, its derivatives, its stability."""
+"""Periodic orbit by Newton's method, with derivatives and stability."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -21,17 +21,17 @@ TOLERANCE = {"float64": 1e-10, "float32": 1e-4}
 """Tolerance of the residual of a method, or of the Newton step towards the orbit
 [1]."""
 _ROUND_OFF = 1e3
-"""Largest remainder of forces that cancel, over their sum and round-off [1]."""
+"""Largest residual of cancelling forces, over their sum and round-off [1]."""
 STABLE = 1e-6
-"""By how much a multiplier of a stable orbit may exceed one: round-off [1]."""
+"""Largest excess of a multiplier of a stable orbit over one, by round-off [1]."""
 _FINE = 8
-"""Places between two samples at which a peak is sought."""
+"""Number of places between samples at which a peak is sought."""
 _NEARER = 3
 """Newton steps from there to the peak: its error falls from 1e-2 to round-off."""
 
 
 class PeriodicOrbit(eqx.Module):
-    """A motion that repeats with its excitation.
+    """Periodic orbit: a motion with the period of its excitation.
 
     Attributes:
         frequency: Of the excitation [rad/s].
@@ -118,7 +118,7 @@ def newton(
     x: Float[Array, " x"],
     limit: int | Int[Array, ""],
 ) -> Corrected:
-    """Newton's method with steps that are halved where they lead away.
+    """Run Newton's method, with steps halved where the residual more than doubles.
 
     Args:
         linearised: x -> equations, as many as unknowns, and their Jacobian [1].
@@ -168,7 +168,7 @@ def newton(
 
 
 def along_frequency(size: int, dtype) -> Float[Array, " x"]:
-    """Direction that holds the frequency."""
+    """Return the direction that holds the frequency."""
     return jnp.zeros(size + 1, dtype).at[-1].set(1.0)
 
 
@@ -181,7 +181,7 @@ def solve_orbit(
     max_steps: int = 50,
     throw: bool = True,
 ) -> PeriodicOrbit:
-    """The periodic orbit at one frequency.
+    """Find the periodic orbit at one frequency.
 
     Args:
         system: The system.
@@ -220,7 +220,7 @@ def solve_orbit(
 def beginning(
     system: AbstractVibratingSystem, start: Float[Array, "sample n"] | None
 ) -> Motion:
-    """Motion to begin with, from displacements at even phases [m, rad]; or rest."""
+    """Return the initial motion from displacements at even phases [m, rad]; or rest."""
     if start is None:
         none = jnp.zeros((1, system.scale.shape[0]), system.scale.dtype)
         return none, none
@@ -261,7 +261,7 @@ def reported(
     steps: Int[Array, ""],
     result: Int[Array, ""],
 ) -> PeriodicOrbit:
-    """The orbit of unknowns and frequency ratio.
+    """Return the orbit of unknowns and frequency ratio.
 
     Args:
         system: The system.
@@ -290,7 +290,7 @@ def reported(
 
 
 def amplitudes(samples: Float[Array, "sample n"]) -> Float[Array, " n"]:
-    """Half of peak to peak over the period, of the trigonometric interpolant.
+    """Return half of peak to peak of the trigonometric interpolant over the period.
 
     Args:
         samples: At even phases (sample, n) [any unit].
@@ -309,7 +309,7 @@ def amplitudes(samples: Float[Array, "sample n"]) -> Float[Array, " n"]:
 
 
 def _extreme(samples, phase, reach):
-    """Extreme value of the interpolant near a phase, two derivatives of it right."""
+    """Return the extremum of the interpolant near a phase, with two derivatives."""
     count = samples.shape[0]
     series = jnp.fft.rfft(samples) / count
     k = jnp.arange(series.shape[0], dtype=samples.dtype)

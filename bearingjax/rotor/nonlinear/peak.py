@@ -1,4 +1,4 @@
-"""The largest amplitude along a branch, with its derivatives."""
+"""Largest amplitude along a branch, with derivatives."""
 
 import jax
 import jax.numpy as jnp
@@ -18,9 +18,9 @@ from .system import AbstractVibratingSystem
 _SPLITS = 50
 """Most points at which the peak is sought."""
 _CLOSE = 1e-10
-"""Length along the branch within which it is located [1]."""
+"""Tolerance of its position along the branch [1]."""
 _SMOOTH = 1e-5
-"""Slope of an amplitude at a peak that is no corner, over that around it [1]."""
+"""Slope of an amplitude at a smooth peak, over that around it [1]."""
 
 
 def peak(
@@ -32,7 +32,7 @@ def peak(
     between: tuple[float, float] | None = None,
     throw: bool = True,
 ) -> PeriodicOrbit:
-    """The orbit at which the amplitude of one freedom is largest along a branch.
+    """Find the orbit of largest amplitude of one freedom along a branch.
 
     It is sought on the curve between the points of the branch.
 
@@ -87,7 +87,7 @@ def peak(
 
 
 def _size(system, freedom, method):
-    """(unknowns, frequency ratio) -> amplitude over the scale [1]."""
+    """Return (unknowns, frequency ratio) -> amplitude over the scale [1]."""
 
     def of(x):
         return amplitudes(method.motion(system, x[:-1], x[-1])[0])[freedom]
@@ -149,7 +149,7 @@ def _found(system, points, freedom, method):
         return y[: point.x.shape[0]], y[point.x.shape[0] :]
 
     def residual(y, given):
-        """The orbit, the tangent of its branch, no slope of the amplitude along it."""
+        """Return residuals of orbit, tangent, and slope of the amplitude along it."""
         (x, tangent), (system, about) = split_up(y), given
         left, along = jax.jvp(
             lambda x: method.residual(system, x[:-1], x[-1]), (x,), (tangent,)

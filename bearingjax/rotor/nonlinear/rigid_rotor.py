@@ -99,7 +99,7 @@ class OpposedPair(eqx.Module):
     b: AbstractSupportLaw
 
     def potential(self, q: Float[Array, "5"]) -> Scalar:
-        """Strain energy of both [J]; q in m."""
+        """Return the strain energy of both bearings [J]; q in m."""
         x1, y1, x2, y2, z = q
         at_a, at_b = jnp.stack([x1, y1, z]), jnp.stack([x2, y2, -z])
         return self.a.potential(at_a) + self.b.potential(at_b)
@@ -123,7 +123,7 @@ class Natural(NamedTuple):
 def natural_frequencies(
     mass: Float[Array, "5 5"], stiffness: Float[Array, "5 5"]
 ) -> Natural:
-    """Natural frequencies at rest, of bearings that are alike in all planes.
+    """Return natural frequencies at rest, for bearings isotropic in all planes.
 
     Args:
         mass: Mass matrix [kg].
@@ -146,7 +146,7 @@ def rigid_rotor(
     base_acceleration: Scalar | float = 0.0,
     speed: Scalar | float | None = None,
 ) -> VibratingSystem:
-    """The rotor on its bearings, ready for `solve_orbit` and `follow`.
+    """Create the system of the rotor on its bearings for `solve_orbit` and `follow`.
 
     Args:
         rotor: Shaft and disc.
@@ -174,7 +174,7 @@ def rigid_rotor(
 
 
 def _load(rotor, mass, unbalance, base_acceleration):
-    """Unbalance of the disc that turns from x to y, and a base that shakes along y."""
+    """Return the load of disc unbalance, from x to y, and base excitation along y."""
     along_y = jnp.asarray(np.array([0.0, 1.0, 0.0, 1.0, 0.0]))
     planes = [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
     moments = [

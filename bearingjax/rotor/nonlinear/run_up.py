@@ -1,4 +1,4 @@
-"""The frequency of an excitation over time, and its phase."""
+"""Frequency and phase of an excitation over time."""
 
 from typing import Any, NamedTuple
 
@@ -13,7 +13,7 @@ from ...skid.ring_load import rising_and_finite
 
 
 class Turned(NamedTuple):
-    """Where an excitation is.
+    """State of an excitation.
 
     Attributes:
         phase: φ [rad].
@@ -55,7 +55,7 @@ class FrequencyTable(eqx.Module):
             check(self, "frequency", self.frequency >= 0, "zero or above throughout")
 
     def _pieces(self):
-        """Beginning, phase, frequency and acceleration of every piece (knot + 1,).
+        """Return start, phase, frequency and acceleration of every piece (knot + 1,).
 
         Phases count from the first knot; the first piece lies before it.
         """
@@ -75,7 +75,7 @@ class FrequencyTable(eqx.Module):
         return Turned(turned, frequency[k] + slope[k] * t, slope[k])
 
     def at(self, time: Scalar) -> Turned:
-        """Phase since time zero, frequency and acceleration.
+        """Return phase since time zero, frequency and acceleration.
 
         Args:
             time: [s].
@@ -84,7 +84,7 @@ class FrequencyTable(eqx.Module):
         return here._replace(phase=here.phase - first.phase)
 
     def time_at(self, phase: Scalar) -> Scalar:
-        """Time at which a phase is reached [s]; infinite where it never is.
+        """Return the time at which a phase is reached [s]; infinite if never.
 
         Args:
             phase: Since time zero, not below zero [rad].
@@ -110,7 +110,7 @@ def as_frequency_table(
     duration: Scalar | float | None = None,
     end_frequency: Scalar | float | None = None,
 ) -> FrequencyTable:
-    """A table, of what is constant or changes evenly over the duration too.
+    """Return a table, also for a constant frequency or a linear change.
 
     Args:
         owner: Function that was called.

@@ -1,4 +1,4 @@
-"""Periodic orbits by shooting: the state after a period is that at its beginning.
+"""Periodic orbits by shooting: the state after a period equals the initial one.
 
 Source: Filipkovskii & Belomyttsev (2014), eqs. (6), (7), (10) to (12), (14).
 """
@@ -47,7 +47,7 @@ class Shooting(AbstractMethod):
         return jacobian[:, :-1] + jnp.eye(z.shape[0], dtype=z.dtype)
 
     def flow_error(self, system, z, ratio):
-        """Error of the state after a period, measured with twice the steps [1]."""
+        """Return the error of the state after a period, from twice the steps [1]."""
         fine = Shooting(2 * self.steps)
         change = fine.residual(system, z, ratio) - self.residual(system, z, ratio)
         return jnp.max(jnp.abs(change))

@@ -28,7 +28,7 @@ from ...numerics.units import unit
 
 
 class AbstractSupportLaw(eqx.Module):
-    """Strain energy of a bearing in the motion of its inner ring."""
+    """Strain energy of a bearing as a function of the motion of its inner ring."""
 
     @abc.abstractmethod
     def potential(self, motion: Float[Array, "3"]) -> Scalar:
@@ -49,18 +49,18 @@ class AbstractSupportLaw(eqx.Module):
 
 
 def _around(count: int):
-    """Cosines and sines of the azimuths of the balls."""
+    """Return cosines and sines of the azimuths of the balls."""
     azimuth = 2.0 * np.pi * np.arange(count) / count
     return np.cos(azimuth), np.sin(azimuth)
 
 
 def _stored(constant, approach):
-    """Energy of Hertz contacts [J]."""
+    """Return the energy of Hertz contacts [J]."""
     return 0.4 * constant * jnp.sum(positive_power(approach, 5, 2))
 
 
 class _Preloaded(NamedTuple):
-    """Balls of a bearing whose inner ring is pushed along its axis.
+    """Balls of an axially preloaded bearing.
 
     Attributes:
         constant: Load of a ball over the 3/2 power of its approach [N/m^(3/2)].
@@ -98,7 +98,7 @@ def _preloaded(element: BearingElement, offset: Any) -> _Preloaded:
 
 
 class FixedAngle(AbstractSupportLaw):
-    """Every ball bears along a line of fixed contact angle.
+    """Law with a fixed contact angle of every ball.
 
     Attributes:
         constant: K of both raceways in series [N/m^(3/2)].
@@ -120,7 +120,7 @@ class FixedAngle(AbstractSupportLaw):
 
     @classmethod
     def of_bearing(cls, element: BearingElement, offset: Any) -> "FixedAngle":
-        """The law of a ball bearing at the angle that its preload gives it.
+        """Create the law of a ball bearing at its preloaded contact angle.
 
         Under the preload alone force and contact angle are those of the bearing.
 
@@ -149,7 +149,7 @@ class FixedAngle(AbstractSupportLaw):
 
 
 class MovingAngle(AbstractSupportLaw):
-    """Every ball bears along the line of its groove centres, wherever they move.
+    """Law with the contact angle along the line of groove centres of every ball.
 
     Attributes:
         constant: K of both raceways in series [N/m^(3/2)].
@@ -189,7 +189,7 @@ class MovingAngle(AbstractSupportLaw):
 
 
 class CubicExpansion(AbstractSupportLaw):
-    """`FixedAngle` to the third power of the motion, five balls or more.
+    """Expansion of `FixedAngle` to third order in the motion, five balls or more.
 
     Within 1e-2 of it up to the motion at which the first ball lifts off.
 
@@ -239,7 +239,7 @@ class CubicExpansion(AbstractSupportLaw):
 
 
 class Grooves(eqx.Module):
-    """Drawing of an angular contact ball bearing, and its preloaded contact angle.
+    """Groove geometry of an angular contact ball bearing, and preloaded angle.
 
     Attributes:
         inner_radius: Of the bottom of the inner groove, R1 [m].
@@ -287,17 +287,17 @@ class Grooves(eqx.Module):
 
     @property
     def approach(self) -> Scalar:
-        """Approach of a ball under the preload that its angle tells, w [m]."""
+        """Approach w of a ball under the preload that follows from its angle [m]."""
         radial = self.inner_radius + 2.0 * self.groove_radius - self.outer_radius
         return radial / jnp.cos(self.contact_angle) - self.centre_distance
 
     def fixed_angle(self) -> FixedAngle:
-        """The law of fixed contact angle."""
+        """Return the law of fixed contact angle."""
         z0 = self.approach / jnp.sin(self.contact_angle)
         return FixedAngle(self.constant, self.contact_angle, z0, self.n_balls)
 
     def moving_angle(self) -> MovingAngle:
-        """The law of groove centres."""
+        """Return the law of groove centres."""
         return MovingAngle(
             self.constant,
             self.contact_angle,

@@ -1,4 +1,4 @@
-"""Equations of motion of what vibrates: all that the solvers of orbits know of it.
+"""Equations of motion: the interface of systems to the solvers of orbits.
 
     M q'' + D(ω) q' + f(q, q', φ, ω) = e(φ, ω),    φ = ω t
 
@@ -22,7 +22,7 @@ from ...numerics.units import unit
 
 
 class AbstractVibratingSystem(eqx.Module):
-    """A system of n freedoms under forces that are periodic in time.
+    """System of n freedoms under forces that are periodic in time.
 
     Attributes:
         mass: Mass matrix M, positive definite [kg, kg m²].
@@ -65,7 +65,7 @@ class AbstractVibratingSystem(eqx.Module):
     def excitation(
         self, phase: Scalar, frequency: Scalar, acceleration: Scalar
     ) -> Float[Array, " n"]:
-        """Forces e that act from outside [N, N m].
+        """Return the external forces e [N, N m].
 
         Args:
             phase: φ [rad]; e repeats after 2π.
@@ -75,7 +75,7 @@ class AbstractVibratingSystem(eqx.Module):
 
 
 class VibratingSystem(AbstractVibratingSystem):
-    """A system put together from matrices and functions.
+    """System from matrices and functions.
 
     Attributes:
         mass: As in `AbstractVibratingSystem` [kg, kg m²].
@@ -132,7 +132,7 @@ class VibratingSystem(AbstractVibratingSystem):
 
 
 class HarmonicLoad(eqx.Module):
-    """A constant load, a harmonic one, and one that grows with the frequency squared.
+    """Constant load, harmonic load, and load proportional to the frequency squared.
 
     Attributes:
         constant: Such as weight (n,) [N, N m].
@@ -164,7 +164,7 @@ class HarmonicLoad(eqx.Module):
 
 
 def frequency_of(system: AbstractVibratingSystem, ratio: Scalar) -> Scalar:
-    """Frequency ω [rad/s] of its ratio ν to the reference frequency [1]."""
+    """Return the frequency ω [rad/s] from its ratio ν to the reference [1]."""
     return ratio * system.reference_frequency
 
 
@@ -211,7 +211,7 @@ def inertia(system: AbstractVibratingSystem, ratio: Scalar) -> Float[Array, "n n
 def rates(
     system: AbstractVibratingSystem, ratio: Scalar
 ) -> Callable[[Scalar, Float[Array, " state"]], Float[Array, " state"]]:
-    """Derivative of the state with respect to the phase, at one frequency.
+    """Return the derivative of the state with respect to the phase, at a frequency.
 
     Args:
         system: The system.

@@ -28,13 +28,13 @@ from .run_up import FrequencyTable, as_frequency_table
 from .system import AbstractVibratingSystem
 
 _STEP_ERROR = 0.02
-"""Error of a step, of the tolerance: errors of many steps add up [1]."""
+"""Error of a step over the tolerance: errors of many steps add up [1]."""
 _FIRST = 0.01
-"""First step, of a radian of the reference frequency [1]."""
+"""First step over a radian of the reference frequency [1]."""
 
 
 class History(eqx.Module):
-    """A vibration in time; NaN from where it was not reached.
+    """Vibration in time; NaN at times that were not reached.
 
     Attributes:
         time: (time,) [s].
@@ -137,7 +137,7 @@ def poincare(
     start: Start | None = None,
     **options: Any,
 ) -> History:
-    """States once per period of the excitation, where its phase is 2πk.
+    """Return states once per period of the excitation, at phases 2πk.
 
     One point that repeats is an orbit of the period of the excitation, m points one of
     m periods, a closed curve an almost periodic motion.
@@ -173,7 +173,7 @@ def poincare(
 
 
 def checked(owner: str, tolerance, max_steps, derivatives) -> Options:
-    """Settings of an integration, as `simulate` is given them."""
+    """Return checked settings of an integration."""
     positive(owner, "tolerance", tolerance, "")
     count(owner, "max_steps", max_steps)
     if derivatives not in ("reverse", "forward"):
@@ -186,7 +186,7 @@ def checked(owner: str, tolerance, max_steps, derivatives) -> Options:
 def beginning(
     owner: str, system: AbstractVibratingSystem, start: Start | None
 ) -> Start:
-    """Displacement and velocity at time zero; `None`: rest."""
+    """Return displacement and velocity at time zero; `None`: rest."""
     if start is None:
         return jnp.zeros_like(system.scale), jnp.zeros_like(system.scale)
     displacement, velocity = map(as_real, start)

@@ -1,4 +1,4 @@
-"""A rotor of shaft, discs and supports as a nonlinear vibration.
+"""Rotor of shaft, discs and supports as a nonlinear vibrating system.
 
 What is linear (shaft, discs, housings, damping) becomes matrices once; supports push
 back as they truly do, not as their slopes.
@@ -24,7 +24,7 @@ from .system import AbstractVibratingSystem, HarmonicLoad
 
 
 class VibratingRotor(AbstractVibratingSystem):
-    """A rotor with the forces of its supports; see `vibrating_rotor`.
+    """Rotor with nonlinear supports; see `vibrating_rotor`.
 
     Attributes:
         mass, scale, reference_frequency: As in `AbstractVibratingSystem`.
@@ -77,7 +77,7 @@ class VibratingRotor(AbstractVibratingSystem):
         return self.load(phase, frequency, acceleration)
 
     def freedoms(self, motion: Float[Array, " motion"]) -> Float[Array, " n"]:
-        """Freedoms that come nearest to given motions, in the mean of their squares.
+        """Return the least-squares freedoms of given motions.
 
         Args:
             motion: Of all nodes and housings, such as `StaticEquilibrium.motion`
@@ -144,7 +144,7 @@ def vibrating_rotor(
 
 @program
 def _assembled(rotor, scale, speed, modes, about):
-    """Matrices without supports, how supports move, sizes, motions unreduced."""
+    """Return matrices without supports, support rows, scales, unreduced motions."""
     matrices = rotor.linearised(0.0 if speed is None else speed, about)
     rows = rotor.at_supports() @ matrices.motions
     stiffness, damping = matrices.stiffness, matrices.damping

@@ -44,7 +44,7 @@ def waterfall(
     tolerance: Scalar | float = 1e-6,
     max_steps: int = 200_000,
 ) -> Waterfall:
-    """Spectra of the vibration that is left after some periods.
+    """Return spectra of the vibration that remains after some periods.
 
     Every frequency begins anew, all are integrated at once. Lines are at whole
     multiples of 1/`periods` of the excitation: subharmonics of up to that many periods
