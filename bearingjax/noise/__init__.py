@@ -9,7 +9,7 @@ differences of diameter and spacing are the bearing's own: `ball_deviation`,
 elements' own masses; `excitation` the quasi-static displacement and force of the rings
 over the turn; `linear_model` and `transfer` the way from there to the sensor.
 
-Levels and bands of the acceleration (`level`, `band_levels`), lines that stand out with
+Levels and bands of the acceleration (`level`, `band_levels`), prominent lines with
 their names (`name_lines`: `3 BPFO`, `BPFI + shaft`, `2 cage`), the errors that cause
 them to first order (`line_causes`), and the number of contacts of every element
 (`contact_states`). `model_warnings`, `record_warnings` and `share_warnings` give the

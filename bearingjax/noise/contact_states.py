@@ -34,8 +34,8 @@ class ContactStates(NamedTuple):
 def contact_states(record: Vibration) -> ContactStates:
     """Return which contacts of a record are closed.
 
-    A four-point ball bears in up to four contacts, other balls and rollers in two. A
-    contact that opens and closes again between two samples is not seen.
+    A four-point ball has up to four contacts, other balls and rollers two. A contact
+    that opens and closes between two samples is missed.
 
     Args:
         record: From `vibration`; concrete.

@@ -41,7 +41,7 @@ def bridged(model: NoiseModel) -> NoiseModel:
     Returns:
         The model with `half_width`, differentiable.
 
-    Fails: as `standing`; the width is then NaN or belongs to no equilibrium.
+    Fails: as `standing`; the width is then NaN or that of no balance.
     """
     return dataclasses.replace(model, half_width=_half_widths(model, model.orbits))
 

@@ -80,7 +80,7 @@ class Encounter(NamedTuple):
         Args:
             ring: Motion of the ring, three freedoms or five [m, rad]; `None`: none.
             raceway: 0 for the outer one, 1 for the inner one. Static.
-            sites: Where the elements' rows stand; the motion is in the rows' own axes.
+            sites: Positions of the elements' rows; the motion is in the rows' own axes.
         """
         axial = outwards = jnp.zeros_like(self.azimuth)
         tilt = None

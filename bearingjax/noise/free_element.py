@@ -1,7 +1,7 @@
 """Rolling elements with mass and freedoms of their own.
 
-The energy of a rolling element stands in terms of the rings and of its place against
-them. Here its place p is counted in space: along z and r for a ball, along and across
+The energy of a rolling element depends on the rings and on its position relative to
+them. Here its position p is absolute: along z and r for a ball, along and across
 its axis, with its tilt, for a roller. No equilibrium is solved for.
 """
 

@@ -1,7 +1,7 @@
 """All rolling elements of a bearing as one row, each with its own freedoms.
 
-Rows of a set differ in where they stand and which way they look; an element needs no
-more of that than three numbers. One long row costs fewer operations than several.
+Rows of a set differ in position and orientation, three numbers for each element. One
+long row costs fewer operations than several.
 """
 
 import dataclasses

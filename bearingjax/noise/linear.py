@@ -1,14 +1,14 @@
 """Linear vibration of a bearing with constant coefficients, over frequency.
 
-Near the place where the bearing stands under its load
+About the equilibrium of the bearing under its load
 
     M x'' + (τ K + C) x' + (K + S) x = f - G (e + τ e')
 
 with the stiffness K of all contacts, C and S of the sensor, loads f on the coordinates
-and the deviations e that the rolling elements find on the raceways. G are derivatives
+and the deviations e of the raceways at the rolling elements. G are derivatives
 of the contacts' forces by e.
 
-The rolling elements stay where they are at time zero. Where they orbit, K and G turn
+The rolling elements stay at their places of time zero. Where they orbit, K and G turn
 with them: the answer then holds for frequencies far above that of their passage, or
 where many of them carry alike.
 """
@@ -61,7 +61,7 @@ class Transfer(NamedTuple):
             (line, k, k) [m/N, rad/N, rad/(N m)].
         by_errors: Displacement for deviations of the raceways as in
             `Deviation.raceway` (line, k, element, 2, 3) [1, rad/m].
-        result: `Result` code of the place at which the bearing stands.
+        result: `Result` code of the equilibrium of the bearing.
     """
 
     frequency: Float[Array, " line"]
@@ -133,7 +133,7 @@ def transfer(model: NoiseModel, frequencies: Any) -> Transfer:
         TypeError: For another model, or frequencies that are no numbers.
         ValueError: For frequencies that are no list.
 
-    Fails: as `solve_load`; the numbers then belong to no equilibrium.
+    Fails: as `solve_load`; the numbers are then those of no balance.
 
     Source: (K + S + iω (τ K + C) - ω² M) x = f - (1 + iωτ) G e.
     """

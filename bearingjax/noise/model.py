@@ -233,7 +233,7 @@ class NoiseModel(eqx.Module):
 def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
     """Return the moment of inertia about a diameter of a ring of given mass [kg m²].
 
-    Its section is a square about the circle of contact, as large as the mass asks for;
+    Its section is a square about the circle of contact, of the size given by the mass;
     in a set the mass is that of all rings, which tilt about the middle of the set.
 
     Args:

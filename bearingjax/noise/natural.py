@@ -1,8 +1,8 @@
 """Natural modes of a bearing on its rig, rolling elements with their own masses.
 
-At the place where the bearing stands under its load, K v = ω² M v with the second
-derivatives K of the energy of all contacts. A rolling element that carries nothing is
-held by nothing: its modes have frequencies of almost zero. Where the elements orbit,
+At the equilibrium of the bearing under its load, K v = ω² M v with the second
+derivatives K of the energy of all contacts. An unloaded rolling element has no
+stiffness: its modes have frequencies of almost zero. Where the elements orbit,
 their inertia presses them on the outer raceway, and the outer ring carries their mass.
 
 Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011), there with balls
@@ -91,8 +91,8 @@ def orbited(model: NoiseModel, angle: Any) -> NoiseModel:
 def natural_modes(model: NoiseModel) -> NaturalModes:
     """Return the natural modes of a bearing under its load.
 
-    Rolling elements stand where they are at time zero; for another place, as modes
-    change on the way where elements differ or few of them carry, see `orbited`.
+    Rolling elements are at their positions of time zero; for others, as modes change
+    along the orbit where elements differ or few of them carry load, see `orbited`.
 
     Args:
         model: The bearing; its form errors do not count.

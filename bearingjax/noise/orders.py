@@ -109,7 +109,7 @@ def waviness_force(
 ) -> WavinessForce:
     """Return the frequencies of the ring forces from waviness of one order.
 
-    For rigid rings, evenly spaced rolling elements that bear alike, and to first order
+    For rigid rings, evenly spaced, equally loaded rolling elements, and to first order
     in the height of the wave. With z rolling elements the forces then add up for few
     orders: on a raceway kz axially and kz ± 1 radially; all other orders balance. On
     one rolling element even orders act axially and radially; for odd orders the

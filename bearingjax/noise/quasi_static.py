@@ -65,15 +65,15 @@ def excitation(
 ) -> Excitation:
     """Return force on a held ring, or displacement of a free one, over some turns.
 
-    A bearing without form errors too shakes its ring where few rolling elements carry
-    the load and move on (variable compliance); both are in the answer. Masses,
-    the cage, the retardation and the sensor, soft against the bearing, do not count.
+    A bearing without form errors excites its ring too where few rolling elements carry
+    the load and orbit (variable compliance); both are included. Masses, the cage, the
+    retardation and the sensor, soft against the bearing, are neglected.
 
     Args:
         model: The bearing.
         turns: Of the shaft. Static.
         samples: Per turn. Static.
-        held: Whether the ring is held where it stands without form errors at time
+        held: Whether the ring is held at its equilibrium without form errors at time
             zero, or may move under its load. Static.
         throw: Raise if the bearing finds no place under its load or an instant cannot
             be solved; otherwise read `result`. Static.

@@ -197,7 +197,7 @@ def spectrum(
         Spectrum, differentiable with respect to signal, duration and shaft frequency.
 
     Raises:
-        TypeError: If `window` is no window, such as a string.
+        TypeError: If the window is none, such as a text.
         ValueError: For an odd number of samples, or fewer than four; a duration or
             shaft frequency not above zero; a record without a window that does not
             cover a whole number of turns (to `WHOLE_TURNS`).

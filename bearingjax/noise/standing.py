@@ -38,8 +38,8 @@ def standing(
     Returns:
         Coordinates (n,) [m, rad] and the `Result` code; differentiable.
 
-    Fails: as `solve_load`; `NO_LOAD_PATH` too where no rolling element is loaded by
-    both rings: the position of the moving one is then arbitrary.
+    Fails: as `solve_load`; `NO_LOAD_PATH` too where no rolling element is pressed
+    between both rings: the moving one then lies anywhere.
     """
     element = model.small
     if orbits and isinstance(element.choices, BallChoices):

@@ -129,13 +129,13 @@ def vibration(
 ) -> Vibration:
     """Integrate the vibration of a bearing over some turns of its shaft.
 
-    It begins where the bearing without form errors stands, at rest. While it settles
-    they grow from nothing, so slowly that hardly any vibration of its own is left.
+    It begins at rest in the equilibrium without form errors. While it settles they grow
+    from zero, so slowly that hardly any free vibration remains.
 
     Args:
         model: The bearing.
-        turns: Turns that are recorded. Static.
-        settle: Turns before them; with none, form errors are there at once. Static.
+        turns: Recorded turns. Static.
+        settle: Turns before them; with 0, form errors are present at once. Static.
         samples: Per turn. Static.
         steps: Of the integration, per sample; `None`: `needed_steps`, and up to eight
             times as many where form errors or impacts press contacts so much harder

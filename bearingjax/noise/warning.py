@@ -266,7 +266,7 @@ def _short_waves(model, load, tolerances) -> Iterator[str]:
 def _gyroscopic(model, load) -> Iterator[str]:
     """Warn of balls on which the omitted gyroscopic moment matters.
 
-    At the free contact angle, or that which the axial load asks for if it is larger.
+    At the free contact angle, or at that of the axial load if it is larger.
     """
     choices = model.element.choices
     if not isinstance(choices, BallChoices):
@@ -319,7 +319,7 @@ def _lost(record) -> Iterator[str]:
 
 
 def _rows(model: NoiseModel) -> Iterator[tuple[str, Any, FormErrors]]:
-    """Return the label of each row, its design and its form errors."""
+    """Yield the label of each row, its design and its form errors."""
     parts = rows_of(model.element.bearing)
     for k, (row, errors) in enumerate(zip(parts, model.errors_of_rows, strict=True)):
         yield "" if len(parts) == 1 else f" of row {k}", row.bearing, errors

@@ -106,10 +106,10 @@ def ellipses(
 ) -> "matplotlib.axes.Axes":
     """Draw contact ellipses on a developed raceway, with its shoulders.
 
-    Upwards runs the arc of the groove from its bottom [mm], to the right the azimuth.
-    The ellipses have their true shape, to the scale of the upward axis; how many times
-    that is the scale of the azimuth stands below. Where neighbours would overlap they
-    are drawn narrower, and that is said there.
+    The vertical axis is the arc of the groove from its bottom [mm], the other azimuth.
+    The ellipses have their true shape, to the scale of the vertical axis; a note gives
+    its ratio to that of the azimuth. Where neighbours would overlap they are drawn
+    narrower, and the note says so.
 
     Args:
         bearing: The design; of a set, the set or the bearing of the row.

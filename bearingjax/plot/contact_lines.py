@@ -66,7 +66,7 @@ def contact_line_load(
 ) -> "matplotlib.axes.Axes":
     """Plot the load per length [N/mm] along the roller, for several loads.
 
-    Each line bears its load.
+    Each line is labelled with its load.
 
     Args:
         solutions, ax, slices: As in `centre_pressure`.

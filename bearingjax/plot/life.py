@@ -125,7 +125,7 @@ def _finish(run, order, ax):
 
 
 def _named(case, words, across: int) -> str:
-    """Number of a case and what tells it apart, in lines of so many letters."""
+    """Return the number of a case and its settings, in lines of limited width."""
     lines = []
     for k, word in enumerate(words):
         new = textwrap.wrap(word, across, break_on_hyphens=False)

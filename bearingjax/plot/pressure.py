@@ -33,8 +33,8 @@ def pressure_profiles(
 ) -> "matplotlib.axes.Axes":
     """Plot contact pressure [MPa] along the most loaded rollers.
 
-    A triangle marks a roller end that carries load: there the line contact knows no
-    end pressure peak.
+    A triangle marks a roller end that carries load: the line contact has no end
+    pressure peak there.
 
     Args:
         solution: A single solution of a roller bearing.

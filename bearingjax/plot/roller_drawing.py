@@ -75,7 +75,7 @@ def _sizes(ax, bearing, parts):
 
 
 def _straight(bearing, parts):
-    """Return labels of surfaces without a profile; the others have views."""
+    """Yield labels of surfaces without a profile; the others have views."""
     at = parts.roller[0], parts.raceways[0, 1], parts.raceways[1, 1]
     for name, point in zip(PROFILES, at, strict=True):
         if isinstance(getattr(bearing, name), Straight):

@@ -30,8 +30,8 @@ def rotor_section(
 
     A disc is the cylinder on the shaft with its mass and moments of inertia, a point
     mass a ball of the shaft's material. Bearings have their true rolling elements, and
-    dashed the lines along which they bear; of a support that is a matrix, or a law,
-    there is a symbol. Stations are numbered above.
+    dashed lines of action; a support given by a matrix or a law is a symbol. Stations
+    are numbered above.
 
     Args:
         rotor: The rotor.

@@ -33,7 +33,7 @@ def mode_shapes(
 
     A line is the shaft at the moment of its largest displacement, seen across the
     direction of that; the band behind it is what the orbits of all sections sweep.
-    Every mode is drawn to the same height. Colours tell the direction of whirl.
+    Every mode is drawn to the same height. Colours mark the direction of whirl.
 
     Args:
         rotor: The rotor.
@@ -172,7 +172,7 @@ def campbell_diagram(
 
 
 def _runs(chosen):
-    """Yield first and last point of every run of chosen segments."""
+    """Return first and last point of every run of chosen segments."""
     edges = np.diff(np.concatenate([[0], chosen.astype(int), [0]]))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return zip(starts, ends, strict=True)

@@ -37,7 +37,7 @@ class Zone(NamedTuple):
     Attributes:
         name: "A" to "D".
         begin, end: Azimuths, the end above the beginning [rad].
-        loaded: Whether balls bear more than their share of the axial load there.
+        loaded: Whether balls carry more than their share of the axial load there.
     """
 
     name: str

@@ -3,11 +3,11 @@
 A rotor (`Rotor`) is a `Shaft` of Timoshenko beam elements between stations (stepped,
 hollow, of several materials), `Disc`s and `PointMass`es, and supports, on ground or on
 a `Housing`. A support is a `LinearSupport` (springs and dampers of five freedoms, ux uy
-uz gx gy) or a `BearingSupport(station, element, offset, turned=...)`, which puts a
-bearing itself there, with its preload as the `offset` of its inner ring
-(`preload_offset(element, force)` has it of a force): its slopes at that offset in
-linear analyses (none if it bears nothing there), its true force in nonlinear ones.
-Supports of your own derive from `AbstractSupport` and say their force over motion,
+uz gx gy) or a `BearingSupport(station, element, offset, turned=...)`, which is a
+bearing itself, with its preload as the `offset` of its inner ring
+(`preload_offset(element, force)` computes it): its tangent stiffness at that offset in
+linear analyses (zero if it is unloaded there), its true force in nonlinear ones.
+User-defined supports derive from `AbstractSupport` and define their force over motion,
 velocity and speed. `ModalDamping` and `ProportionalDamping` damp the shaft; `Rotor(...,
 rigid=True)` is a shaft that does not bend. Torsion and the stiffness of an axially
 loaded shaft are left out.
@@ -15,11 +15,11 @@ loaded shaft are left out.
 Linear analyses
 ---------------
 
-`modes(rotor, speed)` has eigenvalues, frequencies [Hz], damping ratios, logarithmic
+`modes(rotor, speed)` gives eigenvalues, frequencies [Hz], damping ratios, logarithmic
 decrements, mode shapes and the sense of whirl (+1 forward, -1 backward, 0 in a plane or
 axial); `campbell` follows each mode over the speeds by its shape, `instability_onsets`
-tells from which speed on one grows; `critical_speeds` are
-solved for, not read off, and a warning says if strong dampers may have hidden one
+finds the speed from which one is unstable; `critical_speeds` are
+solved for, not read off, with a warning if strong dampers may have hidden one
 (`missed`); `unbalance_response` and `harmonic_response` give amplitudes;
 `rotor.linearised(speed)` the matrices M, C, G, K. Frequencies, damping ratios, critical
 speeds and amplitudes have first derivatives with respect to every number of the rotor,
@@ -29,7 +29,7 @@ The eigenvalues come from LAPACK, which JAX has on the CPU only.
 Coefficients for other programs
 -------------------------------
 
-`bearingjax.linearise(element, load)` has the stiffness of one bearing at its operating
+`bearingjax.linearise(element, load)` gives the stiffness of a bearing at its operating
 point; `stiffness_table(element, speeds, load)` that in x, y and z over rotor speed
 (speed, 3, 3), tilts held or free; `to_ross(element, n, speeds, load, damping=...)`
 makes a `ross.BearingElement` of it (the axes of ROSS are ours).
@@ -40,14 +40,14 @@ At rest in its bearings
 `static_equilibrium(rotor, RotorLoads(gravity=(0, -9.80665, 0),
 forces=StationForce(...)), speed)` is the equilibrium under weight, constant forces and
 preload with the bearings' true forces: displacements, load and stiffness of each
-bearing, differentiable with respect to every number. It warns of a bearing that bears
-nothing and of a motion that nothing holds, and says along what a load finds no support.
+bearing, differentiable with respect to every number. It warns of an unloaded bearing
+and of an unsupported motion, and names the freedom of an unsupported load.
 `settled.rotor` is the rotor on springs of that stiffness, for all linear analyses.
 Where rolling elements feel the speed (`BearingSupport(..., inertia=True)`),
 `static_equilibrium_over(rotor, loads, top_speed).rotor` has springs that follow it, as
 polynomials with a measured error. Two bearings of one structure are compiled once.
 
-Where the linear answer ends, see `bearingjax.rotor.nonlinear`. Worked: the notebooks
+For nonlinear vibration see `bearingjax.rotor.nonlinear`. Examples: the notebooks
 linear_rotordynamics, rotor_in_jax and rotor_on_bearings.
 """
 

@@ -40,27 +40,27 @@ def _flag(value):
 class BearingSupport(AbstractSupport):
     """A bearing whose inner ring sits on the shaft, its outer ring on a fixed base.
 
-    Loads and angles are quasi-static. Linear analyses of a `Rotor` take its slopes
-    where the station has not moved, so at `offset`; a bearing that bears nothing there,
+    Loads and angles are quasi-static. Linear analyses of a `Rotor` take its tangent
+    stiffness at `offset`, with the station at zero; a bearing without load there,
     such as one with clearance or without preload, leaves the shaft free.
-    `static_equilibrium` finds where weight and preload put it, and warns of one that
-    bears nothing.
+    `static_equilibrium` finds its position under weight and preload, and warns of one
+    without load.
 
     Attributes:
-        station: Number of the station that it holds.
+        station: Number of the supported station.
         element: The bearing, or a set of bearings.
-        offset: Where the inner ring is in the bearing while the station has not moved,
+        offset: Displacement of the inner ring in the bearing with the station at zero,
             (ux uy uz gx gy), such as an axial preload (5,) [m, rad].
         damping: Against ground or housing (5, 5), or its diagonal (5,) [N s/m, N s,
             N m s].
-        housing: What it stands on; `None`: ground.
+        housing: Its housing; `None`: ground.
         turned: Whether the bearing is mounted the other way round, its +z along the
             shaft's -z, by a half turn about x; `offset` is in the bearing's own axes.
-        inertia: Whether its rolling elements feel the speed of the rotor.
+        inertia: Whether its rolling elements have inertia forces at rotor speed.
         passage: Whether its rolling elements orbit as the rotor turns, rolling without
             slip, so that its stiffness varies with their passage (variable
-            compliance); else they stand where `first_azimuth` of the bearing has them,
-            as they do in all linear analyses.
+            compliance); else they stay at `first_azimuth` of the bearing, as in linear
+            analyses.
 
     Traced: element, offset, damping, housing, turned. Static: station, inertia,
     passage.

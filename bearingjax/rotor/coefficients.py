@@ -34,9 +34,9 @@ def stiffness_table(
 ) -> Float[Array, "speed 3 3"]:
     """Return the stiffness of the moving ring in x, y and z at each rotor speed.
 
-    At every speed the bearing is put in its equilibrium under the load, with the
-    inertia of its rolling elements, and linearised there. The other ring stands
-    still; the rolling elements stand as `first_azimuth` has them.
+    At every speed the bearing is linearised at its equilibrium under the load, with the
+    inertia of its rolling elements. The other ring is at rest; the rolling elements are
+    at `first_azimuth`.
 
     Args:
         element: The bearing.

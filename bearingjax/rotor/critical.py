@@ -68,15 +68,15 @@ def critical_speeds(
     """Return the speeds at which a mode vibrates once per revolution.
 
     Without damping and with supports of constant stiffness they are the solutions of
-    K v = Ω² (M - iG) v, a Hermitian problem that has them all. From there, as damping
-    rises to what it is, and from the damped modes at one speed, Newton's method on
-    λ(Ω) leads to those with damping and with supports that follow the speed. A count
-    of the modes that are faster than the speed tells whether one was missed; those
-    with a damping ratio above √½, which cannot resonate, are not counted.
+    K v = Ω² (M - iG) v, a Hermitian problem that yields all of them. From there, with
+    damping raised to its full value, and from the damped modes at one speed, Newton's
+    method on λ(Ω) finds those with damping and with supports that follow the speed. A
+    count of the modes faster than the speed shows whether one was missed; those with a
+    damping ratio above √½, which cannot resonate, are not counted.
 
     Args:
         rotor: The rotor.
-        count: How many, the lowest.
+        count: Number of speeds, the lowest.
         operating_speed: Speed of the rotor [rad/s], for the warning; `None`: none.
 
     Returns:

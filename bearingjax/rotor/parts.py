@@ -280,7 +280,7 @@ class LinearSupport(AbstractSupport):
         stiffness: d(Fx, Fy, Fz, Mx, My)/d(ux, uy, uz, gx, gy) (5, 5), or its diagonal
             (5,) [N/m, N, N m].
         damping: Likewise, over the rates [N s/m, N s, N m s].
-        housing: What it stands on; `None`: ground.
+        housing: Its housing; `None`: ground.
 
     Traced: stiffness, damping, housing.
     """
@@ -319,7 +319,7 @@ class LinearSupport(AbstractSupport):
             tilt: Stiffness against tilting about x and y [N m].
             radial_damping, axial_damping: Damping [N s/m].
             tilt_damping: Damping of tilting [N m s].
-            housing: What it stands on; `None`: ground.
+            housing: Its housing; `None`: ground.
         """
 
         def diagonal(radial, axial, tilt):

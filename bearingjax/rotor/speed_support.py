@@ -29,7 +29,7 @@ class SpeedSupport(AbstractSupport):
             for both senses of turning.
         damping: As in `LinearSupport` [N s/m, N s, N m s].
         top_speed: Speed up to which it is known [rad/s].
-        housing: What it stands on; `None`: ground.
+        housing: Its housing; `None`: ground.
 
     Traced: all but `station`.
     """

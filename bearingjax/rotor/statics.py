@@ -47,7 +47,7 @@ class StaticEquilibrium(eqx.Module):
         rotor: The rotor on springs and dampers of that stiffness and damping, for all
             linear analyses about this place.
         motion: Displacements of all nodes and housings (motion,) [m, rad].
-        speed: At which the supports were asked [rad/s].
+        speed: Speed of the evaluation of supports [rad/s].
         residual: Force that is left over that which acts [1].
         steps: Steps of the search.
         result: `Result` code; the numbers are NaN unless it is `CONVERGED`.

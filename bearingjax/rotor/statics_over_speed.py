@@ -1,7 +1,7 @@
 """Static equilibrium of a rotor under weight, forces and preload, over its speed.
 
-For supports that follow the speed: a rotor settles at some speeds, and springs whose
-stiffness is a polynomial between stand for its supports at all others.
+For supports that follow the speed: equilibria are found at some speeds, and springs of
+polynomial stiffness represent the supports at all others.
 """
 
 from typing import Any
@@ -59,7 +59,7 @@ def static_equilibrium_over(
     support there made a polynomial of the speed: linear analyses then cost no more than
     on springs. `error` is the size of the last two coefficients; where it is not small
     more places help, unless rolling elements lose contact with the speed, which makes
-    a kink. If no support follows the speed, `static_equilibrium` tells the same.
+    a kink. If no support follows the speed, `static_equilibrium` gives the same.
 
     Args:
         rotor, loads: As in `static_equilibrium`.

@@ -19,8 +19,8 @@ equilibrium: balls are thrown outwards by the orbit that they have (`load_speed=
 by that of pure rolling, as in the published method), with the raceway control of the
 bearing (`EqualShare()` there). "Converged" says that forces and powers balance, the
 powers to a millionth (`imbalance`). Balls are free in their pockets: compare `wander`
-with the pocket clearance. No oil bears shear stresses of more than some 0.12 times the
-pressure, which a Newtonian film soon exceeds: `skid_warnings` tells, and
+with the pocket clearance. No oil sustains shear stresses of more than some 0.12 times
+the pressure, which a Newtonian film soon exceeds: `skid_warnings` warns of it, and
 `traction=Eyring()` or `LimitingStress()` of `bearingjax.lubrication` yields. At
 high speed films are thinner, because the oil is sheared warm before it enters:
 `inlet_heating=True`.
@@ -66,7 +66,7 @@ by hours) and `CageSlip`; variables are then "preload",
 "model.element.bearing.contact_angle", "model.temperature" and the like. Least friction
 torque with at most 1 % slip over a spectrum: benchmarks/skid_design.py. `skid_warnings`
 warns of pockets too tight for the end state or too wide for the balls,
-shear stresses that no oil bears, an oil that is a glass, films that are not
+shear stresses that no oil sustains, an oil that is a glass, films that are not
 elastohydrodynamic or too thin, gross skidding.
 """
 

@@ -28,7 +28,7 @@ class SkidMotion(eqx.Module):
         cage_force: Of the cage on the balls, in the sense in which angles are counted
             (time, ball) [N].
         friction_torque: On the ring that drives, the one that turns faster, of the
-            losses that `SkidModel` knows (time,) [N m].
+            losses in `SkidModel` (time,) [N m].
         ring_torque: On outer and inner ring (time, 2) [N m].
         power: Momentary powers (time,).
         work: Their integrals since the beginning (time,).

@@ -1,11 +1,11 @@
 """Motion of all balls or rollers of a bearing and its cage, with its derivatives.
 
-Both move by equations of the same names, in `ball_motion` and `roller_motion`: what
-they bear says which. Below, balls are balls or rollers.
+Both have equations of the same names, in `ball_motion` and `roller_motion`, chosen by
+the type of their loads. Below, balls are balls or rollers.
 
 A ball's place is its lead over its pocket, so that the pocket's force depends on one
-small number. Balls know of each other through the cage, and through the ring where the
-load is balanced anew at every time; so they are the bodies of an `AbstractSystem`.
+small number. Balls are coupled through the cage, and through the ring where it is in
+equilibrium at every time; so they are the bodies of an `AbstractSystem`.
 
 The force of a pocket has a kink where contact begins; it is kept, not rounded off. The
 force itself is continuous and has a potential, so that the power balance is exact, and
@@ -99,7 +99,7 @@ class OneBall(NamedTuple):
     """A ball at an instant.
 
     Attributes:
-        ball: What it bears: `LoadedBall` or `LoadedRoller`.
+        ball: Its loads: `LoadedBall` or `LoadedRoller`.
         azimuth: Where it is [rad].
         state: Its motion: `BallState` or `RollerState`.
         moving: Its motion against the raceways: `Sliding` or `RollerSliding`.

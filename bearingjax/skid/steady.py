@@ -55,8 +55,8 @@ def steady(
         load: On the moving ring, as in `solve_load` (6,) [N, N m].
         speed: Ring speeds.
         places: Places along the orbit, a multiple of the number of balls or rollers, or
-            1 where all bear the same; static. Default: 1 if they do, else at least 96
-            (so too if it cannot be known, because the load is traced).
+            1 where all loads are equal; static. Default: 1 if so, else at least 96
+            (also if the load is traced).
         load_speed: Ring speeds whose pure rolling gives the centrifugal forces, as in
             the published method; default: the orbit of the steady state gives them,
             so that contact loads are consistent with the slip.

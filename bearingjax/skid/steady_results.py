@@ -65,7 +65,7 @@ class SteadyMotion(eqx.Module):
         heat: Of each contact (place, contact) [W].
         cage_speed: Mean orbital speed [rad/s].
         friction_torque: On the ring that drives, the one that turns faster; the mean
-            over the orbit, of the losses that `SkidModel` knows [N m].
+            over the orbit, of the losses in `SkidModel` [N m].
         ring_torque: On outer and inner ring (2,) [N m].
         power: Mean powers.
         residual: Largest force out of balance, relative to the tractions; of the ring,

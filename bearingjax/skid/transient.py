@@ -104,8 +104,8 @@ def simulate(
             along the orbits only, as its radial part is small against contact loads.
         balanced: Whether the ring is balanced at every time; of balls alone. Static.
             Default: if the load is a function of time.
-        places: Of the table, 1 where all balls bear the same, or at least 6; static.
-            Default: 1 if they do, else 96 (so too if the load is traced).
+        places: Of the table, 1 where all loads are equal, or at least 6; static.
+            Default: 1 if they are, else 96 (also if the load is traced).
         tolerance: Of speeds relative to the fastest ring, of angles in rad, of work
             relative to the kinetic energy of rolling balls. The error of a step is held
             below a fiftieth of it. In smooth motion the error stays below it; where

@@ -31,7 +31,7 @@ from .system import AbstractVibratingSystem
 
 
 class Ending(enum.IntEnum):
-    """Why a branch ends."""
+    """Reason for the end of a branch."""
 
     LIMIT = 0
     """The branch reached the end of the range, or closed on its beginning."""

@@ -4,10 +4,10 @@ Steps are even in the phase, so that one program serves every frequency and the
 derivatives of the flow are those of what is computed. The scheme is implicit and damps
 what its steps do not resolve: a vibration of three steps per period is met to 1e-6 in
 each of them, and one that is faster, as the stiff modes of a shaft are, follows the
-forces on it as a spring would and asks for no short steps. Where balls lift off, the
+forces on it as a spring would and needs no short steps. Where balls lift off, the
 force has a kink in its second derivative (Hertz contact, (3/2) power): the order is
 then 2.5 from those steps on, and more steps are needed for the same error; `flow_error`
-tells it.
+estimates it.
 
 Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.5.
 """

@@ -48,7 +48,7 @@ def waterfall(
 
     Every frequency begins anew, all are integrated at once. Lines are at whole
     multiples of 1/`periods` of the excitation: subharmonics of up to that many periods
-    stand on lines of their own, almost periodic motion spreads over its neighbours.
+    have lines of their own; almost periodic motion spreads over its neighbours.
 
     Args:
         system: The system.
