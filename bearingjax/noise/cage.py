@@ -104,7 +104,7 @@ def cage_loads(
     Args:
         cage: The cage.
         place: Its x, y and turn beyond the even orbit (3,) [m, rad].
-        arcs: How far every rolling element is ahead of the even orbit (element,) [m].
+        arcs: Lead of every rolling element over uniform orbit (element,) [m].
         ring: x and y of the guiding ring [m].
         pitch_radius: Of the circle of the rolling elements [m].
         azimuth: Of the rolling elements [rad].

@@ -15,7 +15,7 @@ class ContactStates(NamedTuple):
 
     Attributes:
         number: Of closed contacts (time, element).
-        samples: How many samples of all elements have 0, 1, 2, … contacts, up to as
+        samples: Number of samples of all elements with 0, 1, 2, … contacts, up to as
             many as an element can have (number,).
         switches_per_turn: Contacts that open or close, of all elements, from one
             sample to the next, per turn of the shaft.

@@ -68,7 +68,7 @@ class FreeRow(NamedTuple):
         sites: `None`: the row is the bearing.
         carried: Speed of the orbit; of a set for every element [rad/s].
         own: Speed of the elements about their own axes against the orbit, likewise.
-        surfaces: Where the contacts of each row run.
+        surfaces: Contact tracks of each row.
     """
 
     row: Row

@@ -27,7 +27,7 @@ class Line(NamedTuple):
         frequency: [Hz].
         amplitude: Peak value; of several directions, the length of theirs [unit of the
             record].
-        name: What makes it, such as "2 BPFI + shaft".
+        name: Its cause, such as "2 BPFI + shaft".
     """
 
     order: float
@@ -82,10 +82,10 @@ def name_lines(
             distance of two lines.
         factor: Of a line over the median of its neighbours [1]. One in 2^(factor²)
             lines of noise passes: of 4 one in 65 thousand, of 5 one in 30 million.
-        neighbours: How many to either side.
+        neighbours: Number of neighbours to either side.
         least: Of a line over the largest one [1].
         floor: Amplitude up to which a line is round-off [unit of the record].
-        largest: How many maxima, above `least`, are taken for their size alone.
+        largest: Number of maxima, above `least`, taken by size alone.
 
     Returns:
         Lines by their frequency; of none that fits the name is `UNNAMED`.

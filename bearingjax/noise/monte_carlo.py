@@ -113,10 +113,10 @@ def monte_carlo(
     Args:
         model: The bearing as on the drawing, or with errors that all have.
         tolerances: How bearings scatter.
-        n: How many bearings.
+        n: Number of bearings.
         key: Of `jax.random`; the same gives the same bearings.
         turns, settle, samples, steps: As in `vibration`; `steps` of the model as it is.
-        batch: How many bearings at once.
+        batch: Number of bearings at once.
         bands: `None`: `octave_bands()`.
         window: Of the spectra; `None`: `Hann()`, since a record does not repeat
             itself: the cage turns by no whole number.

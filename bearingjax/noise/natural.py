@@ -95,7 +95,7 @@ def natural_modes(model: NoiseModel) -> NaturalModes:
     along the orbit where elements differ or few of them carry load, see `orbited`.
 
     Args:
-        model: The bearing; its form errors do not count.
+        model: The bearing; its form errors are ignored.
 
     Returns:
         Modes. First derivatives of frequencies are exact, also where some coincide (of

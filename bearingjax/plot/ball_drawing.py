@@ -196,7 +196,7 @@ def clearance_title(text: str, gap: float, times: float) -> str:
     Args:
         text: Name and value.
         gap: At each raceway [mm].
-        times: How many times as large it is drawn.
+        times: Magnification of the drawing.
     """
     if gap == 0.0:
         return f"{text}\nno gap at the raceways"

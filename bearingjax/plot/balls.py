@@ -115,7 +115,7 @@ def ellipses(
         bearing: The design; of a set, the set or the bearing of the row.
         solution: Its single solution.
         raceway: "outer" or "inner".
-        row: Which row of a set.
+        row: Index of the row in a set.
         ax: Axes; a new figure if `None`. Their height becomes 0.62 of their width.
 
     Returns:

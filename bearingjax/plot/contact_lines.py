@@ -41,7 +41,7 @@ def centre_pressure(
     Args:
         solutions: Of one roller.
         ax: Axes; a new figure if `None`.
-        slices: What slices give under each load, dashed.
+        slices: Results of slices under each load, dashed.
     """
     ax = axes_or_new(ax, (8.0, 5.0))
     values = [1e-6 * np.asarray(s.centre_pressure) for s in solutions]

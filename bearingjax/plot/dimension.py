@@ -87,7 +87,7 @@ def fit(ax: "matplotlib.axes.Axes", points, size, middle=(0.48, 0.86)) -> None:
 
     Args:
         ax: Axes; they lose their frame, and their sides get the ratio of `size`.
-        points: What is to be seen (point, 2).
+        points: Points within the view (point, 2).
         size: Width and height of the axes [inch].
         middle: Share of width and height that the parts take.
     """
@@ -221,7 +221,7 @@ def between(ax: "matplotlib.axes.Axes", start, stop, shift=(0.0, 0.0)) -> np.nda
     Args:
         ax: Axes.
         start, stop: The points (2,).
-        shift: How far the line stands aside (2,).
+        shift: Offset of the line (2,).
 
     Returns:
         Its middle, for the label.

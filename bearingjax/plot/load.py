@@ -174,7 +174,7 @@ def load_displacement(
         displacement: Displacement of every case (case,) [m or rad].
         load_name: One of `LOADS`; forces are drawn in kN, moments in N m.
         freedom: One of `FREEDOMS`; shifts are drawn in µm, tilts in mrad.
-        converged: Which cases have an answer (case,); the others are gaps.
+        converged: Whether each case has a result (case,); the others are gaps.
         ax: Axes; a new figure if `None`.
 
     Returns:

@@ -22,7 +22,7 @@ def noise_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
     Of random bearings also the distribution of their levels, and what makes it.
 
     Args:
-        run: What came of a scene of noise, with a record.
+        run: Results of a scene of noise, with a record.
         title: Head of the page; "Noise" if empty.
 
     Returns:

@@ -41,7 +41,7 @@ def pressure_profiles(
         ax: Axes; a new figure if `None`.
         count: Number of rollers, most loaded first.
         raceway: "inner", "outer" or "both".
-        row: Which row of a set.
+        row: Index of the row in a set.
 
     Returns:
         The axes.
@@ -135,7 +135,7 @@ def pressure_map(
         solution: A single solution of a roller bearing.
         ax: Axes; a new figure if `None`.
         raceway: "inner" or "outer".
-        row: Which row of a set.
+        row: Index of the row in a set.
         top: Pressure at the end of the colour scale [Pa]; the highest one of the row
             on this raceway if `None`. Give one to compare raceways.
 

@@ -163,7 +163,7 @@ def steady_spectra(found: Waterfall, freedom: int) -> Spectra:
 
     Args:
         found: From `rotor.nonlinear.waterfall`.
-        freedom: Which; its mean is left out.
+        freedom: Index of the freedom; its mean is left out.
     """
     speed = np.asarray(found.frequency)
     hertz = speed[:, None] * np.asarray(found.order)[1:] / (2.0 * np.pi)

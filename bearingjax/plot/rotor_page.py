@@ -25,7 +25,7 @@ def rotor_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
     """Plot the rotor with available modes, Campbell diagram, response and motion.
 
     Args:
-        run: What came of the scene of a rotor; parts that are `None` are not drawn.
+        run: Results of the scene of a rotor; parts that are `None` are not drawn.
         title: Head of the page; "Rotor" if empty.
 
     Returns:

@@ -163,7 +163,7 @@ def draw_spring(ax: Any, z: float, ends: tuple[float, float], width: float) -> N
 
     Args:
         ax: Axes.
-        z: Where [mm].
+        z: Axial position [mm].
         ends: Radial coordinates of its ends [mm].
         width: Of its turns [mm].
     """

@@ -79,7 +79,7 @@ def spin_over_time(
     Args:
         found: From `skid.simulate`.
         ax: Axes; a new figure if `None`.
-        ball: Which.
+        ball: Index of the ball.
 
     Returns:
         The axes.
@@ -102,7 +102,7 @@ def load_over_time(
     Args:
         found: From `skid.simulate`.
         ax: Axes; a new figure if `None`.
-        ball: Which.
+        ball: Index of the ball.
 
     Returns:
         The axes.
@@ -121,7 +121,7 @@ def sliding_over_time(
     Args:
         found: From `skid.simulate`.
         ax: Axes; a new figure if `None`.
-        ball: Which.
+        ball: Index of the ball.
 
     Returns:
         The axes.
@@ -215,7 +215,7 @@ def spectrum(
 
     Args:
         found: From `skid.simulate`, at even times.
-        ball: Which.
+        ball: Index of the ball.
         raceway: "outer" or "inner".
         begin: Time from which on [s]; default: a third of all.
 

@@ -95,7 +95,7 @@ def widened(values, least: float, share: float = 0.08) -> tuple[float, float]:
     """Return limits of an axis around values, wide enough to hide round-off.
 
     Args:
-        values: What is drawn.
+        values: Values drawn.
         least: Smallest distance of the limits, in the unit of the values.
         share: Of the span that stays free at each end.
     """
@@ -134,7 +134,7 @@ def row_slice(solution, row: int) -> slice:
 
     Args:
         solution: A single solution.
-        row: Which row of a set.
+        row: Index of the row in a set.
 
     Raises:
         ValueError: If there is no such row.

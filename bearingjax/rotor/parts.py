@@ -276,7 +276,7 @@ class LinearSupport(AbstractSupport):
     """Linear springs and dampers.
 
     Attributes:
-        station: Number of the station that it holds.
+        station: Number of the supported station.
         stiffness: d(Fx, Fy, Fz, Mx, My)/d(ux, uy, uz, gx, gy) (5, 5), or its diagonal
             (5,) [N/m, N, N m].
         damping: Likewise, over the rates [N s/m, N s, N m s].
@@ -314,7 +314,7 @@ class LinearSupport(AbstractSupport):
         """Create an isotropic support without coupling.
 
         Args:
-            station: Number of the station that it holds.
+            station: Number of the supported station.
             radial, axial: Stiffness in x and y, and in z [N/m].
             tilt: Stiffness against tilting about x and y [N m].
             radial_damping, axial_damping: Damping [N s/m].

@@ -26,7 +26,7 @@ def craig_bampton(rotor: Rotor, modes: Any) -> Basis:
 
     Args:
         rotor: With supports, and a shaft that bends.
-        modes: How many clamped modes; a symmetric rotor has them in pairs.
+        modes: Number of clamped modes; a symmetric rotor has them in pairs.
 
     Returns:
         Columns: freedoms of supported stations (rising) and housings, then one for

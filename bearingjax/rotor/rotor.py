@@ -35,7 +35,7 @@ class RotorMatrices(eqx.Module):
         damping: C (freedom, freedom) [N s/m, N s, N m s].
         gyroscopic: G (freedom, freedom), skew [kg, kg m, kg m²].
         stiffness: K (freedom, freedom) [N/m, N, N m].
-        motions: What the freedoms q move (motion, freedom): (ux uy uz gx gy) of every
+        motions: Motions per freedom q (motion, freedom): (ux uy uz gx gy) of every
             node, then (ux uy uz) of every housing [m, rad].
         speed: Ω, positive from x towards y [rad/s].
         length: Of the shaft, by which tilts are compared with displacements [m].

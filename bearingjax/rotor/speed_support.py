@@ -23,7 +23,7 @@ class SpeedSupport(AbstractSupport):
     """Springs with speed-dependent stiffness, and dampers.
 
     Attributes:
-        station: Number of the station that it holds.
+        station: Number of the supported station.
         stiffness: Coefficients of Chebyshev's polynomials between rest and `top_speed`
             (order, 5, 5) [N/m, N, N m]. Above it stays what it is there; it is the same
             for both senses of turning.

@@ -41,7 +41,7 @@ class StaticEquilibrium(eqx.Module):
     Attributes:
         displacement: (ux uy uz gx gy) of every node (node, 5) [m, rad].
         housing: (ux uy uz) of every housing (housing, 3) [m].
-        support_load: What the shaft puts on every support (support, 5) [N, N m].
+        support_load: Load of the shaft on every support (support, 5) [N, N m].
         stiffness: Of every support there (support, 5, 5) [N/m, N, N m].
         damping: Likewise (support, 5, 5) [N s/m, N s, N m s].
         rotor: The rotor on springs and dampers of that stiffness and damping, for all

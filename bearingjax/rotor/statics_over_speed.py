@@ -29,10 +29,10 @@ class StaticEquilibriumOver(eqx.Module):
     Attributes:
         rotor: The rotor on springs that follow the speed (`SpeedSupport`), for all
             linear analyses up to the top speed.
-        speed: Where it was settled (place,) [rad/s]. displacement, support_load,
+        speed: Speeds of the equilibria (place,) [rad/s]. displacement, support_load,
         stiffness: There, as in `StaticEquilibrium`, with `place` as
             first axis.
-        error: What the polynomials may miss, over the largest stiffness [1].
+        error: Error of the polynomials, over the largest stiffness [1].
         result: Worst `Result` code; the numbers are NaN unless it is `CONVERGED`.
     """
 

@@ -111,7 +111,7 @@ def warn_of(rotor: Any, found: Any) -> None:
 
     Args:
         rotor: The rotor.
-        found: What `static_equilibrium` found.
+        found: Result of `static_equilibrium`.
     """
     loads = np.asarray(found.support_load)
     idle = [

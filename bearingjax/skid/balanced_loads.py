@@ -33,7 +33,7 @@ class BalancedLoads(eqx.Module):
         skid: The bearing and its oil.
         prepared: The bearing at ring speeds that do not change, or `None`.
         ellipses: Of its contacts, or `None` where they change with their angles.
-        balance: Which freedoms of the ring are free.
+        balance: Balance of the ring, with its free freedoms.
         load: Function of time [s] that returns the load on the ring (6,) [N, N m];
             a pytree.
         unit: Of the unknowns [m].

@@ -60,8 +60,8 @@ class LoadedBall(eqx.Module):
         angle: Contact angles (contact,) [rad].
         patch: Contact areas.
         film: Films.
-        least_film: What remains of every film at rest [m].
-        inlet: What thins the films at speed, or `None`.
+        least_film: Film that remains at rest [m].
+        inlet: Inlet heating that thins films at speed, or `None`.
         outwards: 1 for contacts of the outer ring, else -1.
 
     Static: outwards.

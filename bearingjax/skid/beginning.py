@@ -89,7 +89,7 @@ def balanced_surroundings(
 
     Args:
         model, solution, speed, gravity: As in `surroundings`.
-        balance: Which freedoms are free.
+        balance: Balance of the ring, with its free freedoms.
         load: Function of time [s] (6,) [N, N m].
     """
     q, zero = solution.displacement, jnp.zeros_like(speed.time[0])
@@ -122,7 +122,7 @@ def rolling_start(
     """Return the state of pure rolling, with balls or rollers in mid pocket.
 
     Args:
-        around: What the balls move in.
+        around: Surroundings of the balls.
         centre, ring: As in `SkidState` [m].
     """
     speed = around.speed.at(around.speed.time[0] * 0.0)

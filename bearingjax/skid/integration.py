@@ -51,7 +51,7 @@ def integrated(
     """Integrate the motion of balls and cage.
 
     Args:
-        around: What the balls move in.
+        around: Surroundings of the balls.
         start: The motion at time zero.
         times: When it is wanted, rising [s].
         duration: The last time [s].

@@ -74,7 +74,7 @@ def ring_forces(
     Args:
         row: The row, without a spring.
         q: Ring freedoms [m, rad].
-        azimuth: Where they are [rad].
+        azimuth: Azimuths of the elements [rad].
         solved: The row solved there.
 
     Returns:

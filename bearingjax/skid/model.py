@@ -26,7 +26,7 @@ class Oil(NamedTuple):
     Attributes:
         lubricant: Its properties.
         temperature: Its temperature [K].
-        least_film: What remains of every film at rest [m].
+        least_film: Film that remains at rest [m].
         loading: Thermal loading parameter of the inlets at 1 m/s [s²/m²], or `None` if
             they stay cool.
     """
@@ -128,7 +128,7 @@ class SkidModel(eqx.Module):
         """Raise unless it is a ball bearing.
 
         Args:
-            title: What asks for one.
+            title: Name of the analysis that requires one.
 
         Raises:
             TypeError: If it is another bearing.

@@ -39,7 +39,7 @@ class Work(NamedTuple):
     """Work [J] or power [W]: that of the drive is the sum of the others and of storage.
 
     Attributes:
-        drive: What turns the rings.
+        drive: Drive of the rings.
         contacts: Heat of the raceway contacts.
         drag: Lost in the oil between the rings.
     """
@@ -100,7 +100,7 @@ class OneBall(NamedTuple):
 
     Attributes:
         ball: Its loads: `LoadedBall` or `LoadedRoller`.
-        azimuth: Where it is [rad].
+        azimuth: Azimuth of the ball [rad].
         state: Its motion: `BallState` or `RollerState`.
         moving: Its motion against the raceways: `Sliding` or `RollerSliding`.
         pulls: `Tractions` or `RollerTractions`.
@@ -141,7 +141,7 @@ def one_ball(
     """Return a ball at an instant.
 
     Args:
-        around: What the balls move in.
+        around: Surroundings of the balls.
         time: Time [s].
         place: Azimuth of its pocket at rest [rad].
         state: Of this ball alone, with cage and ring.
@@ -206,7 +206,7 @@ class SkidSystem(AbstractSystem):
     """Balls and cage as bodies with shared unknowns, in units of their own.
 
     Attributes:
-        around: What the balls move in.
+        around: Surroundings of the balls.
         speed: Unit of speeds [rad/s].
         energy: Unit of work [J].
     """

@@ -50,7 +50,7 @@ class AbstractOrbit(eqx.Module):
     contact loads and the position of the ring are part of the equations.
 
     Attributes:
-        model: The bearing, its oil and what surrounds the balls or rollers.
+        model: The bearing, its oil and its surroundings.
         speed: Ring speeds.
         carried: Ring speeds of the loads: their pure rolling gives centrifugal forces.
         follows: Whether the loads follow the orbit beyond that. Static.
@@ -283,7 +283,7 @@ class Evaluated(NamedTuple):
 
     Attributes:
         out: Forces out of balance (unknown,) [N].
-        sizes: What each is measured against (unknown,) [N].
+        sizes: Scale of each (unknown,) [N].
         jacobian: Of the forces (unknown, unknown) [N s/rad, N/m].
         solved: The row in equilibrium there.
     """

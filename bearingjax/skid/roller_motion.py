@@ -45,8 +45,8 @@ class LoadedRoller(eqx.Module):
         load: Contact loads (contact,) [N].
         patch: Contact areas.
         film: Films.
-        least_film: What remains of every film at rest [m].
-        inlet: What thins the films at speed, or `None`.
+        least_film: Film that remains at rest [m].
+        inlet: Inlet heating that thins films at speed, or `None`.
     """
 
     mass: Scalar

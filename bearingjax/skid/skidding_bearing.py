@@ -32,7 +32,7 @@ class SkiddingBearing(AbstractSystem):
     "preload", "model.element.bearing.contact_angle", "model.temperature".
 
     Attributes:
-        model: The bearing, its oil and what surrounds the balls.
+        model: The bearing, its oil and its surroundings.
         preload: Axial force on the moving ring, added to that of every case, as from a
             soft spring: it does not change with speed or load [N].
         places: Places along the orbit, as in `skid.steady`; `None`: at least 96. 1 will

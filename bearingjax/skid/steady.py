@@ -51,7 +51,7 @@ def steady(
     """Find the steady motion of the balls or rollers of a skidding bearing.
 
     Args:
-        model: The bearing, its oil and what surrounds the balls.
+        model: The bearing, its oil and its surroundings.
         load: On the moving ring, as in `solve_load` (6,) [N, N m].
         speed: Ring speeds.
         places: Places along the orbit, a multiple of the number of balls or rollers, or
@@ -191,7 +191,7 @@ def end_state(
     """Find the steady motion in a solved bearing; never raises.
 
     Args:
-        model: The bearing, its oil and what surrounds the balls.
+        model: The bearing, its oil and its surroundings.
         solution: Of its load, for balls or rollers in pure rolling.
         case: That load, with the speeds of the solution.
         options: Settings of its solve.

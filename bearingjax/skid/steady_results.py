@@ -39,7 +39,7 @@ class Power(NamedTuple):
     """Mean powers [W]: that of the drive is the sum of the others.
 
     Attributes:
-        drive: What turns the rings.
+        drive: Drive of the rings.
         contacts: Heat of the raceway contacts.
         drag: Lost in the oil between the rings.
         cage: Lost at the cage.

@@ -83,7 +83,7 @@ class Cage(eqx.Module):
         """Return the force on a ball or roller, in the sense of angles [N].
 
         Args:
-            lag: How far its pocket is ahead of it, along the orbit [m].
+            lag: Lead of its pocket over it, along the orbit [m].
         """
         play = 0.5 * self.pocket_clearance
         return self.stiffness * (

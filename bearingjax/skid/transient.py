@@ -86,7 +86,7 @@ def simulate(
     0.14 m/s.)
 
     Args:
-        model: The bearing, its oil and what surrounds the balls.
+        model: The bearing, its oil and its surroundings.
         load: On the moving ring, as in `solve_load` (6,) [N, N m]; or over time:
             `LoadHistory`, `SinusoidalLoad`, or another pytree that is a function of
             time [s] and returns such a load.

@@ -33,7 +33,7 @@ def skid_warnings(
     """Return warnings about a skidding motion, a sentence each.
 
     Args:
-        model: The bearing, its oil and what surrounds the balls. found: How its balls
+        model: The bearing, its oil and its surroundings. found: How its balls
         or rollers move, concrete; from `skid.steady` or `skid.simulate`.
             With a leading case axis, as `optimise` has it, each sentence is that of the
             worst case, and says in how many cases.

@@ -123,7 +123,7 @@ def backbone(
             vibration here: the curve is that of a critical speed.
         peaks: Largest displacement of the freedom from where it rests under the
             constant part of the excitation, from small ones on (point,) [m, rad].
-        freedom: Which one. Static.
+        freedom: Index of the freedom. Static.
         method: `Shooting` or `HarmonicBalance`.
         mode: Number of the mode at rest, by frequency from 0, the speed being the
             reference frequency if it is not fixed. Static.

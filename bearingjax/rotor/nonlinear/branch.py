@@ -64,7 +64,7 @@ class Branch(NamedTuple):
         displacement: At even phases from 0 on (point, sample, n) [m, rad].
         multipliers: Floquet multipliers (point, 2n) [1].
         stable: Whether none is beyond the unit circle (point,).
-        unknowns: What the method solved for (point, m) [1].
+        unknowns: Unknowns of the method (point, m) [1].
         residual: Of its equations, largest (point,) [1].
         newton: Newton steps (point,).
         events: Marked points, in order.
@@ -115,7 +115,7 @@ def follow(
         method: `Shooting` or `HarmonicBalance`.
         start: Displacements at `begin` to start with, at even phases from 0 on, such
             as an orbit's by any method (sample, n) [m, rad]; `None`: rest.
-        parameter: What is held from point to point; `None`: `Arclength()`.
+        parameter: Quantity held between points; `None`: `Arclength()`.
         steps: Lengths of steps; `None`: `Steps()`.
         points: Most points.
         locate: Whether folds, flips, Neimark-Sacker and branch points are located, to

@@ -214,7 +214,7 @@ def trace(
         method: How orbits are sought.
         begin: Unknowns and frequency ratio to begin with (m + 1,) [1].
         end: Frequency ratio to go to [1].
-        parameter: What is held from point to point.
+        parameter: Quantity held between points.
         steps: Lengths of steps.
         points: Most points. Static.
 

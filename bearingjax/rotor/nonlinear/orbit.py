@@ -40,7 +40,7 @@ class PeriodicOrbit(eqx.Module):
         amplitude: Half of peak to peak over the period (n,) [m, rad].
         multipliers: Floquet multipliers (2n,) [1].
         stable: Whether none is beyond the unit circle.
-        unknowns: What the method solved for (m,) [1].
+        unknowns: Unknowns of the method (m,) [1].
         residual: Of its equations, largest [1].
         steps: Newton steps.
         result: `Result` code.
