@@ -126,7 +126,7 @@ def band_levels(
 
 
 def total_root_mean_square(spectrum: Spectrum) -> Float[Array, "..."]:
-    """Return the root mean square of a record about its mean (...) [its unit].
+    """Return the RMS of a record about its mean (...) [unit of the record].
 
     It is of all lines, those outside of any bands too.
     """

@@ -297,7 +297,7 @@ def _same(pairs):
 
 
 def _biorthogonal(pairs, matrices):
-    """Scale left vectors so that `_products` is the unit matrix, also for coincident
+    """Combine left vectors so that `_products` is the unit matrix, also for coincident
     modes; modes that do not oscillate are unchanged."""
     swings = pairs.value.imag > 0
     own = _same(pairs) & swings[:, None] & swings[None, :]

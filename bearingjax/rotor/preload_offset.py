@@ -12,7 +12,7 @@ def preload_offset(element: BearingElement, force: Scalar | float) -> Scalar:
     """Return the axial displacement of the inner ring of one bearing under a force [m].
 
     It is the `offset` along z of a `BearingSupport`: the force is that of the bearing
-    before the shaft yields and before other bearings and loads share it.
+    before the shaft deflects and before other bearings and loads share it.
     The bearing is at rest, and its rings are held coaxial.
 
     Args:
