@@ -99,7 +99,7 @@ class AbstractLineContact(eqx.Module):
         """Positions ξ among which the largest pressure stands, both ends first.
 
         Args:
-            carried: As of `at`.
+            carried: As in `at`.
             scan: Ascending positions from -1 to 1, evenly spaced.
             weight: Relative radius ρ^(-9/10) there: times the approach, this is
                 largest where the pressure is.
@@ -403,7 +403,7 @@ def expansion(at: Float[Array, "2"], contact: Any, order: int = 2) -> Expansion:
 
     Args:
         at: (a, b) (2,) [m].
-        contact: The contact, its table and the rule, as of `response`.
+        contact: The contact, its table and the rule, as in `response`.
         order: Not used: one pass gives all.
     """
     line, table, quadrature = contact

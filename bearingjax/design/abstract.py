@@ -1,4 +1,4 @@
-"""What bearings of balls and of rollers have in common."""
+"""Base class of ball and roller bearings."""
 
 import abc
 

@@ -20,7 +20,7 @@ from .rib import Ribs
 
 
 class AbstractRollerBearing(AbstractBearing):
-    """Single-row roller bearing: what all types have in common.
+    """Single-row roller bearing: base class of all types.
 
     Attributes:
         n_rollers: Number of rollers.

@@ -191,7 +191,7 @@ def _field(owner, name):
 
 
 def _title(owner) -> str:
-    """What a message calls the owner: a name, a class or an instance of it."""
+    """Name of the owner in messages, from a name, a class or an instance of it."""
     if isinstance(owner, str):
         return owner
     return (owner if isinstance(owner, type) else type(owner)).__name__

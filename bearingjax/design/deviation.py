@@ -1,4 +1,4 @@
-"""What may differ from one rolling element of a row to the next."""
+"""Deviations of the rolling elements and raceways of a row, element by element."""
 
 from typing import Any, NamedTuple
 
@@ -53,7 +53,7 @@ def with_raceways(bearing: Any, deviation: Float[Array, "element 2 3"]) -> Any:
 
 
 def largest_deviation(bearing: Any) -> float | None:
-    """What deviations of raceways must stay below in size [m]; `None`: not known.
+    """Upper bound of the size of raceway deviations [m]; `None`: not known.
 
     The distance of ball centre and groove centre, or half of a roller's diameter.
 

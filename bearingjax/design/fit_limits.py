@@ -1,4 +1,4 @@
-"""What bearings bring into fits: limits of bore, outside, internal clearance."""
+"""Limits of the bore, outside diameter and internal clearance of bearings."""
 
 from typing import Any
 
@@ -38,7 +38,7 @@ def outside_limits(outside_diameter: Any) -> Limits:
     Raises:
         ValueError: For other diameters.
 
-    Source: as of `bore_limits`.
+    Source: as in `bore_limits`.
     """
     return _below(
         "outside_limits",

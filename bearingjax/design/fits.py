@@ -5,7 +5,7 @@ as from its seat to the bottom of its raceway: without shoulders, of full sectio
 lengths are of diameters. An interference is positive where the fit is tight; a loose
 fit has no pressure.
 
-`fit_state` compiles nothing for a mounting of NumPy numbers, as of `jax.device_get`.
+`fit_state` compiles nothing for a mounting of NumPy numbers, as from `jax.device_get`.
 """
 
 from types import SimpleNamespace
@@ -177,7 +177,7 @@ class FitConditions(eqx.Module):
 
 
 _COLDER, _HOTTER = -280.0, 1500.0
-"""Rises that are possible [K]: one left at 0 K beside a true temperature is not."""
+"""Plausible rises [K]; a part left at 0 K among true temperatures is outside."""
 
 _REST = SimpleNamespace(
     shaft=0.0,
@@ -192,7 +192,7 @@ _REST = SimpleNamespace(
 """`FitConditions()` in NumPy's numbers."""
 
 PARTS = ("shaft", "inner_ring", "elements", "outer_ring", "housing")
-"""What has a temperature, and a material, in a mounting."""
+"""Parts of a mounting that have a temperature and a material."""
 
 
 def smoothing(seat: Any, ring: Any) -> Any:
@@ -221,14 +221,14 @@ class AxialStrains(NamedTuple):
 
 
 class FitState(NamedTuple):
-    """What fits, temperatures and speed do to a bearing.
+    """State of a bearing after fits, temperatures and speed.
 
     Attributes:
         shaft_interference: Interference left between shaft and inner ring, less the
             smoothing; negative is loose [m].
-        housing_interference: Likewise between outer ring and housing [m].
+        housing_interference: The same between outer ring and housing [m].
         shaft_pressure: Pressure between shaft and inner ring, 0 where loose [Pa].
-        housing_pressure: Likewise between outer ring and housing [Pa].
+        housing_pressure: Pressure between outer ring and housing, 0 where loose [Pa].
         inner_raceway_growth: Growth of the inner raceway's diameter [m].
         outer_raceway_growth: Growth of the outer raceway's diameter [m].
         radial_clearance: Radial internal clearance in these conditions [m].

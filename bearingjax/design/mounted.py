@@ -82,14 +82,14 @@ def _outer_cosine(rollers):
 
 
 def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
-    """The row with another radial internal clearance.
+    """Return the row with another radial internal clearance.
 
     Of an angular contact bearing it is the free contact angle that changes: grooves
     that come nearer radially are met at a smaller angle.
 
     Args:
         bearing: One row.
-        clearance: Radial internal clearance as of `radial_clearance` [m].
+        clearance: Radial internal clearance as in `radial_clearance` [m].
 
     Raises:
         TypeError: As `radial_clearance`.
@@ -127,7 +127,7 @@ def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
 
 
 def sized(mounting: Mounting, bearing: AbstractBearing | BearingSet) -> Mounting:
-    """The mounting with the sizes of a bearing where its own are `None`.
+    """Return the mounting with the sizes of a bearing where its own are `None`.
 
     Args:
         mounting: The seats.
@@ -171,7 +171,7 @@ def mounted(
     mounting: Mounting,
     conditions: FitConditions | None = None,
 ) -> Any:
-    """The bearing with the radial clearance that fits, temperatures and speed leave.
+    """Return the bearing with its clearance after fits, temperatures and speed.
 
     Load ratings stay those of the drawing (`rated_contact_angle`).
 
@@ -210,12 +210,12 @@ def mounted(
 
 
 def _states(bearing: BearingSet, mounting, conditions) -> list[FitState]:
-    """What fits do to each row of a set."""
+    """Fit state of each row of a set."""
     return [fit_state(sized(mounting, row.bearing), conditions) for row in bearing.rows]
 
 
 def _on_seats(bearing: AbstractBearing, state: FitState) -> Any:
-    """A row with the clearance that fits leave."""
+    """Return a row with its clearance after fits."""
     new = with_radial_clearance(bearing, state.radial_clearance)
     if not isinstance(new, AngularContactBallBearing | FourPointBallBearing):
         return new
@@ -258,7 +258,7 @@ def row_shifts(
 
     Args:
         bearing: A set.
-        mounting, conditions: As of `mounted`.
+        mounting, conditions: As in `mounted`.
 
     Returns:
         Of each row, along +z of the set [m]; 0 of a self-aligning bearing, whose rows
@@ -271,7 +271,7 @@ def row_shifts(
 
 
 def _shifts(bearing: BearingSet, mounting, states: list[FitState]) -> list[Any]:
-    """As of `row_shifts`, of what fits do to each row."""
+    """Row shifts as in `row_shifts`, from the fit state of each row."""
     if is_self_aligning(bearing):
         return [0.0] * len(bearing.rows)
     width = mounting.ring_width

@@ -1,4 +1,4 @@
-"""One ball between its rings: its contacts with the grooves, and how it is carried."""
+"""One ball between its rings: its contacts with the grooves, and its orbit."""
 
 import dataclasses
 from typing import ClassVar
@@ -25,7 +25,7 @@ _N, _D = EXPONENT
 
 
 class Ball(AbstractRollingElement):
-    """One ball: its grooves, contact constants and how it is carried round.
+    """One ball: its grooves, contact constants and orbit.
 
     A contact bears 2/5 c (l - L)₊^(5/2): l is the distance of ball centre and groove
     centre, L = groove radius - ball radius. So the contact angles follow from the
@@ -105,7 +105,7 @@ class Ball(AbstractRollingElement):
         return Expansion(energy, force, stiffness, load)
 
     def contacts(self, rings: RingMotion, x: Unknowns) -> Contacts:
-        """Geometry of all contacts at given motions; arguments as of `coordinates`."""
+        """Geometry of all contacts at given motions; arguments as in `coordinates`."""
         return self.grooves.touch(self.coordinates(rings, x))
 
     def constants(self, contacts: Contacts) -> Float[Array, " contact"]:
@@ -181,7 +181,7 @@ class Ball(AbstractRollingElement):
 
 
 class BallSeeking(Seeking):
-    """Where the equilibrium of a ball is looked for."""
+    """Hints for the search of the equilibrium of a ball."""
 
     element: Ball
 

@@ -1,4 +1,4 @@
-"""A ball that is carried round: its kinematics, its inertia, and what holds it.
+"""Kinematics and inertia of an orbiting ball, and its raceway control.
 
 In the section at a ball's azimuth a contact angle is counted from the radius towards
 +z. The ball's spin axis lies in the section at the pitch angle β, such that its spin
@@ -118,7 +118,7 @@ class LoadShare(AbstractRacewayControl):
 
 
 class FrictionLimited(AbstractRacewayControl):
-    """As `LoadShare`, but no traction exceeds friction times the contact load.
+    """`LoadShare` with every traction limited to friction times the contact load.
 
     Beyond that the ball turns about the tangent of its orbit (gyroscopic slip).
 
@@ -177,7 +177,7 @@ class CentrifugalOnly(AbstractWithoutMoment):
 
 
 class BallKinematics(NamedTuple):
-    """How a ball orbits, rolls and spins.
+    """Orbit, rotation, rolling and spin of a ball.
 
     Attributes:
         orbit: Orbital speed ω_c [rad/s].
@@ -185,7 +185,7 @@ class BallKinematics(NamedTuple):
         axis: Axis of rotation (sin β, cos β) for its pitch angle β (2,).
         spin: Spin about the contact normal relative to outer and inner ring (2,)
             [rad/s].
-        roll: Rolling about the contact tangent, likewise (2,) [rad/s].
+        roll: Rolling about the contact tangent, outer and inner ring (2,) [rad/s].
     """
 
     orbit: Float[Array, "..."]

@@ -122,7 +122,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         raceway_control: AbstractRacewayControl | None = None,
         choices: AbstractChoices | None = None,
     ):
-        """Defaults as above; what the rolling elements have no use for is an error.
+        """Defaults as above; a choice that does not apply to the elements is an error.
 
         Raises:
             TypeError: If `bearing` is no bearing, or a choice is of another kind, such
@@ -182,7 +182,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             )
 
     def __hash__(self) -> int:
-        """Of the structure: `jax.jit` of a method needs it, and compares the numbers.
+        """Hash of the structure and shapes, which `jax.jit` of a method needs.
 
         Raises:
             TypeError: If a number is traced, which cannot be compared.
@@ -244,12 +244,12 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
     @property
     def kinematics(self) -> AbstractKinematics:
-        """How rigid motions become coordinates of the contacts."""
+        """Kinematics: map from rigid motions to coordinates of the contacts."""
         return self.choices.kinematics
 
     @property
     def quadrature(self) -> AbstractQuadrature | None:
-        """Of roller contacts; `None` with balls and `CoupledSlices()`."""
+        """Quadrature of roller contacts; `None` with balls and `CoupledSlices()`."""
         return getattr(self.choices, "quadrature", None)
 
     @property
@@ -259,7 +259,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
     @property
     def raceway_control(self) -> AbstractRacewayControl | None:
-        """Of turning balls; `None` with rollers."""
+        """Raceway control of turning balls; `None` with rollers."""
         return getattr(self.choices, "raceway_control", None)
 
     def has_potential(self, speed: Speed | None = None) -> bool:
@@ -299,7 +299,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """External load that holds the rings where they are [N, N m].
 
         Args:
-            q, speed, near: As of `energy`.
+            q, speed, near: As in `energy`.
             with_near: Return (force, near) for the next call. Static.
 
         Raises: as `energy`.
@@ -339,10 +339,10 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         return self._at("results", q, speed, near)
 
     def nothing_near(self, speed: Speed | None = None) -> State:
-        """What `near` is before the first call: rolling elements of unknown places.
+        """Return the initial `near`, before the first call: no element is solved yet.
 
         Args:
-            speed: Ring speeds or `None`, as of the calls.
+            speed: Ring speeds or `None`, as in the calls.
         """
         model = self.model(speed)
         return model.near(model.unsolved())
@@ -376,7 +376,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             speed: Ring speeds; `None`: rings at rest, no inertia.
             damping: Linear and viscous: a number c [N s/m], dashpots between the
                 origins of the rings in x, y and z; or a matrix C (12, 12) with
-                f = … + C velocity [N s/m, N s, N m s], as of a damping in proportion
+                f = … + C velocity [N s/m, N s, N m s], as for a damping in proportion
                 to a stiffness, β `linearise(…).stiffness`. None: no damping.
             orbit: Whether the rolling elements orbit with time, or only with the gz
                 of `motion`.

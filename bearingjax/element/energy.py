@@ -150,7 +150,7 @@ def derivatives(
 def response(
     element: AbstractRollingElement, rings: Float[Array, " r"], x: Unknowns
 ) -> Expansion:
-    """What the contacts of a rolling element bear; arguments as of `derivatives`."""
+    """Contact response of a rolling element; arguments as in `derivatives`."""
     return element.respond(element.coordinates(unpacked(element, rings), x))
 
 
@@ -168,5 +168,5 @@ def unpacked(element: AbstractRollingElement, rings: Float[Array, " r"]) -> Ring
 
 
 def _on_packed(element, forces):
-    """Forces on what `unpacked` takes, from those on both rings."""
+    """Forces on the motions that `unpacked` takes, from those on both rings."""
     return forces[1:] if element.sees_difference else tuple(forces)

@@ -1,4 +1,4 @@
-"""The one home of axes, freedoms and their order.
+"""Definition of axes, freedoms and their order.
 
 z is the bearing axis, right-handed; azimuth from +x towards +y. Twelve freedoms:
 (ux uy uz gx gy gz) of the outer ring, then of the inner ring, in m and rad, all at the

@@ -88,7 +88,7 @@ def orbiting_force(
         velocity: Their rates [m/s, rad/s].
         time: Time [s].
         parameters: From `BearingElement.as_function`.
-        near: As of `ring_force`.
+        near: As in `ring_force`.
 
     Returns, raises: as `ring_force`.
     """
@@ -121,7 +121,7 @@ def _force(motion, velocity, time, parameters, near):
 def as_function(
     element: Any, speed: Speed | None, damping: Any, orbit: bool
 ) -> tuple[RingFunction, FunctionParameters]:
-    """What `BearingElement.as_function` returns; see there."""
+    """Return the function and parameters of `BearingElement.as_function`; see there."""
     if speed is not None and not isinstance(speed, Speed):
         raise TypeError(
             f"BearingElement: `speed` is a {type(speed).__name__}; it must be a"

@@ -105,7 +105,7 @@ class Roller(AbstractRollingElement):
 
 
 class RollerSeeking(Seeking):
-    """Where the equilibrium of a roller is looked for."""
+    """Hints for the search of the equilibrium of a roller."""
 
     element: Roller
 

@@ -1,4 +1,4 @@
-"""Rows whose rolling elements are in equilibrium, and what they tell."""
+"""Rows whose rolling elements are in equilibrium, and their results."""
 
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
@@ -51,7 +51,7 @@ class SolvedRow(NamedTuple):
         return row.each(one, rings, self.state, self.magnitude, self.energies)
 
     def near(self, row: Any) -> Near:
-        """What solves at ring freedoms near by may start from, leading axis element."""
+        """Starting points for solves at ring freedoms near by, leading axis element."""
 
         def one(placed, rings, energies):
             return near_by(placed, rings, energies.beside)
@@ -114,7 +114,7 @@ class RowResults(NamedTuple):
         return self.row.each(one, self.x, self.azimuth)
 
     def inertia(self) -> Float[Array, "6"] | None:
-        """What inertia does to its elements, at the node [N, N m], or `None`."""
+        """Inertia load of its elements, at the node [N, N m], or `None`."""
         parts = self.each(lambda element, rings, x: element.inertia(rings, x))
         if parts is None:
             return None
@@ -127,7 +127,7 @@ class RowResults(NamedTuple):
 
 
 def inertia_load(rows: Iterable[RowResults]) -> Float[Array, "6"]:
-    """What inertia does to all rolling elements, at the node [N, N m].
+    """Inertia load of all rolling elements, at the node [N, N m].
 
     The forces that hold both rings add up to minus this.
 

@@ -109,7 +109,7 @@ class EllipsePatch(AbstractPatch):
         rolling: Semi-axis in rolling direction [m].
         transverse: Semi-axis across [m].
         peak_pressure: Largest pressure [Pa].
-        moments: As of `AbstractPatch` (3,) [N s, N m s, N m² s].
+        moments: As in `AbstractPatch` (3,) [N s, N m s, N m² s].
         radial, angular: Numbers of nodes along a ray and of rays.
 
     Static: radial, angular.
@@ -125,7 +125,7 @@ class EllipsePatch(AbstractPatch):
     angular: int = eqx.field(static=True)
 
     def nodes(self, slip, spin):
-        """As of `AbstractPatch`.
+        """As in `AbstractPatch`.
 
         On rays from a centre c to points e of the edge, in units of the semi-axes: c is
         the rolling pole where that lies in the ellipse, and the middle where it is far
@@ -205,14 +205,14 @@ class LinePatch(AbstractPatch):
 
     Attributes:
         fixed: Its nodes, the same for every motion.
-        moments: As of `AbstractPatch` (3,) [N s, N m s, N m² s].
+        moments: As in `AbstractPatch` (3,) [N s, N m s, N m² s].
     """
 
     fixed: Nodes
     moments: Float[Array, "3"] = eqx.field(metadata=unit(("N s", "N m s", "N m² s")))
 
     def nodes(self, slip, spin):
-        """As of `AbstractPatch`; the motion does not count."""
+        """As in `AbstractPatch`; the motion does not count."""
         return self.fixed
 
     @property

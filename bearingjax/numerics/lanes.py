@@ -63,7 +63,7 @@ class Loop(NamedTuple):
     rests: Callable[[Any], Bool[Array, ""]] | None = None
 
     def run(self, given) -> Any:
-        """What comes out of the iteration."""
+        """Run the iteration on one problem and return its result."""
         begin = self.init(given)
         pack, unpack = packing(begin)
         resting = None if self.rests is None else self.rests(given)
@@ -106,7 +106,7 @@ class Either(NamedTuple):
 
 
 def packing(example) -> tuple[Callable[[Any], list[Array]], Callable[[Any], Any]]:
-    """How to make one array of the small leaves of a state, and the state of it again.
+    """Functions that pack the small leaves of a state into one array, and unpack it.
 
     A pass of a compiled loop then ends in one kernel, not in one per leaf: in batches
     of small problems a fifth of the time.
@@ -206,13 +206,13 @@ def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class _Task:
-    """What the lanes of one `run` have in common.
+    """Static data shared by the lanes of one `run`.
 
     Attributes:
         loop: The iteration.
-        whole: Leaves of one problem -> what its functions are given.
-        slots: Slots, and how many of them may be idle.
-        out: Shape and type of every leaf of what comes out.
+        whole: Leaves of one problem -> argument of its functions.
+        slots: Number of slots, and how many of them may be idle.
+        out: Shape and type of every leaf of the result.
     """
 
     loop: Loop
@@ -221,15 +221,15 @@ class _Task:
     out: list[tuple[tuple[int, ...], Any]]
 
     def program(self, *leaves: Array, flags: tuple[bool, ...], count: int | None):
-        """What the operation computes.
+        """Compute the result of the operation.
 
         Args:
-            *leaves: Of what is given.
-            flags: Which of them have an axis of lanes in front.
-            count: How many lanes; `None`: one problem, without such an axis.
+            *leaves: Leaves of the argument.
+            flags: Which of them have a leading axis of lanes.
+            count: Number of lanes; `None`: one problem, without such an axis.
 
         Returns:
-            Leaves of what comes out, each with the axis of lanes.
+            Leaves of the result, each with the axis of lanes.
         """
         if count is None:
             found = self.loop.run(self.whole(leaves))

@@ -50,20 +50,20 @@ Shape = Callable[
 
 
 class Problem(NamedTuple):
-    """What is to be minimised, from where, and when to stop.
+    """Minimisation problem: function, start and stopping criteria.
 
     Attributes:
-        function: (x, with_hessian) -> `Evaluation`; with a `memory`, that of where the
-            step began is its third argument.
+        function: (x, with_hessian) -> `Evaluation`; with a `memory`, that of the start
+            of the step is its third argument.
         start: First point (n,).
         radius: First bound of the step, same unit as x.
-        shape: (x, step, size of the gradient) -> better step, by one who knows where
-            the function bends or stiffens. Newton's method alone uses it.
-        memory: Of the start.
+        shape: (x, step, size of the gradient) -> better step, from knowledge of where
+            the function bends or stiffens. Only Newton's method uses it.
+        memory: Memory of the start.
         direction: Unit vector (n,), or zero. If the function falls along it and too
             little curvature is felt within `radius` to end the fall, it is first
-            followed in growing steps until the function rises: Newton's method, which
-            alone uses it, then comes from the stiff side, where it is at its best.
+            followed in growing steps until the function rises: Newton's method, the
+            only one to use it, then starts on the stiff side, where it converges best.
         limit: |x| beyond which the function counts as unbounded below; the search then
             ends with `NO_LOAD_PATH`.
         force: A constant force on x (n,) [J/unit of x]: value - force·x is minimised,
@@ -85,7 +85,7 @@ class Problem(NamedTuple):
     max_steps: Int[Array, ""] | int | None = None
 
     def at(self, x: Array, with_hessian: bool, memory: Any) -> Evaluation:
-        """Evaluate the function, which `force` has no part in."""
+        """Evaluate the function, without `force`."""
         remembered = (memory,) if jax.tree.leaves(memory) else ()
         return self.function(x, with_hessian, *remembered)
 
@@ -102,7 +102,7 @@ class Problem(NamedTuple):
 
 
 class State(NamedTuple):
-    """Where a minimiser is.
+    """State of a minimiser.
 
     Attributes:
         x: Point (n,).
@@ -122,7 +122,7 @@ class State(NamedTuple):
 
 
 class Minimum(NamedTuple):
-    """Where a minimiser stopped.
+    """Result of a minimiser.
 
     Attributes:
         x: Minimiser (n,).
@@ -142,7 +142,7 @@ class Minimum(NamedTuple):
 
 
 def blank(problem: Problem) -> Minimum:
-    """Of the shapes of a minimum."""
+    """Return a `Minimum` of the right shapes, for an unsolved problem."""
     zero, none = jnp.zeros((), problem.start.dtype), jnp.zeros((), jnp.int32)
     return Minimum(problem.start, zero, zero, none, none, problem.memory)
 
@@ -221,7 +221,7 @@ class AbstractMinimiser(eqx.Module):
         return ended
 
     def finish(self, problem: Problem, state: State) -> Minimum:
-        """What came of it, with its result code."""
+        """Return the minimum of the last state, with its result code."""
         now = problem.pulled(state.x, state.now)
         size = norm(now.gradient)
         # A stall at round-off is as good as it gets; anything above is a failure.

@@ -146,7 +146,7 @@ def called(function: Callable, *arguments: Any) -> Any:
     """Call a function as it is, or as one program if programs are kept.
 
     Args:
-        function, arguments: As of `call_once`.
+        function, arguments: As in `call_once`.
     """
     if _STORE.folder is None:
         return function(*arguments)
@@ -159,7 +159,7 @@ def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
     Args:
         function: Of this package, found by its name; depends on its arguments alone.
         arguments: Nested modules, tuples, dicts; their JAX arrays are traced.
-        folder: As of `keep_programs`.
+        folder: As in `keep_programs`.
 
     Returns:
         What the function returns.
@@ -192,7 +192,7 @@ def _first_run(
     Args:
         flat: From `_flattened`.
         name: Of its file; `None`: it is not kept.
-        folder: As of `keep_programs`.
+        folder: As in `keep_programs`.
         options: Of the compiler.
     """
     function, arrays, outputs = flat
@@ -225,7 +225,7 @@ def _flattened(
     """A function of arrays that returns a list of arrays, as executables are.
 
     Args:
-        function, arguments: As of `call_once`.
+        function, arguments: As in `call_once`.
 
     Returns:
         The function; its arguments; a list that takes up, when the function is

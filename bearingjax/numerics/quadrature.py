@@ -64,8 +64,8 @@ class AbstractQuadrature(eqx.Module):
 
     @abc.abstractmethod
     def table(self, offset: Offset, kinks: tuple, dtype, arcs: bool = False) -> tuple:
-        """What depends on the offset h alone, computed once per design; `arcs` as of
-        `nodes`."""
+        """Return the terms that depend on the offset h only, once per design; `arcs`
+        as in `nodes`."""
 
     @abc.abstractmethod
     def nodes(
@@ -202,7 +202,7 @@ def _scan_point(index, start, end, count):
 
 
 def _loaded_arcs(offset, args, start, end, a, b):
-    """As `_loaded_interval`, where h is one arc in each panel: no scan."""
+    """Loaded intervals as in `_loaded_interval`, for one arc per panel: no scan."""
 
     def one(start, end, a, b, args):
         return _loaded_arc(partial(offset, args), start, end, a, b)

@@ -69,9 +69,9 @@ class Problem:
     """An optimisation, its variables scaled by their bounds to the unit box (0 to 1).
 
     Args:
-        element, cases, variables, objective, constraints: As of `optimise`, checked.
+        element, cases, variables, objective, constraints: As in `optimise`, checked.
         options: How cases are solved.
-        build: As of `optimise`.
+        build: As in `optimise`.
     """
 
     def __init__(

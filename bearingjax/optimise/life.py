@@ -70,7 +70,7 @@ class OfLife(AbstractMeasure):
         load.
 
         Args:
-            element, solution: As of `life`.
+            element, solution: As in `life`.
         """
 
         def one(solution):

@@ -37,7 +37,7 @@ def takes_gradients(method: Any) -> bool:
     """Whether a search uses gradients; a user's own search does not.
 
     Args:
-        method: As of `search`.
+        method: As in `search`.
     """
     return not (method == "nelder-mead" or callable(method))
 

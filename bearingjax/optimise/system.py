@@ -90,7 +90,7 @@ def solved_case(design: Design, case: Cases, options: SolveOptions) -> Any:
     An installed bearing is mounted at the speeds of the case, if it has any.
 
     Args:
-        design, case, options: As of `AbstractSystem.solve_case`.
+        design, case, options: As in `AbstractSystem.solve_case`.
     """
     if isinstance(design, AbstractSystem):
         return design.solve_case(case, options)
@@ -104,7 +104,7 @@ def ready(design: Design, build: Callable[[Any], Any] | None) -> Design:
 
     Args:
         design: The design with the values of its variables.
-        build: As of `optimise`.
+        build: As in `optimise`.
     """
     if build is not None:
         design = build(design)

@@ -66,7 +66,7 @@ def optimality(trial: Trial, near: float) -> float:
     """Largest component of `remainder` in size; NaN without gradients.
 
     Args:
-        trial, near: As of `remainder`.
+        trial, near: As in `remainder`.
     """
     return float(np.abs(remainder(trial, near)).max())
 

@@ -59,9 +59,9 @@ class Balance(eqx.Module):
         return jnp.concatenate(pair)
 
     def along(self, force: Float[Array, "6"]) -> Float[Array, "6"]:
-        """What a force on the moving ring does along the free unknowns (6,) [N].
+        """Components of a force on the moving ring along the free unknowns (6,) [N].
 
-        Moments count by their force at the pitch radius; the balance is
+        Moments are divided by the pitch radius; the equation of equilibrium is
         along(ring force - load) = 0.
 
         Args:

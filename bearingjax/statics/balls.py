@@ -53,12 +53,12 @@ class BallResults(eqx.Module):
 
     @property
     def n_contacts(self) -> Int[Array | np.ndarray, "*case ball"]:
-        """How many contacts of each ball carry load, more than round-off."""
+        """Number of contacts of each ball that carry load above round-off."""
         return above_round_off(self.contact_load).sum(axis=-1)
 
     @property
     def lifted(self) -> Array | np.ndarray:
-        """Which balls have left the inner raceway and run on the outer one alone."""
+        """Whether each ball runs on the outer raceway only, off the inner one."""
         carrying = above_round_off(self.contact_load)
         half = carrying.shape[-1] // 2
         outer, inner = carrying[..., :half], carrying[..., half:]
@@ -105,7 +105,7 @@ def _spread(values, contacts):
 def _row_results(
     row: RowResults, bearing: AbstractBallBearing, law, contacts: int
 ) -> dict:
-    """As `ball_results`, of one row, with room for `contacts` contacts of a ball."""
+    """Ball results of one row, with room for `contacts` contacts per ball."""
     ball = row.element
     touching = row.each(lambda ball, *at: ball.contacts(*at))
     outwards = jnp.asarray(ball.grooves.outwards)

@@ -183,7 +183,7 @@ def solve_case(
         element: The bearing of this case.
         case: Cases without their leading axis, as `vmap` hands them out.
         options: Settings; `None`: the defaults of `solve_load`.
-        start: As of `solve_load`.
+        start: As in `solve_load`.
 
     Returns:
         Solution with its result code; nothing is raised for a failed solve.

@@ -154,7 +154,7 @@ def left_out(
     """Return the parts of a load that its equivalent loads leave out.
 
     Args:
-        bearing, load: As of `equivalent_load`; moments about the centre of the bearing.
+        bearing, load: As in `equivalent_load`; moments about the centre of the bearing.
         free: Freedoms that follow from the load. A tilt that is held bears a moment of
             its support: the standard too takes rings that are held parallel.
     """

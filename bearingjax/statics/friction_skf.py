@@ -276,10 +276,10 @@ def _variables(bearing, row, d, radial, axial, rpm, capacity):
 
 
 def _deep_groove(row, d, radial, axial, capacity):
-    """As `_variables`.
+    """G_rr and G_sl of a deep groove ball bearing, in mm and N.
 
     SKF's forms with and without axial load do not join: G_sl grows by d^0.115, a half,
-    with the first newton. What is left of an axial load by rounding is none.
+    with the first newton. An axial load at the level of round-off counts as zero.
     """
     r1, r2, s1, s2 = row
     loaded = axial > 1e-6 * radial

@@ -119,13 +119,13 @@ def load_ratio(
 
 
 class Cleanliness(eqx.Module):
-    """How clean the lubricant is: e_C = min(a κ^0.68 D_pw^0.55, 1) (1 - b/D_pw^(1/3)),
+    """Cleanliness of a lubricant: e_C = min(a κ^0.68 D_pw^0.55, 1) (1 - b/D_pw^(1/3)),
     κ at most 4.
 
     Attributes:
         film: a, with D_pw in mm [1].
-        size: b, likewise [1].
-        large: b above a pitch diameter of 500 mm [1]; `None`: the same.
+        size: b, with D_pw in mm [1].
+        large: b above a pitch diameter of 500 mm [1]; `None`: equal to `size`.
 
     Traced: all fields.
 

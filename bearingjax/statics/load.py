@@ -142,14 +142,14 @@ def solve(
     speed: Speed | None = None,
     start: Any = None,
 ) -> Solution:
-    """As `solve_load`, the settings in one object; never raises for a failed solve.
+    """Solve as `solve_load`, with settings in one object; no error if the solve fails.
 
     Args:
         element: The bearing.
-        load, prescribed, fixed_displacement, start: As of `solve_load`, which are
+        load, prescribed, fixed_displacement, start: As in `solve_load`, which are
             checked here.
         options: Settings.
-        speed: As of `solve_load`.
+        speed: As in `solve_load`.
     """
     options.check("solve_load")
     case = load_case(

@@ -1,4 +1,4 @@
-"""What a load solve returns: the fields of a `Solution` and its result code."""
+"""Result of a load solve: the fields of a `Solution` and its result code."""
 
 from typing import NamedTuple
 
@@ -22,11 +22,11 @@ from .warning_sizes import stiffness_scale
 
 
 class Ending(NamedTuple):
-    """How a solve ended.
+    """Outcome of a load solve.
 
     Attributes:
         result: `Result` code.
-        unrestrained: As of `Solution`.
+        unrestrained: As in `Solution`.
     """
 
     result: Int[Array, ""]
@@ -102,7 +102,7 @@ def _ending(
     absurd: Bool[Array, ""],
     force: Ring,
 ) -> Ending:
-    """The worst that is to be said of a solve, and which freedom it concerns.
+    """Most severe result code of a solve, and the freedom that it concerns.
 
     Args:
         balance: The load and what holds the rings.
@@ -110,7 +110,7 @@ def _ending(
         of_elements: Worst result code of the rolling elements.
         loaded: Freedoms whose load no contact takes.
         absurd: Whether numbers are of another scale than the bearing.
-        force: Of the solution [N, N m].
+        force: Force of the solution [N, N m].
     """
     result = jnp.maximum(minimum.result, of_elements)
     result = jnp.where(

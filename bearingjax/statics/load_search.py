@@ -36,11 +36,11 @@ SLOTS, IDLE = 64, 4
 
 
 class Known(NamedTuple):
-    """What an evaluation of the energy leaves.
+    """State kept from an evaluation of the energy.
 
     Attributes:
-        solved: The rolling elements.
-        stiffness: Of the free unknowns, zero of the held ones (6, 6) [N/m].
+        solved: The solved rolling elements.
+        stiffness: Stiffness of the free unknowns, zero for held ones (6, 6) [N/m].
     """
 
     solved: Solved
@@ -85,7 +85,7 @@ def beginning(
         rows: Designs of the rows.
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        start: As of `solve_load`.
+        start: As in `solve_load`.
     """
     load, radius = balance.along(balance.load), balance.radius
     size = jnp.sqrt(load @ load)
@@ -220,9 +220,9 @@ def _floating(stiffness, free):
 
 
 def _by_stiffness(stiffness, force, floating, symmetric):
-    """How far the unknowns give way [m], none of it along those that float.
+    """Displacement of the unknowns [m] under a force, zero along those that float.
 
-    What nothing holds would else move by round-off over round-off, and drown the rest.
+    Along unrestrained directions it would be round-off divided by round-off.
     """
     size = jnp.max(jnp.diagonal(stiffness))
     force = force - floating @ force

@@ -40,7 +40,7 @@ _COORDINATES = 8
 
 
 class Likeness(NamedTuple):
-    """What the cases of a sweep have in common. Static.
+    """Properties that the cases of a sweep have in common. Static.
 
     Attributes:
         free: Which freedoms of the moving ring are free.
@@ -92,11 +92,11 @@ def nothing_known(lanes: int, devices: int, coordinates: int) -> Known:
 def likeness(
     element: BearingElement[Any], cases: Cases, options: SolveOptions
 ) -> Likeness:
-    """What the cases have in common.
+    """Return the properties that the cases of a sweep have in common.
 
     Args:
         element: The bearing or designs.
-        cases: Of the sweep.
+        cases: Cases of the sweep.
         options: Settings.
     """
     restrained = restrained_freedoms(element.bearing)
@@ -117,11 +117,11 @@ def likeness(
 
 
 def others(element: BearingElement[Any], cases: Cases) -> np.ndarray:
-    """What cases differ in besides their loads, in shares of its range (case, k) [1].
+    """Differences of cases other than loads, as shares of the range (case, k) [1].
 
     Args:
         element: The bearing or designs.
-        cases: All of the sweep.
+        cases: All cases of the sweep.
     """
     speeds = (cases.inner_speed, cases.outer_speed)
     leaves = jax.tree.leaves((cases.prescribed, cases.fixed_displacement, speeds))
@@ -194,7 +194,7 @@ def starts(
 
 
 def _place(load, other):
-    """Coordinates of cases: those near each other have answers near each other."""
+    """Coordinates of cases: cases near each other have solutions near each other."""
     size = jnp.sqrt(jnp.sum(load**2, axis=1, keepdims=True))
     size = jnp.where(size > 0, size, 1.0)
     # In a direction that has play and no load, any place within the play is an answer.
@@ -207,12 +207,12 @@ def _place(load, other):
 def added(
     known: Known, solutions: Solution, cases: Cases, other: Any, alike: Likeness
 ) -> tuple[Known, Bool[Array, " case"]]:
-    """With a chunk of solved cases; and which of these are not to be started from.
+    """Add a chunk of solved cases; return all, and which are not valid as starts.
 
     Args:
         known: Solved cases.
-        solutions: Of the chunk, leading axis case.
-        cases, other, alike: As of `starts`.
+        solutions: Solutions of the chunk, leading axis case.
+        cases, other, alike: As in `starts`.
     """
     load = cases.load
     back = -_angle(load, alike.pitch)
@@ -236,7 +236,7 @@ def added(
 
 
 def _angle(load, pitch):
-    """By how much loads (case, 6) lie off +x, in whole pitches (case,) [rad]."""
+    """Angle of loads (case, 6) from +x, in whole pitches (case,) [rad]."""
     if not pitch:
         return jnp.zeros_like(load[:, 0])
     radial = jnp.any(load[:, :2] != 0, axis=1)

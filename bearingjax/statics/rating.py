@@ -266,7 +266,7 @@ def nominal_contact_angle(bearing: AbstractBearing) -> Scalar:
 
 
 def arc_rows(bearing: AbstractBearing) -> int:
-    """How many rows the standards count in one row of elements: 2 of four-point balls.
+    """Number of rows that the standards count in a row: 2 for four-point balls.
 
     Under radial load each of their balls bears on two pairs of arcs, which tire as the
     raceways of two rows do. The factors of their equivalent load are those of two rows

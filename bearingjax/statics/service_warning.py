@@ -36,7 +36,7 @@ def seat_warnings(
         loosest: In operation, at the sizes that leave the largest clearance; `None`:
             not looked at.
         speed: Of the rings; `None`: at rest, where nothing creeps.
-        load_fixed_to: As of `LifeConditions`.
+        load_fixed_to: As in `LifeConditions`.
 
     Source: rule of catalogues of rolling bearings: rotating load, tight fit.
     """

@@ -44,14 +44,14 @@ WARNED = "warning_"
 
 
 class Task(eqx.Module):
-    """What is done with every case.
+    """Operations that a sweep performs on every case.
 
     Attributes:
-        options: How it is solved.
-        keep: Of a Solution, the outputs by name.
+        options: Settings of the load solve.
+        keep: Function Solution -> outputs by name.
         warn: Whether to look for warnings.
-        lives: Names of `LIFE_OUTPUTS` that are kept too.
-        life: Conditions of the life; `None`: it is not looked at.
+        lives: Names of the `LIFE_OUTPUTS` that are also kept.
+        life: Conditions of the life; `None`: no life is computed.
 
     Traced: the numbers of `options` and `life`. Static: all else.
     """
@@ -63,13 +63,13 @@ class Task(eqx.Module):
     life: LifeConditions | None = None
 
     def solve(self, element, case, start=None) -> Solution:
-        """The solution of a case, in the design that it chooses."""
+        """Solve a case, with the design that it selects."""
         if case.design is not None:
             element = jax.tree.map(lambda leaf: leaf[case.design], element)
         return solve_case(element, case, self.options, start)
 
     def outputs(self, solution) -> dict[str, jax.Array]:
-        """What is kept of a solution; numbers of a failed one are NaN."""
+        """Outputs of a solution by name; floats of a failed solve are NaN."""
         solved = solution.converged
 
         def told(value):
@@ -92,7 +92,7 @@ class Task(eqx.Module):
 
 
 def _arrays(kept) -> dict[str, jax.Array]:
-    """What a function for `outputs` returned, if it is a dict of arrays."""
+    """Check that an `outputs` function returned a dict of arrays; return the arrays."""
     if not isinstance(kept, dict):
         raise TypeError(
             f"sweep: `outputs` returns a {type(kept).__name__}; it must return a dict"
@@ -139,7 +139,7 @@ class Program:
         return found
 
     def _blocks(self, held, like, near, progress=False, stop=None):
-        """Outputs of cases, in blocks as of a sweep of `like` cases."""
+        """Outputs of cases, in blocks as in a sweep of `like` cases."""
         n, devices = held[0].count, self.mesh.size
         lanes = min(self.chunk, math.ceil(like / devices))
         chunks = min(max(1, BLOCK // lanes), math.ceil(like / (devices * lanes)))
@@ -191,8 +191,8 @@ class Program:
 
 @program
 def _solve_block(element, given, known, near, task, lanes, alike, mesh):
-    """A block of cases, each device its share in chunks of `lanes`, from all over the
-    share and each from what is known by then; and what is known in the end."""
+    """Solve a block of cases, each device its share in shuffled chunks of `lanes`, each
+    started from the solved cases; return outputs and the solved cases at the end."""
     arrays, static = eqx.partition((element, task), eqx.is_array)
 
     def share(arrays, given, known, near):
@@ -255,10 +255,10 @@ def _wait(values):
 
 
 def not_run(name: str, dtype: np.dtype) -> int | float:
-    """What an output holds of a case that was not run.
+    """Return the value of an output for a case that was not run.
 
     Args:
-        name: Of the output.
+        name: Name of the output.
         dtype: Its type.
     """
     if name == "result":

@@ -26,7 +26,7 @@ from .warning import given
 ENDINGS = (".csv", ".parquet", ".xlsx")
 
 MOST_ROWS = 2**20 - 1
-"""Most rows of a sheet of Excel beside its header."""
+"""Largest number of rows of an Excel sheet, without the header."""
 
 NOTHING = 1e-12
 """Size of a result below which it is as good as none."""
@@ -50,7 +50,7 @@ OPERATING_CLEARANCE = "operating_radial_clearance"
 """Output of sweeps of bearings on their seats: the clearance with which they run."""
 
 OPERATING_PRELOAD = "operating_preload"
-"""Likewise of sets: the force with which their rows press each other, unloaded."""
+"""Output of sweeps of sets on their seats: the preload between the unloaded rows."""
 
 _FIELD_OF = {
     "peak_pressure": "roller_pressure",
@@ -291,10 +291,10 @@ def restored(
 
     Args:
         table: From `read`.
-        like: Outputs of a sweep of the same kind, such as of some of its cases: their
+        like: Outputs of a sweep of the same kind, e.g. of some of its cases: their
             names, shapes and dtypes are taken; a column that they do not have, but for
             zeros, may be missing.
-        zeros: As of `left_out`.
+        zeros: As in `left_out`.
 
     Returns:
         Outputs by name; `unrestrained`, which no table holds, is -1, and a warning
@@ -403,7 +403,7 @@ def spread(
 
 
 def column_header(name: str, unit: str) -> str:
-    """Of a column: the unit in brackets, if there is one."""
+    """Header of a column, with the unit, if any, in brackets."""
     return f"{name} [{unit}]" if unit else name
 
 

@@ -95,7 +95,7 @@ def counted(warned: dict[str, np.ndarray]) -> list[str]:
     """The sentences of many cases: each kind once, with its worst case.
 
     Args:
-        warned: As of `given`.
+        warned: As in `given`.
     """
     out = []
     for name, cases in given(warned).items():

@@ -118,7 +118,7 @@ def graded_grid(
     """Cells that are shorter towards both ends of the roller, as s^grading.
 
     Args:
-        length, half_width, n_across, n_along, symmetric: As of `even_grid`.
+        length, half_width, n_across, n_along, symmetric: As in `even_grid`.
         grading: Exponent, at least 1: cells in the middle are so many times longer
             than even ones; the length of the end cells is about
             length·n_along^(-grading).

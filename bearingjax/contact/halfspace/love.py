@@ -52,7 +52,7 @@ def strip(u: Any, v: Any, xp: Any = jnp) -> Any:
     to the mean over the other cell.
 
     Args:
-        u, v, xp: As of `corner`; u is not zero.
+        u, v, xp: As in `corner`; u is not zero.
     """
     r = xp.sqrt(u * u + v * v)
     first = u * v * _asinh_ratio(v, u, xp) + 0.5 * v * v * _asinh_ratio(u, v, xp)

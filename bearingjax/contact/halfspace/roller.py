@@ -224,7 +224,7 @@ class RollerContact(eqx.Module):
         Args:
             half_width: Half the width across the roller [m].
             n_across, n_along: Number of cells.
-            grading: As of `graded_grid`; 1: even cells.
+            grading: As in `graded_grid`; 1: even cells.
         """
         if grading == 1.0:
             return even_grid(self.roller_length, half_width, n_across, n_along)
@@ -252,7 +252,7 @@ class RollerContact(eqx.Module):
         """Pressure between roller and raceway.
 
         Args:
-            load, approach, moment, tilt, solver, throw: As of `solve_pressure`; the
+            load, approach, moment, tilt, solver, throw: As in `solve_pressure`; the
                 tilt closes the gap at y > 0, a taper's small end.
             grid: The cells; `None`: `self.grid` of a width found by coarse solves,
                 which takes concrete numbers.
