@@ -83,7 +83,7 @@ class CoupledSlices(AbstractLineLaw):
 
 
 class _Table(NamedTuple):
-    """What a design fixes: mean drop, smoothed influence [1], limit of q/(π E*)."""
+    """Constants of a design: mean drop, smoothed influence [1], limit of q/(π E*)."""
 
     drop: Array
     matrix: Array
@@ -174,7 +174,7 @@ def _influence(n, length, smoothing):
 
 
 def _own(table, loads):
-    """What a slice sinks by its own load beside the smoothed influence [m]."""
+    """Approach of a slice by its own load, added to the smoothed influence [m]."""
     some = jnp.minimum(loads, table.limit)
     loaded = some > 0
     ratio = table.limit / jnp.where(loaded, some, 1.0)

@@ -76,7 +76,7 @@ PLACES = {
     "probable_tightest": -1.0,
     "probable_loosest": 1.0,
 }
-"""Where `mounting_at` can be, each with its side: + is much clearance."""
+"""Places that `mounting_at` takes, each with its side: + is large clearance."""
 
 
 def mounting_at(

@@ -24,7 +24,7 @@ class Mounting(eqx.Module):
 
     Attributes:
         bore: Bore diameter of the inner ring, d [m].
-        outside_diameter: Of the outer ring, D [m].
+        outside_diameter: Outside diameter of the outer ring, D [m].
         housing_diameter: Outside diameter of the housing around the bearing [m].
         shaft_interference: Diameter of the shaft less the bore, as measured [m].
         housing_interference: Outside diameter of the bearing less the housing's bore,
@@ -42,7 +42,7 @@ class Mounting(eqx.Module):
         shaft_bore: Bore of a hollow shaft; 0 of a solid one [m].
         shaft_smoothing: Interference that the smoothed surfaces take away, on the shaft
             (`smoothing`) [m].
-        housing_smoothing: Likewise in the housing [m].
+        housing_smoothing: The same in the housing [m].
         ring_width: Width of a ring, B, or T of a tapered roller bearing [m]. A set
             needs it: between its rows the rings grow along the axis over this length,
             beyond it shaft and housing (or spacers as warm as these); `None` elsewhere.
@@ -137,12 +137,12 @@ class FitConditions(eqx.Module):
     """Temperatures and speed.
 
     Attributes:
-        shaft: Temperature of the shaft, even throughout it, on the scale of
-            `reference`; likewise below [K].
-        inner_ring: Of the inner ring [K].
-        elements: Of the rolling elements [K].
-        outer_ring: Of the outer ring [K].
-        housing: Of the housing [K].
+        shaft: Temperature of the shaft, uniform, on the scale of `reference`, as all
+            of these [K].
+        inner_ring: Temperature of the inner ring [K].
+        elements: Temperature of the rolling elements [K].
+        outer_ring: Temperature of the outer ring [K].
+        housing: Temperature of the housing [K].
         reference: Temperature of the measured sizes [K]. 0: the others are rises above
             it. Otherwise they are true temperatures, and all five must be given.
         speed: Speed at which shaft and inner ring rotate [rad/s].

@@ -86,8 +86,8 @@ class Harmonics(AbstractShape):
 
     Attributes:
         order: Waves per turn (n,), whole numbers from 1.
-        amplitude: Of each, half of peak to valley (n,) [m].
-        phase: Of each at the part's mark (n,) [rad]; default 0.
+        amplitude: Amplitude of each, half of peak to valley (n,) [m].
+        phase: Phase of each at the part's mark (n,) [rad]; default 0.
 
     Traced: amplitude, phase. Static: order.
     """
@@ -136,9 +136,9 @@ class Harmonics(AbstractShape):
 
         Args:
             low, high: First and last order.
-            amplitude: Of order `low` [m].
+            amplitude: Amplitude of order `low` [m].
             slope: Exponent p of a_k = amplitude (low/k)^p [1].
-            phase: Of each order (high - low + 1,) [rad].
+            phase: Phase of each order (high - low + 1,) [rad].
         """
         order = range(low, high + 1)
         share = (low / np.arange(low, high + 1)) ** slope
@@ -195,9 +195,9 @@ class Spall(AbstractShape):
     than the floor.
 
     Attributes:
-        angle: Of its middle [rad].
+        angle: Angle of its middle [rad].
         length: Along the rolling direction [m].
-        depth: Of its floor [m].
+        depth: Depth of its floor [m].
 
     Traced: all fields.
     """
@@ -228,10 +228,10 @@ class Table(AbstractShape):
     as they are.
 
     Attributes:
-        rows: Of every interval: height at its begin and its rise [m], slopes there and
-            at its end [m per interval], its number [1] (n, 5). The number stands here
-            because a compiler may work out the place of an angle twice, and round it
-            to two neighbouring intervals: place and heights are then of one.
+        rows: For every interval: height at its start and its rise [m], slopes there and
+            at its end [m per interval], its number [1] (n, 5). The number is included
+            because a compiler may compute the place of an angle twice, and round it
+            to two neighbouring intervals: place and heights then belong to one.
     """
 
     rows: Float[Array, "n 5"]
@@ -294,10 +294,10 @@ class RacewayErrors(eqx.Module):
     """Errors of one raceway.
 
     Attributes:
-        axial: How far the raceway stands along the axis.
-        outwards: How far it stands from the axis: waviness as measured radially.
-        raised: How far its surface stands towards the rolling elements, along the
-            contact normal: faults, ripples that a groove's section shares.
+        axial: Axial displacement of the raceway.
+        outwards: Outward radial displacement: waviness as measured radially.
+        raised: Height of its surface towards the rolling elements, along the
+            contact normal: faults, ripples common to a groove's section.
     """
 
     axial: tuple[AbstractShape, ...] = eqx.field(converter=_shapes, default=())
@@ -336,10 +336,10 @@ class FormErrors(eqx.Module):
     (`ball_deviation`, `roller_deviation`, `azimuth_deviation`).
 
     Attributes:
-        outer: Of the outer raceway.
-        inner: Of the inner raceway.
-        elements: Of the rolling elements around the circle on which they roll: arrays
-            with a leading axis element.
+        outer: Errors of the outer raceway.
+        inner: Errors of the inner raceway.
+        elements: Errors of the rolling elements around the circle on which they roll:
+            arrays with a leading axis element.
 
     Traced: all numbers.
     """
@@ -401,7 +401,7 @@ class FormErrors(eqx.Module):
 
         Args:
             surfaces: Where the contacts run.
-            azimuth: Of each element [rad].
+            azimuth: Azimuth of each element [rad].
             outer: Turn of the outer ring [rad].
             inner: Turn of the inner ring [rad].
             rolled: Turn of each element about its own axis against the line from the

@@ -1,9 +1,9 @@
-"""A bearing as it is mounted: with the radial clearance that its fits leave.
+"""Mounted bearings, with the radial clearance that remains after fitting.
 
 Fits, temperatures and speed change the radial distance of the raceways, and in a set
-the axial distances of the inner and of the outer rings. What rolling elements grow
-beyond their rings takes clearance along the normals of the contacts. What else they
-change is left as on the drawing: pitch and ball diameters, by a ten thousandth.
+the axial distances of the inner and of the outer rings. Growth of the rolling elements
+beyond that of their rings reduces clearance along the contact normals. Other changes
+are neglected: pitch and ball diameters, by a ten thousandth.
 """
 
 from dataclasses import replace
@@ -56,8 +56,8 @@ def radial_clearance(bearing: AbstractBearing) -> Scalar:
     """Radial internal clearance of a row, between the ends of its radial play [m].
 
     Of angular contact bearings 2A (1 - cos α0), A the distance of the groove centres.
-    A tapered roller stays with the inner ring and its large rib. What moves the outer
-    ring radially closes the gap by the cosine of the outer raceway's angle.
+    A tapered roller stays with the inner ring and its large rib. Radial motion of the
+    outer ring closes the gap by the cosine of the outer raceway's angle.
 
     Args:
         bearing: One row.
@@ -304,7 +304,7 @@ def check_radial(owner: str, bearing: Any) -> None:
 
     Args:
         owner: Function that was called.
-        bearing: What it was given.
+        bearing: Object that it was given.
 
     Raises:
         TypeError: If it is a thrust bearing or no single row.

@@ -32,14 +32,14 @@ class Ball(AbstractRollingElement):
     geometry and are never fixed. With small ring rotations l is the norm of an affine
     function, and the energy is convex; the grooves go on straight where they end.
 
-    What has no potential: constants that follow the operating angle (the stiffness of
+    Without potential: constants that follow the operating angle (the stiffness of
     the contact is then not symmetric), and centrifugal force and gyroscopic moment at
     the operating angles (`reaction`).
 
     Attributes:
-        grooves: Where the grooves lie.
-        geometry: How the ball moves against them.
-        constant: From the point law (contact, ...).
+        grooves: Positions of the grooves.
+        geometry: Motion of the ball relative to them.
+        constant: Constants of the point law (contact, ...).
         ball_diameter: Ball diameter [m].
         spring: Spring constant of the tether [N/m].
         turning: Speeds, or `None`.

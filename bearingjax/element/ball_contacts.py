@@ -32,7 +32,7 @@ class Contacts(NamedTuple):
 
 
 class GrooveGeometry(eqx.Module):
-    """Where the grooves lie around a ball, unloaded.
+    """Positions of the grooves around a ball, unloaded.
 
     A groove is an arc of at most a half circle. Beyond it the raceway goes straight on:
     at the shoulders radially (a wall across the axis), and with an `open_side`, or as
@@ -112,7 +112,7 @@ class GrooveGeometry(eqx.Module):
     def directions(
         self, contacts: Contacts, load: Float[Array, " contact"], diameter: Scalar
     ) -> tuple[Float[Array, "2 2"], Float[Array, "2"]]:
-        """Where a ball rolls on each raceway, and its load there.
+        """Contact direction of a ball on each raceway, and its load there.
 
         On two arcs it rolls on the one that it presses more deeply; while both are
         pressed within a thousandth of its diameter of each other, in between.

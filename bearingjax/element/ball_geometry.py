@@ -55,7 +55,7 @@ class AbstractBallGeometry(eqx.Module):
         """(u, v, θ) of the ball at the node on the axis [m, m, rad]."""
 
     def midpoint(self, rings: RingMotion) -> Unknowns:
-        """Where the rings take the ball, and its tether holds it (2,) [m]."""
+        """Position given by the rings, where the tether holds the ball (2,) [m]."""
         return jnp.zeros((2,), rings.outer.dtype)
 
     @abc.abstractmethod

@@ -128,8 +128,8 @@ def gyroscopic_moment(
     """Moment that turns the ball's axis with its orbit, I ω_c ω_R sin β [N m].
 
     Args:
-        moment_of_inertia: Of the ball [kg m²].
-        kinematics: Of the ball.
+        moment_of_inertia: Moment of inertia of the ball [kg m²].
+        kinematics: Kinematics of the ball.
     """
     k = kinematics
     return moment_of_inertia * k.orbit * k.rotation * k.axis[..., 0]

@@ -35,10 +35,10 @@ Direction = Float[Array, "2"]
 
 
 class AbstractRacewayControl(eqx.Module):
-    """Where a ball rolls without spin, and which contact takes the gyroscopic moment.
+    """Raceway control: contact without spin, and share of the gyroscopic moment.
 
     The moment M is held by tractions T at the contacts, (T_o + T_i) D/2 = M. Whatever
-    is asked of a contact, it holds no more than `MOST_FRICTION` times its load: a
+    is required of a contact, it holds no more than `MOST_FRICTION` times its load: a
     raceway that a ball has left gives no traction, and the ball then slips about the
     tangent of its orbit.
     """
@@ -216,7 +216,7 @@ def ball_kinematics(
 
     Args:
         outer, inner: Contact normals (sin α, cos α) on both raceways.
-        share: Of the outer raceway in the direction of the spin axis [1].
+        share: Share of the outer raceway in the direction of the spin axis [1].
         ratio: γ = D/d_m [1].
         speed: Ring speeds.
 

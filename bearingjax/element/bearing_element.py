@@ -40,7 +40,7 @@ def check_element(owner: str, element: object) -> None:
 
     Args:
         owner: Function that was called.
-        element: What it was given.
+        element: Object that it was given.
 
     Raises:
         TypeError: For anything else, such as a bearing without its contact laws.
@@ -83,19 +83,19 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         bearing: The design, or a `BearingSet`.
         line_law: Law of the raceway contacts of rollers; `Palmgren()`. With
             `CoupledSlices()` slices press on each other; it takes no `quadrature`.
-        kinematics: Small ring rotations, `Linearised()`; `ConstantAngle()`: likewise,
+        kinematics: Small ring rotations, `Linearised()`; `ConstantAngle()`: the same,
             the contact angles of balls held; or `Finite()`: rings of ball bearings
             turn by any angle, of rollers the paper's formula. Self-aligning bearings:
             `Finite()`.
-        quadrature: Of roller contacts, `ContactMapped(points)` or `Midpoint(points)`;
-            `None` with balls and `CoupledSlices()`.
+        quadrature: Rule for roller contacts, `ContactMapped(points)` or
+            `Midpoint(points)`; `None` with balls and `CoupledSlices()`.
         equilibrium: Local solver, `TrustRegionNewton()` or `BFGS()`.
         cage_torque: Whether gz feels that it moves the rolling elements: `force` then
             has moments about z, the virtual work of the contact forces, `stiffness`
             their derivatives.
         point_law: Constants of ball contacts: `FreeAngle()`, `ZeroAngle()`,
             `OperatingAngle()` or `PointConstant(outer, inner)`.
-        raceway_control: Of turning balls: `OuterControl()`, `InnerControl()`,
+        raceway_control: For turning balls: `OuterControl()`, `InnerControl()`,
             `EqualShare()`, `LoadShare()`, `FrictionLimited(friction)`,
             `OperatingCentrifugal()` or `CentrifugalOnly()`.
         choices: Laws and kinematics together, for those of the above that are not

@@ -92,8 +92,8 @@ class Solved(NamedTuple):
     """A bearing whose rolling elements are solved at given ring freedoms.
 
     Attributes:
-        azimuths: Where they are; with `cage_torque` less what the rings have turned
-            them, so that energy and force feel that.
+        azimuths: Their azimuths; with `cage_torque` without the turn by the rings, so
+            that energy and force depend on it.
         groups: The solved rows, group by group.
     """
 
@@ -102,7 +102,7 @@ class Solved(NamedTuple):
 
 
 class Evaluated(NamedTuple):
-    """Energy, force and stiffness of the bearing, and how its elements fared.
+    """Energy, force and stiffness of the bearing, and convergence of its elements.
 
     Attributes:
         energy: V [J].
@@ -111,9 +111,9 @@ class Evaluated(NamedTuple):
         result: Worst `Result` code of the rolling elements.
         steps: Most steps that one took.
         residual: Largest relative residual of one [1].
-        magnitude: Sum of the sizes of what the elements pass to the rings, in which
-            the ring force may cancel [N].
-        near: From which the next solve near by may start.
+        magnitude: Sum of the sizes of the forces of the elements on the rings, which
+            may cancel in the ring force [N].
+        near: State from which the next solve near by may start.
     """
 
     energy: Scalar
@@ -386,7 +386,7 @@ class BearingModel(eqx.Module):
             )
 
     def magnitude(self, solved: Solved) -> Scalar:
-        """Sum of the sizes of what solved elements pass to the rings [N]."""
+        """Sum of the sizes of the forces of solved elements on the rings [N]."""
         sizes = []
         for group, state in zip(self.groups, solved.groups, strict=True):
             count = group.rows.element.n_displacements

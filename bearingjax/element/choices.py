@@ -117,8 +117,8 @@ class RollerChoices(AbstractChoices):
 
     Attributes:
         line_law: Law of the raceway contacts.
-        quadrature: Of independent slices; `None` with slices that are coupled.
-        kinematics: How rigid motions become approaches.
+        quadrature: Quadrature of independent slices; `None` with coupled slices.
+        kinematics: Map from rigid motions to approaches.
     """
 
     line_law: AbstractLineLaw
@@ -164,8 +164,8 @@ class BallChoices(AbstractChoices):
 
     Attributes:
         point_law: Constants of the contacts.
-        raceway_control: Where turning balls roll without spin.
-        kinematics: How rigid motions become the places of groove centres.
+        raceway_control: Raceway control of turning balls.
+        kinematics: Map from rigid motions to positions of the groove centres.
     """
 
     point_law: AbstractPointLaw

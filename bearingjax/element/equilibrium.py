@@ -31,15 +31,15 @@ Rings = Float[Array, " r"]
 
 
 class LocalState(NamedTuple):
-    """Where a rolling element is in equilibrium, and how that was found.
+    """Equilibrium position of a rolling element, and statistics of the solve.
 
     Attributes:
         x: Its unknowns (n,) [m].
         residual: Force that is out of balance, relative to the contact loads [1].
-        unbalanced: That force, of the unknowns in metres [N].
+        unbalanced: Force out of balance, for unknowns in metres [N].
         steps: Evaluations that the solve took.
         result: `Result` code.
-        known: What its contacts bear there, `AbstractRollingElement.respond`.
+        known: Contact response there, `AbstractRollingElement.respond`.
     """
 
     x: Unknowns
@@ -51,11 +51,11 @@ class LocalState(NamedTuple):
 
 
 class Near(NamedTuple):
-    """A rolling element solved at rings near by, from which it may start.
+    """Rolling element solved at nearby ring positions, as a starting point.
 
     Attributes:
         offset: Its unknowns less its midpoint, NaN if not known (n,) [m].
-        follow: How its unknowns follow the rings (n, r).
+        follow: Derivatives of its unknowns by the ring motions (n, r).
         rings: Motions of the rings then, see `energy.unpacked` (r,) [m, rad].
     """
 
@@ -65,11 +65,11 @@ class Near(NamedTuple):
 
 
 class Placed(NamedTuple):
-    """A rolling element in equilibrium: what an energy of the rings alone needs.
+    """Rolling element in equilibrium, with all data for its condensed energy.
 
     Attributes:
         element: The rolling element.
-        state: Where that is.
+        state: Its equilibrium.
         magnitude: As in `solve_element` [m].
     """
 

@@ -130,7 +130,7 @@ def orbit(ratio: Scalar, outer: Scalar | float, inner: Scalar | float) -> Scalar
     Args:
         ratio: G of `roll_ratio` [1].
         outer: Turn [rad] or speed [rad/s] of the outer ring.
-        inner: Of the inner ring, likewise.
+        inner: Turn [rad] or speed [rad/s] of the inner ring.
 
     Source: rolling without slip, ½[(1 - G) inner + (1 + G) outer].
     """

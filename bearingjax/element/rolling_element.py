@@ -26,8 +26,8 @@ class RingMotion(NamedTuple):
     """Motions of both rings, in the same axes each [m, rad].
 
     Attributes:
-        outer: Of the outer ring (h,).
-        inner: Of the inner ring (h,).
+        outer: Motion of the outer ring (h,).
+        inner: Motion of the inner ring (h,).
     """
 
     outer: Float[Array, " h"]
@@ -77,7 +77,7 @@ class AbstractRollingElement(eqx.Module):
         """Motion of one ring in the element's axes, from its six freedoms.
 
         Args:
-            azimuth: Of the rolling element [rad].
+            azimuth: Azimuth of the rolling element [rad].
         """
 
     def raised(self, heights: Float[Array, "2"]) -> "AbstractRollingElement":

@@ -45,13 +45,13 @@ class Row(eqx.Module):
     Attributes:
         element: One rolling element, common to all; of unlike elements, with a leading
             axis.
-        azimuth: Of every element for rings that have not turned [rad].
-        shift: How far outer and inner raceway stand along z and from the axis where
-            each element is [m]; `None`: as on the drawing.
+        azimuth: Azimuth of every element for rings that have not turned [rad].
+        shift: Shift of outer and inner raceway along z and from the axis, at each
+            element [m]; `None`: as on the drawing.
         ratio: G = D cos α/d_m, with which the elements orbit [1].
-        pitch_radius: Of the circle of their centres [m].
+        pitch_radius: Radius of the circle of their centres [m].
         place: Its place in a set; `None`: the row is the bearing.
-        spring: What presses it, or `None`.
+        spring: Preload spring, or `None`.
         unlike: Whether `element` has a leading axis. Static.
     """
 
@@ -68,7 +68,7 @@ class Row(eqx.Module):
         """Apply function(element, *arrays) to every rolling element.
 
         Args:
-            function: Of one element.
+            function: Function of one element.
             *arrays: More arguments, with leading axis element. Without any, like
                 elements are one element.
         """

@@ -37,7 +37,7 @@ class Seeking(eqx.Module):
         return jnp.sum(jnp.abs(rings.between[: self.element.n_displacements]))
 
     def pressed(self, approach: Scalar) -> Scalar:
-        """About the load of one raceway contact pressed by `approach` [N].
+        """Approximate load of one raceway contact pressed by `approach` [N].
 
         From this size on, contacts are pressed by more than the play between the rings.
         Zero: not known, and a load solve then does without (`statics.load`).
@@ -63,7 +63,7 @@ class Seeking(eqx.Module):
         return None
 
     def start(self, rings: Any) -> Float[Array, " n"]:
-        """Where a search for the equilibrium starts (n,) [m]."""
+        """Start of the search for the equilibrium (n,) [m]."""
         return self.midpoint(rings)
 
     @property
@@ -98,9 +98,9 @@ class Seeking(eqx.Module):
         """Improve a step of x, from the known state of the contacts.
 
         Args:
-            rings, x: Where the step begins.
+            rings, x: Start of the step.
             step: Step of Newton's method (n,) [m].
-            size: Of the force out of balance at x [N].
+            size: Size of the force out of balance at x [N].
         """
         return step
 

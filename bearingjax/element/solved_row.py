@@ -24,7 +24,7 @@ class SolvedRow(NamedTuple):
         magnitude: Size of the displacements that they come from (element,) [m].
         state: Equilibria.
         energies: Their condensed energies, forces and stiffness.
-        travel: What a spring's ring has slid on its seat, closing the row [m].
+        travel: Travel of the ring of a spring on its seat, closing the row [m].
         balance: `Result` code of the balance with the spring.
     """
 
@@ -40,8 +40,8 @@ class SolvedRow(NamedTuple):
 
         Args:
             row: The `Row`.
-            function: Of one `Placed` element, the motions of its rings, and its
-                condensed energy.
+            function: Function of one `Placed` element, the motions of its rings, and
+                its condensed energy.
             rings: `rings`, or the same with derivatives.
         """
 
@@ -69,7 +69,7 @@ class RowResults(NamedTuple):
         rings: Ring motions in the elements' axes (element, r) [m, rad].
         x: Own unknowns (element, n) [m].
         contact_load: Load of each contact (element, contact) [N].
-        travel: Of its spring [m], or `None`.
+        travel: Travel of its spring [m], or `None`.
     """
 
     row: Any
@@ -89,7 +89,7 @@ class RowResults(NamedTuple):
         """Apply function(element, rings, x, *arrays) to every rolling element.
 
         Args:
-            function: Of one element, its `RingMotion` and its own unknowns.
+            function: Function of one element, its `RingMotion` and its own unknowns.
             *arrays: More arguments, with leading axis element.
         """
 

@@ -1,4 +1,4 @@
-"""What becomes of a film: heated or starved inlet, rest, rough surfaces."""
+"""Film factors: heated or starved inlet, standstill, rough surfaces."""
 
 import equinox as eqx
 import jax.numpy as jnp

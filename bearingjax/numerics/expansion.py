@@ -41,7 +41,7 @@ class Expansion(NamedTuple):
 
 Function = Callable[[Any, Any, int], Expansion]
 """(u, args, order) -> `Expansion`, of which only terms up to `order` are used: 0
-value, 1 gradient, 2 Hessian. What is beyond may be left out."""
+value, 1 gradient, 2 Hessian. Higher terms may be left out."""
 
 
 def expanded(
@@ -54,7 +54,7 @@ def expanded(
             derivatives with respect to `args`, and of the Hessian, are taken of it.
         u: Pytree of floating arrays (..., k).
         args: Any pytree; what is not a floating array is static.
-        known: What `function` returns here, if it is at hand. It must be that.
+        known: Result of `function` here, if available; it must be exact.
 
     Returns:
         The value; differentiable to any order with respect to u and args.

@@ -122,7 +122,7 @@ def unless_failed(function, args, solved):
         solved: Whether it was solved for, a scalar flag.
 
     Returns:
-        What `function` returns, differentiable with respect to `args`.
+        Result of `function`, differentiable with respect to `args`.
     """
     traced, others, joined = _parted(args)
     # No change gets through if not solved, in neither direction.
@@ -201,7 +201,7 @@ def recall(function, values, args):
 
     Args:
         function: Function of args -> pytree of floating arrays.
-        values: What it returns; their own derivative is ignored.
+        values: Its result; their own derivative is ignored.
         args: Tuple of pytrees; what is no array is static.
 
     Returns:

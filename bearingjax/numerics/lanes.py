@@ -1,11 +1,11 @@
 """Iterations of many problems, none of which waits for the slowest.
 
-Under `vmap` a `while_loop` goes on with every lane until the last is done. Here the
-problems of a batch stand in a queue. Some at a time are at work, each in a slot; once
-part of the slots are done, their problems leave and the next ones enter.
+Under `vmap` a `while_loop` runs every lane until the last is done. Here the problems of
+a batch wait in a queue. Some at a time are iterated, each in a slot; once part of the
+slots are done, their problems leave and the next ones enter.
 
-An example: how often each of many numbers halves until it is below a limit. What does
-not change from step to step is prepared by the caller, once, and is `given`:
+An example: the number of halvings of each of many numbers until it is below a limit.
+Data that do not change from step to step are prepared once by the caller, as `given`:
 
     halve = Loop(
         init=lambda given: (given.number, 0),
@@ -34,11 +34,11 @@ from jax.interpreters import batching, mlir
 from jaxtyping import Array, Bool
 
 SLOTS, IDLE = 64, 16
-"""Slots, and how many of them may be idle, if not said otherwise. What the slots hold
-should stay in the cache of a core."""
+"""Default number of slots, and how many of them may be idle. The data of the slots
+should fit the cache of a core."""
 
 SMALL = 64
-"""Most numbers of a leaf that is packed with others."""
+"""Largest size of a leaf that is packed with others."""
 
 
 class Loop(NamedTuple):
@@ -85,7 +85,7 @@ class Loop(NamedTuple):
         return jax.tree.map(lambda a, b: jnp.where(resting, a, b), nothing, found)
 
     def shapes(self, given) -> Any:
-        """Shapes and types of what `run` returns."""
+        """Shapes and types of the result of `run`."""
         return jax.eval_shape(self.run if self.blank is None else self.blank, given)
 
 
@@ -180,15 +180,15 @@ def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
     batch, over any number of axes, are one operation until then.
 
     Args:
-        loop: Its functions see no traced number but those of `given`.
-        given: Pytree; what is no array is static.
-        slots: How many problems of a batch are at work at a time, while others wait. A
+        loop: Its functions use no traced number except those of `given`.
+        given: Pytree; leaves that are not arrays are static.
+        slots: Number of problems of a batch iterated at a time, while others wait. A
             batch of fewer than two times as many is stepped together by `vmap`.
-        idle: How many slots may be done before they are refilled, while problems wait;
-            at most all. It costs a part of a step, and more where states are large.
+        idle: Number of slots that may be done before they are refilled, while problems
+            wait; at most all. It costs a part of a step, and more with large states.
 
     Returns:
-        As `Loop.finish`. It has no derivatives: see `implicit`.
+        Result of `Loop.finish`. It has no derivatives: see `implicit`.
     """
     arrays, static = eqx.partition(given, eqx.is_array)
     leaves, tree = jax.tree.flatten(arrays)
@@ -241,7 +241,7 @@ class _Task:
         return found
 
     def avals(self, count: int | None) -> list[ShapedArray]:
-        """Shapes and types of what comes out."""
+        """Shapes and types of the result."""
         front = () if count is None else (count,)
         return [ShapedArray((*front, *a), dtype) for a, dtype in self.out]
 

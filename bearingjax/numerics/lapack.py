@@ -31,7 +31,7 @@ def one_by_one(function: Callable) -> Callable:
     It is not to be differentiated: give it what `lax.stop_gradient` returns.
 
     Args:
-        function: Of arrays; returns a pytree of arrays.
+        function: Function of arrays; returns a pytree of arrays.
     """
 
     @custom_vmap
@@ -58,7 +58,7 @@ def _solver(way: Callable) -> Callable:
     """`one_by_one` of a solver; one factorisation serves all right-hand sides.
 
     Args:
-        way: Of a matrix (n, n) and right-hand sides (n, k).
+        way: Function of a matrix (n, n) and right-hand sides (n, k).
     """
     each = one_by_one(way)
 
@@ -87,7 +87,7 @@ _WAYS = {
     "lower": (_forwards, _backwards),
     "upper": (_backwards, _forwards),
 }
-"""How a matrix is solved for, and its transpose."""
+"""Solvers for each kind of matrix and for its transpose."""
 
 
 def solve_any(

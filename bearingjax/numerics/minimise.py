@@ -28,11 +28,11 @@ class Evaluation(NamedTuple):
         value: Function value [J]; NaN if there is none, because not all forces have
             a potential: steps are then judged by forces alone.
         gradient: First derivative, or the forces themselves (n,) [J/unit of x].
-        hessian: Second derivative (n, n); empty if it was not asked for.
-        scale: What the gradient is measured against, for example the sum of the
+        hessian: Second derivative (n, n); empty if it was not requested.
+        scale: Reference for the size of the gradient, for example the sum of the
             forces that cancel in it.
         noise: Absolute round-off floor of the gradient's norm.
-        memory: What the next evaluation may start from, any pytree.
+        memory: State from which the next evaluation may start, any pytree.
     """
 
     value: Float[Array, ""]
@@ -110,7 +110,7 @@ class State(NamedTuple):
         radius: Bound of the next step, same unit as x.
         steps: Evaluations after the first; -1 before the first [1].
         stalled: Whether steps are lost in round-off.
-        own: What the method keeps besides, any pytree.
+        own: Further state of the method, any pytree.
     """
 
     x: Float[Array, " n"]
@@ -130,7 +130,7 @@ class Minimum(NamedTuple):
         unbalanced: |gradient|.
         steps: Evaluations after the first.
         result: `Result` code.
-        memory: Of the evaluation at x.
+        memory: Memory of the evaluation at x.
     """
 
     x: Float[Array, " n"]
@@ -261,7 +261,7 @@ def first_state(problem: Problem, hessian: Array, own: Any) -> State:
     """State of which nothing is evaluated yet.
 
     Args:
-        problem: What is to be minimised.
+        problem: Problem to be minimised.
         hessian: Something of the right shape.
         own: As in `State`.
     """

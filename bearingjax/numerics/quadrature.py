@@ -87,7 +87,7 @@ class AbstractQuadrature(eqx.Module):
 class Midpoint(AbstractQuadrature):
     """Equal slices, the integrand taken at the middle of each.
 
-    What of a measured profile stands out between two middles is missed.
+    Peaks of a measured profile between two midpoints are missed.
 
     Attributes:
         points: Number of slices.
@@ -305,7 +305,7 @@ def refined_edges(steps, offset, a, b, inside, outside, side, some):
     """Zeros of a + b ξ - h, one between each two points of unlike sign.
 
     Args:
-        steps: How many times an edge is refined.
+        steps: Number of refinements of an edge.
         offset: h, elementwise.
         a, b: Scalars.
         inside, outside: Points where it is positive, and where it is not.

@@ -23,7 +23,7 @@ def structure(tree: Any) -> str:
     """Name the structure of nested modules, tuples, lists, dicts and arrays.
 
     Args:
-        tree: What a program gets; its JAX arrays are traced, all else is not.
+        tree: Arguments of a program; its JAX arrays are traced, all else is static.
 
     Raises:
         UnknownStructure: For classes from outside the package, functions that are not
@@ -85,7 +85,7 @@ def _is_static(field: dataclasses.Field, static: bool) -> bool:
 
 
 def _place(named: Any) -> str:
-    """Where a class or function of this package is found by its name."""
+    """Module and name of a class or function of this package."""
     place, name = named.__module__, named.__qualname__
     found: Any = sys.modules.get(place)
     for part in name.split("."):

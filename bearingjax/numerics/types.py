@@ -56,7 +56,7 @@ def as_array(value, dtype) -> Array:
 
     Args:
         value: Number or array-like [any unit].
-        dtype: Of the result.
+        dtype: Dtype of the result.
     """
     if not any(isinstance(leaf, jax.Array) for leaf in jax.tree.leaves(value)):
         value = np.asarray(value)

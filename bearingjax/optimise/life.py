@@ -20,7 +20,7 @@ class OfLife(AbstractMeasure):
     """Life that the damage of the cases leaves.
 
     Attributes:
-        conditions: Of the life: the modified life with a lubricant in them, else the
+        conditions: Life conditions: with a lubricant the modified life, else the
             reference life.
         hours: Whether it is counted in hours, by the speeds of the cases; else in
             revolutions.
@@ -46,7 +46,7 @@ class OfLife(AbstractMeasure):
         """Life under all cases [1, h].
 
         Args:
-            element, cases, solution: As of a call.
+            element, cases, solution: As in `__call__`.
 
         Raises:
             ValueError: For hours of cases without speeds, and as `rating_life`.
@@ -86,7 +86,7 @@ class OfLife(AbstractMeasure):
         """Warnings about the lives of all cases, each kind once.
 
         Args:
-            element, solution: As of a call, concrete.
+            element, solution: As in `__call__`, concrete.
         """
         return counted(jax.device_get(self._sizes(element_of(element), solution)))
 

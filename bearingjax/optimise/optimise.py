@@ -30,7 +30,7 @@ class History(NamedTuple):
     """The accepted steps of a search; step 0 is the start.
 
     Attributes:
-        values: Of the variables (step, variable) [SI].
+        values: Values of the variables (step, variable) [SI].
         objective: The smooth objective (step,).
         violation: Largest violation of a constraint over the size of its bound (step,).
         gradient: As `Optimised.optimality` (step,) [1]; NaN with a method without
@@ -270,7 +270,7 @@ def verdict(
 
 
 def _missed(problem: Problem, best: Trial) -> str:
-    """Which measure misses its bound most, in words."""
+    """Name the measure that violates its bound most, in words."""
     bound = problem.bounds[int(np.argmin(best.margins))]
     measure = problem.measures[bound.measure]
     value = bound.limit + bound.sign * bound.size * best.margins.min()

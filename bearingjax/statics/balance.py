@@ -83,7 +83,7 @@ def balance_of(case: LoadCase, radius: Scalar, outer_moves: bool) -> Balance:
     """The balance of a load case.
 
     Args:
-        case: What is asked.
+        case: Load case.
         radius: Pitch radius [m].
         outer_moves: Whether the outer ring is the moving one.
     """

@@ -29,7 +29,7 @@ class BallResults(eqx.Module):
             +z (before it is mirrored) (ball, contact) [rad]. At most π/2 in size; 0 for
             a ball at the groove centre.
         contact_pressure: Hertz peak pressure (ball, contact) [Pa].
-        semi_axes: Of the contact ellipse, in rolling direction and across
+        semi_axes: Semi-axes of the contact ellipse, in rolling direction and across
             (ball, contact, 2) [m].
         approach: Approach of ball and raceway, negative where apart (ball, contact)
             [m]. Beyond the groove centre it stays at its lowest value.
@@ -37,8 +37,8 @@ class BallResults(eqx.Module):
             (ball, contact) [m]; negative: the ellipse is truncated. Infinite where no
             shoulder is given or no load carried.
         kinematics: Orbit, rotation and spin, leading axis ball; `None` without speed.
-        gyroscopic_moment: Of each ball (ball,) [N m], or `None`.
-        centrifugal_force: Of each ball (ball,) [N], or `None`.
+        gyroscopic_moment: Gyroscopic moment of each ball (ball,) [N m], or `None`.
+        centrifugal_force: Centrifugal force of each ball (ball,) [N], or `None`.
     """
 
     contact_load: Float[Array, "ball contact"] = eqx.field(metadata=unit("N"))
@@ -66,7 +66,7 @@ class BallResults(eqx.Module):
 
 
 def above_round_off(load: Any) -> Any:
-    """Which loads are more than round-off of the largest one of their bearing.
+    """Whether each load is above the round-off of the largest one of its bearing.
 
     Args:
         load: (..., element, contact) [N], of NumPy or of JAX; each case is a bearing.

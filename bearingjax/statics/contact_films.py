@@ -52,7 +52,7 @@ def films(
     Args:
         solution: Solved at a speed.
         lubricant: The oil.
-        temperature: Of the oil at the inlets [K].
+        temperature: Temperature of the oil at the inlets [K].
         roughness: Root mean square of both surfaces together,
             sqrt(Rq1² + Rq2²) [m]; `None`: no ratio.
 

@@ -68,9 +68,9 @@ class Friction(eqx.Module):
     Attributes:
         load_torque: Part of each row that grows with its load (row,) [N m].
         viscous_torque: Part of each row that the oil makes (row,) [N m].
-        flange_torque: Of cylindrical rollers that carry axial load on their ribs
+        flange_torque: Rib torque of cylindrical roller bearings under axial load
             (row,) [N m].
-        speed: Of the inner ring less that of the outer [rad/s].
+        speed: Speed of the inner ring less that of the outer [rad/s].
     """
 
     load_torque: Float[Array, " row"] = eqx.field(metadata=unit("N m"))

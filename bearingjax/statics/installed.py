@@ -34,9 +34,9 @@ class Installed(eqx.Module):
         mounting: Seats; `None`: clearance and contact angles are those of the drawing.
         conditions: Temperatures and speeds; `None`: at rest, at the temperature of the
             measured sizes.
-        limiting_speed: To which its catalogue lets it run, of one ring against the
+        limiting_speed: Speed limit of its catalogue, of one ring against the
             other [rad/s]; `None`: not known. It changes nothing that is solved.
-        reference_speed: Thermal reference speed of its catalogue, likewise [rad/s].
+        reference_speed: Thermal reference speed of its catalogue, the same way [rad/s].
 
     Traced: all numbers. Static: what is `None`.
 

@@ -355,8 +355,8 @@ def life_outputs(life: Life, names: Sequence[str]) -> dict[str, Array]:
     """Numbers of a life, by name.
 
     Args:
-        life: Of one solution.
-        names: Of `LIFE_OUTPUTS`.
+        life: Life of one solution.
+        names: Names of `LIFE_OUTPUTS`.
 
     Raises:
         ValueError: For one that the conditions or the solution do not give.
@@ -375,7 +375,7 @@ def solution_loads(
     """Loads of the contacts of a solution that tire the raceways.
 
     Args:
-        solution: Of balls or rollers.
+        solution: Solution of balls or rollers.
         with_edges: Whether laminae count with `edge_stress`.
 
     Returns:

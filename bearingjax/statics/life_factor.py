@@ -52,7 +52,7 @@ def viscosity_ratio(viscosity: Scalar, speed: Scalar, pitch_diameter: Scalar) ->
 
     Args:
         viscosity: Kinematic viscosity at the temperature of operation [m²/s].
-        speed: Of one ring against the other, at least 0 [rad/s].
+        speed: Speed of one ring against the other, at least 0 [rad/s].
         pitch_diameter: D_pw [m].
 
     Source: ISO 281:2007, ν1 = 45000 n^-0.83 D_pw^-0.5 below 1000 r/min, from there

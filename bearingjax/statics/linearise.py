@@ -32,7 +32,7 @@ class OperatingPoint(eqx.Module):
     azimuths of the rolling elements unchanged.
 
     Attributes:
-        solution: Of the load solve; check its `result`.
+        solution: Solution of the load solve; check its `result`.
     """
 
     solution: Solution

@@ -1,4 +1,4 @@
-"""Where the rings go under load: `solve_load`, and the same with all settings in one.
+"""Displacement of the rings under load: `solve_load`, and `solve` with settings in one.
 
 A load solve has three parts: the balance (what is free, what is held, in which unit),
 the search for the equilibrium, and the solution with its result code.
@@ -183,7 +183,7 @@ def raise_if_failed(solution: Solution) -> Solution:
     """The solution, or an exception that says why it failed, also under `jit`.
 
     Args:
-        solution: Of one case.
+        solution: Solution of one case.
 
     Raises:
         SolveError: If it did not converge.

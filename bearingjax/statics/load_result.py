@@ -42,16 +42,16 @@ def solution_of(
     begin: Beginning,
     minimum: Minimum,
 ) -> Solution:
-    """The solution where a search ended.
+    """Solution at the end of a search.
 
     Args:
         element: The bearing.
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        case: What was asked.
+        case: Load case.
         options: Settings.
-        begin: Where the search began.
-        minimum: Where it ended.
+        begin: Start of the search.
+        minimum: End of the search.
     """
     y = differentiable(model, balance, minimum)
     q = balance.ring_freedoms(y)
@@ -106,7 +106,7 @@ def _ending(
 
     Args:
         balance: The load and what holds the rings.
-        minimum: Where the search ended.
+        minimum: End of the search.
         of_elements: Worst result code of the rolling elements.
         loaded: Freedoms whose load no contact takes.
         absurd: Whether numbers are of another scale than the bearing.
@@ -132,6 +132,6 @@ def _ending(
 
 
 def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Int[Array, ""]:
-    """Freedom that runs away: the axial one if it takes part, else the largest."""
+    """Freedom that diverges: the axial one if it takes part, else the largest."""
     size = jnp.abs(y) * free
     return jnp.where(size[2] > 0.1 * jnp.max(size), 2, jnp.argmax(size))

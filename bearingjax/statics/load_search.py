@@ -1,4 +1,4 @@
-"""The search for the equilibrium under a load, and what it asks of the bearing model.
+"""The search for the equilibrium under a load, and its calls of the bearing model.
 
 Minimises V(q) - load·q over the free freedoms of the moving ring. With linearised
 kinematics this is convex, so the trust-region Newton method on the exact V, V′, V″
@@ -48,16 +48,16 @@ class Known(NamedTuple):
 
 
 class Beginning(NamedTuple):
-    """Where a search begins.
+    """Start of a search.
 
     Attributes:
         y: First unknowns (6,) [m].
         step: First bound of the steps [m].
         limit: Size of the unknowns beyond which nothing holds the load [m].
-        load: What the load does along the free unknowns (6,) [N].
+        load: Components of the load along the free unknowns (6,) [N].
         size: Its size [N].
         inertia: Largest inertia force of a rolling element [N].
-        factor: How many times the load the search begins with, at least 1.
+        factor: Multiple of the load at the start of the search, at least 1.
     """
 
     y: Float[Array, "6"]
@@ -111,12 +111,12 @@ def search(
     begin: Beginning,
     options: SolveOptions,
 ) -> Minimum:
-    """Where the energy less the work of the load is least. Without derivatives.
+    """Minimise the energy less the work of the load. Without derivatives.
 
     Args:
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        begin: Where the search begins.
+        begin: Start of the search.
         options: Settings, the tolerance among them.
     """
     solver = TrustRegionNewton(symmetric=model.has_potential, softest=0.03)
@@ -191,7 +191,7 @@ def differentiable(
     Args:
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        minimum: What the search found; its memory is `Known`.
+        minimum: Result of the search; its memory is `Known`.
     """
     # All that is traced goes through the arguments: a derivative rule must not close
     # over it.

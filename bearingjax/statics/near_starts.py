@@ -1,4 +1,4 @@
-"""Where the cases of a sweep start: from the nearest of the cases solved before.
+"""Starts of the cases of a sweep: from the nearest of the cases solved before.
 
 The first chunk starts from first contact, every other case from a solved one that is
 near in direction and size of its load and in all else that cases differ in, moved by
@@ -58,12 +58,12 @@ class Known(NamedTuple):
     """Solved cases, turned towards +x; behind `KEPT` room for a chunk that is not read.
 
     Attributes:
-        load: On the moving ring [N, N m].
+        load: Load on the moving ring [N, N m].
         other: From `others`.
-        displacement: Of the moving ring [m, rad].
-        stiffness: Of it.
+        displacement: Displacement of the moving ring [m, rad].
+        stiffness: Stiffness of the moving ring.
         usable: Whether cases may start from it.
-        count: How many there are.
+        count: Number of solved cases.
     """
 
     load: Float[Array, "known 6"]
@@ -79,7 +79,7 @@ def nothing_known(lanes: int, devices: int, coordinates: int) -> Known:
 
     Args:
         lanes: Cases of a chunk.
-        devices: How many.
+        devices: Number of devices.
         coordinates: Columns of `others`.
     """
     n = devices * (KEPT + lanes)
@@ -168,7 +168,7 @@ def starts(
     own = jnp.diagonal(known.stiffness, axis1=1, axis2=2)
     counted = known.usable[:, None] & free[None] & (own > 0)
     soft = jnp.where(counted, -0.5 * jnp.log(jnp.where(counted, own, 1.0)), 0.0)
-    # What a load does, not its unit, makes loads alike.
+    # Loads are alike by their effect, not by their unit.
     count = jnp.sum(known.usable, dtype=load.dtype)
     scale = jnp.exp(soft.sum(axis=0) / jnp.maximum(count, 1.0))
     scale = jnp.where(free, scale, 0.0)[None]

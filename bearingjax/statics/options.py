@@ -100,7 +100,7 @@ def check_names(owner: str, what: str, names: Sequence[str]) -> None:
     Args:
         owner: The function that was called.
         what: Its parameter.
-        names: What it was given.
+        names: Names that it was given.
     """
     unknown = [name for name in names if name not in FREEDOMS]
     if unknown:

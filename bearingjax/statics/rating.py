@@ -1,4 +1,4 @@
-"""Load ratings of a bearing: what its fatigue life and its static safety refer to.
+"""Load ratings of a bearing, the reference of fatigue life and static safety.
 
 Radial bearings are rated by a radial load, thrust bearings and bearings with contact
 angles above 45 degrees by an axial one, as in catalogues (`rated_axially`). A pair or
@@ -129,7 +129,7 @@ def static_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
     five times its mean share of a radial load.
 
     Args:
-        bearing: As in `dynamic_capacity`, grooves and rows likewise.
+        bearing: As in `dynamic_capacity`, also for grooves and rows.
 
     Returns:
         C0, radial or axial (`rated_axially`), differentiable; its slope jumps where the

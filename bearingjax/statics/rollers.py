@@ -54,7 +54,7 @@ class RollerResults(eqx.Module):
 
     @property
     def edge_loaded(self) -> Bool[Array | np.ndarray, "*case roller 2 2"]:
-        """Which roller ends bear more than `EDGE_PRESSURE`."""
+        """Whether each roller end has a pressure above `EDGE_PRESSURE`."""
         return self.edge_pressure > EDGE_PRESSURE
 
 

@@ -100,9 +100,9 @@ class Rows(NamedTuple):
 
     Attributes:
         row: One of them.
-        kind: What the standards say of their type; `None` of rollers.
-        count: How many there are.
-        one_way: How many bear an axial load together: of two sides the weaker.
+        kind: Constants of the standards for their type; `None` for rollers.
+        count: Number of rows.
+        one_way: Number of rows that share an axial load: the weaker of two sides.
     """
 
     row: BallRow | RollerRow

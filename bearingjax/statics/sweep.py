@@ -76,7 +76,7 @@ class Sweep(eqx.Module):
 
     @property
     def converged(self) -> Bool[np.ndarray, " case"]:
-        """Which cases were solved."""
+        """Whether each case was solved."""
         return np.asarray(self.outputs["result"]) == Result.CONVERGED
 
     def counts(self) -> dict[str, int]:
@@ -108,7 +108,7 @@ def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any
     """Designs of one structure as one element whose numbers have a leading axis.
 
     Args:
-        elements: Of the same classes, counts and parts.
+        elements: Elements of the same classes, counts and parts.
 
     Raises:
         TypeError: If one is no BearingElement.

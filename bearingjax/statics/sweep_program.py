@@ -112,7 +112,7 @@ class Program:
 
     Args:
         element: The bearing or designs.
-        task: What is done with every case.
+        task: Operations on every case.
         chunk: Cases of a batch.
         devices: Where to.
     """
@@ -125,8 +125,8 @@ class Program:
         """All outputs of all cases, NumPy arrays by name; after `stop` the rest are
         `NOT_RUN`.
 
-        What starts near by and ends without a sound answer is solved again from first
-        contact.
+        Cases started near by that end without a valid result are solved again from
+        first contact.
         """
         held = jax.tree.map(np.asarray, (cases, others(self.element, cases)))
         found = self._blocks(held, cases.count, near, progress, stop)
@@ -242,14 +242,14 @@ def _spread(array, sharding):
 
 
 def _whole(array):
-    """A global array on this host."""
+    """Copy a global array to this host."""
     if array.is_fully_addressable:
         return np.asarray(array)
     return np.asarray(multihost_utils.process_allgather(array, tiled=True))
 
 
 def _wait(values):
-    """Until they are there; signals are heard meanwhile, which NumPy would not do."""
+    """Wait until arrays are computed; unlike NumPy, handle signals meanwhile."""
     while not all(value.is_ready() for value in values.values()):
         time.sleep(_PAUSE)
 

@@ -129,7 +129,7 @@ def check_writable(path: Path, rows: int = 0) -> None:
     """Raise unless `write` can write this format. Call it before a long sweep.
 
     Args:
-        path: Of the table.
+        path: Path of the table.
         rows: How many it will have, if that is known.
 
     Raises:
@@ -351,7 +351,7 @@ def asked(cases: Cases) -> dict[str, np.ndarray]:
     without those that are zero in all of them.
 
     Args:
-        cases: Of the sweep.
+        cases: Cases of the sweep.
     """
     out: dict[str, np.ndarray] = {}
     for k, name in enumerate(LOADS):
@@ -384,7 +384,7 @@ def spread(
     """Headers and columns of an output with any number of axes.
 
     Args:
-        name: Of the output.
+        name: Name of the output.
         values: Its values (case, …).
         zeros: As `left_out`.
 

@@ -322,7 +322,7 @@ def tilt_error(solution: Solution) -> Any:
 
 
 def free_tilt(solution: Solution) -> Any:
-    """Tilt that follows from the load alone, over that which makers allow for [1]."""
+    """Tilt that follows from the load alone, over the limit of makers [1]."""
     mine = 6 * RINGS.index(solution.moving_ring)
     free = [FREEDOMS.index(name) for name in ("gx", "gy") if name in solution.free]
     square = sum(solution.displacement[mine + k] ** 2 for k in free)
@@ -443,7 +443,7 @@ def truncated_balls(solution: Solution) -> str:
 
 
 def on_land(solution: Solution) -> Any:
-    """Where balls carry more than `LAND_SHARE` of a load beyond the bottom of their
+    """Whether balls carry more than `LAND_SHARE` of a load beyond the bottom of their
     groove (ball, 2).
 
     There the raceway goes on as a cylinder, whose normal has no part along the axis.
@@ -498,5 +498,5 @@ def edge_pressure(solution: Solution) -> Any:
 
 
 def ends_over(solution: Solution) -> Any:
-    """Which rollers are edge-loaded on each raceway (roller, 2)."""
+    """Whether each roller is edge-loaded on each raceway (roller, 2)."""
     return (_of_rollers(solution).edge_pressure > EDGE_PRESSURE).any(axis=2)

@@ -37,8 +37,8 @@ class RollerContact(eqx.Module):
 
     Attributes:
         roller_length: Effective length L [m].
-        small_diameter: Of the roller at y = L/2 [m].
-        large_diameter: Of the roller at y = -L/2 [m].
+        small_diameter: Diameter of the roller at y = L/2 [m].
+        large_diameter: Diameter of the roller at y = -L/2 [m].
         half_angle: Half cone angle of the roller [rad]; `None`: from the diameters,
             arctan of their difference over 2L.
         raceway_radius: Radius of curvature of the raceway normal to the generatrix, at
@@ -289,7 +289,7 @@ class RollerContact(eqx.Module):
         """Half width of a grid that holds the contact, by coarse solves [m].
 
         Args:
-            given: What `solve` is given of load, approach, moment and tilt.
+            given: Arguments load, approach, moment and tilt of `solve`.
 
         Raises:
             ValueError: If a number is traced.
