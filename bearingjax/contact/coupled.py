@@ -1,7 +1,7 @@
 """Slices of a roller that press on each other: between slices and the half-space.
 
-Independent slices know nothing of their neighbours, so that a straight roller has the
-same line load at its ends as in its middle. Here a slice sinks under the loads of all.
+Independent slices do not interact, so that a straight roller has the same line load at
+its ends as in its middle. Here the loads of all slices displace each slice.
 Far from a loaded line of half width b its displacement does not depend on b; near to it
 Hertz's plane contact holds. Joined with a smoothing length c,
 

@@ -79,7 +79,7 @@ class ISO16281(AbstractLineLaw):
 
 
 class LineConstant(AbstractLineLaw):
-    """The constant itself, per raceway contact, whatever the materials.
+    """Given constant per raceway contact, for any materials.
 
     Attributes:
         value: C [N/m^(19/9)].

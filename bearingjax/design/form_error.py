@@ -332,7 +332,7 @@ class RacewayErrors(eqx.Module):
 class FormErrors(eqx.Module):
     """Form errors of a row: of both raceways, and of every rolling element.
 
-    Differences of diameter and spacing stand in the bearing itself
+    Differences of diameter and spacing are fields of the bearing itself
     (`ball_deviation`, `roller_deviation`, `azimuth_deviation`).
 
     Attributes:

@@ -197,7 +197,7 @@ def mounted(
         Bearing of the same type.
 
     Raises:
-        TypeError: For thrust bearings and what is no bearing.
+        TypeError: For thrust bearings and objects other than bearings.
         ValueError: If the rings are not thicker than the raceways, or as
             `with_radial_clearance` and `row_shifts`.
     """
@@ -251,8 +251,8 @@ def row_shifts(
 ) -> list[Any]:
     """Shift of each inner ring against its outer ring, as the parts between rows grow.
 
-    From the middle of a row rings reach half of their width; on what is between them
-    is shaft, or housing. Inner rings keep their places on the shaft and outer ones
+    From the middle of a row rings reach half of their width; between them is only
+    shaft, or housing. Inner rings keep their places on the shaft and outer ones
     theirs in the housing, whether against shoulders or clamped one against the other.
     The mean of all places stays where it is: only differences press rows.
 
@@ -289,7 +289,7 @@ def _shifts(bearing: BearingSet, mounting, states: list[FitState]) -> list[Any]:
 
 
 def _grown(places, width, rings, seats):
-    """Shift of rows as what is between neighbours grows, their mean at rest [m]."""
+    """Shift of rows as the parts between neighbours grow, with constant mean [m]."""
     order = jnp.argsort(places)
     gaps = jnp.diff(places[order])
     rings, seats = (0.5 * (x[order][1:] + x[order][:-1]) for x in (rings, seats))

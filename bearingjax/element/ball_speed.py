@@ -37,10 +37,10 @@ Direction = Float[Array, "2"]
 class AbstractRacewayControl(eqx.Module):
     """Raceway control: contact without spin, and share of the gyroscopic moment.
 
-    The moment M is held by tractions T at the contacts, (T_o + T_i) D/2 = M. Whatever
-    is required of a contact, it holds no more than `MOST_FRICTION` times its load: a
-    raceway that a ball has left gives no traction, and the ball then slips about the
-    tangent of its orbit.
+    The moment M is held by tractions T at the contacts, (T_o + T_i) D/2 = M. The
+    traction of a contact is at most `MOST_FRICTION` times its load: a raceway that a
+    ball has left gives no traction, and the ball then slips about the tangent of its
+    orbit.
     """
 
     @property

@@ -127,7 +127,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         Raises:
             TypeError: If `bearing` is no bearing, or a choice is of another kind, such
                 as a text or the class itself.
-            ValueError: For a choice that the rolling elements have no use for.
+            ValueError: For a choice that does not apply to the rolling elements.
         """
         if not isinstance(bearing, AbstractBearing | BearingSet):
             raise TypeError(
@@ -358,19 +358,19 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
         function(motion, velocity, time, parameters) is the force (12,) that holds the
         rings, of the sign of `force`: in the equations of motion of the two rings
-        M a = F - f, with F what else acts on them. It is differentiable with respect
+        M a = F - f, with F all other forces on them. It is differentiable with respect
         to all four; under `jit` a plain static function, the same for all bearings.
 
         The rolling elements orbit, rolling without slip: at time t the rings have
-        turned by t times their speeds, and the element by what `force` makes of such
-        gz. So the stiffness varies with the pass of the elements (variable
+        turned by t times their speeds, and the elements as in `force` for such gz. So
+        the stiffness varies with the pass of the elements (variable
         compliance), at n/2 [(1 - G) Ω_i + (1 + G) Ω_o] [rad/s] for n elements with
         G = D cos α/d_m, that of the free contact angle. A gz in `motion` turns them
-        on top of that: it is for what differs from the steady turn. Who integrates
-        the whole rotation (a run-up) sets `orbit=False`, else it counts twice.
+        in addition: it is for deviations from the steady rotation. If the whole
+        rotation is integrated (a run-up), set `orbit=False`, else it counts twice.
 
         The inertia of the elements is that of their steady orbit at `speed`; they
-        follow the rings without delay. Nothing damps unless `damping` says so.
+        follow the rings without delay. There is no damping unless `damping` is given.
 
         Args:
             speed: Ring speeds; `None`: rings at rest, no inertia.
@@ -388,9 +388,9 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             Where a rolling element does not converge the force is NaN.
 
             With a fifth argument, `near`, the function returns (force, near): the
-            rolling elements are solved from where they were, and what they became goes
-            into the next call. The first is `nothing_near(speed)`. An integrator that
-            carries it along in its state never starts cold.
+            solve of the rolling elements starts from their last state, and their new
+            state goes into the next call. The first is `nothing_near(speed)`. An
+            integrator that keeps it in its state never starts without one.
 
         Raises:
             TypeError: If `speed` is not a `Speed`, or `damping` no number.
@@ -403,7 +403,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         return as_function(self, speed, damping, orbit)
 
     def _at(self, name: str, q, speed, near, with_near=False) -> Any:
-        """A function of the model, of all in one program if nothing is traced yet."""
+        """Call a function of the model, as one program if nothing is traced yet."""
         if is_traced(q):
             return self._evaluated(name, q, speed, near, with_near)
         return self._jitted(name, q, speed, near, with_near)

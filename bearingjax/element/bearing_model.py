@@ -249,7 +249,7 @@ class BearingModel(eqx.Module):
 
         Args:
             q: Ring freedoms [m, rad].
-            solved: `solve` at q, if it is at hand.
+            solved: `solve` at q, if available.
         """
         return self._energy(*self._at(q, solved))
 
@@ -394,7 +394,7 @@ class BearingModel(eqx.Module):
         return sum(sizes[1:], start=sizes[0])
 
     def is_apart(self, solved: Solved) -> Bool[Array, ""]:
-        """Whether no rolling element bears on both rings: nothing holds them together.
+        """Whether no rolling element contacts both rings, so that they are not coupled.
 
         Turning elements press the outer ring alone; what stiffness is left then is
         that of the springs which hold them in place.

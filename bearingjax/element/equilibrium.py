@@ -163,9 +163,9 @@ def is_loose(
 ) -> Bool[Array, ""]:
     """Whether a rolling element is held by no more than its tether spring.
 
-    Its contacts then carry next to nothing, and what they carry does not balance, as
-    a real squeeze between the rings does. The energy being convex, the load left out
-    is bounded by the small one found here.
+    Its contacts then carry almost no load, and that load is not in balance, unlike
+    that of an element squeezed between the rings. As the energy is convex, the load
+    left out is bounded by the small one found here.
 
     Args:
         element: The rolling element.

@@ -94,11 +94,11 @@ class ConstantAngle(Linearised):
 
     For comparison with catalogues and with reduced models, which take a contact angle
     that no load changes; errs where loads are high or angles small. For angular
-    contact and thrust bearings. Contacts of rollers keep their normals anyhow: for them
-    it is `Linearised`. A turning ball finds no balance, because nothing holds it along
-    its raceways: no `speed`. All normals of a row meet in one point of the axis, its
-    pressure centre: a single row resists no tilt about it, so prescribe gx and gy, or
-    take a set.
+    contact and thrust bearings. Contacts of rollers keep their normals anyway: for them
+    it is `Linearised`. A turning ball has no equilibrium, because it is not restrained
+    along its raceways: no `speed`. All normals of a row meet in one point of the axis,
+    its pressure centre: a single row resists no tilt about it, so prescribe gx and gy,
+    or take a set.
     """
 
     @property

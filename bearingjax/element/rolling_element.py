@@ -66,9 +66,9 @@ class AbstractRollingElement(eqx.Module):
 
     @property
     def tether(self) -> Scalar:
-        """Constant of the spring that holds it where nothing else does [N/m].
+        """Stiffness of the spring that holds an element without contact [N/m].
 
-        So soft that no result feels it; zero for an element without unknowns.
+        Too soft to affect any result; zero for an element without unknowns.
         """
         return jnp.zeros_like(self.diameter)
 

@@ -58,7 +58,7 @@ class Seeking(eqx.Module):
         It is then at rest there. Cheap, and never true of one that carries load.
 
         Returns:
-            False for NaN; `None` if it cannot be told cheaply. Structure decides.
+            False for NaN; `None` if no cheap test exists, which the structure decides.
         """
         return None
 

@@ -339,7 +339,7 @@ def line_patch(
 
 
 def _centre(x, y, spin):
-    """Where the rays of an ellipse begin, in units of its semi-axes: at the rolling
+    """Start of the rays of an ellipse, in units of its semi-axes: at the rolling
     pole (x, y)/spin, or, as it leaves the ellipse, back towards the middle.
 
     With c² the square of its distance: pole/[1 + 3 (c² - 0.7)³], continuous with two

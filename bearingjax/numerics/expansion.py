@@ -1,10 +1,10 @@
 """Differentiable function from a value, gradient and Hessian computed in one pass.
 
 An integral, or a solved equilibrium, gives all three at once. Left to automatic
-differentiation each would be worked out anew, and at great length. Here the values
-stand in their places in a chain of derivative rules: the derivative of the value is
-the gradient, that of the gradient the Hessian. What is above, geometry as a rule, is
-differentiated as usual: `jax.grad` and `jax.hessian` then cost next to nothing.
+differentiation each would be computed again, at high cost. Here the values are used in
+a chain of derivative rules: the derivative of the value is the gradient, that of the
+gradient the Hessian. Outer functions, usually geometry, are differentiated as usual:
+`jax.grad` and `jax.hessian` then cost almost nothing.
 
 Arrays are (..., k) for k arguments of one function each: many functions side by side,
 none of which depends on the arguments of another.
@@ -53,7 +53,7 @@ def expanded(
         function: See `Function`; a plain function of a module, itself differentiable:
             derivatives with respect to `args`, and of the Hessian, are taken of it.
         u: Pytree of floating arrays (..., k).
-        args: Any pytree; what is not a floating array is static.
+        args: Any pytree; leaves that are not floating arrays are static.
         known: Result of `function` here, if available; it must be exact.
 
     Returns:

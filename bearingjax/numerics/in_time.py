@@ -120,6 +120,6 @@ def integrated(
 
 
 def _largest(errors):
-    """Largest of scaled errors; what is no number is no step to be taken."""
+    """Largest of scaled errors; a NaN rejects the step."""
     largest = jnp.max(jnp.stack([jnp.max(jnp.abs(e)) for e in jax.tree.leaves(errors)]))
     return jnp.where(jnp.isnan(largest), jnp.inf, largest)

@@ -48,11 +48,11 @@ class Loop(NamedTuple):
         init: given -> first state, any pytree of arrays, one of them floating.
         step: (given, state) -> next state.
         terminate: (given, state) -> whether to stop.
-        finish: (given, last state) -> what is wanted of it.
-        blank: given -> something of the same shapes and types as `finish` returns,
-            which need not be traced then to know them; `None`: it is.
-        rests: given -> whether nothing is to be done; then `blank` is what is wanted.
-            `None`: something always is.
+        finish: (given, last state) -> result.
+        blank: given -> arrays of the same shapes and types as the result of `finish`,
+            which then need not be traced to find them; `None`: it is traced.
+        rests: given -> whether the problem needs no iteration; its result is then
+            `blank`. `None`: every problem is iterated.
     """
 
     init: Callable[[Any], Any]

@@ -169,7 +169,7 @@ class AbstractMinimiser(eqx.Module):
         radius: Float[Array, ""],
         **choices,
     ) -> Minimum:
-        """Minimise one function: all of it, from `init` to `finish`.
+        """Minimise one function, from `init` to `finish`.
 
         Args:
             function, start, radius, **choices: As in `Problem`.
@@ -180,7 +180,7 @@ class AbstractMinimiser(eqx.Module):
         return self.loop().run(Problem(function, start, radius, **choices))
 
     def loop(self, problem_of: Callable[[Any], Problem] = lambda given: given) -> Loop:
-        """The iteration, of whatever `problem_of` makes a problem of."""
+        """Return the iteration, for data that `problem_of` converts to a problem."""
         return Loop(
             lambda given: self.init(problem_of(given)),
             lambda given, state: self.step(problem_of(given), state),
@@ -206,7 +206,7 @@ class AbstractMinimiser(eqx.Module):
         return ended & (state.steps >= 0)
 
     def settled(self, problem: Problem, state: State) -> Bool[Array, ""]:
-        """Whether further steps are of no use."""
+        """Whether further steps cannot improve the result."""
         now = problem.pulled(state.x, state.now)
         goal = self.goal(problem) * now.scale + now.noise
         # NaN compares false: the loop ends at once and the code says why.

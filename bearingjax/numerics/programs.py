@@ -1,11 +1,11 @@
 """Compiled programs, kept from one process to the next.
 
-A command, and a script that begins, spend their time on tracing and compiling, not on
+Commands and starting scripts spend their time on tracing and compiling, not on
 solving. Once `keep_programs` is called, the executable of every `program` of this
 package is kept in a file. A later process that calls it with inputs of the same
 structure loads it and neither traces, lowers nor compiles.
 
-A kept executable is unpickled, and may then do what it likes. So it is read only from
+A kept executable is unpickled, and may then run any code. So it is read only from
 a folder and a file that belong to the user and that nobody else can write.
 """
 
@@ -278,7 +278,7 @@ from there lacks functions when it is kept once more (jaxlib 0.10)."""
 
 
 def _compiled(lowered, options: dict, keep: bool):
-    """Compile, once in this process; of what is kept here, past JAX's own cache."""
+    """Compile, once in this process; kept programs bypass JAX's own cache."""
     before = {name: jax.config.values[name] for name in _ANEW}
     for name, value in _ANEW.items() if keep else ():
         jax.config.update(name, value)
@@ -293,7 +293,7 @@ def _compiled(lowered, options: dict, keep: bool):
 
 
 def _name(function: Callable, arguments: tuple) -> str | None:
-    """Name of the file of a program, or `None` if nothing names it for certain."""
+    """Name of the file of a program, or `None` if no name identifies it reliably."""
     try:
         words = [structure((function, arguments)), *_surroundings()]
     except UnknownStructure:

@@ -1,8 +1,8 @@
-"""The structure of what a program is compiled for, as text.
+"""The structure of the inputs of a compiled program, as text.
 
 Two inputs with the same text give the same program: all that JAX traces is named by
-shape and type, all that it does not trace by value. What is not known for certain to
-be told apart has no text: better no kept program than that of something else.
+shape and type, all that it does not trace by value. Inputs that may not be
+distinguished reliably have no text: no program is kept rather than a wrong one.
 """
 
 import dataclasses
@@ -27,7 +27,7 @@ def structure(tree: Any) -> str:
 
     Raises:
         UnknownStructure: For classes from outside the package, functions that are not
-            found by their name, and whatever else is not known here.
+            found by their name, and other objects not supported here.
     """
     return _named(tree, False)
 
@@ -68,7 +68,7 @@ def _named(value: Any, static: bool) -> str:
 
 
 def _module(value: Any, static: bool) -> str:
-    """A module by its class and fields, all of which hold what it is."""
+    """Name a module by its class and fields, which define it completely."""
     fields = dataclasses.fields(value)
     names = {field.name for field in fields}
     if not vars(value).keys() <= names:

@@ -29,7 +29,7 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
         index: Which entry of an array.
 
     Returns:
-        SI unit; empty for a pure number, a count, what is no number, and for an array
+        SI unit; empty for a pure number, a count, other objects, and for an array
         of several units without the index of one entry.
 
     Raises:

@@ -43,7 +43,7 @@ _RATINGS = (0.015, 0.01)
 """Spread of makers' C and C0 about those of the standards [1]."""
 
 _EDGE = 0.003
-"""Spread of the hard limits, for the least squares to feel them [section]."""
+"""Spread of the hard limits in the least squares [section]."""
 
 _WALL = 0.1
 """Least wall under a raceway [section]."""
@@ -103,7 +103,7 @@ _KINDS = {
 
 
 class GeometryEstimate(eqx.Module):
-    """Estimated inner geometry: like the real one, not it.
+    """Estimated inner geometry: similar to the real one, not equal.
 
     Attributes:
         bearing: The design. Its clearance is zero, its grooves are those that the
@@ -437,7 +437,7 @@ def _reach(rated: _Rated, known, shares, length):
     Args:
         rated: How the type is rated.
         known: The envelope.
-        shares: Diameters over what they are measured by (size,) [1].
+        shares: Diameters over their reference length (size,) [1].
         length: Roller length over the width [1].
     """
 

@@ -103,8 +103,8 @@ class RatingLife(OfLife):
     """Rating life under all cases [rev, h].
 
     By ISO/TS 16281, of the cases one after the other for their hours (Palmgren, Miner):
-    of a bearing with a lubricant in its conditions modified by a_ISO. As an objective
-    it is made largest: its inverse, the damage, is what is made least.
+    for a bearing with a lubricant in its conditions modified by a_ISO. As an objective
+    it is maximised: its inverse, the damage, is minimised.
 
     Attributes are `conditions` (`LifeConditions`; its capacity follows the design
     unless it is given) and `hours`: whether it is in hours, else in revolutions.

@@ -2,7 +2,7 @@
 
 A measure is any function (element, cases, solution) -> scalar, where the solution has
 a leading case axis; those here are Modules. The solution of a system (`system.py`) is
-what it solves, such as a skidding end state; those here look at the loads in it. Life
+its own, such as a skidding end state; those here use the loads in it. Life
 over a load spectrum is one in `life.py`.
 
 Maxima and minima are smooth (`smooth.py`).

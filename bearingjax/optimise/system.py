@@ -14,7 +14,7 @@ from ..statics.solution import Solution, message
 
 
 class AbstractSystem(eqx.Module):
-    """A bearing and what else its cases need, which says itself how they are solved."""
+    """A bearing with all else that its cases need, with its own solve of a case."""
 
     @property
     @abc.abstractmethod

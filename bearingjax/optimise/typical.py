@@ -12,7 +12,7 @@ _DEG = math.pi / 180
 
 
 class Typical(NamedTuple):
-    """A number's usual value and its spread."""
+    """Usual value of a number and its spread."""
 
     middle: float
     spread: float

@@ -1,4 +1,4 @@
-"""The balance of the moving ring: what is solved, reported, and differentiated."""
+"""Equilibrium of the moving ring, common to solving, reporting and differentiation."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -14,11 +14,11 @@ class Balance(eqx.Module):
     """Forces on the moving ring, in unknowns of one unit.
 
     The unknowns y (6,) are the freedoms of the moving ring in metres: shifts as they
-    are, rotations times the pitch radius. Free ones are solved for, held ones stand
-    where they are given.
+    are, rotations times the pitch radius. Free ones are solved for, held ones have
+    given values.
 
     Attributes:
-        load: On the moving ring (6,) [N, N m].
+        load: Load on the moving ring (6,) [N, N m].
         given: Displacements of the moving ring that are prescribed, zero of the others
             (6,) [m, rad].
         fixed: Displacement of the fixed ring (6,) [m, rad].

@@ -80,7 +80,7 @@ class Friction(eqx.Module):
 
     @property
     def torque(self) -> Any:
-        """All of it [N m]."""
+        """Total friction torque [N m]."""
         parts = self.load_torque + self.viscous_torque + self.flange_torque
         return parts.sum(axis=-1)
 

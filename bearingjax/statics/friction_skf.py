@@ -149,7 +149,7 @@ class SkfFriction(eqx.Module):
 
     @property
     def torque(self) -> Any:
-        """Both together [N m]."""
+        """Total friction torque [N m]."""
         return (self.rolling_torque + self.sliding_torque).sum(axis=-1)
 
     @property

@@ -35,7 +35,7 @@ class Installed(eqx.Module):
         conditions: Temperatures and speeds; `None`: at rest, at the temperature of the
             measured sizes.
         limiting_speed: Speed limit of its catalogue, of one ring against the
-            other [rad/s]; `None`: not known. It changes nothing that is solved.
+            other [rad/s]; `None`: not known. It does not affect the solution.
         reference_speed: Thermal reference speed of its catalogue, the same way [rad/s].
 
     Traced: all numbers. Static: what is `None`.

@@ -573,7 +573,7 @@ def _modified(fatigue, limit, thrust, kappa, clean, kind):
 
 
 def _above(load, least):
-    """A load, zero where it is what the solver leaves of none."""
+    """A load, zero where it is no more than the solver's residual."""
     return jnp.where(load <= least, 0.0, load)
 
 

@@ -192,7 +192,7 @@ Source: ISO 281:2007, annex A. "grease, high", and "grease, slight to typical" a
 
 
 def as_contamination(value: Any) -> Any:
-    """Converter of a contamination: a name of `CLEANLINESS` becomes what it names.
+    """Converter of a contamination: replaces a name of `CLEANLINESS` by its value.
 
     Args:
         value: e_C, a `Cleanliness` or a name; anything else comes back unchanged.

@@ -114,7 +114,7 @@ def linearise(
     """Linearise a bearing about its equilibrium under a load.
 
     This is the static linearisation of `element.as_function`: the stiffness is its
-    Jacobian there, gz held. The rolling elements stand at the azimuths that belong to
+    Jacobian there, gz held. The rolling elements are at the azimuths that belong to
     gz; for gz = 0 they are those of `first_azimuth`.
 
     Args:

@@ -106,8 +106,8 @@ def solve_load(
 
     Returns:
         Solution, differentiable with respect to design, load, prescribed values and
-        speeds (implicit function theorem). By a load in a direction in which the ring
-        floats they are infinite, or NaN; `warnings` tells of such directions.
+        speeds (implicit function theorem). With respect to a load along which the ring
+        floats they are infinite, or NaN; `warnings` reports such directions.
         Derivatives of a failed solve are NaN, and zero where it is masked.
 
     Raises:

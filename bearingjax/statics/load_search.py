@@ -53,7 +53,7 @@ class Beginning(NamedTuple):
     Attributes:
         y: First unknowns (6,) [m].
         step: First bound of the steps [m].
-        limit: Size of the unknowns beyond which nothing holds the load [m].
+        limit: Size of the unknowns beyond which the load is not supported [m].
         load: Components of the load along the free unknowns (6,) [N].
         size: Its size [N].
         inertia: Largest inertia force of a rolling element [N].
@@ -183,10 +183,10 @@ def differentiable(
 ) -> Float[Array, "6"]:
     """The unknowns found, differentiable by the implicit function theorem [m].
 
-    In directions in which the ring floats, aslant of the axes too, derivatives by a
-    load along them are infinite: the least load moves the ring until other elements
-    bear. By all else they are zero there. If no element bears on both rings, at rest or
-    at speed, it floats in all that is free.
+    In directions in which the ring floats, also oblique ones, derivatives by a load
+    along them are infinite: the smallest load moves the ring until other elements carry
+    load. All other derivatives are zero there. If no element contacts both rings, at
+    rest or at speed, the ring floats in all free directions.
 
     Args:
         model: The bearing at the speeds.

@@ -30,13 +30,13 @@ KEPT = 1024
 FAR = 1.5
 """Distance beyond which a case starts from first contact [1]. Directions of loads are
 at most 2 apart, sizes by half the logarithm of their ratio, all else by its share of
-what the sweep spans."""
+the range of the sweep."""
 
 _PARTS = slice(0, 2), slice(2, 3), slice(3, 5)
 """Radial force, axial force, moment."""
 
 _COORDINATES = 8
-"""Numbers that tell designs apart."""
+"""Number of coordinates that distinguish designs."""
 
 
 class Likeness(NamedTuple):

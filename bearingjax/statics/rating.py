@@ -247,8 +247,8 @@ def _row(bearing) -> BallRow | RollerRow:
 def nominal_contact_angle(bearing: AbstractBearing) -> Scalar:
     """Nominal contact angle of the standards [rad].
 
-    Zero of a deep groove ball bearing whatever its clearance; of a taper that of its
-    outer raceway; of a mounted bearing that of the drawing.
+    Zero for a deep groove ball bearing of any clearance; for a tapered roller bearing
+    the angle of its outer raceway; for a mounted bearing the angle of the drawing.
 
     Args:
         bearing: A single row.

@@ -114,7 +114,7 @@ class Program:
         element: The bearing or designs.
         task: Operations on every case.
         chunk: Cases of a batch.
-        devices: Where to.
+        devices: Devices to run on.
     """
 
     def __init__(self, element, task, chunk, devices):

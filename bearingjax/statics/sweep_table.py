@@ -29,7 +29,7 @@ MOST_ROWS = 2**20 - 1
 """Largest number of rows of an Excel sheet, without the header."""
 
 NOTHING = 1e-12
-"""Size of a result below which it is as good as none."""
+"""Size of a result below which it counts as zero."""
 
 WARNINGS = "warnings"
 """Header of the column of warnings."""
@@ -66,8 +66,8 @@ def columns(
 ) -> dict[str, np.ndarray]:
     """A sweep as columns by header, "name [unit]": first the cases, then the results.
 
-    Arrays are spread over columns, `displacement_inner_uy [m]`. What is zero in every
-    case has no column, be it by construction (`left_out`) or by the loads. The result
+    Arrays are spread over columns, `displacement_inner_uy [m]`. Values that are zero in
+    every case, by construction (`left_out`) or load, have no column. The result
     is the code's label; where it is not "converged", numbers are NaN. `warnings` holds
     the kinds of warning that are given for a case, each with its size.
 
@@ -171,7 +171,7 @@ def write(
 def write_columns(found: Mapping[str, np.ndarray], path: str | Path) -> None:
     """Write columns to a file: .csv and .parquet with pyarrow, .xlsx with openpyxl.
 
-    In a sheet of Excel what is not finite is an empty cell, and numbers have 16 digits.
+    In an Excel sheet non-finite values are empty cells, and numbers have 16 digits.
 
     Args:
         found: Columns by header, of the same length.

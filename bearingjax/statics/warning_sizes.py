@@ -446,7 +446,7 @@ def on_land(solution: Solution) -> Any:
     """Whether balls carry more than `LAND_SHARE` of a load beyond the bottom of their
     groove (ball, 2).
 
-    There the raceway goes on as a cylinder, whose normal has no part along the axis.
+    There the raceway continues as a cylinder, whose normal has no axial component.
     Of a Hertzian contact that is cut at x of its half-length from the middle, the share
     1/2 - 3x/4 + x³/4 lies beyond; in the middle, and past it, one half is counted.
     """

@@ -51,7 +51,7 @@ class AbstractPressureSolver(eqx.Module):
         """
 
     def loop(self) -> Loop:
-        """All of it as an iteration."""
+        """Return the solver as an iteration."""
         return Loop(self.init, self.step, self.terminate, self.finish)
 
 

@@ -218,7 +218,7 @@ def cosine_sums(size):
 
 
 class _Cosines:
-    """Transform across of what is symmetric about x = 0: products with cosines."""
+    """Transform across of fields symmetric about x = 0: products with cosines."""
 
     def __init__(self, grid, dtype):
         size = padded_size(grid.n_across)

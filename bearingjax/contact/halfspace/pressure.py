@@ -251,7 +251,7 @@ def _cells(grid, touching):
 
 
 def _fits(grid, pressed):
-    """Whether the grid holds the contact, and its cells are small enough to tell it."""
+    """Whether the grid holds the contact, and its cells are small enough for it."""
     across, along = _cells(grid, pressed.touching)
     told = across >= LEAST_CELLS
     told = told & (along >= min(LEAST_CELLS, grid.shape[1]))

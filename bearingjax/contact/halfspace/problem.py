@@ -1,4 +1,4 @@
-"""A contact of two half-spaces: gap, and what is given of load, approach and tilt."""
+"""A contact of two half-spaces: gap, and the given load, approach and tilt."""
 
 from typing import NamedTuple
 
