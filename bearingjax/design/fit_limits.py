@@ -145,7 +145,7 @@ def ball_clearance(name: str, bore: Any) -> Limits:
     """Radial internal clearance of deep groove ball bearings before mounting [m].
 
     Args:
-        name: One of `CLEARANCE_CLASSES`, likewise below with one of `CLEARANCE_PARTS`
+        name: One of `CLEARANCE_CLASSES`, here and below also with `CLEARANCE_PARTS`
             after it; C4 and C5 only above a bore of 6 mm.
         bore: Nominal bore diameter, above 2.5 mm up to 0.5 m [m].
 

@@ -197,7 +197,7 @@ def mounted(
         Bearing of the same type.
 
     Raises:
-        TypeError: For thrust bearings and objects other than bearings.
+        TypeError: For thrust bearings and what is no bearing.
         ValueError: If the rings are not thicker than the raceways, or as
             `with_radial_clearance` and `row_shifts`.
     """

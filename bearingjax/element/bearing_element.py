@@ -127,7 +127,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         Raises:
             TypeError: If `bearing` is no bearing, or a choice is of another kind, such
                 as a text or the class itself.
-            ValueError: For a choice that does not apply to the rolling elements.
+            ValueError: For a choice that the rolling elements have no use for.
         """
         if not isinstance(bearing, AbstractBearing | BearingSet):
             raise TypeError(

@@ -87,7 +87,7 @@ class AbstractRollingElement(eqx.Module):
             heights: At the outer and the inner raceway [m].
 
         Raises:
-            TypeError: If the class does not implement it.
+            TypeError: If the class does not say how.
         """
         raise TypeError(
             f"{type(self).__name__} has no method `raised`, which `raceway_deviation`"

@@ -310,7 +310,7 @@ def refined_edges(steps, offset, a, b, inside, outside, side, some):
         a, b: Scalars.
         inside, outside: Points where it is positive, and where it is not.
         side: 1 where it rises, -1 where it falls; goes with the shape of `inside`.
-        some: Whether it really is positive at `inside`; likewise.
+        some: Whether it is positive at `inside`, of the same shape.
 
     Returns:
         The zeros, shape of `inside`.

@@ -118,7 +118,7 @@ def linearise(
     gz; for gz = 0 they are those of `first_azimuth`.
 
     Args:
-        element, load, prescribed, free, fixed_ring, speed, throw: As `solve_load`.
+        element, load, prescribed, free, fixed_ring, speed, throw: As in `solve_load`.
 
     Returns:
         OperatingPoint, differentiable with respect to design, load and speeds.

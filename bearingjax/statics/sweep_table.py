@@ -386,7 +386,7 @@ def spread(
     Args:
         name: Name of the output.
         values: Its values (case, …).
-        zeros: As `left_out`.
+        zeros: As in `left_out`.
 
     Yields:
         Header, "name_axis [unit]", and column (case,), or `None` where all is zero

@@ -1,4 +1,4 @@
-"""Numbers of a sweep that are zero in any case."""
+"""Names of the numbers of a sweep that are zero in every case."""
 
 from ..design import AbstractRollerBearing, rows_of
 from ..design.rib import RIB_NAMES

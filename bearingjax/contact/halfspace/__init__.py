@@ -1,6 +1,6 @@
 """Elastic contact without Hertz's assumptions: bodies as half-spaces, cell by cell.
 
-Slices are independent of their neighbours, but profiles are made for the end values.
+Slices are independent of their neighbours, while profiles are made for the end values.
 Here roller and raceway are elastic half-spaces; preconditioned conjugate gradients take
 a score of steps on any grid, and cells graded towards the ends save most of the grid:
 
