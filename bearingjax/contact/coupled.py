@@ -1,7 +1,7 @@
 """Slices of a roller that press on each other: between slices and the half-space.
 
-Independent slices know nothing of their neighbours, so that a straight roller has the
-same line load at its ends as in its middle. Here a slice sinks under the loads of all.
+Independent slices do not interact, so that a straight roller has the same line load at
+its ends as in its middle. Here the loads of all slices displace each slice.
 Far from a loaded line of half width b its displacement does not depend on b; near to it
 Hertz's plane contact holds. Joined with a smoothing length c,
 
@@ -83,7 +83,7 @@ class CoupledSlices(AbstractLineLaw):
 
 
 class _Table(NamedTuple):
-    """What a design fixes: mean drop, smoothed influence [1], limit of q/(π E*)."""
+    """Constants of a design: mean drop, smoothed influence [1], limit of q/(π E*)."""
 
     drop: Array
     matrix: Array
@@ -174,7 +174,7 @@ def _influence(n, length, smoothing):
 
 
 def _own(table, loads):
-    """What a slice sinks by its own load beside the smoothed influence [m]."""
+    """Approach of a slice by its own load, added to the smoothed influence [m]."""
     some = jnp.minimum(loads, table.limit)
     loaded = some > 0
     ratio = table.limit / jnp.where(loaded, some, 1.0)

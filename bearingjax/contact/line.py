@@ -18,7 +18,7 @@ EXPONENT = (10, 9)
 
 
 class AbstractLineLaw(eqx.Module):
-    """What a roller's slices bear: C of q = C·approach^(10/9), per raceway contact."""
+    """Line load law of slices: C of q = C·approach^(10/9), per raceway contact."""
 
     @abc.abstractmethod
     def constant(self, roller: Material, ring: Material, length: Scalar) -> Scalar:
@@ -34,7 +34,7 @@ class AbstractLineLaw(eqx.Module):
         """
 
     def contact(self, line: Any, radius: Callable, modulus: Scalar) -> Any:
-        """The contact as this law has it: in independent slices.
+        """Return the contact under this law, here in independent slices.
 
         Args:
             line: The `LineContact` with `constant`.
@@ -79,7 +79,7 @@ class ISO16281(AbstractLineLaw):
 
 
 class LineConstant(AbstractLineLaw):
-    """The constant itself, per raceway contact, whatever the materials.
+    """Given constant per raceway contact, for any materials.
 
     Attributes:
         value: C [N/m^(19/9)].
@@ -108,7 +108,7 @@ def relative_radius(
 
     Args:
         roller_radius: Radius of the roller normal to the contact line [m].
-        raceway_radius: Radius of the raceway likewise, positive where the raceway is
+        raceway_radius: The same of the raceway, positive where the raceway is
             convex (inner ring), negative where it is concave (outer ring) [m].
 
     Returns:

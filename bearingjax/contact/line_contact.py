@@ -37,7 +37,7 @@ _N, _D = EXPONENT
 _FACTORS = (_D / (_N + _D), 1.0, _N / _D)
 
 _NEAR = tuple(1.0 - 10.0**-k for k in (1, 2, 3, 4, 6, 9))
-"""Positions ξ that cut a logarithm beside a measured profile."""
+"""Positions ξ that divide a logarithmic profile combined with a measured one."""
 
 
 _OF_ENERGY = 12
@@ -72,11 +72,11 @@ class AbstractLineContact(eqx.Module):
 
     @abc.abstractmethod
     def pressed(self, approach: Scalar) -> Scalar:
-        """About the load of a roller without profile at an even approach [N]."""
+        """Approximate load of a roller without profile at an even approach [N]."""
 
     @abc.abstractmethod
     def table(self, quadrature: AbstractQuadrature) -> Any:
-        """What the profile alone decides, once per design."""
+        """Terms that depend on the profile only, computed once per design."""
 
     @abc.abstractmethod
     def integrals(
@@ -86,20 +86,20 @@ class AbstractLineContact(eqx.Module):
 
     @abc.abstractmethod
     def carried(self, table: Any, a: Scalar, b: Scalar) -> Any:
-        """What `at` needs to know of a solved contact."""
+        """Data of a solved contact that `at` takes."""
 
     @abc.abstractmethod
     def at(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
-        """Load per length at ξ [N/m], of what `carried` returns."""
+        """Load per length at ξ [N/m], from the result of `carried`."""
 
     @abc.abstractmethod
     def summits(
         self, carried: Any, scan: Float[Array, " scan"], weight: Float[Array, " scan"]
     ) -> Float[Array, " place"]:
-        """Positions ξ among which the largest pressure stands, both ends first.
+        """Positions ξ that include that of the largest pressure, both ends first.
 
         Args:
-            carried: As of `at`.
+            carried: As in `at`.
             scan: Ascending positions from -1 to 1, evenly spaced.
             weight: Relative radius ρ^(-9/10) there: times the approach, this is
                 largest where the pressure is.
@@ -129,7 +129,7 @@ class AbstractSliceLaw(AbstractLineLaw):
         """Load per length q [N/m] of a slice that is pressed.
 
         Args:
-            approach: Of the slice, above zero [m]. q rises with it from zero.
+            approach: Approach of the slice, above zero [m]. q rises with it from zero.
             radius: Radius of relative curvature in the middle of the roller [m].
             modulus: Contact modulus E* [Pa].
             length: Contact length [m].
@@ -173,7 +173,7 @@ class LineContact(AbstractLineContact):
     raceway_profile: AbstractProfile
 
     factors: ClassVar[tuple[float, float, float]] = _FACTORS
-    """Of φ, φ' and φ'', beside `constant` and what `densities` returns."""
+    """Factors of φ, φ' and φ'', in addition to `constant` and `densities`."""
 
     def densities(self, x: Float[Array, "..."]) -> tuple[Array, Array, Array]:
         """φ, φ' and φ'' at an approach, without `constant`, `factors`; 0 if apart."""
@@ -330,7 +330,7 @@ class SliceContact(LineContact):
 
 
 def _vertex(left, top, right):
-    """Where the parabola through three points is highest, in steps from the middle."""
+    """Vertex of the parabola through three points, in steps from the middle."""
     bend = 2.0 * top - left - right
     curved = (bend > 0) & jnp.isfinite(bend)
     shift = 0.5 * (right - left) / jnp.where(curved, bend, 1.0)
@@ -403,7 +403,7 @@ def expansion(at: Float[Array, "2"], contact: Any, order: int = 2) -> Expansion:
 
     Args:
         at: (a, b) (2,) [m].
-        contact: The contact, its table and the rule, as of `response`.
+        contact: The contact, its table and the rule, as in `response`.
         order: Not used: one pass gives all.
     """
     line, table, quadrature = contact

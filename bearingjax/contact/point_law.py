@@ -1,4 +1,4 @@
-"""Constants of the contacts of a ball with its raceways, and where they are taken.
+"""Contact constants of a ball on its raceways, and the angle used for them.
 
 The curvature of a raceway in the rolling direction depends on the contact angle α: the
 sum of curvatures is 2/(D (1 ∓ γ cos α)) with γ = D/d_m, minus at the inner ring. Which
@@ -70,7 +70,7 @@ def balls_of(bearing: AbstractBallBearing) -> Balls:
 
 
 class AbstractPointLaw(eqx.Module):
-    """How the constant c of Q = c·approach^(3/2) of a ball contact is found."""
+    """Law for the constant c of Q = c·approach^(3/2) of a ball contact."""
 
     @property
     def follows_angle(self) -> bool:
@@ -97,7 +97,7 @@ class AbstractPointLaw(eqx.Module):
     def constants(
         self, balls: Balls, grooves: tuple[Groove, ...], free_cosine: Scalar
     ) -> Float[Array, "contact ..."]:
-        """What the energy needs: c of every contact [N/m^(3/2)].
+        """Constants c of every contact, for the energy [N/m^(3/2)].
 
         For a law that follows the angle: coefficients of its logarithm
         (contact, degree + 1), see `at_angle`.

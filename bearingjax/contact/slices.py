@@ -1,4 +1,4 @@
-"""A roller in slices, beside its contact cell by cell."""
+"""A roller in slices, compared with its contact cell by cell."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -48,7 +48,7 @@ def slices(
     position: Float[Array, " n"],
     law: AbstractLineLaw | None = None,
 ) -> Slices:
-    """What slices that know nothing of their neighbours give.
+    """Return the solution of independent slices.
 
     The approach is found by Newton's method: the load is a convex function of it, so
     that steps come from above after the first.
@@ -110,11 +110,11 @@ def slices(
 
 
 class Compared(eqx.Module):
-    """A solved contact beside slices under the same load and tilt; a single one.
+    """A single solved contact, and slices under the same load and tilt.
 
     Attributes:
-        solution: Read its result code.
-        slices: What slices give.
+        solution: Solved contact; check its result code.
+        slices: Solution of the slices.
     """
 
     solution: ContactSolution

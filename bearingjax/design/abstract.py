@@ -1,4 +1,4 @@
-"""What bearings of balls and of rollers have in common."""
+"""Base class of ball and roller bearings."""
 
 import abc
 
@@ -18,7 +18,7 @@ class AbstractBearing(eqx.Module):
         first_azimuth: Azimuth of element 0, from +x towards +y [rad].
         azimuth_deviation: Azimuth of each element less that of even spacing (element,)
             [rad]; `None`: evenly spaced.
-        raceway_deviation: How each element finds the outer and the inner raceway
+        raceway_deviation: Deviations of outer and inner raceway at each element
             (element, 2, 3) [m], see `Deviation.raceway`; `None`: as on the drawing.
         material: Material of the rolling elements.
         ring_material: Material of the rings; `None`: as the rolling elements.

@@ -52,7 +52,7 @@ class Groove(NamedTuple):
 
 
 class AbstractBallBearing(AbstractBearing):
-    """Single-row ball bearing: what all types have in common.
+    """Single-row ball bearing: base class of all types.
 
     Attributes:
         n_balls: Number of balls.

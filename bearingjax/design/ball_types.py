@@ -95,7 +95,7 @@ class AngularContactBallBearing(AbstractBallBearing):
     Attributes are those of `AbstractBallBearing`, and
         contact_angle: Free contact angle, above 0 and below π/2 [rad].
         rated_contact_angle: Nominal contact angle, which load ratings and equivalent
-            loads refer to, if it is another one, as of a mounted bearing [rad];
+            loads refer to, if different, as for a mounted bearing [rad];
             `None`: the free one.
 
     Traced: all fields but `n_balls`.
@@ -184,7 +184,7 @@ class FourPointBallBearing(AbstractBallBearing):
     Attributes are those of `AbstractBallBearing`, and
         shim_angle: Angle at which a ball rests in the arcs of one ring [rad].
         radial_internal_clearance: Diametral play; negative is preload [m].
-        rated_contact_angle: As of `AngularContactBallBearing` [rad].
+        rated_contact_angle: As in `AngularContactBallBearing` [rad].
 
     Traced: all fields but `n_balls`.
     """

@@ -20,7 +20,7 @@ from .rib import Ribs
 
 
 class AbstractRollerBearing(AbstractBearing):
-    """Single-row roller bearing: what all types have in common.
+    """Single-row roller bearing: base class of all types.
 
     Attributes:
         n_rollers: Number of rollers.
@@ -35,9 +35,9 @@ class AbstractRollerBearing(AbstractBearing):
             (roller,) [m]; `None`: all equal.
         azimuth_deviation: Azimuth of each roller less that of even spacing (roller,)
             [rad]; `None`: evenly spaced.
-        raceway_deviation: How each roller finds the outer and the inner raceway
-            (roller, 2, 3) [m]: the raceway so much further along z and from the axis,
-            the contact so much raised along its normal; `None`: as on the drawing.
+        raceway_deviation: Deviations of outer and inner raceway at each roller
+            (roller, 2, 3) [m]: displacement of the raceway along z and from the axis,
+            height of the contact along its normal; `None`: as on the drawing.
         roller_profile: Profile of the rollers.
         outer_raceway_profile: Profile of the outer raceway.
         inner_raceway_profile: Profile of the inner raceway.
@@ -281,7 +281,7 @@ class TaperedRollerBearing(AbstractRollerBearing):
         self._warn_of_apexes()
 
     def apexes(self) -> tuple[Scalar, Scalar, Scalar]:
-        """Where outer raceway, roller axis and inner raceway meet the bearing axis.
+        """Apexes of outer raceway, roller axis and inner raceway on the bearing axis.
 
         Returns:
             z of the three apexes from the roller centre [m]; all equal when

@@ -38,7 +38,7 @@ def check(owner, name: str, ok, allowed: str, *given: Any) -> None:
         name: Parameter.
         ok: Whether its value is allowed; skipped if traced.
         allowed: What is allowed, ending the sentence "it must be ...".
-        given: Value and unit (empty for a pure number) of what is no field of `owner`.
+        given: Value and unit (empty for a pure number), if not a field of `owner`.
 
     Raises:
         ValueError: If `ok` is false.
@@ -91,7 +91,7 @@ def real_numbers(owner: str, name: str, value, wanted: str) -> None:
     Args:
         owner: Function that was called.
         name: Parameter.
-        value: What it was given.
+        value: Value that it was given.
         wanted: Ending of the sentence "it must be ...".
 
     Raises:
@@ -191,7 +191,7 @@ def _field(owner, name):
 
 
 def _title(owner) -> str:
-    """What a message calls the owner: a name, a class or an instance of it."""
+    """Name of the owner in messages, from a name, a class or an instance of it."""
     if isinstance(owner, str):
         return owner
     return (owner if isinstance(owner, type) else type(owner)).__name__

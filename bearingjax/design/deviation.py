@@ -1,4 +1,4 @@
-"""What may differ from one rolling element of a row to the next."""
+"""Deviations of the rolling elements and raceways of a row, element by element."""
 
 from typing import Any, NamedTuple
 
@@ -19,9 +19,9 @@ class Deviation(NamedTuple):
     Attributes:
         diameter: Its diameter less the common one (element,) [m].
         azimuth: Its azimuth less that of even spacing (element,) [rad].
-        raceway: How it finds the outer and the inner raceway (element, 2, 3) [m]: so
-            much further along z, so much further from the axis, and the contact so
-            much raised along its normal, by material on the raceway or on the element.
+        raceway: Deviations of the outer and the inner raceway there (element, 2, 3)
+            [m]: displacement along z, displacement from the axis, and height of the
+            contact along its normal, by material on the raceway or on the element.
     """
 
     diameter: Float[Array, "..."] | None = None
@@ -53,7 +53,7 @@ def with_raceways(bearing: Any, deviation: Float[Array, "element 2 3"]) -> Any:
 
 
 def largest_deviation(bearing: Any) -> float | None:
-    """What deviations of raceways must stay below in size [m]; `None`: not known.
+    """Upper bound of the size of raceway deviations [m]; `None`: not known.
 
     The distance of ball centre and groove centre, or half of a roller's diameter.
 
@@ -73,7 +73,7 @@ def check_deviation(owner: Any, name: str, count: int, what: str) -> np.ndarray 
         owner: The bearing.
         name: Field.
         count: Number of rolling elements.
-        what: What it is, with its unit, in words.
+        what: Description with the unit, in words.
 
     Returns:
         The numbers, if there are any and they are known.
@@ -106,7 +106,7 @@ def check_raceways(owner: Any, count: int, most: float) -> None:
     Args:
         owner: The bearing.
         count: Number of rolling elements.
-        most: What each number must stay below in size [m].
+        most: Upper bound of the size of each number [m].
     """
     name, kind = "raceway_deviation", type(owner).__name__
     value = getattr(owner, name)

@@ -1,4 +1,4 @@
-"""What bearings bring into fits: limits of bore, outside, internal clearance."""
+"""Limits of the bore, outside diameter and internal clearance of bearings."""
 
 from typing import Any
 
@@ -38,7 +38,7 @@ def outside_limits(outside_diameter: Any) -> Limits:
     Raises:
         ValueError: For other diameters.
 
-    Source: as of `bore_limits`.
+    Source: as in `bore_limits`.
     """
     return _below(
         "outside_limits",
@@ -145,7 +145,7 @@ def ball_clearance(name: str, bore: Any) -> Limits:
     """Radial internal clearance of deep groove ball bearings before mounting [m].
 
     Args:
-        name: One of `CLEARANCE_CLASSES`, likewise below with one of `CLEARANCE_PARTS`
+        name: One of `CLEARANCE_CLASSES`, here and below also with `CLEARANCE_PARTS`
             after it; C4 and C5 only above a bore of 6 mm.
         bore: Nominal bore diameter, above 2.5 mm up to 0.5 m [m].
 

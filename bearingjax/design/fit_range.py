@@ -1,6 +1,6 @@
 """The clearance of a mounted bearing over the tolerances of its sizes.
 
-Compiles nothing for a mounting of NumPy numbers, as of `jax.device_get`.
+Compiles nothing for a mounting of NumPy numbers, as from `jax.device_get`.
 """
 
 from typing import Any, NamedTuple
@@ -19,10 +19,10 @@ class ClearanceRange(NamedTuple):
     """Radial internal clearance of many bearings whose sizes scatter.
 
     Attributes:
-        middle: With all sizes in the middle of their limits [m].
-        worst: Least and largest of all [m].
-        probable: Root sum of squares of what each size does alone, about the middle:
-            the same share of bearings is within as of each size within its limits, if
+        middle: Clearance with all sizes in the middle of their limits [m].
+        worst: Least and largest clearance [m].
+        probable: Root sum of squares of the effects of single sizes about the middle:
+            it contains the same share of bearings as the limits do of each size, if
             sizes are normal and independent, and fits do not come loose. Where they do,
             it is cut off at `worst` [m].
     """
@@ -50,7 +50,7 @@ def clearance_range(
         shaft, bore, housing, outside_diameter: Limits of the deviations of shaft
             diameter, bore, housing bore and outside diameter (`limits`, `bore_limits`,
             `outside_limits`) [m].
-        conditions: As of `fit_state`.
+        conditions: As in `fit_state`.
 
     Raises:
         ValueError: If a lower limit is above the upper one.
@@ -76,7 +76,7 @@ PLACES = {
     "probable_tightest": -1.0,
     "probable_loosest": 1.0,
 }
-"""Where `mounting_at` can be, each with its side: + is much clearance."""
+"""Places that `mounting_at` takes, each with its side: + is large clearance."""
 
 
 def mounting_at(
@@ -99,8 +99,8 @@ def mounting_at(
             "probable_tightest", "probable_loosest": at the sizes that most likely give
             the limits of `ClearanceRange.probable` (exact as long as no fit comes
             loose).
-        clearance, shaft, bore, housing, outside_diameter: As of `clearance_range`.
-        conditions: As of `fit_state`; the probable places depend on them.
+        clearance, shaft, bore, housing, outside_diameter: As in `clearance_range`.
+        conditions: As in `fit_state`; the probable places depend on them.
 
     Raises:
         ValueError: If there is no such place, or a lower limit is above the upper one.

@@ -5,7 +5,7 @@ as from its seat to the bottom of its raceway: without shoulders, of full sectio
 lengths are of diameters. An interference is positive where the fit is tight; a loose
 fit has no pressure.
 
-`fit_state` compiles nothing for a mounting of NumPy numbers, as of `jax.device_get`.
+`fit_state` compiles nothing for a mounting of NumPy numbers, as from `jax.device_get`.
 """
 
 from types import SimpleNamespace
@@ -24,7 +24,7 @@ class Mounting(eqx.Module):
 
     Attributes:
         bore: Bore diameter of the inner ring, d [m].
-        outside_diameter: Of the outer ring, D [m].
+        outside_diameter: Outside diameter of the outer ring, D [m].
         housing_diameter: Outside diameter of the housing around the bearing [m].
         shaft_interference: Diameter of the shaft less the bore, as measured [m].
         housing_interference: Outside diameter of the bearing less the housing's bore,
@@ -42,7 +42,7 @@ class Mounting(eqx.Module):
         shaft_bore: Bore of a hollow shaft; 0 of a solid one [m].
         shaft_smoothing: Interference that the smoothed surfaces take away, on the shaft
             (`smoothing`) [m].
-        housing_smoothing: Likewise in the housing [m].
+        housing_smoothing: The same in the housing [m].
         ring_width: Width of a ring, B, or T of a tapered roller bearing [m]. A set
             needs it: between its rows the rings grow along the axis over this length,
             beyond it shaft and housing (or spacers as warm as these); `None` elsewhere.
@@ -137,12 +137,12 @@ class FitConditions(eqx.Module):
     """Temperatures and speed.
 
     Attributes:
-        shaft: Temperature of the shaft, even throughout it, on the scale of
-            `reference`; likewise below [K].
-        inner_ring: Of the inner ring [K].
-        elements: Of the rolling elements [K].
-        outer_ring: Of the outer ring [K].
-        housing: Of the housing [K].
+        shaft: Temperature of the shaft, uniform, on the scale of `reference`, as all
+            of these [K].
+        inner_ring: Temperature of the inner ring [K].
+        elements: Temperature of the rolling elements [K].
+        outer_ring: Temperature of the outer ring [K].
+        housing: Temperature of the housing [K].
         reference: Temperature of the measured sizes [K]. 0: the others are rises above
             it. Otherwise they are true temperatures, and all five must be given.
         speed: Speed at which shaft and inner ring rotate [rad/s].
@@ -177,7 +177,7 @@ class FitConditions(eqx.Module):
 
 
 _COLDER, _HOTTER = -280.0, 1500.0
-"""Rises that are possible [K]: one left at 0 K beside a true temperature is not."""
+"""Plausible rises [K]; a part left at 0 K among true temperatures is outside."""
 
 _REST = SimpleNamespace(
     shaft=0.0,
@@ -192,7 +192,7 @@ _REST = SimpleNamespace(
 """`FitConditions()` in NumPy's numbers."""
 
 PARTS = ("shaft", "inner_ring", "elements", "outer_ring", "housing")
-"""What has a temperature, and a material, in a mounting."""
+"""Parts of a mounting that have a temperature and a material."""
 
 
 def smoothing(seat: Any, ring: Any) -> Any:
@@ -221,14 +221,14 @@ class AxialStrains(NamedTuple):
 
 
 class FitState(NamedTuple):
-    """What fits, temperatures and speed do to a bearing.
+    """State of a bearing after fits, temperatures and speed.
 
     Attributes:
         shaft_interference: Interference left between shaft and inner ring, less the
             smoothing; negative is loose [m].
-        housing_interference: Likewise between outer ring and housing [m].
+        housing_interference: The same between outer ring and housing [m].
         shaft_pressure: Pressure between shaft and inner ring, 0 where loose [Pa].
-        housing_pressure: Likewise between outer ring and housing [Pa].
+        housing_pressure: Pressure between outer ring and housing, 0 where loose [Pa].
         inner_raceway_growth: Growth of the inner raceway's diameter [m].
         outer_raceway_growth: Growth of the outer raceway's diameter [m].
         radial_clearance: Radial internal clearance in these conditions [m].

@@ -25,13 +25,13 @@ _NODES = 256
 
 
 class Surface(NamedTuple):
-    """What a rolling contact around a part is like.
+    """Geometry of a rolling contact around a part.
 
     Attributes:
-        radius: Of the circle of contact around the part's axis [m].
+        radius: Radius of the circle of contact around the part's axis [m].
         relative: Radius of relative curvature along the rolling direction [m].
-        half_width: Of the contact along the rolling direction, which bridges waves [m];
-            `None`: waves are met as they are.
+        half_width: Half width of the contact along the rolling direction, which bridges
+            waves [m]; `None`: waves act in full.
         pressure: Exponent p of its pressure (1 - s²)^p, summed across the rolling
             direction: 1 of an ellipse, 1/2 of a line [1].
     """
@@ -42,7 +42,7 @@ class Surface(NamedTuple):
     pressure: Scalar | None = None
 
     def bridged(self, order: Float[Array, " n"]) -> Float[Array, " n"]:
-        """Share of waves that a contact leaves, their mean over its pressure (n,) [1].
+        """Share of waves that acts on a contact, the mean over its pressure (n,) [1].
 
         Args:
             order: Waves per turn (n,) [1].
@@ -86,8 +86,8 @@ class Harmonics(AbstractShape):
 
     Attributes:
         order: Waves per turn (n,), whole numbers from 1.
-        amplitude: Of each, half of peak to valley (n,) [m].
-        phase: Of each at the part's mark (n,) [rad]; default 0.
+        amplitude: Amplitude of each, half of peak to valley (n,) [m].
+        phase: Phase of each at the part's mark (n,) [rad]; default 0.
 
     Traced: amplitude, phase. Static: order.
     """
@@ -136,9 +136,9 @@ class Harmonics(AbstractShape):
 
         Args:
             low, high: First and last order.
-            amplitude: Of order `low` [m].
+            amplitude: Amplitude of order `low` [m].
             slope: Exponent p of a_k = amplitude (low/k)^p [1].
-            phase: Of each order (high - low + 1,) [rad].
+            phase: Phase of each order (high - low + 1,) [rad].
         """
         order = range(low, high + 1)
         share = (low / np.arange(low, high + 1)) ** slope
@@ -195,9 +195,9 @@ class Spall(AbstractShape):
     than the floor.
 
     Attributes:
-        angle: Of its middle [rad].
+        angle: Angle of its middle [rad].
         length: Along the rolling direction [m].
-        depth: Of its floor [m].
+        depth: Depth of its floor [m].
 
     Traced: all fields.
     """
@@ -221,17 +221,17 @@ class Spall(AbstractShape):
 
 
 class Table(AbstractShape):
-    """Heights and slopes at evenly spaced angles, for errors asked for very often.
+    """Heights and slopes at evenly spaced angles, for errors evaluated very often.
 
     Between the points a cubic; for waves of order k it errs by (2πk/n)⁴/384 of their
-    amplitude. Spalls, which may be shorter than the distance of two points, stand
-    beside it as they are.
+    amplitude. Spalls, which may be shorter than the distance of two points, are kept
+    as they are.
 
     Attributes:
-        rows: Of every interval: height at its begin and its rise [m], slopes there and
-            at its end [m per interval], its number [1] (n, 5). The number stands here
-            because a compiler may work out the place of an angle twice, and round it
-            to two neighbouring intervals: place and heights are then of one.
+        rows: For every interval: height at its start and its rise [m], slopes there and
+            at its end [m per interval], its number [1] (n, 5). The number is included
+            because a compiler may compute the place of an angle twice, and round it
+            to two neighbouring intervals: place and heights then belong to one.
     """
 
     rows: Float[Array, "n 5"]
@@ -240,11 +240,11 @@ class Table(AbstractShape):
     def of(
         cls, shapes: tuple[AbstractShape, ...], surface: Surface, points: int
     ) -> tuple[AbstractShape, ...]:
-        """One table in place of several shapes, but for spalls; of none, none.
+        """Replace all shapes except spalls by one table of their sum, if there are any.
 
         Args:
-            shapes: What is summed.
-            surface: Where the contact runs.
+            shapes: Shapes to be summed.
+            surface: Contact around the part.
             points: Number of angles. Static.
         """
         spalls = tuple(shape for shape in shapes if isinstance(shape, Spall))
@@ -278,7 +278,7 @@ class Table(AbstractShape):
 def total(
     shapes: tuple[AbstractShape, ...], angle: Float[Array, "..."], surface: Surface
 ) -> Float[Array, "..."]:
-    """Sum of the heights of several shapes [m]; arguments as of `height`."""
+    """Sum of the heights of several shapes [m]; arguments as in `height`."""
     height = jnp.zeros_like(angle)
     for shape in shapes:
         height = height + shape.height(angle, surface)
@@ -294,10 +294,10 @@ class RacewayErrors(eqx.Module):
     """Errors of one raceway.
 
     Attributes:
-        axial: How far the raceway stands along the axis.
-        outwards: How far it stands from the axis: waviness as measured radially.
-        raised: How far its surface stands towards the rolling elements, along the
-            contact normal: faults, ripples that a groove's section shares.
+        axial: Axial displacement of the raceway.
+        outwards: Outward radial displacement: waviness as measured radially.
+        raised: Height of its surface towards the rolling elements, along the
+            contact normal: faults, ripples common to a groove's section.
     """
 
     axial: tuple[AbstractShape, ...] = eqx.field(converter=_shapes, default=())
@@ -315,7 +315,7 @@ class RacewayErrors(eqx.Module):
 
     @property
     def shapes(self) -> tuple[AbstractShape, ...]:
-        """All of them."""
+        """All shapes."""
         return (*self.axial, *self.outwards, *self.raised)
 
     def at(self, angle: Float[Array, "..."], surface: Surface) -> Float[Array, "... 3"]:
@@ -324,7 +324,7 @@ class RacewayErrors(eqx.Module):
         return jnp.stack([total(s, angle, surface) for s in all_three], axis=-1)
 
     def tabulated(self, surface: Surface, points: int) -> "RacewayErrors":
-        """The same as tables; arguments as of `Table.of`."""
+        """Return the errors as tables; arguments as in `Table.of`."""
         all_three = self.axial, self.outwards, self.raised
         return RacewayErrors(*(Table.of(s, surface, points) for s in all_three))
 
@@ -332,14 +332,14 @@ class RacewayErrors(eqx.Module):
 class FormErrors(eqx.Module):
     """Form errors of a row: of both raceways, and of every rolling element.
 
-    Differences of diameter and spacing stand in the bearing itself
+    Differences of diameter and spacing are fields of the bearing itself
     (`ball_deviation`, `roller_deviation`, `azimuth_deviation`).
 
     Attributes:
-        outer: Of the outer raceway.
-        inner: Of the inner raceway.
-        elements: Of the rolling elements around the circle on which they roll: arrays
-            with a leading axis element.
+        outer: Errors of the outer raceway.
+        inner: Errors of the inner raceway.
+        elements: Errors of the rolling elements around the circle on which they roll:
+            arrays with a leading axis element.
 
     Traced: all numbers.
     """
@@ -354,7 +354,7 @@ class FormErrors(eqx.Module):
 
     @property
     def raise_surfaces(self) -> bool:
-        """Whether a surface stands out or in anywhere. Static."""
+        """Whether any surface is raised or lowered. Static."""
         return bool(self.outer.raised or self.inner.raised or self.elements)
 
     def check(self, bearing: Any) -> None:
@@ -397,11 +397,11 @@ class FormErrors(eqx.Module):
         inner: Scalar,
         rolled: Float[Array, " element"],
     ) -> Float[Array, "element 2 3"]:
-        """How each rolling element finds both raceways, `Deviation.raceway` [m].
+        """Deviations of both raceways at each rolling element, `Deviation.raceway` [m].
 
         Args:
             surfaces: Where the contacts run.
-            azimuth: Of each element [rad].
+            azimuth: Azimuth of each element [rad].
             outer: Turn of the outer ring [rad].
             inner: Turn of the inner ring [rad].
             rolled: Turn of each element about its own axis against the line from the
@@ -425,7 +425,7 @@ class FormErrors(eqx.Module):
         return found.at[:, :, 2].add(jax.vmap(one)(self.elements, rolled))
 
     def tabulated(self, surfaces: "Surfaces", points: int = 4096) -> "FormErrors":
-        """The same as tables, for many evaluations.
+        """Return the errors as tables, for many evaluations.
 
         Args:
             surfaces: Where the contacts run.
@@ -442,12 +442,12 @@ class FormErrors(eqx.Module):
 
 
 class Surfaces(NamedTuple):
-    """Where the contacts of a row run.
+    """Contact geometry of a row.
 
     Attributes:
-        outer: Around the outer raceway.
-        inner: Around the inner raceway.
-        element: Around a rolling element; its `relative` is the smaller of both, at
+        outer: Contact around the outer raceway.
+        inner: Contact around the inner raceway.
+        element: Contact around a rolling element; its `relative` is the smaller one, at
             the inner raceway.
     """
 
@@ -457,7 +457,7 @@ class Surfaces(NamedTuple):
 
     @classmethod
     def of(cls, bearing: AbstractBearing) -> "Surfaces":
-        """Of a single row, at the free contact angle."""
+        """Return the surfaces of a single row, at the free contact angle."""
         radius, cosine = 0.5 * bearing.element_diameter, bearing.free_cosine
         pitch = 0.5 * bearing.pitch_diameter
         gamma = radius * cosine / pitch
@@ -470,6 +470,6 @@ class Surfaces(NamedTuple):
         )
 
     def bridging(self, half_width: Scalar, pressure: Scalar) -> "Surfaces":
-        """The same with contacts that bridge waves; arguments as of `Surface`."""
+        """Return surfaces whose contacts bridge waves; arguments as in `Surface`."""
         given = {"half_width": half_width, "pressure": pressure}
         return Surfaces(*(surface._replace(**given) for surface in self))

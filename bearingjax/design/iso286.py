@@ -117,7 +117,7 @@ def standard_tolerance(grade: int, diameter: Any) -> float:
     Raises:
         ValueError: If there is no such grade, or for other diameters.
 
-    Source: as of `limits`.
+    Source: as in `limits`.
     """
     whole = isinstance(grade, int) and not isinstance(grade, bool)
     if not whole or grade not in range(1, len(_GRADES) + 1):

@@ -1,9 +1,9 @@
-"""A bearing as it is mounted: with the radial clearance that its fits leave.
+"""Mounted bearings, with the radial clearance that remains after fitting.
 
 Fits, temperatures and speed change the radial distance of the raceways, and in a set
-the axial distances of the inner and of the outer rings. What rolling elements grow
-beyond their rings takes clearance along the normals of the contacts. What else they
-change is left as on the drawing: pitch and ball diameters, by a ten thousandth.
+the axial distances of the inner and of the outer rings. Growth of the rolling elements
+beyond that of their rings reduces clearance along the contact normals. Other changes
+are neglected: pitch and ball diameters, by a ten thousandth.
 """
 
 from dataclasses import replace
@@ -56,8 +56,8 @@ def radial_clearance(bearing: AbstractBearing) -> Scalar:
     """Radial internal clearance of a row, between the ends of its radial play [m].
 
     Of angular contact bearings 2A (1 - cos α0), A the distance of the groove centres.
-    A tapered roller stays with the inner ring and its large rib. What moves the outer
-    ring radially closes the gap by the cosine of the outer raceway's angle.
+    A tapered roller stays with the inner ring and its large rib. Radial motion of the
+    outer ring closes the gap by the cosine of the outer raceway's angle.
 
     Args:
         bearing: One row.
@@ -82,14 +82,14 @@ def _outer_cosine(rollers):
 
 
 def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
-    """The row with another radial internal clearance.
+    """Return the row with another radial internal clearance.
 
     Of an angular contact bearing it is the free contact angle that changes: grooves
     that come nearer radially are met at a smaller angle.
 
     Args:
         bearing: One row.
-        clearance: Radial internal clearance as of `radial_clearance` [m].
+        clearance: Radial internal clearance as in `radial_clearance` [m].
 
     Raises:
         TypeError: As `radial_clearance`.
@@ -127,7 +127,7 @@ def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
 
 
 def sized(mounting: Mounting, bearing: AbstractBearing | BearingSet) -> Mounting:
-    """The mounting with the sizes of a bearing where its own are `None`.
+    """Return the mounting with the sizes of a bearing where its own are `None`.
 
     Args:
         mounting: The seats.
@@ -171,7 +171,7 @@ def mounted(
     mounting: Mounting,
     conditions: FitConditions | None = None,
 ) -> Any:
-    """The bearing with the radial clearance that fits, temperatures and speed leave.
+    """Return the bearing with its clearance after fits, temperatures and speed.
 
     Load ratings stay those of the drawing (`rated_contact_angle`).
 
@@ -210,12 +210,12 @@ def mounted(
 
 
 def _states(bearing: BearingSet, mounting, conditions) -> list[FitState]:
-    """What fits do to each row of a set."""
+    """Fit state of each row of a set."""
     return [fit_state(sized(mounting, row.bearing), conditions) for row in bearing.rows]
 
 
 def _on_seats(bearing: AbstractBearing, state: FitState) -> Any:
-    """A row with the clearance that fits leave."""
+    """Return a row with its clearance after fits."""
     new = with_radial_clearance(bearing, state.radial_clearance)
     if not isinstance(new, AngularContactBallBearing | FourPointBallBearing):
         return new
@@ -251,14 +251,14 @@ def row_shifts(
 ) -> list[Any]:
     """Shift of each inner ring against its outer ring, as the parts between rows grow.
 
-    From the middle of a row rings reach half of their width; on what is between them
-    is shaft, or housing. Inner rings keep their places on the shaft and outer ones
+    From the middle of a row rings reach half of their width; between them is only
+    shaft, or housing. Inner rings keep their places on the shaft and outer ones
     theirs in the housing, whether against shoulders or clamped one against the other.
     The mean of all places stays where it is: only differences press rows.
 
     Args:
         bearing: A set.
-        mounting, conditions: As of `mounted`.
+        mounting, conditions: As in `mounted`.
 
     Returns:
         Of each row, along +z of the set [m]; 0 of a self-aligning bearing, whose rows
@@ -271,7 +271,7 @@ def row_shifts(
 
 
 def _shifts(bearing: BearingSet, mounting, states: list[FitState]) -> list[Any]:
-    """As of `row_shifts`, of what fits do to each row."""
+    """Row shifts as in `row_shifts`, from the fit state of each row."""
     if is_self_aligning(bearing):
         return [0.0] * len(bearing.rows)
     width = mounting.ring_width
@@ -289,7 +289,7 @@ def _shifts(bearing: BearingSet, mounting, states: list[FitState]) -> list[Any]:
 
 
 def _grown(places, width, rings, seats):
-    """Shift of rows as what is between neighbours grows, their mean at rest [m]."""
+    """Shift of rows as the parts between neighbours grow, with constant mean [m]."""
     order = jnp.argsort(places)
     gaps = jnp.diff(places[order])
     rings, seats = (0.5 * (x[order][1:] + x[order][:-1]) for x in (rings, seats))
@@ -304,7 +304,7 @@ def check_radial(owner: str, bearing: Any) -> None:
 
     Args:
         owner: Function that was called.
-        bearing: What it was given.
+        bearing: Object that it was given.
 
     Raises:
         TypeError: If it is a thrust bearing or no single row.

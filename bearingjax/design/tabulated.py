@@ -91,7 +91,7 @@ class _Cubic(AbstractProfile):
 
     Attributes:
         start: Position of the first point (...) [m].
-        factors: Of the powers 0 to 3 of the distance from there (...) [m^(1-power)].
+        factors: Factors of powers 0 to 3 of the distance from there [m^(1-power)].
     """
 
     protruding: ClassVar[bool] = True

@@ -107,8 +107,8 @@ def roller_grade(name: str, diameter: Any) -> RollerGrade:
 
     Args:
         name: One of `ROLLER_GRADES`, such as "II".
-        diameter: Of the rollers, up to `LARGEST_ROLLER` [m]: the standard goes on, the
-            copy that these numbers are from cannot be read there with certainty.
+        diameter: Roller diameter, up to `LARGEST_ROLLER` [m]: the standard goes on, but
+            the copy used for these numbers cannot be read there with certainty.
 
     Raises:
         ValueError: If there is no such grade, or for larger rollers.
@@ -135,8 +135,8 @@ class RunningAccuracy(NamedTuple):
     the eccentricity, with what waves of low order add.
 
     Attributes:
-        inner: Of the inner ring, K_ia [m].
-        outer: Of the outer ring, K_ea [m].
+        inner: Radial runout of the inner ring, K_ia [m].
+        outer: Radial runout of the outer ring, K_ea [m].
     """
 
     inner: float
@@ -179,7 +179,7 @@ def running_accuracy(name: str, bore: Any, outside_diameter: Any) -> RunningAccu
     Args:
         name: One of `TOLERANCE_CLASSES`, such as "P5".
         bore: Bore diameter of the inner ring, d [m].
-        outside_diameter: Of the outer ring, D [m].
+        outside_diameter: Outside diameter of the outer ring, D [m].
 
     Raises:
         ValueError: If there is no such class, or it has no tolerance for so large a

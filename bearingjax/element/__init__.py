@@ -56,7 +56,7 @@ Jit the loop around the element, with the element closed over
 design is traced, work them out before the loop: `model = element.model(speed)`, then
 `model.force(q)`. Many cases: `bearingjax.sweep`; in a program of your own
 `jax.lax.map(..., batch_size=256)`: there rolling elements wait in a queue, not for each
-other. Many small calls, one after the other, as of an integrator:
+other. Many small calls, one after the other, as in an integrator:
 `jax.config.update("jax_cpu_enable_async_dispatch", False)` before all else saves the
 hand-over between threads, half of the time of a call (benchmarks/single_call.py
 --inline). What a scene lacks (ribs, speed) is not compiled.

@@ -1,4 +1,4 @@
-"""Where the rolling elements of a row stand, and how they orbit."""
+"""Azimuths of the rolling elements of a row, and their orbit."""
 
 from jaxtyping import Array, Float
 
@@ -28,7 +28,7 @@ def azimuths(bearing: AbstractBearing, q: Ring | None = None) -> Azimuth:
 
 
 def turn(ratio: Scalar, q: Ring) -> Scalar:
-    """How far the elements have orbited, rolling without slip [rad].
+    """Orbit angle of the elements, rolling without slip [rad].
 
     Args:
         ratio: `orbit_ratio` of their row [1].

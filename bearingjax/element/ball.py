@@ -1,4 +1,4 @@
-"""One ball between its rings: its contacts with the grooves, and how it is carried."""
+"""One ball between its rings: its contacts with the grooves, and its orbit."""
 
 import dataclasses
 from typing import ClassVar
@@ -25,21 +25,21 @@ _N, _D = EXPONENT
 
 
 class Ball(AbstractRollingElement):
-    """One ball: its grooves, contact constants and how it is carried round.
+    """One ball: its grooves, contact constants and orbit.
 
     A contact bears 2/5 c (l - L)₊^(5/2): l is the distance of ball centre and groove
     centre, L = groove radius - ball radius. So the contact angles follow from the
     geometry and are never fixed. With small ring rotations l is the norm of an affine
     function, and the energy is convex; the grooves go on straight where they end.
 
-    What has no potential: constants that follow the operating angle (the stiffness of
+    Without potential: constants that follow the operating angle (the stiffness of
     the contact is then not symmetric), and centrifugal force and gyroscopic moment at
     the operating angles (`reaction`).
 
     Attributes:
-        grooves: Where the grooves lie.
-        geometry: How the ball moves against them.
-        constant: From the point law (contact, ...).
+        grooves: Positions of the grooves.
+        geometry: Motion of the ball relative to them.
+        constant: Constants of the point law (contact, ...).
         ball_diameter: Ball diameter [m].
         spring: Spring constant of the tether [N/m].
         turning: Speeds, or `None`.
@@ -105,7 +105,7 @@ class Ball(AbstractRollingElement):
         return Expansion(energy, force, stiffness, load)
 
     def contacts(self, rings: RingMotion, x: Unknowns) -> Contacts:
-        """Geometry of all contacts at given motions; arguments as of `coordinates`."""
+        """Geometry of all contacts at given motions; arguments as in `coordinates`."""
         return self.grooves.touch(self.coordinates(rings, x))
 
     def constants(self, contacts: Contacts) -> Float[Array, " contact"]:
@@ -181,7 +181,7 @@ class Ball(AbstractRollingElement):
 
 
 class BallSeeking(Seeking):
-    """Where the equilibrium of a ball is looked for."""
+    """Hints for the search of the equilibrium of a ball."""
 
     element: Ball
 

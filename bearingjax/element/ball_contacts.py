@@ -20,7 +20,7 @@ class Contacts(NamedTuple):
         inverse: 1/l, finite, with which the normal turns; 0 if it does not [1/m].
         normal: Unit vector (z, r) from groove centre to ball centre (contact, 2), in
             the section of the ring; at the groove centre, where there is none, zero.
-        mask: 0 where the part along z, or along r, of that vector counts for nothing,
+        mask: 0 where the component of that vector along z, or along r, does not count,
             because the groove has ended there, else 1 (contact, 2).
     """
 
@@ -32,11 +32,11 @@ class Contacts(NamedTuple):
 
 
 class GrooveGeometry(eqx.Module):
-    """Where the grooves lie around a ball, unloaded.
+    """Positions of the grooves around a ball, unloaded.
 
     A groove is an arc of at most a half circle. Beyond it the raceway goes straight on:
     at the shoulders radially (a wall across the axis), and with an `open_side`, or as
-    a washer, as a cylinder. So a ball that has passed the groove centre meets nothing
+    a washer, as a cylinder. So a ball that has passed the groove centre has no contact
     there, the energy stays convex, and forces do not jump.
 
     Attributes:
@@ -112,17 +112,17 @@ class GrooveGeometry(eqx.Module):
     def directions(
         self, contacts: Contacts, load: Float[Array, " contact"], diameter: Scalar
     ) -> tuple[Float[Array, "2 2"], Float[Array, "2"]]:
-        """Where a ball rolls on each raceway, and its load there.
+        """Contact direction of a ball on each raceway, and its load there.
 
         On two arcs it rolls on the one that it presses more deeply; while both are
         pressed within a thousandth of its diameter of each other, in between.
 
         An inner raceway that it has left does not drive it, and the line of centres
-        there may point anywhere: the ball then goes round with the others, as if that
+        there may point anywhere: the ball then orbits with the others, as if that
         contact lay opposite the outer one, with γ = D/d_m at (1 ∓ γ cos α_o)/2 of the
         ring speeds. Directions are mixed over a gap of half the groove's L, so that
-        forces neither jump nor let a ball both touch and hang free. In balance the
-        outer raceway is never left.
+        forces do not jump and a ball is not both in contact and free. In equilibrium
+        the ball never leaves the outer raceway.
 
         Args:
             contacts: From `touch`.

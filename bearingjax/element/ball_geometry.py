@@ -1,7 +1,7 @@
-"""How a ball moves against the grooves of its rings.
+"""Motion of a ball relative to the grooves of its rings.
 
 A ball has two unknowns, the place (z, r) of its centre in its axial section. It is
-counted from where the rings take it: from the mean of both for small tilts, from the
+measured from where the rings carry it: from the mean of both for small tilts, from the
 outer ring's node for rings that turn by any angle.
 """
 
@@ -19,13 +19,13 @@ from .rolling_element import RingMotion, Unknowns
 
 
 class AbstractBallGeometry(eqx.Module):
-    """Motions of one ball against its grooves."""
+    """Motions of one ball relative to its grooves."""
 
     is_linear: ClassVar[bool]
-    """Whether motions are affine, and see motions between the rings only."""
+    """Whether motions are affine, and depend on motions between the rings only."""
 
     n_displacements: ClassVar[int]
-    """How many of the first motions of a ring are displacements."""
+    """Number of displacements, the first motions of a ring."""
 
     @abc.abstractmethod
     def axes(self, azimuth: Scalar) -> Float[Array, "h 6"]:
@@ -55,12 +55,12 @@ class AbstractBallGeometry(eqx.Module):
         """(u, v, θ) of the ball at the node on the axis [m, m, rad]."""
 
     def midpoint(self, rings: RingMotion) -> Unknowns:
-        """Where the rings take the ball, and its tether holds it (2,) [m]."""
+        """Position given by the rings, where the tether holds the ball (2,) [m]."""
         return jnp.zeros((2,), rings.outer.dtype)
 
     @abc.abstractmethod
     def reach(self, rings: RingMotion) -> Scalar:
-        """How far the rings are from each other in the ball's section [m]."""
+        """Relative displacement of the rings in the ball's section [m]."""
 
     def lever(self, x: Unknowns) -> Scalar | float:
         """z of the ball from the origin of its row's axes [m]."""

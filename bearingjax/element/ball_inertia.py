@@ -1,7 +1,7 @@
-"""What speed does to one ball: centrifugal force, gyroscopic moment, tractions.
+"""Effects of speed on one ball: centrifugal force, gyroscopic moment, tractions.
 
-At the operating contact angles these have no potential and go through their own
-channel. See `ball_speed` for kinematics and raceway control.
+At the operating contact angles these have no potential and are passed separately from
+the energy. See `ball_speed` for kinematics and raceway control.
 """
 
 from typing import NamedTuple
@@ -23,7 +23,7 @@ from .inertia import Speed
 
 
 class Turning(NamedTuple):
-    """What a turning ball needs to know.
+    """Speeds, raceway control and inertia of a turning ball.
 
     Attributes:
         speed: Ring speeds.
@@ -47,15 +47,15 @@ class Turning(NamedTuple):
 
 
 class Carried(NamedTuple):
-    """A ball that is carried round.
+    """Motion and inertia forces of an orbiting ball.
 
     Attributes:
         kinematics: Orbit, rotation and spin.
         centrifugal: Centrifugal force at that orbit [N].
         traction: Tractions at outer and inner raceway [N]; T acts on the ball along
             (-cos α, sin α) in (z, r) at the outer raceway, opposite at the inner one.
-        on_ball: What both together do to the ball (z, r) [N].
-        on_rings: What each does to its ring at the ball's place: (z, r) and the
+        on_ball: Resultant of both on the ball (z, r) [N].
+        on_rings: Load of each on its ring at the ball's place: (z, r) and the
             moment turning z towards r (2, 3) [N, N m].
     """
 
@@ -89,7 +89,7 @@ def turning(
 
 
 def carried(t: Turning, normals: Float[Array, "2 2"], loads: Float[Array, "2"]):
-    """How a ball is carried round at given contact angles.
+    """Orbit, rotation and tractions of a ball at given contact angles.
 
     Args:
         t: Its inertia.
@@ -128,8 +128,8 @@ def gyroscopic_moment(
     """Moment that turns the ball's axis with its orbit, I ω_c ω_R sin β [N m].
 
     Args:
-        moment_of_inertia: Of the ball [kg m²].
-        kinematics: Of the ball.
+        moment_of_inertia: Moment of inertia of the ball [kg m²].
+        kinematics: Kinematics of the ball.
     """
     k = kinematics
     return moment_of_inertia * k.orbit * k.rotation * k.axis[..., 0]

@@ -1,4 +1,4 @@
-"""A ball that is carried round: its kinematics, its inertia, and what holds it.
+"""Kinematics and inertia of an orbiting ball, and its raceway control.
 
 In the section at a ball's azimuth a contact angle is counted from the radius towards
 +z. The ball's spin axis lies in the section at the pitch angle β, such that its spin
@@ -35,12 +35,12 @@ Direction = Float[Array, "2"]
 
 
 class AbstractRacewayControl(eqx.Module):
-    """Where a ball rolls without spin, and which contact takes the gyroscopic moment.
+    """Raceway control: contact without spin, and share of the gyroscopic moment.
 
-    The moment M is held by tractions T at the contacts, (T_o + T_i) D/2 = M. Whatever
-    is asked of a contact, it holds no more than `MOST_FRICTION` times its load: a
-    raceway that a ball has left gives no traction, and the ball then slips about the
-    tangent of its orbit.
+    The moment M is held by tractions T at the contacts, (T_o + T_i) D/2 = M. The
+    traction of a contact is at most `MOST_FRICTION` times its load: a raceway that a
+    ball has left gives no traction, and the ball then slips about the tangent of its
+    orbit.
     """
 
     @property
@@ -118,7 +118,7 @@ class LoadShare(AbstractRacewayControl):
 
 
 class FrictionLimited(AbstractRacewayControl):
-    """As `LoadShare`, but no traction exceeds friction times the contact load.
+    """`LoadShare` with every traction limited to friction times the contact load.
 
     Beyond that the ball turns about the tangent of its orbit (gyroscopic slip).
 
@@ -177,7 +177,7 @@ class CentrifugalOnly(AbstractWithoutMoment):
 
 
 class BallKinematics(NamedTuple):
-    """How a ball orbits, rolls and spins.
+    """Orbit, rotation, rolling and spin of a ball.
 
     Attributes:
         orbit: Orbital speed ω_c [rad/s].
@@ -185,7 +185,7 @@ class BallKinematics(NamedTuple):
         axis: Axis of rotation (sin β, cos β) for its pitch angle β (2,).
         spin: Spin about the contact normal relative to outer and inner ring (2,)
             [rad/s].
-        roll: Rolling about the contact tangent, likewise (2,) [rad/s].
+        roll: Rolling about the contact tangent, outer and inner ring (2,) [rad/s].
     """
 
     orbit: Float[Array, "..."]
@@ -216,7 +216,7 @@ def ball_kinematics(
 
     Args:
         outer, inner: Contact normals (sin α, cos α) on both raceways.
-        share: Of the outer raceway in the direction of the spin axis [1].
+        share: Share of the outer raceway in the direction of the spin axis [1].
         ratio: γ = D/d_m [1].
         speed: Ring speeds.
 

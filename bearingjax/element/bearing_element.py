@@ -40,7 +40,7 @@ def check_element(owner: str, element: object) -> None:
 
     Args:
         owner: Function that was called.
-        element: What it was given.
+        element: Object that it was given.
 
     Raises:
         TypeError: For anything else, such as a bearing without its contact laws.
@@ -83,19 +83,19 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         bearing: The design, or a `BearingSet`.
         line_law: Law of the raceway contacts of rollers; `Palmgren()`. With
             `CoupledSlices()` slices press on each other; it takes no `quadrature`.
-        kinematics: Small ring rotations, `Linearised()`; `ConstantAngle()`: likewise,
+        kinematics: Small ring rotations, `Linearised()`; `ConstantAngle()`: the same,
             the contact angles of balls held; or `Finite()`: rings of ball bearings
             turn by any angle, of rollers the paper's formula. Self-aligning bearings:
             `Finite()`.
-        quadrature: Of roller contacts, `ContactMapped(points)` or `Midpoint(points)`;
-            `None` with balls and `CoupledSlices()`.
+        quadrature: Rule for roller contacts, `ContactMapped(points)` or
+            `Midpoint(points)`; `None` with balls and `CoupledSlices()`.
         equilibrium: Local solver, `TrustRegionNewton()` or `BFGS()`.
         cage_torque: Whether gz feels that it moves the rolling elements: `force` then
             has moments about z, the virtual work of the contact forces, `stiffness`
             their derivatives.
         point_law: Constants of ball contacts: `FreeAngle()`, `ZeroAngle()`,
             `OperatingAngle()` or `PointConstant(outer, inner)`.
-        raceway_control: Of turning balls: `OuterControl()`, `InnerControl()`,
+        raceway_control: For turning balls: `OuterControl()`, `InnerControl()`,
             `EqualShare()`, `LoadShare()`, `FrictionLimited(friction)`,
             `OperatingCentrifugal()` or `CentrifugalOnly()`.
         choices: Laws and kinematics together, for those of the above that are not
@@ -122,7 +122,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         raceway_control: AbstractRacewayControl | None = None,
         choices: AbstractChoices | None = None,
     ):
-        """Defaults as above; what the rolling elements have no use for is an error.
+        """Defaults as above; a choice that does not apply to the elements is an error.
 
         Raises:
             TypeError: If `bearing` is no bearing, or a choice is of another kind, such
@@ -182,7 +182,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             )
 
     def __hash__(self) -> int:
-        """Of the structure: `jax.jit` of a method needs it, and compares the numbers.
+        """Hash of the structure and shapes, which `jax.jit` of a method needs.
 
         Raises:
             TypeError: If a number is traced, which cannot be compared.
@@ -244,12 +244,12 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
     @property
     def kinematics(self) -> AbstractKinematics:
-        """How rigid motions become coordinates of the contacts."""
+        """Kinematics: map from rigid motions to coordinates of the contacts."""
         return self.choices.kinematics
 
     @property
     def quadrature(self) -> AbstractQuadrature | None:
-        """Of roller contacts; `None` with balls and `CoupledSlices()`."""
+        """Quadrature of roller contacts; `None` with balls and `CoupledSlices()`."""
         return getattr(self.choices, "quadrature", None)
 
     @property
@@ -259,7 +259,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
     @property
     def raceway_control(self) -> AbstractRacewayControl | None:
-        """Of turning balls; `None` with rollers."""
+        """Raceway control of turning balls; `None` with rollers."""
         return getattr(self.choices, "raceway_control", None)
 
     def has_potential(self, speed: Speed | None = None) -> bool:
@@ -299,7 +299,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """External load that holds the rings where they are [N, N m].
 
         Args:
-            q, speed, near: As of `energy`.
+            q, speed, near: As in `energy`.
             with_near: Return (force, near) for the next call. Static.
 
         Raises: as `energy`.
@@ -339,10 +339,10 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         return self._at("results", q, speed, near)
 
     def nothing_near(self, speed: Speed | None = None) -> State:
-        """What `near` is before the first call: rolling elements of unknown places.
+        """Return the initial `near`, before the first call: no element is solved yet.
 
         Args:
-            speed: Ring speeds or `None`, as of the calls.
+            speed: Ring speeds or `None`, as in the calls.
         """
         model = self.model(speed)
         return model.near(model.unsolved())
@@ -358,25 +358,25 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
         function(motion, velocity, time, parameters) is the force (12,) that holds the
         rings, of the sign of `force`: in the equations of motion of the two rings
-        M a = F - f, with F what else acts on them. It is differentiable with respect
+        M a = F - f, with F all other forces on them. It is differentiable with respect
         to all four; under `jit` a plain static function, the same for all bearings.
 
         The rolling elements orbit, rolling without slip: at time t the rings have
-        turned by t times their speeds, and the element by what `force` makes of such
-        gz. So the stiffness varies with the pass of the elements (variable
+        turned by t times their speeds, and the elements as in `force` for such gz. So
+        the stiffness varies with the pass of the elements (variable
         compliance), at n/2 [(1 - G) Ω_i + (1 + G) Ω_o] [rad/s] for n elements with
         G = D cos α/d_m, that of the free contact angle. A gz in `motion` turns them
-        on top of that: it is for what differs from the steady turn. Who integrates
-        the whole rotation (a run-up) sets `orbit=False`, else it counts twice.
+        in addition: it is for deviations from the steady rotation. If the whole
+        rotation is integrated (a run-up), set `orbit=False`, else it counts twice.
 
         The inertia of the elements is that of their steady orbit at `speed`; they
-        follow the rings without delay. Nothing damps unless `damping` says so.
+        follow the rings without delay. There is no damping unless `damping` is given.
 
         Args:
             speed: Ring speeds; `None`: rings at rest, no inertia.
             damping: Linear and viscous: a number c [N s/m], dashpots between the
                 origins of the rings in x, y and z; or a matrix C (12, 12) with
-                f = … + C velocity [N s/m, N s, N m s], as of a damping in proportion
+                f = … + C velocity [N s/m, N s, N m s], as for a damping in proportion
                 to a stiffness, β `linearise(…).stiffness`. None: no damping.
             orbit: Whether the rolling elements orbit with time, or only with the gz
                 of `motion`.
@@ -388,9 +388,9 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             Where a rolling element does not converge the force is NaN.
 
             With a fifth argument, `near`, the function returns (force, near): the
-            rolling elements are solved from where they were, and what they became goes
-            into the next call. The first is `nothing_near(speed)`. An integrator that
-            carries it along in its state never starts cold.
+            solve of the rolling elements starts from their last state, and their new
+            state goes into the next call. The first is `nothing_near(speed)`. An
+            integrator that keeps it in its state never starts without one.
 
         Raises:
             TypeError: If `speed` is not a `Speed`, or `damping` no number.
@@ -403,7 +403,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         return as_function(self, speed, damping, orbit)
 
     def _at(self, name: str, q, speed, near, with_near=False) -> Any:
-        """A function of the model, of all in one program if nothing is traced yet."""
+        """Call a function of the model, as one program if nothing is traced yet."""
         if is_traced(q):
             return self._evaluated(name, q, speed, near, with_near)
         return self._jitted(name, q, speed, near, with_near)

@@ -60,7 +60,7 @@ class RowGroup(eqx.Module):
         """Apply function(row, *arrays) to every row of the group.
 
         Args:
-            function: Of one row.
+            function: Function of one row.
             *arrays: More arguments, stacked as the rows are.
         """
         if len(self.members) == 1:
@@ -68,7 +68,7 @@ class RowGroup(eqx.Module):
         return jax.vmap(function)(self.rows, *arrays)
 
     def parts(self, stacked: Any) -> list[Any]:
-        """What belongs to each row, of what `each` returned."""
+        """Split the result of `each` into one part per row."""
         if len(self.members) == 1:
             return [stacked]
         count = len(self.members)
@@ -92,8 +92,8 @@ class Solved(NamedTuple):
     """A bearing whose rolling elements are solved at given ring freedoms.
 
     Attributes:
-        azimuths: Where they are; with `cage_torque` less what the rings have turned
-            them, so that energy and force feel that.
+        azimuths: Their azimuths; with `cage_torque` without the turn by the rings, so
+            that energy and force depend on it.
         groups: The solved rows, group by group.
     """
 
@@ -102,7 +102,7 @@ class Solved(NamedTuple):
 
 
 class Evaluated(NamedTuple):
-    """Energy, force and stiffness of the bearing, and how its elements fared.
+    """Energy, force and stiffness of the bearing, and convergence of its elements.
 
     Attributes:
         energy: V [J].
@@ -111,9 +111,9 @@ class Evaluated(NamedTuple):
         result: Worst `Result` code of the rolling elements.
         steps: Most steps that one took.
         residual: Largest relative residual of one [1].
-        magnitude: Sum of the sizes of what the elements pass to the rings, in which
-            the ring force may cancel [N].
-        near: From which the next solve near by may start.
+        magnitude: Sum of the sizes of the forces of the elements on the rings, which
+            may cancel in the ring force [N].
+        near: State from which the next solve near by may start.
     """
 
     energy: Scalar
@@ -130,12 +130,12 @@ class BearingModel(eqx.Module):
     """A bearing or set at given speeds, ready to be evaluated.
 
     Functions of the ring freedoms q (12,) [m, rad], outer ring first; meaning and
-    units as of the same functions of `BearingElement`.
+    units as in the same functions of `BearingElement`.
 
     Attributes:
         groups: Its rows, like ones together.
         equilibrium: Local solver.
-        cage_torque: Whether gz feels that it moves the rolling elements.
+        cage_torque: Whether the moment about gz includes the orbit of the elements.
 
     Traced: all real numbers. Static: the classes, and `cage_torque`.
     """
@@ -166,7 +166,7 @@ class BearingModel(eqx.Module):
         return self.groups[0].rows.ratio.dtype
 
     def in_order(self, stacked) -> tuple:
-        """What belongs to each row, of what stands group by group."""
+        """Values of each row in order, from values stacked group by group."""
         found = {}
         for group, values in zip(self.groups, stacked, strict=True):
             found |= dict(zip(group.members, group.parts(values), strict=True))
@@ -249,7 +249,7 @@ class BearingModel(eqx.Module):
 
         Args:
             q: Ring freedoms [m, rad].
-            solved: `solve` at q, if it is at hand.
+            solved: `solve` at q, if available.
         """
         return self._energy(*self._at(q, solved))
 
@@ -265,13 +265,13 @@ class BearingModel(eqx.Module):
     def force(self, q: Ring, solved: Solved | None = None) -> Ring:
         """External load that holds the rings where they are [N, N m].
 
-        Args: as of `energy`.
+        Args: as in `energy`.
         """
         return jax.grad(self._energy)(*self._at(q, solved))
 
     @eqx.filter_jit
     def force_or_nan(self, q: Ring, solved: Solved | None = None) -> Ring:
-        """As `force`, but NaN if a rolling element did not converge [N, N m]."""
+        """Return `force`, or NaN if a rolling element did not converge [N, N m]."""
         q, solved = self._at(q, solved)
         converged = self.settled(solved)[0] == Result.CONVERGED
         # A product: the derivative of a failed case is then NaN too.
@@ -281,7 +281,7 @@ class BearingModel(eqx.Module):
     def stiffness(self, q: Ring, solved: Solved | None = None) -> RingStiffness:
         """Tangent stiffness d(force)/dq [N/m, N, N m].
 
-        Args: as of `energy`.
+        Args: as in `energy`.
         """
         return self._second(*self._at(q, solved))[0]
 
@@ -289,7 +289,7 @@ class BearingModel(eqx.Module):
     def evaluate(self, q: Ring, solved: Solved | None = None) -> Evaluated:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
-        Args: as of `energy`.
+        Args: as in `energy`.
         """
         q, solved = self._at(q, solved)
         stiffness, energy, force = self._second(q, solved)
@@ -328,7 +328,7 @@ class BearingModel(eqx.Module):
         return q, self.solve(q) if solved is None else solved
 
     def results(self, q: Ring, solved: Solved) -> tuple[RowResults, ...]:
-        """What every solved row tells of its elements, with derivatives.
+        """Results of the elements of every solved row, with derivatives.
 
         Args:
             q: Ring freedoms [m, rad].
@@ -358,7 +358,7 @@ class BearingModel(eqx.Module):
         )
 
     def near(self, solved: Solved) -> tuple[Near, ...]:
-        """From which a solve near by may start."""
+        """Return the state from which a solve near by may start."""
         return tuple(
             group.each(lambda row, s: s.near(row), state)
             for group, state in zip(self.groups, solved.groups, strict=True)
@@ -386,7 +386,7 @@ class BearingModel(eqx.Module):
             )
 
     def magnitude(self, solved: Solved) -> Scalar:
-        """Sum of the sizes of what solved elements pass to the rings [N]."""
+        """Sum of the sizes of the forces of solved elements on the rings [N]."""
         sizes = []
         for group, state in zip(self.groups, solved.groups, strict=True):
             count = group.rows.element.n_displacements
@@ -394,7 +394,7 @@ class BearingModel(eqx.Module):
         return sum(sizes[1:], start=sizes[0])
 
     def is_apart(self, solved: Solved) -> Bool[Array, ""]:
-        """Whether no rolling element bears on both rings: nothing holds them together.
+        """Whether no rolling element contacts both rings, so that they are not coupled.
 
         Turning elements press the outer ring alone; what stiffness is left then is
         that of the springs which hold them in place.
@@ -421,7 +421,7 @@ class BearingModel(eqx.Module):
         return [group.each(lambda row: row.each(function)) for group in self.groups]
 
     def unsolved(self) -> Solved:
-        """Nothing solved yet: what `near` makes of it tells nothing."""
+        """Return the unsolved bearing; its `near` holds no information."""
         groups = (group.each(lambda row: row.unsolved()) for group in self.groups)
         return Solved(self.azimuths(), tuple(groups))
 

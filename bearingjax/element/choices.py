@@ -1,7 +1,7 @@
-"""What a `BearingElement` may be made of: its laws and kinematics, and their rollers.
+"""Choices of a `BearingElement`: contact laws and kinematics of rollers and of balls.
 
 The contacts of rollers and those of balls are described by one object each. It holds
-what was chosen, and makes rolling elements of a design. A new kind of rolling element
+the choices, and makes the rolling elements of a design. A new kind of rolling element
 is another such class, registered for its bearing with `choices_for`.
 """
 
@@ -52,14 +52,14 @@ KINDS = {
         " OperatingCentrifugal() or CentrifugalOnly()",
     ),
 }
-"""Of each choice of a `BearingElement`: its class, and what a message says of it."""
+"""Class of each choice of a `BearingElement`, and its description in messages."""
 
 
 class AbstractChoices(eqx.Module):
-    """What was chosen for the contacts of a kind of rolling element.
+    """Choices for the contacts of a kind of rolling element.
 
     Attributes:
-        kinematics: How rigid motions become coordinates of the contacts.
+        kinematics: Map from rigid motions to coordinates of the contacts.
     """
 
     kinematics: eqx.AbstractVar[AbstractKinematics]
@@ -68,12 +68,12 @@ class AbstractChoices(eqx.Module):
     """Name of the rolling elements in messages."""
 
     names: ClassVar[tuple[str, ...]]
-    """Keywords of `BearingElement` that it takes, `kinematics` among them."""
+    """Keywords of `BearingElement` that it takes, including `kinematics`."""
 
     @classmethod
     @abc.abstractmethod
     def of(cls, rows: tuple[SetRow, ...], **given: Any) -> "AbstractChoices":
-        """What was chosen, and the defaults for the rest.
+        """Return the given choices, with defaults for the rest.
 
         Args:
             rows: The rows, of a kind of bearing that this class is for.
@@ -117,8 +117,8 @@ class RollerChoices(AbstractChoices):
 
     Attributes:
         line_law: Law of the raceway contacts.
-        quadrature: Of independent slices; `None` with slices that are coupled.
-        kinematics: How rigid motions become approaches.
+        quadrature: Quadrature of independent slices; `None` with coupled slices.
+        kinematics: Map from rigid motions to approaches.
     """
 
     line_law: AbstractLineLaw
@@ -164,8 +164,8 @@ class BallChoices(AbstractChoices):
 
     Attributes:
         point_law: Constants of the contacts.
-        raceway_control: Where turning balls roll without spin.
-        kinematics: How rigid motions become the places of groove centres.
+        raceway_control: Raceway control of turning balls.
+        kinematics: Map from rigid motions to positions of the groove centres.
     """
 
     point_law: AbstractPointLaw

@@ -1,6 +1,6 @@
-"""From the drawing to the numbers that the contacts of one roller need.
+"""Contact constants of one roller, from the dimensions on the drawing.
 
-Everything stands in the roller's own axes: t along the roller axis, m across it
+All quantities are in the roller's own axes: t along the roller axis, m across it
 (outwards), origin at the roller centre.
 """
 

@@ -43,7 +43,7 @@ def roller_energy(
     x: Unknowns,
     known: Expansion | None = None,
 ) -> Scalar:
-    """U - F·y of one roller [J].
+    """Energy U - F·y of one roller [J].
 
     Contacts: with each raceway, in two numbers (approach at the middle, and more of it
     at the end from tilt), and with each rib, in one.
@@ -52,7 +52,7 @@ def roller_energy(
         self: The roller.
         rings: Motions of the rings in roller axes, (t, m, θ) each [m, rad].
         x: Place of the roller from the mean of the rings, tilt times L/2 (3,) [m].
-        known: What its contacts bear there, if it is at hand.
+        known: Contact response there, if available.
     """
     energy = contact_energy(self, self.coordinates(rings, x), known)
     energy = energy + 0.5 * self.tether * dot(x, x)
@@ -67,7 +67,7 @@ def ball_energy(
     x: Unknowns,
     known: Expansion | None = None,
 ) -> Scalar:
-    """U - F·y of one ball [J].
+    """Energy U - F·y of one ball [J].
 
     Contacts: with each arc of a groove, in the motion (z, r) of the ball's centre
     against that of the groove. The contact angle follows from it.
@@ -76,7 +76,7 @@ def ball_energy(
         self: The ball.
         rings: Motions of the rings in the ball's axes [m, rad].
         x: Place of the ball's centre (z, r), from where the rings take it (2,) [m].
-        known: What its contacts bear there, if it is at hand.
+        known: Contact response there, if available.
     """
     energy = contact_energy(self, self.coordinates(rings, x), known)
     # The tether does not pull the rings: it is no part of the bearing.
@@ -150,7 +150,7 @@ def derivatives(
 def response(
     element: AbstractRollingElement, rings: Float[Array, " r"], x: Unknowns
 ) -> Expansion:
-    """What the contacts of a rolling element bear; arguments as of `derivatives`."""
+    """Contact response of a rolling element; arguments as in `derivatives`."""
     return element.respond(element.coordinates(unpacked(element, rings), x))
 
 
@@ -168,5 +168,5 @@ def unpacked(element: AbstractRollingElement, rings: Float[Array, " r"]) -> Ring
 
 
 def _on_packed(element, forces):
-    """Forces on what `unpacked` takes, from those on both rings."""
+    """Forces on the motions that `unpacked` takes, from those on both rings."""
     return forces[1:] if element.sees_difference else tuple(forces)

@@ -31,15 +31,15 @@ Rings = Float[Array, " r"]
 
 
 class LocalState(NamedTuple):
-    """Where a rolling element is in equilibrium, and how that was found.
+    """Equilibrium position of a rolling element, and statistics of the solve.
 
     Attributes:
         x: Its unknowns (n,) [m].
         residual: Force that is out of balance, relative to the contact loads [1].
-        unbalanced: That force, of the unknowns in metres [N].
+        unbalanced: Force out of balance, for unknowns in metres [N].
         steps: Evaluations that the solve took.
         result: `Result` code.
-        known: What its contacts bear there, `AbstractRollingElement.respond`.
+        known: Contact response there, `AbstractRollingElement.respond`.
     """
 
     x: Unknowns
@@ -51,11 +51,11 @@ class LocalState(NamedTuple):
 
 
 class Near(NamedTuple):
-    """A rolling element solved at rings near by, from which it may start.
+    """Rolling element solved at nearby ring positions, as a starting point.
 
     Attributes:
         offset: Its unknowns less its midpoint, NaN if not known (n,) [m].
-        follow: How its unknowns follow the rings (n, r).
+        follow: Derivatives of its unknowns by the ring motions (n, r).
         rings: Motions of the rings then, see `energy.unpacked` (r,) [m, rad].
     """
 
@@ -65,12 +65,12 @@ class Near(NamedTuple):
 
 
 class Placed(NamedTuple):
-    """A rolling element in equilibrium: what an energy of the rings alone needs.
+    """Rolling element in equilibrium, with all data for its condensed energy.
 
     Attributes:
         element: The rolling element.
-        state: Where that is.
-        magnitude: As of `solve_element` [m].
+        state: Its equilibrium.
+        magnitude: As in `solve_element` [m].
     """
 
     element: AbstractRollingElement
@@ -163,9 +163,9 @@ def is_loose(
 ) -> Bool[Array, ""]:
     """Whether a rolling element is held by no more than its tether spring.
 
-    Its contacts then carry next to nothing, and what they carry does not balance, as
-    a real squeeze between the rings does. The energy being convex, the load left out
-    is bounded by the small one found here.
+    Its contacts then carry almost no load, and that load is not in balance, unlike
+    that of an element squeezed between the rings. As the energy is convex, the load
+    left out is bounded by the small one found here.
 
     Args:
         element: The rolling element.
@@ -196,11 +196,11 @@ def _load(element, known):
 
 
 class Beside(NamedTuple):
-    """What is known of a condensed rolling element beside its energy.
+    """Results of a condensed rolling element in addition to its energy.
 
     Attributes:
         contact_load: Load of each contact (contact,) [N].
-        follow: How its unknowns follow the rings (n, r).
+        follow: Derivatives of its unknowns by the ring motions (n, r).
     """
 
     contact_load: Float[Array, " contact"]
@@ -256,7 +256,7 @@ def _condensed_stiffness(element, hessian, r):
 
 
 class _Given(NamedTuple):
-    """What a solve is given, and what depends on no step of it."""
+    """Inputs of a solve, and quantities that are constant over its steps."""
 
     element: AbstractRollingElement
     rings: Rings
@@ -308,12 +308,12 @@ def _problem(given: _Given, shapes) -> Problem:
 
 
 def _loop(minimiser: AbstractMinimiser, known, may_be_open) -> lanes.Loop:
-    """The search of one element, which an open one need not begin.
+    """Iteration for one element, skipped for an open one.
 
     Args:
         minimiser: Local solver.
-        known: What its contacts bear, the shapes.
-        may_be_open: Whether the element can tell that it is open.
+        known: Contact response, of which only the shapes count.
+        may_be_open: Whether `is_open` of the element is known.
     """
 
     def problem_of(given):
@@ -333,12 +333,12 @@ def _loop(minimiser: AbstractMinimiser, known, may_be_open) -> lanes.Loop:
 
 
 def unloaded(rings: Rings, x: Unknowns, known: Any) -> tuple[LocalState, Expansion]:
-    """As `solve_element` returns it, of an element that carries nothing.
+    """Return the result of `solve_element` for an element that carries no load.
 
     Args:
         rings: Motions of the rings in its axes (r,) [m, rad].
         x: Its unknowns (n,) [m].
-        known: What its contacts bear, the shapes.
+        known: Contact response, of which only the shapes count.
     """
     n, r = x.shape[0], rings.shape[0]
     zero, none = jnp.zeros((), rings.dtype), jnp.zeros((), jnp.int32)
@@ -379,7 +379,7 @@ def _solved(element, rings, minimum) -> LocalState:
 
 
 def _followed(element, near, rings, otherwise):
-    """Where an element gets to that follows the rings from near by."""
+    """Predict the position of an element that follows the rings from near by."""
     moved = rings - near.rings
     seeking, before = element.seeking, unpacked(element, near.rings)
     step = near.follow @ moved
@@ -391,12 +391,12 @@ def _followed(element, near, rings, otherwise):
 
 
 def near_by(placed: Placed, rings: Rings, beside: Beside) -> Near:
-    """What a solve at rings near by may start from.
+    """Starting point for a solve with the rings at a nearby position.
 
     Args:
         placed: The element and its equilibrium.
         rings: Motions of the rings there (r,) [m, rad].
-        beside: Of its `condensed` energy.
+        beside: `Beside` of its `condensed` energy.
     """
     element = placed.element
     held = jnp.any(beside.contact_load > 0)
@@ -406,7 +406,7 @@ def near_by(placed: Placed, rings: Rings, beside: Beside) -> Near:
 
 
 def accept_small(state: LocalState, load: Scalar) -> LocalState:
-    """Count rolling elements as converged whose imbalance no result can feel.
+    """Count rolling elements as converged if their imbalance affects no result.
 
     A ball in the unloaded half, with no more than a slow orbit's centrifugal force to
     seat it, may need more steps than there are; it does not matter.

@@ -1,4 +1,4 @@
-"""The one home of axes, freedoms and their order.
+"""Definition of axes, freedoms and their order.
 
 z is the bearing axis, right-handed; azimuth from +x towards +y. Twelve freedoms:
 (ux uy uz gx gy gz) of the outer ring, then of the inner ring, in m and rad, all at the
@@ -130,7 +130,7 @@ def orbit(ratio: Scalar, outer: Scalar | float, inner: Scalar | float) -> Scalar
     Args:
         ratio: G of `roll_ratio` [1].
         outer: Turn [rad] or speed [rad/s] of the outer ring.
-        inner: Of the inner ring, likewise.
+        inner: Turn [rad] or speed [rad/s] of the inner ring.
 
     Source: rolling without slip, ½[(1 - G) inner + (1 + G) outer].
     """

@@ -1,8 +1,8 @@
 """The bearing as a pure function of time, for a rotor model written in JAX.
 
-Two plain functions and what they are given: nothing is closed over, so that any
+Two plain functions and their parameters: there are no closures, so that any
 integrator may pass the parameters through as traced numbers. The contact constants
-are worked out from the design in every call, because then every parameter is a number
+are computed from the design in every call, because then every parameter is a number
 of the drawing, with its full derivative, and may change from call to call (a run-up);
 in a compiled loop of 2000 calls that cost nothing measurable, rollers or balls.
 """
@@ -79,16 +79,16 @@ def orbiting_force(
 ) -> Any:
     """Force that holds the rings while the rolling elements orbit.
 
-    `ring_force` with the elements turned by what the rings have turned at their
-    speeds since time zero; differentiable with respect to time and speed.
+    `ring_force` with the elements turned by the rotation of the rings at their speeds
+    since time zero; differentiable with respect to time and speed.
 
     Args:
-        motion: Ring freedoms, outer then inner [m, rad]; a gz turns the elements on
-            top of that.
+        motion: Ring freedoms, outer then inner [m, rad]; a gz turns the elements in
+            addition.
         velocity: Their rates [m/s, rad/s].
         time: Time [s].
         parameters: From `BearingElement.as_function`.
-        near: As of `ring_force`.
+        near: As in `ring_force`.
 
     Returns, raises: as `ring_force`.
     """
@@ -121,7 +121,7 @@ def _force(motion, velocity, time, parameters, near):
 def as_function(
     element: Any, speed: Speed | None, damping: Any, orbit: bool
 ) -> tuple[RingFunction, FunctionParameters]:
-    """What `BearingElement.as_function` returns; see there."""
+    """Return the function and parameters of `BearingElement.as_function`; see there."""
     if speed is not None and not isinstance(speed, Speed):
         raise TypeError(
             f"BearingElement: `speed` is a {type(speed).__name__}; it must be a"

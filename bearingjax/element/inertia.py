@@ -1,4 +1,4 @@
-"""Inertia of a roller that is carried round at given ring speeds."""
+"""Inertia of an orbiting roller at given ring speeds."""
 
 import equinox as eqx
 import jax.numpy as jnp

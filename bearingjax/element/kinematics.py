@@ -1,6 +1,6 @@
-"""How rigid motions become coordinates of the contacts: a choice by class.
+"""Kinematics: maps from rigid motions to coordinates of the contacts, by class.
 
-A class says it of rollers, of balls, or of both. What it does not say is refused.
+A class implements rollers, balls, or both. Elements not implemented are rejected.
 """
 
 from typing import Any
@@ -15,7 +15,7 @@ from .roller_geometry import AbstractRollerGeometry, FiniteRoller, LinearisedRol
 
 
 class AbstractKinematics(eqx.Module):
-    """How rigid motions become coordinates of the contacts."""
+    """Map from rigid motions to coordinates of the contacts."""
 
     def roller(self, constants: ContactConstants) -> AbstractRollerGeometry:
         """Geometry of one roller; once per design.
@@ -44,7 +44,7 @@ class AbstractKinematics(eqx.Module):
         return False
 
     def check(self, elements: str) -> None:
-        """Raise unless the class says how a kind of rolling element moves.
+        """Raise unless the class implements a kind of rolling element.
 
         Args:
             elements: "roller" or "ball".
@@ -94,11 +94,11 @@ class ConstantAngle(Linearised):
 
     For comparison with catalogues and with reduced models, which take a contact angle
     that no load changes; errs where loads are high or angles small. For angular
-    contact and thrust bearings. Contacts of rollers keep their normals anyhow: for them
-    it is `Linearised`. A turning ball finds no balance, because nothing holds it along
-    its raceways: no `speed`. All normals of a row meet in one point of the axis, its
-    pressure centre: a single row resists no tilt about it, so prescribe gx and gy, or
-    take a set.
+    contact and thrust bearings. Contacts of rollers keep their normals anyway: for them
+    it is `Linearised`. A turning ball has no equilibrium, because it is not restrained
+    along its raceways: no `speed`. All normals of a row meet in one point of the axis,
+    its pressure centre: a single row resists no tilt about it, so prescribe gx and gy,
+    or take a set.
     """
 
     @property

@@ -31,7 +31,7 @@ class Roller(AbstractRollingElement):
 
     Attributes:
         constants: Contact constants.
-        geometry: How motions become approaches.
+        geometry: Map from motions to approaches.
         quadrature: Quadrature of the raceway contacts.
         body_force: Inertia force and moment in roller axes (3,) [N, N m], or `None`.
     """
@@ -105,7 +105,7 @@ class Roller(AbstractRollingElement):
 
 
 class RollerSeeking(Seeking):
-    """Where the equilibrium of a roller is looked for."""
+    """Hints for the search of the equilibrium of a roller."""
 
     element: Roller
 

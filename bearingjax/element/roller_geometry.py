@@ -34,12 +34,12 @@ class Approaches(NamedTuple):
 
 
 class AbstractRollerGeometry(eqx.Module):
-    """How motions become approaches."""
+    """Map from motions to approaches."""
 
     @property
     @abc.abstractmethod
     def is_linear(self) -> bool:
-        """Whether the approaches are affine, and see motions between rings only."""
+        """Whether approaches are affine, and depend on motions between rings only."""
 
     @abc.abstractmethod
     def approaches(self, rings: RingMotion, x: Unknowns) -> Approaches:
@@ -52,7 +52,7 @@ class AbstractRollerGeometry(eqx.Module):
 
     @abc.abstractmethod
     def raised(self, heights: Float[Array, "2"]) -> "AbstractRollerGeometry":
-        """The same with material added along the normals of both raceways.
+        """Return the geometry with material added along the normals of both raceways.
 
         Args:
             heights: At the outer and the inner raceway [m].
@@ -76,7 +76,7 @@ class LinearisedRoller(AbstractRollerGeometry):
 
     @classmethod
     def of(cls, constants: ContactConstants) -> "LinearisedRoller":
-        """What does not depend on the motion, once per design."""
+        """Terms that do not depend on the motion, computed once per design."""
         rows = _rows(constants)
         ribs = constants.ribs
         on_outer = [True, True, False, False, *(() if ribs is None else ribs.on_outer)]

@@ -1,10 +1,10 @@
-"""What a rolling element is: its place between two rings, and its energy.
+"""Interface of a rolling element: its place between two rings, and its energy.
 
-A rolling element gives the coordinates of its contacts, what its contacts bear there,
+A rolling element gives the coordinates of its contacts, the contact response there,
 and from both its energy (`energy.py`). Forces, stiffness, equilibrium and condensation
 follow from that and are written once for all rolling elements (`equilibrium.py`).
-Where a search for its equilibrium starts, and how its steps are corrected, stands apart
-in `seeking.py`.
+The start of the search for its equilibrium, and the correction of the steps, are in
+`seeking.py`.
 """
 
 import abc
@@ -26,8 +26,8 @@ class RingMotion(NamedTuple):
     """Motions of both rings, in the same axes each [m, rad].
 
     Attributes:
-        outer: Of the outer ring (h,).
-        inner: Of the inner ring (h,).
+        outer: Motion of the outer ring (h,).
+        inner: Motion of the inner ring (h,).
     """
 
     outer: Float[Array, " h"]
@@ -66,9 +66,9 @@ class AbstractRollingElement(eqx.Module):
 
     @property
     def tether(self) -> Scalar:
-        """Constant of the spring that holds it where nothing else does [N/m].
+        """Stiffness of the spring that holds an element without contact [N/m].
 
-        So soft that no result feels it; zero for an element without unknowns.
+        Too soft to affect any result; zero for an element without unknowns.
         """
         return jnp.zeros_like(self.diameter)
 
@@ -77,11 +77,11 @@ class AbstractRollingElement(eqx.Module):
         """Motion of one ring in the element's axes, from its six freedoms.
 
         Args:
-            azimuth: Of the rolling element [rad].
+            azimuth: Azimuth of the rolling element [rad].
         """
 
     def raised(self, heights: Float[Array, "2"]) -> "AbstractRollingElement":
-        """The same with material added in its contacts, along their normals.
+        """Return the element with material added in its contacts, along their normals.
 
         Args:
             heights: At the outer and the inner raceway [m].
@@ -105,7 +105,7 @@ class AbstractRollingElement(eqx.Module):
 
     @abc.abstractmethod
     def respond(self, coordinates: Any) -> Expansion:
-        """What the contacts bear: energies [J], forces [N] and stiffness [N/m].
+        """Contact response: energies [J], forces [N] and stiffness [N/m].
 
         Args:
             coordinates: From `coordinates`.
@@ -123,7 +123,7 @@ class AbstractRollingElement(eqx.Module):
         Args:
             rings: Motions of the rings in the element's axes [m, rad].
             x: Own unknowns (n,) [m].
-            known: `respond` at this place, if it is at hand.
+            known: `respond` at this place, if available.
         """
 
     @abc.abstractmethod
@@ -136,7 +136,7 @@ class AbstractRollingElement(eqx.Module):
         """
 
     def inertia(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"] | None:
-        """What inertia does to the rolling element, or `None`.
+        """Inertia force on the rolling element, or `None`.
 
         Returns:
             Generalised force on (u, v, θ): axial and radial force [N] and moment
@@ -147,7 +147,7 @@ class AbstractRollingElement(eqx.Module):
     def reaction(
         self, rings: RingMotion, x: Unknowns
     ) -> tuple[RingMotion, Unknowns] | None:
-        """Generalised force beside the gradient of the energy, or `None`.
+        """Generalised force in addition to the gradient of the energy, or `None`.
 
         For what has no potential, such as gyroscopic moments [N, N m].
         """
@@ -155,7 +155,7 @@ class AbstractRollingElement(eqx.Module):
 
     @property
     def seeking(self) -> Seeking:
-        """How its equilibrium is looked for."""
+        """Hints for the search of its equilibrium."""
         return Seeking(self)
 
     @property
@@ -178,12 +178,12 @@ class AbstractRollingElement(eqx.Module):
 
     @property
     def places_itself(self) -> bool:
-        """Whether it knows the place of its row, for rings that turn far. Static."""
+        """Whether it accounts for the place of its row if rings turn far. Static."""
         return False
 
     @property
     def n_displacements(self) -> int:
-        """How many of the first motions of a ring are displacements. Static."""
+        """Number of displacements, the first motions of a ring. Static."""
         return 2
 
 

@@ -25,11 +25,11 @@ _TRANSLATIONS, _TILTS = slice(0, 3), slice(3, 5)
 
 
 class Place(NamedTuple):
-    """Where a row stands in its set.
+    """Position of a row in its set.
 
     Attributes:
-        position: z of the origin that its elements count from [m].
-        sign: -1 for a row that is turned round, else 1.
+        position: z of the origin of the row's elements [m].
+        sign: -1 for a reversed row, else 1.
         offset: Axial place of the inner ring against the outer one, in the row's own
             axes [m].
     """
@@ -45,13 +45,13 @@ class Row(eqx.Module):
     Attributes:
         element: One rolling element, common to all; of unlike elements, with a leading
             axis.
-        azimuth: Of every element for rings that have not turned [rad].
-        shift: How far outer and inner raceway stand along z and from the axis where
-            each element is [m]; `None`: as on the drawing.
+        azimuth: Azimuth of every element for rings that have not turned [rad].
+        shift: Shift of outer and inner raceway along z and from the axis, at each
+            element [m]; `None`: as on the drawing.
         ratio: G = D cos α/d_m, with which the elements orbit [1].
-        pitch_radius: Of the circle of their centres [m].
+        pitch_radius: Radius of the circle of their centres [m].
         place: Its place in a set; `None`: the row is the bearing.
-        spring: What presses it, or `None`.
+        spring: Preload spring, or `None`.
         unlike: Whether `element` has a leading axis. Static.
     """
 
@@ -68,7 +68,7 @@ class Row(eqx.Module):
         """Apply function(element, *arrays) to every rolling element.
 
         Args:
-            function: Of one element.
+            function: Function of one element.
             *arrays: More arguments, with leading axis element. Without any, like
                 elements are one element.
         """
@@ -78,7 +78,7 @@ class Row(eqx.Module):
         return jax.vmap(function, in_axes=axes)(self.element, *arrays)
 
     def turn(self, q: Ring) -> Scalar:
-        """How far the elements orbit when the rings turn by their gz [rad].
+        """Orbit angle of the elements when the rings turn by their gz [rad].
 
         Args:
             q: Ring freedoms [m, rad]; only both gz count.
@@ -126,7 +126,7 @@ class Row(eqx.Module):
         return SolvedRow(rings, magnitudes, state, energies)
 
     def _pressed(self, spring, local, azimuth, minimiser, near) -> SolvedRow:
-        """As `_solved`, with the travel of its spring, which the row balances."""
+        """Solve as `_solved`, with the travel at which the spring balances the row."""
 
         def function(travel, _, memory):
             moved = _closed(local, travel[0])
@@ -165,7 +165,7 @@ class Row(eqx.Module):
         return jax.value_and_grad(energy)(jnp.concatenate(local))
 
     def _summed(self, local, azimuth, solved):
-        """As `_forces`, and its Hessian."""
+        """Energy and gradient as in `_forces`, and the Hessian."""
 
         def forces(q):
             value, gradient = self._forces(split(q), azimuth, solved)
@@ -201,10 +201,10 @@ class Row(eqx.Module):
         return expanded(_with_spring, jnp.concatenate(local), args)
 
     def at(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> RowResults:
-        """What a solved row tells of its elements, with derivatives.
+        """Results of the elements of a solved row, with derivatives.
 
         Args:
-            q, azimuth, solved: As of `energy`.
+            q, azimuth, solved: As in `energy`.
         """
         local, travel = self.local(q), None
         if self.spring is not None:
@@ -258,7 +258,7 @@ class Row(eqx.Module):
         return self.each(one, azimuth, *(() if self.shift is None else (self.shift,)))
 
     def unsolved(self) -> SolvedRow:
-        """A row of which nothing is known yet, in the shape of a solved one."""
+        """Return an unsolved row in the shape of a solved one."""
         local = self.local(jnp.zeros((12,), self.ratio.dtype))
         rings = jnp.zeros_like(self.seen(local, self.azimuth))
         n, zero = self.element.n_unknowns, jnp.zeros((), rings.dtype)
@@ -277,12 +277,12 @@ class Row(eqx.Module):
 def shifted(
     local: RingMotion, azimuth: Scalar, shift: Float[Array, "2 2"]
 ) -> RingMotion:
-    """The rings as an element sees them: a raceway that stands elsewhere has moved.
+    """Ring motions as an element sees them, with deviations of the raceways added.
 
     Args:
         local: Ring freedoms in the row's own axes [m, rad].
-        azimuth: Of the element [rad].
-        shift: How far outer and inner raceway stand along z and outwards there [m].
+        azimuth: Azimuth of the element [rad].
+        shift: Shift of outer and inner raceway along z and outwards there [m].
     """
     axial, outwards = shift[:, 0], shift[:, 1]
     x, y = outwards * jnp.cos(azimuth), outwards * jnp.sin(azimuth)
@@ -293,11 +293,11 @@ def shifted(
 
 
 _CLOSING = len(FREEDOMS) + _UZ
-"""uz of the inner ring among both rings' freedoms: what closes a row in its axes."""
+"""Index of uz of the inner ring in both rings' freedoms: it closes a row."""
 
 
 def _closed(local: RingMotion, travel: Scalar) -> RingMotion:
-    """The inner ring further along the axis, so that the row closes."""
+    """Ring freedoms with the inner ring moved along the axis to close the row."""
     return local._replace(inner=local.inner.at[_UZ].add(travel))
 
 

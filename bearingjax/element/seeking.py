@@ -1,7 +1,7 @@
-"""How the equilibrium of a rolling element is looked for: no physics, only hints.
+"""Hints for the search of a rolling element's equilibrium; they contain no physics.
 
-A rolling element is right with the defaults; with hints of its own it is found in
-fewer steps, or told to be open without any.
+The defaults give the correct equilibrium; an element's own hints find it in fewer
+steps, or show without any step that it is open.
 """
 
 from typing import Any
@@ -33,11 +33,11 @@ class Seeking(eqx.Module):
         return jnp.zeros_like(self.element.diameter)
 
     def reach(self, rings: Any) -> Scalar:
-        """How far the rings are from each other in the element's section [m]."""
+        """Relative displacement of the rings in the element's section [m]."""
         return jnp.sum(jnp.abs(rings.between[: self.element.n_displacements]))
 
     def pressed(self, approach: Scalar) -> Scalar:
-        """About the load of one raceway contact pressed by `approach` [N].
+        """Approximate load of one raceway contact pressed by `approach` [N].
 
         From this size on, contacts are pressed by more than the play between the rings.
         Zero: not known, and a load solve then does without (`statics.load`).
@@ -49,43 +49,43 @@ class Seeking(eqx.Module):
         return None
 
     def midpoint(self, rings: Any) -> Float[Array, " n"]:
-        """Where the rings take the element, and its tether holds it (n,) [m]."""
+        """Position given by the rings, where the tether holds the element (n,) [m]."""
         return jnp.zeros((self.element.n_unknowns,), rings.outer.dtype)
 
     def is_open(self, rings: Any) -> Bool[Array, ""] | None:
-        """Whether nothing touches the element at its midpoint, nor pulls it away.
+        """Whether the element is free of contact and pull at its midpoint.
 
-        It then is at rest there. Cheap, and never true of one that carries load.
+        It is then at rest there. Cheap, and never true of one that carries load.
 
         Returns:
-            False for NaN; `None` if it cannot be told cheaply. Structure decides.
+            False for NaN; `None` if no cheap test exists, which the structure decides.
         """
         return None
 
     def start(self, rings: Any) -> Float[Array, " n"]:
-        """Where a search for the equilibrium starts (n,) [m]."""
+        """Start of the search for the equilibrium (n,) [m]."""
         return self.midpoint(rings)
 
     @property
     def keeps_response(self) -> bool:
-        """Whether what the contacts bear is kept from the last step. Static.
+        """Whether the contact response is kept from the last step. Static.
 
-        Worth it where that takes longer to work out than to carry along.
+        Useful where the response costs more to compute than to store.
         """
         return True
 
     @property
     def slots(self) -> tuple[int, int]:
-        """How many of a batch are solved at a time, and how many of them may be done
-        before others follow (`lanes.run`). Static.
+        """Number of elements of a batch solved at a time, and number of them that may
+        be finished before others follow (`lanes.run`). Static.
 
-        More where a step costs little beside its overhead.
+        Larger where a step costs little compared with its overhead.
         """
         return lanes.SLOTS, lanes.IDLE
 
     @property
     def corrects_steps(self) -> bool:
-        """Whether `corrected` is worth its time. Static."""
+        """Whether `corrected` saves time. Static."""
         return False
 
     def corrected(
@@ -95,21 +95,21 @@ class Seeking(eqx.Module):
         step: Float[Array, " n"],
         size: Scalar,
     ) -> Float[Array, " n"]:
-        """A better step of x, from what is known of the contacts.
+        """Improve a step of x, from the known state of the contacts.
 
         Args:
-            rings, x: Where the step begins.
+            rings, x: Start of the step.
             step: Step of Newton's method (n,) [m].
-            size: Of the force out of balance at x [N].
+            size: Size of the force out of balance at x [N].
         """
         return step
 
     @property
     def may_be_ejected(self) -> bool:
-        """Whether `is_ejected` is to be asked. Static."""
+        """Whether `is_ejected` needs to be evaluated. Static."""
         return self.inertia_size() is not None
 
     def is_ejected(self, rings: Any, x: Float[Array, " n"]) -> Bool[Array, ""]:
-        """Whether inertia has taken the element where nothing real holds it."""
+        """Whether inertia has moved the element to where no contact can hold it."""
         off = x - self.midpoint(rings)
         return dot(off, off) > (10.0 * self.element.diameter) ** 2

@@ -1,4 +1,4 @@
-"""Rows whose rolling elements are in equilibrium, and what they tell."""
+"""Rows whose rolling elements are in equilibrium, and their results."""
 
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
@@ -24,7 +24,7 @@ class SolvedRow(NamedTuple):
         magnitude: Size of the displacements that they come from (element,) [m].
         state: Equilibria.
         energies: Their condensed energies, forces and stiffness.
-        travel: What a spring's ring has slid on its seat, closing the row [m].
+        travel: Travel of the ring of a spring on its seat, closing the row [m].
         balance: `Result` code of the balance with the spring.
     """
 
@@ -40,8 +40,8 @@ class SolvedRow(NamedTuple):
 
         Args:
             row: The `Row`.
-            function: Of one `Placed` element, the motions of its rings, and its
-                condensed energy.
+            function: Function of one `Placed` element, the motions of its rings, and
+                its condensed energy.
             rings: `rings`, or the same with derivatives.
         """
 
@@ -51,7 +51,7 @@ class SolvedRow(NamedTuple):
         return row.each(one, rings, self.state, self.magnitude, self.energies)
 
     def near(self, row: Any) -> Near:
-        """What solves at ring freedoms near by may start from, leading axis element."""
+        """Starting points for solves at ring freedoms near by, leading axis element."""
 
         def one(placed, rings, energies):
             return near_by(placed, rings, energies.beside)
@@ -69,7 +69,7 @@ class RowResults(NamedTuple):
         rings: Ring motions in the elements' axes (element, r) [m, rad].
         x: Own unknowns (element, n) [m].
         contact_load: Load of each contact (element, contact) [N].
-        travel: Of its spring [m], or `None`.
+        travel: Travel of its spring [m], or `None`.
     """
 
     row: Any
@@ -89,7 +89,7 @@ class RowResults(NamedTuple):
         """Apply function(element, rings, x, *arrays) to every rolling element.
 
         Args:
-            function: Of one element, its `RingMotion` and its own unknowns.
+            function: Function of one element, its `RingMotion` and its own unknowns.
             *arrays: More arguments, with leading axis element.
         """
 
@@ -114,7 +114,7 @@ class RowResults(NamedTuple):
         return self.row.each(one, self.x, self.azimuth)
 
     def inertia(self) -> Float[Array, "6"] | None:
-        """What inertia does to its elements, at the node [N, N m], or `None`."""
+        """Inertia load of its elements, at the node [N, N m], or `None`."""
         parts = self.each(lambda element, rings, x: element.inertia(rings, x))
         if parts is None:
             return None
@@ -127,7 +127,7 @@ class RowResults(NamedTuple):
 
 
 def inertia_load(rows: Iterable[RowResults]) -> Float[Array, "6"]:
-    """What inertia does to all rolling elements, at the node [N, N m].
+    """Inertia load of all rolling elements, at the node [N, N m].
 
     The forces that hold both rings add up to minus this.
 

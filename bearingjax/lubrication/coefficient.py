@@ -20,7 +20,7 @@ class AbstractCoefficient(eqx.Module):
 
 
 class ConstantCoefficient(AbstractCoefficient):
-    """The same coefficient at all temperatures.
+    """Pressure-viscosity coefficient that is constant at all temperatures.
 
     Attributes:
         coefficient: α [1/Pa].

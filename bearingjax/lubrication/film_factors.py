@@ -1,4 +1,4 @@
-"""What becomes of a film: heated or starved inlet, rest, rough surfaces."""
+"""Film factors: heated or starved inlet, standstill, rough surfaces."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -72,7 +72,7 @@ def starvation(
     radius: Scalar | float,
     semi_axis: Scalar | float,
 ) -> tuple[Scalar, Scalar]:
-    """Factors of central and least film, at most 1, where too little oil stands.
+    """Factors of central and least film, at most 1, for a starved inlet.
 
     Args:
         inlet: Distance of the oil's edge from the middle of the contact, over the
@@ -98,7 +98,7 @@ def starvation(
 
 
 def at_least(film: Scalar, least: Scalar | float) -> Scalar:
-    """Film that a rest does not take away: sqrt(film² + least²) [m].
+    """Film with a lower bound that remains at standstill: sqrt(film² + least²) [m].
 
     Args:
         film: Film thickness [m].

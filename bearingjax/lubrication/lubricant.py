@@ -60,7 +60,7 @@ class Lubricant(eqx.Module):
 
     Attributes:
         ambient: Viscosity at atmospheric pressure, over temperature.
-        pressure: How it grows with pressure.
+        pressure: Law of its increase with pressure.
         density: Density over temperature.
         coefficient: Pressure-viscosity coefficient for films, or a plain number [1/Pa];
             `None`: α* of the pressure law, `isoviscous_coefficient`, on which films

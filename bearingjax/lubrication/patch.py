@@ -1,7 +1,7 @@
 """The loaded area of a contact: nodes with their pressures and viscosities.
 
-What depends on the load alone is kept here, so that an integration in time works it out
-once. The nodes of an ellipse move with its slip: they are placed around the rolling
+Terms that depend on the load only are kept here, and computed once in an integration in
+time. The nodes of an ellipse move with its slip: they are placed around the rolling
 pole, the point without slip, where the stress of an oil that yields turns around.
 """
 
@@ -20,16 +20,16 @@ from ..numerics.units import unit
 from .lubricant import Lubricant
 
 _INNER = 0.7
-"""Square of the distance of the pole, over the ellipse, up to which nodes follow it."""
+"""Square of the pole's distance, over the ellipse's, up to which nodes follow it."""
 _RETURN = 3.0
-"""How fast they return to the middle as the pole leaves the ellipse: at most 0.93 of
+"""Rate of their return to the middle as the pole leaves the ellipse: at most 0.93 of
 the way to the edge."""
 _FROM = 0.75
-"""Where rays would meet, of the way from the middle to their centre."""
+"""Point where rays would meet, as a share of the way from middle to centre [1]."""
 _LEAST_MOTION = 1e-30
 """Square of a motion that counts as none [rad²/s²]."""
 _LEAST_AXIS = 1e-12
-"""Of an ellipse without load [m]."""
+"""Semi-axis of an ellipse without load [m]."""
 _OF_MOMENTS = 24
 """Nodes of the integrals for moments."""
 
@@ -66,7 +66,7 @@ class AbstractPatch(eqx.Module):
 
     @abc.abstractmethod
     def nodes(self, slip: Float[Array, "2"], spin: Scalar) -> Nodes:
-        """Where the traction of a motion is summed up.
+        """Nodes at which the traction of a motion is summed.
 
         Args:
             slip: Slip in the middle, u_x and u_y (2,) [m/s].
@@ -81,7 +81,7 @@ class AbstractPatch(eqx.Module):
     @property
     @abc.abstractmethod
     def thinnest(self) -> Float[Array, "*n"]:
-        """Viscosity where the pressure is least [Pa s]."""
+        """Viscosity at the lowest pressure [Pa s]."""
 
     @property
     @abc.abstractmethod
@@ -90,14 +90,14 @@ class AbstractPatch(eqx.Module):
 
     @abc.abstractmethod
     def numbers(self) -> tuple[Float[Array, "..."], ...]:
-        """What changes with the load, but for the moments, so that values between two
-        loads can be interpolated."""
+        """Quantities, other than the moments, that depend on the load, for
+        interpolation between two loads."""
 
     @abc.abstractmethod
     def with_numbers(
         self, numbers: tuple[Float[Array, "..."], ...], moments: Float[Array, "*n 3"]
     ) -> "AbstractPatch":
-        """The patch of other `numbers` and moments."""
+        """Return the patch with other `numbers` and moments."""
 
 
 class EllipsePatch(AbstractPatch):
@@ -109,7 +109,7 @@ class EllipsePatch(AbstractPatch):
         rolling: Semi-axis in rolling direction [m].
         transverse: Semi-axis across [m].
         peak_pressure: Largest pressure [Pa].
-        moments: As of `AbstractPatch` (3,) [N s, N m s, N m² s].
+        moments: As in `AbstractPatch` (3,) [N s, N m s, N m² s].
         radial, angular: Numbers of nodes along a ray and of rays.
 
     Static: radial, angular.
@@ -125,7 +125,7 @@ class EllipsePatch(AbstractPatch):
     angular: int = eqx.field(static=True)
 
     def nodes(self, slip, spin):
-        """As of `AbstractPatch`.
+        """Nodes of an ellipse.
 
         On rays from a centre c to points e of the edge, in units of the semi-axes: c is
         the rolling pole where that lies in the ellipse, and the middle where it is far
@@ -205,14 +205,14 @@ class LinePatch(AbstractPatch):
 
     Attributes:
         fixed: Its nodes, the same for every motion.
-        moments: As of `AbstractPatch` (3,) [N s, N m s, N m² s].
+        moments: As in `AbstractPatch` (3,) [N s, N m s, N m² s].
     """
 
     fixed: Nodes
     moments: Float[Array, "3"] = eqx.field(metadata=unit(("N s", "N m s", "N m² s")))
 
     def nodes(self, slip, spin):
-        """As of `AbstractPatch`; the motion does not count."""
+        """Return the nodes, which do not depend on the motion."""
         return self.fixed
 
     @property
@@ -311,7 +311,7 @@ def line_patch(
         lubricant: Oil.
         temperature: Its temperature [K].
         position: Where each slice is along the roller (slice,) [m].
-        width: How much of the length each one stands for (slice,) [m].
+        width: Length that each one represents (slice,) [m].
         line_load: Load per length, at least 0 (slice,) [N/m].
         half_width: Half width of the contact (slice,) [m].
         across: Nodes from the middle of a slice to each edge. Static.
@@ -339,7 +339,7 @@ def line_patch(
 
 
 def _centre(x, y, spin):
-    """Where the rays of an ellipse begin, in units of its semi-axes: at the rolling
+    """Start of the rays of an ellipse, in units of its semi-axes: at the rolling
     pole (x, y)/spin, or, as it leaves the ellipse, back towards the middle.
 
     With c² the square of its distance: pole/[1 + 3 (c² - 0.7)³], continuous with two

@@ -37,7 +37,7 @@ class AbstractAmbient(eqx.Module):
 
 
 class AbstractPressureLaw(eqx.Module):
-    """How the viscosity grows with pressure."""
+    """Law of the increase of viscosity with pressure."""
 
     @abc.abstractmethod
     def log_ratio(

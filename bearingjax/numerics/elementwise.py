@@ -22,7 +22,7 @@ def elementwise(function: Callable, rows: tuple[Array, ...], args: Any) -> Any:
         function: (one element of each row, args) -> pytree of scalars; it sees no
             traced number but its arguments.
         rows: Arrays that broadcast against each other.
-        args: What every element sees whole, any pytree; what is no array is static.
+        args: Arguments common to all elements, any pytree; non-arrays are static.
 
     Returns:
         Pytree of arrays of the common shape.

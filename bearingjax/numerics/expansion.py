@@ -1,10 +1,10 @@
-"""A function whose value, gradient and Hessian one pass has found, as a function again.
+"""Differentiable function from a value, gradient and Hessian computed in one pass.
 
 An integral, or a solved equilibrium, gives all three at once. Left to automatic
-differentiation each would be worked out anew, and at great length. Here the values
-stand in their places in a chain of derivative rules: the derivative of the value is
-the gradient, that of the gradient the Hessian. What is above, geometry as a rule, is
-differentiated as usual: `jax.grad` and `jax.hessian` then cost next to nothing.
+differentiation each would be computed again, at high cost. Here the values are used in
+a chain of derivative rules: the derivative of the value is the gradient, that of the
+gradient the Hessian. Outer functions, usually geometry, are differentiated as usual:
+`jax.grad` and `jax.hessian` then cost almost nothing.
 
 Arrays are (..., k) for k arguments of one function each: many functions side by side,
 none of which depends on the arguments of another.
@@ -30,7 +30,7 @@ class Expansion(NamedTuple):
         gradient: (..., k).
         hessian: (..., k, k): derivatives of the gradient. It need not be symmetric:
             of forces that have no potential the rule is the same.
-        beside: What else the pass has found; it has no derivatives here.
+        beside: Further results of the pass; they have no derivatives here.
     """
 
     value: Any
@@ -40,8 +40,8 @@ class Expansion(NamedTuple):
 
 
 Function = Callable[[Any, Any, int], Expansion]
-"""(u, args, order) -> `Expansion`, of which only what stands up to `order` is used: 0
-value, 1 gradient, 2 Hessian. What is beyond may be left out."""
+"""(u, args, order) -> `Expansion`, of which only terms up to `order` are used: 0
+value, 1 gradient, 2 Hessian. Higher terms may be left out."""
 
 
 def expanded(
@@ -53,8 +53,8 @@ def expanded(
         function: See `Function`; a plain function of a module, itself differentiable:
             derivatives with respect to `args`, and of the Hessian, are taken of it.
         u: Pytree of floating arrays (..., k).
-        args: Any pytree; what is not a floating array is static.
-        known: What `function` returns here, if it is at hand. It must be that.
+        args: Any pytree; leaves that are not floating arrays are static.
+        known: Result of `function` here, if available; it must be exact.
 
     Returns:
         The value; differentiable to any order with respect to u and args.
@@ -66,7 +66,7 @@ def expanded(
 def expanded_all(
     function: Function, u: Any, args: Any, known: Expansion | None = None
 ) -> Expansion:
-    """As `expanded`, but value, gradient and Hessian, each with its derivatives."""
+    """Value, gradient and Hessian as in `expanded`, each with its derivatives."""
     orders, given = _orders(function, u, args, known)
     value, gradient, hessian = (order(*given) for order in orders)
     return Expansion(value, gradient, hessian, given[-1].beside)
@@ -128,7 +128,7 @@ def _plain(static, u, traced, others) -> Expansion:
 
 
 def _and_of_args(bound, order, primals, tangents, change):
-    """`change` and that of function(u, args)[order] with the arguments beside u."""
+    """`change`, plus that of function(u, args)[order] by the arguments other than u."""
     u, traced, others, _ = primals
     if all(_is_zero(leaf) for leaf in jax.tree.leaves(tangents[1])):
         return change
@@ -175,7 +175,7 @@ def by_autodiff(function: Callable[..., Any], u: Any, *beside: Any) -> Expansion
     For functions without integrals or powers that make their derivatives long.
 
     Args:
-        function: Smooth function of (k,), and of what stands beside it, -> scalar.
+        function: Smooth function of (k,) and of the arguments `beside` -> scalar.
         u: Arguments of each (..., k).
         *beside: Pytrees of more arguments, such as constants of each contact, with the
             leading axes of u; no derivatives by them are returned.

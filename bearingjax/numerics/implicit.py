@@ -109,20 +109,20 @@ def _parted(args):
 
 
 def unless_failed(function, args, solved):
-    """function(*args), with derivatives that are NaN if it was not solved for.
+    """function(*args), with derivatives that are NaN if the solve failed.
 
-    A failed solve ends anywhere, and a derivative there is no answer. Where nothing
-    changes it is zero even so: a failed case of a batch that a mask leaves out does not
-    spoil the gradient of the others, whatever numbers it ended with.
+    A failed solve ends anywhere, and a derivative there is not valid. For inputs that
+    do not change it is still zero: a failed case of a batch that a mask leaves out does
+    not affect the gradient of the others, whatever its values.
 
     Args:
-        function: Function of args -> pytree; it sees through its arguments alone what
-            it is differentiated by.
-        args: Tuple of pytrees; what is no array is static.
-        solved: Whether it was solved for, a scalar flag.
+        function: Function of args -> pytree; it is differentiated with respect to its
+            arguments only, and must not close over traced values.
+        args: Tuple of pytrees; leaves that are not arrays are static.
+        solved: Whether the solve succeeded, a scalar flag.
 
     Returns:
-        What `function` returns, differentiable with respect to `args`.
+        Result of `function`, differentiable with respect to `args`.
     """
     traced, others, joined = _parted(args)
     # No change gets through if not solved, in neither direction.
@@ -201,7 +201,7 @@ def recall(function, values, args):
 
     Args:
         function: Function of args -> pytree of floating arrays.
-        values: What it returns; their own derivative is ignored.
+        values: Its result; their own derivative is ignored.
         args: Tuple of pytrees; what is no array is static.
 
     Returns:

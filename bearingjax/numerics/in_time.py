@@ -17,7 +17,7 @@ class Options(eqx.Module):
     """Settings of an integration.
 
     Attributes:
-        tolerance: Of the state [1].
+        tolerance: Tolerance of the state [1].
         max_steps: Step limit. Static.
         derivatives: "reverse" or "forward". Static.
         progress: Whether a bar is shown. Static.
@@ -62,12 +62,12 @@ def integrated(
 
     Args:
         rates: (time, state, args) -> derivative of the state.
-        args: What `rates` is given; derivatives are with respect to its numbers.
+        args: Arguments of `rates`; derivatives are with respect to their numbers.
         start: State at time zero, in units to which the tolerance relates.
         times: When the state is wanted, rising [any unit of time].
         duration: The last time [the same].
         options: Settings.
-        solver: Of Diffrax.
+        solver: Solver of Diffrax.
         step_error: Largest error of a step, over the tolerance [1].
         first: First step [the same].
         knots: Times at which rates may jump [the same]; `None`: none.
@@ -120,6 +120,6 @@ def integrated(
 
 
 def _largest(errors):
-    """Largest of scaled errors; what is no number is no step to be taken."""
+    """Largest of scaled errors; a NaN rejects the step."""
     largest = jnp.max(jnp.stack([jnp.max(jnp.abs(e)) for e in jax.tree.leaves(errors)]))
     return jnp.where(jnp.isnan(largest), jnp.inf, largest)

@@ -1,11 +1,11 @@
 """Iterations of many problems, none of which waits for the slowest.
 
-Under `vmap` a `while_loop` goes on with every lane until the last is done. Here the
-problems of a batch stand in a queue. Some at a time are at work, each in a slot; once
-part of the slots are done, their problems leave and the next ones enter.
+Under `vmap` a `while_loop` runs every lane until the last is done. Here the problems of
+a batch wait in a queue. Some at a time are iterated, each in a slot; once part of the
+slots are done, their problems leave and the next ones enter.
 
-An example: how often each of many numbers halves until it is below a limit. What does
-not change from step to step is prepared by the caller, once, and is `given`:
+An example: the number of halvings of each of many numbers until it is below a limit.
+Data that do not change from step to step are prepared once by the caller, as `given`:
 
     halve = Loop(
         init=lambda given: (given.number, 0),
@@ -34,11 +34,11 @@ from jax.interpreters import batching, mlir
 from jaxtyping import Array, Bool
 
 SLOTS, IDLE = 64, 16
-"""Slots, and how many of them may be idle, if not said otherwise. What the slots hold
-should stay in the cache of a core."""
+"""Default number of slots, and how many of them may be idle. The data of the slots
+should fit the cache of a core."""
 
 SMALL = 64
-"""Most numbers of a leaf that is packed with others."""
+"""Largest size of a leaf that is packed with others."""
 
 
 class Loop(NamedTuple):
@@ -48,11 +48,11 @@ class Loop(NamedTuple):
         init: given -> first state, any pytree of arrays, one of them floating.
         step: (given, state) -> next state.
         terminate: (given, state) -> whether to stop.
-        finish: (given, last state) -> what is wanted of it.
-        blank: given -> something of the same shapes and types as `finish` returns,
-            which need not be traced then to know them; `None`: it is.
-        rests: given -> whether nothing is to be done; then `blank` is what is wanted.
-            `None`: something always is.
+        finish: (given, last state) -> result.
+        blank: given -> arrays of the same shapes and types as the result of `finish`,
+            which then need not be traced to find them; `None`: it is traced.
+        rests: given -> whether the problem needs no iteration; its result is then
+            `blank`. `None`: every problem is iterated.
     """
 
     init: Callable[[Any], Any]
@@ -63,7 +63,7 @@ class Loop(NamedTuple):
     rests: Callable[[Any], Bool[Array, ""]] | None = None
 
     def run(self, given) -> Any:
-        """What comes out of the iteration."""
+        """Run the iteration on one problem and return its result."""
         begin = self.init(given)
         pack, unpack = packing(begin)
         resting = None if self.rests is None else self.rests(given)
@@ -85,7 +85,7 @@ class Loop(NamedTuple):
         return jax.tree.map(lambda a, b: jnp.where(resting, a, b), nothing, found)
 
     def shapes(self, given) -> Any:
-        """Shapes and types of what `run` returns."""
+        """Shapes and types of the result of `run`."""
         return jax.eval_shape(self.run if self.blank is None else self.blank, given)
 
 
@@ -106,7 +106,7 @@ class Either(NamedTuple):
 
 
 def packing(example) -> tuple[Callable[[Any], list[Array]], Callable[[Any], Any]]:
-    """How to make one array of the small leaves of a state, and the state of it again.
+    """Functions that pack the small leaves of a state into one array, and unpack it.
 
     A pass of a compiled loop then ends in one kernel, not in one per leaf: in batches
     of small problems a fifth of the time.
@@ -180,15 +180,15 @@ def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
     batch, over any number of axes, are one operation until then.
 
     Args:
-        loop: Its functions see no traced number but those of `given`.
-        given: Pytree; what is no array is static.
-        slots: How many problems of a batch are at work at a time, while others wait. A
+        loop: Its functions use no traced number except those of `given`.
+        given: Pytree; leaves that are not arrays are static.
+        slots: Number of problems of a batch iterated at a time, while others wait. A
             batch of fewer than two times as many is stepped together by `vmap`.
-        idle: How many slots may be done before they are refilled, while problems wait;
-            at most all. It costs a part of a step, and more where states are large.
+        idle: Number of slots that may be done before they are refilled, while problems
+            wait; at most all. It costs a part of a step, and more with large states.
 
     Returns:
-        As `Loop.finish`. It has no derivatives: see `implicit`.
+        Result of `Loop.finish`. It has no derivatives: see `implicit`.
     """
     arrays, static = eqx.partition(given, eqx.is_array)
     leaves, tree = jax.tree.flatten(arrays)
@@ -206,13 +206,13 @@ def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class _Task:
-    """What the lanes of one `run` have in common.
+    """Static data shared by the lanes of one `run`.
 
     Attributes:
         loop: The iteration.
-        whole: Leaves of one problem -> what its functions are given.
-        slots: Slots, and how many of them may be idle.
-        out: Shape and type of every leaf of what comes out.
+        whole: Leaves of one problem -> argument of its functions.
+        slots: Number of slots, and how many of them may be idle.
+        out: Shape and type of every leaf of the result.
     """
 
     loop: Loop
@@ -221,15 +221,15 @@ class _Task:
     out: list[tuple[tuple[int, ...], Any]]
 
     def program(self, *leaves: Array, flags: tuple[bool, ...], count: int | None):
-        """What the operation computes.
+        """Compute the result of the operation.
 
         Args:
-            *leaves: Of what is given.
-            flags: Which of them have an axis of lanes in front.
-            count: How many lanes; `None`: one problem, without such an axis.
+            *leaves: Leaves of the argument.
+            flags: Which of them have a leading axis of lanes.
+            count: Number of lanes; `None`: one problem, without such an axis.
 
         Returns:
-            Leaves of what comes out, each with the axis of lanes.
+            Leaves of the result, each with the axis of lanes.
         """
         if count is None:
             found = self.loop.run(self.whole(leaves))
@@ -241,7 +241,7 @@ class _Task:
         return found
 
     def avals(self, count: int | None) -> list[ShapedArray]:
-        """Shapes and types of what comes out."""
+        """Shapes and types of the result."""
         front = () if count is None else (count,)
         return [ShapedArray((*front, *a), dtype) for a, dtype in self.out]
 

@@ -4,7 +4,7 @@ jaxlib 0.10 divides a large batch of matrices among XLA's threads, by the thread
 ran into it, which then waits for its share to be done by others. As soon as every
 thread waits so, for as many batches that do not depend on each other, the program
 waits for ever: on two cores two batches are enough. One matrix is never divided. All
-that the package asks of LAPACK is therefore here, by way of `one_by_one`.
+calls of LAPACK in the package are therefore here, through `one_by_one`.
 """
 
 import math
@@ -31,7 +31,7 @@ def one_by_one(function: Callable) -> Callable:
     It is not to be differentiated: give it what `lax.stop_gradient` returns.
 
     Args:
-        function: Of arrays; returns a pytree of arrays.
+        function: Function of arrays; returns a pytree of arrays.
     """
 
     @custom_vmap
@@ -58,7 +58,7 @@ def _solver(way: Callable) -> Callable:
     """`one_by_one` of a solver; one factorisation serves all right-hand sides.
 
     Args:
-        way: Of a matrix (n, n) and right-hand sides (n, k).
+        way: Function of a matrix (n, n) and right-hand sides (n, k).
     """
     each = one_by_one(way)
 
@@ -87,7 +87,7 @@ _WAYS = {
     "lower": (_forwards, _backwards),
     "upper": (_backwards, _forwards),
 }
-"""How a matrix is solved for, and its transpose."""
+"""Solvers for each kind of matrix and for its transpose."""
 
 
 def solve_any(
@@ -162,7 +162,7 @@ _sign = one_by_one(lambda matrix: jnp.linalg.slogdet(matrix)[0])
 def pseudoinverse(
     matrix: Float[Array, "m n"], slack: float | None = None
 ) -> Float[Array, "n m"]:
-    """Inverse in all directions but those that a matrix takes to nothing (Moore's).
+    """Moore-Penrose pseudoinverse: inverse in all directions outside the null space.
 
     Args:
         matrix: Any, of a rank that does not change where it is differentiated.

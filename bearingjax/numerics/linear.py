@@ -94,7 +94,7 @@ def solve_symmetric(
 def solve(
     matrix: Float[Array, "n n"], rhs: Float[Array, "n ..."], symmetric: bool = True
 ) -> Float[Array, "n ..."]:
-    """`solve_symmetric`, or elimination without pivoting for a tangent beside it.
+    """Solve by `solve_symmetric`, or by elimination without pivoting if unsymmetric.
 
     A tangent with a part that has no potential is a positive (semi)definite matrix
     but for a few per cent: its pivots need no search, and a pivot below round-off is
@@ -140,7 +140,7 @@ def solve(
 
 
 def _solve_scaled(matrix, rhs):
-    """With a unit diagonal, lifted by round-off where nothing holds a direction."""
+    """Solve with unit diagonal, shifted by round-off along unrestrained directions."""
     diagonal = jnp.diagonal(matrix)
     scale = _scale(diagonal)
     held = diagonal > jnp.finfo(matrix.dtype).tiny

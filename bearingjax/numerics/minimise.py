@@ -28,11 +28,11 @@ class Evaluation(NamedTuple):
         value: Function value [J]; NaN if there is none, because not all forces have
             a potential: steps are then judged by forces alone.
         gradient: First derivative, or the forces themselves (n,) [J/unit of x].
-        hessian: Second derivative (n, n); empty if it was not asked for.
-        scale: What the gradient is measured against, for example the sum of the
+        hessian: Second derivative (n, n); empty if it was not requested.
+        scale: Reference for the size of the gradient, for example the sum of the
             forces that cancel in it.
         noise: Absolute round-off floor of the gradient's norm.
-        memory: What the next evaluation may start from, any pytree.
+        memory: State from which the next evaluation may start, any pytree.
     """
 
     value: Float[Array, ""]
@@ -50,20 +50,20 @@ Shape = Callable[
 
 
 class Problem(NamedTuple):
-    """What is to be minimised, from where, and when to stop.
+    """Minimisation problem: function, start and stopping criteria.
 
     Attributes:
-        function: (x, with_hessian) -> `Evaluation`; with a `memory`, that of where the
-            step began is its third argument.
+        function: (x, with_hessian) -> `Evaluation`; with a `memory`, that of the start
+            of the step is its third argument.
         start: First point (n,).
         radius: First bound of the step, same unit as x.
-        shape: (x, step, size of the gradient) -> better step, by one who knows where
-            the function bends or stiffens. Newton's method alone uses it.
-        memory: Of the start.
+        shape: (x, step, size of the gradient) -> better step, from knowledge of where
+            the function bends or stiffens. Only Newton's method uses it.
+        memory: Memory of the start.
         direction: Unit vector (n,), or zero. If the function falls along it and too
             little curvature is felt within `radius` to end the fall, it is first
-            followed in growing steps until the function rises: Newton's method, which
-            alone uses it, then comes from the stiff side, where it is at its best.
+            followed in growing steps until the function rises: Newton's method, the
+            only one to use it, then starts on the stiff side, where it converges best.
         limit: |x| beyond which the function counts as unbounded below; the search then
             ends with `NO_LOAD_PATH`.
         force: A constant force on x (n,) [J/unit of x]: value - force·x is minimised,
@@ -85,7 +85,7 @@ class Problem(NamedTuple):
     max_steps: Int[Array, ""] | int | None = None
 
     def at(self, x: Array, with_hessian: bool, memory: Any) -> Evaluation:
-        """Evaluate the function, which `force` has no part in."""
+        """Evaluate the function, without `force`."""
         remembered = (memory,) if jax.tree.leaves(memory) else ()
         return self.function(x, with_hessian, *remembered)
 
@@ -102,7 +102,7 @@ class Problem(NamedTuple):
 
 
 class State(NamedTuple):
-    """Where a minimiser is.
+    """State of a minimiser.
 
     Attributes:
         x: Point (n,).
@@ -110,7 +110,7 @@ class State(NamedTuple):
         radius: Bound of the next step, same unit as x.
         steps: Evaluations after the first; -1 before the first [1].
         stalled: Whether steps are lost in round-off.
-        own: What the method keeps besides, any pytree.
+        own: Further state of the method, any pytree.
     """
 
     x: Float[Array, " n"]
@@ -122,7 +122,7 @@ class State(NamedTuple):
 
 
 class Minimum(NamedTuple):
-    """Where a minimiser stopped.
+    """Result of a minimiser.
 
     Attributes:
         x: Minimiser (n,).
@@ -130,7 +130,7 @@ class Minimum(NamedTuple):
         unbalanced: |gradient|.
         steps: Evaluations after the first.
         result: `Result` code.
-        memory: Of the evaluation at x.
+        memory: Memory of the evaluation at x.
     """
 
     x: Float[Array, " n"]
@@ -142,7 +142,7 @@ class Minimum(NamedTuple):
 
 
 def blank(problem: Problem) -> Minimum:
-    """Of the shapes of a minimum."""
+    """Return a `Minimum` of the right shapes, for an unsolved problem."""
     zero, none = jnp.zeros((), problem.start.dtype), jnp.zeros((), jnp.int32)
     return Minimum(problem.start, zero, zero, none, none, problem.memory)
 
@@ -169,7 +169,7 @@ class AbstractMinimiser(eqx.Module):
         radius: Float[Array, ""],
         **choices,
     ) -> Minimum:
-        """Minimise one function: all of it, from `init` to `finish`.
+        """Minimise one function, from `init` to `finish`.
 
         Args:
             function, start, radius, **choices: As in `Problem`.
@@ -180,7 +180,7 @@ class AbstractMinimiser(eqx.Module):
         return self.loop().run(Problem(function, start, radius, **choices))
 
     def loop(self, problem_of: Callable[[Any], Problem] = lambda given: given) -> Loop:
-        """The iteration, of whatever `problem_of` makes a problem of."""
+        """Return the iteration, for data that `problem_of` converts to a problem."""
         return Loop(
             lambda given: self.init(problem_of(given)),
             lambda given, state: self.step(problem_of(given), state),
@@ -206,7 +206,7 @@ class AbstractMinimiser(eqx.Module):
         return ended & (state.steps >= 0)
 
     def settled(self, problem: Problem, state: State) -> Bool[Array, ""]:
-        """Whether further steps are of no use."""
+        """Whether further steps cannot improve the result."""
         now = problem.pulled(state.x, state.now)
         goal = self.goal(problem) * now.scale + now.noise
         # NaN compares false: the loop ends at once and the code says why.
@@ -221,7 +221,7 @@ class AbstractMinimiser(eqx.Module):
         return ended
 
     def finish(self, problem: Problem, state: State) -> Minimum:
-        """What came of it, with its result code."""
+        """Return the minimum of the last state, with its result code."""
         now = problem.pulled(state.x, state.now)
         size = norm(now.gradient)
         # A stall at round-off is as good as it gets; anything above is a failure.
@@ -261,7 +261,7 @@ def first_state(problem: Problem, hessian: Array, own: Any) -> State:
     """State of which nothing is evaluated yet.
 
     Args:
-        problem: What is to be minimised.
+        problem: Problem to be minimised.
         hessian: Something of the right shape.
         own: As in `State`.
     """

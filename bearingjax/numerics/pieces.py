@@ -43,7 +43,7 @@ class Pieces(AbstractQuadrature):
         return ContactMapped(self.points).reference()
 
     def table(self, offset, kinks, dtype):
-        """As of any rule; `kinks` are the ends of the intervals, (interval + 1,).
+        """Table of the rule; `kinks` are the ends of the intervals, (interval + 1,).
 
         `offset` is taken at (interval, n) positions, a row in each interval.
         """

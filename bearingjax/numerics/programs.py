@@ -1,11 +1,11 @@
 """Compiled programs, kept from one process to the next.
 
-A command, and a script that begins, spend their time on tracing and compiling, not on
+Commands and starting scripts spend their time on tracing and compiling, not on
 solving. Once `keep_programs` is called, the executable of every `program` of this
 package is kept in a file. A later process that calls it with inputs of the same
 structure loads it and neither traces, lowers nor compiles.
 
-A kept executable is unpickled, and may then do what it likes. So it is read only from
+A kept executable is unpickled, and may then run any code. So it is read only from
 a folder and a file that belong to the user and that nobody else can write.
 """
 
@@ -36,7 +36,7 @@ OPTIONS = {
     "xla_backend_optimization_level": 0,
     "xla_cpu_use_fusion_emitters": False,
 }
-"""XLA's options for a program whose run is short beside its compilation."""
+"""XLA's options for a program whose run is short compared with its compilation."""
 
 LARGEST = 512 * 1024 * 1024
 """Size of all that a folder keeps; what was not used for longest goes first [byte]."""
@@ -45,18 +45,18 @@ _MARK = b"bearingjax program\n"
 
 
 class _Place(NamedTuple):
-    """Stands for an array among what a program returns."""
+    """Placeholder of an array in the result of a program."""
 
     index: int
 
 
 class _Program(NamedTuple):
-    """What is kept of a program, for `pickle`.
+    """Stored form of a program, for `pickle`.
 
     Attributes:
         executable: From `jax.experimental.serialize_executable`.
         inputs: Number of its arguments, all arrays.
-        outputs: What the function returns, with a `_Place` for every array.
+        outputs: Result of the function, with a `_Place` for every array.
         count: Number of arrays that it returns.
         lapack: Whether it calls LAPACK.
         devices: Number of devices that it runs on.
@@ -71,7 +71,7 @@ class _Program(NamedTuple):
 
 
 class _Store:
-    """Where programs are kept, and those that this process has at hand."""
+    """Folder of the kept programs, and those loaded in this process."""
 
     folder: Path | None = None
     at_hand: dict[str, Callable]
@@ -104,19 +104,19 @@ def keep_programs(folder: str | Path | None = None, *, keep: bool = True) -> Non
 
 
 def user_cache() -> Path:
-    """Where this user's files of the package are kept."""
+    """Return the folder of this user's cache files of the package."""
     base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(base) / "bearingjax"
 
 
 def program(function: F | None = None, *, quick: bool = False) -> F:
-    """As `equinox.filter_jit`; its programs are kept once `keep_programs` is called.
+    """Compile as `equinox.filter_jit`; programs are kept if `keep_programs` is called.
 
     Args:
-        function: Of a module of this package, found there by its name; depends on its
-            arguments alone.
+        function: Function of a module of this package, found there by its name; depends
+            on its arguments only.
         quick: Whether kept programs are compiled for the shortest wait, `OPTIONS`, as
-            befits one whose run is short.
+            suits a short run.
     """
     if function is None:
         return functools.partial(program, quick=quick)  # pyright: ignore
@@ -146,7 +146,7 @@ def called(function: Callable, *arguments: Any) -> Any:
     """Call a function as it is, or as one program if programs are kept.
 
     Args:
-        function, arguments: As of `call_once`.
+        function, arguments: As in `call_once`.
     """
     if _STORE.folder is None:
         return function(*arguments)
@@ -157,12 +157,12 @@ def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
     """Call a function, compiled for the shortest wait, or as an earlier run kept it.
 
     Args:
-        function: Of this package, found by its name; depends on its arguments alone.
+        function: One of this package, found by its name; depends on its arguments only.
         arguments: Nested modules, tuples, dicts; their JAX arrays are traced.
-        folder: As of `keep_programs`.
+        folder: As in `keep_programs`.
 
     Returns:
-        What the function returns.
+        Result of the function.
     """
     if jax.default_backend() != "cpu":
         return eqx.filter_jit(function)(*arguments)
@@ -187,13 +187,13 @@ def _as_array(leaf: Any) -> Any:
 def _first_run(
     flat: tuple, name: str | None, folder: Path, options: dict
 ) -> tuple[Callable, Any]:
-    """A program as it was kept, or compiled; and what it returns.
+    """Load or compile a program, and run it; return the program and its result.
 
     Args:
         flat: From `_flattened`.
-        name: Of its file; `None`: it is not kept.
-        folder: As of `keep_programs`.
-        options: Of the compiler.
+        name: Name of its file; `None`: it is not kept.
+        folder: As in `keep_programs`.
+        options: Options of the compiler.
     """
     function, arrays, outputs = flat
     with _opened(folder) as place:
@@ -225,7 +225,7 @@ def _flattened(
     """A function of arrays that returns a list of arrays, as executables are.
 
     Args:
-        function, arguments: As of `call_once`.
+        function, arguments: As in `call_once`.
 
     Returns:
         The function; its arguments; a list that takes up, when the function is
@@ -278,7 +278,7 @@ from there lacks functions when it is kept once more (jaxlib 0.10)."""
 
 
 def _compiled(lowered, options: dict, keep: bool):
-    """Compile, once in this process; of what is kept here, past JAX's own cache."""
+    """Compile, once in this process; kept programs bypass JAX's own cache."""
     before = {name: jax.config.values[name] for name in _ANEW}
     for name, value in _ANEW.items() if keep else ():
         jax.config.update(name, value)
@@ -293,7 +293,7 @@ def _compiled(lowered, options: dict, keep: bool):
 
 
 def _name(function: Callable, arguments: tuple) -> str | None:
-    """Name of the file of a program, or `None` if nothing names it for certain."""
+    """Name of the file of a program, or `None` if no name identifies it reliably."""
     try:
         words = [structure((function, arguments)), *_surroundings()]
     except UnknownStructure:
@@ -302,7 +302,7 @@ def _name(function: Callable, arguments: tuple) -> str | None:
 
 
 def _surroundings() -> Iterator[str]:
-    """All else that the program follows from: sources, versions, settings, machine."""
+    """Other inputs of the compilation: sources, versions, settings, machine."""
     yield _sources()
     yield _versions()
     places = ("jax_compilation_cache_dir", "jax_logging_level")
@@ -332,7 +332,7 @@ def _sources() -> str:
 
 @functools.cache
 def _processor() -> str:
-    """What the processor can do, or which machine it is."""
+    """Features of the processor, or a description of the machine."""
     names = ("vendor_id", "cpu family", "model", "stepping", "flags", "Features")
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as lines:
@@ -364,7 +364,7 @@ def is_private(status: os.stat_result) -> bool:
     """Whether it is a file or folder of the user that nobody else can write.
 
     Args:
-        status: Of the file or folder; of a link, which is none, from `os.lstat`.
+        status: Status of the file or folder; of a link, which is none, from `os.lstat`.
     """
     shared = stat.S_IWGRP | stat.S_IWOTH
     kind = stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)
@@ -433,7 +433,7 @@ def _keep(place, name, compiled, inputs, outputs, *more) -> None:
 
 
 def _drop_oldest(place: int) -> None:
-    """Remove what was not used for longest, until the rest is small enough."""
+    """Remove the least recently used files until the rest is small enough."""
     found = []
     for name in os.listdir(place):
         with contextlib.suppress(OSError):  # another run may drop it at the same time

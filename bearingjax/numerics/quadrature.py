@@ -64,8 +64,8 @@ class AbstractQuadrature(eqx.Module):
 
     @abc.abstractmethod
     def table(self, offset: Offset, kinks: tuple, dtype, arcs: bool = False) -> tuple:
-        """What depends on the offset h alone, computed once per design; `arcs` as of
-        `nodes`."""
+        """Return the terms that depend on the offset h only, once per design; `arcs`
+        as in `nodes`."""
 
     @abc.abstractmethod
     def nodes(
@@ -87,7 +87,7 @@ class AbstractQuadrature(eqx.Module):
 class Midpoint(AbstractQuadrature):
     """Equal slices, the integrand taken at the middle of each.
 
-    What of a measured profile stands out between two middles is missed.
+    Peaks of a measured profile between two midpoints are missed.
 
     Attributes:
         points: Number of slices.
@@ -202,7 +202,7 @@ def _scan_point(index, start, end, count):
 
 
 def _loaded_arcs(offset, args, start, end, a, b):
-    """As `_loaded_interval`, where h is one arc in each panel: no scan."""
+    """Loaded intervals as in `_loaded_interval`, for one arc per panel: no scan."""
 
     def one(start, end, a, b, args):
         return _loaded_arc(partial(offset, args), start, end, a, b)
@@ -305,12 +305,12 @@ def refined_edges(steps, offset, a, b, inside, outside, side, some):
     """Zeros of a + b ξ - h, one between each two points of unlike sign.
 
     Args:
-        steps: How many times an edge is refined.
+        steps: Number of refinements of an edge.
         offset: h, elementwise.
         a, b: Scalars.
         inside, outside: Points where it is positive, and where it is not.
         side: 1 where it rises, -1 where it falls; goes with the shape of `inside`.
-        some: Whether it really is positive at `inside`; likewise.
+        some: Whether it is positive at `inside`, of the same shape.
 
     Returns:
         The zeros, shape of `inside`.

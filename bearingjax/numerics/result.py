@@ -9,7 +9,7 @@ from jaxtyping import Array, Int
 
 
 class Result(enum.IntEnum):
-    """How a solve ended; ordered, so that the worst of many is their maximum."""
+    """Result code of a solve; ordered, so that the worst of many is their maximum."""
 
     CONVERGED = 0
     STEP_LIMIT = 1
@@ -19,8 +19,8 @@ class Result(enum.IntEnum):
     NOT_RUN = 5
     """A case of a sweep that was ended before its turn; no solver returns it."""
     GRID_MISFIT = 6
-    """Cells that do not hold or do not tell a half-space contact, or too few places
-    along an orbit."""
+    """Grid too small or too coarse for a half-space contact, or too few places along
+    an orbit."""
 
     @property
     def label(self) -> str:

@@ -1,8 +1,8 @@
-"""The structure of what a program is compiled for, as text.
+"""The structure of the inputs of a compiled program, as text.
 
 Two inputs with the same text give the same program: all that JAX traces is named by
-shape and type, all that it does not trace by value. What is not known for certain to
-be told apart has no text: better no kept program than that of something else.
+shape and type, all that it does not trace by value. Inputs that may not be
+distinguished reliably have no text: no program is kept rather than a wrong one.
 """
 
 import dataclasses
@@ -23,7 +23,7 @@ def structure(tree: Any) -> str:
     """Name the structure of nested modules, tuples, lists, dicts and arrays.
 
     Args:
-        tree: What a program gets; its JAX arrays are traced, all else is not.
+        tree: Arguments of a program; its JAX arrays are traced, all else is static.
 
     Raises:
         UnknownStructure: For classes from outside the package, functions that are not
@@ -68,7 +68,7 @@ def _named(value: Any, static: bool) -> str:
 
 
 def _module(value: Any, static: bool) -> str:
-    """A module by its class and fields, all of which hold what it is."""
+    """Name a module by its class and fields, which define it completely."""
     fields = dataclasses.fields(value)
     names = {field.name for field in fields}
     if not vars(value).keys() <= names:
@@ -85,7 +85,7 @@ def _is_static(field: dataclasses.Field, static: bool) -> bool:
 
 
 def _place(named: Any) -> str:
-    """Where a class or function of this package is found by its name."""
+    """Module and name of a class or function of this package."""
     place, name = named.__module__, named.__qualname__
     found: Any = sys.modules.get(place)
     for part in name.split("."):

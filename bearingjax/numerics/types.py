@@ -15,7 +15,7 @@ RingStiffness = Float[Array, "12 12"]
 
 
 def namespace(array) -> Any:
-    """NumPy for its own arrays, for which nothing is then compiled; JAX's for others.
+    """Return NumPy for its own arrays, to avoid compilation; `jax.numpy` for others.
 
     Args:
         array: Any array or scalar of one of them.
@@ -34,9 +34,9 @@ def as_real(value) -> Any:
 
     Returns:
         float64 array when JAX has 64 bit enabled, float32 otherwise; arrays that
-        are floating already keep their dtype, never a weak one. What is no real
-        number (text, bools, `None`, complex numbers, other objects) comes back
-        unchanged: the check of the field then names it.
+        are floating already keep their dtype, never a weak one. Values that are not
+        real numbers (text, bools, `None`, complex numbers, other objects) are returned
+        unchanged: the check of the field then names them.
     """
     if isinstance(value, jax.Array) and jnp.issubdtype(value.dtype, jnp.floating):
         # jnp.array(0.43) is of weak type, for which `jit` would compile anew.
@@ -52,11 +52,11 @@ def as_real(value) -> Any:
 
 
 def as_array(value, dtype) -> Array:
-    """`jnp.asarray`; what holds no JAX array is cast by NumPy, which compiles nothing.
+    """`jnp.asarray`; values without JAX arrays are cast by NumPy, without compilation.
 
     Args:
         value: Number or array-like [any unit].
-        dtype: Of the result.
+        dtype: Dtype of the result.
     """
     if not any(isinstance(leaf, jax.Array) for leaf in jax.tree.leaves(value)):
         value = np.asarray(value)

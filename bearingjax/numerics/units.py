@@ -1,4 +1,4 @@
-"""Units of fields: written once, beside the field, for all who check or show it."""
+"""Units of fields: stated once, with the field, for checks, tables and messages."""
 
 import dataclasses
 from typing import Any
@@ -21,7 +21,7 @@ def unit(name: Units) -> dict[str, Any]:
 
 
 def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
-    """Unit of a field, as it is shown beside a number.
+    """Unit of a field, as shown after a number.
 
     Args:
         owner: Class of the field, or an instance.
@@ -29,7 +29,7 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
         index: Which entry of an array.
 
     Returns:
-        SI unit; empty for a pure number, a count, what is no number, and for an array
+        SI unit; empty for a pure number, a count, other objects, and for an array
         of several units without the index of one entry.
 
     Raises:

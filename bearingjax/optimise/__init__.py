@@ -13,17 +13,17 @@ hours), `EdgeLoad`, `Displacement`, `Stiffness`, `StiffnessTarget`, `RatingLife`
 load spectrum; as an objective made largest) and its inverse `Damage`, or any smooth
 function `(element, cases, solution) -> scalar` of your own. Maxima are p-norms, never
 below the true maximum (`best.after.exact`) and above it by at most (number of
-samples)^(1/exponent). A line contact knows no pressure peak at a roller end: keep load
+samples)^(1/exponent). A line contact has no pressure peak at a roller end: keep load
 off the ends with `EdgeLoad`. Designs that do not solve are rejected and listed in
 `best.rejected`. `best.converged` says that the first-order conditions of a minimum
 hold, with exact gradients (`best.optimality`, at most `tolerance`; of "nelder-mead" at
-most its root), whatever the method says. What is doubtful in the best design is in
+most its root), whatever the method says. Warnings about the best design are in
 `best.after.warnings`. Balls and rollers that may skid: see `bearingjax.skid`.
 Worked: the notebook roller_bearing.
 
 `estimate_geometry(bore, outside_diameter, width, kind, C, C0)` makes a design of a
-bearing of which only the catalogue is known: the rolling elements that the ratings and
-the usual proportions agree on. It is an estimate, and its `report()` tells how good.
+bearing of which only the catalogue data are known: the rolling elements that best fit
+the ratings and the usual proportions. It is an estimate; `report()` states its misfit.
 """
 
 from .constraint import Constraint as Constraint

@@ -13,7 +13,7 @@ class Constraint(eqx.Module):
     """Bounds on a measure.
 
     Attributes:
-        measure: What is bounded: a measure such as `Stiffness('uy')`, or any function
+        measure: Bounded measure, such as `Stiffness('uy')`, or any function
             (element, cases, solution) -> scalar.
         lower: Least value, or `None` [unit of the measure].
         upper: Largest value, or `None` [unit of the measure].

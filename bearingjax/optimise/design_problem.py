@@ -32,12 +32,12 @@ class Outcome(NamedTuple):
     """A design and its results.
 
     Attributes:
-        values: Of the variables (variable,) [SI].
+        values: Values of the variables (variable,) [SI].
         objective: The objective, smooth.
         exact: The objective with the true maximum in place of the smooth one.
         constraints: The measures that are bounded, smooth (constraint,).
         exact_constraints: The same with true maxima and minima (constraint,).
-        solution: Of all cases, leading axis case.
+        solution: Solution of all cases, leading axis case.
         doubts: Gives the warnings of the rating life among the measures, if one is,
             and of a system.
     """
@@ -69,9 +69,9 @@ class Problem:
     """An optimisation, its variables scaled by their bounds to the unit box (0 to 1).
 
     Args:
-        element, cases, variables, objective, constraints: As of `optimise`, checked.
+        element, cases, variables, objective, constraints: As in `optimise`, checked.
         options: How cases are solved.
-        build: As of `optimise`.
+        build: As in `optimise`.
     """
 
     def __init__(
@@ -195,7 +195,7 @@ class Run(NamedTuple):
     Attributes:
         measures: Objective and constrained measures, smooth (measure,).
         exact: The same with true maxima and minima (measure,).
-        solution: Of all cases, leading axis case.
+        solution: Solution of all cases, leading axis case.
         jacobian: d(measures)/d(unit) (measure, variable), if asked for.
     """
 
@@ -250,7 +250,7 @@ def _bounds(constraints):
 
 
 def _fault(design: Design, found: Run) -> str:
-    """Why an evaluated design is rejected, in words; empty if it is not."""
+    """Reason for rejecting an evaluated design, in words; empty if accepted."""
     results = np.asarray(found.solution.result)
     if results.any():
         k = int(np.argmax(results))

@@ -1,6 +1,6 @@
 """Inner geometry of a catalogue bearing from its outer dimensions and load ratings.
 
-Two ratings do not fix three or four inner dimensions. What they leave open is closed by
+Two ratings do not fix three or four inner dimensions. The remaining freedom is fixed by
 the usual proportions of the type (`typical`): for each whole number of rolling elements
 that fits, the sizes that agree best with ratings and proportions at once are found by
 least squares, and the number with the best agreement is taken.
@@ -43,7 +43,7 @@ _RATINGS = (0.015, 0.01)
 """Spread of makers' C and C0 about those of the standards [1]."""
 
 _EDGE = 0.003
-"""Spread of the hard limits, for the least squares to feel them [section]."""
+"""Spread of the hard limits in the least squares [section]."""
 
 _WALL = 0.1
 """Least wall under a raceway [section]."""
@@ -61,7 +61,7 @@ _WORST = 0.15
 """Largest misfit of a rating that is still an estimate [1]."""
 
 _UNUSUAL = 20.0
-"""Misfit above which something is odd: the proportions have five degrees of freedom."""
+"""Misfit above which a fit is unusual: the proportions have five degrees of freedom."""
 
 _FEWEST = 3
 
@@ -73,12 +73,12 @@ _FAR_BELOW = 1e-3
 
 
 class _Rated(NamedTuple):
-    """How a type is rated: what its programs differ by.
+    """Rating of a type of bearing, a static part of its programs.
 
     Attributes:
-        balls: What the standards say of its balls; `None` of rollers.
+        balls: Constants of the standards for its balls; `None` for rollers.
         is_thrust: Whether its contact angle is 90 degrees.
-        rows: Number of rows that the ratings are of.
+        rows: Number of rows that the ratings refer to.
         raised: C that makers print of an improved class over that of ISO 281 [1].
     """
 
@@ -103,14 +103,14 @@ _KINDS = {
 
 
 class GeometryEstimate(eqx.Module):
-    """Estimated inner geometry: like the real one, not it.
+    """Estimated inner geometry: similar to the real one, not equal.
 
     Attributes:
         bearing: The design. Its clearance is zero, its grooves are those that the
             standards count with (0.52, outer rings 0.53), its rollers have the
             logarithmic profile: none of these shows in the ratings.
         dynamic_error: C of the design by ISO 281 over that taken, less one [1].
-        static_error: C0 by ISO 76 likewise, over that given [1].
+        static_error: The same for C0 by ISO 76, over that given [1].
         raised: C given over C taken: above 1 where it is that of an improved class,
             which a maker rates above ISO 281 [1].
         misfit: Sum of the squared differences from ratings and usual proportions, each
@@ -139,7 +139,7 @@ class GeometryEstimate(eqx.Module):
         return self.report()
 
     def report(self) -> str:
-        """What it is and how well it fits, in words; this is how it prints."""
+        """Description of the estimate and its misfit, also used for printing."""
         row = rows_of(self.bearing)[0].bearing
         name, size = row.noun, float(row.element_diameter)
         rollers = isinstance(row, AbstractRollerBearing)
@@ -174,7 +174,7 @@ class GeometryEstimate(eqx.Module):
 
 
 class _Envelope(NamedTuple):
-    """What is known: lengths [m], ratings [N], proportions, hard limits."""
+    """Known data: lengths [m], ratings [N], proportions, hard limits."""
 
     section: Any
     mean: Any
@@ -213,7 +213,7 @@ def estimate_geometry(
             the maker should be divided out. Four-point bearings: of two rows
             (`rating.arc_rows`).
         static_capacity: Basic static load rating C0 [N].
-        contact_angle: Of angular contact, four-point and tapered (outer raceway)
+        contact_angle: Angle of angular contact, four-point, tapered (outer raceway)
             bearings [rad]; `None`: estimated as well, which the ratings hardly
             support.
 
@@ -293,7 +293,7 @@ class _Fit(NamedTuple):
         count: The number.
         sizes: As `_sizes`.
         misfit: Sum of squares.
-        errors: Of C and C0 [1].
+        errors: Errors of C and C0 [1].
     """
 
     count: int
@@ -408,7 +408,7 @@ def _counts(rated, known) -> range:
 
 
 def _across(rated, known):
-    """What the diameter of the rolling elements is measured by [m]."""
+    """Reference length of the diameter of the rolling elements [m]."""
     return float(known.width if rated.is_thrust else known.section)
 
 
@@ -437,7 +437,7 @@ def _reach(rated: _Rated, known, shares, length):
     Args:
         rated: How the type is rated.
         known: The envelope.
-        shares: Diameters over what they are measured by (size,) [1].
+        shares: Diameters over their reference length (size,) [1].
         length: Roller length over the width [1].
     """
 

@@ -20,7 +20,7 @@ class OfLife(AbstractMeasure):
     """Life that the damage of the cases leaves.
 
     Attributes:
-        conditions: Of the life: the modified life with a lubricant in them, else the
+        conditions: Life conditions: with a lubricant the modified life, else the
             reference life.
         hours: Whether it is counted in hours, by the speeds of the cases; else in
             revolutions.
@@ -46,7 +46,7 @@ class OfLife(AbstractMeasure):
         """Life under all cases [1, h].
 
         Args:
-            element, cases, solution: As of a call.
+            element, cases, solution: As in `__call__`.
 
         Raises:
             ValueError: For hours of cases without speeds, and as `rating_life`.
@@ -70,7 +70,7 @@ class OfLife(AbstractMeasure):
         load.
 
         Args:
-            element, solution: As of `life`.
+            element, solution: As in `life`.
         """
 
         def one(solution):
@@ -86,7 +86,7 @@ class OfLife(AbstractMeasure):
         """Warnings about the lives of all cases, each kind once.
 
         Args:
-            element, solution: As of a call, concrete.
+            element, solution: As in `__call__`, concrete.
         """
         return counted(jax.device_get(self._sizes(element_of(element), solution)))
 
@@ -103,8 +103,8 @@ class RatingLife(OfLife):
     """Rating life under all cases [rev, h].
 
     By ISO/TS 16281, of the cases one after the other for their hours (Palmgren, Miner):
-    of a bearing with a lubricant in its conditions modified by a_ISO. As an objective
-    it is made largest: its inverse, the damage, is what is made least.
+    for a bearing with a lubricant in its conditions modified by a_ISO. As an objective
+    it is maximised: its inverse, the damage, is minimised.
 
     Attributes are `conditions` (`LifeConditions`; its capacity follows the design
     unless it is given) and `hours`: whether it is in hours, else in revolutions.

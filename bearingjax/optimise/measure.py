@@ -2,7 +2,7 @@
 
 A measure is any function (element, cases, solution) -> scalar, where the solution has
 a leading case axis; those here are Modules. The solution of a system (`system.py`) is
-what it solves, such as a skidding end state; those here look at the loads in it. Life
+its own, such as a skidding end state; those here use the loads in it. Life
 over a load spectrum is one in `life.py`.
 
 Maxima and minima are smooth (`smooth.py`).
@@ -36,35 +36,35 @@ class AbstractMeasure(eqx.Module):
         Args:
             element: The design.
             cases: Its operating cases.
-            solution: What was solved of them, leading axis case.
+            solution: Solution of the cases, leading axis case.
         """
 
     def exact(self, element: Design, cases: Cases, solution: Any) -> Scalar:
         """The measure with the true maximum or minimum in place of the smooth one.
 
         Args:
-            element, cases, solution: As of a call.
+            element, cases, solution: As in `__call__`.
         """
         return self(element, cases, solution)
 
     @property
     def as_objective(self) -> "AbstractMeasure":
-        """What is made least if this is an objective: itself, or what falls as it
-        rises."""
+        """Measure that is minimised if this is an objective: itself, or one that falls
+        as it rises."""
         return self
 
     @property
     def as_told(self) -> "AbstractMeasure":
-        """What reports show in its place: itself, or what a designer asks for."""
+        """Measure that reports show in its place: itself, or a more familiar one."""
         return self
 
     def told(self, value: Any) -> Any:
-        """The value of `as_told` where this measure has a value."""
+        """Convert a value of this measure to that of `as_told`."""
         return value
 
     @property
     def least_size(self) -> float:
-        """Least number by which an optimisation divides it as an objective."""
+        """Smallest scale by which an optimisation divides it as an objective."""
         return 0.0
 
     @property
@@ -122,7 +122,7 @@ class PeakPressure(AbstractLargest):
     kinks where the place of the largest pressure jumps. Hours do not matter.
 
     Attributes:
-        exponent: Of the smooth maximum. With a larger one it is closer to the true
+        exponent: Exponent of the smooth maximum. A larger one is closer to the true
             maximum, but its derivative changes faster.
 
     Static: exponent.
@@ -148,7 +148,7 @@ class MeanPressure(AbstractSmooth):
     Without hours all cases count alike.
 
     Attributes:
-        exponent: Of the smooth maximum within a case.
+        exponent: Exponent of the smooth maximum within a case.
 
     Static: exponent.
     """
@@ -176,7 +176,7 @@ class EdgeLoad(AbstractLargest):
     """Largest load per length at a roller end, of all cases and raceways [N/m].
 
     Attributes:
-        exponent: Of the smooth maximum.
+        exponent: Exponent of the smooth maximum.
 
     Static: exponent.
     """
@@ -205,7 +205,7 @@ class Displacement(AbstractLargest):
 
     Attributes:
         freedom: One of ux, uy, uz, gx, gy.
-        exponent: Of the smooth maximum over the cases.
+        exponent: Exponent of the smooth maximum over the cases.
 
     Static: all.
     """
@@ -242,7 +242,7 @@ class Stiffness(AbstractSmooth):
 
     Attributes:
         freedom: One of ux, uy, uz, gx, gy.
-        exponent: Of the smooth minimum over the cases.
+        exponent: Exponent of the smooth minimum over the cases.
 
     Static: all.
     """
@@ -327,18 +327,18 @@ def label_of(measure: Any) -> str:
 
 
 def exact_of(measure: Any, element: Design, cases: Cases, solution: Any) -> Scalar:
-    """`exact` of a measure; of a plain function its value.
+    """`exact` of a measure; for a plain function its value.
 
     Args:
         measure: Any measure.
-        element, cases, solution: As of a call.
+        element, cases, solution: As in `AbstractMeasure.__call__`.
     """
     call = measure.exact if isinstance(measure, AbstractMeasure) else measure
     return call(element, cases, solution)
 
 
 def least_size_of(measure: Any) -> float:
-    """`least_size` of a measure; of a plain function 0.
+    """`least_size` of a measure; for a plain function 0.
 
     Args:
         measure: Any measure.

@@ -30,7 +30,7 @@ class History(NamedTuple):
     """The accepted steps of a search; step 0 is the start.
 
     Attributes:
-        values: Of the variables (step, variable) [SI].
+        values: Values of the variables (step, variable) [SI].
         objective: The smooth objective (step,).
         violation: Largest violation of a constraint over the size of its bound (step,).
         gradient: As `Optimised.optimality` (step,) [1]; NaN with a method without
@@ -148,7 +148,7 @@ def optimise(
             root of this.
         points: Positions along the rollers at which smooth maxima sample the pressure,
             in addition to the peaks, which do not depend on them.
-        free, fixed_ring: As of `solve_load`.
+        free, fixed_ring: As in `solve_load`.
         solve_tolerance: `tolerance` of `solve_load`.
         build: Function applied to each changed design before it is solved, for example
             `lambda e: bj.preload(e, 400.0, throw=False)`.
@@ -245,7 +245,7 @@ def verdict(
         ending: How the search ended.
         best: The best design; with gradients if the search uses them or has settled.
         slopes: Whether the search uses gradients.
-        max_steps, tolerance: As of `optimise`.
+        max_steps, tolerance: As in `optimise`.
     """
     left, n = optimality(best, tolerance), len(trials.steps) - 1
     allowed = tolerance if slopes else tolerance**0.5
@@ -270,7 +270,7 @@ def verdict(
 
 
 def _missed(problem: Problem, best: Trial) -> str:
-    """Which measure misses its bound most, in words."""
+    """Name the measure that violates its bound most, in words."""
     bound = problem.bounds[int(np.argmin(best.margins))]
     measure = problem.measures[bound.measure]
     value = bound.limit + bound.sign * bound.size * best.margins.min()

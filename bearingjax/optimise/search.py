@@ -37,13 +37,13 @@ def takes_gradients(method: Any) -> bool:
     """Whether a search uses gradients; a user's own search does not.
 
     Args:
-        method: As of `search`.
+        method: As in `search`.
     """
     return not (method == "nelder-mead" or callable(method))
 
 
 class Ending(NamedTuple):
-    """How a search ended.
+    """Outcome of a search.
 
     Attributes:
         unit: Variables in the unit box (variable,).
@@ -142,7 +142,7 @@ def arrived(trial: Trial, tolerance: float) -> bool:
 
     Args:
         trial: With gradients.
-        tolerance: Of `optimality`, and of the bounds.
+        tolerance: Tolerance of `optimality`, and of the bounds.
     """
     flat = optimality(trial, tolerance) <= tolerance
     return flat and trial.violation <= tolerance

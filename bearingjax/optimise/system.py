@@ -14,7 +14,7 @@ from ..statics.solution import Solution, message
 
 
 class AbstractSystem(eqx.Module):
-    """A bearing and what else its cases need, which says itself how they are solved."""
+    """A bearing with all else that its cases need, with its own solve of a case."""
 
     @property
     @abc.abstractmethod
@@ -23,7 +23,7 @@ class AbstractSystem(eqx.Module):
 
     @abc.abstractmethod
     def check(self, cases: Cases) -> None:
-        """Raise if it has no use for such cases.
+        """Raise if the cases are not valid for this system.
 
         Args:
             cases: Operating cases.
@@ -34,31 +34,31 @@ class AbstractSystem(eqx.Module):
 
     @abc.abstractmethod
     def solve_case(self, case: Cases, options: SolveOptions) -> Any:
-        """What is solved in one case; nothing is raised for a failed solve.
+        """Solve one case; nothing is raised for a failed solve.
 
         Args:
             case: Cases without their leading axis.
             options: Settings of the load solve.
 
         Returns:
-            A Module with the load solve as `solution` and the `Result` code of all
-            that was solved as `result`.
+            A Module with the load solve as `solution` and the `Result` code of the
+            whole solve as `result`.
         """
 
     @abc.abstractmethod
     def message(self, solved: Any) -> str:
-        """Why a case failed, in words.
+        """Reason why a case failed, in words.
 
         Args:
             solved: From `solve_case`, concrete.
         """
 
     def warnings(self, cases: Cases, solved: Any) -> list[str]:
-        """What is doubtful beyond the loads, a sentence each; by default nothing.
+        """Warnings other than those of the loads, a sentence each; none by default.
 
         Args:
             cases: Operating cases.
-            solved: What was solved of them, concrete, leading axis case.
+            solved: Solved cases, concrete, leading axis case.
         """
         return []
 
@@ -71,7 +71,7 @@ def check_design(owner: str, design: Any, cases: Any) -> None:
 
     Args:
         owner: Function that was called.
-        design: What it was given.
+        design: Design that it was given.
         cases: Operating cases.
 
     Raises:
@@ -85,12 +85,12 @@ def check_design(owner: str, design: Any, cases: Any) -> None:
 
 
 def solved_case(design: Design, case: Cases, options: SolveOptions) -> Any:
-    """What is solved in one case of a design; of an element its load.
+    """Solve one case of a design; for an element the load solve.
 
     An installed bearing is mounted at the speeds of the case, if it has any.
 
     Args:
-        design, case, options: As of `AbstractSystem.solve_case`.
+        design, case, options: As in `AbstractSystem.solve_case`.
     """
     if isinstance(design, AbstractSystem):
         return design.solve_case(case, options)
@@ -100,11 +100,11 @@ def solved_case(design: Design, case: Cases, options: SolveOptions) -> Any:
 
 
 def ready(design: Design, build: Callable[[Any], Any] | None) -> Design:
-    """A changed design as its cases are solved: the rows of a set are ground once.
+    """Return a changed design ready to be solved: the rows of a set are ground once.
 
     Args:
         design: The design with the values of its variables.
-        build: As of `optimise`.
+        build: As in `optimise`.
     """
     if build is not None:
         design = build(design)
@@ -123,7 +123,7 @@ def element_of(design: Design) -> BearingElement[Any]:
 
 
 def loads_of(solved: Any) -> Any:
-    """The load solve of what was solved.
+    """Load solve of a solved case.
 
     Args:
         solved: From `solved_case`; of one or of many cases.
@@ -132,7 +132,7 @@ def loads_of(solved: Any) -> Any:
 
 
 def failure(design: Design, solved: Any) -> str:
-    """Why a case failed, in words.
+    """Reason why a case failed, in words.
 
     Args:
         design: The design.

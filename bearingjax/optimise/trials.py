@@ -66,7 +66,7 @@ def optimality(trial: Trial, near: float) -> float:
     """Largest component of `remainder` in size; NaN without gradients.
 
     Args:
-        trial, near: As of `remainder`.
+        trial, near: As in `remainder`.
     """
     return float(np.abs(remainder(trial, near)).max())
 
@@ -75,9 +75,8 @@ class Trials:
     """Designs that a search has tried.
 
     Args:
-        evaluate: From a point of the unit box, and whether gradients are wanted, to a
-            trial.
-        start: The first, not rejected.
+        evaluate: (point of the unit box, whether gradients are needed) -> trial.
+        start: The first trial, not rejected.
 
     Attributes:
         steps: Designs that the search has moved to, the start first.

@@ -1,8 +1,8 @@
-"""Typical proportions of catalogue bearings: what a maker has left to choose.
+"""Typical proportions of catalogue bearings, which makers are free to choose.
 
-Between bore and outside diameter stands the section, half of their difference. Most
-bearings of a type share a few ratios of it, known here by a middle and a spread (one
-standard deviation) as they scatter in makers' catalogues and in the literature.
+The section is half of the difference of outside diameter and bore. Most bearings of a
+type share a few ratios to it, given here by a middle and a spread (one standard
+deviation) over makers' catalogues and the literature.
 """
 
 import math
@@ -12,22 +12,22 @@ _DEG = math.pi / 180
 
 
 class Typical(NamedTuple):
-    """A number's usual value and its spread."""
+    """Usual value of a number and its spread."""
 
     middle: float
     spread: float
 
 
 class Proportions(NamedTuple):
-    """Of one type of bearing.
+    """Typical proportions of one type of bearing.
 
     Attributes:
         element: Diameter of the rolling elements over the section [1]; of thrust
             bearings over the height.
         pitch: Pitch diameter over the mean of bore and outside diameter [1].
-        filling: How full the row is: arc of the pitch circle over which the elements
-            of a deep groove bearing stand, from the first to the last [rad]; of other
-            types the share of the circle that the elements take up [1].
+        filling: Filling of the row: arc of the pitch circle over which the elements
+            of a deep groove bearing lie, from the first to the last [rad]; for other
+            types the share of the circle that the elements occupy [1].
         length: Roller length over the width [1]; `None` for balls.
         angle: Contact angle [rad].
         by_arc: Whether `filling` is the arc.

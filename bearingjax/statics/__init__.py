@@ -2,7 +2,7 @@
 
 `solve_load(element, load)` finds the displacement of the rings under a load and returns
 a `Solution`: displacement, stiffness, the load and pressure of every contact.
-`warnings(solution)` lists what is doubtful about it (pressure beyond 4 GPa, a truncated
+`warnings(solution)` lists the warnings about it (pressure beyond 4 GPa, a truncated
 ellipse, a direction that nothing holds), as the command line prints it; a sweep counts
 them (`swept.warning_counts()`). A preloaded pair is one of three: `preload_offset` (a
 displacement), `preload(element, force)` (the offsets that give the force,

@@ -1,4 +1,4 @@
-"""The balance of the moving ring: what is solved, reported, and differentiated."""
+"""Equilibrium of the moving ring, common to solving, reporting and differentiation."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -14,11 +14,11 @@ class Balance(eqx.Module):
     """Forces on the moving ring, in unknowns of one unit.
 
     The unknowns y (6,) are the freedoms of the moving ring in metres: shifts as they
-    are, rotations times the pitch radius. Free ones are solved for, held ones stand
-    where they are given.
+    are, rotations times the pitch radius. Free ones are solved for, held ones have
+    given values.
 
     Attributes:
-        load: On the moving ring (6,) [N, N m].
+        load: Load on the moving ring (6,) [N, N m].
         given: Displacements of the moving ring that are prescribed, zero of the others
             (6,) [m, rad].
         fixed: Displacement of the fixed ring (6,) [m, rad].
@@ -59,9 +59,9 @@ class Balance(eqx.Module):
         return jnp.concatenate(pair)
 
     def along(self, force: Float[Array, "6"]) -> Float[Array, "6"]:
-        """What a force on the moving ring does along the free unknowns (6,) [N].
+        """Components of a force on the moving ring along the free unknowns (6,) [N].
 
-        Moments count by their force at the pitch radius; the balance is
+        Moments are divided by the pitch radius; the equation of equilibrium is
         along(ring force - load) = 0.
 
         Args:
@@ -83,7 +83,7 @@ def balance_of(case: LoadCase, radius: Scalar, outer_moves: bool) -> Balance:
     """The balance of a load case.
 
     Args:
-        case: What is asked.
+        case: Load case.
         radius: Pitch radius [m].
         outer_moves: Whether the outer ring is the moving one.
     """

@@ -29,7 +29,7 @@ class BallResults(eqx.Module):
             +z (before it is mirrored) (ball, contact) [rad]. At most π/2 in size; 0 for
             a ball at the groove centre.
         contact_pressure: Hertz peak pressure (ball, contact) [Pa].
-        semi_axes: Of the contact ellipse, in rolling direction and across
+        semi_axes: Semi-axes of the contact ellipse, in rolling direction and across
             (ball, contact, 2) [m].
         approach: Approach of ball and raceway, negative where apart (ball, contact)
             [m]. Beyond the groove centre it stays at its lowest value.
@@ -37,8 +37,8 @@ class BallResults(eqx.Module):
             (ball, contact) [m]; negative: the ellipse is truncated. Infinite where no
             shoulder is given or no load carried.
         kinematics: Orbit, rotation and spin, leading axis ball; `None` without speed.
-        gyroscopic_moment: Of each ball (ball,) [N m], or `None`.
-        centrifugal_force: Of each ball (ball,) [N], or `None`.
+        gyroscopic_moment: Gyroscopic moment of each ball (ball,) [N m], or `None`.
+        centrifugal_force: Centrifugal force of each ball (ball,) [N], or `None`.
     """
 
     contact_load: Float[Array, "ball contact"] = eqx.field(metadata=unit("N"))
@@ -53,12 +53,12 @@ class BallResults(eqx.Module):
 
     @property
     def n_contacts(self) -> Int[Array | np.ndarray, "*case ball"]:
-        """How many contacts of each ball carry load, more than round-off."""
+        """Number of contacts of each ball that carry load above round-off."""
         return above_round_off(self.contact_load).sum(axis=-1)
 
     @property
     def lifted(self) -> Array | np.ndarray:
-        """Which balls have left the inner raceway and run on the outer one alone."""
+        """Whether each ball runs on the outer raceway only, off the inner one."""
         carrying = above_round_off(self.contact_load)
         half = carrying.shape[-1] // 2
         outer, inner = carrying[..., :half], carrying[..., half:]
@@ -66,7 +66,7 @@ class BallResults(eqx.Module):
 
 
 def above_round_off(load: Any) -> Any:
-    """Which loads are more than round-off of the largest one of their bearing.
+    """Whether each load is above the round-off of the largest one of its bearing.
 
     Args:
         load: (..., element, contact) [N], of NumPy or of JAX; each case is a bearing.
@@ -105,7 +105,7 @@ def _spread(values, contacts):
 def _row_results(
     row: RowResults, bearing: AbstractBallBearing, law, contacts: int
 ) -> dict:
-    """As `ball_results`, of one row, with room for `contacts` contacts of a ball."""
+    """Ball results of one row, with room for `contacts` contacts per ball."""
     ball = row.element
     touching = row.each(lambda ball, *at: ball.contacts(*at))
     outwards = jnp.asarray(ball.grooves.outwards)

@@ -28,10 +28,10 @@ class Cases(eqx.Module):
     Attributes:
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring (case, 6) [N, N m].
         prescribed: Displacements given instead of loads, by freedom (case,) [m, rad].
-        fixed_displacement: Of the fixed ring (case, 6) [m, rad], or `None`: zero.
-        inner_speed: Of the inner ring (case,) [rad/s], or `None`. If both speeds are
-            `None` there is no inertia, and none is compiled.
-        outer_speed: Of the outer ring (case,) [rad/s], or `None`.
+        fixed_displacement: That of the fixed ring (case, 6) [m, rad]; `None`: zero.
+        inner_speed: Speed of the inner ring (case,) [rad/s], or `None`. If both speeds
+            are `None` there is no inertia, and none is compiled.
+        outer_speed: Speed of the outer ring (case,) [rad/s], or `None`.
         hours: Time that the machine spends in each case (case,) [h], or `None`.
         design: Which of several designs each case has (case,), or `None`.
 
@@ -183,7 +183,7 @@ def solve_case(
         element: The bearing of this case.
         case: Cases without their leading axis, as `vmap` hands them out.
         options: Settings; `None`: the defaults of `solve_load`.
-        start: As of `solve_load`.
+        start: As in `solve_load`.
 
     Returns:
         Solution with its result code; nothing is raised for a failed solve.

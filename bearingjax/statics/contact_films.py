@@ -16,11 +16,11 @@ from ..numerics.units import unit
 from .solution import BallSolution, Solution, check_single
 
 _SIDES = (1.0, -1.0)
-"""Outer and inner raceway: outside and inside of the pitch circle."""
+"""Signs of outer and inner raceway: outside and inside of the pitch circle."""
 
 
 class Films(eqx.Module):
-    """Films of all contacts; axis contact as of `BallResults`, of rollers (outer,
+    """Films of all contacts; axis contact as in `BallResults`, of rollers (outer,
     inner). Where no load is carried films are infinite.
 
     Attributes:
@@ -52,7 +52,7 @@ def films(
     Args:
         solution: Solved at a speed.
         lubricant: The oil.
-        temperature: Of the oil at the inlets [K].
+        temperature: Temperature of the oil at the inlets [K].
         roughness: Root mean square of both surfaces together,
             sqrt(Rq1² + Rq2²) [m]; `None`: no ratio.
 

@@ -135,10 +135,10 @@ class LeftOut(NamedTuple):
     """Parts of a load that the equivalent loads leave out.
 
     Attributes:
-        radial: Of thrust ball bearings, for which ISO 281 has no factor at 90° [N].
-        axial: Of cylindrical and needle rollers, whose ribs bear it [N].
-        moment: About the pressure centre, where the contact normals of the elements
-            meet on the axis, along the tilts that are free [N m].
+        radial: Load of thrust ball bearings, without factor in ISO 281 at 90° [N].
+        axial: Axial load of cylindrical and needle rollers, whose ribs bear it [N].
+        moment: Moment about the pressure centre, the intersection of contact normals
+            and axis, along the tilts that are free [N m].
     """
 
     radial: Scalar
@@ -154,7 +154,7 @@ def left_out(
     """Return the parts of a load that its equivalent loads leave out.
 
     Args:
-        bearing, load: As of `equivalent_load`; moments about the centre of the bearing.
+        bearing, load: As in `equivalent_load`; moments about the centre of the bearing.
         free: Freedoms that follow from the load. A tilt that is held bears a moment of
             its support: the standard too takes rings that are held parallel.
     """

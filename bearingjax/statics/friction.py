@@ -34,7 +34,7 @@ from .rating import static_capacity as rated
 from .solution import BallSolution, Solution, check_single
 
 SUPPLIES = ("grease", "oil_mist", "oil_bath", "oil_jet")
-"""How a bearing gets its oil; a jet is as a bath about an upright shaft."""
+"""Types of lubricant supply; a jet counts as an oil bath with a vertical shaft."""
 
 
 class _Kind(NamedTuple):
@@ -68,9 +68,9 @@ class Friction(eqx.Module):
     Attributes:
         load_torque: Part of each row that grows with its load (row,) [N m].
         viscous_torque: Part of each row that the oil makes (row,) [N m].
-        flange_torque: Of cylindrical rollers that carry axial load on their ribs
+        flange_torque: Rib torque of cylindrical roller bearings under axial load
             (row,) [N m].
-        speed: Of the inner ring less that of the outer [rad/s].
+        speed: Speed of the inner ring less that of the outer [rad/s].
     """
 
     load_torque: Float[Array, " row"] = eqx.field(metadata=unit("N m"))
@@ -80,7 +80,7 @@ class Friction(eqx.Module):
 
     @property
     def torque(self) -> Any:
-        """All of it [N m]."""
+        """Total friction torque [N m]."""
         parts = self.load_torque + self.viscous_torque + self.flange_torque
         return parts.sum(axis=-1)
 
@@ -139,7 +139,7 @@ def friction_torque(
 
 
 def check_call(owner: str, solution: Any, viscosity: Any, supply: Any) -> None:
-    """Raise unless a friction torque can be told of a solution.
+    """Raise unless the friction torque of a solution can be computed.
 
     Args:
         owner: Name of the function that was called.
@@ -168,7 +168,7 @@ def check_call(owner: str, solution: Any, viscosity: Any, supply: Any) -> None:
 
 
 def units_of(bearing: AbstractBearing | BearingSet) -> list[Any]:
-    """What counts as one bearing: a row, or both rows of a self-aligning one."""
+    """Units that count as one bearing: a row, or both rows of a self-aligning one."""
     if is_self_aligning(bearing):
         return [bearing]
     return [row.bearing for row in rows_of(bearing)]
@@ -184,7 +184,7 @@ def unit_loads(solution: Solution) -> list[tuple[Scalar, Scalar, Any]]:
 
 
 def _row_loads(solution) -> list[Any]:
-    """What the outer contacts of every row pass on along their normals; no ribs."""
+    """Resultant force of the outer raceway contacts of every row, without ribs."""
     found, begin = [], 0
     pairs = zip(solution.row_sizes, solution.element.bearing.rows, strict=True)
     for size, row in pairs:

@@ -46,7 +46,7 @@ class _Type(NamedTuple):
     """A type of bearing.
 
     Attributes:
-        series: Constants by series; the first stands for those not named.
+        series: Constants by series; the first applies to those not named.
         kz: K_z of the type.
         span: D - d over the diameter of a rolling element, where d and D are unknown.
         film: Its own coefficient in a film, or `None`.
@@ -138,7 +138,7 @@ class SkfFriction(eqx.Module):
         rolling_torque: M_rr of each row, reduced by warm inlets and lack of oil
             (row,) [N m].
         sliding_torque: M_sl of each row (row,) [N m].
-        speed: Of the inner ring less that of the outer [rad/s].
+        speed: Speed of the inner ring less that of the outer [rad/s].
         series: The row of SKF's table whose constants these are. Static.
     """
 
@@ -149,7 +149,7 @@ class SkfFriction(eqx.Module):
 
     @property
     def torque(self) -> Any:
-        """Both together [N m]."""
+        """Total friction torque [N m]."""
         return (self.rolling_torque + self.sliding_torque).sum(axis=-1)
 
     @property
@@ -161,7 +161,7 @@ class SkfFriction(eqx.Module):
 def skf_series(bearing: Any) -> tuple[str, ...]:
     """Series with constants of their own, of the type of a bearing or set.
 
-    The first stands for bearings of the type whose series is not known. Empty for types
+    The first applies to bearings of the type whose series is not known. Empty for types
     that the model does not have, such as needle roller bearings.
 
     Args:
@@ -276,10 +276,10 @@ def _variables(bearing, row, d, radial, axial, rpm, capacity):
 
 
 def _deep_groove(row, d, radial, axial, capacity):
-    """As `_variables`.
+    """G_rr and G_sl of a deep groove ball bearing, in mm and N.
 
     SKF's forms with and without axial load do not join: G_sl grows by d^0.115, a half,
-    with the first newton. What is left of an axial load by rounding is none.
+    with the first newton. An axial load at the level of round-off counts as zero.
     """
     r1, r2, s1, s2 = row
     loaded = axial > 1e-6 * radial

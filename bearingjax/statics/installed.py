@@ -34,9 +34,9 @@ class Installed(eqx.Module):
         mounting: Seats; `None`: clearance and contact angles are those of the drawing.
         conditions: Temperatures and speeds; `None`: at rest, at the temperature of the
             measured sizes.
-        limiting_speed: To which its catalogue lets it run, of one ring against the
-            other [rad/s]; `None`: not known. It changes nothing that is solved.
-        reference_speed: Thermal reference speed of its catalogue, likewise [rad/s].
+        limiting_speed: Speed limit of its catalogue, of one ring against the
+            other [rad/s]; `None`: not known. It does not affect the solution.
+        reference_speed: Thermal reference speed of its catalogue, the same way [rad/s].
 
     Traced: all numbers. Static: what is `None`.
 
@@ -70,7 +70,7 @@ class Installed(eqx.Module):
             )
 
     def ground(self, *, throw: bool = True) -> "Installed":
-        """The same bearing with its rows ground to `preload`, a number no more.
+        """Return the bearing with its rows ground to give `preload`.
 
         Args:
             throw: Raise if the preload solve fails; otherwise the offsets are NaN.
@@ -95,7 +95,7 @@ class Installed(eqx.Module):
         Args:
             speed: Ring speeds, at which seats lose interference by centrifugal growth;
                 `None`: those of `conditions`. The solve needs them too.
-            throw: As of `ground`.
+            throw: As in `ground`.
 
         Returns:
             Element with the offsets, clearances and contact angles in operation,
@@ -121,7 +121,7 @@ class Installed(eqx.Module):
         """Warnings about speeds beyond those of its catalogue, a sentence each.
 
         Args:
-            turns: As of `statics.speed_warnings`, concrete.
+            turns: As in `statics.speed_warnings`, concrete.
         """
         return speed_warnings(
             turns,

@@ -58,10 +58,10 @@ STANDARDS = {
     "modified_rating_life": "ISO/TS 16281:2008 with a_ISO of ISO 281:2007",
     "static_safety": "ISO 76:2006",
 }
-"""Which standard each result follows."""
+"""Standard that each result follows."""
 
 FRAMES = ("space", "inner", "outer")
-"""What the direction of the load may be fixed to."""
+"""Frames to which the direction of the load may be fixed."""
 
 LIFE_OUTPUTS = (
     "equivalent_load",
@@ -87,7 +87,7 @@ _MILLION = 1e6
 
 
 class LifeConditions(eqx.Module):
-    """What a rating life needs beside the solution.
+    """Conditions of a rating life in addition to the solution.
 
     Attributes:
         dynamic_capacity: C of the bearing, of a set that of all its rows [N]; `None`:
@@ -174,10 +174,10 @@ class Life(eqx.Module):
         equivalent_load: P of ISO 281 [N].
         static_equivalent_load: P0 of ISO 76 [N].
         reference_load: Load with which C gives the reference life [N].
-        radial_left_out: Radial load that P and P0 have no part of, as of
+        radial_left_out: Radial load not included in P and P0, from
             `equivalent_load.left_out` [N].
-        axial_left_out: Axial load likewise [N].
-        moment_left_out: Moment likewise [N m].
+        axial_left_out: Axial load not included [N].
+        moment_left_out: Moment not included [N m].
         static_safety: C0/P0 [1].
         basic_rating_life: L10 = (C/P)^p of ISO 281 [rev].
         reference_rating_life: L10r of ISO/TS 16281 [rev].
@@ -228,7 +228,7 @@ class Life(eqx.Module):
 
     @property
     def standards(self) -> dict[str, str]:
-        """Which standard each result follows, by its name."""
+        """Standard that each result follows, by the name of the result."""
         return STANDARDS
 
     @property
@@ -264,7 +264,7 @@ def rating_life(
         solution: Its solution. Of rollers every second position is the middle of a
             lamina: 101 `points` are 50 laminae.
         dynamic_capacity, static_capacity, fatigue_load_limit, viscosity, contamination,
-            reliability, load_fixed_to, edge_stress: As of `LifeConditions`.
+            reliability, load_fixed_to, edge_stress: As in `LifeConditions`.
         speed: Ring speeds; `None`: those of the solution. Without any the inner ring
             turns against a load fixed in space, and there is no life in hours.
         lamina_load: Load of every lamina on both raceways in place of the solution's
@@ -308,11 +308,11 @@ def life_of(
     speed: Speed | None = None,
     lamina_load: Float[Array | np.ndarray, "element 2 lamina"] | None = None,
 ) -> Life:
-    """As `rating_life`, the conditions in one object.
+    """Rating life as in `rating_life`, with the conditions in one object.
 
     Args:
-        element, solution, speed, lamina_load: As of `rating_life`.
-        conditions: As of its keywords.
+        element, solution, speed, lamina_load: As in `rating_life`.
+        conditions: The keywords of `rating_life` as an object.
     """
     if not isinstance(solution, BallSolution | RollerSolution):
         raise TypeError(
@@ -346,7 +346,7 @@ def life_of(
 
 
 def _rows_in_words(bearing) -> str:
-    """What the rows of a bearing are: all of it that is no number to be traced."""
+    """Type and number of elements of every row, in words: the static part."""
     rows = [row.bearing for row in rows_of(bearing)]
     return " and ".join(f"{type(r).__name__} of {r.n_elements}" for r in rows)
 
@@ -355,8 +355,8 @@ def life_outputs(life: Life, names: Sequence[str]) -> dict[str, Array]:
     """Numbers of a life, by name.
 
     Args:
-        life: Of one solution.
-        names: Of `LIFE_OUTPUTS`.
+        life: Life of one solution.
+        names: Names of `LIFE_OUTPUTS`.
 
     Raises:
         ValueError: For one that the conditions or the solution do not give.
@@ -375,7 +375,7 @@ def solution_loads(
     """Loads of the contacts of a solution that tire the raceways.
 
     Args:
-        solution: Of balls or rollers.
+        solution: Solution of balls or rollers.
         with_edges: Whether laminae count with `edge_stress`.
 
     Returns:
@@ -500,7 +500,7 @@ def turns_against_load(
 
     Args:
         speed: Ring speeds.
-        load_fixed_to: As of `LifeConditions`.
+        load_fixed_to: As in `LifeConditions`.
     """
     usual = as_real([1.0, 0.0] if load_fixed_to == "inner" else [0.0, 1.0])
     if speed is None:
@@ -573,7 +573,7 @@ def _modified(fatigue, limit, thrust, kappa, clean, kind):
 
 
 def _above(load, least):
-    """A load, zero where it is what the solver leaves of none."""
+    """A load, zero where it is no more than the solver's residual."""
     return jnp.where(load <= least, 0.0, load)
 
 

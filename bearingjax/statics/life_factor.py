@@ -52,7 +52,7 @@ def viscosity_ratio(viscosity: Scalar, speed: Scalar, pitch_diameter: Scalar) ->
 
     Args:
         viscosity: Kinematic viscosity at the temperature of operation [m²/s].
-        speed: Of one ring against the other, at least 0 [rad/s].
+        speed: Speed of one ring against the other, at least 0 [rad/s].
         pitch_diameter: D_pw [m].
 
     Source: ISO 281:2007, ν1 = 45000 n^-0.83 D_pw^-0.5 below 1000 r/min, from there
@@ -119,13 +119,13 @@ def load_ratio(
 
 
 class Cleanliness(eqx.Module):
-    """How clean the lubricant is: e_C = min(a κ^0.68 D_pw^0.55, 1) (1 - b/D_pw^(1/3)),
+    """Cleanliness of a lubricant: e_C = min(a κ^0.68 D_pw^0.55, 1) (1 - b/D_pw^(1/3)),
     κ at most 4.
 
     Attributes:
         film: a, with D_pw in mm [1].
-        size: b, likewise [1].
-        large: b above a pitch diameter of 500 mm [1]; `None`: the same.
+        size: b, with D_pw in mm [1].
+        large: b above a pitch diameter of 500 mm [1]; `None`: equal to `size`.
 
     Traced: all fields.
 
@@ -192,7 +192,7 @@ Source: ISO 281:2007, annex A. "grease, high", and "grease, slight to typical" a
 
 
 def as_contamination(value: Any) -> Any:
-    """Converter of a contamination: a name of `CLEANLINESS` becomes what it names.
+    """Converter of a contamination: replaces a name of `CLEANLINESS` by its value.
 
     Args:
         value: e_C, a `Cleanliness` or a name; anything else comes back unchanged.

@@ -1,4 +1,4 @@
-"""What is doubtful about rating lives: sizes, and words for them."""
+"""Warnings about rating lives: their sizes and their texts."""
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ from .rating import Ratings
 from .reference_life import LEAST_LAMINAE
 
 MOST_AT_ENDS = 0.25
-"""Share of the fatigue in the laminae at the ends of rollers above which it is told.
+"""Share of the fatigue in the end laminae of rollers above which a warning is given.
 
 With the standard's concentration of stress straight rollers have 0.74, 0.62 and 0.27
 there with 30, 50 and 200 laminae, and with them lives of 0.75, 1 and 1.62; logarithmic
@@ -22,8 +22,8 @@ profiles have a twentieth, and lives that agree to 1 %.
 
 
 LARGEST_MOMENT = 0.1
-"""Moment that P has no part of, over P times the pitch radius, above which it is told
-[1]: it takes a third of the reference life of a 6308."""
+"""Moment not included in P, over P times the pitch radius, that gives a warning [1]: it
+takes a third of the reference life of a 6308."""
 
 LEAST_LOAD_OF_BALLS, LEAST_LOAD_OF_ROLLERS = 0.01, 0.02
 """Least load over C at which rolling elements are sure to roll [1].
@@ -39,7 +39,7 @@ class LifeKind(NamedTuple):
         limit: Largest size that gives no warning.
         words: (size, where) -> the sentence; where is "" for many cases.
         where: (bearing, ratings, numbers) of one life -> numbers of it, in words.
-        of_all: Whether it is told only if all cases have it.
+        of_all: Whether it is reported only if it applies to all cases.
     """
 
     limit: float
@@ -80,7 +80,7 @@ def life_sizes(
     """Size of every kind of warning about a life that can arise, NaN of a failed one.
 
     Args:
-        bearing, ratings, numbers: As of `life_warnings`, traced or not.
+        bearing, ratings, numbers: As in `life_warnings`, traced or not.
     """
     known = {name: value for name, value in numbers.items() if value is not None}
     return dict(_sizes(bearing, ratings, known))
@@ -227,4 +227,4 @@ LIFE_KINDS: dict[str, LifeKind] = {
         of_all=True,
     ),
 }
-"""Every kind of warning about a life, by name, in the order in which they are told."""
+"""Every kind of warning about a life, by name, in the order of the reports."""

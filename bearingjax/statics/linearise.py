@@ -32,7 +32,7 @@ class OperatingPoint(eqx.Module):
     azimuths of the rolling elements unchanged.
 
     Attributes:
-        solution: Of the load solve; check its `result`.
+        solution: Solution of the load solve; check its `result`.
     """
 
     solution: Solution
@@ -114,11 +114,11 @@ def linearise(
     """Linearise a bearing about its equilibrium under a load.
 
     This is the static linearisation of `element.as_function`: the stiffness is its
-    Jacobian there, gz held. The rolling elements stand at the azimuths that belong to
+    Jacobian there, gz held. The rolling elements are at the azimuths that belong to
     gz; for gz = 0 they are those of `first_azimuth`.
 
     Args:
-        element, load, prescribed, free, fixed_ring, speed, throw: As `solve_load`.
+        element, load, prescribed, free, fixed_ring, speed, throw: As in `solve_load`.
 
     Returns:
         OperatingPoint, differentiable with respect to design, load and speeds.

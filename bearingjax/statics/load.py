@@ -1,4 +1,4 @@
-"""Where the rings go under load: `solve_load`, and the same with all settings in one.
+"""Displacement of the rings under load: `solve_load`, and `solve` with settings in one.
 
 A load solve has three parts: the balance (what is free, what is held, in which unit),
 the search for the equilibrium, and the solution with its result code.
@@ -106,8 +106,8 @@ def solve_load(
 
     Returns:
         Solution, differentiable with respect to design, load, prescribed values and
-        speeds (implicit function theorem). By a load in a direction in which the ring
-        floats they are infinite, or NaN; `warnings` tells of such directions.
+        speeds (implicit function theorem). With respect to a load along which the ring
+        floats they are infinite, or NaN; `warnings` reports such directions.
         Derivatives of a failed solve are NaN, and zero where it is masked.
 
     Raises:
@@ -142,14 +142,14 @@ def solve(
     speed: Speed | None = None,
     start: Any = None,
 ) -> Solution:
-    """As `solve_load`, the settings in one object; never raises for a failed solve.
+    """Solve as `solve_load`, with settings in one object; no error if the solve fails.
 
     Args:
         element: The bearing.
-        load, prescribed, fixed_displacement, start: As of `solve_load`, which are
+        load, prescribed, fixed_displacement, start: As in `solve_load`, which are
             checked here.
         options: Settings.
-        speed: As of `solve_load`.
+        speed: As in `solve_load`.
     """
     options.check("solve_load")
     case = load_case(
@@ -183,7 +183,7 @@ def raise_if_failed(solution: Solution) -> Solution:
     """The solution, or an exception that says why it failed, also under `jit`.
 
     Args:
-        solution: Of one case.
+        solution: Solution of one case.
 
     Raises:
         SolveError: If it did not converge.

@@ -1,4 +1,4 @@
-"""What is asked of one load solve, read from the arguments and checked."""
+"""Load case of one load solve, from the checked arguments."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -62,8 +62,8 @@ def load_case(
     Args:
         bearing: The design.
         options: Settings, checked.
-        load, prescribed, fixed_displacement, start: As of `solve_load`, not checked.
-        speed: As of `solve_load`.
+        load, prescribed, fixed_displacement, start: As in `solve_load`, not checked.
+        speed: As in `solve_load`.
 
     Raises:
         TypeError: For text in place of numbers.

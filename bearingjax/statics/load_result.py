@@ -1,4 +1,4 @@
-"""What a load solve returns: the fields of a `Solution` and its result code."""
+"""Result of a load solve: the fields of a `Solution` and its result code."""
 
 from typing import NamedTuple
 
@@ -22,11 +22,11 @@ from .warning_sizes import stiffness_scale
 
 
 class Ending(NamedTuple):
-    """How a solve ended.
+    """Outcome of a load solve.
 
     Attributes:
         result: `Result` code.
-        unrestrained: As of `Solution`.
+        unrestrained: As in `Solution`.
     """
 
     result: Int[Array, ""]
@@ -42,16 +42,16 @@ def solution_of(
     begin: Beginning,
     minimum: Minimum,
 ) -> Solution:
-    """The solution where a search ended.
+    """Solution at the end of a search.
 
     Args:
         element: The bearing.
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        case: What was asked.
+        case: Load case.
         options: Settings.
-        begin: Where the search began.
-        minimum: Where it ended.
+        begin: Start of the search.
+        minimum: End of the search.
     """
     y = differentiable(model, balance, minimum)
     q = balance.ring_freedoms(y)
@@ -102,15 +102,15 @@ def _ending(
     absurd: Bool[Array, ""],
     force: Ring,
 ) -> Ending:
-    """The worst that is to be said of a solve, and which freedom it concerns.
+    """Most severe result code of a solve, and the freedom that it concerns.
 
     Args:
         balance: The load and what holds the rings.
-        minimum: Where the search ended.
+        minimum: End of the search.
         of_elements: Worst result code of the rolling elements.
         loaded: Freedoms whose load no contact takes.
         absurd: Whether numbers are of another scale than the bearing.
-        force: Of the solution [N, N m].
+        force: Force of the solution [N, N m].
     """
     result = jnp.maximum(minimum.result, of_elements)
     result = jnp.where(
@@ -132,6 +132,6 @@ def _ending(
 
 
 def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Int[Array, ""]:
-    """Freedom that runs away: the axial one if it takes part, else the largest."""
+    """Freedom that diverges: the axial one if it takes part, else the largest."""
     size = jnp.abs(y) * free
     return jnp.where(size[2] > 0.1 * jnp.max(size), 2, jnp.argmax(size))

@@ -1,4 +1,4 @@
-"""The search for the equilibrium under a load, and what it asks of the bearing model.
+"""The search for the equilibrium under a load, and its calls of the bearing model.
 
 Minimises V(q) - load·q over the free freedoms of the moving ring. With linearised
 kinematics this is convex, so the trust-region Newton method on the exact V, V′, V″
@@ -36,11 +36,11 @@ SLOTS, IDLE = 64, 4
 
 
 class Known(NamedTuple):
-    """What an evaluation of the energy leaves.
+    """State kept from an evaluation of the energy.
 
     Attributes:
-        solved: The rolling elements.
-        stiffness: Of the free unknowns, zero of the held ones (6, 6) [N/m].
+        solved: The solved rolling elements.
+        stiffness: Stiffness of the free unknowns, zero for held ones (6, 6) [N/m].
     """
 
     solved: Solved
@@ -48,16 +48,16 @@ class Known(NamedTuple):
 
 
 class Beginning(NamedTuple):
-    """Where a search begins.
+    """Start of a search.
 
     Attributes:
         y: First unknowns (6,) [m].
         step: First bound of the steps [m].
-        limit: Size of the unknowns beyond which nothing holds the load [m].
-        load: What the load does along the free unknowns (6,) [N].
+        limit: Size of the unknowns beyond which the load is not supported [m].
+        load: Components of the load along the free unknowns (6,) [N].
         size: Its size [N].
         inertia: Largest inertia force of a rolling element [N].
-        factor: How many times the load the search begins with, at least 1.
+        factor: Multiple of the load at the start of the search, at least 1.
     """
 
     y: Float[Array, "6"]
@@ -85,7 +85,7 @@ def beginning(
         rows: Designs of the rows.
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        start: As of `solve_load`.
+        start: As in `solve_load`.
     """
     load, radius = balance.along(balance.load), balance.radius
     size = jnp.sqrt(load @ load)
@@ -111,12 +111,12 @@ def search(
     begin: Beginning,
     options: SolveOptions,
 ) -> Minimum:
-    """Where the energy less the work of the load is least. Without derivatives.
+    """Minimise the energy less the work of the load. Without derivatives.
 
     Args:
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        begin: Where the search begins.
+        begin: Start of the search.
         options: Settings, the tolerance among them.
     """
     solver = TrustRegionNewton(symmetric=model.has_potential, softest=0.03)
@@ -183,15 +183,15 @@ def differentiable(
 ) -> Float[Array, "6"]:
     """The unknowns found, differentiable by the implicit function theorem [m].
 
-    In directions in which the ring floats, aslant of the axes too, derivatives by a
-    load along them are infinite: the least load moves the ring until other elements
-    bear. By all else they are zero there. If no element bears on both rings, at rest or
-    at speed, it floats in all that is free.
+    In directions in which the ring floats, also oblique ones, derivatives by a load
+    along them are infinite: the smallest load moves the ring until other elements carry
+    load. All other derivatives are zero there. If no element contacts both rings, at
+    rest or at speed, the ring floats in all free directions.
 
     Args:
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        minimum: What the search found; its memory is `Known`.
+        minimum: Result of the search; its memory is `Known`.
     """
     # All that is traced goes through the arguments: a derivative rule must not close
     # over it.
@@ -220,9 +220,9 @@ def _floating(stiffness, free):
 
 
 def _by_stiffness(stiffness, force, floating, symmetric):
-    """How far the unknowns give way [m], none of it along those that float.
+    """Displacement of the unknowns [m] under a force, zero along those that float.
 
-    What nothing holds would else move by round-off over round-off, and drown the rest.
+    Along unrestrained directions it would be round-off divided by round-off.
     """
     size = jnp.max(jnp.diagonal(stiffness))
     force = force - floating @ force

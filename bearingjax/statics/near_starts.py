@@ -1,4 +1,4 @@
-"""Where the cases of a sweep start: from the nearest of the cases solved before.
+"""Starts of the cases of a sweep: from the nearest of the cases solved before.
 
 The first chunk starts from first contact, every other case from a solved one that is
 near in direction and size of its load and in all else that cases differ in, moved by
@@ -30,17 +30,17 @@ KEPT = 1024
 FAR = 1.5
 """Distance beyond which a case starts from first contact [1]. Directions of loads are
 at most 2 apart, sizes by half the logarithm of their ratio, all else by its share of
-what the sweep spans."""
+the range of the sweep."""
 
 _PARTS = slice(0, 2), slice(2, 3), slice(3, 5)
 """Radial force, axial force, moment."""
 
 _COORDINATES = 8
-"""Numbers that tell designs apart."""
+"""Number of coordinates that distinguish designs."""
 
 
 class Likeness(NamedTuple):
-    """What the cases of a sweep have in common. Static.
+    """Properties that the cases of a sweep have in common. Static.
 
     Attributes:
         free: Which freedoms of the moving ring are free.
@@ -58,12 +58,12 @@ class Known(NamedTuple):
     """Solved cases, turned towards +x; behind `KEPT` room for a chunk that is not read.
 
     Attributes:
-        load: On the moving ring [N, N m].
+        load: Load on the moving ring [N, N m].
         other: From `others`.
-        displacement: Of the moving ring [m, rad].
-        stiffness: Of it.
+        displacement: Displacement of the moving ring [m, rad].
+        stiffness: Stiffness of the moving ring.
         usable: Whether cases may start from it.
-        count: How many there are.
+        count: Number of solved cases.
     """
 
     load: Float[Array, "known 6"]
@@ -79,7 +79,7 @@ def nothing_known(lanes: int, devices: int, coordinates: int) -> Known:
 
     Args:
         lanes: Cases of a chunk.
-        devices: How many.
+        devices: Number of devices.
         coordinates: Columns of `others`.
     """
     n = devices * (KEPT + lanes)
@@ -92,11 +92,11 @@ def nothing_known(lanes: int, devices: int, coordinates: int) -> Known:
 def likeness(
     element: BearingElement[Any], cases: Cases, options: SolveOptions
 ) -> Likeness:
-    """What the cases have in common.
+    """Return the properties that the cases of a sweep have in common.
 
     Args:
         element: The bearing or designs.
-        cases: Of the sweep.
+        cases: Cases of the sweep.
         options: Settings.
     """
     restrained = restrained_freedoms(element.bearing)
@@ -117,11 +117,11 @@ def likeness(
 
 
 def others(element: BearingElement[Any], cases: Cases) -> np.ndarray:
-    """What cases differ in besides their loads, in shares of its range (case, k) [1].
+    """Differences of cases other than loads, as shares of the range (case, k) [1].
 
     Args:
         element: The bearing or designs.
-        cases: All of the sweep.
+        cases: All cases of the sweep.
     """
     speeds = (cases.inner_speed, cases.outer_speed)
     leaves = jax.tree.leaves((cases.prescribed, cases.fixed_displacement, speeds))
@@ -168,7 +168,7 @@ def starts(
     own = jnp.diagonal(known.stiffness, axis1=1, axis2=2)
     counted = known.usable[:, None] & free[None] & (own > 0)
     soft = jnp.where(counted, -0.5 * jnp.log(jnp.where(counted, own, 1.0)), 0.0)
-    # What a load does, not its unit, makes loads alike.
+    # Loads are alike by their effect, not by their unit.
     count = jnp.sum(known.usable, dtype=load.dtype)
     scale = jnp.exp(soft.sum(axis=0) / jnp.maximum(count, 1.0))
     scale = jnp.where(free, scale, 0.0)[None]
@@ -194,7 +194,7 @@ def starts(
 
 
 def _place(load, other):
-    """Coordinates of cases: those near each other have answers near each other."""
+    """Coordinates of cases: cases near each other have solutions near each other."""
     size = jnp.sqrt(jnp.sum(load**2, axis=1, keepdims=True))
     size = jnp.where(size > 0, size, 1.0)
     # In a direction that has play and no load, any place within the play is an answer.
@@ -207,12 +207,12 @@ def _place(load, other):
 def added(
     known: Known, solutions: Solution, cases: Cases, other: Any, alike: Likeness
 ) -> tuple[Known, Bool[Array, " case"]]:
-    """With a chunk of solved cases; and which of these are not to be started from.
+    """Add a chunk of solved cases; return all, and which are not valid as starts.
 
     Args:
         known: Solved cases.
-        solutions: Of the chunk, leading axis case.
-        cases, other, alike: As of `starts`.
+        solutions: Solutions of the chunk, leading axis case.
+        cases, other, alike: As in `starts`.
     """
     load = cases.load
     back = -_angle(load, alike.pitch)
@@ -236,7 +236,7 @@ def added(
 
 
 def _angle(load, pitch):
-    """By how much loads (case, 6) lie off +x, in whole pitches (case,) [rad]."""
+    """Angle of loads (case, 6) from +x, in whole pitches (case,) [rad]."""
     if not pitch:
         return jnp.zeros_like(load[:, 0])
     radial = jnp.any(load[:, :2] != 0, axis=1)

@@ -1,4 +1,4 @@
-"""How loads are solved: the settings that every solve of the package takes."""
+"""Settings that every load solve of the package takes."""
 
 import dataclasses
 from collections.abc import Sequence
@@ -59,7 +59,7 @@ class SolveOptions(eqx.Module):
         return RINGS[1 - RINGS.index(self.fixed_ring)]
 
     def for_dtype(self, dtype: Any) -> "SolveOptions":
-        """The same with a tolerance of this dtype, the default one if none is given."""
+        """Return options with a tolerance of this dtype, by default the usual one."""
         given = self.tolerance
         tolerance = DEFAULT_TOLERANCE[str(dtype)] if given is None else given
         return dataclasses.replace(self, tolerance=as_array(tolerance, dtype))
@@ -100,7 +100,7 @@ def check_names(owner: str, what: str, names: Sequence[str]) -> None:
     Args:
         owner: The function that was called.
         what: Its parameter.
-        names: What it was given.
+        names: Names that it was given.
     """
     unknown = [name for name in names if name not in FREEDOMS]
     if unknown:

@@ -1,5 +1,5 @@
-"""Preload by force: the ring offsets that give a set an axial preload, and what there
-is of it."""
+"""Preload by force: the ring offsets that give a set an axial preload, and the preload
+that remains."""
 
 from typing import Any
 
@@ -19,7 +19,7 @@ from .support import restrained_freedoms
 def preload(
     element: BearingElement[Any], force: Scalar | float, *, throw: bool = True
 ) -> BearingElement[Any]:
-    """The set, its rings ground so that its rows press each other with a given force.
+    """Return the set with its rings ground so that its rows have a given preload.
 
     With the rings coaxial, at rest and unloaded, the rows that carry load along +z bear
     `force` together, and so do those that carry load along -z. Rows of the same side
@@ -83,11 +83,11 @@ def remaining_preload(
 
     Args:
         element: A set with rows of both sides.
-        speed: Of the rings, which moves balls outwards; `None`: at rest.
+        speed: Speeds of the rings, which moves balls outwards; `None`: at rest.
         throw: Raise if the solve fails; otherwise the force is then NaN.
 
     Returns:
-        What the rows that carry load along +z bear together, on their inner rings;
+        Sum of the loads of the rows that carry load along +z, on their inner rings;
         differentiable.
 
     Raises:
@@ -104,10 +104,10 @@ def remaining_preload(
 
 
 def pressed(solution: Solution) -> Scalar:
-    """Axial force that the rows which carry load along +z bear, on their inner rings.
+    """Axial force on the inner rings of the rows that carry load along +z [N].
 
     Args:
-        solution: Of a set with rows of both sides.
+        solution: Solution of a set with rows of both sides.
 
     Returns:
         The force [N], NaN if the solve did not converge.

@@ -1,4 +1,4 @@
-"""Load ratings of a bearing: what its fatigue life and its static safety refer to.
+"""Load ratings of a bearing, the reference of fatigue life and static safety.
 
 Radial bearings are rated by a radial load, thrust bearings and bearings with contact
 angles above 45 degrees by an axial one, as in catalogues (`rated_axially`). A pair or
@@ -129,7 +129,7 @@ def static_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
     five times its mean share of a radial load.
 
     Args:
-        bearing: As in `dynamic_capacity`, grooves and rows likewise.
+        bearing: As in `dynamic_capacity`, also for grooves and rows.
 
     Returns:
         C0, radial or axial (`rated_axially`), differentiable; its slope jumps where the
@@ -247,8 +247,8 @@ def _row(bearing) -> BallRow | RollerRow:
 def nominal_contact_angle(bearing: AbstractBearing) -> Scalar:
     """Nominal contact angle of the standards [rad].
 
-    Zero of a deep groove ball bearing whatever its clearance; of a taper that of its
-    outer raceway; of a mounted bearing that of the drawing.
+    Zero for a deep groove ball bearing of any clearance; for a tapered roller bearing
+    the angle of its outer raceway; for a mounted bearing the angle of the drawing.
 
     Args:
         bearing: A single row.
@@ -266,7 +266,7 @@ def nominal_contact_angle(bearing: AbstractBearing) -> Scalar:
 
 
 def arc_rows(bearing: AbstractBearing) -> int:
-    """How many rows the standards count in one row of elements: 2 of four-point balls.
+    """Number of rows that the standards count in a row: 2 for four-point balls.
 
     Under radial load each of their balls bears on two pairs of arcs, which tire as the
     raceways of two rows do. The factors of their equivalent load are those of two rows

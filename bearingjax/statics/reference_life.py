@@ -49,9 +49,9 @@ class Fatigue(NamedTuple):
         spread: e of Weibull's distribution.
         radial: J of the outer and the inner raceway, load turning against the inner.
         ratio: J_inner/J_outer as the standard rounds it.
-        reduction: Of C against evenly loaded contacts; radial and thrust bearings.
-        lamina: Of the load by which a part of a radial bearing enters a_ISO against
-            that of statics.
+        reduction: C over that of evenly loaded contacts; radial and thrust bearings.
+        lamina: Load by which a part of a radial bearing enters a_ISO, over that of
+            statics.
     """
 
     load: tuple[int, int]

@@ -74,10 +74,10 @@ def refine(
             the largest load on the raceway.
         raceway: "inner" or "outer".
         speed: Ring speeds of the solution.
-        free_ends: As of `RollerContact`.
+        free_ends: As in `RollerContact`.
         grid: The cells; `None`: 35 by 64, graded, of a width found by coarse solves,
             which takes concrete numbers.
-        solver: As of `solve_pressure`.
+        solver: As in `solve_pressure`.
         throw: Whether to raise if it does not converge.
 
     Returns:
@@ -145,7 +145,7 @@ def roller_contact(
         row: Solved rollers of one row.
         bearing: Its design.
         ring: 0: outer, 1: inner raceway.
-        free_ends: As of `RollerContact`.
+        free_ends: As in `RollerContact`.
     """
     constants = row.element.constants
     half, sign = bearing.half_angle, 1.0 - 2.0 * ring
@@ -183,7 +183,7 @@ def _row_of(element, solution, roller, speed):
 
 
 def _slices(row, ring, a, b, y) -> Slices:
-    """What the bearing's own slices give at y."""
+    """Load and pressure of the bearing's own slices at y."""
     constants = row.element.constants
     line: AbstractLineContact = constants.lines[ring]
     xi = y / constants.half_length

@@ -31,7 +31,7 @@ def refined_lamina_loads(
         element: The bearing that was solved.
         solution: Its solution, a single one that converged.
         n_laminae: Laminae of a roller, at least 30.
-        speed, grid: As of `refine`.
+        speed, grid: As in `refine`.
 
     Returns:
         (roller, 2, lamina) [N]: π ρ p²/E* of the largest pressure p across the contact

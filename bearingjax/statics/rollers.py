@@ -54,7 +54,7 @@ class RollerResults(eqx.Module):
 
     @property
     def edge_loaded(self) -> Bool[Array | np.ndarray, "*case roller 2 2"]:
-        """Which roller ends bear more than `EDGE_PRESSURE`."""
+        """Whether each roller end has a pressure above `EDGE_PRESSURE`."""
         return self.edge_pressure > EDGE_PRESSURE
 
 
@@ -85,9 +85,9 @@ class Distribution(NamedTuple):
 
     Attributes:
         position: (point,) [m].
-        line_load, contact_pressure, contact_half_width: As of `RollerResults`.
+        line_load, contact_pressure, contact_half_width: As in `RollerResults`.
         roller_pressure: Largest pressure (roller, 2) [Pa], whatever the positions.
-        edge_load, edge_pressure: As of `RollerResults`.
+        edge_load, edge_pressure: As in `RollerResults`.
     """
 
     position: Array

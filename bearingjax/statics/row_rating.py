@@ -35,14 +35,14 @@ _LARGE_BALL = 25.4
 
 
 class BallKind(NamedTuple):
-    """What the standards say of one type of ball bearing.
+    """Constants of the standards for one type of ball bearing.
 
     Attributes:
         reduction: λ of f_c [1].
-        counted: Osculations, outer and inner, that f_c is made with [1]; `None`: a
-            sphere about the middle of the bearing.
-        open: Osculations up to which the table of f_c holds, and that f_0 is made
-            with [1].
+        counted: Osculations, outer and inner, from which f_c is computed [1]; `None`:
+            a sphere about the centre of the bearing.
+        open: Osculations up to which the table of f_c holds, and from which f_0 is
+            computed [1].
         stress: Peak pressure under the static rating [Pa].
     """
 
@@ -100,9 +100,9 @@ class Rows(NamedTuple):
 
     Attributes:
         row: One of them.
-        kind: What the standards say of their type; `None` of rollers.
-        count: How many there are.
-        one_way: How many bear an axial load together: of two sides the weaker.
+        kind: Constants of the standards for their type; `None` for rollers.
+        count: Number of rows.
+        one_way: Number of rows that share an axial load: the weaker of two sides.
     """
 
     row: BallRow | RollerRow
@@ -263,7 +263,7 @@ def _ball_factor(row, kind, weight):
 
 
 def _raceways(row, kind, weight, gamma):
-    """What both raceways make of f_c by their osculations and their size."""
+    """Factor of f_c from the osculations and the radii of both raceways."""
 
     def share(outer, inner):
         # 2 r/(2 r - D) of the groove radii r.

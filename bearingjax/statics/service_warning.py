@@ -30,13 +30,13 @@ def seat_warnings(
     it; one against which the load stands still may be loose.
 
     Args:
-        mounted: Mounted, at rest, at the temperature of the measured sizes; concrete,
-            likewise below.
-        operating: In operation.
-        loosest: In operation, at the sizes that leave the largest clearance; `None`:
-            not looked at.
-        speed: Of the rings; `None`: at rest, where nothing creeps.
-        load_fixed_to: As of `LifeConditions`.
+        mounted: State mounted, at rest, at the temperature of the measured sizes;
+            concrete, as all states.
+        operating: State in operation.
+        loosest: State in operation, at the sizes with the largest clearance; `None`:
+            not checked.
+        speed: Speeds of the rings; `None`: at rest, where nothing creeps.
+        load_fixed_to: As in `LifeConditions`.
 
     Source: rule of catalogues of rolling bearings: rotating load, tight fit.
     """
@@ -88,7 +88,7 @@ def speed_warnings(
 
     Args:
         turns: Speed of one ring against the other, of one or many cases [rad/s].
-        limiting_speed: To which the maker's bearing of standard make may run [rad/s].
+        limiting_speed: Speed limit of the maker's standard bearing [rad/s].
         reference_speed: At which it warms by the 50 K of the reference [rad/s].
 
     Source: ISO 15312 of the reference speed.

@@ -73,11 +73,11 @@ class Solution(eqx.Module):
             against the load, if the result is `NO_LOAD_PATH`; otherwise -1 (also if
             it is a rolling element that no contact holds).
         stats: Statistics of the load solve.
-        spring_travel: How far the spring has slid the ring of each row on its seat,
+        spring_travel: Travel of the ring of each row on its seat by its spring,
             closing the row (row,) [m]; zero without a spring, `None` if no row has one.
         spring_force: Force of each row's spring (row,) [N], or `None`.
         row_sizes: Number of rolling elements of each row.
-        pitch_radius: Of the bearing, the largest of a set [m].
+        pitch_radius: Pitch radius of the bearing, the largest of a set [m].
         element: The bearing that was solved.
         speed: Ring speeds, or `None`.
         free: Freedoms of the moving ring that were free.
@@ -112,7 +112,7 @@ class Solution(eqx.Module):
 
     @property
     def load_zone(self) -> Bool[Array | np.ndarray, "*case element"]:
-        """Which rolling elements carry load between the raceways, above round-off."""
+        """Whether each element carries load between the raceways, above round-off."""
         return above_round_off(self.roller_load).all(axis=-1)
 
     @property
@@ -134,7 +134,7 @@ def check_single(owner: str, solution: Solution) -> None:
 
     Args:
         owner: Function that was called.
-        solution: What it was given.
+        solution: Object that it was given.
 
     Raises:
         ValueError: For a solution with a leading case axis.
@@ -245,7 +245,7 @@ def contact_results(
     """Results of the contacts of solved rows; register a new kind of choices here.
 
     Args:
-        choices: Of the element.
+        choices: Choices of the element.
         bearing: Its design.
         rows: Its solved rows.
         points: Positions along a rolling element.

@@ -69,7 +69,7 @@ def spectrum_life(
 
 
 def revolutions_per_hour(cases: Cases, xp: Any = jnp) -> Any:
-    """Of one ring against the other (case,) [1/h], or `None` without speeds.
+    """Revolutions of one ring relative to the other (case,) [1/h]; `None`: no speeds.
 
     Args:
         cases: Operating cases.

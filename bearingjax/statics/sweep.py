@@ -40,7 +40,7 @@ SUMMARIES: dict[str, Callable[[Solution], Array]] = {
     "iterations": lambda s: s.stats.iterations,
     "residual": lambda s: s.stats.residual,
 }
-"""Outputs beside the fields of a Solution: largest contact pressure [Pa], largest load
+"""Outputs other than fields of a Solution: largest contact pressure [Pa], largest load
 of a rolling element [N], number of loaded elements, steps of the load solve, residual.
 """
 
@@ -76,11 +76,11 @@ class Sweep(eqx.Module):
 
     @property
     def converged(self) -> Bool[np.ndarray, " case"]:
-        """Which cases were solved."""
+        """Whether each case was solved."""
         return np.asarray(self.outputs["result"]) == Result.CONVERGED
 
     def counts(self) -> dict[str, int]:
-        """How many cases ended with each result code, by its label."""
+        """Number of cases with each result code, by label."""
         codes, counts = np.unique(self.outputs["result"], return_counts=True)
         pairs = zip(codes, counts, strict=True)
         return {Result(int(code)).label: int(count) for code, count in pairs}
@@ -108,7 +108,7 @@ def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any
     """Designs of one structure as one element whose numbers have a leading axis.
 
     Args:
-        elements: Of the same classes, counts and parts.
+        elements: Elements of the same classes, counts and parts.
 
     Raises:
         TypeError: If one is no BearingElement.
@@ -259,7 +259,7 @@ def _output(solution, name) -> Any:
 
 
 def _kept(outputs: Any) -> tuple[Any, tuple[str, ...]]:
-    """What is kept of a solution, and the names of what is kept of its life."""
+    """Function for the outputs of a solution, and the names of the life outputs."""
     if callable(outputs):
         return outputs, ()
     names = _checked(outputs)

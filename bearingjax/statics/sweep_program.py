@@ -44,14 +44,14 @@ WARNED = "warning_"
 
 
 class Task(eqx.Module):
-    """What is done with every case.
+    """Operations that a sweep performs on every case.
 
     Attributes:
-        options: How it is solved.
-        keep: Of a Solution, the outputs by name.
+        options: Settings of the load solve.
+        keep: Function Solution -> outputs by name.
         warn: Whether to look for warnings.
-        lives: Names of `LIFE_OUTPUTS` that are kept too.
-        life: Conditions of the life; `None`: it is not looked at.
+        lives: Names of the `LIFE_OUTPUTS` that are also kept.
+        life: Conditions of the life; `None`: no life is computed.
 
     Traced: the numbers of `options` and `life`. Static: all else.
     """
@@ -63,13 +63,13 @@ class Task(eqx.Module):
     life: LifeConditions | None = None
 
     def solve(self, element, case, start=None) -> Solution:
-        """The solution of a case, in the design that it chooses."""
+        """Solve a case, with the design that it selects."""
         if case.design is not None:
             element = jax.tree.map(lambda leaf: leaf[case.design], element)
         return solve_case(element, case, self.options, start)
 
     def outputs(self, solution) -> dict[str, jax.Array]:
-        """What is kept of a solution; numbers of a failed one are NaN."""
+        """Outputs of a solution by name; floats of a failed solve are NaN."""
         solved = solution.converged
 
         def told(value):
@@ -92,7 +92,7 @@ class Task(eqx.Module):
 
 
 def _arrays(kept) -> dict[str, jax.Array]:
-    """What a function for `outputs` returned, if it is a dict of arrays."""
+    """Check that an `outputs` function returned a dict of arrays; return the arrays."""
     if not isinstance(kept, dict):
         raise TypeError(
             f"sweep: `outputs` returns a {type(kept).__name__}; it must return a dict"
@@ -112,9 +112,9 @@ class Program:
 
     Args:
         element: The bearing or designs.
-        task: What is done with every case.
+        task: Operations on every case.
         chunk: Cases of a batch.
-        devices: Where to.
+        devices: Devices to run on.
     """
 
     def __init__(self, element, task, chunk, devices):
@@ -125,8 +125,8 @@ class Program:
         """All outputs of all cases, NumPy arrays by name; after `stop` the rest are
         `NOT_RUN`.
 
-        What starts near by and ends without a sound answer is solved again from first
-        contact.
+        Cases started near by that end without a valid result are solved again from
+        first contact.
         """
         held = jax.tree.map(np.asarray, (cases, others(self.element, cases)))
         found = self._blocks(held, cases.count, near, progress, stop)
@@ -139,7 +139,7 @@ class Program:
         return found
 
     def _blocks(self, held, like, near, progress=False, stop=None):
-        """Outputs of cases, in blocks as of a sweep of `like` cases."""
+        """Outputs of cases, in blocks as in a sweep of `like` cases."""
         n, devices = held[0].count, self.mesh.size
         lanes = min(self.chunk, math.ceil(like / devices))
         chunks = min(max(1, BLOCK // lanes), math.ceil(like / (devices * lanes)))
@@ -191,8 +191,8 @@ class Program:
 
 @program
 def _solve_block(element, given, known, near, task, lanes, alike, mesh):
-    """A block of cases, each device its share in chunks of `lanes`, from all over the
-    share and each from what is known by then; and what is known in the end."""
+    """Solve a block of cases, each device its share in shuffled chunks of `lanes`, each
+    started from the solved cases; return outputs and the solved cases at the end."""
     arrays, static = eqx.partition((element, task), eqx.is_array)
 
     def share(arrays, given, known, near):
@@ -242,23 +242,23 @@ def _spread(array, sharding):
 
 
 def _whole(array):
-    """A global array on this host."""
+    """Copy a global array to this host."""
     if array.is_fully_addressable:
         return np.asarray(array)
     return np.asarray(multihost_utils.process_allgather(array, tiled=True))
 
 
 def _wait(values):
-    """Until they are there; signals are heard meanwhile, which NumPy would not do."""
+    """Wait until arrays are computed; unlike NumPy, handle signals meanwhile."""
     while not all(value.is_ready() for value in values.values()):
         time.sleep(_PAUSE)
 
 
 def not_run(name: str, dtype: np.dtype) -> int | float:
-    """What an output holds of a case that was not run.
+    """Return the value of an output for a case that was not run.
 
     Args:
-        name: Of the output.
+        name: Name of the output.
         dtype: Its type.
     """
     if name == "result":

@@ -26,10 +26,10 @@ from .warning import given
 ENDINGS = (".csv", ".parquet", ".xlsx")
 
 MOST_ROWS = 2**20 - 1
-"""Most rows of a sheet of Excel beside its header."""
+"""Largest number of rows of an Excel sheet, without the header."""
 
 NOTHING = 1e-12
-"""Size of a result below which it is as good as none."""
+"""Size of a result below which it counts as zero."""
 
 WARNINGS = "warnings"
 """Header of the column of warnings."""
@@ -50,7 +50,7 @@ OPERATING_CLEARANCE = "operating_radial_clearance"
 """Output of sweeps of bearings on their seats: the clearance with which they run."""
 
 OPERATING_PRELOAD = "operating_preload"
-"""Likewise of sets: the force with which their rows press each other, unloaded."""
+"""Output of sweeps of sets on their seats: the preload between the unloaded rows."""
 
 _FIELD_OF = {
     "peak_pressure": "roller_pressure",
@@ -66,8 +66,8 @@ def columns(
 ) -> dict[str, np.ndarray]:
     """A sweep as columns by header, "name [unit]": first the cases, then the results.
 
-    Arrays are spread over columns, `displacement_inner_uy [m]`. What is zero in every
-    case has no column, be it by construction (`left_out`) or by the loads. The result
+    Arrays are spread over columns, `displacement_inner_uy [m]`. Values that are zero in
+    every case, by construction (`left_out`) or load, have no column. The result
     is the code's label; where it is not "converged", numbers are NaN. `warnings` holds
     the kinds of warning that are given for a case, each with its size.
 
@@ -129,7 +129,7 @@ def check_writable(path: Path, rows: int = 0) -> None:
     """Raise unless `write` can write this format. Call it before a long sweep.
 
     Args:
-        path: Of the table.
+        path: Path of the table.
         rows: How many it will have, if that is known.
 
     Raises:
@@ -171,7 +171,7 @@ def write(
 def write_columns(found: Mapping[str, np.ndarray], path: str | Path) -> None:
     """Write columns to a file: .csv and .parquet with pyarrow, .xlsx with openpyxl.
 
-    In a sheet of Excel what is not finite is an empty cell, and numbers have 16 digits.
+    In an Excel sheet non-finite values are empty cells, and numbers have 16 digits.
 
     Args:
         found: Columns by header, of the same length.
@@ -291,10 +291,10 @@ def restored(
 
     Args:
         table: From `read`.
-        like: Outputs of a sweep of the same kind, such as of some of its cases: their
+        like: Outputs of a sweep of the same kind, e.g. of some of its cases: their
             names, shapes and dtypes are taken; a column that they do not have, but for
             zeros, may be missing.
-        zeros: As of `left_out`.
+        zeros: As in `left_out`.
 
     Returns:
         Outputs by name; `unrestrained`, which no table holds, is -1, and a warning
@@ -351,7 +351,7 @@ def asked(cases: Cases) -> dict[str, np.ndarray]:
     without those that are zero in all of them.
 
     Args:
-        cases: Of the sweep.
+        cases: Cases of the sweep.
     """
     out: dict[str, np.ndarray] = {}
     for k, name in enumerate(LOADS):
@@ -384,9 +384,9 @@ def spread(
     """Headers and columns of an output with any number of axes.
 
     Args:
-        name: Of the output.
+        name: Name of the output.
         values: Its values (case, …).
-        zeros: As `left_out`.
+        zeros: As in `left_out`.
 
     Yields:
         Header, "name_axis [unit]", and column (case,), or `None` where all is zero
@@ -403,7 +403,7 @@ def spread(
 
 
 def column_header(name: str, unit: str) -> str:
-    """Of a column: the unit in brackets, if there is one."""
+    """Header of a column, with the unit, if any, in brackets."""
     return f"{name} [{unit}]" if unit else name
 
 

@@ -64,7 +64,7 @@ def sizes(solution: Solution) -> dict[str, Any]:
     """Size of every kind of warning that can arise; NaN if the solve failed.
 
     Args:
-        solution: Of one case, traced or not.
+        solution: Solution of one case, traced or not.
     """
     xp = namespace(solution.result)
     solved = solution.result == 0
@@ -77,7 +77,7 @@ def sizes(solution: Solution) -> dict[str, Any]:
 
 
 def given(warned: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Which cases have each kind, by name (case,); kinds without cases left out.
+    """Whether each case has each kind, by name (case,); kinds without cases left out.
 
     Args:
         warned: Name -> `sizes`, and `life_sizes` (case,).
@@ -95,7 +95,7 @@ def counted(warned: dict[str, np.ndarray]) -> list[str]:
     """The sentences of many cases: each kind once, with its worst case.
 
     Args:
-        warned: As of `given`.
+        warned: As in `given`.
     """
     out = []
     for name, cases in given(warned).items():

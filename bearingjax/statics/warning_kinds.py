@@ -1,4 +1,4 @@
-"""Every kind of warning: a number of the solution, the largest allowed, and words."""
+"""Every kind of warning: a value of the solution, its limit and the text."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

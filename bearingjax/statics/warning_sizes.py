@@ -37,11 +37,11 @@ SOFTEST = 1e-7
 tilt stiffness of a bearing under 0.1 N."""
 
 SOFTEST_SHIFT = 3e-5
-"""Likewise for x, y and z alone: the stiffness under less than 1e-6 N, a force that the
-solver may leave where there is no load."""
+"""The same limit for x, y and z only: the stiffness under less than 1e-6 N, a residual
+force of the solver where there is no load."""
 
 _ROUND_OFF = 1e-9
-"""Likewise, as a share of the largest stiffness [1]."""
+"""Stiffness up to which a direction counts as free, over the largest stiffness [1]."""
 
 LARGEST_TILT_ERROR = 0.03
 """Largest error of small rotations, over the largest approach [1]."""
@@ -72,7 +72,7 @@ LARGEST_ANGLE = math.radians(75.0)
 reaches so far is 0.39 ball diameters high: twice the usual, and more than any."""
 
 LAND_SHARE = 0.05
-"""Share of a contact's load beyond the bottom of its groove above which it is told."""
+"""Share of a contact's load beyond the groove bottom that gives a warning [1]."""
 SMALLEST_LIFT = 0.05
 """Centrifugal force of a lifted ball over the largest load of a contact up to which it
 does not matter [1]: what such balls would carry at rest is less than that, and their
@@ -322,7 +322,7 @@ def tilt_error(solution: Solution) -> Any:
 
 
 def free_tilt(solution: Solution) -> Any:
-    """Tilt that follows from the load alone, over that which makers allow for [1]."""
+    """Tilt that follows from the load alone, over the limit of makers [1]."""
     mine = 6 * RINGS.index(solution.moving_ring)
     free = [FREEDOMS.index(name) for name in ("gx", "gy") if name in solution.free]
     square = sum(solution.displacement[mine + k] ** 2 for k in free)
@@ -390,7 +390,7 @@ def speed_factor(solution: Solution) -> Any:
 
 
 def _implausible(bearing):
-    """(name, value, unit, odd) of every number with a usual range."""
+    """(name, value, unit, implausible) of every design value with a usual range."""
     materials = [bearing.material]
     if bearing.ring_material is not None:
         materials.append(bearing.ring_material)
@@ -402,7 +402,7 @@ def _implausible(bearing):
 
 
 def oddities(solution: Solution) -> Any:
-    """How many numbers of the design are far outside their usual ranges."""
+    """Number of design values far outside their usual ranges."""
     rows = rows_of(solution.element.bearing)
     odd = [odd for row in rows for *_, odd in _implausible(row.bearing)]
     return sum(_one(solution, flag) for flag in odd)
@@ -443,10 +443,10 @@ def truncated_balls(solution: Solution) -> str:
 
 
 def on_land(solution: Solution) -> Any:
-    """Where balls carry more than `LAND_SHARE` of a load beyond the bottom of their
+    """Whether balls carry more than `LAND_SHARE` of a load beyond the bottom of their
     groove (ball, 2).
 
-    There the raceway goes on as a cylinder, whose normal has no part along the axis.
+    There the raceway continues as a cylinder, whose normal has no axial component.
     Of a Hertzian contact that is cut at x of its half-length from the middle, the share
     1/2 - 3x/4 + x³/4 lies beyond; in the middle, and past it, one half is counted.
     """
@@ -469,13 +469,13 @@ def on_land(solution: Solution) -> Any:
 
 
 def on_land_count(solution: Solution) -> Any:
-    """How many balls `on_land` counts."""
+    """Number of balls that `on_land` marks."""
     return _one(solution, on_land(solution).any(axis=1)).sum()
 
 
 def lifted(solution: Solution) -> Any:
-    """Which balls run on the outer raceway alone, pressed there by a centrifugal force
-    that is not small beside the loads (ball,).
+    """Whether each ball runs on the outer raceway only, pressed there by a centrifugal
+    force that is not small compared with the loads (ball,).
 
     Outside the load zone balls lie on the outer raceway at any speed.
     """
@@ -488,7 +488,7 @@ def lifted(solution: Solution) -> Any:
 
 
 def lifted_count(solution: Solution) -> Any:
-    """How many balls `lifted` counts."""
+    """Number of balls that `lifted` marks."""
     return _one(solution, lifted(solution)).sum()
 
 
@@ -498,5 +498,5 @@ def edge_pressure(solution: Solution) -> Any:
 
 
 def ends_over(solution: Solution) -> Any:
-    """Which rollers are edge-loaded on each raceway (roller, 2)."""
+    """Whether each roller is edge-loaded on each raceway (roller, 2)."""
     return (_of_rollers(solution).edge_pressure > EDGE_PRESSURE).any(axis=2)

@@ -1,4 +1,4 @@
-"""Which numbers of a sweep are zero whatever the case."""
+"""Names of the numbers of a sweep that are zero in every case."""
 
 from ..design import AbstractRollerBearing, rows_of
 from ..design.rib import RIB_NAMES
@@ -19,9 +19,9 @@ def zero_names(
     not there.
 
     Args:
-        element: What is solved.
-        cases: With what.
-        options: And how.
+        element: Solved element.
+        cases: Its operating cases.
+        options: Settings.
 
     Returns:
         (output, names such as "outer_ux", as the columns of a table have them), each.

@@ -1,6 +1,6 @@
 """Elastic contact without Hertz's assumptions: bodies as half-spaces, cell by cell.
 
-Slices know nothing of their neighbours, and end values are what a profile is made for.
+Slices are independent of their neighbours, while profiles are made for the end values.
 Here roller and raceway are elastic half-spaces; preconditioned conjugate gradients take
 a score of steps on any grid, and cells graded towards the ends save most of the grid:
 

@@ -12,7 +12,7 @@ from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 
 WEDGE = 0.5 * np.pi * (1.0 / (0.5 * np.pi + 1.0) + 1.0 / (0.5 * np.pi - 1.0)) - 1.0
-"""Factor far along the edge: a line load on a wedge of 90 degrees beside one on a
+"""Factor far along the edge: a line load on a wedge of 90 degrees relative to one on a
 half-plane, less the load itself, 2.363."""
 
 _FACTOR = (

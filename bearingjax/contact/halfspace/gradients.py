@@ -51,7 +51,7 @@ class AbstractPressureSolver(eqx.Module):
         """
 
     def loop(self) -> Loop:
-        """All of it as an iteration."""
+        """Return the solver as an iteration."""
         return Loop(self.init, self.step, self.terminate, self.finish)
 
 
@@ -71,7 +71,7 @@ class _State(NamedTuple):
 
 
 class ConjugateGradients(AbstractPressureSolver):
-    """Conjugate gradients over the cells in contact, which come and go.
+    """Conjugate gradients over the cells in contact, an active set.
 
     Every direction keeps load and moment. Cells whose pressure would turn negative
     leave all at once, load and moment are then restored; should that not lower the
@@ -242,7 +242,7 @@ def _judged(problem, pressure, displacement, touching):
 
 
 def _energy(problem, pressure, displacement):
-    """What the pressure makes least, under its load and moment [J]."""
+    """Energy that the pressure minimises, under its load and moment [J]."""
     density = pressure * (0.5 * displacement + problem.given)
     return jnp.sum(problem.grid.area * density)
 

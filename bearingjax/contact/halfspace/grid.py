@@ -68,14 +68,14 @@ class Grid(eqx.Module):
 
     @property
     def times(self) -> Float[Array, " m"]:
-        """How many cells each cell across stands for: two, but one in the middle."""
+        """Number of cells that each cell across represents: two, one in the middle."""
         twice = 2.0 * jnp.ones((self.shape[0],), self.half_width.dtype)
         if not self.symmetric:
             return 0.5 * twice
         return twice.at[0].set(1.0) if self.n_across % 2 else twice
 
     def whole(self, field: Float[Array, "m n"]) -> Float[Array, "across n"]:
-        """A symmetric field on all cells, from that on those kept [any unit]."""
+        """Expand a symmetric field from the cells kept to all cells [any unit]."""
         if not self.symmetric:
             return field
         other = field[1:] if self.n_across % 2 else field
@@ -83,7 +83,7 @@ class Grid(eqx.Module):
 
     @property
     def area(self) -> Float[Array, "m n"]:
-        """Area that each cell stands for [m²]."""
+        """Area that each cell represents [m²]."""
         return 4.0 * self.half_x * self.times[:, None] * self.half_y[None]
 
 
@@ -118,7 +118,7 @@ def graded_grid(
     """Cells that are shorter towards both ends of the roller, as s^grading.
 
     Args:
-        length, half_width, n_across, n_along, symmetric: As of `even_grid`.
+        length, half_width, n_across, n_along, symmetric: As in `even_grid`.
         grading: Exponent, at least 1: cells in the middle are so many times longer
             than even ones; the length of the end cells is about
             length·n_along^(-grading).

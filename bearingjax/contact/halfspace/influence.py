@@ -1,4 +1,4 @@
-"""What pressure on a grid does to the surface: products with the influence matrix.
+"""Surface displacement by pressure on a grid: products with the influence matrix.
 
 The matrix depends on the distance across the roller only, so that a transform across
 makes of it one small matrix along the roller for each frequency. Zero padding makes the
@@ -29,7 +29,7 @@ from .grid import Grid
 from .love import corner, namespace, strip
 
 _HALVINGS = 7
-"""Of the nearest cell across, where the weight of mirrored pressure varies."""
+"""Halvings of the nearest cell across, where the mirrored weight varies."""
 
 
 class AbstractInfluence(eqx.Module):
@@ -38,7 +38,7 @@ class AbstractInfluence(eqx.Module):
     Attributes:
         grid: The cells.
         kernel: Influence for each frequency across, any form [m/Pa].
-        inverse_kernel: That of the approximate inverse [Pa/m].
+        inverse_kernel: Kernel of the approximate inverse [Pa/m].
 
     Traced: all fields.
     """
@@ -58,7 +58,7 @@ class AbstractInfluence(eqx.Module):
     def estimate(
         self, displacement: Float[Array, "... m n"]
     ) -> Float[Array, "... m n"]:
-        """Pressure that makes about this displacement [Pa].
+        """Pressure that approximately causes this displacement [Pa].
 
         Self-adjoint and positive, with the areas of the cells as weights.
         """
@@ -75,7 +75,7 @@ class AbstractInfluence(eqx.Module):
 
 
 class EvenInfluence(AbstractInfluence):
-    """Of cells of one size: point values at their middles, by two transforms."""
+    """Influence of cells of one size: values at their centres, by two transforms."""
 
     def _along(self, kernel, waves):
         n = self.grid.shape[1]
@@ -91,7 +91,7 @@ class EvenInfluence(AbstractInfluence):
 
 
 class GradedInfluence(AbstractInfluence):
-    """Of cells of unlike lengths: mean values over them, by one transform.
+    """Influence of cells of unlike lengths: mean values over them, by one transform.
 
     The mean keeps the matrix symmetric (the influence of a cell on another's load is
     mutual), which point values of unlike cells are not.
@@ -218,7 +218,7 @@ def cosine_sums(size):
 
 
 class _Cosines:
-    """Transform across of what is symmetric about x = 0: products with cosines."""
+    """Transform across of fields symmetric about x = 0: products with cosines."""
 
     def __init__(self, grid, dtype):
         size = padded_size(grid.n_across)

@@ -2,7 +2,7 @@
 
 A pressure p on a rectangle moves the surface of a half-space by p/(π E*)·∫∫ dA/r. Here
 stands the integral, written with inverse hyperbolic sines: the published logarithms of
-quotients cancel where a point lies far beside the rectangle.
+quotients cancel where a point lies far from the rectangle.
 
 Source: A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929); Johnson, Contact Mechanics
     (1985), eq. (3.25). `strip` is its mean over a second cell, integrated here.
@@ -52,7 +52,7 @@ def strip(u: Any, v: Any, xp: Any = jnp) -> Any:
     to the mean over the other cell.
 
     Args:
-        u, v, xp: As of `corner`; u is not zero.
+        u, v, xp: As in `corner`; u is not zero.
     """
     r = xp.sqrt(u * u + v * v)
     first = u * v * _asinh_ratio(v, u, xp) + 0.5 * v * v * _asinh_ratio(u, v, xp)
@@ -71,6 +71,6 @@ def namespace(*values) -> Any:
     The differences lose digits that single precision does not have.
 
     Args:
-        *values: What the table is made of.
+        *values: Values from which the table is made.
     """
     return jnp if any(isinstance(v, Tracer) for v in values) else np

@@ -49,7 +49,7 @@ class ContactSolution(eqx.Module):
     """A solved contact.
 
     Attributes:
-        problem: What was solved.
+        problem: Solved problem.
         pressure: At every cell kept (m, n) [Pa].
         approach: Rigid approach at y = 0 [m].
         tilt: Rigid tilt, positive where it closes the gap at y > 0 [rad].
@@ -154,7 +154,7 @@ def solve_pressure(
     """Contact of two elastic bodies, both of them half-spaces where they touch.
 
     Args:
-        influence: Of pressure on a grid, `influence(grid, modulus)`.
+        influence: Influence of pressure on a grid, `influence(grid, modulus)`.
         gap: Distance of the bodies as they touch, at each cell kept (m, n) [m].
         load: Load [N], or:
         approach: Rigid approach at y = 0 [m]; one of both.
@@ -176,7 +176,7 @@ def solve_pressure(
         the grid balances), `NON_FINITE`, `GRID_MISFIT` (a contact with more than a
         thousandth of its load at the sides of the grid, or with fewer than three cells
         across it or along).
-    Valid: Contact small beside the bodies, no friction; both bodies go on beyond the
+    Valid: Contact small against the bodies, no friction; both bodies go on beyond the
         grid's sides (at the sides of a punch leave cells with a wide gap), and one of
         them ends at its ends. float32: of a roller on 35 by
         64 graded cells pressures are good to 3e-4 of the peak, the peak to 3e-5 and
@@ -251,7 +251,7 @@ def _cells(grid, touching):
 
 
 def _fits(grid, pressed):
-    """Whether the grid holds the contact, and its cells are small enough to tell it."""
+    """Whether the grid holds the contact, and its cells are small enough for it."""
     across, along = _cells(grid, pressed.touching)
     told = across >= LEAST_CELLS
     told = told & (along >= min(LEAST_CELLS, grid.shape[1]))
@@ -301,7 +301,7 @@ def _misfit(solution):
 
 
 def _balance(unknowns, args):
-    """Zero at the solution: distance in contact, pressure beside it, missing load."""
+    """Residual: distance in contact, pressure outside of it, missing load."""
     pressure, rigid = unknowns
     problem, inside = args
     carried = inside * pressure

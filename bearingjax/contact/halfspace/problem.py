@@ -1,4 +1,4 @@
-"""A contact of two half-spaces: gap, and what is given of load, approach and tilt."""
+"""A contact of two half-spaces: gap, and the given load, approach and tilt."""
 
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ class Problem(eqx.Module):
     motion is given or its force: load = ∫ p dA, moment = ∫ p y dA.
 
     Attributes:
-        influence: Of pressure on the grid.
+        influence: Influence of pressure on the grid.
         gap: Distance of the bodies as they touch, at each cell (m, n) [m].
         load: Load [N], or `None` if the approach is given.
         approach: Approach [m], or `None` if the load is given.
@@ -60,7 +60,7 @@ class Problem(eqx.Module):
 
     @property
     def modes(self) -> Float[Array, "k m n"]:
-        """Rigid motions that are sought, none to two: 1 and y/lever."""
+        """Unknown rigid motions, none to two: 1 and y/lever."""
         fields = []
         if self.load is not None:
             fields.append(jnp.ones_like(self.gap))
@@ -79,7 +79,7 @@ class Problem(eqx.Module):
 
     @property
     def goal(self) -> Float[Array, " k"]:
-        """What the pressure must give against each of `modes` [N]."""
+        """Generalised load that the pressure must have in each of `modes` [N]."""
         goals = []
         if self.load is not None:
             goals.append(self.load)
@@ -96,7 +96,7 @@ class Problem(eqx.Module):
 
 
 class Pressed(NamedTuple):
-    """Where a solver stopped.
+    """Result of a pressure solver.
 
     Attributes:
         pressure: At every cell kept (m, n) [Pa].

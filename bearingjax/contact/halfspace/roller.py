@@ -37,8 +37,8 @@ class RollerContact(eqx.Module):
 
     Attributes:
         roller_length: Effective length L [m].
-        small_diameter: Of the roller at y = L/2 [m].
-        large_diameter: Of the roller at y = -L/2 [m].
+        small_diameter: Diameter of the roller at y = L/2 [m].
+        large_diameter: Diameter of the roller at y = -L/2 [m].
         half_angle: Half cone angle of the roller [rad]; `None`: from the diameters,
             arctan of their difference over 2L.
         raceway_radius: Radius of curvature of the raceway normal to the generatrix, at
@@ -224,7 +224,7 @@ class RollerContact(eqx.Module):
         Args:
             half_width: Half the width across the roller [m].
             n_across, n_along: Number of cells.
-            grading: As of `graded_grid`; 1: even cells.
+            grading: As in `graded_grid`; 1: even cells.
         """
         if grading == 1.0:
             return even_grid(self.roller_length, half_width, n_across, n_along)
@@ -252,7 +252,7 @@ class RollerContact(eqx.Module):
         """Pressure between roller and raceway.
 
         Args:
-            load, approach, moment, tilt, solver, throw: As of `solve_pressure`; the
+            load, approach, moment, tilt, solver, throw: As in `solve_pressure`; the
                 tilt closes the gap at y > 0, a taper's small end.
             grid: The cells; `None`: `self.grid` of a width found by coarse solves,
                 which takes concrete numbers.
@@ -289,7 +289,7 @@ class RollerContact(eqx.Module):
         """Half width of a grid that holds the contact, by coarse solves [m].
 
         Args:
-            given: What `solve` is given of load, approach, moment and tilt.
+            given: Arguments load, approach, moment and tilt of `solve`.
 
         Raises:
             ValueError: If a number is traced.
