@@ -55,7 +55,7 @@ def run_refined(
     Args:
         scene: From `read_scene`.
         solution: From `run_scene`, converged.
-        roller, raceway: As of `refine`; default: the inner one.
+        roller, raceway: As in `refine`; default: the inner one.
         free_ends: Whether the roller's end faces are free, as `FreeEnds()` has them.
 
     Returns:

@@ -240,12 +240,12 @@ class ContactScene:
         listed: Whether the scene lists its loads.
         law: Line law of the slices that the contact is compared with.
         across, along: Number of cells.
-        grading: As of `graded_grid`.
+        grading: As in `graded_grid`.
         half_width: Half width of the grid [m]; `None`: found for each load.
         tolerance: Residual at which to stop, or `None` for the default.
         max_steps: Step limit.
         field: Whether the pressure of every cell is written.
-        warnings: What the validation found odd but possible.
+        warnings: Warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 

@@ -26,7 +26,7 @@ def fit_report(fits: Fits, bearing: AbstractBearing | BearingSet) -> list[Part]:
     """Fits for people: radial clearance from bearing to operation, and seats.
 
     Args:
-        fits, bearing: As of `fit_facts`.
+        fits, bearing: As in `fit_facts`.
     """
     facts = fit_facts(fits, bearing)
     shaft, housing = (name or "as given" for name in fits.names)
@@ -88,7 +88,7 @@ def fit_as_dict(fits: Fits, bearing: AbstractBearing | BearingSet) -> dict[str, 
     """Fits of a scene as plain numbers, in SI.
 
     Args:
-        fits, bearing: As of `fit_facts`.
+        fits, bearing: As in `fit_facts`.
 
     Returns:
         place; radial_clearance: free, mounted, operating; worst and probable: mounted,

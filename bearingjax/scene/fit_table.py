@@ -235,7 +235,7 @@ class Fits:
             are those of the bearing.
         conditions: Temperatures and speeds.
         place: Where in the tolerances, one of `PLACES`.
-        limits: `Limits` of clearance and seats, as of `clearance_range`.
+        limits: `Limits` of clearance and seats, as in `clearance_range`.
         names: Of the tolerance classes of shaft and housing; empty for numbers.
         unknown: Parts of the bearing whose expansion is not known, which are as warm
             as the measured sizes, with the key of their material in [bearing].
@@ -376,8 +376,8 @@ def fit_warnings(
     """What is odd about fits, a sentence each.
 
     Args:
-        fits, bearing: As of `fit_facts`.
-        load_fixed_to: As of `LifeConditions`.
+        fits, bearing: As in `fit_facts`.
+        load_fixed_to: As in `LifeConditions`.
     """
     facts, conditions = fit_facts(fits, bearing), fits.conditions
     speed = Speed(conditions.speed, conditions.outer_speed)
@@ -528,7 +528,7 @@ def no_expansion(table: Table, part: str, key: str) -> SceneError:
 
     Args:
         table: [fit].
-        part, key: As of `Fits.unknown`.
+        part, key: As in `Fits.unknown`.
     """
     problem = f"is missing: `bearing.{key}` has numbers, and no expansion"
     return table.error(EXPANSIONS[part], problem)

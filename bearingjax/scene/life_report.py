@@ -30,7 +30,7 @@ def scene_life(scene: Scene, solution: Solution) -> Life:
     Without a speed of one ring against the other there is no modified life.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution, converged.
 
     Raises:
@@ -52,7 +52,7 @@ def solved_warnings(
     """Warnings of a solved scene: of itself, its solution and its life.
 
     Args:
-        scene: What was solved, with the preload of its set where it has fits.
+        scene: Solved scene, with the preload of its set where it has fits.
         solution: In NumPy; of one that did not converge nothing is told.
         life: Its rating life, in NumPy; `None`: none is judged.
     """
@@ -70,7 +70,7 @@ def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:
 
     Args:
         life: In NumPy.
-        origins: Of the ratings that are given, as of `rating_origins`.
+        origins: Of the ratings that are given, as in `rating_origins`.
 
     Returns:
         The numbers of `LIFE_OUTPUTS` that there are, the ratings as of
@@ -92,7 +92,7 @@ def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
 
     Args:
         ratings: `Ratings`, in NumPy.
-        origins: As of `rating_origins`.
+        origins: As in `rating_origins`.
     """
     found: dict[str, Any] = {}
     for name, source in _SOURCES.items():
@@ -106,7 +106,7 @@ def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]
     """C, C0 and C_u in kN, each with where it comes from.
 
     Args:
-        ratings, origins: As of `ratings_as_dict`.
+        ratings, origins: As in `ratings_as_dict`.
     """
     return {
         shown: f"{shown} {_kilo(getattr(ratings, name))} kN"
@@ -128,7 +128,7 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
     """A rating life for people.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution, in NumPy.
         life: Its life, in NumPy.
     """

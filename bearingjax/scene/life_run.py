@@ -39,7 +39,7 @@ class LifeRun:
     """Life under the cases of a scene.
 
     Attributes:
-        table: What was asked.
+        table: The cases of the scene.
         solved: The cases and their lives.
         lives: Life under all of them, by its name in `LIVES`.
         asked: That of the asked reliability: modified, or without a lubricant the
@@ -60,7 +60,7 @@ class LifeRun:
 
     @property
     def origins(self) -> dict[str, str]:
-        """Where ratings that are given come from, as of `rating_origins`."""
+        """Where ratings that are given come from, as in `rating_origins`."""
         return rating_origins(self.table.scene, self.table.varied)
 
     @property
@@ -108,7 +108,7 @@ def has_cases(source: str | Path, settings: Any = ()) -> bool:
     """Whether a scene has [cases].
 
     Args:
-        source, settings: As of `read_scene`.
+        source, settings: As in `read_scene`.
 
     Raises:
         SceneError: If it cannot be read.
@@ -174,7 +174,7 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
     """Life under the cases as plain numbers and lists, in SI; infinite is null.
 
     Returns:
-        Ratings as of `ratings_as_dict`, lives under all cases and the damage shares of
+        Ratings as in `ratings_as_dict`, lives under all cases and the damage shares of
         the cases; `equivalent_load` is the constant one with the basic life, and
         `static_safety` the least of all cases. Columns of the cases; counts, warnings,
         inputs, version. Without the lives if a case was not solved.
@@ -202,7 +202,7 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
 
 
 def life_columns(run: LifeRun) -> dict[str, np.ndarray]:
-    """The cases and their lives as columns by header, in SI, as of `columns`."""
+    """The cases and their lives as columns by header, in SI, as in `columns`."""
     return columns(run.solved, design_columns(run.table))
 
 

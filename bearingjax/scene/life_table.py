@@ -171,7 +171,7 @@ def rating_origins(scene: "Scene", varied: Iterable[str] = ()) -> dict[str, str]
     """Where ratings that are given come from, in words, by their name.
 
     Args:
-        scene, varied: As of `life_conditions`.
+        scene, varied: As in `life_conditions`.
 
     Returns:
         The [life] of the scene, or whom they are published for and what was made of
@@ -223,7 +223,7 @@ def rated_otherwise(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
     """Keys of [bearing] for which published ratings of a designation do not hold.
 
     Args:
-        scene, varied: As of `life_conditions`.
+        scene, varied: As in `life_conditions`.
     """
     if scene.catalogue is None:
         return []
@@ -236,7 +236,7 @@ def not_published(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
     """A line that says why ratings are not those of the designation, if they are not.
 
     Args:
-        scene, varied: As of `life_conditions`.
+        scene, varied: As in `life_conditions`.
     """
     if scene.catalogue is None:
         return []

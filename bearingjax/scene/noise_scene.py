@@ -24,8 +24,8 @@ class NoiseScene:
             this one bearing.
         bridging: Whether contacts average waves over their width; `run_noise` gives
             both models that.
-        turns, settle, samples: As of `vibration`.
-        steps: As of `vibration`; `None`: as many as are needed.
+        turns, settle, samples: As in `vibration`.
+        steps: As in `vibration`; `None`: as many as are needed.
         reference: Acceleration of 0 dB [m/s²].
         bands: Bands of the levels.
         norm: Largest allowed level of each band (band,) [dB], or `None`.
@@ -35,7 +35,7 @@ class NoiseScene:
             sources [1].
         seed: Of the random bearings.
         bearings: How many random bearings are wanted.
-        warnings: What is odd but possible.
+        warnings: Warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 

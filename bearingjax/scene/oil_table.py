@@ -140,7 +140,7 @@ def oil_report(
     """Friction and films for people; empty at rest.
 
     Args:
-        oil, solution, catalogue: As of `oil_facts`.
+        oil, solution, catalogue: As in `oil_facts`.
     """
     facts = oil_facts(oil, solution, catalogue)
     if facts is None:
@@ -185,7 +185,7 @@ def oil_as_dict(
     """Friction and films of a solved scene as plain numbers, in SI; empty at rest.
 
     Args:
-        oil, solution, catalogue: As of `oil_facts`.
+        oil, solution, catalogue: As in `oil_facts`.
 
     Returns:
         friction_torque [N m]; friction: load, viscous, flange (row) [N m], power [W];
@@ -193,7 +193,7 @@ def oil_as_dict(
         (row) [N m], power [W], series whose constants it takes;
         film: central, minimum [m], entrainment [m/s] and with a roughness ratio, each
         (element, contact), null where no load is carried. Contacts as of
-        `contact_load` of balls, as of `roller_load` of rollers.
+        `contact_load` of balls, as in `roller_load` of rollers.
     """
     facts = oil_facts(oil, solution, catalogue)
     if facts is None:

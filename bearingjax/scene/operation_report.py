@@ -18,7 +18,7 @@ def freedoms(scene: Scene, solution: Solution) -> str:
     """Which freedoms of the moving ring were free, and which a support held.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution, in NumPy.
     """
     why = (
@@ -40,7 +40,7 @@ def operation(scene: Scene, solution: Solution) -> str:
     """Freedoms, speeds, materials, laws and numerics.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution, in NumPy.
     """
     element = solution.element

@@ -26,7 +26,7 @@ def optimisation_report(
     Args:
         task: What was asked.
         found: What came of it, converged.
-        best: The scene of the best design, `None`: as of `scene_of_design`.
+        best: The scene of the best design, `None`: as in `scene_of_design`.
     """
     best = scene_of_design(task, found.element) if best is None else best
     cases = len(found.after.solution.result)
@@ -66,7 +66,7 @@ def optimisation_as_dict(
     Args:
         task: What was asked.
         found: What came of it.
-        best: As of `optimisation_report`.
+        best: As in `optimisation_report`.
 
     Returns:
         result, message, optimality, history, evaluations, gradients, rejected,

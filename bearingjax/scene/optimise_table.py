@@ -56,7 +56,7 @@ WARMTH = {f"temperature.{part}": part for part in PARTS}
 
 @dataclasses.dataclass(frozen=True)
 class Optimisation:
-    """What a scene wants optimised; as of `optimise`.
+    """What a scene wants optimised; as in `optimise`.
 
     Attributes:
         scene: The scene without it.

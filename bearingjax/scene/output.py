@@ -61,14 +61,14 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     """Solution of a scene as plain numbers and lists, in SI.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution.
 
     Returns:
         The fields of `OF_ROLLERS` or `OF_BALLS`, with springs `OF_SPRINGS` (m, rad,
         N, N m, Pa), and result, message, residual, iterations, warnings, inputs (the
         scene in SI, which `read_scene` reads again from the file) and version. With
-        fits also `fit`, as of `fit_as_dict`; with [life] also `life_as_dict`; with a
+        fits also `fit`, as in `fit_as_dict`; with [life] also `life_as_dict`; with a
         lubricant and a speed what `oil_as_dict` has.
         If the solve did not converge the arrays are left out: there are no results.
         What is infinite (the margin of a shoulder that is not given) is null. Of a
@@ -93,7 +93,7 @@ def solved_as_dict(
     """How a solve ended: result, message, residual, iterations, warnings, version.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution.
         life: Its rating life, in NumPy, of which there may be warnings too.
     """
@@ -116,7 +116,7 @@ def solved_life_as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
     """The rating life of a solved scene as plain numbers and lists, in SI.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution.
 
     Returns:
@@ -143,7 +143,7 @@ def fits_as_dict(scene: Scene) -> dict[str, Any]:
     `preload_as_dict`, if it was worked out; of a scene without fits nothing.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
     """
     if scene.fits is None:
         return {}

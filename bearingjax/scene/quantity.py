@@ -71,7 +71,7 @@ def kind_of(unit: str) -> str:
     """Kind of quantity that has a unit.
 
     Args:
-        unit: Unit of a field, as of `unit_of`.
+        unit: Unit of a field, as in `unit_of`.
 
     Raises:
         KeyError: If there is no such kind.

@@ -57,7 +57,7 @@ class Scene:
         tolerance: Relative residual of the load solve, or `None` for the default.
         points: Positions along the rollers at which loads are reported.
         life: Conditions of its rating life, or `None`: it is not asked for.
-        warnings: What the validation found odd but possible.
+        warnings: Warnings of suspicious but possible values.
         catalogue: What its `designation` stands for, or `None` without one.
         inputs: The scene as it was read, all quantities in SI, defaults filled in: as
             a file of scenes may write it.
@@ -208,7 +208,7 @@ def read_element(
 
     Args:
         bearing: The design.
-        contact, operating, numerics: As of `read_choices`.
+        contact, operating, numerics: As in `read_choices`.
     """
     choices = read_choices(contact, operating, numerics, bearing)
     with numerics.building():

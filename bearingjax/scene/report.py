@@ -28,7 +28,7 @@ def report(scene: Scene, solution: Solution) -> Report:
     """Readable report of a solved scene.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution, converged.
 
     Returns:
@@ -265,7 +265,7 @@ def by_ring(name, values, *given):
     Args:
         name: Of the quantity.
         values: By raceway (row, 2).
-        given: Unit, format and what is shown, as of `Column`.
+        given: Unit, format and what is shown, as in `Column`.
     """
     return [
         Column(f"{ring} {name}", values[:, k], *given) for k, ring in enumerate(RINGS)

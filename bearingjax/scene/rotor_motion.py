@@ -71,7 +71,7 @@ class RotorResponse:
         displacement: At even phases of the excitation, from 0 on, of every station
             (point, sample, station, 5) [m, rad]; a linear vibration is that about the
             static equilibrium.
-        branch: As of `follow`, with stability, multipliers and events; `None`: linear.
+        branch: As in `follow`, with stability, multipliers and events; `None`: linear.
         event_amplitude: As `amplitude`, at each of its events (event, station, 5) [m,
             rad].
         stopped: Code and words, if it ends before the end of the range.
@@ -236,7 +236,7 @@ def run_in_time(
     """The motion in time that a scene asks for, from rest in the equilibrium.
 
     Args:
-        task, rotor, settled, modes: As of `respond`.
+        task, rotor, settled, modes: As in `respond`.
     """
     asked = task.transient
     assert asked is not None  # asked for by the caller

@@ -68,7 +68,7 @@ class RotorScene:
         n_modes: Number of modes that are reported.
         campbell: Speeds of the Campbell diagram (speed,) [rad/s], or `None`.
         response, transient: Or `None`.
-        warnings: What is odd but possible.
+        warnings: Warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`);
             bearings of other scenes are in it.
     """

@@ -129,7 +129,7 @@ def scene_key(
     """Field of a `Keys` class.
 
     Args:
-        about, kind: As of `Key`.
+        about, kind: As in `Key`.
         default: If the key is absent; without a default it is required, unless the
             field may be `None`. The class of a table: what it reads without keys.
         **rest: Other attributes of `Key`.

@@ -33,7 +33,7 @@ class SkidScene:
         oil: Name of the oil, or of the law of its viscosity.
         speeds: Ring speeds over time, or `None` for the constant ones of the scene.
         loads: Load over time, or `None` for the constant one of the scene.
-        balanced: As of `skid.simulate`.
+        balanced: As in `skid.simulate`.
         duration: Of the motion [s]; `None` if the end state is asked for.
         start: "rolling" or "rest": how the balls begin.
         axis: "vertical" or "horizontal".

@@ -52,7 +52,7 @@ def study_of(source: str | Path, settings: Iterable[str] = ()) -> str:
     """Which of `STUDIES` a scene describes.
 
     Args:
-        source, settings: As of `read_scene`.
+        source, settings: As in `read_scene`.
 
     Raises:
         SceneError: If there is no such scene, or it cannot be read.
@@ -66,7 +66,7 @@ def run(source: str | Path, settings: Iterable[str] = ()) -> Any:
 
     Args:
         source: Scene file, or the name of a shipped scene.
-        settings: Changes to it, "key=value", as of `--set`.
+        settings: Changes to it, "key=value", as in `--set`.
 
     Returns:
         By the tables of the scene: `RotorRun` of [rotor], a list of `Compared` of

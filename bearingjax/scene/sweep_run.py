@@ -186,7 +186,7 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
     """How many cases ended how, and the range of every output over those solved.
 
     Args:
-        table: What was asked.
+        table: The cases of the scene.
         solved: What came out.
         seconds: How long it took [s].
     """
