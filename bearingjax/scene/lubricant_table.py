@@ -173,7 +173,7 @@ class LubricantKeys(Keys):
             return Lubricant(ambient, pressure, Density(**given), self.film_coefficient)
 
     def _ambient(self) -> AbstractAmbient:
-        """Read the law of viscosity at atmospheric pressure, given in one of three ways."""
+        """Read the law of viscosity at atmospheric pressure, of one of three forms."""
         table = self.table
         given = [key for key in _AMBIENT if key in table]
         if len(given) != 1:

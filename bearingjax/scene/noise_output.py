@@ -114,7 +114,7 @@ def _many(many: Many, tighter: Tighter) -> dict[str, Any]:
 
 
 def parts_of(found: Shares) -> np.ndarray:
-    """Return the part of the mean square that vanishes without each source (source,) [1]."""
+    """Return the part of the mean square lost without each source (source,) [1]."""
     return np.asarray(found.share) / float(found.mean_square)
 
 

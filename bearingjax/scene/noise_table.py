@@ -249,7 +249,7 @@ def _nominal(element: BearingElement) -> BearingElement:
 
 
 def _held(scene: Scene, moving: str) -> dict[str, Any]:
-    """Return the echo of [operating] without supports, replaced by `tilting_inertia`."""
+    """Return the echo of [operating] without supports (see `tilting_inertia`)."""
     kept = dict(scene.inputs["operating"])
     for key in ("free", "prescribed"):
         kept.pop(key, None)

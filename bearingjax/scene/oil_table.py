@@ -108,7 +108,7 @@ def series_of(designation: str, known: tuple[str, ...]) -> str | None:
     if found is None:
         return None
     after = text[found.end() :]
-    # The last two digits are the bore code, for small bearings such as 608 the last one.
+    # The last two digits are the bore code, in small sizes such as 608 the last one.
     for bore in (2, 1):
         for suffix in ("AC", "B", ""):
             name = found[0][:-bore] + suffix
@@ -192,8 +192,8 @@ def oil_as_dict(
         friction_skf, for types covered by SKF's model: torque [N m], rolling, sliding
         (row) [N m], power [W], series of the constants used;
         film: central, minimum [m], entrainment [m/s] and with a roughness ratio, each
-        (element, contact), null where no load is carried. Contacts as of
-        `contact_load` of balls, as in `roller_load` of rollers.
+        (element, contact), null where no load is carried. Contacts as in
+        `contact_load` for balls and in `roller_load` for rollers.
     """
     facts = oil_facts(oil, solution, catalogue)
     if facts is None:

@@ -139,8 +139,8 @@ def _oil(scene, solution):
 
 
 def fits_as_dict(scene: Scene) -> dict[str, Any]:
-    """Under `fit` what `fit_as_dict` has, and `preload` of a set, as of
-    `preload_as_dict`, if it was worked out; of a scene without fits nothing.
+    """Return under `fit` the output of `fit_as_dict`, and `preload` of a set, from
+    `preload_as_dict`, if it was computed; empty for a scene without fits.
 
     Args:
         scene: Solved scene.

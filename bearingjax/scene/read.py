@@ -103,7 +103,7 @@ class Scene:
         return called(_ground, self.installed)
 
     def running(self) -> BearingElement[Any]:
-        """Return the element solved by all commands: ground, mounted, at temperature."""
+        """Return the element that all commands solve: ground, mounted, in operation."""
         return self.ground().at()
 
 

@@ -21,7 +21,7 @@ from .report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
 from .set_preload import preload_report
 
 ROUND_OFF = 1e-11
-"""Size relative to the largest of its kind below which a number is shown as zero [1]."""
+"""Size over the largest of its kind below which a number is shown as zero [1]."""
 
 
 def report(scene: Scene, solution: Solution) -> Report:

@@ -21,7 +21,7 @@ _WIDTH = 100
 """Characters of a line that ends in words."""
 DEGREES = 180.0 / np.pi, "deg"
 NEWTONS = 1.0, "N"
-"""Factor from SI and unit for small forces."""
+"""Factor from SI and unit, for angles that are not tilts and for small forces."""
 
 
 @dataclasses.dataclass(frozen=True)
