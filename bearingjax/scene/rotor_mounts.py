@@ -226,7 +226,7 @@ def _told(name, element, force, fits, catalogue) -> _Bearing:
 
 
 def _check_seat(bearing: _Bearing, shaft: Shaft, station: int) -> None:
-    """Warn if the bore of a bearing or its fit differs from the shaft at the station."""
+    """Warn if the shaft of a bearing or its fit differs from that at the station."""
     beside = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
     diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
     there = diameters[:, beside].T

@@ -141,7 +141,7 @@ def parse_scene(path: Path, settings: Iterable[str]) -> dict[str, Any]:
 def _parse(path):
     kind = "JSON" if path.suffix.lower() == ".json" else "TOML"
     try:
-        # Editors of Windows put a mark before the text.
+        # Windows editors may write a byte order mark.
         text = path.read_text(encoding="utf-8-sig")
         return _echoed(path, text) if kind == "JSON" else tomllib.loads(text)
     except SceneError:
@@ -153,7 +153,7 @@ def _parse(path):
         problem = f"cannot be read as {kind}: {error}; save it as UTF-8"
         raise SceneError(f"{path.name}: {problem}") from error
     except (ValueError, RecursionError) as error:
-        # Syntax, and numbers too long to convert, are ValueErrors.
+        # Syntax errors, and numbers too long to convert, are ValueErrors.
         raise SceneError(f"{path.name}: cannot be read as {kind}: {error}") from error
 
 

@@ -130,8 +130,8 @@ def scene_key(
 
     Args:
         about, kind: As in `Key`.
-        default: If the key is absent; without a default it is required, unless the
-            field may be `None`. The class of a table: what it reads without keys.
+        default: Value if absent; without a default the key is required, unless the
+            field may be `None`. The class of a table: the table read without keys.
         **rest: Other attributes of `Key`.
     """
     metadata = {"key": Key(about, kind, **rest)}
