@@ -82,7 +82,7 @@ class LineContactKeys(Keys):
 
     @property
     def law(self) -> AbstractLineLaw:
-        """Return the line law of the slices."""
+        """Line law of the slices."""
         with self.table.building():
             if self.line_law == "coupled_slices":
                 return CoupledSlices(self.slices)
@@ -115,7 +115,7 @@ class PointContactKeys(Keys):
 
     @property
     def law(self) -> AbstractPointLaw:
-        """Return the point law of the contacts."""
+        """Point law of the contacts."""
         if self.outer_constant is None or self.inner_constant is None:
             return POINT_LAWS[self.point_law]()
         with self.table.building():
@@ -148,7 +148,7 @@ class ControlKeys(Keys):
 
     @property
     def control(self) -> AbstractRacewayControl:
-        """Return the raceway control."""
+        """Raceway control of the balls."""
         if self.friction_coefficient is None:
             return CONTROLS[self.raceway_control]()
         with self.table.building():

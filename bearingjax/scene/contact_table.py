@@ -215,7 +215,7 @@ class SliceLawKeys(Keys):
 
     @property
     def law(self) -> AbstractLineLaw:
-        """Return the line law of the slices."""
+        """Line law of the slices."""
         return read_keys(LineContactKeys, self.table).law
 
 
@@ -269,7 +269,7 @@ class ContactScene:
 
     @property
     def cases(self) -> list[dict[str, float]]:
-        """Return the keyword arguments of `RollerContact.solve` for each case."""
+        """Keyword arguments of `RollerContact.solve` for each case."""
         held = {"approach": self.approach, "moment": self.moment, "tilt": self.tilt}
         rest = {name: value for name, value in held.items() if value is not None}
         return [{"load": load, **rest} for load in self.loads] or [rest]

@@ -66,7 +66,7 @@ class SpeedSeriesKeys(SeriesKeys):
 
     @property
     def speeds(self) -> SpeedTable:
-        """Build the speed table."""
+        """Table of ring speeds over time."""
         inner, outer = self._series(self.time, ("inner", "outer"))
         if inner is None and outer is None:
             problem = "is missing, and so is `outer`; give one of them"

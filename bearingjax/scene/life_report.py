@@ -73,7 +73,7 @@ def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:
         origins: Origins of the given ratings, from `rating_origins`.
 
     Returns:
-        The numbers of `LIFE_OUTPUTS` that there are, the ratings as of
+        The available numbers of `LIFE_OUTPUTS`, the ratings as in
         `ratings_as_dict`, `reliability_factor`, `weakest` (row, ring, track), and the
         `standards` that results follow.
     """

@@ -70,11 +70,11 @@ def optimisation_as_dict(
 
     Returns:
         result, message, optimality, history, evaluations, gradients, rejected,
-        warnings (of the best design), warnings_before (of the start), inputs (as of
-        `Optimisation`: the file is a scene again), version; with fits `fit`, as of
-        `fits_as_dict`, of the best design; if it converged also variables, objective,
-        constraints and peak_pressure, and rating_life (before, after) if it is made
-        largest.
+        warnings (of the best design), warnings_before (of the start), inputs (as in
+        `Optimisation`: the file can be read as a scene), version; with fits `fit`, as
+        in `fits_as_dict`, of the best design; if converged also variables, objective,
+        constraints and peak_pressure, and rating_life (before, after) if it is
+        maximised.
     """
     from .. import __version__
 

@@ -44,7 +44,7 @@ class Column:
 
     @property
     def heading(self) -> tuple[str, str]:
-        """Return the name, and the displayed unit if common to all values."""
+        """Name, and the displayed unit if common to all values."""
         return self.name, self._scales()[0][1] if isinstance(self.unit, str) else ""
 
     @property

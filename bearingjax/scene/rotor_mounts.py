@@ -110,7 +110,7 @@ class HousingKeys(Keys):
 
     @property
     def housing(self) -> Housing:
-        """Build the housing."""
+        """Housing between the bearing and ground."""
         with self.table.building():
             return Housing(**self.given)
 

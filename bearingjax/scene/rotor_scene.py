@@ -91,7 +91,7 @@ class RotorScene:
 
     @property
     def seats(self) -> tuple[tuple[Mount, tuple[int, ...]], ...]:
-        """Return each bearing with fits, by its first mount, and its stations."""
+        """Each bearing with fits, by its first mount, and its stations."""
         found: dict[int, tuple[Mount, tuple[int, ...]]] = {}
         for mount in self.mounts:
             if mount.fits is not None:
@@ -101,7 +101,7 @@ class RotorScene:
 
     @property
     def station_names(self) -> tuple[str, ...]:
-        """Return the number and parts of each station, such as "1 disc"."""
+        """Number and parts of each station, such as "1 disc"."""
         here: list[list[str]] = [[] for _ in range(self.shaft.n_segments + 1)]
         for disc in self.discs:
             kind = type(disc).__name__

@@ -106,7 +106,7 @@ class DiscKeys(Keys):
 
     @property
     def part(self) -> AbstractPart:
-        """Build the disc or the point mass."""
+        """Disc or point mass."""
         table, sizes = self.table, ("outer_diameter", "width")
         inertias = "polar_inertia", "diametral_inertia"
         with table.building():
@@ -159,7 +159,7 @@ class ForceKeys(Keys):
 
     @property
     def force(self) -> tuple[float, ...]:
-        """Return force and moment (5,) [N, N m]."""
+        """Force and moment (5,) [N, N m]."""
         return self.Fx, self.Fy, self.Fz, self.Mx, self.My
 
 
@@ -255,7 +255,7 @@ class RotorKeys(Keys):
 
     @property
     def own_damping(self) -> AbstractDamping | None:
-        """Return the damping in addition to the bearings."""
+        """Damping in addition to that of the bearings."""
         if self.damping is not None:
             return ProportionalDamping(**self.damping.given)
         return ModalDamping(self.damping_ratio) if self.damping_ratio else None

@@ -33,7 +33,7 @@ class CampbellKeys(Keys):
 
     @property
     def speeds(self) -> np.ndarray:
-        """Return the speeds (speed,) [rad/s]."""
+        """Speeds of the Campbell diagram (speed,) [rad/s]."""
         return np.linspace(self.begin, self.end, self.count)
 
 

@@ -181,7 +181,7 @@ def _pitch(told):
 
 
 def _films(run):
-    """Tabulate the final lubrication regimes of balls."""
+    """Name the final lubrication regimes of the ball contacts."""
     if run.state is None:
         return []
     regime, load = run.state.regime, run.found.contact_load
