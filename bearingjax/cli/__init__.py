@@ -1,8 +1,8 @@
-"""The command line: a module per command, and what they share.
+"""The command line: a module per command, and shared modules.
 
-A command's module has `add`, what may be written after its name, and `run`, what it
-does; `run` returns the exit status. They import the rest of the package where they need
-it, so that `bearingjax --help` waits for nothing of theirs.
+A command's module has `add`, which adds its parser and options, and `run`, which runs
+it and returns the exit status or an `Outcome`. They import the rest of the package
+inside functions, so that `bearingjax --help` is fast.
 """
 
 from .entry import main as main

@@ -24,7 +24,7 @@ def add(commands):
 
 
 def run(options, tools: Tools) -> Outcome:
-    """Solve scenes and set them side by side."""
+    """Solve and compare scenes."""
     from ..scene import (
         SceneError,
         compare_as_dict,

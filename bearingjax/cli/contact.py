@@ -34,7 +34,7 @@ def add(commands):
 
 
 def run(options, tools: Tools) -> Outcome:
-    """Solve a contact on its own, or one of a bearing."""
+    """Solve a single contact, or one of a bearing."""
     from ..scene import (
         SceneError,
         as_dict,
@@ -94,7 +94,7 @@ def run(options, tools: Tools) -> Outcome:
 
 
 def _lost(scene, cases) -> list[str]:
-    """Why loads of a contact were not solved, each by its name."""
+    """Return the reasons why loads of a contact were not solved, by load."""
     from ..contact.halfspace.pressure import message
     from ..numerics import Result
 

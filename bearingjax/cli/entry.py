@@ -1,4 +1,4 @@
-"""`main`: reads the command line, runs a command, tells what stopped it."""
+"""`main`: parse the command line, run a command, report its errors."""
 
 import argparse
 import functools
@@ -38,17 +38,17 @@ _SOLVING = (
     rotor,
     noise,
 )
-"""Commands that solve scenes; `execute` writes what they return."""
+"""Commands that solve scenes; `execute` writes their outcome."""
 
 _LOOKING_UP = (catalogue, new, examples, schema)
-"""Commands that print, and return an exit status themselves."""
+"""Commands that print, and return an exit status directly."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line.
 
     Args:
-        arguments: Without the program's name; default: those of the process.
+        arguments: Arguments without the program name; default: those of the process.
 
     Returns:
         Exit status: 0 solved, 2 bad input (or an output that cannot be written), 3 not
@@ -77,7 +77,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         complain("interrupted")
         return INTERRUPTED
     except BrokenPipeError:
-        # The reader of the report has seen enough.
+        # The reader of standard output has closed the pipe.
         _forget_output()
         return SOLVED
     except OSError as error:
@@ -92,7 +92,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    """Build the parser; `execute` of what it parses runs the command."""
+    """Build the parser; `execute` of the parsed options runs the command."""
     from importlib.metadata import version
 
     top = argparse.ArgumentParser(
@@ -110,5 +110,5 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _forget_output() -> None:
-    """What standard output still holds goes nowhere."""
+    """Redirect buffered standard output to the null device."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

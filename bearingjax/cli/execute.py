@@ -1,7 +1,7 @@
-"""One way from options to outputs, for every command that writes files.
+"""Common path from options to outputs, for every command that writes files.
 
 A command reads and solves, and returns an `Outcome`; `execute` checks the options
-before that, and writes, prints and complains after it.
+before, and writes, prints and reports problems after.
 """
 
 import contextlib
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..scene import Report
 
 Draw = Callable[[], Any]
-"""Draws a picture, a figure of Matplotlib."""
+"""Function that draws a Matplotlib figure."""
 
 OUTPUTS = "json", "table", "wav", "plot", "drawing", "report"
 """Options that name a file, in the order in which the files are written."""
@@ -38,23 +38,23 @@ _ENDINGS = {
 class Outcome:
     """Results of a command, ready for each of its outputs.
 
-    What is `None` there is nothing to be written of, as of what was not solved; a file
-    of an earlier run in its place is removed.
+    Outputs that are `None`, such as those of an unsolved run, are not written; a file
+    of an earlier run at their path is removed.
 
     Attributes:
-        name: Of the scene; heads the page.
-        inputs: All that was read, as a scene writes it.
-        numbers: Gives the JSON.
-        report: What people are told.
-        columns: Gives the table, columns by header.
-        pictures: Of `--plot` (the first) and of the page, by their titles.
-        drawing: Of the bearing, for `--drawing` and the page.
-        sound: Writes `--wav`; returns a line that is told after the report.
-        page: Gives the report of the page if that has more; default: `report`.
-        table_on_page: Whether the page shows the first rows of the table too.
-        problems: Why it was not solved, or not all of it, a line each.
-        interrupted: Asked once all is written whether the run was interrupted: what
-            to say of it in place of the problems, and the exit status.
+        name: Name of the scene, the title of the page.
+        inputs: All inputs, as written in a scene.
+        numbers: Returns the JSON.
+        report: Report shown on the terminal.
+        columns: Returns the table, columns by header.
+        pictures: Plots for `--plot` (the first) and the page, by title.
+        drawing: Drawing of the bearing, for `--drawing` and the page.
+        sound: Writes `--wav`; returns a line to be shown after the report.
+        page: Returns the report of the page if it differs; default: `report`.
+        table_on_page: Whether the page also shows the first rows of the table.
+        problems: Reasons why it was not, or only partly, solved, a line each.
+        interrupted: Called after writing; if the run was interrupted, returns the
+            message in place of the problems, and the exit status.
     """
 
     name: str
@@ -76,8 +76,8 @@ class Tools:
     """Progress display and contexts for a command while it runs.
 
     Attributes:
-        shown: Whether somebody watches a progress bar.
-        stage: Shows the stage that a run is in; `None` if nobody watches.
+        shown: Whether to show a progress bar.
+        stage: Shows the current stage of a run; `None` if not shown.
         until_written: Enters a context that ends when all outputs are written.
     """
 
@@ -90,8 +90,8 @@ def execute(command: Any, options: Any) -> int:
     """Run a command: check the options, solve, write, print.
 
     Args:
-        command: Its module; `run(options, tools)` of it returns an `Outcome`.
-        options: Of the command line.
+        command: Its module; its `run(options, tools)` returns an `Outcome`.
+        options: Command line options.
 
     Returns:
         Exit status.
@@ -124,7 +124,7 @@ def execute(command: Any, options: Any) -> int:
 
 
 def _write(found: Outcome, options, origin, told: list[str]) -> bool:
-    """Write the outputs of a run; whether one of them failed."""
+    """Write the outputs of a run; return whether one of them failed."""
     from ..scene import write_numbers
     from ..statics.sweep_table import write_columns
 
@@ -153,10 +153,10 @@ def _write(found: Outcome, options, origin, told: list[str]) -> bool:
 
 
 def write_outputs(outputs) -> bool:
-    """Write files, pairs of a path (`None`: not wanted) and what writes there.
+    """Write files, pairs of a path (`None`: not requested) and its writer.
 
-    Says which files of an earlier run were removed, and what could not be made: a
-    picture that fails costs neither tables nor numbers.
+    Reports which files of an earlier run were removed, and which failed: a failed
+    picture does not affect tables and numbers.
 
     Returns:
         Whether one of them failed.
@@ -172,10 +172,10 @@ def write_outputs(outputs) -> bool:
 
 
 def _write_page(path: Path, found: Outcome, origin) -> None:
-    """Write the page of a run.
+    """Write the HTML page of a run.
 
     Raises:
-        Incomplete: If a picture failed; a line stands in its place.
+        Incomplete: If a picture failed; a line is shown in its place.
     """
     from ..scene import Incomplete, report_page
 
@@ -214,7 +214,7 @@ def save(figure, path, **format) -> None:
 
 
 def _in_words(error: Exception) -> str:
-    """Why an output, or a part of one, is missing."""
+    """Describe why an output, or a part of one, is missing."""
     from ..scene import Incomplete
 
     if isinstance(error, Incomplete):
@@ -223,10 +223,10 @@ def _in_words(error: Exception) -> str:
 
 
 def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
-    """Fail before anything is solved if outputs cannot be written or hit an input.
+    """Fail before solving if outputs cannot be written or overwrite an input.
 
     Args:
-        options: Of the command line.
+        options: Command line options.
         inputs: Files that are read; default: those of the scene.
     """
     from ..scene import SceneError, check_outputs, scene_files
@@ -249,7 +249,7 @@ def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
 
 
 def check_table(options, rows: int = 0) -> None:
-    """Fail before anything is solved if a table, of so many rows, cannot be written."""
+    """Fail before solving if a table with this number of rows cannot be written."""
     from ..scene import SceneError
     from ..statics.sweep_table import check_writable
 
@@ -275,8 +275,8 @@ def check_matplotlib() -> None:
 
 
 def _origin(options):
-    """Where a report comes from; before anything is solved, so that it tells the scene
-    that was read."""
+    """Return the origin of a report; called before solving, so that it has the scene as
+    read."""
     import datetime
 
     from ..scene import Origin
@@ -300,23 +300,23 @@ def _origin(options):
 
 
 def _sources(options) -> list[str]:
-    """The scenes of a command."""
+    """Return the scenes of a command."""
     return options.scenes if hasattr(options, "scenes") else [options.scene]
 
 
 class Stage:
-    """Shows the stage that a run is in, on one line of standard error."""
+    """Display of the current stage of a run, on one line of standard error."""
 
     def __init__(self):
         self._used = False
 
     def __call__(self, name: str) -> None:
-        """Show a stage in place of the one before."""
+        """Show a stage in place of the previous one."""
         self._used = True
         self._show(f"{name}…")
 
     def end(self) -> None:
-        """Leave the line empty."""
+        """Clear the line."""
         if self._used:
             self._show("")
 

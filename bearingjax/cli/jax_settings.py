@@ -1,4 +1,4 @@
-"""How the command line sets JAX up, and where it keeps compiled programs."""
+"""JAX settings of the command line, and its cache of compiled programs."""
 
 import contextlib
 import os
@@ -10,16 +10,16 @@ from .status import complain
 
 
 def configure(options) -> None:
-    """float64, and compiled programs kept from one run to the next."""
-    # Matrices here are small: threads of LAPACK would only wait for each other, and
-    # thirty times as long beside other work. Read when SciPy is first imported.
+    """Enable float64, and the cache of compiled programs between runs."""
+    # Matrices are small: LAPACK threads would only wait for each other, thirty times as
+    # long on a busy machine. Read when SciPy is first imported.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
     import jax
 
     from ..numerics.programs import keep_programs, user_cache
 
-    # XLA prints a page of false alarms about CPU features when it loads a kept program.
+    # XLA prints false warnings about CPU features when it loads a cached program.
     jax.config.update("jax_logging_level", "CRITICAL")
 
     jax.config.update("jax_enable_x64", True)
@@ -27,11 +27,11 @@ def configure(options) -> None:
         count = devices(options)
         with contextlib.suppress(RuntimeError):  # JAX runs already, in a test
             jax.config.update("jax_num_cpu_devices", count)
-    # Where in the sources an operation was written is of no use to a user.
+    # Source locations of operations are of no use to a user.
     jax.config.update("jax_include_full_tracebacks_in_locations", False)
     if getattr(jax.config, "jax_compilation_cache_dir", None) is None:
         cache = user_cache() / "jax"
-        # JAX would warn of every program that it cannot keep, among our own warnings.
+        # JAX would warn of every program that it cannot cache.
         with contextlib.suppress(OSError):
             cache.mkdir(mode=0o700, parents=True, exist_ok=True)
             if os.access(cache, os.W_OK | os.X_OK) and not _is_shared(cache):
@@ -44,7 +44,7 @@ def configure(options) -> None:
 
 
 def devices(options) -> int:
-    """Parts of the processor that a sweep uses: as many as asked for, or all cores."""
+    """Return the number of CPU devices of a sweep: as requested, or all cores."""
     from ..scene import SceneError
 
     linux = sys.platform == "linux"
@@ -57,7 +57,7 @@ def devices(options) -> int:
 
 
 def _is_shared(folder: Path) -> bool:
-    """Whether others can write what would be run from there; says so."""
+    """Whether others can write to the program cache; prints a warning if so."""
     from ..numerics.programs import is_private
 
     shared = hasattr(os, "geteuid") and not is_private(folder.lstat())

@@ -26,7 +26,7 @@ def add(commands):
 
 
 def run(options, tools: Tools) -> Outcome:
-    """Rating life of the bearing of a scene."""
+    """Compute the rating life of the bearing of a scene."""
     from ..scene import has_cases
 
     if has_cases(options.scene, options.set):

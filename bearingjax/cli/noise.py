@@ -37,7 +37,7 @@ def add(commands):
 
 
 def run(options, tools: Tools) -> Outcome:
-    """Vibration of a bearing with form errors."""
+    """Simulate the vibration of a bearing with form errors."""
     from ..scene import (
         SceneError,
         noise_as_dict,

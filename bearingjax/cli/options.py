@@ -1,17 +1,17 @@
-"""What may be written after several commands."""
+"""Options shared by several commands."""
 
 from pathlib import Path
 
 
 def add_scene(command) -> None:
-    """The scene, changes to it, and numbers out of it."""
+    """Add the scene argument, and options for settings and JSON."""
     command.add_argument("scene", metavar="SCENE", help=".toml file or a shipped scene")
     add_json(command)
     add_set(command)
 
 
 def add_set(command, what: str = "change the scene") -> None:
-    """Changes to what is read."""
+    """Add `--set`, changes to the input."""
     command.add_argument(
         "--set",
         metavar="KEY=VALUE",
@@ -22,34 +22,34 @@ def add_set(command, what: str = "change the scene") -> None:
 
 
 def add_json(command) -> None:
-    """Numbers in a file."""
+    """Add `--json`, numbers in a file."""
     _add_output(command, "--json", "write numbers in SI")
 
 
 def add_plot(command, what: str = "write a picture") -> None:
-    """A picture."""
+    """Add `--plot`, a picture."""
     _add_output(command, "--plot", f"{what} (.png, .pdf, .svg)")
 
 
 def add_drawing(command, what: str = "of the one bearing that is named") -> None:
-    """A drawing of a bearing."""
+    """Add `--drawing`, a drawing of a bearing."""
     text = f"write a drawing {what}, with all its dimensions (.png, .pdf, .svg)"
     _add_output(command, "--drawing", text)
 
 
 def add_table(command, row: str) -> None:
-    """A table with one row per `row`."""
+    """Add `--table`, a table with one row per `row`."""
     _add_output(command, "--table", f"write a row per {row} (.csv, .parquet, .xlsx)")
 
 
 def add_report(command, what: str) -> None:
-    """A report with inputs and `what` in a file of its own."""
+    """Add `--report`, a self-contained report with inputs and `what`."""
     text = f"write a report that stands alone (.html), with inputs and {what}"
     _add_output(command, "--report", text)
 
 
 def add_quiet(command, without: str = "progress bar") -> None:
-    """No progress on standard error."""
+    """Add `--quiet`, no progress on standard error."""
     command.add_argument("--quiet", action="store_true", help=f"no {without}")
 
 

@@ -29,7 +29,7 @@ def add(commands):
 
 
 def run(options, tools: Tools) -> Outcome:
-    """A shaft on its bearings."""
+    """Analyse a shaft on its bearings."""
     from ..scene import (
         SceneError,
         read_rotor,

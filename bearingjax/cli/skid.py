@@ -27,7 +27,7 @@ def add(commands):
 
 
 def run(options, tools: Tools) -> Outcome:
-    """Motion of balls or rollers and their cage."""
+    """Simulate the motion of balls or rollers and their cage."""
     from ..scene import (
         read_skid,
         run_skid,

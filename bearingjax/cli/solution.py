@@ -1,4 +1,4 @@
-"""The outcome of a solved bearing, of `solve` and what builds on it."""
+"""Outcome of a solved bearing, for `solve` and the commands based on it."""
 
 from .execute import Outcome
 
@@ -8,8 +8,8 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
 
     Args:
         scene: From `read_scene`.
-        numbers: Gives the JSON of a scene and its solution; default: `as_dict`.
-        brief: Sections of the report that the terminal shows; default: all.
+        numbers: Returns the JSON of a scene and its solution; default: `as_dict`.
+        brief: Sections of the report shown on the terminal; default: all.
     """
     from ..scene import as_dict, report, run_scene, with_set_preload
 
@@ -28,7 +28,7 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
     def draw_bearing():
         from ..plot import drawing
 
-        # Mounted and preloaded where the scene says so.
+        # Mounted and preloaded if given in the scene.
         element = solution.element if solved else scene.element
         return drawing(element.bearing, scene.name)
 
@@ -45,10 +45,10 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
 
 
 def why_unsolved(scene, solution) -> str:
-    """Why a bearing was not solved.
+    """Return the reason why a bearing was not solved.
 
     Args:
-        scene: What was asked.
+        scene: The scene.
         solution: Its solution, not converged.
     """
     from ..numerics import Result

@@ -1,4 +1,4 @@
-"""Exit status, and what is said on standard error."""
+"""Exit status, and messages on standard error."""
 
 import sys
 
@@ -7,5 +7,5 @@ SOLVED, BAD_INPUT, NOT_SOLVED, INTERRUPTED = 0, 2, 3, 130
 
 
 def complain(what: object) -> None:
-    """A line on standard error."""
+    """Print a line on standard error."""
     print(f"bearingjax: {what}", file=sys.stderr)

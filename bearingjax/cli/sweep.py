@@ -99,7 +99,7 @@ def run(options, tools: Tools) -> Outcome:
 
 
 def _how_to_go_on(options, left: int, count: int) -> str:
-    """How an interrupted sweep goes on."""
+    """Return the message on how to resume an interrupted sweep."""
     words = f"interrupted: {left} of {count} cases not run"
     if left and options.table is not None:
         given = [word for word in options.given if word != "--resume"]

@@ -1,4 +1,4 @@
-"""Running what a scene asks for."""
+"""Solve or optimise the bearing of a scene."""
 
 import dataclasses
 from functools import partial
@@ -27,7 +27,7 @@ def run_scene(scene: Scene) -> Solution:
         Solution with its result code; nothing is raised for a failed solve.
 
     Raises:
-        TypeError: If `scene` is none, such as the name of one.
+        TypeError: If `scene` is not a `Scene`, such as a file name.
 
     Fails: as `solve_load`.
     """
@@ -50,10 +50,10 @@ def run_scene(scene: Scene) -> Solution:
 
 
 def with_set_preload(scene: Scene) -> Scene:
-    """The scene with what its fits make of the preload of a set, and what is odd.
+    """Add the preload of a set on its seats, and warnings about it, to a scene.
 
-    A scene without fits, or whose rows do not press each other, stays as it is:
-    nothing is compiled.
+    A scene without fits, or whose rows do not preload each other, is returned
+    unchanged: nothing is compiled.
 
     Args:
         scene: From `read_scene`.
@@ -119,8 +119,8 @@ def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
 
 
 def _judged(task: Optimisation, found: Optimised) -> Optimised:
-    """With [life], the warnings about lives that `solve` gives of the same designs,
-    whatever the measures."""
+    """Add the warnings about rating lives that `solve` gives for the same designs,
+    with [life], whatever the measures."""
     scene = task.scene
     measures = task.objective, *(c.measure for c in task.constraints)
     if scene.life is None or any(isinstance(m, OfLife) for m in measures):

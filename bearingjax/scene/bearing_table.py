@@ -1,4 +1,4 @@
-"""The [bearing] and [set] tables of a scene: what stands on the drawing."""
+"""The [bearing] and [set] tables of a scene: the design as drawn."""
 
 import dataclasses
 import difflib
@@ -64,7 +64,7 @@ BESIDE = (
     "raceway_control",
     "friction_coefficient",
 )
-"""Keys of a rotor's [bearings.NAME] that are none of a [bearing]."""
+"""Keys of a rotor's [bearings.NAME] that do not belong to [bearing]."""
 
 PROFILES = {
     "straight": Straight,
@@ -81,14 +81,14 @@ PROFILES = {
 def read_bearing(
     table: Table, beside: Table
 ) -> tuple[AbstractBearing | BearingSet, float | None]:
-    """A bearing, or the set of such bearings, and its preload.
+    """Read a bearing, or the set of such bearings, and its preload.
 
     Args:
-        table: Of the bearing.
-        beside: The table in which its `set` stands, if there is one.
+        table: Table of the bearing.
+        beside: The table that holds its `set`, if there is one.
 
     Returns:
-        Bearing or set, and the force to which it is preloaded [N] or `None`.
+        Bearing or set, and its preload force [N] or `None`.
 
     Raises:
         SceneError: For what is missing, unknown or not allowed.
@@ -107,14 +107,14 @@ def read_bearing(
 
 
 def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
-    """What a [bearing] with a `designation` stands for; `None` without one.
+    """Expand the `designation` of a [bearing]; `None` without one.
 
     Args:
-        table: Of the bearing; nothing in it counts as asked for by this.
+        table: Table of the bearing; none of its keys are marked as read.
 
     Returns:
-        Its keys with those of the catalogue, and what was taken from there; without
-        what stands beside them (`BESIDE`).
+        Its keys completed from the catalogue, and the record of the catalogue entry;
+        without the keys in `BESIDE`.
 
     Raises:
         SceneError: If the designation is not known, or of another `type`.
@@ -140,7 +140,7 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
 
 
 def _single(table: Table) -> AbstractBearing:
-    """A bearing of one row."""
+    """Read a bearing of one row."""
     found = designated(table)
     if found is None and "type" not in table:
         meant = difflib.get_close_matches("designation", table.keys(), 1, 0.7)
@@ -150,7 +150,7 @@ def _single(table: Table) -> AbstractBearing:
     if found is not None:
         table.skip("designation")
         table = table.completed(found[0])
-        # In the echo it says whose ratings count, and what clearance.
+        # The echo states whose ratings apply, and the clearance.
         table.fill("designation", found[1].entry.designation)
     kind = table.choice("type", (*ROLLERS, *BALLS))
     return _balls(table, kind) if kind in BALLS else _rollers(table, kind)
@@ -172,7 +172,7 @@ class SpringKeys(Keys):
 
     @property
     def spring(self) -> PreloadSpring | None:
-        """The spring, if there is one."""
+        """Preload spring, or `None`."""
         if self.spring_force is None:
             return None
         with self.table.building():
@@ -192,10 +192,10 @@ class RowKeys(SpringKeys):
     )
 
     def row(self, common: AbstractBearing) -> SetRow:
-        """The row.
+        """Build the row.
 
         Args:
-            common: The bearing of rows that have none of their own.
+            common: Bearing of rows that do not define one.
         """
         bearing = common
         if "bearing" in self.table:
@@ -248,10 +248,10 @@ class SetKeys(SpringKeys):
                 raise table.error(key, problem)
 
     def set_of(self, bearing: AbstractBearing) -> BearingSet:
-        """The bearings as a set, before they are ground to `preload_force`.
+        """Build the set of bearings, before grinding to `preload_force`.
 
         Args:
-            bearing: That of all rows that have none of their own.
+            bearing: Bearing of all rows that do not define one.
         """
         if self.arrangement == "rows":
             rows = tuple(row.row(bearing) for row in self.rows)
@@ -275,10 +275,10 @@ def _set(table: Table, bearing: AbstractBearing) -> tuple[BearingSet, float | No
 
 
 def required_numbers(kind: str) -> tuple[str, ...]:
-    """Numbers that a [bearing] must give although their class has a default.
+    """Return the numbers that a [bearing] must give despite a class default.
 
     Args:
-        kind: Its `type`.
+        kind: `type` of the bearing.
     """
     if kind == "tapered_roller":
         return ("roller_axis_angle", "roller_half_angle")
@@ -323,7 +323,7 @@ def _materials(table: Table) -> dict[str, Material | None]:
 
 
 def read_material(table: Table, key: str) -> Material | None:
-    """Material at a key, by its name or its numbers; `None` if absent."""
+    """Read the material at a key, by its name or its numbers; `None` if absent."""
     given = table.table_or_word(key, tuple(MATERIALS))
     if given is None:
         return None
@@ -370,7 +370,7 @@ def _rib(table: Table) -> Rib:
 
 
 def read_profile(table: Table) -> AbstractProfile:
-    """Profile of a roller or a raceway; straight if the table is empty."""
+    """Read the profile of a roller or raceway; straight if the table is empty."""
     kind = PROFILES[table.choice("type", tuple(PROFILES), "straight")]
     values = table.fields(kind)
     with table.building():

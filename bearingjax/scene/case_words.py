@@ -1,4 +1,4 @@
-"""What differs between the cases of a scene, in words."""
+"""Differences between the cases of a scene, in words."""
 
 from collections import Counter
 
@@ -10,11 +10,11 @@ from .cases_table import CaseTable
 from .sweep_run import design_columns
 
 _LONGEST = 24
-"""Letters of a setting that is text, such as a list of profiles, that are shown."""
+"""Most characters shown of a text setting, such as a list of profiles."""
 
 
 def differing(table: CaseTable) -> dict[str, np.ndarray]:
-    """What the cases of a scene have that is not the same in all of them, but hours.
+    """Return the quantities that differ between the cases of a scene, except hours.
 
     Args:
         table: From `read_cases`.
@@ -32,7 +32,7 @@ def differing(table: CaseTable) -> dict[str, np.ndarray]:
 
 
 def case_words(found: dict[str, np.ndarray], case: int) -> list[str]:
-    """What a case has that others have not, one setting each: "Fy -2.5 kN".
+    """Describe the settings that distinguish a case, one each: "Fy -2.5 kN".
 
     Args:
         found: From `differing`.
@@ -54,5 +54,5 @@ def case_words(found: dict[str, np.ndarray], case: int) -> list[str]:
 
 
 def _end(name: str) -> str:
-    """The last part of a key, which says what it is."""
+    """Return the last part of a dotted key, without `prescribed_`."""
     return name.rpartition(".")[2].removeprefix("prescribed_")

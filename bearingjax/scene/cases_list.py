@@ -13,20 +13,20 @@ from .quantity import KINDS, SceneError, to_si
 from .table import Table
 
 LARGEST = 10**7
-"""Most cases of a scene: 1 kB of memory each, with the usual outputs."""
+"""Most cases of a scene: 1 kB of memory each, with the default outputs."""
 
 
 def read_list(
     table: Table, folder: Path, kinds: Mapping[str, str], what: str = "cases"
 ) -> dict[str, Any]:
-    """Values of a list of cases, a column each.
+    """Read the columns of a list of cases.
 
     Args:
         table: `[cases]`, or another table with the name of a `file`.
-        folder: Of the scene.
-        kinds: Of keys whose columns are SI numbers; others are settings as a scene
-            writes them.
-        what: What a row is, in words.
+        folder: Folder of the scene.
+        kinds: Quantity kinds of keys whose columns are converted to SI; other columns
+            are settings as written in a scene.
+        what: Name of the rows in error messages.
 
     Returns:
         Values by key, in order.
@@ -52,7 +52,7 @@ def read_list(
 
 
 def _head(table, name, title) -> tuple[str, str | None]:
-    """Key and unit of a column."""
+    """Split a column title into key and unit."""
     match = re.fullmatch(r"\s*([\w.]+)\s*(?:\[([^\[\]]*)\])?\s*", title)
     if match is not None:
         return match[1], match[2]
@@ -63,7 +63,7 @@ def _head(table, name, title) -> tuple[str, str | None]:
 
 
 def _rows(table, name, path, what) -> list[tuple[int, list[str]]]:
-    """Lines of a list that are not empty, each with its number."""
+    """Read the non-empty lines of a list, each with its line number."""
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
             reader = csv.reader(file)
@@ -93,7 +93,7 @@ def _rows(table, name, path, what) -> list[tuple[int, list[str]]]:
 
 
 def _cells(table, name, key, kind, unit, values, lines):
-    """SI numbers of a kind; settings of a design."""
+    """Convert the cells of a column: SI numbers of a kind, or design settings."""
     if kind is not None:
         if unit is None:
             example = f"{key} [{KINDS[kind][1]}]"

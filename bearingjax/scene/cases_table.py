@@ -1,6 +1,6 @@
 """`[cases]` of a scene: many loads, displacements, speeds and designs.
 
-A grid, a list (CSV) or a load spectrum. What varies is named as in the scene file,
+A grid, a list (CSV) or a load spectrum. The varied keys are named as in the scene file,
 `operating.load.Fy` or `bearing.radial_internal_clearance`.
 """
 
@@ -43,27 +43,27 @@ OPERATING = {
     **{f"operating.{ring}_speed": kind_of(unit_of(Speed, ring)) for ring in RINGS},
     "hours": kind_of(unit_of(Cases, "hours")),
 }
-"""What may vary from case to case without changing the design, and its kind."""
+"""Keys that may vary without changing the design, with their quantity kinds."""
 
 DESIGN = ("bearing", "set", "contact", "fit", "temperature")
-"""Tables of the scene whose keys make a design."""
+"""Tables of the scene whose keys define the design."""
 
 _SI_UNITS = {unit for unit, _ in KINDS.values()}
 
 MOST_DESIGNS = 10**5
-"""Most designs of a scene: each is read and checked by itself, in some 5 ms."""
+"""Most designs of a scene: each is read and checked separately, in about 5 ms."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Structure:
-    """Designs that one program solves: of the same classes, counts and parts, and of
-    one bearing of the catalogue.
+    """Designs solved by one program: with the same classes, counts and parts, and the
+    same catalogue bearing.
 
     Attributes:
-        element: The bearing; of several designs, `stack_designs`.
-        designs: Numbers of these designs among all, rising; `None` if nothing of the
-            design varies.
-        scene: The scene of the first of them.
+        element: The bearing; of several designs, stacked by `stack_designs`.
+        designs: Indices of these designs among all, ascending; `None` if the design
+            does not vary.
+        scene: Scene of the first design.
     """
 
     element: BearingElement[Any]
@@ -72,12 +72,12 @@ class Structure:
 
     @property
     def designation(self) -> str | None:
-        """Its bearing of the catalogue."""
+        """Designation of the catalogue bearing, or `None`."""
         taken = self.scene.catalogue
         return None if taken is None else taken.entry.designation
 
     def of(self, cases: Cases) -> np.ndarray:
-        """Numbers of the cases whose design is among these."""
+        """Return the indices of the cases with one of these designs."""
         if self.designs is None:
             return np.arange(cases.count)
         return np.flatnonzero(np.isin(np.asarray(cases.design), self.designs))
@@ -85,20 +85,20 @@ class Structure:
 
 @dataclasses.dataclass(frozen=True)
 class CaseTable:
-    """What `[cases]` asks for.
+    """Contents of `[cases]`.
 
     Attributes:
         scene: The scene without its cases.
-        structures: The bearing, preloaded and mounted; of several designs those of
-            each structure.
+        structures: The bearing, preloaded and mounted; several designs are grouped
+            by structure.
         cases: The cases.
         varied: Keys that vary, in order.
-        settings: Of each design, the settings that make it: by "key [unit]" numbers in
-            SI, or what the scene writes where that is no number.
-        outputs: Names of what is kept, or `None` for the usual.
-        warnings: What the validation found odd but possible, of all designs.
-        inputs: The scene as it was read, in SI (`Scene.inputs`), with its cases as they
-            are written.
+        settings: Settings of each design by "key [unit]": numbers in SI, or the text
+            of the scene where it is not a number.
+        outputs: Names of the outputs to keep, or `None` for the default.
+        warnings: Warnings of suspicious but possible values, of all designs.
+        inputs: The scene as it was read, in SI (`Scene.inputs`), with its cases as
+            written.
     """
 
     scene: Scene
@@ -113,7 +113,7 @@ class CaseTable:
 
 @dataclasses.dataclass(frozen=True)
 class _Column:
-    """Values of one key: case k has `values[index[k]]`."""
+    """Values of one key: case k takes `values[index[k]]`."""
 
     key: str
     values: Sequence[Any] | np.ndarray
@@ -211,8 +211,8 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
 
 
 def _begun(data: dict[str, Any], columns: list[_Column], file: str) -> dict[str, Any]:
-    """The scene with the first value of what its cases vary where it has none itself:
-    an interference that varies needs no other one in [fit]."""
+    """Fill in the first value of each varied key that the scene does not give: a
+    varied interference need not be repeated in [fit]."""
     begun = copy.deepcopy(data)
     for column in columns:
         if _makes_design(column.key) and not _stands(data, column.key):
@@ -221,7 +221,7 @@ def _begun(data: dict[str, Any], columns: list[_Column], file: str) -> dict[str,
 
 
 def _stands(data: dict[str, Any], key: str) -> bool:
-    """Whether there is something at a dotted key."""
+    """Whether a dotted key is present."""
     inner: Any = data
     for part in key.split("."):
         if isinstance(inner, list) and part.isdecimal() and int(part) < len(inner):
@@ -234,12 +234,12 @@ def _stands(data: dict[str, Any], key: str) -> bool:
 
 
 def _makes_design(key: str) -> bool:
-    """Whether a key is of a table that makes a design."""
+    """Whether a key belongs to a table that defines the design."""
     return "." in key and key.partition(".")[0] in DESIGN
 
 
 def speeds_told(structures: Sequence[Structure], cases: Cases) -> tuple[str, ...]:
-    """Warnings of speeds of the cases beyond those of the catalogue of each bearing."""
+    """Warn of case speeds above the catalogue speeds of each bearing."""
     turns, told = turns_of(cases), []
     for name in dict.fromkeys(part.designation for part in structures):
         mine = [part.of(cases) for part in structures if part.designation == name]
@@ -251,18 +251,18 @@ def speeds_told(structures: Sequence[Structure], cases: Cases) -> tuple[str, ...
 
 
 def turns_of(cases: Cases) -> np.ndarray:
-    """Speed of one ring against the other (case,) [rad/s].
+    """Return the relative speed of the rings (case,) [rad/s].
 
     Args:
-        cases: Of a scene.
+        cases: Cases of a scene.
     """
     turns = revolutions_per_hour(cases, np)
     return np.zeros(cases.count) if turns is None else turns * np.pi / 1800.0
 
 
 def _alike(first: Iterable[str], odd: Sequence[str]) -> tuple[str, ...]:
-    """Warnings of a scene and of its designs; those that differ in their numbers alone
-    are one, as first told."""
+    """Merge the warnings of a scene and of its designs; of those that differ only in
+    their numbers the first is kept."""
     kinds: dict[str, list[str]] = {}
     for text in dict.fromkeys((*first, *odd)):
         kinds.setdefault(re.sub(r"\d[\d.e+-]*", "#", text), []).append(text)
@@ -273,7 +273,7 @@ def _alike(first: Iterable[str], odd: Sequence[str]) -> tuple[str, ...]:
 
 
 def _inputs(scene, columns, cases) -> dict[str, Any]:
-    """The echo of a scene with its cases, which prescribe what was free."""
+    """Return the echo of a scene with its cases; prescribed freedoms are not free."""
     keys = [column.key for column in columns]
     given = [f for f in FREEDOMS if f"operating.prescribed.{f}" in keys]
     operating = dict(scene.inputs["operating"])
@@ -282,13 +282,13 @@ def _inputs(scene, columns, cases) -> dict[str, Any]:
 
 
 def _placed(cases, path) -> dict[str, Any]:
-    """The cases as they are written, their file found from anywhere."""
+    """Return the cases as written, with an absolute path of their file."""
     name = cases.get("file")
     return {**cases, "file": str((path.parent / name).resolve())} if name else cases
 
 
 def _check_outputs(table, outputs, structures) -> None:
-    """Outputs of each rolling element have no column if their number varies."""
+    """Reject outputs per rolling element if the number of elements varies."""
     sizes = {
         tuple(row.bearing.n_elements for row in rows_of(part.element.bearing))
         for part in structures
@@ -329,11 +329,11 @@ def _check_key(table, key, scene):
 
 
 def _flat(table, where: str, data: dict) -> dict[str, Any]:
-    """Nested tables as dotted keys; a range {start, stop, count} is a value."""
+    """Flatten nested tables to dotted keys; a range {start, stop, count} is a value."""
     out: dict[str, Any] = {}
     for key, value in data.items():
         inner = {key: value}
-        # A `count` alone is that of a set.
+        # A `count` alone is the number of bearings in a set.
         if isinstance(value, dict) and not {"start", "stop"} & set(value):
             flat = _flat(table, f"{where}.{key}", value)
             inner = {f"{key}.{name}": one for name, one in flat.items()}
@@ -377,7 +377,7 @@ def _range(table, key, data) -> Any:
     if key in OPERATING:
         start, stop = _numbers(table, _Column(key, ends, np.arange(2)))
         return np.linspace(start, stop, count)
-    # Of a design's numbers the kind is not known here: the unit stays as it is.
+    # The kind of design numbers is not known here: the unit is kept.
     parts = [_split(end) for end in ends]
     if None in parts or parts[0][1] != parts[1][1]:
         problem = "`start` and `stop` must be numbers with one and the same unit"
@@ -390,7 +390,7 @@ def _range(table, key, data) -> Any:
 
 
 def _split(value) -> Any:
-    """(number, unit), unit `None` of a bare number; `None` if it is neither."""
+    """Split into (number, unit), unit `None` for a bare number; `None` otherwise."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return float(value), None
     match = re.fullmatch(r"\s*([-+\d.eE]+)\s*(\D.*?)\s*", str(value))
@@ -419,12 +419,12 @@ def _spectrum(table, data) -> list[_Column]:
 
 
 def _designs(data, path, columns):
-    """Structures, design of each case, settings and warnings of all designs."""
+    """Return structures, design of each case, settings and warnings of all designs."""
     varied = [c for c in columns if c.key not in OPERATING or _fits(data, c.key)]
     if not varied:
         scene = scene_of(data, path)
         return (Structure(scene.running(), None, scene),), None, ({},), ()
-    # Values that repeat are one value; designs that repeat are one design.
+    # Repeated values are merged, and so are repeated designs.
     codes = []
     for column in varied:
         distinct = {v: k for k, v in enumerate(dict.fromkeys(map(repr, column.values)))}
@@ -441,7 +441,7 @@ def _designs(data, path, columns):
         settings = {c.key: c.values[c.index[case]] for c in varied}
         changed = copy.deepcopy(data)
         for key, value in settings.items():
-            # Of a range the speeds are numbers already.
+            # The speeds of a range are already numbers.
             speed = key in OPERATING and not isinstance(value, str)
             assign(changed, key, f"{value} rad/s" if speed else value, path.name)
         scene = scene_of(changed, path, settings)
@@ -471,7 +471,7 @@ def _designs(data, path, columns):
 
 
 def _rated_as(scene: Scene) -> tuple[Any, ...]:
-    """What published ratings and speeds of a design follow from."""
+    """Return the values on which published ratings and speeds of a design depend."""
     arrangement = scene.inputs.get("set", {}).get("arrangement")
     if scene.catalogue is None:
         return None, arrangement
@@ -481,7 +481,7 @@ def _rated_as(scene: Scene) -> tuple[Any, ...]:
 
 
 def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
-    """Header and value of a setting: a number in SI, or text as it was given."""
+    """Return header and value of a setting: a number in SI, or text as given."""
     found: Any = inputs
     for part in key.split("."):
         if isinstance(found, list) and part.isdecimal():
@@ -491,14 +491,14 @@ def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
     if isinstance(found, int | float) and not isinstance(found, bool):
         return key, found
     number, _, unit = found.partition(" ") if isinstance(found, str) else ("", "", "")
-    # A designation, "7208 BE", is no quantity.
+    # A designation, "7208 BE", is not a quantity.
     if unit not in _SI_UNITS:
         return key, str(given)
     return f"{key} [{unit}]", float(number)
 
 
 def _fits(data, key) -> bool:
-    """Whether a key of [operating] changes the mounted bearing, by its speed."""
+    """Whether a key of [operating] changes the mounted bearing through its speed."""
     return "fit" in data and key.endswith("_speed")
 
 

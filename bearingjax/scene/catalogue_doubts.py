@@ -1,4 +1,4 @@
-"""Lines of a [bearing] that look left over from another designation than it has."""
+"""Detection of [bearing] lines that appear left over from another designation."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -15,25 +15,25 @@ from .catalogue_entry import (
 from .quantity import SceneError, to_si
 
 _FAR = 0.05
-"""Change of the pitch circle beyond that of one bearing of another make, whose inside
-was measured; neighbours of a series are further apart [1]."""
+"""Relative change of the pitch diameter above that measured between makers of one
+bearing; neighbours of a series differ by more [1]."""
 
 
 def catalogue_doubts(
     keys: Mapping[str, Any], taken: FromCatalogue, varied: Iterable[str] = ()
 ) -> tuple[str, ...]:
-    """Warnings of lines that are of another designation, a sentence each.
+    """Warn of lines that belong to another designation, one sentence each.
 
-    A scene of `new` has every line. Whoever then changes the designation alone keeps
-    the old bearing below it, which is solved. One dimension or two that are changed on
-    purpose are no reason to warn.
+    A scene written by `new` has every line. If only the designation is then changed,
+    the old dimensions below it remain and are solved. One or two dimensions changed
+    on purpose do not cause a warning.
 
     Args:
         keys: Keys of [bearing] with those of the catalogue.
-        taken: What was taken from there.
-        varied: Keys that the cases of a scene vary ("bearing.n_balls"); with keys of
-            the bearing among them its lines are meant, as written they are checked
-            without.
+        taken: Record of the catalogue entry.
+        varied: Keys varied by the cases of a scene ("bearing.n_balls"); if these
+            include keys of the bearing its lines are taken as intended, and not
+            checked.
     """
     meant = [k for k in varied if k.startswith("bearing.") and "designation" not in k]
     if meant or not taken.overridden:
@@ -42,7 +42,7 @@ def catalogue_doubts(
 
 
 def _of_another(keys, taken) -> tuple[str, ...]:
-    """That the inside is that of another bearing."""
+    """Warn that the internal geometry is that of another bearing."""
     entry, changed = taken.entry, set(taken.overridden) - {CLEARANCE}
     others = [e for e in catalogue() if e.type == entry.type]
     cure = "leave out the lines that are not meant"
@@ -64,11 +64,11 @@ def _of_another(keys, taken) -> tuple[str, ...]:
 
 
 _MAIN = ("pitch_diameter", "ball_diameter", "roller_diameter")
-"""Dimensions that tell a bearing: two of them stand in every one."""
+"""Dimensions that identify a bearing: each bearing has two of them."""
 
 
 def _agrees(keys: Mapping[str, Any], entry: CatalogueEntry, names) -> bool:
-    """Whether keys of a bearing are those of an entry, whatever its clearance."""
+    """Whether keys of a bearing equal those of an entry, clearance excluded."""
     return all(same_key(entry, k, keys.get(k)) for k in names if k != CLEARANCE)
 
 
@@ -77,7 +77,7 @@ def _names(entries) -> str:
 
 
 def _other_class(keys, taken) -> tuple[str, ...]:
-    """That a class of clearance is named, and another clearance given."""
+    """Warn of a clearance that differs from the named clearance class."""
     entry, given = taken.entry, _length(keys, CLEARANCE)
     if entry.type not in CLEARANCES or CLEARANCE not in taken.overridden:
         return ()
@@ -103,7 +103,7 @@ def _other_class(keys, taken) -> tuple[str, ...]:
 
 
 def _limits(entry: CatalogueEntry, name: str) -> tuple[float, float] | None:
-    """Limits of a class of clearance [m], `None` where the size has none."""
+    """Return the limits of a clearance class [m]; `None` if the size has none."""
     find = entry.class_limits
     if find is None:
         return None
@@ -115,7 +115,7 @@ def _limits(entry: CatalogueEntry, name: str) -> tuple[float, float] | None:
 
 
 def _length(table: Mapping[str, Any], key: str) -> float | None:
-    """A length [m]; `None` if it is absent, or no length, which is told elsewhere."""
+    """Return a length [m]; `None` if absent or invalid, which is reported elsewhere."""
     try:
         return to_si(table.get(key), "length")
     except SceneError:

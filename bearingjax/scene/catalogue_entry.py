@@ -1,8 +1,8 @@
-"""The catalogue: bearings by their designation, and where each figure comes from.
+"""The catalogue: bearings by their designation, with the source of each value.
 
-One file per type stands in `catalogue/`: `type`, the `[sources]` with their short
-names, and a table for each bearing under its designation. What stands in the `bearing`
-of such a table are keys of a scene's `[bearing]`.
+The folder `catalogue/` has one file per type: `type`, the `[sources]` with their short
+names, and a table for each bearing under its designation. The `bearing` of such a table
+holds keys of a scene's `[bearing]`.
 """
 
 import dataclasses
@@ -31,10 +31,10 @@ CLEARANCES = {
     "needle_roller": roller_clearance,
     "self_aligning_ball": self_aligning_clearance,
 }
-"""Limits of radial internal clearance by type, where classes are known."""
+"""Limits of radial internal clearance by type, where classes are defined."""
 
 _TAPERED = {"self_aligning_ball": partial(self_aligning_clearance, tapered=True)}
-"""Likewise with tapered bores."""
+"""Limits of radial internal clearance by type for tapered bores."""
 
 CLEARANCE = "radial_internal_clearance"
 
@@ -43,7 +43,7 @@ _OTHER_BALLS = (
     " these may be some 20 % too high (so those of 7205 C and AC, from the balls of the"
     " 7205 BE, are 5 to 22 % above the printed ones)"
 )
-"""Note of a bearing with the balls of another contact angle."""
+"""Note on a bearing with the balls of another contact angle."""
 
 _QUANTITIES = {
     "bore": "length",
@@ -69,12 +69,12 @@ _RATINGS = (
 
 
 class OtherRating(NamedTuple):
-    """What else a bearing of these dimensions and this inside is rated at.
+    """Other published ratings for these boundary dimensions and internal geometry.
 
     Attributes:
         dynamic_capacity: C [N].
-        static_capacity: C0 [N], or `None` if it is of another inside.
-        source: By whom.
+        static_capacity: C0 [N], or `None` if for another internal geometry.
+        source: Publisher.
     """
 
     dynamic_capacity: float
@@ -87,29 +87,29 @@ class CatalogueEntry:
     """A bearing of the catalogue.
 
     Attributes:
-        designation: As catalogues print it, with the class of clearance if one was
-            asked for.
+        designation: As printed in catalogues, with the clearance class if one was
+            named.
         type: As in a scene, "deep_groove_ball".
         bore: d [m].
         outside_diameter: D [m].
         width: B; T of tapered roller bearings, H of thrust bearings [m].
         inner_width: Width B of the inner ring of tapered roller bearings [m].
         outer_width: Width C of their outer ring [m].
-        dynamic_capacity: C as published; axial of thrust bearings [N]. `None`: not
+        dynamic_capacity: C as published; axial for thrust bearings [N]. `None`: not
             known for this variant.
-        static_capacity: C0, likewise [N].
+        static_capacity: C0 as published [N].
         fatigue_load_limit: Pu [N].
         reference_speed: Thermal reference speed [rad/s].
         limiting_speed: Limiting speed [rad/s].
-        other: What another catalogue, or the ordinary class beside an improved one, is
-            rated at.
+        other: Ratings in another catalogue, or of the standard class for an improved
+            one.
         geometry: "published" or "estimated": number and size of the rolling elements
-            and their pitch circle.
-        assumed: Keys of `table` that are neither, but usual.
-        sources: What comes from where: "capacity", "geometry".
-        notes: What was read into the designation, for people.
-        table: Keys of a scene's [bearing] as it would be written.
-        taper: "K" or "K30" of a tapered bore, else "".
+            and their pitch diameter.
+        assumed: Keys of `table` with typical values, neither published nor estimated.
+        sources: Source of "capacity" and "geometry".
+        notes: Interpretation of the designation, in words.
+        table: Keys of [bearing] as written in a scene.
+        taper: "K" or "K30" for a tapered bore, else "".
     """
 
     designation: str
@@ -134,7 +134,7 @@ class CatalogueEntry:
 
     @property
     def clearance_class(self) -> str | None:
-        """Class of radial internal clearance; `None` of a type without such."""
+        """Class of radial internal clearance; `None` for a type without classes."""
         if self.type not in CLEARANCES:
             return None
         after = self.designation.rpartition("/")[2]
@@ -142,12 +142,12 @@ class CatalogueEntry:
 
     @property
     def class_limits(self) -> Callable[..., Limits] | None:
-        """Limits of its clearance by class and bore; `None` of a type without such."""
+        """Clearance limits by class and bore; `None` for a type without classes."""
         return class_limits(self.type, self.taper)
 
     @property
     def bearing(self) -> Any:
-        """The design: a bearing, or the set of both rows of a self-aligning one."""
+        """The design: a bearing, or the set of both rows of a self-aligning bearing."""
         from .bearing_table import read_bearing  # which reads designations in turn
         from .table import Table
 
@@ -156,18 +156,18 @@ class CatalogueEntry:
 
 
 def catalogue_entry(designation: str) -> CatalogueEntry:
-    """The bearing of the catalogue that a designation names.
+    """Look up a bearing of the catalogue by its designation.
 
     Args:
-        designation: Such as "6205", "SKF 6205-2RS1/C3", "NJ 205 ECP". Letters of
-            seals, shields, cages and accuracy are accepted and said in `notes` to have
-            no effect; a class of clearance (C2 to C5, with H, L, M or P for a part of
-            it) sets the clearance to the middle of its range; a tapered bore (K) of
-            self-aligning bearings has classes of its own.
+        designation: Such as "6205", "SKF 6205-2RS1/C3", "NJ 205 ECP". Suffixes for
+            seals, shields, cages and accuracy are accepted and listed in `notes` as
+            having no effect; a clearance class (C2 to C5, with H, L, M or P for a
+            part of it) sets the clearance to the middle of its range; self-aligning
+            bearings with a tapered bore (K) have separate classes.
 
     Raises:
-        SceneError: If there is no such bearing; names those near it.
-        TypeError: If it is no text.
+        SceneError: If there is no such bearing; the message names similar ones.
+        TypeError: If it is not a string.
     """
     if not isinstance(designation, str):
         problem = 'it must be a text such as "6205"'
@@ -181,7 +181,7 @@ def catalogue_entry(designation: str) -> CatalogueEntry:
 
 
 def catalogue() -> tuple[CatalogueEntry, ...]:
-    """All bearings of the catalogue, by type and in the order of their files."""
+    """Return all bearings of the catalogue, by type and in the order of the files."""
     plain = Suffixes(None, ())
     seen: dict[str, CatalogueEntry] = {}
     for kind, key, changes, odd in _names().values():
@@ -193,7 +193,7 @@ def catalogue() -> tuple[CatalogueEntry, ...]:
 
 @functools.cache
 def _files() -> dict[str, dict[str, Any]]:
-    """What the files of the catalogue hold, by type."""
+    """Read the files of the catalogue, by type."""
     folder = Path(str(files("bearingjax.scene") / "catalogue"))
     read = (
         tomllib.loads(path.read_text(encoding="utf-8"))
@@ -204,10 +204,10 @@ def _files() -> dict[str, dict[str, Any]]:
 
 @functools.cache
 def _names() -> dict[str, tuple[str, str, dict[str, Any], tuple[str, ...]]]:
-    """Type, key, changed keys and notes of every name, compact.
+    """Return type, key, changed keys and notes of every compact name.
 
-    A bearing with `arrangements` has a name for each; one with `also` is found by
-    these names too. Where letters name contact angles, a size has all of them.
+    A bearing with `arrangements` has a name for each; the names in `also` are aliases.
+    Where letters denote contact angles, a size has all of them.
     """
     found: dict[str, tuple[str, str, dict[str, Any], tuple[str, ...]]] = {}
     for kind, data in _files().items():
@@ -308,11 +308,11 @@ def _other(values, sources) -> OtherRating | None:
 
 
 def class_limits(kind: str, taper: str = "") -> Callable[..., Limits] | None:
-    """Limits of the clearance of a type by class and bore; `None` if none are known.
+    """Return the clearance limits of a type by class and bore; `None` if not known.
 
     Args:
         kind: Type, as in a scene.
-        taper: As of `CatalogueEntry`.
+        taper: As in `CatalogueEntry`.
     """
     return (_TAPERED if taper else CLEARANCES).get(kind)
 
@@ -320,13 +320,13 @@ def class_limits(kind: str, taper: str = "") -> Callable[..., Limits] | None:
 def class_clearance(
     kind: str, name: str, bore: float, taper: str = ""
 ) -> tuple[str, str]:
-    """Clearance in the middle of a class, as in a scene, and where it is from.
+    """Return the middle clearance of a class, as in a scene, and its source.
 
     Args:
-        kind: Type that has classes, one of `CLEARANCES`.
-        name: Class, "C3".
+        kind: Type with clearance classes, one of `CLEARANCES`.
+        name: Class, such as "C3".
         bore: Bore diameter d [m].
-        taper: As of `CatalogueEntry`.
+        taper: As in `CatalogueEntry`.
 
     Raises:
         ValueError: If the class has no limits for this bore.
@@ -341,18 +341,18 @@ def class_clearance(
 
 @dataclasses.dataclass(frozen=True)
 class FromCatalogue:
-    """What a scene's `designation` stands for.
+    """Catalogue entry of a scene's `designation`.
 
     Attributes:
         entry: The bearing of the catalogue.
-        overridden: Keys that the scene gives otherwise.
+        overridden: Keys to which the scene gives other values.
     """
 
     entry: CatalogueEntry
     overridden: tuple[str, ...]
 
     def varied(self, keys: Iterable[str]) -> "FromCatalogue":
-        """With keys of a scene, "bearing.n_balls", that count as given otherwise."""
+        """Mark further scene keys, such as "bearing.n_balls", as overridden."""
         given = [key.split(".")[1] for key in keys if key.startswith("bearing.")]
         names = dict.fromkeys((*self.overridden, *given))
         return dataclasses.replace(self, overridden=tuple(names))
@@ -371,21 +371,21 @@ _INSTEAD = {
     "contact_angle": (CLEARANCE,),
     "ribs": ("arrangement", "rib", "axial_internal_clearance"),
 }
-"""Keys that a given key replaces: one follows from the other."""
+"""Keys replaced by a given key: one follows from the other."""
 
 
 def taken_from(
     entry: CatalogueEntry, given: Mapping[str, Any]
 ) -> tuple[dict[str, Any], FromCatalogue]:
-    """Keys of [bearing] with those of the catalogue where none are given.
+    """Complete the keys of [bearing] from the catalogue.
 
     Args:
-        entry: Of the designation.
-        given: Keys beside the designation; of nested tables the keys that are given,
-            unless they name a `type` of their own.
+        entry: Catalogue entry of the designation.
+        given: Keys given in addition to the designation; nested tables are merged
+            key by key, unless they name a `type`.
 
     Returns:
-        All keys, and what was taken from where.
+        All keys, and the record of the catalogue entry.
     """
     dropped = {name for key in given for name in _INSTEAD.get(key, ())}
     merged = {k: v for k, v in entry.table.items() if k not in dropped}
@@ -401,12 +401,12 @@ def taken_from(
 
 
 def same_key(entry: CatalogueEntry, key: str, value: Any) -> bool:
-    """Whether a key of a scene's [bearing] means what it is in the catalogue.
+    """Whether a key of a scene's [bearing] equals its catalogue value.
 
     Args:
-        entry: Of the catalogue.
+        entry: Catalogue entry.
         key: Key of [bearing].
-        value: As the scene writes it.
+        value: Value as written in the scene.
     """
     return _same(value, entry.table.get(key)) or _same(value, _filled(entry).get(key))
 
@@ -415,7 +415,7 @@ _FILLED: dict[str, dict[str, Any]] = {}
 
 
 def _filled(entry: CatalogueEntry) -> dict[str, Any]:
-    """Keys of a bearing with all defaults, as the JSON of a solve echoes them."""
+    """Return the keys of a bearing with all defaults, as echoed in the JSON."""
     from .bearing_table import read_bearing  # which reads designations in turn
     from .table import Table
 
@@ -427,7 +427,7 @@ def _filled(entry: CatalogueEntry) -> dict[str, Any]:
 
 
 def _same(value: Any, own: Any) -> bool:
-    """Whether two entries of a scene mean the same: "7.94 mm" and "0.00794 m" do."""
+    """Whether two scene values are equal, such as "7.94 mm" and "0.00794 m"."""
     if isinstance(value, Mapping) and isinstance(own, Mapping):
         return set(value) == set(own) and all(_same(value[k], own[k]) for k in value)
     if value == own or not (isinstance(value, str) and isinstance(own, str)):

@@ -22,7 +22,7 @@ _SPEED = "1500 rpm"
 _DIRT = 'contamination = "grease, normal"  # of an oil "oil bath -/17/14" and the like'
 
 _PAIRED = ("angular_contact_ball", "tapered_roller")
-"""Types that are often used as pairs."""
+"""Types that are often mounted in pairs."""
 
 _WARM = {
     "shaft": 60,
@@ -31,7 +31,7 @@ _WARM = {
     "outer_ring": 50,
     "housing": 45,
 }
-"""Usual temperatures [°C]."""
+"""Typical temperatures [°C]."""
 
 
 def select(
@@ -41,17 +41,17 @@ def select(
     outside: str | None = None,
     capacity: str | None = None,
 ) -> tuple[CatalogueEntry, ...]:
-    """Entries that fit.
+    """Select the entries that match all criteria.
 
     Args:
-        entries: Of the catalogue.
+        entries: Catalogue entries.
         kind: Type, as in a scene.
-        bore, outside: One size, "25 mm", or from and to, "20 mm:40 mm"; either may be
-            left out.
-        capacity: Dynamic capacity likewise; one number is the least.
+        bore, outside: One size, "25 mm", or a range, "20 mm:40 mm", with either end
+            optional.
+        capacity: Dynamic capacity in the same form; a single number is the minimum.
 
     Raises:
-        SceneError: Names the option, what was given and what is allowed.
+        SceneError: Names the option, the value given and what is allowed.
     """
     kinds = (*BALLS, *ROLLERS)
     if kind is not None and kind not in kinds:
@@ -70,14 +70,14 @@ def select(
 
 
 def _within(value, ends) -> bool:
-    """Whether a number lies between two; what is not known does not."""
+    """Whether a number lies within a range; an unknown number does not."""
     if ends is None:
         return True
     return value is not None and ends[0] <= value <= ends[1]
 
 
 def _range(option, text, kind, least=False) -> tuple[float, float] | None:
-    """Least and most, a millionth wider for round-off; `None` without a text."""
+    """Parse a range, widened by a millionth for round-off; `None` without text."""
     if text is None:
         return None
     first, colon, last = text.partition(":")
@@ -95,7 +95,7 @@ def _range(option, text, kind, least=False) -> tuple[float, float] | None:
 
 
 def catalogue_table(entries: Sequence[CatalogueEntry]) -> str:
-    """A line for each bearing: sizes in mm, capacities in kN."""
+    """Format a line for each bearing: sizes in mm, capacities in kN."""
     head = (
         f"{'designation':<13}{'type':<21}{'d':>6}{'D':>7}{'B, T, H':>9}{'C':>8}"
         f"{'C0':>8}{'Pu':>8}  geometry"
@@ -122,7 +122,7 @@ def _number(value, scale):
 
 
 def catalogue_title(entry: CatalogueEntry) -> str:
-    """What a bearing is, its sizes, and where its inner geometry is from."""
+    """Describe a bearing: type, sizes, and origin of its internal geometry."""
     return f"{_what(entry)}, inner geometry {entry.geometry}"
 
 
@@ -132,7 +132,7 @@ def _what(entry):
 
 
 def catalogue_details(entry: CatalogueEntry) -> str:
-    """All that is known of a bearing, with its sources."""
+    """Format all data of a bearing, with its sources."""
     lines = [_what(entry)]
     lines.append(_loads(entry))
     if entry.other is not None:
@@ -154,11 +154,11 @@ def catalogue_details(entry: CatalogueEntry) -> str:
 
 
 def catalogue_as_dict(entries: Iterable[CatalogueEntry]) -> dict[str, Any]:
-    """The bearings as plain numbers in SI.
+    """Return the bearings as plain numbers in SI.
 
     Returns:
-        `bearings`: of each the fields of `CatalogueEntry`, but `table` as written in a
-        scene.
+        `bearings`: the fields of `CatalogueEntry` of each, with `table` as written in
+        a scene.
     """
     return {
         "bearings": [
@@ -169,10 +169,10 @@ def catalogue_as_dict(entries: Iterable[CatalogueEntry]) -> dict[str, Any]:
 
 
 def new_scene(entry: CatalogueEntry) -> str:
-    """A scene of a bearing under a load of a tenth of its capacity, to be edited.
+    """Write a scene of a bearing under a tenth of its capacity, to be edited.
 
     Args:
-        entry: The bearing, of the catalogue or of `estimated_entry`; every key is
+        entry: The bearing, of the catalogue or from `estimated_entry`; every key is
             written out, so that it can be changed.
     """
     lines = [
@@ -216,7 +216,7 @@ def _designation(entry: CatalogueEntry) -> list[str]:
 
 
 def _further(entry: CatalogueEntry) -> list[str]:
-    """Lines of the tables that a life in operation needs."""
+    """Return the lines of the tables needed for a life in operation."""
     lines = []
     if entry.type in _PAIRED:
         lines += [
@@ -256,7 +256,7 @@ def _further(entry: CatalogueEntry) -> list[str]:
 
 
 def _ratings(entry: CatalogueEntry) -> list[str]:
-    """Lines of the [life] that a designation stands for otherwise."""
+    """Return the lines of [life] for a bearing without a designation."""
     if entry.designation:
         return []
     ratings = {
@@ -273,7 +273,7 @@ def _ratings(entry: CatalogueEntry) -> list[str]:
 
 
 def _seats(entry: CatalogueEntry) -> list[str]:
-    """Lines of a usual [fit]; the housing half as large again as the bearing."""
+    """Return the lines of a typical [fit]; housing 1.5 times the outside diameter."""
     classes = ['shaft = "k5"', 'housing = "H7"']
     if entry.type == "tapered_roller":
         classes = ['shaft_interference = "10 um"', 'housing_interference = "-10 um"']
@@ -289,7 +289,7 @@ def _seats(entry: CatalogueEntry) -> list[str]:
 
 
 def _load(entry: CatalogueEntry) -> list[str]:
-    """Lines of a load that the bearing carries, its capacity known or not."""
+    """Return the lines of a load within the capacity, known or estimated."""
     bearing = entry.bearing
     capacity = entry.dynamic_capacity
     share = "a tenth of C"
@@ -305,7 +305,7 @@ def _load(entry: CatalogueEntry) -> list[str]:
         return [comment, f'load = {{ Fy = "-{half}", Fz = "{load}" }}']
     if entry.type == "tapered_roller":
         row: Any = rows_of(bearing)[0].bearing
-        # Of steep bearings more, for some half of the rollers to bear the radial load.
+        # More for steep contact angles, so that about half of the rollers are loaded.
         needed = 1.3 * np.tan(float(row.axis_angle + row.half_angle))
         axial = f"{_rounded(max(0.5, needed) * _SHARE * capacity):g} N"
         words = "half of it" if axial == half else "as its steep rollers need"
@@ -315,7 +315,7 @@ def _load(entry: CatalogueEntry) -> list[str]:
 
 
 def _rough_capacity(ball) -> float:
-    """Load of the order of C [N], where none is known: 18 N for a mm² of all balls."""
+    """Estimate C [N] where it is not known: 18 N per mm² of all balls."""
     return 18e6 * ball.n_balls * float(ball.ball_diameter) ** 2
 
 
@@ -349,7 +349,7 @@ def _rpm(speed: float) -> float:
 
 
 def _comment(text: str) -> list[str]:
-    """Text as comment lines of at most 88 characters."""
+    """Wrap text to comment lines of at most 88 characters."""
     lines, line = [], "#"
     for word in text.split():
         if len(line) + len(word) > 87:
@@ -367,7 +367,7 @@ def _toml(value: Any) -> str:
 
 
 def scene_list() -> str:
-    """A line for each shipped scene: name, command that runs it, what it is."""
+    """Return a line for each shipped scene: name, command and title."""
     lines = []
     for name, path in shipped_scenes().items():
         text = path.read_text(encoding="utf-8")
@@ -376,14 +376,14 @@ def scene_list() -> str:
 
 
 def _title(text: str) -> str:
-    """First sentence of the comment at the head of a scene."""
+    """Return the first sentence of the comment at the head of a scene."""
     head = re.match(r"(?:#.*\n)*", text)
     words = " ".join(line.lstrip("# ") for line in head[0].splitlines()) if head else ""
     return re.split(r"(?<=\w\w[).!?])(?<=[.!?])\s", words)[0].rstrip(".")
 
 
 def _command(data: Mapping[str, Any]) -> str:
-    """Command that a scene is written for."""
+    """Return the command that runs a scene."""
     tables = {
         "rotor": "rotor",
         "vibration": "noise",

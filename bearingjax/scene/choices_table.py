@@ -82,7 +82,7 @@ class LineContactKeys(Keys):
 
     @property
     def law(self) -> AbstractLineLaw:
-        """The law of the slices."""
+        """Line law of the slices."""
         with self.table.building():
             if self.line_law == "coupled_slices":
                 return CoupledSlices(self.slices)
@@ -115,7 +115,7 @@ class PointContactKeys(Keys):
 
     @property
     def law(self) -> AbstractPointLaw:
-        """The law of the contacts."""
+        """Point law of the contacts."""
         if self.outer_constant is None or self.inner_constant is None:
             return POINT_LAWS[self.point_law]()
         with self.table.building():
@@ -148,7 +148,7 @@ class ControlKeys(Keys):
 
     @property
     def control(self) -> AbstractRacewayControl:
-        """The raceway control."""
+        """Raceway control of the balls."""
         if self.friction_coefficient is None:
             return CONTROLS[self.raceway_control]()
         with self.table.building():
@@ -188,7 +188,7 @@ class RollerNumericsKeys(BallNumericsKeys):
     )
 
     def rule(self, n_rollers: int) -> AbstractQuadrature:
-        """The rule along the rollers.
+        """Return the quadrature rule along the rollers.
 
         Args:
             n_rollers: Number of rollers of all rows.
@@ -213,11 +213,11 @@ def read_choices(
     numerics: Table,
     bearing: AbstractBearing | BearingSet,
 ) -> dict[str, Any]:
-    """Keywords of `BearingElement` that a scene chooses.
+    """Return the keyword arguments of `BearingElement` chosen by a scene.
 
     Args:
         contact, operating, numerics: Tables of the scene.
-        bearing: Its bearing.
+        bearing: Bearing of the scene.
     """
     if bearing.is_ball:
         choices: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""Bearings of several scenes side by side, the largest differences first."""
+"""Comparison of the bearings of several scenes, sorted by relative difference."""
 
 import dataclasses
 from collections.abc import Sequence
@@ -24,29 +24,29 @@ from .sweep_run import kind
 
 _FIELDS = "displacement", "force", "stiffness"
 _SUMMARIES = "largest_load", "peak_pressure", "n_loaded"
-"""Compared beside the lives, of the moving ring; of the stiffness its diagonal."""
+"""Compared in addition to the lives; of the stiffness only the diagonal."""
 
 _ROUND_OFF = 1e-9
-"""Difference over the larger number below which there is none."""
+"""Relative difference below which numbers count as equal."""
 
 
 _SMALL = 1e-5
-"""Size over the largest of its kind, in all scenes, below which nobody compares [1]."""
+"""Size over the largest of its kind in all scenes below which it is left out [1]."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Comparison:
-    """Solved scenes side by side.
+    """Comparison of solved scenes.
 
     Attributes:
-        names: Of the scenes; those of one name are numbered.
+        names: Names of the scenes; duplicates are numbered.
         scenes: From `read_scene`, with the preloads of sets on their seats.
-        solutions: Of each, converged or not, in NumPy.
-        warnings: Of each, as `solve` gives them.
-        quantities: By header, "name [unit]": the number of each scene in SI (scene,),
-            NaN of what a scene does not have or of one that was not solved; the
-            largest differences first. What is small beside others of its kind, such
-            as a displacement across the load, is left out.
+        solutions: Solution of each scene, converged or not, in NumPy.
+        warnings: Warnings of each scene, as given by `solve`.
+        quantities: By header, "name [unit]": the value for each scene in SI (scene,),
+            NaN where a scene does not have it or was not solved; sorted by decreasing
+            difference. Values small relative to others of their kind, such as a
+            displacement across the load, are left out.
     """
 
     names: list[str]
@@ -57,7 +57,7 @@ class Comparison:
 
 
 def run_compare(scenes: Sequence[Scene]) -> Comparison:
-    """Solve scenes and set their results side by side.
+    """Solve scenes and compare their results.
 
     Args:
         scenes: Two or more, from `read_scene`.
@@ -81,7 +81,7 @@ def run_compare(scenes: Sequence[Scene]) -> Comparison:
 
 
 def _side_by_side(found: list[dict[str, float]]) -> dict[str, np.ndarray]:
-    """The numbers of each scene by header, in the order of their differences."""
+    """Return the values of each scene by header, sorted by difference."""
     headers = dict.fromkeys(header for numbers in found for header in numbers)
     rows = {h: np.array([n.get(h, np.nan) for n in found], float) for h in headers}
     size = {h: np.nan_to_num(np.abs(values)).max() for h, values in rows.items()}
@@ -94,14 +94,14 @@ def _side_by_side(found: list[dict[str, float]]) -> dict[str, np.ndarray]:
 
 
 def difference(values: np.ndarray) -> float:
-    """Difference of the largest and the smallest number over the larger magnitude [1].
+    """Return the range of the values over the larger magnitude [1].
 
     Args:
-        values: One of each scene (scene,).
+        values: One value per scene (scene,).
 
     Returns:
-        Zero for round-off and for numbers that are all infinite; NaN where one is
-        missing or infinite alone.
+        Zero for round-off and for values that are all infinite; NaN if some, but not
+        all, are missing or infinite.
     """
     if np.all(values == values[0]):
         return 0.0
@@ -112,7 +112,7 @@ def difference(values: np.ndarray) -> float:
 
 
 def _numbers(scene: Scene, solution: Solution, life: Life | None) -> dict[str, float]:
-    """Numbers of a scene that are compared, by header; none of an unsolved one."""
+    """Return the compared numbers of a scene by header; empty if not solved."""
     if not solution.converged:
         return {}
     told: dict[str, Any] = {name: getattr(solution, name) for name in _FIELDS}
@@ -140,7 +140,7 @@ def _numbers(scene: Scene, solution: Solution, life: Life | None) -> dict[str, f
 
 
 def compare_report(found: Comparison) -> Report:
-    """Readable report of scenes side by side.
+    """Return the readable report of a comparison.
 
     Args:
         found: From `run_compare`.
@@ -169,7 +169,7 @@ def compare_report(found: Comparison) -> Report:
 
 
 def _inputs(found: Comparison) -> Part:
-    """Keys of the scenes that differ."""
+    """List the keys that differ between the scenes."""
     read = [dict(flat(scene.inputs)) for scene in found.scenes]
     keys = dict.fromkeys(key for scene in read for key in scene)
     apart = [key for key in keys if len({scene.get(key) for scene in read}) > 1]
@@ -180,15 +180,15 @@ def _inputs(found: Comparison) -> Part:
 
 
 def compare_as_dict(found: Comparison) -> dict[str, Any]:
-    """Scenes side by side as plain numbers and lists, in SI.
+    """Return a comparison as plain numbers and lists, in SI.
 
     Args:
         found: From `run_compare`.
 
     Returns:
         `scenes`, `result` and `warnings` of each; `quantities` by header,
-        "name [unit]": a number of each scene, null of what one does not have;
-        `difference` by header, as of `difference`; `inputs` of each, and version.
+        "name [unit]": a number per scene, null where it has none; `difference` by
+        header, from `difference`; `inputs` of each, and version.
     """
     from .. import __version__
 
@@ -204,7 +204,7 @@ def compare_as_dict(found: Comparison) -> dict[str, Any]:
 
 
 def compare_columns(found: Comparison) -> dict[str, np.ndarray]:
-    """Scenes side by side as columns by header, a row for each result, in SI.
+    """Return a comparison as columns by header, a row for each result, in SI.
 
     Args:
         found: From `run_compare`.

@@ -1,4 +1,4 @@
-"""What is told of a solved contact: a report for people, JSON in SI for programs."""
+"""Report of a solved contact as text, and its results as JSON in SI."""
 
 from typing import Any
 
@@ -11,22 +11,22 @@ from .contact_table import ContactScene
 from .report_model import NEWTONS, Column, Grid, Report
 
 WIDE = 0.2
-"""Half width of a contact over the radius of the roller from which it is said."""
+"""Half width of a contact over the roller radius above which a warning is given."""
 
 FEW = 5
-"""Cells across a contact, or along it, below which it is said."""
+"""Cells across or along a contact below which a warning is given."""
 
 PLACES = (1 / 30, 1 / 15, 1 / 4, 1 / 2, 3 / 4, 14 / 15, 29 / 30)
-"""Where the report gives the pressure: from the small end, over the length."""
+"""Positions at which the report gives the pressure: from the small end, over length."""
 
 
 def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
-    """What a reader should know before the numbers are used.
+    """Return the warnings of a solved contact.
 
     Args:
-        scene: What was asked.
-        cases: What came of it; those that are not solved are passed over, but for a
-            grid too narrow.
+        scene: The scene of the contact.
+        cases: Results of its cases; unsolved ones are skipped, except for a grid that
+            is too narrow.
     """
     found = list(scene.warnings)
     solved = [case for case in cases if case.solution.converged]
@@ -81,19 +81,19 @@ def _named(cases):
 
 
 def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any]:
-    """A solved contact as plain numbers and lists, in SI.
+    """Return a solved contact as plain numbers and lists, in SI.
 
     Args:
-        scene: What was asked.
-        cases: What came of it.
+        scene: The scene of the contact.
+        cases: Results of its cases.
 
     Returns:
-        position and cell_length along the roller, end_cell_length, what `_numbers`
-        lists, result, message, residual, iterations, warnings, inputs (the file is a
-        scene again; of a roller of a bearing that of the bearing) and version. If the
-        scene lists its loads, each but the first three and last three is a list over
-        them, null where a load was not solved. If nothing was solved the numbers are
-        left out.
+        position and cell_length along the roller, end_cell_length, the results of
+        `_numbers`, result, message, residual, iterations, warnings, inputs (the file
+        can be read as a scene; for a roller of a bearing that of the bearing) and
+        version. If the scene lists its loads, all but the first three and last three
+        are lists over them, null where a load was not solved. If nothing was solved
+        the numbers are left out.
     """
     from .. import __version__
 
@@ -166,11 +166,11 @@ def _numbers(scene, case: Compared) -> dict[str, Any]:
 
 
 def contact_report(scene: ContactScene, cases: list[Compared]) -> Report:
-    """Readable report of a solved contact.
+    """Return the readable report of a solved contact.
 
     Args:
-        scene: What was asked.
-        cases: What came of it; those that are not solved are left out.
+        scene: The scene of the contact.
+        cases: Results of its cases; unsolved ones are left out.
     """
     solved = [case for case in cases if case.solution.converged]
     sections = {
@@ -241,7 +241,7 @@ def _loads(cases):
 
 
 def _places(scene, cases):
-    """Pressure at x = 0 at fixed places, which do not depend on the cells there."""
+    """Tabulate the pressure at x = 0 at fixed positions, independent of the cells."""
     length = float(scene.contact.roller_length)
     places = np.array(PLACES) * length
     pressure = np.array([_at(case.solution, 0.5 * length - places) for case in cases])
@@ -273,5 +273,5 @@ def _at(solution, y):
 
 
 def _clean(value):
-    """Round-off of what cancels is shown as zero."""
+    """Set the round-off of cancelling terms to zero."""
     return 0.0 if abs(float(value)) < 1e-12 else float(value)

@@ -1,4 +1,4 @@
-"""Running a scene of one contact, or a roller of a bearing's scene."""
+"""Solve the scene of one contact, or one roller contact of a bearing's scene."""
 
 from typing import Any
 
@@ -26,7 +26,7 @@ def run_contact(scene: ContactScene) -> list[Compared]:
         scene: From `read_contact`.
 
     Returns:
-        A case for each load, in order; nothing is raised for a failed solve.
+        A case for each load, in order; a failed solve does not raise.
 
     Fails: as `solve_pressure`.
     """
@@ -50,16 +50,16 @@ def run_refined(
     raceway: str | None = None,
     free_ends: bool = False,
 ) -> tuple[ContactScene, list[Compared]]:
-    """Contact of one roller of a bearing's scene, on cells as by default.
+    """Solve the contact of one roller of a bearing's scene, on the default grid.
 
     Args:
         scene: From `read_scene`.
         solution: From `run_scene`, converged.
-        roller, raceway: As of `refine`; default: the inner one.
-        free_ends: Whether the roller's end faces are free, as `FreeEnds()` has them.
+        roller, raceway: As in `refine`; default: the inner raceway.
+        free_ends: Whether the roller's end faces are free, modelled by `FreeEnds()`.
 
     Returns:
-        The scene of that contact, and its one case.
+        The scene of that contact, and its single case.
 
     Raises:
         SceneError: For a bearing with balls, or an unknown or unloaded roller.

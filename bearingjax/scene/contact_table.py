@@ -1,4 +1,4 @@
-"""Scenes of one roller on one raceway: [roller], [raceway] and how they are pressed."""
+"""Scenes of one roller on one raceway: [roller], [raceway] and their loading."""
 
 import dataclasses
 import warnings
@@ -18,13 +18,13 @@ from .schema import Keys, read_keys, scene_key
 from .table import Table, written_numbers
 
 LAWS = ("palmgren", "iso16281")
-"""Line laws of slices that know nothing of their neighbours."""
+"""Line laws of independent slices."""
 
 SIDES = {"inner": 1.0, "outer": -1.0}
 """Sign of the curvature of a raceway."""
 
 MOST_NUMBERS = 5e7
-"""Most numbers in the influence of cells graded or with free ends: 0.4 GB."""
+"""Most influence coefficients of a graded grid or one with free ends: 0.4 GB."""
 
 
 def _profile(table: Table, name: str) -> AbstractProfile:
@@ -68,7 +68,7 @@ class RollerKeys(Keys):
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Small and large diameter [m]."""
+        """Small and large end diameter [m]."""
         small, large = self.small_diameter, self.large_diameter
         both = self.diameter or 0.0  # checked when it was read
         return small or both, large or both
@@ -115,7 +115,7 @@ class RacewayKeys(Keys):
 
     @property
     def radius(self) -> float:
-        """Radius normal to the generatrix in the middle, signed [m]."""
+        """Signed radius normal to the generatrix at mid-length [m]."""
         if self.diameter is None or self.side is None:
             return np.inf
         return SIDES[self.side] * 0.5 * self.diameter / np.cos(self.half_angle)
@@ -152,7 +152,7 @@ class ContactOperatingKeys(Keys):
 
     @property
     def loads(self) -> tuple[float, ...]:
-        """All loads [N]; none if the approach is given."""
+        """All loads [N]; empty if the approach is given."""
         if self.load is None:
             return ()
         return self.load if isinstance(self.load, tuple) else (self.load,)
@@ -215,7 +215,7 @@ class SliceLawKeys(Keys):
 
     @property
     def law(self) -> AbstractLineLaw:
-        """The law of the slices."""
+        """Line law of the slices."""
         return read_keys(LineContactKeys, self.table).law
 
 
@@ -228,7 +228,7 @@ class ContactOutputKeys(Keys):
 
 @dataclasses.dataclass(frozen=True)
 class ContactScene:
-    """What a scene of one contact asks for, in SI.
+    """Scene of one contact, in SI.
 
     Attributes:
         name: Name of the file without its ending.
@@ -240,12 +240,12 @@ class ContactScene:
         listed: Whether the scene lists its loads.
         law: Line law of the slices that the contact is compared with.
         across, along: Number of cells.
-        grading: As of `graded_grid`.
-        half_width: Half width of the grid [m]; `None`: found for each load.
+        grading: As in `graded_grid`.
+        half_width: Half width of the grid [m]; `None`: determined for each load.
         tolerance: Residual at which to stop, or `None` for the default.
         max_steps: Step limit.
-        field: Whether the pressure of every cell is written.
-        warnings: What the validation found odd but possible.
+        field: Whether to output the pressure of every cell.
+        warnings: Warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 
@@ -269,14 +269,14 @@ class ContactScene:
 
     @property
     def cases(self) -> list[dict[str, float]]:
-        """What is given in each case, by the names of `RollerContact.solve`."""
+        """Keyword arguments of `RollerContact.solve` for each case."""
         held = {"approach": self.approach, "moment": self.moment, "tilt": self.tilt}
         rest = {name: value for name, value in held.items() if value is not None}
         return [{"load": load, **rest} for load in self.loads] or [rest]
 
 
 def is_bearing(source: str | Path, settings: Iterable[str] = ()) -> bool:
-    """Whether a scene is one of a bearing, not of a single contact.
+    """Whether a scene describes a bearing, not a single contact.
 
     Args:
         source, settings: As in `read_scene`.
@@ -364,7 +364,7 @@ def _scene(top: Table, name, contact: RollerContact, odd) -> ContactScene:
 
 
 def _check_grid(keys: ContactNumericsKeys, contact: RollerContact, loads: int) -> None:
-    """Raise SceneError for a grid that is too large for memory or for the bodies."""
+    """Raise SceneError for a grid too large for the memory or for the bodies."""
     if keys.grading > 1.0 or contact.free_ends is not None:
         if max(loads, 1) * keys.across * keys.along**2 > MOST_NUMBERS:
             problem = (

@@ -1,4 +1,4 @@
-"""Designations of bearings as catalogues and boxes write them: "6205-2RS1/C3"."""
+"""Designations of bearings as printed in catalogues and on boxes: "6205-2RS1/C3"."""
 
 import difflib
 import re
@@ -9,9 +9,9 @@ from ..design.fit_limits import CLEARANCE_CLASSES
 from .quantity import SceneError
 
 MAKERS = ("SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "TIMKEN", "NACHI", "URB")
-"""Names that may stand before a designation."""
+"""Manufacturer names that may precede a designation."""
 
-# Letters of several makers for what the library does not compute with.
+# Suffixes of several makers that do not affect the calculation.
 _WITHOUT_EFFECT = {
     "seals or shields": r"2?RS[RHL12]?\d?|2?RZ|2?ZZ?|LL[UBHX]|DDU?|VV",
     "cage": r"TN[9HG]?|TNP|TVP2?B?|TVPB|TVH|TV|TB|T2X?|J[12]?|M[ABLPT]?[12]?|PH[AS]*|P"
@@ -21,20 +21,20 @@ _WITHOUT_EFFECT = {
     "mounting": r"C[ABC]|G[ABC]?|U[ALO]|N[12]?|Z?NR",
     "tapered bore": r"K(?:30)?",
 }
-# A class, and a part of its range unless the letter begins that of a grease or, before
-# a digit, of an accuracy.
+# A class, and a part of its range unless the letter begins a grease suffix or, before
+# a digit, an accuracy suffix.
 _PART = r"(?:(?!L?HT|[LMV]T)[HLMP](?!\d))?"
 _CLEARANCE = rf"(?:{'|'.join(CLEARANCE_CLASSES)})(?!\d|X){_PART}"
 
 
 class Suffixes(NamedTuple):
-    """What the letters after the name of a bearing say.
+    """Meaning of the suffixes of a designation.
 
     Attributes:
         clearance: Class of internal clearance, with the part of its range, "C3H", or
             `None` if none is named.
-        without_effect: Letters with what they stand for, "2RS1 (seals or shields)".
-        taper: "K" or "K30" of a tapered bore, else "".
+        without_effect: Suffixes with their meaning, "2RS1 (seals or shields)".
+        taper: "K" or "K30" for a tapered bore, else "".
     """
 
     clearance: str | None
@@ -43,19 +43,19 @@ class Suffixes(NamedTuple):
 
 
 def compact(text: str) -> str:
-    """A designation in capitals, without what stands between its parts."""
+    """Return a designation in capitals, without separators."""
     return re.sub(r"[\s./_-]+", "", text.upper())
 
 
 def split_designation(text: str, names: Iterable[str]) -> tuple[str, Suffixes]:
-    """The listed name with which a designation begins, and what follows it.
+    """Split a designation into its listed name and suffixes.
 
     Args:
         text: As written, such as "SKF 6205-2RS1/C3".
-        names: The names that are known, compact.
+        names: Known names, compact.
 
     Raises:
-        SceneError: If it begins with no such name, or with letters after it whose
+        SceneError: If it does not begin with a known name, or has suffixes whose
             meaning is not known.
     """
     if not compact(text):
@@ -74,12 +74,12 @@ def split_designation(text: str, names: Iterable[str]) -> tuple[str, Suffixes]:
 
 
 def _goes_on(rest: str) -> bool:
-    """Whether what follows a name is more of a number: 62055 is not 6205."""
+    """Whether the rest continues the number of a name: 62055 is not 6205."""
     return bool(re.match(r"\d(?!RS|RZ|Z)", rest))
 
 
 def _after(whole: str, name: str) -> str:
-    """What stands after a compact name in a text that is not compact."""
+    """Return the text that follows a compact name in a non-compact designation."""
     kept = iter(name)
     wanted = next(kept)
     for place, letter in enumerate(whole):
@@ -118,11 +118,11 @@ def _suffixes(rest: str, name: str, text: str) -> Suffixes:
 
 
 def _idle(word: str) -> tuple[str, str]:
-    """The longest letters without effect with which a word begins."""
+    """Return the longest suffix without effect with which a word begins."""
     best, meaning = "", ""
     for kind, pattern in _WITHOUT_EFFECT.items():
         found = re.match(pattern, word)
-        # A pattern of alternatives takes the first, not the longest.
+        # A regular expression takes the first alternative, not the longest.
         for length in range(len(word), len(best), -1):
             if found and re.fullmatch(pattern, word[:length]):
                 best, meaning = word[:length], kind

@@ -21,17 +21,17 @@ RACEWAYS = {"outer raceway": "outer", "inner raceway": "inner"}
 ELEMENTS = "elements"
 DIRECTIONS = ("outwards", "axial", "raised")
 MOST_ORDER = {"raceway": 900, "element": 110}
-"""Highest orders of waves: tables of 4096 angles around a raceway, and of 512 around a
-rolling element, err by 1 % of their amplitude there."""
+"""Highest wave orders, at which the tables of 4096 angles around a raceway and of 512
+around a rolling element are in error by 1 % of the amplitude."""
 
 
 class Place(NamedTuple):
-    """Where a form error stands, beside what its table says.
+    """Context of a form error, in addition to its table.
 
     Attributes:
-        count: Rolling elements of the row; `None` of an error of a raceway.
-        folder: Of the scene.
-        row: How many rows had the same table before.
+        count: Number of rolling elements of the row; `None` for a raceway error.
+        folder: Folder of the scene.
+        row: Number of previous rows with the same table.
     """
 
     count: int | None
@@ -44,7 +44,7 @@ class DeviationKeys(Keys):
     """A form error of a part of every row, or of one."""
 
     common: ClassVar[bool] = False
-    """Whether all bearings of a line have it, not the one of the scene alone."""
+    """Whether it is common to all bearings of a production line."""
 
     part: str = scene_key("part that has it", choices=(*RACEWAYS, ELEMENTS))
     row: int | None = scene_key(
@@ -56,24 +56,24 @@ class DeviationKeys(Keys):
 
     @property
     def along(self) -> str:
-        """Direction in which the shape of a raceway is counted."""
+        """Direction in which the form error of a raceway is measured."""
         return "raised"
 
     @property
     def most(self) -> int:
-        """Highest order of waves of the part."""
+        """Highest wave order of the part."""
         return MOST_ORDER["element" if self.part == ELEMENTS else "raceway"]
 
     def shape(self, place: Place) -> AbstractShape:
-        """The form error.
+        """Build the form error.
 
         Args:
-            place: Where it stands.
+            place: Its context.
         """
         raise NotImplementedError
 
     def _each(self, values: Any, place: Place) -> Any:
-        """Values of the part; of every rolling element, those not meant have 0."""
+        """Spread values over the rolling elements, 0 for those without the error."""
         values = np.asarray(values, dtype=float)
         if place.count is None:
             return values
@@ -82,7 +82,7 @@ class DeviationKeys(Keys):
         return chosen.reshape(-1, *[1] * values.ndim) * values
 
     def _check_order(self, name: str, order: Any) -> None:
-        """Raise SceneError for an order that the part cannot have."""
+        """Raise SceneError for a wave order outside the range of the part."""
         whole = isinstance(order, int) and not isinstance(order, bool)
         if not whole or not 1 <= order <= self.most:
             problem = f"{order!r} is not a whole number from 1 to {self.most}"
@@ -181,7 +181,7 @@ class SpectrumKeys(DirectedKeys):
             raise self.table.error("highest", problem)
 
     def shape(self, place: Place) -> Harmonics:
-        # Rows draw on their own; the first as a single one.
+        # Rows are drawn independently; the first equals that of a single-row bearing.
         seed = [self.seed, place.row] if place.row else self.seed
         orders = self.highest - self.lowest + 1
         shape = (orders,) if place.count is None else (place.count, orders)
@@ -265,12 +265,12 @@ class DeviationsKeys(Keys):
 def read_deviations(
     table: Table, counts: tuple[int, ...], folder: Path
 ) -> tuple[tuple[FormErrors, ...], tuple[FormErrors, ...]]:
-    """Form errors of every row of a bearing, and those that all of its line have.
+    """Read the form errors of each row, and those common to the production line.
 
     Args:
         table: `[deviations]`.
-        counts: Rolling elements of each row.
-        folder: Of the scene, in which files of profiles stand.
+        counts: Number of rolling elements of each row.
+        folder: Folder of the scene and of its profile files.
 
     Raises:
         SceneError: For what is missing, unknown or not allowed.
@@ -287,7 +287,7 @@ def read_deviations(
 
 
 class _Gathered:
-    """Shapes of one row as they are read."""
+    """Form errors of one row, collected while reading."""
 
     def __init__(self, count: int):
         self.count = count
@@ -297,7 +297,7 @@ class _Gathered:
         }
 
     def add(self, one: DeviationKeys, folder: Path, row: int):
-        """Take up one table; `row`: how many rows had it before."""
+        """Add one table; `row`: number of previous rows with this table."""
         of_elements = one.part == ELEMENTS
         if one.element is not None and one.element >= self.count:
             problem = f"{one.element} is not there; the elements are 0 to"
@@ -310,13 +310,13 @@ class _Gathered:
             self.rings[RACEWAYS[one.part]][one.along].append(shape)
 
     def errors(self) -> FormErrors:
-        """All of them."""
+        """Return all collected form errors."""
         made = {ring: RacewayErrors(**all_) for ring, all_ in self.rings.items()}
         return FormErrors(made["outer"], made["inner"], self.elements)
 
 
 def _rows(keys: DeviationKeys, found: list[_Gathered]) -> list[_Gathered]:
-    """The rows that are meant: one by its number, or all; of a spall one."""
+    """Return the rows concerned: one by its index, or all; for a spall one."""
     which, table = keys.row, keys.table
     if which is None:
         if isinstance(keys, SpallKeys) and len(found) > 1:

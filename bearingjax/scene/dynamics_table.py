@@ -1,5 +1,5 @@
-"""The [cage] and [dynamics] tables of a scene: what surrounds the balls or rollers that
-skid, and how they are followed in time."""
+"""The [cage] and [dynamics] tables of a scene: cage, drag and time integration of
+skidding balls or rollers."""
 
 import dataclasses
 from collections.abc import Mapping, Sequence
@@ -24,9 +24,9 @@ from .schema import Keys, scene_key
 AXES = ("vertical", "horizontal")
 STARTS = ("rolling", "rest")
 MOST_TIMES = 20_000
-"""Most times of a run: some 8 kB each as JSON."""
+"""Most times of a run: about 8 kB each as JSON."""
 MOST_PLACES = 2000
-"""Most places along an orbit: a matrix of 0.5 GB."""
+"""Most positions along an orbit: a matrix of 0.5 GB."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -41,7 +41,7 @@ class SeriesKeys(Keys):
     """Values over time."""
 
     def _series(self, time: Sequence[float], names: Sequence[str]) -> list[Any]:
-        """Values at the times, `None` of keys that are not there."""
+        """Read the values at the times, `None` for absent keys."""
         if not time or not (np.diff(time) > 0).all() or time[0] < 0:
             raise self.table.error("time", "must be rising times from 0 s on")
         found = [getattr(self, name) for name in names]
@@ -66,7 +66,7 @@ class SpeedSeriesKeys(SeriesKeys):
 
     @property
     def speeds(self) -> SpeedTable:
-        """The speeds."""
+        """Table of ring speeds over time."""
         inner, outer = self._series(self.time, ("inner", "outer"))
         if inner is None and outer is None:
             problem = "is missing, and so is `outer`; give one of them"
@@ -104,10 +104,10 @@ class LoadSeriesKeys(SeriesKeys):
     )
 
     def loads(self, constant: Sequence[float]) -> LoadHistory | SinusoidalLoad:
-        """The load over time.
+        """Build the load over time.
 
         Args:
-            constant: That of [operating] [N, N m].
+            constant: Load of [operating] [N, N m].
         """
         if self.amplitude is not None:
             given = self.amplitude.given
@@ -194,20 +194,20 @@ class DynamicsKeys(Keys):
             raise self.table.error("balanced", problem)
 
     def speeds(self, speed: Speed) -> SpeedTable | None:
-        """Ring speeds over time; `None`: they are constant.
+        """Return the ring speeds over time; `None`: constant.
 
         Args:
-            speed: Those of [operating].
+            speed: Ring speeds of [operating].
         """
         if self.speed is not None:
             return self.speed.speeds
         return None if self.ramp is None else ramp(self.ramp, speed)
 
     def check_places(self, steady: bool, count: int) -> None:
-        """Raise SceneError for places that the bearing cannot have.
+        """Raise SceneError for a number of positions invalid for the bearing.
 
         Args:
-            steady: Whether the end state is asked for.
+            steady: Whether the steady state is requested.
             count: Number of balls or rollers.
         """
         places = self.places or 1

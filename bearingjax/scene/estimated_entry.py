@@ -1,4 +1,4 @@
-"""A bearing that no catalogue here lists, from what is printed of it anywhere."""
+"""Entry of an unlisted bearing, estimated from its boundary dimensions and ratings."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -18,7 +18,7 @@ SIZES = {
     "capacity": "force",
     "static_capacity": "force",
 }
-"""What has to be known beside the type, and its kind."""
+"""Required values in addition to the type, with their quantity kinds."""
 
 _LENGTHS = ("pitch_diameter", "ball_diameter", "roller_diameter", "roller_length")
 _ANGLES = ("contact_angle", "shim_angle", "roller_axis_angle", "roller_half_angle")
@@ -32,24 +32,24 @@ _PARTS = {
     "needle_roller": (),
     "tapered_roller": ("roller_axis_angle", "roller_half_angle"),
 }
-"""Keys of each type beside number and sizes of the rolling elements."""
+"""Keys of each type besides the number and sizes of the rolling elements."""
 
 
 def estimated_entry(
     kind: str, given: Mapping[str, str | None], contact_angle: str | None = None
 ) -> CatalogueEntry:
-    """An entry of a bearing whose inside is worked out by `estimate_geometry`.
+    """Return an entry with the internal geometry estimated by `estimate_geometry`.
 
     Args:
         kind: Type, as in a scene.
         given: Texts with units by the names in `SIZES`; `None` is missing.
-        contact_angle: Likewise; `None`: estimated too.
+        contact_angle: Text with unit; `None`: estimated.
 
     Returns:
         Entry without a designation.
 
     Raises:
-        SceneError: For what is missing, wrong, or has no such inside.
+        SceneError: For values that are missing, invalid, or have no such geometry.
     """
     if kind not in _PARTS:
         raise SceneError(f"--type: {not_among(kind, tuple(_PARTS))}")
@@ -117,7 +117,7 @@ def _read(name, text, unit) -> float:
 
 
 def _by_options(text: str) -> str:
-    """An error of `estimate_geometry` that names the options of the command."""
+    """Rephrase an error of `estimate_geometry` with the options of the command."""
     names = {
         "`outside_diameter`": "--outside",
         "`dynamic_capacity`": "--capacity",
@@ -133,7 +133,7 @@ _ANGLE = "contact_angle"
 
 
 def _table(kind: str, row: Any) -> dict[str, Any]:
-    """Keys of [bearing] of an estimated row."""
+    """Return the keys of [bearing] of an estimated row."""
     element = "balls" if kind.endswith("ball") else "rollers"
     names = [f"n_{element}", *_LENGTHS, "outer_osculation", "inner_osculation"]
     table: dict[str, Any] = {"type": kind}

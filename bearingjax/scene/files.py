@@ -1,6 +1,6 @@
-"""Files that a command writes: checked before, made beside their place, then moved.
+"""Output files of a command: checked, written to a temporary file, then moved.
 
-Whoever reads an output file finds all of the old one or all of the new one.
+A reader of an output file sees either all of the old file or all of the new one.
 """
 
 import contextlib
@@ -20,15 +20,15 @@ Writer = Callable[[Path], None]
 
 
 class Incomplete(Exception):
-    """Raised by a writer whose file is written, but for a part of it; says which."""
+    """Raised by a writer if a part of its file is missing; the message names it."""
 
 
 class Written(NamedTuple):
-    """What became of files besides those that are written.
+    """Files removed and files that failed in `write_outputs`.
 
     Attributes:
-        removed: Of an earlier run, for which this one has nothing.
-        failed: What could not be made, or not all of it, with its error.
+        removed: Files of an earlier run for which this run has no content.
+        failed: Files that are missing or incomplete, with the error.
     """
 
     removed: list[Path]
@@ -41,15 +41,15 @@ _STREAMS = ("/dev/std", "/dev/fd/", "/proc/self/fd/")
 def check_outputs(
     outputs: Mapping[str, Path | None], inputs: Iterable[Path] = ()
 ) -> None:
-    """Raise unless all outputs can be written and none of them is lost by it.
+    """Raise unless all outputs can be written without overwriting an input.
 
     Args:
-        outputs: Places by the option that names them; `None` is none.
+        outputs: Paths by the option that names them; `None`: no output.
         inputs: Files that are read.
 
     Raises:
         SceneError: For a folder that does not exist or cannot be written, a folder or
-            a write-protected file in place of a file, an input, or one place twice.
+            a write-protected file in place of a file, an input, or one path twice.
     """
     inputs = list(inputs)
     seen: list[tuple[str, Path]] = []
@@ -79,14 +79,14 @@ def check_outputs(
 
 
 def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> Written:
-    """Write files beside their places, and move them there once all are complete.
+    """Write temporary files, and move them to their paths once all are complete.
 
-    A file of an earlier run at a place for which this run has nothing is removed: it
-    would be taken for this run's. A writer that fails, as a picture of odd numbers may,
-    costs its own file and no other.
+    A file of an earlier run for which this run has no content is removed, so that it
+    is not mistaken for a result of this run. If a writer fails, such as a plot of
+    non-finite numbers, only its file is missing.
 
     Args:
-        outputs: Place (`None`: not wanted) and what writes it (`None`: nothing to
+        outputs: Path (`None`: not requested) and its writer (`None`: nothing to
             write).
 
     Raises:
@@ -116,9 +116,9 @@ def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> Writt
 
 
 def _made(path: Path, writer: Writer, moves, written: Written) -> bool:
-    """Write a file beside its place; whether there is one."""
+    """Write a temporary file; return whether it was written."""
     stream, target = _is_stream(path), _target(path)
-    # The ending tells the format.
+    # The suffix determines the format.
     name = f".bearingjax-{os.getpid()}-{len(moves)}{target.suffix.lower()}"
     beside = path if stream else target.with_name(name)
     if not stream:
@@ -143,7 +143,7 @@ def _made(path: Path, writer: Writer, moves, written: Written) -> bool:
 
 @contextlib.contextmanager
 def _naming(path: Path):
-    """Names the file, which the error of a full disk does not."""
+    """Add the file name to an OSError, which that of a full disk lacks."""
     try:
         yield
     except OSError as error:
@@ -152,7 +152,7 @@ def _naming(path: Path):
 
 
 def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
-    """Files that a scene is read from: itself, cases, profiles, bearings of a rotor.
+    """Return the files read by a scene: itself, cases, profiles, bearings of a rotor.
 
     Args:
         source, settings: As in `read_scene`.
@@ -169,7 +169,7 @@ def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
 
 
 def write_numbers(path: str | Path, numbers: Mapping[str, Any]) -> None:
-    """Write plain numbers and lists as JSON; what is not finite is null.
+    """Write plain numbers and lists as JSON; non-finite numbers become null.
 
     Raises:
         OSError: If the file cannot be written.
@@ -189,12 +189,12 @@ def _finite(value):
 
 
 def _target(path: Path) -> Path:
-    """Where a link leads, so that the link stays."""
+    """Resolve a symbolic link, so that the link itself is kept."""
     return Path(os.path.realpath(path))
 
 
 def _is_stream(path: Path) -> bool:
-    """Standard output, a pipe: written straight, nothing can be moved there."""
+    """Whether a path is a stream or a pipe, which is written to directly."""
     whole = Path(os.path.abspath(path))
     return str(whole).startswith(_STREAMS) or (
         whole.exists() and not whole.is_file() and not whole.is_dir()
@@ -202,7 +202,7 @@ def _is_stream(path: Path) -> bool:
 
 
 def _same(one: Path, other: Path) -> bool:
-    """One file, by name or by a hard link."""
+    """Whether two paths are the same file, by name or by a hard link."""
     try:
         return os.path.samefile(one, other)
     except OSError:

@@ -1,4 +1,4 @@
-"""Fits of a scene as text for people, and as numbers in SI for programs."""
+"""Fits of a scene as text, and as numbers in SI."""
 
 from typing import Any
 
@@ -9,24 +9,24 @@ from .fit_table import Fits, fit_facts
 from .report_model import Column, Grid, Part
 
 ACROSS_TAPERS = "normal to the outer raceway"
-"""Along what the clearance of a taper is a number of its design."""
+"""Direction in which the clearance of a tapered roller bearing is specified."""
 
 
 def outer_cosine(taper: TaperedRollerBearing) -> float:
-    """Clearance normal to the outer raceway over the radial one [1].
+    """Return the clearance normal to the outer raceway over the radial one [1].
 
     Args:
-        taper: In NumPy's numbers too, of which `radial_clearance` would compile.
+        taper: The bearing; NumPy leaves are allowed, and avoid compilation.
     """
     angle = float(taper.roller_axis_angle) + float(taper.roller_half_angle)
     return float(np.cos(angle))
 
 
 def fit_report(fits: Fits, bearing: AbstractBearing | BearingSet) -> list[Part]:
-    """Fits for people: radial clearance from bearing to operation, and seats.
+    """Return the report of fits: radial clearance from free to operation, and seats.
 
     Args:
-        fits, bearing: As of `fit_facts`.
+        fits, bearing: As in `fit_facts`.
     """
     facts = fit_facts(fits, bearing)
     shaft, housing = (name or "as given" for name in fits.names)
@@ -67,7 +67,7 @@ def _microns(name, values):
 
 
 def _seats(facts) -> Grid:
-    """Interference, and the pressure that comes of it, of both seats."""
+    """Tabulate interference and pressure of both seats."""
 
     def both(state, what):
         return [getattr(state, f"{seat}_{what}") for seat in seats]
@@ -85,10 +85,10 @@ def _seats(facts) -> Grid:
 
 
 def fit_as_dict(fits: Fits, bearing: AbstractBearing | BearingSet) -> dict[str, Any]:
-    """Fits of a scene as plain numbers, in SI.
+    """Return the fits of a scene as plain numbers, in SI.
 
     Args:
-        fits, bearing: As of `fit_facts`.
+        fits, bearing: As in `fit_facts`.
 
     Returns:
         place; radial_clearance: free, mounted, operating; worst and probable: mounted,

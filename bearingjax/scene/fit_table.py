@@ -1,4 +1,4 @@
-"""The [fit] and [temperature] tables of a scene: seats of a bearing, and their heat."""
+"""The [fit] and [temperature] tables of a scene: seats of a bearing, temperatures."""
 
 import dataclasses
 from typing import Any
@@ -49,7 +49,7 @@ _ZERO = 273.15
 _REFERENCE = _ZERO + 20.0
 _COLDEST, _HOTTEST = -100.0, 400.0
 _THICKEST = 100.0
-"""Outside diameters of the bearing: any larger housing gives way as an endless one."""
+"""Largest ratio of housing to bearing outside diameter; then effectively infinite."""
 
 _CATALOGUE = "that of the `designation`"
 
@@ -58,7 +58,7 @@ EXPANSIONS = {
     "elements": "element_expansion",
     "outer_ring": "ring_expansion",
 }
-"""Keys of the expansions of the parts of a bearing."""
+"""Keys of the thermal expansions of the parts of a bearing."""
 
 
 def _seat_material(table: Table, name: str) -> WarmMaterial:
@@ -212,10 +212,10 @@ class TemperatureKeys(Keys):
     housing: float | None = _warm("housing")
 
     def conditions(self, speed: Speed | None) -> FitConditions:
-        """Temperatures and speeds of the seats.
+        """Return the temperatures and speeds of the seats.
 
         Args:
-            speed: Of the rings; `None`: at rest.
+            speed: Ring speeds; `None`: at rest.
         """
         warm = {"reference": self.reference, **dict.fromkeys(PARTS, self.reference)}
         warm |= self.given
@@ -228,17 +228,17 @@ class TemperatureKeys(Keys):
 
 @dataclasses.dataclass(frozen=True)
 class Fits:
-    """What a scene says of the seats of its bearing.
+    """Seats of the bearing of a scene.
 
     Attributes:
         mounting: The seats, with the interferences at `place`; raceways and clearance
             are those of the bearing.
         conditions: Temperatures and speeds.
-        place: Where in the tolerances, one of `PLACES`.
-        limits: `Limits` of clearance and seats, as of `clearance_range`.
-        names: Of the tolerance classes of shaft and housing; empty for numbers.
-        unknown: Parts of the bearing whose expansion is not known, which are as warm
-            as the measured sizes, with the key of their material in [bearing].
+        place: Position within the tolerances, one of `PLACES`.
+        limits: `Limits` of clearance and seats, as in `clearance_range`.
+        names: Tolerance classes of shaft and housing; empty for numbers.
+        unknown: Parts of the bearing of unknown thermal expansion, at reference
+            temperature, with the key of their material in [bearing].
     """
 
     mounting: Mounting
@@ -251,15 +251,15 @@ class Fits:
 
 @dataclasses.dataclass(frozen=True)
 class FitFacts:
-    """What fits do, in plain numbers.
+    """Effects of fits, as plain numbers.
 
     Attributes:
         free: Radial clearance before mounting [m].
-        mounted: Mounted, at rest, at the temperature of the measured sizes.
-        operating: In operation.
+        mounted: State when mounted, at rest, at the reference temperature.
+        operating: State in operation.
         mounted_range: Radial clearance over all tolerances, mounted.
-        operating_range: The same in operation.
-        loosest: In operation, at the sizes that leave the largest clearance.
+        operating_range: Radial clearance over all tolerances, in operation.
+        loosest: State in operation at the sizes with the largest clearance.
     """
 
     free: float
@@ -277,20 +277,20 @@ def read_fits(
     speed: Speed | None,
     catalogue: FromCatalogue | None = None,
 ) -> tuple[Any, Fits | None]:
-    """Fits of a scene, and its bearing with the clearance that it has unmounted.
+    """Read the fits of a scene; return them and the bearing with unmounted clearance.
 
     Args:
-        beside: The table in which [fit] and [temperature] stand: the scene, or one
-            bearing of a rotor.
+        beside: The table that holds [fit] and [temperature]: the scene, or one bearing
+            of a rotor.
         own: The table of the bearing, as it was read.
         bearing: The design, unmounted.
-        speed: Of the rings; `None`: at rest.
-        catalogue: What a designation stands for: boundary dimensions, and the class of
-            clearance, where the scene has no others.
+        speed: Ring speeds; `None`: at rest.
+        catalogue: Catalogue entry of the designation: defaults for the boundary
+            dimensions and the clearance class.
 
     Returns:
-        The bearing, whose clearance is that of the class of clearance if there is one,
-        and its fits; `None` without [fit].
+        The bearing, with the clearance of the clearance class if there is one, and its
+        fits; `None` without [fit].
 
     Raises:
         SceneError: For what is missing, unknown or not allowed.
@@ -327,7 +327,7 @@ def read_fits(
     seats: dict[str, Any] = (
         sizes | _seats(keys, own, row) | _width(keys, bearing, catalogue)
     )
-    # For `Mounting` to check by name; `mounting_at` sets them anew.
+    # `Mounting` checks these by name; `mounting_at` sets them again.
     for seat in ("shaft_interference", "housing_interference"):
         seats[seat] = getattr(keys, seat) or 0.0
     with table.building():
@@ -335,7 +335,7 @@ def read_fits(
         if not scatters:
             free = float(radial_clearance(row))
             given["clearance"] = Limits(free, free)
-        # NumPy's numbers: JAX would compile every small operation on the way.
+        # In NumPy: JAX would compile every small operation.
         there = mounting_at(
             jax.device_get(whole), place, **given, conditions=jax.device_get(conditions)
         )
@@ -351,11 +351,11 @@ def read_fits(
 
 
 def fit_facts(fits: Fits, bearing: AbstractBearing | BearingSet) -> FitFacts:
-    """What the fits of a scene do.
+    """Compute the effects of the fits of a scene.
 
     Args:
         fits: From `read_fits`.
-        bearing: The bearing that came with them.
+        bearing: The bearing returned with them.
     """
     mounting = jax.device_get(sized(fits.mounting, bearing))
     warm, cold = jax.device_get((fits.conditions, FitConditions()))
@@ -373,11 +373,11 @@ def fit_facts(fits: Fits, bearing: AbstractBearing | BearingSet) -> FitFacts:
 def fit_warnings(
     fits: Fits, bearing: AbstractBearing | BearingSet, load_fixed_to: str = "space"
 ) -> list[str]:
-    """What is odd about fits, a sentence each.
+    """Return warnings about fits, one sentence each.
 
     Args:
-        fits, bearing: As of `fit_facts`.
-        load_fixed_to: As of `LifeConditions`.
+        fits, bearing: As in `fit_facts`.
+        load_fixed_to: As in `LifeConditions`.
     """
     facts, conditions = fit_facts(fits, bearing), fits.conditions
     speed = Speed(conditions.speed, conditions.outer_speed)
@@ -386,11 +386,11 @@ def fit_warnings(
 
 
 def turning(fits: Fits | None, speed: float) -> Fits | None:
-    """Fits on a shaft that turns, in a housing that stands still.
+    """Return the fits on a rotating shaft in a stationary housing.
 
     Args:
         fits: From `read_fits`.
-        speed: Of shaft and inner ring [rad/s].
+        speed: Speed of shaft and inner ring [rad/s].
     """
     if fits is None:
         return None
@@ -404,13 +404,13 @@ def installed(
     fits: Fits | None,
     catalogue: FromCatalogue | None = None,
 ) -> Installed:
-    """A bearing with the preload and the seats of its scene.
+    """Return a bearing with the preload and the seats of its scene.
 
     Args:
         drawing: The bearing with its laws and numerics.
-        preload: Force to which its rows are ground [N], or `None`.
+        preload: Preload force to which its rows are ground [N], or `None`.
         fits: From `read_fits`.
-        catalogue: What its designation stands for, or `None`.
+        catalogue: Catalogue entry of its designation, or `None`.
     """
     names = "limiting_speed", "reference_speed"
     speeds = {k: getattr(catalogue.entry, k) for k in names} if catalogue else {}
@@ -433,7 +433,7 @@ def _with_clearance(bearing, clearance):
 
 
 def _sizes(keys: FitKeys, catalogue: FromCatalogue | None) -> dict[str, float]:
-    """Diameters of the seats and of the housing."""
+    """Return the diameters of the seats and of the housing."""
     found = {"housing_diameter": keys.housing_diameter}
     for key in ("bore", "outside_diameter"):
         found[key] = _catalogued(keys, key, key, catalogue)
@@ -445,13 +445,13 @@ def _sizes(keys: FitKeys, catalogue: FromCatalogue | None) -> dict[str, float]:
 
 
 def _catalogued(keys: FitKeys, key: str, name: str, catalogue) -> float:
-    """A length of [fit], or of the catalogue."""
+    """Return a length of [fit], or of the catalogue."""
     own = getattr(catalogue.entry, name, None) if catalogue else None
     return keys.table.quantity(key, "length", *([] if own is None else [own]))
 
 
 def _width(keys: FitKeys, bearing, catalogue) -> dict[str, float]:
-    """Width of a ring, which a set needs whose rows have rings of their own."""
+    """Return the ring width, required for a set whose rows have separate rings."""
     key, own = "ring_width", catalogue.entry.width if catalogue else None
     apart = isinstance(bearing, BearingSet) and not is_self_aligning(bearing)
     if not apart and keys.ring_width is None:
@@ -464,7 +464,7 @@ def _width(keys: FitKeys, bearing, catalogue) -> dict[str, float]:
 
 
 def _limits(keys: FitKeys, row, sizes) -> dict[str, Any]:
-    """Limits of the seats and rings."""
+    """Return the tolerance limits of the seats and rings."""
     exact = Limits(0.0, 0.0)
     found: dict[str, Any] = {}
     for seat, ring, of_ring, sign in (
@@ -473,7 +473,7 @@ def _limits(keys: FitKeys, row, sizes) -> dict[str, Any]:
     ):
         name = getattr(keys, seat)
         if name is None:
-            # As a deviation: a housing that is small is tight.
+            # Sign as a deviation: a small housing is tight.
             own = sign * getattr(keys, f"{seat}_interference")
             found[seat], found[ring] = Limits(own, own), exact
             continue
@@ -487,9 +487,9 @@ def _limits(keys: FitKeys, row, sizes) -> dict[str, Any]:
 
 
 def _clearance(keys: FitKeys, own: Table, bore, catalogue) -> Limits | None:
-    """Limits of a clearance class; `None`: the bearing's own number."""
+    """Return the limits of a clearance class; `None`: clearance given as a number."""
     table, name, drawn = keys.table, keys.clearance, own.keys_given()
-    # A line that only restates the catalogue does not count.
+    # A line that only restates the catalogue is not a change.
     changed = drawn if catalogue is None else catalogue.overridden
     stated = [key for key in (CLEARANCE, "contact_angle") if key in changed]
     if name is None and catalogue is not None and not stated:
@@ -510,8 +510,8 @@ def _clearance(keys: FitKeys, own: Table, bore, catalogue) -> Limits | None:
 
 
 def _unknown_expansions(table: Table, own: Table) -> dict[str, str]:
-    """Parts of the bearing whose material has numbers, but no expansion; with the key
-    of the material."""
+    """Return the bearing parts whose material is given by numbers without a thermal
+    expansion, with the key of the material."""
     drawn = own.keys_given()
     found = {}
     for part, wanted in EXPANSIONS.items():
@@ -524,18 +524,18 @@ def _unknown_expansions(table: Table, own: Table) -> dict[str, str]:
 
 
 def no_expansion(table: Table, part: str, key: str) -> SceneError:
-    """Error of a part that gets warm and whose expansion is not known.
+    """Return the error for a warm part of unknown thermal expansion.
 
     Args:
-        table: [fit].
-        part, key: As of `Fits.unknown`.
+        table: Table [fit].
+        part, key: As in `Fits.unknown`.
     """
     problem = f"is missing: `bearing.{key}` has numbers, and no expansion"
     return table.error(EXPANSIONS[part], problem)
 
 
 def _seats(keys: FitKeys, own: Table, row) -> dict[str, Any]:
-    """Sizes and materials of a `Mounting`; interferences are put in later."""
+    """Return sizes and materials of a `Mounting`; interferences are set later."""
     seats: dict[str, Any] = {
         key: value
         for key in ("shaft_bore", "inner_raceway", "outer_raceway")
@@ -556,7 +556,7 @@ def _seats(keys: FitKeys, own: Table, row) -> dict[str, Any]:
 
 
 def _of_bearing(keys: FitKeys, given: Any, wanted: str, material) -> WarmMaterial:
-    """A material of the bearing with its expansion; without a name that of steel."""
+    """Return a bearing material with its expansion; unnamed: that of steel."""
     value = getattr(keys, wanted)
     if value is None:
         name = given if isinstance(given, str) else "steel"
@@ -567,12 +567,12 @@ def _of_bearing(keys: FitKeys, given: Any, wanted: str, material) -> WarmMateria
 
 
 def read_temperature(table: Table, key: str, *default: float | None) -> Any:
-    """A temperature that bearings have [K].
+    """Read a temperature within the range of bearings [K].
 
     Args:
-        table: Where it stands.
-        key: Key in it.
-        default: If absent; without a default the key is required.
+        table: Table that holds the key.
+        key: Key in the table.
+        default: Value if absent; without a default the key is required.
     """
     value = table.quantity(key, "temperature", *default)
     if value is None:

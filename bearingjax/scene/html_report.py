@@ -1,8 +1,8 @@
-"""A report as one HTML file that opens anywhere and prints well.
+"""Reports as self-contained HTML files.
 
-Nothing in it is fetched: pictures are part of the file, so is the style. It shows the
-sections of a `Report`, sentences as paragraphs and grids as tables; so whatever the
-terminal tells stands here too.
+Pictures and style are embedded; nothing is fetched. The page shows the sections of a
+`Report`, sentences as paragraphs and grids as tables, so that it contains everything
+shown on the terminal.
 """
 
 import base64
@@ -17,7 +17,7 @@ import numpy as np
 from .report_model import Part, Report
 
 MOST_ROWS = 200
-"""Most rows of a table that a page shows; `--table` writes them all."""
+"""Most rows of a table shown on a page; `--table` writes all rows."""
 
 _STYLE = """
 :root { color-scheme: light }
@@ -70,13 +70,13 @@ table.grid { width: auto; margin: .5rem 0 }
 
 @dataclasses.dataclass(frozen=True)
 class Origin:
-    """Where a report comes from, so that it can be made again.
+    """Origin of a report, with which it can be reproduced.
 
     Attributes:
-        command: As it was called.
-        text: The scene file.
+        command: Command line.
+        text: Text of the scene file.
         settings: Changes to it, "key=value".
-        date: When, in words.
+        date: Date and time, as text.
     """
 
     command: str
@@ -95,20 +95,20 @@ def report_page(
     warnings: Sequence[str] = (),
     drawing: bytes | str | None = None,
 ) -> str:
-    """The report of a run, of any command.
+    """Return the HTML page of a run, of any command.
 
     Args:
-        title: Of the page.
-        report: Its sections, and warnings, which stand at the top of the page.
-        inputs: All that was read, as a scene writes it.
-        origin: Where the report comes from.
-        pictures: PNG files by their titles, or why one is missing.
+        title: Title of the page.
+        report: Its sections, and warnings, shown at the top of the page.
+        inputs: All inputs, as written in a scene.
+        origin: Origin of the report.
+        pictures: PNG files by their titles, or the reason why one is missing.
         table: Columns by header, "name [unit]"; its first rows are shown.
-        warnings: Those that are not in the report.
-        drawing: Likewise that of the bearing, which stands with the inputs.
+        warnings: Warnings that are not in the report.
+        drawing: PNG drawing of the bearing, shown with the inputs, or why missing.
 
     Returns:
-        HTML, a whole document.
+        A complete HTML document.
     """
     parts = [
         _warnings([*report.warnings, *warnings]),
@@ -156,7 +156,7 @@ def _section(title: str, content: str, kind: str = "") -> str:
 
 
 def _part(part: Part) -> str:
-    """A paragraph of sentences, or a table."""
+    """Format a paragraph of sentences, or a table."""
     if isinstance(part, str):
         return f"<p>{escape(part.strip())}</p>" if part.strip() else ""
     kinds = ["" if column.is_text else ' class="value"' for column in part.columns]
@@ -186,7 +186,7 @@ def _unit(unit: str) -> str:
 
 
 def _warnings(told: Sequence[str]) -> str:
-    """Warnings where nobody overlooks them, each once."""
+    """Format the warnings as a box, without duplicates."""
     if not told:
         return ""
     items = "\n".join(f"<li>{escape(one)}</li>" for one in dict.fromkeys(told))
@@ -202,7 +202,7 @@ def _picture(title: str, png: bytes | str) -> str:
 
 
 def _inputs(inputs: Mapping[str, Any]) -> str:
-    """A table of all that was read, defaults included."""
+    """Format a table of all inputs, defaults included."""
     rows = []
     for table, held in inputs.items():
         head = f'<th scope="colgroup" colspan="2">[{escape(table)}]</th>'
@@ -217,11 +217,11 @@ def _inputs(inputs: Mapping[str, Any]) -> str:
 
 
 def flat(held: Any, key: str = "") -> list[tuple[str, str]]:
-    """(dotted key, value in words) of nested tables.
+    """Flatten nested tables to pairs (dotted key, value as text).
 
     Args:
-        held: Tables, lists and values, as a scene writes them.
-        key: In which they stand.
+        held: Tables, lists and values, as written in a scene.
+        key: Dotted key of `held`.
     """
     if isinstance(held, Mapping):
         pairs = held.items()
@@ -237,7 +237,7 @@ def flat(held: Any, key: str = "") -> list[tuple[str, str]]:
 
 
 def _shown(value: Any) -> str:
-    """A value as people read it: numbers with twelve digits at most."""
+    """Format a value as text: numbers with at most twelve digits."""
     if isinstance(value, Sequence) and not isinstance(value, str):
         return ", ".join(map(_shown, value))
     if isinstance(value, bool):
@@ -252,7 +252,7 @@ def _shown(value: Any) -> str:
 
 
 def _table(found: Mapping[str, np.ndarray]) -> str:
-    """The first rows of a table."""
+    """Format the first rows of a table."""
     count = max(map(len, found.values()), default=0)
     head = "".join(f'<th scope="col">{_breakable(header)}</th>' for header in found)
     rows = [
@@ -268,7 +268,7 @@ def _table(found: Mapping[str, np.ndarray]) -> str:
 
 
 def _breakable(name: str) -> str:
-    """A name of several words, which may be broken between them."""
+    """Allow line breaks between the words of a name."""
     return escape(name).replace("_", "_<wbr>").replace(".", ".<wbr>")
 
 
@@ -279,7 +279,7 @@ def _cell(value: Any) -> str:
 
 
 def _rerun(origin: Origin) -> str:
-    """What makes the same report again."""
+    """Format the command and scene that reproduce the report."""
     changes = "".join(f"\n  {one}" for one in origin.settings)
     changed = f"\nwith these changes to the scene below:{changes}" if changes else ""
     again = f"{origin.command}{changed}"

@@ -1,4 +1,4 @@
-"""Ctrl-C as a wish: a sweep ends what is under way, and what is solved is kept."""
+"""Handling of Ctrl-C: a sweep finishes the current block and keeps its results."""
 
 import os
 import signal
@@ -11,13 +11,13 @@ _NOTE = (
 
 
 class Interrupt:
-    """While entered, Ctrl-C (SIGINT) and SIGTERM are noted; a second one kills.
+    """Context that records Ctrl-C (SIGINT) and SIGTERM; a second one kills.
 
-    Called, it says whether one came: the `stop` of a sweep. Outside the main thread,
-    which alone hears signals, it does nothing.
+    Calling it returns whether a signal was received: the `stop` of a sweep. Outside
+    the main thread, which alone receives signals, it does nothing.
 
     Attributes:
-        number: Signal that came, or `None`.
+        number: Signal received, or `None`.
     """
 
     def __init__(self):
@@ -44,5 +44,5 @@ class Interrupt:
         self.number = number
         for each in self._before:
             signal.signal(each, signal.SIG_DFL)
-        # Not print, which may be at work when the signal comes.
+        # Not print, which may be running when the signal arrives.
         os.write(2, _NOTE.encode())

@@ -1,4 +1,4 @@
-"""Rating life of a scene as text for people, and as numbers in SI for programs."""
+"""Rating life of a scene as text, and as numbers in SI."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -25,16 +25,16 @@ _SHOWN = ("C", "C0", "C_u")
 
 
 def scene_life(scene: Scene, solution: Solution) -> Life:
-    """Rating life of a solved scene, in NumPy, by its [life] or by the defaults.
+    """Compute the rating life of a solved scene by its [life] or defaults, in NumPy.
 
-    Without a speed of one ring against the other there is no modified life.
+    Without a relative speed of the rings there is no modified life.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution, converged.
 
     Raises:
-        SceneError: If its numbers of life and bearing do not go together.
+        SceneError: If the values of [life] do not suit the bearing.
     """
     speed = scene.speed
     turning = speed is not None and float(speed.inner) != float(speed.outer)
@@ -49,12 +49,12 @@ def scene_life(scene: Scene, solution: Solution) -> Life:
 def solved_warnings(
     scene: Scene, solution: Solution, life: Life | None = None
 ) -> list[str]:
-    """Warnings of a solved scene: of itself, its solution and its life.
+    """Return the warnings of a solved scene, its solution and its life.
 
     Args:
-        scene: What was solved, with the preload of its set where it has fits.
-        solution: In NumPy; of one that did not converge nothing is told.
-        life: Its rating life, in NumPy; `None`: none is judged.
+        scene: Solved scene, with the preload of its set where it has fits.
+        solution: In NumPy; without warnings if it did not converge.
+        life: Its rating life, in NumPy; `None`: no warnings about the life.
     """
     found = list(scene.warnings)
     if solution.converged:
@@ -66,14 +66,14 @@ def solved_warnings(
 
 
 def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:
-    """Numbers of a rating life in SI, by name; what is infinite is null.
+    """Return the numbers of a rating life in SI, by name; infinite ones are null.
 
     Args:
         life: In NumPy.
-        origins: Of the ratings that are given, as of `rating_origins`.
+        origins: Origins of the given ratings, from `rating_origins`.
 
     Returns:
-        The numbers of `LIFE_OUTPUTS` that there are, the ratings as of
+        The available numbers of `LIFE_OUTPUTS`, the ratings as in
         `ratings_as_dict`, `reliability_factor`, `weakest` (row, ring, track), and the
         `standards` that results follow.
     """
@@ -87,12 +87,12 @@ def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:
 
 
 def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
-    """Ratings [N] by name, each with its `..._source`, "given" or the standard, and its
-    `..._origin`, who has given it or `None`.
+    """Return ratings [N] by name, each with its `..._source`, "given" or the standard,
+    and its `..._origin`, the origin of a given rating or `None`.
 
     Args:
         ratings: `Ratings`, in NumPy.
-        origins: As of `rating_origins`.
+        origins: As in `rating_origins`.
     """
     found: dict[str, Any] = {}
     for name, source in _SOURCES.items():
@@ -103,10 +103,10 @@ def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
 
 
 def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]:
-    """C, C0 and C_u in kN, each with where it comes from.
+    """Format C, C0 and C_u in kN, each with its origin.
 
     Args:
-        ratings, origins: As of `ratings_as_dict`.
+        ratings, origins: As in `ratings_as_dict`.
     """
     return {
         shown: f"{shown} {_kilo(getattr(ratings, name))} kN"
@@ -125,10 +125,10 @@ def _plain(value) -> Any:
 
 
 def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
-    """A rating life for people.
+    """Return the report section of a rating life.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution, in NumPy.
         life: Its life, in NumPy.
     """
@@ -172,11 +172,11 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
 
 
 def lives_grid(lives: Mapping[str, Any], hours: Mapping[str, Any] | None) -> Grid:
-    """Lives by their names.
+    """Tabulate lives by their names.
 
     Args:
-        lives: In revolutions.
-        hours: Likewise in hours; `None` at rest.
+        lives: Lives in revolutions.
+        hours: Lives in hours; `None` at rest.
     """
     columns = [
         Column("rating life", list(lives)),
@@ -188,7 +188,7 @@ def lives_grid(lives: Mapping[str, Any], hours: Mapping[str, Any] | None) -> Gri
 
 
 def limits(solution: Solution, life: Life) -> list[str]:
-    """What limits the reference life, in words.
+    """Describe the contact that limits the reference life.
 
     Args:
         solution: In NumPy.
@@ -216,7 +216,7 @@ def limits(solution: Solution, life: Life) -> list[str]:
 
 
 def turning(turns: Any, at_rest: bool) -> str:
-    """Which rings turn against the load; at rest, what is taken in place of that.
+    """Describe which rings rotate relative to the load, or are assumed to at rest.
 
     Args:
         turns: As `Life.turns_against_load`.
@@ -240,7 +240,7 @@ def _hours_per_turn(solution) -> float | None:
 
 
 def life_number(value: Any) -> str:
-    """A life or a safety in digits, or that it has no end."""
+    """Format a life or safety factor, or "infinite"."""
     return f"{float(value):.5g}" if np.isfinite(value) else "infinite"
 
 

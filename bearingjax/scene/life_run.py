@@ -1,4 +1,4 @@
-"""Rating life under the cases of a scene, a load spectrum: running and telling."""
+"""Rating life under the cases of a scene, a load spectrum: computation and report."""
 
 import dataclasses
 from collections.abc import Callable
@@ -31,7 +31,7 @@ from .sweep_run import all_warnings, design_columns, listed_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 _SHOWN = 12
-"""Cases that a report lists."""
+"""Most cases listed in a report."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,12 +39,12 @@ class LifeRun:
     """Life under the cases of a scene.
 
     Attributes:
-        table: What was asked.
-        solved: The cases and their lives.
-        lives: Life under all of them, by its name in `LIVES`.
-        asked: That of the asked reliability: modified, or without a lubricant the
+        table: The cases of the scene.
+        solved: The solved cases and their lives.
+        lives: Life under all cases, by its name in `LIVES`.
+        asked: Life at the requested reliability: modified, or without a lubricant the
             reference life times a1.
-        ratings: Of the bearing; of several designs those of the scene.
+        ratings: Ratings of the bearing; for several designs those of the scene.
     """
 
     table: CaseTable
@@ -55,17 +55,17 @@ class LifeRun:
 
     @property
     def converged(self) -> bool:
-        """Whether all cases were solved: else there is no life."""
+        """Whether all cases were solved; otherwise there is no life."""
         return bool(self.solved.converged.all())
 
     @property
     def origins(self) -> dict[str, str]:
-        """Where ratings that are given come from, as of `rating_origins`."""
+        """Origins of the given ratings, from `rating_origins`."""
         return rating_origins(self.table.scene, self.table.varied)
 
     @property
     def asked_name(self) -> str:
-        """The life whose damage is told, "modified" or "reference"."""
+        """Name of the life whose damage is reported, "modified" or "reference"."""
         return "modified" if "modified_rating_life" in self.lives else "reference"
 
     @property
@@ -75,15 +75,15 @@ class LifeRun:
 
     @property
     def preload(self) -> np.ndarray | None:
-        """Preload of each case [N]; `None` but of sets on their seats."""
+        """Preload of each case [N]; `None` except for sets with [fit]."""
         return self.solved.outputs.get(OPERATING_PRELOAD)
 
     def words(self, case: int) -> list[str]:
-        """What a case has that others have not, such as "Fy -2.5 kN"."""
+        """Describe the settings that distinguish a case, such as "Fy -2.5 kN"."""
         return case_words(differing(self.table), case)
 
     def least_safety(self) -> str:
-        """The least static safety of all cases, and which case has it, in words."""
+        """Describe the least static safety of all cases and the case that has it."""
         safety = np.asarray(self.solved.static_safety)
         case, hours = int(np.argmin(safety)), self.table.cases.hours
         spent = hours is not None and float(hours[case]) == 0.0
@@ -91,13 +91,13 @@ class LifeRun:
         return f"{life_number(safety[case])} ({which})"
 
     def worst(self, most: int) -> tuple[np.ndarray, np.ndarray]:
-        """The cases that use most of the life that is asked for; all are solved.
+        """Return the cases with the largest damage; all must be solved.
 
         Args:
-            most: How many at most.
+            most: Largest number of cases.
 
         Returns:
-            Their numbers, the worst first, and their shares in the damage.
+            Their indices, the worst first, and their shares in the damage.
         """
         share = np.asarray(self.asked.damage_share)
         order = np.argsort(-share, kind="stable")[:most]
@@ -108,7 +108,7 @@ def has_cases(source: str | Path, settings: Any = ()) -> bool:
     """Whether a scene has [cases].
 
     Args:
-        source, settings: As of `read_scene`.
+        source, settings: As in `read_scene`.
 
     Raises:
         SceneError: If it cannot be read.
@@ -119,15 +119,15 @@ def has_cases(source: str | Path, settings: Any = ()) -> bool:
 def run_life(
     table: CaseTable, progress: bool = False, stop: Callable[[], bool] | None = None
 ) -> LifeRun:
-    """Solve the cases of a scene for their lives, and add up their damage.
+    """Solve the cases of a scene for their lives, and sum their damage.
 
     Args:
         table: From `read_cases`.
-        progress: Show a bar.
+        progress: Show a progress bar.
         stop: As in `sweep`.
 
     Raises:
-        SceneError: For cases whose life cannot be worked out.
+        SceneError: For cases whose life cannot be computed.
     """
     scene = table.scene
     conditions = life_conditions(scene, table.varied)
@@ -171,13 +171,13 @@ def run_life(
 
 
 def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
-    """Life under the cases as plain numbers and lists, in SI; infinite is null.
+    """Return the life under the cases as plain numbers and lists, in SI.
 
     Returns:
-        Ratings as of `ratings_as_dict`, lives under all cases and the damage shares of
-        the cases; `equivalent_load` is the constant one with the basic life, and
+        Ratings as in `ratings_as_dict`, lives under all cases and the damage shares of
+        the cases; `equivalent_load` is the constant load with the same basic life,
         `static_safety` the least of all cases. Columns of the cases; counts, warnings,
-        inputs, version. Without the lives if a case was not solved.
+        inputs, version. Infinite is null; no lives if a case was not solved.
     """
     from .. import __version__
 
@@ -202,15 +202,15 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
 
 
 def life_columns(run: LifeRun) -> dict[str, np.ndarray]:
-    """The cases and their lives as columns by header, in SI, as of `columns`."""
+    """Return the cases and their lives as columns by header, in SI."""
     return columns(run.solved, design_columns(run.table))
 
 
 def equivalent_load(run: LifeRun) -> float:
-    """The constant equivalent load with the basic life of the cases [N].
+    """Return the constant equivalent load with the basic life of the cases [N].
 
     Args:
-        run: With all cases solved.
+        run: Run with all cases solved.
     """
     power = 3.0 if run.table.scene.element.bearing.is_ball else 10.0 / 3.0
     life = float(run.lives["basic_rating_life"].rating_life) / 1e6
@@ -222,20 +222,20 @@ def _finite(value) -> float | None:
 
 
 def spectrum_report(run: LifeRun) -> Report:
-    """Readable report of the life under the cases.
+    """Return the readable report of the life under the cases.
 
     Args:
-        run: With all cases solved.
+        run: Run with all cases solved.
     """
     told = all_warnings(run.table, run.solved)
     return Report({"Rating life": _lives(run)}, told)
 
 
 def spectrum_page(run: LifeRun) -> Report:
-    """The report of the life under the cases, with the bearing and its fits.
+    """Return the report of the life under the cases, with the bearing and its fits.
 
     Args:
-        run: With all cases solved.
+        run: Run with all cases solved.
     """
     report = spectrum_report(run)
     sections = {**report.sections, **design_sections(run.table.scene)}
@@ -280,7 +280,7 @@ def _lives(run) -> list[Part]:
 
 
 def _on_seats(run) -> str:
-    """Least and largest radial clearance and preload of the cases in operation."""
+    """Format the ranges of radial clearance and preload of the cases in operation."""
     text = f"the operating radial clearance is {_ends(1e6 * run.clearance)} µm"
     if run.preload is None:
         return text
@@ -295,8 +295,8 @@ def _ends(values: np.ndarray) -> str:
 
 
 def _by_case(run) -> list[Part]:
-    """A row for each of the worst cases, as if it were alone, and what tells them
-    apart."""
+    """Tabulate the worst cases, each as if it acted alone, and their distinguishing
+    settings."""
     order, shares = run.worst(_SHOWN)
     solved, hours = run.solved, run.table.cases.hours
     spent = [None] * len(order) if hours is None else np.asarray(hours)[order]
@@ -320,7 +320,7 @@ def _by_case(run) -> list[Part]:
         told.append(f"and {more} more, {100 * (1 - shares.sum()):.3g} %")
     found = differing(run.table)
     if found:
-        # Spaces that do not break keep a setting in one line.
+        # Non-breaking spaces keep a setting in one line.
         apart = [
             ", ".join(w.replace(" ", "\xa0") for w in case_words(found, int(k)))
             for k in order
@@ -330,7 +330,7 @@ def _by_case(run) -> list[Part]:
 
 
 def unsolved(run: LifeRun) -> str:
-    """Which cases were not solved, in words."""
+    """List the cases that were not solved, in words."""
     codes = np.asarray(run.solved.result)
     lost = np.flatnonzero(codes != Result.CONVERGED)
     first = Result(int(codes[lost[0]])).label

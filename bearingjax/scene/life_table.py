@@ -1,4 +1,4 @@
-"""The [life] table of a scene: what a rating life needs beside the bearing."""
+"""The [life] table of a scene: conditions of the rating life."""
 
 import dataclasses
 from collections.abc import Iterable
@@ -71,13 +71,13 @@ class LifeKeys(Keys):
 def read_life(
     top: Table, bearing: AbstractBearing | BearingSet, speed: Speed | None, points: int
 ) -> LifeConditions | None:
-    """Conditions of the rating life, or `None` without a [life] table.
+    """Read the conditions of the rating life; `None` without a [life] table.
 
     Args:
         top: The scene.
-        bearing: Its bearing.
-        speed: Its ring speeds, or `None` at rest; its [cases] may have others.
-        points: Positions along its rollers.
+        bearing: Bearing of the scene.
+        speed: Ring speeds, or `None` at rest; [cases] may have others.
+        points: Number of positions along the rollers.
 
     Raises:
         SceneError: For what is missing, unknown or not allowed.
@@ -104,13 +104,13 @@ def read_life(
 
 
 _USUAL = {"dynamic_capacity": 1.0, "static_capacity": 1.0, "fatigue_load_limit": 0.07}
-"""Ratings over the load that rolling elements bear, in the middle of all types."""
+"""Typical ratings over the load of `_usual_load`, averaged over all types."""
 
 
 def rating_warnings(
     life: LifeConditions | None, bearing: AbstractBearing | BearingSet
 ) -> tuple[str, ...]:
-    """Ratings twenty times off those that bearings of this size have, a line each.
+    """Warn of ratings that differ twentyfold from typical ones, a line each.
 
     Args:
         life: From `read_life`.
@@ -129,7 +129,7 @@ def rating_warnings(
 
 
 def _usual_load(row: Any) -> float:
-    """18 N for a mm² of all balls, 40 N of rollers: the order of C and C0 [N]."""
+    """Estimate C and C0 [N]: 18 N per mm² of all balls, 40 N per mm² of rollers."""
     if row.is_ball:
         return 18e6 * row.n_elements * float(row.ball_diameter) ** 2
     area = float(row.roller_diameter) * float(row.roller_length)
@@ -142,23 +142,23 @@ _UNRATED = (
     " raceway_profile ribs rib arrangement ball_deviation roller_deviation"
     " azimuth_deviation"
 ).split()
-"""Keys of [bearing] that change no load rating."""
+"""Keys of [bearing] that do not affect the load ratings."""
 
 
 def life_conditions(
     scene: "Scene", varied: Iterable[str] = (), turning: bool = True
 ) -> LifeConditions:
-    """Conditions of the rating life of a scene, with the ratings of its designation.
+    """Return the conditions of the rating life, with the ratings of the designation.
 
-    A bearing of the catalogue has the published ratings where [life] gives none, those
-    of a set in proportion to ISO 281 and ISO 76; not so if the scene or its cases
-    change what ratings follow from.
+    A catalogue bearing has the published ratings where [life] gives none, scaled for
+    a set by ISO 281 and ISO 76, unless the scene or its cases change dimensions that
+    affect the ratings.
 
     Args:
         scene: The scene.
-        varied: Keys that its cases vary.
-        turning: Whether the rings turn against each other; without that there is no
-            film, and no modified life.
+        varied: Keys varied by its cases.
+        turning: Whether the rings have a relative speed; without it there is no film
+            and no modified life.
     """
     own = LifeConditions() if scene.life is None else scene.life
     if not turning:
@@ -168,14 +168,14 @@ def life_conditions(
 
 
 def rating_origins(scene: "Scene", varied: Iterable[str] = ()) -> dict[str, str]:
-    """Where ratings that are given come from, in words, by their name.
+    """Describe the origins of given ratings, by their name.
 
     Args:
-        scene, varied: As of `life_conditions`.
+        scene, varied: As in `life_conditions`.
 
     Returns:
-        The [life] of the scene, or whom they are published for and what was made of
-        them; without those that are worked out from the geometry.
+        The [life] of the scene, or the published bearing and any scaling; ratings
+        computed from the geometry are left out.
     """
     own = LifeConditions() if scene.life is None else scene.life
     found = {
@@ -185,11 +185,11 @@ def rating_origins(scene: "Scene", varied: Iterable[str] = ()) -> dict[str, str]
 
 
 _OF_ROWS = ("by ISO 281", "by ISO 76", "in proportion to C0")
-"""How ratings of several rows follow from those of one."""
+"""Rules by which ratings of several rows follow from those of one."""
 
 
 def _published(scene, varied) -> dict[str, tuple[float, str]]:
-    """Ratings of the designation that count [N], and where each comes from."""
+    """Return the applicable published ratings [N], each with its origin."""
     own = LifeConditions() if scene.life is None else scene.life
     taken = scene.catalogue
     if taken is None or rated_otherwise(scene, varied):
@@ -220,10 +220,10 @@ def _published(scene, varied) -> dict[str, tuple[float, str]]:
 
 
 def rated_otherwise(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
-    """Keys of [bearing] for which published ratings of a designation do not hold.
+    """Return the changed keys of [bearing] that invalidate the published ratings.
 
     Args:
-        scene, varied: As of `life_conditions`.
+        scene, varied: As in `life_conditions`.
     """
     if scene.catalogue is None:
         return []
@@ -233,10 +233,10 @@ def rated_otherwise(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
 
 
 def not_published(scene: "Scene", varied: Iterable[str] = ()) -> list[str]:
-    """A line that says why ratings are not those of the designation, if they are not.
+    """Explain in a line why the published ratings are not used, if they are not.
 
     Args:
-        scene, varied: As of `life_conditions`.
+        scene, varied: As in `life_conditions`.
     """
     if scene.catalogue is None:
         return []
@@ -259,7 +259,7 @@ def _turns(speed) -> bool:
 
 
 def _viscosity(top: Table, keys: LifeKeys) -> float:
-    """Kinematic viscosity of the oil, which may be that of [lubricant] [m²/s]."""
+    """Return the kinematic viscosity of the oil, given or of [lubricant] [m²/s]."""
     if keys.viscosity is not None:
         if "lubricant" in top:
             problem = "stands beside [lubricant], whose oil has a viscosity; choose one"
@@ -273,7 +273,7 @@ def _viscosity(top: Table, keys: LifeKeys) -> float:
 
 
 def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[str, ...]:
-    """That dirt is counted as in a grease, friction as in an oil, or the reverse.
+    """Warn if one of contamination and supply is for grease, the other for oil.
 
     Args:
         top: The scene.

@@ -28,7 +28,7 @@ from ..statics.friction import SUPPLIES
 from .schema import Keys, scene_key
 
 LAWS = {"free_volume": FreeVolume, "barus": Barus, "roelands": Roelands}
-"""Laws of viscosity over pressure; the first has the temperature in it."""
+"""Laws of viscosity over pressure; the first includes the temperature."""
 
 TRACTIONS = {
     "newtonian": Newtonian,
@@ -39,11 +39,11 @@ TRACTIONS = {
 }
 
 DENSITY = 900.0
-"""Of an oil at 15 °C whose density is not given [kg/m³]."""
+"""Default density of an oil at 15 °C [kg/m³]."""
 
 _AMBIENT = ("grade", "cold_viscosity", "reference_viscosity")
 _OF_PRESSURE = ("barus", "roelands")
-"""Laws of the pressure alone, beside which the viscosity is given."""
+"""Laws of the pressure alone, which require the ambient viscosity."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -128,7 +128,7 @@ class LubricantKeys(Keys):
 
     @property
     def assumed(self) -> tuple[str, ...]:
-        """What was assumed of the oil."""
+        """Assumptions made about the oil, in words."""
         if self.law is None or self.density is not None:
             return ()
         density = f"{DENSITY:g} kg/m³ is taken at 15 °C"
@@ -149,7 +149,7 @@ class LubricantKeys(Keys):
             raise self.table.error("density", problem)
 
     def oil(self) -> Lubricant:
-        """The oil."""
+        """Build the lubricant."""
         if self.name is not None:
             index = self.viscosity_index
             given = {} if index is None else {"viscosity_index": index}
@@ -159,7 +159,7 @@ class LubricantKeys(Keys):
             ambient = pressure = self.built(FreeVolume)
         else:
             ambient = self._ambient()
-            # Raises that it is missing, if it is.
+            # Raises if it is missing.
             coefficient = self.table.quantity("coefficient", "pressure coefficient")
             with self.table.building():
                 pressure = LAWS[self.law or ""](coefficient)
@@ -173,7 +173,7 @@ class LubricantKeys(Keys):
             return Lubricant(ambient, pressure, Density(**given), self.film_coefficient)
 
     def _ambient(self) -> AbstractAmbient:
-        """Viscosity at atmospheric pressure, by one of three ways."""
+        """Read the law of viscosity at atmospheric pressure, of one of three forms."""
         table = self.table
         given = [key for key in _AMBIENT if key in table]
         if len(given) != 1:
@@ -188,7 +188,7 @@ class LubricantKeys(Keys):
                 return Walther.from_grade(self.grade, index)
         if given == ["cold_viscosity"]:
             return self.built(Walther)
-        # Without factors the viscosity is that of the one temperature that there is.
+        # Without coefficients the viscosity is that at the given temperature.
         values = dict(reference_temperature=self.temperature, first=0.0, second=0.0)
         for name in ("reference_viscosity", *values):
             if name in table:
@@ -198,7 +198,7 @@ class LubricantKeys(Keys):
 
 
 def described(lubricant: Lubricant, temperature: float) -> str:
-    """Viscosity, pressure coefficient and density of an oil in words.
+    """Describe viscosity, pressure coefficient and density of an oil.
 
     Args:
         lubricant: The oil.

@@ -1,4 +1,4 @@
-"""What other programs read of the noise of a bearing: JSON, tables, sound; in SI."""
+"""Output of the noise of a bearing: JSON, tables and sound, in SI."""
 
 from pathlib import Path
 from typing import Any
@@ -13,29 +13,29 @@ from .tolerance_table import Tighter
 
 
 def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
-    """A run as plain numbers and lists, in SI but for frequencies in Hz, levels in dB.
+    """Return a run as plain numbers and lists, in SI; frequencies in Hz, levels in dB.
 
     Args:
         run: From `run_noise`.
 
     Returns:
-        `natural_frequency` (mode,) of the modes that contacts or sensor hold, with the
-        `ring_share` in their energy of motion; `direction`, the names of the axis that
-        follows; `time`, `acceleration` (time, direction) and `displacement` of the
+        `natural_frequency` (mode,) of the modes restrained by contacts or sensor, with
+        the `ring_share` of their kinetic energy; `direction`, the names along that
+        axis; `time`, `acceleration` (time, direction) and `displacement` of the
         moving ring; `level` (direction,); `bands`: `centre` [Hz], `level` (band,
-        direction), null where the record does not hold the band; `lines`: each with
+        direction), null where the record does not cover the band; `lines`: each with
         `order`, `frequency`, `amplitude`, `name`, and `causes`, the form errors that
-        make it to first order; `contact_states`: `contacts` (0, 1, 2, …), `samples`
-        with so many, of all elements together, `switches_per_turn`; `reference`.
+        excite it to first order; `contact_states`: `contacts` (0, 1, 2, …), `samples`
+        with that many, of all elements together, `switches_per_turn`; `reference`.
         Of random bearings `monte_carlo`: `level` (bearing, direction), `band_level`
-        (bearing, band, direction), null of those that were not solved; `percentile`:
-        `share` [%] and `level` (share, direction); `sources` of the scatter with the
-        `part` of the mean square of the acceleration along the sensor (without one in
-        all directions) that goes without each, its standard `part_error`, and
+        (bearing, band, direction), null of unsolved ones; `percentile`: `share` [%]
+        and `level` (share, direction); `sources` of the scatter with the `part` of the
+        mean square of the acceleration along the sensor (without one in all
+        directions) that vanishes without each, its standard `part_error`, and
         `part_by_band` (source, band) [1]; `tighter`: the next better grade and class
         with their `gain` [dB].
-        And result, message, warnings, inputs (the file is a scene again) and version.
-        What was not solved is left out.
+        Also result, message, warnings, inputs (the file can be read as a scene) and
+        version. Unsolved parts are left out.
     """
     from .. import __version__
 
@@ -87,7 +87,7 @@ def _heard(run: NoiseRun) -> dict[str, Any]:
 
 
 PERCENTILES = (5.0, 50.0, 95.0)
-"""Shares of random bearings whose levels are told [%]."""
+"""Percentiles of the levels of random bearings that are reported [%]."""
 
 
 def _many(many: Many, tighter: Tighter) -> dict[str, Any]:
@@ -114,12 +114,12 @@ def _many(many: Many, tighter: Tighter) -> dict[str, Any]:
 
 
 def parts_of(found: Shares) -> np.ndarray:
-    """Part of the mean square that goes without each source (source,) [1]."""
+    """Return the part of the mean square lost without each source (source,) [1]."""
     return np.asarray(found.share) / float(found.mean_square)
 
 
 def noise_columns(run: NoiseRun) -> dict[str, np.ndarray]:
-    """A record as columns by header, "name [unit]": a row for each time.
+    """Return a record as columns by header, "name [unit]": a row for each time.
 
     Args:
         run: From `run_noise`, converged.
@@ -137,7 +137,7 @@ def noise_columns(run: NoiseRun) -> dict[str, np.ndarray]:
 
 
 def heard_direction(run: NoiseRun) -> np.ndarray:
-    """Unit vector along which the rig listens: the sensor's, or of the loudest axis.
+    """Return the unit vector of the measurement: of the sensor, or the loudest axis.
 
     Args:
         run: From `run_noise`, converged.
@@ -154,11 +154,11 @@ def write_noise_sound(path: str | Path, run: NoiseRun) -> float:
     """Write the acceleration along `heard_direction` as sound.
 
     Args:
-        path: Of the WAV file.
+        path: Path of the WAV file.
         run: From `run_noise`, converged.
 
     Returns:
-        The acceleration that full scale stands for [m/s²].
+        The acceleration at full scale [m/s²].
 
     Raises:
         OSError: If the file cannot be written.

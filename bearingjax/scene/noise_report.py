@@ -1,4 +1,4 @@
-"""The noise of a bearing, as text for people."""
+"""The noise of a bearing, as text."""
 
 import numpy as np
 
@@ -14,11 +14,11 @@ from .report_model import Column, Grid, Report
 
 _RPM = 30.0 / np.pi
 _WORTH = 0.1
-"""Part of a band from which its largest source is named [1]."""
+"""Part of a band above which its largest source is named [1]."""
 
 
 def noise_report(run: NoiseRun) -> Report:
-    """Readable report of the noise of a bearing.
+    """Return the readable report of the noise of a bearing.
 
     Args:
         run: From `run_noise`, converged.
@@ -77,7 +77,7 @@ def _modes(run):
 
 
 def _levels(run):
-    """Level of every band and direction, beside the norm if there is one."""
+    """Tabulate the level of every band and direction, with the limit if given."""
     heard, task = run.heard, run.task
     bands = [f"{centre:g} Hz" for centre in task.bands.centre]
     levels = np.vstack([heard.level, heard.band_level])
@@ -88,8 +88,8 @@ def _levels(run):
 
 
 def _by_direction(levels):
-    """A column of levels for each direction; nothing of a band that is not held, or
-    where nothing moves."""
+    """Return a column of levels for each direction; blank for bands outside the record
+    or without motion."""
     held = np.where(levels > LOWEST_LEVEL, levels, np.nan)
     return [
         Column(name, values, "dB", ".1f")
@@ -98,7 +98,7 @@ def _by_direction(levels):
 
 
 def _lines(run):
-    """The largest lines, what they are and what makes them."""
+    """Tabulate the largest spectral lines with their names and causes."""
     pairs = list(zip(run.heard.lines, run.heard.causes, strict=True))
     if not pairs:
         return ["no line stands out of the spectrum"]
@@ -134,7 +134,7 @@ def _states(run):
 
 
 def _many(run):
-    """Levels of random bearings, and what makes them."""
+    """Report the levels of random bearings and their sources."""
     many, task = run.many, run.task
     levels = np.asarray(many.levels.percentile(PERCENTILES))
     names = [f"{share:g} % are below" for share in PERCENTILES]
@@ -144,7 +144,7 @@ def _many(run):
 
 
 def _sources(task, found):
-    """What makes the noise of random bearings, and what tightening it brings."""
+    """Report the sources of noise of random bearings, and the gain of tightening."""
     sensor = task.line.sensor
     where = "in all directions"
     if sensor is not None:
@@ -158,7 +158,7 @@ def _sources(task, found):
     parts, errors = parts_of(found), np.asarray(found.error) / total
     gains, factors = np.asarray(found.gain()), dict(task.tighter)
     order = np.argsort(-parts)
-    # Twice its standard error, or a single bearing: it may be nothing.
+    # Within twice its standard error, or of a single bearing, it may be zero.
     doubt = ~(parts > 2.0 * errors)
     spread = [f" ± {100.0 * e:.2g}" if np.isfinite(e) else "" for e in errors]
     columns = [
@@ -177,7 +177,7 @@ def _sources(task, found):
 
 
 def _in_bands(task, found):
-    """The largest source of each band."""
+    """Tabulate the largest source of each band."""
     parts = np.asarray(found.by_band)
     told = []
     for centre, column in zip(task.bands.centre, parts.T, strict=True):

@@ -1,4 +1,4 @@
-"""Running what a scene asks for of the noise of a bearing."""
+"""Compute the noise of the bearing of a scene."""
 
 import contextlib
 import dataclasses
@@ -39,23 +39,23 @@ from ..numerics.result import Result
 from .noise_scene import DIRECTIONS, NoiseScene
 
 LARGEST_LINES = 12
-"""Lines that are told for their size, whatever is beside them."""
+"""Number of largest spectral lines reported regardless of their neighbours."""
 _TOO_LONG = "its steps are too long for the contacts under their largest load"
 
 
 @dataclasses.dataclass(frozen=True)
 class Heard:
-    """What a record tells.
+    """Evaluation of a record.
 
     Attributes:
         record: The vibration.
-        spectrum: Of the acceleration, amplitudes (line, direction) [m/s²].
-        level: Of the acceleration about its mean, by the spectrum as the bands
-            (direction,) [dB].
-        band_level: (band, direction) [dB]; NaN for bands that the record does not hold.
-        lines: Those that stand out.
-        causes: What may make each of them.
-        states: Contacts of the elements.
+        spectrum: Spectrum of the acceleration, amplitudes (line, direction) [m/s²].
+        level: Level of the acceleration about its mean, from the spectrum like the
+            bands (direction,) [dB].
+        band_level: (band, direction) [dB]; NaN for bands outside the record.
+        lines: Prominent spectral lines.
+        causes: Possible causes of each line.
+        states: Contact states of the rolling elements.
     """
 
     record: Vibration
@@ -68,18 +68,18 @@ class Heard:
 
     @property
     def acceleration(self) -> np.ndarray:
-        """Of the moving ring (time, direction) [m/s²]."""
+        """Acceleration of the moving ring (time, direction) [m/s²]."""
         return np.asarray(self.record.acceleration)[:, : len(DIRECTIONS)]
 
 
 @dataclasses.dataclass(frozen=True)
 class Many:
-    """What many random bearings tell.
+    """Evaluation of many random bearings.
 
     Attributes:
-        levels: Of each.
-        shares: Which source of scatter makes how much of the mean square, of a part
-            of them; `None` if none of these was solved.
+        levels: Levels of each bearing.
+        shares: Share of each source of scatter in the mean square, from a subset of
+            the bearings; `None` if none of these was solved.
     """
 
     levels: MonteCarlo
@@ -88,17 +88,17 @@ class Many:
 
 @dataclasses.dataclass(frozen=True)
 class NoiseRun:
-    """What came of a scene of the noise of a bearing.
+    """Result of a noise run.
 
     Attributes:
-        task: What was asked.
+        task: The noise scene.
         result: The worst result code.
-        message: Cause and cure in words.
-        modes: Natural modes, as NumPy holds them; `None` without a place to stand.
-        steps: Steps of the integration per sample.
-        heard: What the record tells; `None` if it was not solved.
-        many: Random bearings beside it; `None` if none were wanted.
-        warnings: What is doubtful.
+        message: Cause and remedy in words.
+        modes: Natural modes, in NumPy; `None` without an equilibrium.
+        steps: Integration steps per sample.
+        heard: Evaluation of the record; `None` if it was not solved.
+        many: Evaluation of random bearings; `None` if none were requested.
+        warnings: Warnings of doubtful results.
     """
 
     task: NoiseScene
@@ -112,19 +112,19 @@ class NoiseRun:
 
     @property
     def converged(self) -> bool:
-        """Whether all was solved."""
+        """Whether all parts were solved."""
         return self.result is Result.CONVERGED
 
 
 def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> NoiseRun:
-    """The vibration of the bearing of a scene, and what it tells.
+    """Simulate and evaluate the vibration of the bearing of a scene.
 
     Args:
         task: From `read_noise`.
         told: Called with the name of each stage as it begins.
 
     Returns:
-        The run with its result code; nothing is raised for what was not solved.
+        The run with its result code; a failed solve does not raise.
     """
     model = task.model
     _tell(told, "natural modes")
@@ -180,7 +180,7 @@ def _tell(told, stage):
 
 
 def _many(task: NoiseScene, steps: int, told) -> Many:
-    """Random bearings, and on fewer of them what each source of scatter makes."""
+    """Evaluate random bearings, and on a subset the share of each scatter source."""
     tolerances = task.tolerances
     assert tolerances is not None  # checked when it was read
     counts = {
@@ -205,7 +205,7 @@ def _many(task: NoiseScene, steps: int, told) -> Many:
         reference=task.reference,
         progress=progress("random bearings"),
     )
-    # Each source is switched off once: about as long as the levels took.
+    # Each source is switched off once: this takes about as long as the levels.
     fewer = -(-task.bearings // len(tolerances.sources))
     batch = min(16, task.bearings)
     sensor = task.line.sensor
@@ -227,19 +227,19 @@ def _many(task: NoiseScene, steps: int, told) -> Many:
 
 
 def listen(task: NoiseScene, record: Vibration, modes: NaturalModes) -> Heard:
-    """What a record tells.
+    """Evaluation of a record.
 
     Args:
-        task: What was asked.
+        task: The noise scene.
         record: The vibration.
-        modes: As NumPy holds them.
+        modes: Natural modes, in NumPy.
     """
     acceleration = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
     shaft = float(record.shaft_frequency)
     found = spectrum(acceleration, float(record.duration), shaft, window=task.window)
     bearing = task.model.element.bearing
     speed = task.model.speed
-    # Elements that differ make many multiples of the cage's turning.
+    # Unequal rolling elements excite many harmonics of the cage rotation.
     largest = max(row.bearing.n_elements for row in rows_of(bearing))
     harmonics = max(10, 6 * largest)
     natural = dict(ring_modes(modes, task.model))

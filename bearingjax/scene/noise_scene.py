@@ -1,4 +1,4 @@
-"""What a scene asks for of the noise of a bearing."""
+"""Scene of the noise of a bearing."""
 
 import dataclasses
 from typing import Any
@@ -9,33 +9,33 @@ from ..noise import AbstractWindow, Bands, NoiseModel, Tolerances
 from .read import Scene
 
 DIRECTIONS = ("x", "y", "z")
-"""Directions of the acceleration that is told."""
+"""Directions of the reported acceleration."""
 
 
 @dataclasses.dataclass(frozen=True)
 class NoiseScene:
-    """What a scene asks for of the vibration of a bearing, in SI.
+    """Scene of the vibration of a bearing, in SI.
 
     Attributes:
-        scene: The scene without it.
+        scene: The scene without [vibration].
         model: The bearing on its rig, with its form errors.
-        line: What all bearings of its line have in common: `waves` and `spalls`, but
-            no spectra, profiles and differences of the rolling elements, which are of
-            this one bearing.
-        bridging: Whether contacts average waves over their width; `run_noise` gives
-            both models that.
-        turns, settle, samples: As of `vibration`.
-        steps: As of `vibration`; `None`: as many as are needed.
+        line: Model common to all bearings of the production line: with `waves` and
+            `spalls`, but without spectra, profiles and differences of the rolling
+            elements, which belong to this bearing only.
+        bridging: Whether contacts average waves over their width; `run_noise` applies
+            it to both models.
+        turns, settle, samples: As in `vibration`.
+        steps: As in `vibration`; `None`: as many as needed.
         reference: Acceleration of 0 dB [m/s²].
         bands: Bands of the levels.
         norm: Largest allowed level of each band (band,) [dB], or `None`.
-        window: Of the spectrum.
-        tolerances: How bearings scatter, or `None`.
-        tighter: Names of the next tighter grade and class, and what they make of the
+        window: Window of the spectrum.
+        tolerances: Scatter of the bearings, or `None`.
+        tighter: Names of the next tighter grade and class, with their factors on the
             sources [1].
-        seed: Of the random bearings.
-        bearings: How many random bearings are wanted.
-        warnings: What is odd but possible.
+        seed: Seed of the random bearings.
+        bearings: Number of random bearings.
+        warnings: Warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 

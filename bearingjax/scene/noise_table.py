@@ -1,4 +1,4 @@
-"""The [vibration] table of a scene: a bearing on its rig, and how it is listened to."""
+"""The [vibration] table of a scene: a bearing on its test rig, and the measurement."""
 
 import dataclasses
 from collections.abc import Iterable
@@ -31,11 +31,11 @@ from .tolerance_table import ToleranceKeys, read_tolerance
 BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}
 WINDOWS = {"hann": Hann, "rectangular": Rectangular}
 NORMS = {"85-176211": NORM}
-"""Largest allowed levels, by the bearing that they are for."""
+"""Largest allowed levels, by bearing."""
 HELD = "held"
-"""Word in place of `tilting_inertia` for a ring that does not tilt."""
+"""Value of `tilting_inertia` for a ring that does not tilt."""
 MOST_SAMPLES = 200_000
-"""Most samples of a record: some 20 MB as JSON."""
+"""Most samples of a record: about 20 MB as JSON."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -135,7 +135,7 @@ class VibrationKeys(Keys):
 
     @property
     def sensor(self) -> Sensor | None:
-        """What holds the moving ring, if anything does."""
+        """Sensor on the moving ring, or `None`."""
         stiffness, damping = self.sensor_stiffness, self.sensor_damping
         if stiffness is None and damping is None:
             return None
@@ -146,11 +146,11 @@ class VibrationKeys(Keys):
 def read_noise(
     source: str | Path, settings: Iterable[str] = (), *, bearings: int = 0
 ) -> NoiseScene:
-    """Read a scene of a bearing whose noise is wanted.
+    """Read a scene of the noise of a bearing.
 
     Args:
         source, settings: As in `read_scene`.
-        bearings: How many random bearings are wanted beside it.
+        bearings: Number of additional random bearings.
 
     Raises:
         SceneError: One line that names file, key, fault and what is allowed.
@@ -180,7 +180,7 @@ def read_noise(
         values["retardation"] = vibration.retardation
     with vibration.table.building():
         model = NoiseModel(element, **values)
-        # As a number of the scene, which the echo has.
+        # Through the scene, so that the echo has it.
         model = dataclasses.replace(model, tilting_inertia=model.inertia)
         line = dataclasses.replace(
             model, element=_nominal(element), errors=_of_rows(common)
@@ -232,7 +232,7 @@ def _of_rows(errors: tuple[FormErrors, ...]) -> FormErrors | tuple[FormErrors, .
 
 
 def _nominal(element: BearingElement) -> BearingElement:
-    """The bearing with rolling elements that do not differ from each other."""
+    """Return the bearing with identical rolling elements."""
     fields = "ball_deviation", "roller_deviation", "azimuth_deviation"
 
     def even(bearing):
@@ -249,7 +249,7 @@ def _nominal(element: BearingElement) -> BearingElement:
 
 
 def _held(scene: Scene, moving: str) -> dict[str, Any]:
-    """The echo of [operating], without supports: `tilting_inertia` says what tilts."""
+    """Return the echo of [operating] without supports (see `tilting_inertia`)."""
     kept = dict(scene.inputs["operating"])
     for key in ("free", "prescribed"):
         kept.pop(key, None)
@@ -257,7 +257,7 @@ def _held(scene: Scene, moving: str) -> dict[str, Any]:
 
 
 def _check_operating(operating: Table, scene: Scene) -> None:
-    """Rings that turn, and of whose motions only both tilts may be held, at zero."""
+    """Require rotating rings, and no held freedoms except both tilts, at zero."""
     tilts, moving = set(FREEDOMS[3:5]), set(FREEDOMS[:5])
     words = "the ring shifts in ux, uy and uz; only gx and gy may be held, both at 0"
     if set(scene.free or moving) not in (moving, moving - tilts):
@@ -272,7 +272,7 @@ def _check_operating(operating: Table, scene: Scene) -> None:
 
 
 def _tilting(vibration: VibrationKeys, scene: Scene) -> dict[str, Any]:
-    """Whether the moving ring tilts, and its inertia if it is given."""
+    """Return whether the moving ring tilts, and its inertia if given."""
     held = "gx" in scene.prescribed or "gx" not in (scene.free or FREEDOMS)
     inertia = vibration.tilting_inertia
     if inertia == HELD:
@@ -284,7 +284,7 @@ def _tilting(vibration: VibrationKeys, scene: Scene) -> dict[str, Any]:
 
 
 def _moving_ring(vibration: VibrationKeys, operating: Table) -> str:
-    """The ring that the load acts on; the outer one unless the scene says another."""
+    """Return the loaded ring; the outer one unless the scene names the other."""
     fixed, moving = operating.word("fixed_ring"), vibration.moving_ring
     if fixed is None:
         return moving or "outer"

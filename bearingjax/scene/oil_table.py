@@ -1,4 +1,4 @@
-"""The [lubricant] table of a scene that is solved: its oil, films and friction."""
+"""The [lubricant] table of a solved scene: oil, films and friction."""
 
 import dataclasses
 import re
@@ -23,14 +23,14 @@ from .table import Table
 
 @dataclasses.dataclass(frozen=True)
 class Oil:
-    """What a scene says of its oil.
+    """Oil of a scene.
 
     Attributes:
-        name: Of the oil, or of its law.
+        name: Name of the oil, or of its law.
         lubricant: The oil.
         temperature: Its temperature [K].
         supply: One of `SUPPLIES`.
-        roughness: Root mean square of both surfaces together [m], or `None`.
+        roughness: Combined root mean square of both surfaces [m], or `None`.
     """
 
     name: str
@@ -41,12 +41,12 @@ class Oil:
 
 
 class OilFacts(NamedTuple):
-    """Friction and films of a solved scene, in NumPy's numbers.
+    """Friction and films of a solved scene, in NumPy.
 
     Attributes:
-        friction: By Palmgren.
-        skf: By SKF's model; `None` of types that it does not have.
-        films: Of every contact.
+        friction: Friction by Palmgren.
+        skf: Friction by SKF's model; `None` for types that it does not cover.
+        films: Films of every contact.
     """
 
     friction: Friction
@@ -55,7 +55,7 @@ class OilFacts(NamedTuple):
 
 
 def read_oil(table: Table) -> tuple[Oil, tuple[str, ...]]:
-    """The oil of a solve, and what was assumed of it.
+    """Read the oil of a solve, and the assumptions made about it.
 
     Args:
         table: `[lubricant]`.
@@ -71,12 +71,12 @@ def read_oil(table: Table) -> tuple[Oil, tuple[str, ...]]:
 def oil_facts(
     oil: Oil, solution: Solution, catalogue: FromCatalogue | None = None
 ) -> OilFacts | None:
-    """Friction and films of a solution; `None` at rest.
+    """Compute friction and films of a solution; `None` at rest.
 
     Args:
         oil: From `read_oil`.
-        solution: Converged.
-        catalogue: What the bearing's designation stands for.
+        solution: Converged solution.
+        catalogue: Catalogue entry of the bearing's designation.
     """
     if solution.speed is None or float(_turning(solution)) == 0.0:
         return None
@@ -94,21 +94,21 @@ def oil_facts(
 
 
 def series_of(designation: str, known: tuple[str, ...]) -> str | None:
-    """The series of a designation that SKF's model knows, such as 62 of 6205.
+    """Return the SKF series of a designation, such as 62 of 6205.
 
     Args:
-        designation: As "6205-2RS1/C3", "NU 2205 EC" or "7208 BE".
-        known: As `skf_series`.
+        designation: Such as "6205-2RS1/C3", "NU 2205 EC" or "7208 BE".
+        known: Known series, from `skf_series`.
 
     Returns:
-        One of those known, or `None`.
+        One of the known series, or `None`.
     """
     text = designation.replace(" ", "").upper()
     found = re.search(r"\d+", text)
     if found is None:
         return None
     after = text[found.end() :]
-    # The last two digits tell the bore, of small bearings such as 608 the last one.
+    # The last two digits are the bore code, in small sizes such as 608 the last one.
     for bore in (2, 1):
         for suffix in ("AC", "B", ""):
             name = found[0][:-bore] + suffix
@@ -137,10 +137,10 @@ def _facts(solution, lubricant, temperature, supply, roughness, series, diameter
 def oil_report(
     oil: Oil, solution: Solution, catalogue: FromCatalogue | None = None
 ) -> list[str]:
-    """Friction and films for people; empty at rest.
+    """Return the report lines of friction and films; empty at rest.
 
     Args:
-        oil, solution, catalogue: As of `oil_facts`.
+        oil, solution, catalogue: As in `oil_facts`.
     """
     facts = oil_facts(oil, solution, catalogue)
     if facts is None:
@@ -182,18 +182,18 @@ def oil_report(
 def oil_as_dict(
     oil: Oil, solution: Solution, catalogue: FromCatalogue | None = None
 ) -> dict[str, Any]:
-    """Friction and films of a solved scene as plain numbers, in SI; empty at rest.
+    """Return friction and films as plain numbers, in SI; empty at rest.
 
     Args:
-        oil, solution, catalogue: As of `oil_facts`.
+        oil, solution, catalogue: As in `oil_facts`.
 
     Returns:
         friction_torque [N m]; friction: load, viscous, flange (row) [N m], power [W];
-        friction_skf, of types that SKF's model has: torque [N m], rolling, sliding
-        (row) [N m], power [W], series whose constants it takes;
+        friction_skf, for types covered by SKF's model: torque [N m], rolling, sliding
+        (row) [N m], power [W], series of the constants used;
         film: central, minimum [m], entrainment [m/s] and with a roughness ratio, each
-        (element, contact), null where no load is carried. Contacts as of
-        `contact_load` of balls, as of `roller_load` of rollers.
+        (element, contact), null where no load is carried. Contacts as in
+        `contact_load` for balls and in `roller_load` for rollers.
     """
     facts = oil_facts(oil, solution, catalogue)
     if facts is None:

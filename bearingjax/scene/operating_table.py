@@ -9,7 +9,7 @@ from ..statics.support import restrained_freedoms
 from .schema import Keys, scene_key
 
 MOST_POINTS = 10_000
-"""Most positions along a roller: line load and pressure on two raceways, 0.8 MB each
+"""Most positions along a roller: line load and pressure on two raceways, 0.8 MB per
 roller as JSON."""
 
 
@@ -66,14 +66,14 @@ class OperatingKeys(Keys):
 
     @property
     def speed(self) -> Speed | None:
-        """Ring speeds; `None` if both rings stand still."""
+        """Ring speeds; `None` if both rings are at rest."""
         if not self.inner_speed and not self.outer_speed:
             return None
         return Speed(self.inner_speed, self.outer_speed)
 
     @property
     def held(self) -> dict[str, float]:
-        """Prescribed displacements by their freedom [m, rad]."""
+        """Prescribed displacements by freedom [m, rad]."""
         return {} if self.prescribed is None else self.prescribed.given
 
     @property
@@ -99,7 +99,7 @@ class OperatingKeys(Keys):
                 raise self.table.error("load", problem)
 
     def fill_free(self, bearing: Any) -> None:
-        """Say in the echo which freedoms of a bearing move.
+        """Fill in the free freedoms of a bearing in the echo.
 
         Args:
             bearing: The design.

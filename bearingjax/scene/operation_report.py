@@ -1,4 +1,4 @@
-"""What a bearing was solved with, in words: freedoms, speeds, materials, laws."""
+"""Settings of a solve in words: freedoms, speeds, materials, laws."""
 
 import dataclasses
 from typing import Any
@@ -15,10 +15,10 @@ from .read import Scene
 
 
 def freedoms(scene: Scene, solution: Solution) -> str:
-    """Which freedoms of the moving ring were free, and which a support held.
+    """Describe which freedoms of the moving ring were free and which were held.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution, in NumPy.
     """
     why = (
@@ -37,10 +37,10 @@ def freedoms(scene: Scene, solution: Solution) -> str:
 
 
 def operation(scene: Scene, solution: Solution) -> str:
-    """Freedoms, speeds, materials, laws and numerics.
+    """Describe freedoms, speeds, materials, laws and numerics.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution, in NumPy.
     """
     element = solution.element
@@ -72,7 +72,7 @@ def _speeds(solution):
 
 
 def _materials(bearing: AbstractBearing | BearingSet) -> list[str]:
-    """A line for each material of rolling elements and of rings, each once."""
+    """Return a line for each distinct material of rolling elements and rings."""
     part = f"{bearing.noun}s"
     lines = []
     for row in rows_of(bearing):
@@ -97,11 +97,11 @@ def _material(material: Material) -> str:
 
 
 def words(choice: Any) -> str:
-    """A law, a kinematics or a method by its name in Python, with its numbers.
+    """Format a law, a kinematics or a method by its class name and numbers.
 
     Args:
         choice: A module whose fields are numbers or words; arrays of more than one
-            number and parts are left out.
+            number and submodules are left out.
     """
     shown = []
     for field in dataclasses.fields(choice):

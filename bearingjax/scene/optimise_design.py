@@ -1,4 +1,4 @@
-"""An optimised design as a scene: its fits, and what is odd about them."""
+"""Optimised designs as scenes, with their fits and warnings."""
 
 import dataclasses
 from typing import Any
@@ -16,15 +16,15 @@ from .read import Scene
 
 
 def scene_of_design(task: Optimisation, design: Installed) -> Scene:
-    """The scene with a design that was found in place of its own.
+    """Return the scene with its design replaced.
 
     Args:
-        task: What was asked.
+        task: The optimisation task.
         design: Best or first design: `Optimised.element`, `initial`.
 
     Returns:
-        Its bearing, preload, seats and temperatures, at the highest speed of the cases;
-        warnings are of these seats.
+        Scene with the bearing, preload, seats and temperatures of the design, at the
+        highest speed of the cases, and the warnings of these seats.
     """
     force = None if design.preload is None else float(design.preload)
     scene = dataclasses.replace(task.scene, element=design.drawing, preload_force=force)
@@ -41,7 +41,7 @@ def scene_of_design(task: Optimisation, design: Installed) -> Scene:
 
 
 def _fits(fits: Fits, design: Installed, varied: set[str]) -> Fits:
-    """The fits of a design; a number that was free has no tolerance."""
+    """Return the fits of a design; optimised numbers have no tolerance."""
     exact = Limits(0.0, 0.0)
     limits, names = dict(fits.limits), list(fits.names)
     mounting: Any = jax.device_get(design.mounting)
@@ -50,7 +50,7 @@ def _fits(fits: Fits, design: Installed, varied: set[str]) -> Fits:
     ):
         if f"fit.{seat}_interference" in varied:
             own = float(getattr(mounting, f"{seat}_interference"))
-            # As a deviation: a housing that is small is tight.
+            # Sign as a deviation: a small housing is tight.
             own = own if seat == "shaft" else -own
             limits |= {seat: Limits(own, own), ring: exact}
             names[k] = ""
@@ -68,7 +68,7 @@ def _fits(fits: Fits, design: Installed, varied: set[str]) -> Fits:
 
 
 def _turning(fits: Fits, task: Optimisation) -> Fits:
-    """The fits at the highest speed of the inner ring among the cases."""
+    """Return the fits at the highest inner ring speed of the cases."""
     speeds = task.cases.inner_speed
     if speeds is None:
         return fits

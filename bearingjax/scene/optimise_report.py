@@ -1,4 +1,4 @@
-"""An optimised design as text for people, and as numbers in SI for programs."""
+"""An optimised design as text, and as numbers in SI."""
 
 from typing import Any
 
@@ -21,12 +21,12 @@ _STIFFNESSES = {"N/m": (1e-6, "kN/mm"), "N m": (1e-3, "N m/mrad")}
 def optimisation_report(
     task: Optimisation, found: Optimised, best: Scene | None = None
 ) -> Report:
-    """Readable report, before and after.
+    """Return the readable report of the design before and after.
 
     Args:
-        task: What was asked.
-        found: What came of it, converged.
-        best: The scene of the best design, `None`: as of `scene_of_design`.
+        task: The optimisation task.
+        found: Its result, converged.
+        best: Scene of the best design; `None`: from `scene_of_design`.
     """
     best = scene_of_design(task, found.element) if best is None else best
     cases = len(found.after.solution.result)
@@ -52,7 +52,7 @@ def optimisation_report(
 
 
 def _warned_before(task, found) -> list[str]:
-    """What was odd about the start, that is not odd about the best design too."""
+    """Return the warnings of the start that the best design does not have."""
     first = scene_of_design(task, found.initial)
     kept = set(scene_of_design(task, found.element).warnings)
     return [*(w for w in first.warnings if w not in kept), *found.before.warnings]
@@ -61,20 +61,20 @@ def _warned_before(task, found) -> list[str]:
 def optimisation_as_dict(
     task: Optimisation, found: Optimised, best: Scene | None = None
 ) -> dict[str, Any]:
-    """An optimised scene as plain numbers and lists, in SI.
+    """Return an optimised scene as plain numbers and lists, in SI.
 
     Args:
-        task: What was asked.
-        found: What came of it.
-        best: As of `optimisation_report`.
+        task: The optimisation task.
+        found: Its result.
+        best: As in `optimisation_report`.
 
     Returns:
         result, message, optimality, history, evaluations, gradients, rejected,
-        warnings (of the best design), warnings_before (of the start), inputs (as of
-        `Optimisation`: the file is a scene again), version; with fits `fit`, as of
-        `fits_as_dict`, of the best design; if it converged also variables, objective,
-        constraints and peak_pressure, and rating_life (before, after) if it is made
-        largest.
+        warnings (of the best design), warnings_before (of the start), inputs (as in
+        `Optimisation`: the file can be read as a scene), version; with fits `fit`, as
+        in `fits_as_dict`, of the best design; if converged also variables, objective,
+        constraints and peak_pressure, and rating_life (before, after) if it is
+        maximised.
     """
     from .. import __version__
 
@@ -102,11 +102,11 @@ def optimisation_as_dict(
 
 
 def unsolved_start_as_dict(task: Optimisation, error: Exception) -> dict[str, Any]:
-    """What is told of a task whose first design does not solve.
+    """Return the output of a task whose first design does not solve.
 
     Args:
-        task: What was asked.
-        error: Why not.
+        task: The optimisation task.
+        error: Cause of the failure.
 
     Returns:
         result ("start_not_solved"), message, warnings, inputs and version.
@@ -161,7 +161,7 @@ def _numbers(found):
 
 
 def _shown(found):
-    """What the objective is told as, by its name, if that is another number."""
+    """Return the displayed form of the objective by its name, if it differs."""
     pair = [_measured(side)[0] for side in (found.before, found.after)]
     measure, ((_, before), (_, after)) = _told(found.objective, pair)
     if measure is found.objective:
@@ -172,7 +172,7 @@ def _shown(found):
 
 
 def _measured(outcome: Outcome):
-    """(smooth, exact) of the objective and of every constrained measure."""
+    """Return (smooth, exact) of the objective and of every constrained measure."""
     return [
         (outcome.objective, outcome.exact),
         *zip(
@@ -227,7 +227,7 @@ def _grid(names, rows):
 
 
 def _told(measure, values):
-    """What is shown of a measure, and its (smooth, exact) before and after."""
+    """Return the displayed form of a measure, and its (smooth, exact) pairs."""
     if not isinstance(measure, AbstractMeasure) or measure.as_told is measure:
         return measure, values
     shown = [tuple(measure.told(x) for x in pair) for pair in values]

@@ -1,4 +1,4 @@
-"""The [optimise] table of a scene: what is free, what is made least, what is kept."""
+"""The [optimise] table of a scene: variables, objective and constraints."""
 
 import dataclasses
 from collections.abc import Iterable
@@ -48,23 +48,23 @@ OF_FITS = (
     "shaft_bore",
     "housing_diameter",
 )
-"""Numbers of a [fit] that may be free."""
+"""Numbers of a [fit] that may be variables."""
 
 WARMTH = {f"temperature.{part}": part for part in PARTS}
-"""Temperatures that may be free beside a [fit]."""
+"""Temperatures that may be variables in addition to a [fit]."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Optimisation:
-    """What a scene wants optimised; as of `optimise`.
+    """Optimisation task of a scene, as in `optimise`.
 
     Attributes:
-        scene: The scene without it.
+        scene: The scene without [optimise].
         cases: Its operating cases; without [cases] the one of [operating].
-        variables: The free numbers, named as in the scene.
-        objective: What is made least.
+        variables: The variables, named as in the scene.
+        objective: Measure to be minimised.
         constraints: Bounds on measures.
-        method: Search, or `None` for the default.
+        method: Search method, or `None` for the default.
         max_steps: Step limit.
         tolerance: Gradient at which the search ends.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
@@ -82,12 +82,12 @@ class Optimisation:
 
 
 OF_FREEDOM = ("displacement", "stiffness")
-"""Objectives that are those of one freedom."""
+"""Objectives that refer to one freedom."""
 _QUANTITY: dict[str, Any] = {"type": "string"}
 
 
 def _later(table: Table, name: str) -> Any:
-    """What stands there, whose unit follows from the measure."""
+    """Return the raw value of a key whose unit depends on the measure."""
     return table.raw(name, None)
 
 
@@ -196,7 +196,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
         if makers:
             problem = f"{', '.join(makers)} vary the design; [optimise] finds one"
             raise top.error("cases", problem)
-        # On its seats a bearing has the clearance of the speeds of each case.
+        # On its seats a bearing has the clearance at the speeds of each case.
         cases = dataclasses.replace(cases, design=None)
     scene = with_speed_told(scene, turns_of(cases))
     table = top.table("optimise")
@@ -207,8 +207,8 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
 
 
 def _begun(data: dict[str, Any]) -> dict[str, Any]:
-    """Numbers of [fit] that are free and stand nowhere else, with a value to begin
-    with: an interference that is sought needs no other one, nor a tolerance class."""
+    """Return start values of the variables of [fit] that the table does not give: an
+    optimised interference needs neither a value nor a tolerance class there."""
     fit, table = data.get("fit"), data["optimise"]
     free = table.get("variables") if isinstance(table, dict) else None
     found: dict[str, Any] = {}
@@ -256,10 +256,10 @@ def _optimisation(
 
 
 def scene_numbers(element: BearingElement[Any]) -> dict[str, tuple[str, ...]]:
-    """Numbers on the drawing by their key in a scene, with their paths in the element.
+    """Return the design numbers by their scene key, with their paths in the element.
 
     Args:
-        element: The bearing; a key stands for all rows of a set.
+        element: The bearing; a key applies to all rows of a set.
     """
     row = rows_of(element.bearing)[0].bearing
     in_set = isinstance(element.bearing, BearingSet)
@@ -327,7 +327,7 @@ def _no_number(key, table, numbers):
 
 
 def _life(scene: Scene, cases: Cases, varied: Iterable[str]) -> RatingLife | None:
-    """Rating life in hours by the [life] of a scene, or `None` without speeds."""
+    """Return the rating life in hours by [life], or `None` without speeds."""
     if cases.inner_speed is None and cases.outer_speed is None:
         return None
     return RatingLife(life_conditions(scene, varied), True)
@@ -337,7 +337,7 @@ class _Measured(NamedTuple):
     """Measures of a bearing.
 
     Attributes:
-        exponent: Of the norms.
+        exponent: Exponent of the norms.
         balls: Whether its rolling elements are balls.
         life: Its rating life in hours, or `None` without a speed.
     """
@@ -347,7 +347,7 @@ class _Measured(NamedTuple):
     life: RatingLife | None
 
     def objective(self, keys: OptimiseKeys) -> Any:
-        """What is made least."""
+        """Build the objective."""
         if keys.objective != "stiffness":
             return self._measure(keys, "objective")
         kind = _kind_of(self._measure(keys, "objective"))
@@ -356,7 +356,7 @@ class _Measured(NamedTuple):
             return StiffnessTarget(wanted, keys.freedom or "")
 
     def constraint(self, keys: ConstraintKeys) -> Constraint:
-        """A bound on a measure."""
+        """Build a bound on a measure."""
         measure = self._measure(keys, "measure")
         kind, table = _kind_of(measure), keys.table
         ends = [table.quantity(key, kind, None) for key in ("at_least", "at_most")]

@@ -1,4 +1,4 @@
-"""What other programs read: a solution as JSON, in SI."""
+"""Output of a solution as JSON, in SI."""
 
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ OF_ROLLERS = (
     "line_load",
     "contact_pressure",
 )
-"""Fields of a solution that are written, with their names."""
+"""Fields of a solution that are written, under their names."""
 
 OF_BALLS = (
     "displacement",
@@ -54,27 +54,27 @@ KINEMATICS = {
     "spin": "spin",
     "spin_to_roll": "spin_to_roll",
 }
-"""Names in the file of what `BallKinematics` holds."""
+"""Fields of `BallKinematics` by their names in the file."""
 
 
 def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
-    """Solution of a scene as plain numbers and lists, in SI.
+    """Return the solution of a scene as plain numbers and lists, in SI.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution.
 
     Returns:
         The fields of `OF_ROLLERS` or `OF_BALLS`, with springs `OF_SPRINGS` (m, rad,
         N, N m, Pa), and result, message, residual, iterations, warnings, inputs (the
         scene in SI, which `read_scene` reads again from the file) and version. With
-        fits also `fit`, as of `fit_as_dict`; with [life] also `life_as_dict`; with a
-        lubricant and a speed what `oil_as_dict` has.
-        If the solve did not converge the arrays are left out: there are no results.
-        What is infinite (the margin of a shoulder that is not given) is null. Of a
-        bearing of the catalogue also `catalogue`: designation, geometry, overridden.
+        fits also `fit`, as in `fit_as_dict`; with [life] also `life_as_dict`; with a
+        lubricant and a speed also `oil_as_dict`.
+        If the solve did not converge the arrays are left out. Infinite values (the
+        margin of a shoulder that is not given) are null. For a catalogue bearing also
+        `catalogue`: designation, geometry, overridden.
     """
-    # As NumPy holds it: JAX would compile every small operation on the way.
+    # In NumPy: JAX would compile every small operation.
     solution = jax.device_get(solution)
     solved = Result(int(solution.result)) is Result.CONVERGED
     life = scene_life(scene, solution) if solved and scene.life is not None else None
@@ -90,12 +90,12 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
 def solved_as_dict(
     scene: Scene, solution: Solution, life: Life | None = None
 ) -> dict[str, Any]:
-    """How a solve ended: result, message, residual, iterations, warnings, version.
+    """Return the status of a solve: result, message, residual, iterations, warnings.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution.
-        life: Its rating life, in NumPy, of which there may be warnings too.
+        life: Its rating life, in NumPy, which may add warnings.
     """
     from .. import __version__
 
@@ -113,15 +113,15 @@ def solved_as_dict(
 
 
 def solved_life_as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
-    """The rating life of a solved scene as plain numbers and lists, in SI.
+    """Return the rating life of a solved scene as plain numbers and lists, in SI.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution.
 
     Returns:
-        What `life_as_dict` and `fits_as_dict` have, and `solved_as_dict`; the latter
-        alone where it did not converge.
+        Contents of `life_as_dict`, `fits_as_dict` and `solved_as_dict`; the last one
+        only if the solve did not converge.
     """
     solved = Result(int(solution.result)) is Result.CONVERGED
     life = scene_life(scene, jax.device_get(solution)) if solved else None
@@ -139,11 +139,11 @@ def _oil(scene, solution):
 
 
 def fits_as_dict(scene: Scene) -> dict[str, Any]:
-    """Under `fit` what `fit_as_dict` has, and `preload` of a set, as of
-    `preload_as_dict`, if it was worked out; of a scene without fits nothing.
+    """Return under `fit` the output of `fit_as_dict`, and `preload` of a set, from
+    `preload_as_dict`, if it was computed; empty for a scene without fits.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
     """
     if scene.fits is None:
         return {}

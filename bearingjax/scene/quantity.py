@@ -1,11 +1,11 @@
-"""Quantities as scene files write them: a number and a unit, read by pint."""
+"""Quantities as written in scene files: a number and a unit, read by pint."""
 
 import decimal
 import functools
 import math
 import re
 
-# What a unit may be written with; it may not begin with another number, except 1/s.
+# Characters allowed in a unit; it may not begin with another number, except 1/s.
 _UNIT = re.compile(r"(?:1\s*/|[A-Za-zµμ°])[A-Za-zµμ°·²³\d\s*/^().+-]*")
 _TURNS = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade")
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
@@ -26,8 +26,8 @@ _WRITTEN = {
     },
     "viscosity": {"Pas": "Pa s", "mPas": "mPa s"},
 }
-"""What else is written for a unit, by kind. As a speed 1/min counts revolutions, as
-in the standards of machines; pint's radians would be less by 2 pi."""
+"""Alternative spellings of units, by kind. As a speed 1/min counts revolutions, as in
+machine standards; pint would take radians, a factor of 2 pi less."""
 
 KINDS = {
     "length": ("m", "mm"),
@@ -63,15 +63,15 @@ KINDS = {
     "tilting damping": ("N m s/rad", "N m s/rad"),
     "rate": ("1/s", "1/s"),
 }
-"""Kind of quantity to its unit and a unit that a message may suggest. Of kinds with
-one and the same unit, the first is meant where a unit is all that is known."""
+"""Kind of quantity to its SI unit and a unit suggested in messages. Of several kinds
+with the same unit, the first is taken where only the unit is known."""
 
 
 def kind_of(unit: str) -> str:
-    """Kind of quantity that has a unit.
+    """Return the kind of quantity of a unit.
 
     Args:
-        unit: Unit of a field, as of `unit_of`.
+        unit: Unit of a field, from `unit_of`.
 
     Raises:
         KeyError: If there is no such kind.
@@ -89,17 +89,17 @@ def _units():
     import pint
 
     try:
-        # Read definitions are kept in pint's own cache folder: 0.15 s less a start.
+        # pint caches its parsed definitions: this saves 0.15 s per start.
         return pint.UnitRegistry(cache_folder=":auto:")
     except OSError:
         return pint.UnitRegistry()
 
 
 def to_si(text: object, kind: str) -> float:
-    """Number in SI of a quantity such as "65 mm".
+    """Convert a quantity such as "65 mm" to a number in SI.
 
     Args:
-        text: What stands in the file.
+        text: Value in the file.
         kind: Key of `KINDS`.
 
     Returns:
@@ -107,7 +107,7 @@ def to_si(text: object, kind: str) -> float:
 
     Raises:
         SceneError: If it is not a number with a unit of this kind; the message does
-            not name the key, which the caller knows.
+            not name the key, which the caller adds.
     """
     unit, example = KINDS[kind]
     article = _article(kind)
@@ -134,34 +134,34 @@ def to_si(text: object, kind: str) -> float:
 
 
 def _converted(number, text, name, unit, kind, wanted):
-    """The number in another unit, if it is one of this kind."""
+    """Convert the number to another unit, if the unit is of this kind."""
     article = _article(kind)
     registry = _units()
     try:
         given = registry.parse_units(name)
     except Exception as error:
-        # Foreign text in a foreign parser, which also ends in tokenizer errors.
+        # pint's parser also raises tokenizer errors for arbitrary text.
         unknown = f"{text!r} has the unknown unit {name!r}; {wanted}"
         raise SceneError(unknown) from error
     target = registry.parse_units(unit)
     one = registry.Quantity(1.0, given)
     if not one.check(target.dimensionality):
         raise SceneError(f"{text!r} is not {article} {kind}; {wanted}")
-    # pint counts 1 Hz as 1 rad/s and 5 percent as 0.05 rad, which nobody means.
+    # pint converts 1 Hz to 1 rad/s and 5 percent to 0.05 rad; neither is intended.
     if kind == "speed" and not _turns(str(given)):
         raise SceneError(f"{text!r} is a frequency; give rpm, deg/s or rad/s")
     if kind == "angle" and not _turns(str(given)):
         raise SceneError(f"{text!r} is not an angle; {wanted}")
     if kind == "temperature":
         return float(registry.Quantity(float(number), given).to(target).magnitude)
-    # A frequency in Hz counts vibrations, one in rpm or rad/s is that of a shaft.
+    # A frequency in Hz counts vibrations, one in rpm or rad/s is a shaft speed.
     per_turn = 2.0 * math.pi if kind == "frequency" and not _turns(str(given)) else 1.0
     return _scaled(number, per_turn * float(one.to(target).magnitude))
 
 
 def _scaled(number: str, factor: float) -> float:
-    """A number times the factor of its unit; a power of ten shifts its digits, so that
-    10 µm are 1e-05 m to the last one."""
+    """Multiply a number by the factor of its unit; a power of ten shifts the decimal
+    exponent, so that 10 µm are exactly 1e-05 m."""
     tens = round(math.log10(factor))
     if math.isclose(factor, 10.0**tens, rel_tol=1e-14):
         return float(decimal.Decimal(number).scaleb(tens))

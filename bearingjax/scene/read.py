@@ -1,4 +1,4 @@
-"""Scenes: a bearing, its load and speeds, and how it is solved."""
+"""Scenes: a bearing, its load and speeds, and the numerics of its solve."""
 
 import dataclasses
 import warnings
@@ -40,28 +40,28 @@ from .table import Table
 
 @dataclasses.dataclass(frozen=True)
 class Scene:
-    """What a scene file asks for, in SI.
+    """Contents of a scene file, in SI.
 
     Attributes:
         name: Name of the file without its ending.
-        element: The bearing with its law and numerics, before it is preloaded and
-            mounted.
-        preload_force: Force to which its rows are ground [N], or `None`.
-        fits: Seats and temperatures, or `None`: it is solved as on the drawing.
-        oil: Its lubricant, or `None`: neither friction nor films are told.
+        element: The bearing with its law and numerics, before preloading and
+            mounting.
+        preload_force: Preload force to which its rows are ground [N], or `None`.
+        fits: Seats and temperatures, or `None`: solved with the drawing dimensions.
+        oil: Its lubricant, or `None`: no friction or films are reported.
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring [N, N m].
         prescribed: Displacements given by freedom name [m, rad].
-        free: Freedoms that may move, or `None` for all that the bearing restrains.
+        free: Free freedoms, or `None` for all that the bearing restrains.
         fixed_ring: "outer" or "inner".
-        speed: Ring speeds, or `None` if both rings stand still.
+        speed: Ring speeds, or `None` if both rings are at rest.
         tolerance: Relative residual of the load solve, or `None` for the default.
         points: Positions along the rollers at which loads are reported.
-        life: Conditions of its rating life, or `None`: it is not asked for.
-        warnings: What the validation found odd but possible.
-        catalogue: What its `designation` stands for, or `None` without one.
-        inputs: The scene as it was read, all quantities in SI, defaults filled in: as
-            a file of scenes may write it.
-        set_preload: What fits make of the preload of a set, or `None`: not worked out
+        life: Conditions of its rating life, or `None`: not requested.
+        warnings: Warnings of suspicious but possible values.
+        catalogue: Catalogue entry of its `designation`, or `None` without one.
+        inputs: The scene as it was read, all quantities in SI, defaults filled in, in
+            the form of a scene file.
+        set_preload: Preload of a set on its seats, or `None`: not computed
             (`with_set_preload`).
     """
 
@@ -85,7 +85,7 @@ class Scene:
 
     @property
     def moving_ring(self) -> str:
-        """The ring that is loaded."""
+        """Name of the loaded ring."""
         return RINGS[1 - RINGS.index(self.fixed_ring)]
 
     @property
@@ -94,7 +94,7 @@ class Scene:
         return installed(self.element, self.preload_force, self.fits, self.catalogue)
 
     def ground(self) -> Installed:
-        """As `installed`, its rows ground to their preload.
+        """Return the installed bearing with its rows ground to their preload.
 
         Fails: offsets are NaN where the preload was not reached.
         """
@@ -103,7 +103,7 @@ class Scene:
         return called(_ground, self.installed)
 
     def running(self) -> BearingElement[Any]:
-        """The element that every command solves: ground, mounted, warm and turning."""
+        """Return the element that all commands solve: ground, mounted, in operation."""
         return self.ground().at()
 
 
@@ -112,7 +112,7 @@ def _ground(bearing: Installed) -> Installed:
 
 
 def load_bearing(source: str | Path) -> Any:
-    """The bearing of a scene file, as on the drawing, or of the catalogue.
+    """Load the bearing of a scene file, as drawn, or of the catalogue.
 
     Args:
         source: Path of a `.toml` scene, the name of a shipped one, or a designation
@@ -120,7 +120,7 @@ def load_bearing(source: str | Path) -> Any:
 
     Raises:
         SceneError: If the scene cannot be read, or nothing has this name.
-        TypeError: For a number in place of a text.
+        TypeError: If `source` is neither a string nor a path.
     """
     if not isinstance(source, str | Path):
         problem = 'it must be a text such as "6205", or a path'
@@ -141,7 +141,7 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
 
     Args:
         source: Path of a `.toml` file, or the name of a shipped scene.
-        settings: Changes "dotted.key=value" to what the file says; the value is
+        settings: Changes "dotted.key=value" to the scene; the value is
             TOML, or text without quotes ("operating.load.Fz=-6 kN").
 
     Returns:
@@ -155,12 +155,12 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
 
 
 def with_speed_told(scene: Scene, turns: Any = None) -> Scene:
-    """The scene with warnings of speeds beyond those of the catalogue.
+    """Add warnings of speeds above those of the catalogue to a scene.
 
     Args:
         scene: From `scene_of`.
-        turns: Speed of one ring against the other, of one or many cases [rad/s];
-            `None`: that of the scene.
+        turns: Relative speed of the rings, of one or many cases [rad/s]; `None`: that
+            of the scene.
     """
     if turns is None:
         turns = scene.speed.inner - scene.speed.outer if scene.speed else 0.0
@@ -169,19 +169,19 @@ def with_speed_told(scene: Scene, turns: Any = None) -> Scene:
 
 
 def scene_of(data: dict[str, Any], path: Path, varied: Iterable[str] = ()) -> Scene:
-    """The scene in parsed data.
+    """Build the scene of parsed data.
 
     Args:
         data: From `parse_scene`.
-        path: Where from, for messages.
-        varied: Keys that its cases vary: these are given, even where they are as in the
-            catalogue.
+        path: Path of the file, for messages.
+        varied: Keys varied by its cases: these count as given, even where equal to
+            the catalogue.
 
     Raises:
         SceneError: As `read_scene`.
     """
     top = Table(data, path.name)
-    # What other commands ask for.
+    # Tables of other commands.
     top.skip("cases", "optimise", "cage", "dynamics")
     top.skip("deviations", "vibration")
     with warnings.catch_warnings(record=True) as caught:
@@ -204,11 +204,11 @@ def read_element(
     operating: Table,
     numerics: Table,
 ) -> BearingElement[Any]:
-    """A bearing with the laws and numerics that a scene chooses.
+    """Return a bearing with the laws and numerics chosen by a scene.
 
     Args:
         bearing: The design.
-        contact, operating, numerics: As of `read_choices`.
+        contact, operating, numerics: As in `read_choices`.
     """
     choices = read_choices(contact, operating, numerics, bearing)
     with numerics.building():
@@ -261,7 +261,7 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
 
 
 def _points(output: Table, bearing) -> int:
-    """Positions along a roller."""
+    """Read the number of positions along a roller."""
     points = read_keys(OutputKeys, output).points
     if points > MOST_POINTS:
         rollers = sum(row.bearing.n_elements for row in rows_of(bearing))

@@ -1,7 +1,7 @@
-"""A solution as text for people: µm, mrad, kN, N m, MPa.
+"""A solution as text: µm, mrad, kN, N m, MPa.
 
-A report has sections by their titles; what is new in it is one more of them in
-`report`. The terminal shows them as text, `html_report` puts them on a page.
+A report consists of titled sections, assembled in `report`. The terminal shows them as
+text, `html_report` as a page.
 """
 
 from typing import Any
@@ -25,16 +25,16 @@ ROUND_OFF = 1e-11
 
 
 def report(scene: Scene, solution: Solution) -> Report:
-    """Readable report of a solved scene.
+    """Return the readable report of a solved scene.
 
     Args:
-        scene: What was solved.
+        scene: Solved scene.
         solution: Its solution, converged.
 
     Returns:
-        Sections by their titles; `str` of it is the text of the terminal.
+        Sections by their titles; `str` of the report is the terminal text.
     """
-    # As NumPy holds it: JAX would compile every small operation on the way.
+    # In NumPy: JAX would compile every small operation.
     solution = jax.device_get(solution)
     life = None if scene.life is None else scene_life(scene, solution)
     sections = {
@@ -55,10 +55,10 @@ def report(scene: Scene, solution: Solution) -> Report:
 
 
 def design_sections(scene: Scene) -> dict[str, Section]:
-    """The sections by their titles that need no solution: the bearing, and its fits.
+    """Return the sections that need no solution, by title: the bearing and its fits.
 
     Args:
-        scene: What is asked.
+        scene: The scene.
     """
     bearing = jax.device_get(scene.running().bearing)
     return {
@@ -72,12 +72,12 @@ def bearing_text(
     bearing: AbstractBearing | BearingSet,
     solution: Solution | None = None,
 ) -> str:
-    """Kind, sizes and arrangement of a bearing.
+    """Describe type, sizes and arrangement of a bearing.
 
     Args:
-        scene: What was asked.
-        bearing: As it is mounted, in NumPy.
-        solution: With it, springs are told too.
+        scene: The scene.
+        bearing: The mounted bearing, in NumPy.
+        solution: If given, springs are described too.
     """
     lines = []
     if isinstance(bearing, BearingSet):
@@ -102,10 +102,10 @@ def bearing_text(
 
 
 def fits_section(scene: Scene) -> Section:
-    """Fits of a scene, and what they make of the preload of a set; empty without fits.
+    """Report the fits of a scene, and the set preload on them; empty without fits.
 
     Args:
-        scene: What was asked.
+        scene: The scene.
     """
     if scene.fits is None:
         return []
@@ -139,7 +139,7 @@ def _springs(bearing, solution):
 
 
 def ball_row(bearing, head) -> list[str]:
-    """Kind and sizes of a row of balls, in words."""
+    """Describe type and sizes of a row of balls."""
     pitch, diameter = (
         1e3 * float(x) for x in (bearing.pitch_diameter, bearing.ball_diameter)
     )
@@ -156,7 +156,7 @@ def ball_row(bearing, head) -> list[str]:
 
 
 def _clearance(bearing):
-    """The clearance of a ball bearing, where it is a number of the design."""
+    """Describe the clearance of a ball bearing, where it is a design number."""
     clearance = getattr(bearing, "radial_internal_clearance", None)
     if clearance is None:
         return ""
@@ -168,7 +168,7 @@ def _osculation(value):
 
 
 def roller_row(bearing, head) -> list[str]:
-    """Kind and sizes of a row of rollers, in words."""
+    """Describe type and sizes of a row of rollers."""
     size = [bearing.pitch_diameter, bearing.roller_diameter, bearing.roller_length]
     pitch, diameter, length = (1e3 * float(x) for x in size)
     kind = type(bearing).__name__.removesuffix("RollerBearing").lower()
@@ -190,7 +190,7 @@ def roller_row(bearing, head) -> list[str]:
 
 
 def _roller_clearance(bearing):
-    """The clearance of rollers, of tapers along both ways that it is measured."""
+    """Describe the clearance of rollers, for tapers in both measuring directions."""
     clearance = 1e6 * float(bearing.radial_internal_clearance)
     if not isinstance(bearing, TaperedRollerBearing):
         return f"radial internal clearance {clearance:.4g} µm"
@@ -238,7 +238,7 @@ def _stiffness(scene, solution):
 
 
 def without_round_off(values: Any) -> Any:
-    """Numbers of one kind, those zero that are round-off beside the largest."""
+    """Set numbers to zero that are round-off relative to the largest of their kind."""
     return np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(), 0.0, values)
 
 
@@ -251,7 +251,7 @@ def _elements(solution):
 
 
 def _numbered(kind, solution, shown):
-    """Number and azimuth of the rolling elements that are shown."""
+    """Return the columns of number and azimuth of the rolling elements shown."""
     azimuth = np.asarray(solution.azimuth)[shown] % (2.0 * np.pi)
     return [
         Column(kind, shown),
@@ -260,12 +260,12 @@ def _numbered(kind, solution, shown):
 
 
 def by_ring(name, values, *given):
-    """A column of the outer raceway and one of the inner.
+    """Return a column of the outer raceway and one of the inner.
 
     Args:
-        name: Of the quantity.
+        name: Name of the quantity.
         values: By raceway (row, 2).
-        given: Unit, format and what is shown, as of `Column`.
+        given: `unit`, `format` and `shown`, as in `Column`.
     """
     return [
         Column(f"{ring} {name}", values[:, k], *given) for k, ring in enumerate(RINGS)
@@ -297,7 +297,7 @@ def _balls(solution):
     load = np.asarray(solution.contact_load)
     touching = load.max(axis=1) > 1e-9 * load.max()
     shown = np.flatnonzero(touching)
-    # Of two arcs on a ring, the one that carries more.
+    # Of two arcs on a ring, the more loaded one.
     half = load.shape[1] // 2
     outer, inner = load[:, :half].argmax(axis=1), half + load[:, half:].argmax(axis=1)
     most = np.stack([outer, inner], axis=1)
@@ -305,7 +305,7 @@ def _balls(solution):
     def larger(values):
         return np.take_along_axis(np.asarray(values), most, axis=1)[shown]
 
-    # An open contact has no angle worth printing.
+    # An open contact has no meaningful angle.
     bears = larger(load) > 1e-9 * load.max()
     angle = np.where(bears, larger(solution.contact_angle), np.nan)
     raceway, count = np.asarray(solution.roller_load), np.asarray(solution.n_contacts)

@@ -1,8 +1,7 @@
 """Reports of runs as data: sections of sentences and grids of columns.
 
-The terminal shows a `Report` as text, `html_report` as a page with real tables. Numbers
-stand in it in SI, with their unit; the units that people read are chosen here, by
-`display_unit`.
+The terminal shows a `Report` as text, `html_report` as a page with tables. Its numbers
+are in SI, with their unit; the units for display are chosen here, by `display_unit`.
 """
 
 import dataclasses
@@ -15,26 +14,26 @@ import numpy as np
 from ..numerics.units import display_unit
 
 RULE = "-" * 78
-"""Between the sections of a text."""
+"""Rule between the sections of a text."""
 _WHOLE = 1e6
-"""Number below which digits before the point are written out, not as a power of ten."""
+"""Number below which digits before the point are written without an exponent."""
 _WIDTH = 100
-"""Letters of a line with words at its end."""
+"""Characters of a line that ends in words."""
 DEGREES = 180.0 / np.pi, "deg"
 NEWTONS = 1.0, "N"
-"""Factor from SI and unit, where angles are no tilts and forces are small."""
+"""Factor from SI and unit, for angles that are not tilts and for small forces."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Column:
-    """Values of one quantity, a row each.
+    """Values of one quantity, one per row.
 
     Attributes:
         name: Its heading; empty: none.
-        values: Numbers in SI, or words; what is `None` or no number is shown as "-".
-        unit: SI unit of the numbers, or those of each, which then stand beside them.
-        format: Of a number, after the conversion.
-        shown: Factor from SI and the unit that is shown; default: `display_unit`.
+        values: Numbers in SI, or words; `None` and NaN are shown as "-".
+        unit: SI unit of the numbers, or one for each, then shown next to the number.
+        format: Format of a number, after the conversion.
+        shown: Factor from SI and the displayed unit; default: `display_unit`.
     """
 
     name: str
@@ -45,16 +44,16 @@ class Column:
 
     @property
     def heading(self) -> tuple[str, str]:
-        """The name, and the unit that is shown if all values have one."""
+        """Name, and the displayed unit if common to all values."""
         return self.name, self._scales()[0][1] if isinstance(self.unit, str) else ""
 
     @property
     def is_text(self) -> bool:
-        """Whether it holds words, which stand on the left."""
+        """Whether it holds words, which are left-aligned."""
         return any(isinstance(v, str) for v in self.values)
 
     def cells(self) -> list[str]:
-        """The values in words."""
+        """Format the values as text."""
         beside = not isinstance(self.unit, str)
         return [
             self._cell(value, factor) + (f" {unit}" if beside else "")
@@ -62,7 +61,7 @@ class Column:
         ]
 
     def _scales(self):
-        """Factor and unit that is shown of each value; of none, of what would stand."""
+        """Return factor and displayed unit of each value, at least one."""
         if not isinstance(self.unit, str):
             return [display_unit(unit) for unit in self.unit]
         one = display_unit(self.unit) if self.shown is None else self.shown
@@ -87,20 +86,20 @@ class Grid:
     """A table: columns side by side.
 
     Attributes:
-        columns: All of one length.
-        title: A line above it.
+        columns: Columns of equal length.
+        title: Line above the table.
     """
 
     columns: Sequence[Column]
     title: str = ""
 
     def heading(self) -> list[list[str]]:
-        """Names and, in a second row, units, each if there are any."""
+        """Return the row of names and the row of units, each if there are any."""
         rows = zip(*(column.heading for column in self.columns), strict=True)
         return [list(row) for row in rows if any(row)]
 
     def rows(self) -> list[tuple[str, ...]]:
-        """The cells of each row."""
+        """Return the cells of each row."""
         return list(zip(*(c.cells() for c in self.columns), strict=True))
 
     def __str__(self) -> str:
@@ -121,7 +120,7 @@ class Grid:
 
 
 def _wrapped(line: str, indent: str) -> list[str]:
-    """A row whose last words go on below themselves where it is too long."""
+    """Wrap a row that is too long, with its last words indented below themselves."""
     head, words = line[: len(indent)], line[len(indent) :]
     room = max(_WIDTH - len(indent), _WIDTH // 3)
     parts = textwrap.wrap(words, room, break_on_hyphens=False) or [""]
@@ -130,12 +129,12 @@ def _wrapped(line: str, indent: str) -> list[str]:
 
 
 Part = str | Grid
-"""Of a section: a sentence or several lines of them, or a table."""
+"""Part of a section: one or several lines of sentences, or a table."""
 Section = Sequence[Part]
 
 
 def labelled(rows: Iterable[tuple[str, str]]) -> Grid:
-    """Facts with a label before each.
+    """Return a table of facts, each preceded by a label.
 
     Args:
         rows: Label and fact.
@@ -146,11 +145,11 @@ def labelled(rows: Iterable[tuple[str, str]]) -> Grid:
 
 @dataclasses.dataclass(frozen=True)
 class Report:
-    """Report of a run for people; `str` of it is the text of the terminal.
+    """Readable report of a run; `str` of it is the terminal text.
 
     Attributes:
-        sections: By their titles, in their order; those that are empty are left out.
-        warnings: What a reader should know before the numbers are used.
+        sections: Sections by title, in order; empty ones are left out.
+        warnings: Warnings to be read before the numbers are used.
     """
 
     sections: Mapping[str, Section]
@@ -166,10 +165,10 @@ class Report:
         return f"\n{RULE}\n".join(texts) + warned
 
     def only(self, titles: Sequence[str]) -> "Report":
-        """The report with some of its sections.
+        """Return the report with some of its sections.
 
         Args:
-            titles: Of those that are kept; what there is not is passed over.
+            titles: Titles of the sections to keep; missing ones are ignored.
         """
         kept = {title: self.sections.get(title, ()) for title in titles}
         return dataclasses.replace(self, sections=kept)

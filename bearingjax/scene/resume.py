@@ -1,4 +1,4 @@
-"""A sweep taken up where it ended: the cases that a table of it lacks."""
+"""Resume an interrupted sweep: solve the cases missing from its table."""
 
 import dataclasses
 from collections.abc import Callable, Mapping
@@ -16,12 +16,12 @@ from .quantity import SceneError
 from .sweep_run import design_columns, run_cases
 
 CHECKED = 64
-"""Cases that are solved again to see that a table is of this scene."""
+"""Cases solved again to check that a table belongs to the scene."""
 
 _CURE = "name the table of this scene, or begin anew without --resume"
 
 _SAME = 1e-4
-"""Share of the largest number of an output below which a change is none."""
+"""Change relative to the largest number of an output that counts as none."""
 
 
 def resume_cases(
@@ -30,14 +30,14 @@ def resume_cases(
     progress: bool = False,
     stop: Callable[[], bool] | None = None,
 ) -> Sweep:
-    """Solve the cases of a scene that a table of them lacks (`NOT_RUN`).
+    """Solve the cases of a scene that are missing from its table (`NOT_RUN`).
 
-    Some cases of the table are solved again first: what the table does not show, such
-    as another bearing, shows in them.
+    Some cases of the table are solved again first, to detect changes that the table
+    does not show, such as another bearing.
 
     Args:
         table: From `read_cases`.
-        path: Table of a sweep of this scene that was ended.
+        path: Table of an interrupted sweep of this scene.
         progress, stop: As in `run_cases`.
 
     Returns:
@@ -45,7 +45,7 @@ def resume_cases(
 
     Raises:
         SceneError: If the table cannot be read or is of other cases, or if its cases
-            now end otherwise.
+            now give other results.
     """
     designs = design_columns(table)
     try:
@@ -89,13 +89,13 @@ def check_asked(
     """Raise unless a table holds the cases of a scene.
 
     Args:
-        path: Of the table, for the message.
-        known: Its columns.
-        wanted: Columns of what the scene asks.
-        count: Number of its cases.
+        path: Path of the table, for the message.
+        known: Columns of the table.
+        wanted: Columns of the inputs of the scene.
+        count: Number of cases of the scene.
 
     Raises:
-        SceneError: If a column is missing, or a case is another one.
+        SceneError: If a column is missing, or a case differs.
     """
     for header in ("result", *wanted):
         if header not in known:
@@ -119,7 +119,7 @@ def check_asked(
 
 
 def _check_same(path, new: Mapping[str, np.ndarray], old: Mapping[str, np.ndarray]):
-    """Most of the cases solved again end as they did."""
+    """Raise unless most of the cases solved again give the same results."""
     same = new["result"] == old["result"]
     for name, values in new.items():
         if values.dtype.kind != "f" or name == "residual" or name.startswith(WARNED):

@@ -1,4 +1,4 @@
-"""Vibration of the rotor of a scene: over frequency, and in time."""
+"""Vibration of the rotor of a scene, over frequency and in time."""
 
 import dataclasses
 import warnings
@@ -32,13 +32,13 @@ from .rotor_scene import RotorScene
 from .rotor_supports import unit_of_length, with_passage
 
 _PARTS = 40
-"""Parts of the range of frequencies; a step of a branch spans one at most."""
+"""Subdivisions of the frequency range; a step of a branch spans at most one."""
 _FREQUENCIES = 200
-"""At which the largest linear vibration is sought, if supports are linear."""
+"""Number of frequencies searched for the largest response on linear supports."""
 _REDUCED = 0.03
-"""Change of the linear response by a reduction that is worth a word [1]."""
+"""Change of the linear response by a reduction above which a warning is given [1]."""
 _SAMPLES = 64
-"""Phases at which a linear vibration is told."""
+"""Number of phases at which a linear vibration is output."""
 _ENDINGS = {
     Ending.POINTS: (
         "the branch did not reach the end of the range within the allowed points;"
@@ -54,7 +54,7 @@ _ENDINGS = {
     ),
 }
 _FINER = {"shooting": "`steps`", "harmonic_balance": "`harmonics` and `samples`"}
-"""Settings that make a method more accurate."""
+"""Settings that increase the accuracy of a method."""
 Stopped = tuple[Result, str]
 _amplitudes = jax.jit(amplitudes)
 
@@ -66,15 +66,15 @@ class RotorResponse:
     Attributes:
         method: "linear", "harmonic_balance" or "shooting".
         frequency: (point,) [rad/s].
-        amplitude: Half of peak to peak of (ux uy uz gx gy) of every station
+        amplitude: Half the peak-to-peak value of (ux uy uz gx gy) of every station
             (point, station, 5) [m, rad].
-        displacement: At even phases of the excitation, from 0 on, of every station
-            (point, sample, station, 5) [m, rad]; a linear vibration is that about the
-            static equilibrium.
-        branch: As of `follow`, with stability, multipliers and events; `None`: linear.
-        event_amplitude: As `amplitude`, at each of its events (event, station, 5) [m,
+        displacement: At equidistant phases of the excitation, from 0 on, of every
+            station (point, sample, station, 5) [m, rad]; a linear vibration is
+            relative to the static equilibrium.
+        branch: As in `follow`, with stability, multipliers and events; `None`: linear.
+        event_amplitude: Amplitude at each of its events (event, station, 5) [m,
             rad].
-        stopped: Code and words, if it ends before the end of the range.
+        stopped: Code and message, if it ends before the end of the range.
     """
 
     method: str
@@ -88,16 +88,16 @@ class RotorResponse:
 
 @dataclasses.dataclass(frozen=True)
 class RotorTransient:
-    """Motion in time.
+    """Motion of a rotor in time.
 
     Attributes:
         time: (time,) [s].
-        speed: Of the rotor (time,) [rad/s].
+        speed: Rotor speed (time,) [rad/s].
         displacement: (ux uy uz gx gy) of every station (time, station, 5) [m, rad];
             NaN at times that were not reached.
         velocity: Its rate (time, station, 5) [m/s, rad/s].
         steps: Steps of the integration.
-        stopped: Code and words, if it ends before its time.
+        stopped: Code and message, if it ends early.
     """
 
     time: np.ndarray
@@ -109,7 +109,7 @@ class RotorTransient:
 
     @property
     def reached(self) -> int:
-        """How many of the times were reached."""
+        """Number of times reached."""
         return int(np.isfinite(self.displacement).all(axis=(1, 2)).sum())
 
 
@@ -120,14 +120,14 @@ def respond(
     settled: StaticEquilibrium,
     modes: Modes,
 ) -> RotorResponse:
-    """The periodic vibration that a scene asks for.
+    """Compute the periodic vibration of the rotor of a scene.
 
     Args:
-        task: With a response.
-        rotor: On its true bearings.
-        linear: On their slopes, for a linear response.
+        task: Rotor scene with a response.
+        rotor: Rotor on its nonlinear bearings.
+        linear: Rotor on linearised bearings, for a linear response.
         settled: Its static equilibrium, where the branch begins.
-        modes: Its modes, of which the slowest is the unit of frequency.
+        modes: Its modes, of which the lowest sets the unit of frequency.
     """
     asked = task.response
     assert asked is not None  # asked for by the caller
@@ -180,7 +180,7 @@ def respond(
 
 
 def _warn_of_reduction(task, linear) -> None:
-    """Warn of a reduction that changes the linear response at an end of the range."""
+    """Warn if a reduction changes the linear response at an end of the range."""
     asked = task.response
     for frequency in map(float, (asked.begin, asked.end)):
         at = as_array(frequency, float)
@@ -197,8 +197,8 @@ def _warn_of_reduction(task, linear) -> None:
 
 
 def _largest(task, linear) -> float | None:
-    """Norm of the largest linear response, tilts counted at the length of the shaft, or
-    `None` if there is none [m]."""
+    """Return the norm of the largest linear response, with tilts scaled by the shaft
+    length, or `None` if there is none [m]."""
     asked, shaft = task.response, task.shaft
     frequency = np.linspace(asked.begin, asked.end, _FREQUENCIES)
     found = harmonic_response(linear, task.loads, frequency, asked.speed)
@@ -208,8 +208,8 @@ def _largest(task, linear) -> float | None:
 
 
 def _half_ranges(every):
-    """Half of peak to peak (point, station, 5) of motions (point, sample, station, 5),
-    between the samples too."""
+    """Return half the peak-to-peak value (point, station, 5) of motions (point, sample,
+    station, 5), interpolated between samples."""
     flat = (moved.reshape(len(moved), -1) for moved in every)
     found = [np.asarray(_amplitudes(moved)) for moved in flat]
     return np.reshape(found, (len(every), *every.shape[2:]))
@@ -233,10 +233,10 @@ def _linear(task: RotorScene, linear: Rotor) -> RotorResponse:
 def run_in_time(
     task: RotorScene, rotor: Rotor, settled: StaticEquilibrium, modes: Modes
 ) -> RotorTransient:
-    """The motion in time that a scene asks for, from rest in the equilibrium.
+    """Compute the motion in time of a rotor, from rest in the static equilibrium.
 
     Args:
-        task, rotor, settled, modes: As of `respond`.
+        task, rotor, settled, modes: As in `respond`.
     """
     asked = task.transient
     assert asked is not None  # asked for by the caller
@@ -295,12 +295,12 @@ def _system(task, rotor, settled, modes, scale, speed, reduction) -> VibratingRo
 
 
 def _stations(task: RotorScene) -> list[int]:
-    """Node of every station."""
+    """Return the node of every station."""
     return [task.shaft.node(k) for k in range(task.shaft.n_segments + 1)]
 
 
 def _at_stations(task, system, q) -> np.ndarray:
-    """Motion of the stations (…, station, 5) from the freedoms (…, n)."""
+    """Return the motion of the stations (…, station, 5) from the freedoms (…, n)."""
     motions = q @ np.asarray(system.motions).T
     n = 5 * task.shaft.n_nodes
     nodes = motions[..., :n].reshape(*q.shape[:-1], task.shaft.n_nodes, 5)

@@ -1,4 +1,4 @@
-"""The [[rotor.bearings]] and [bearings.NAME] tables of a scene: what holds a shaft."""
+"""The [[rotor.bearings]] and [bearings.NAME] tables of a scene: shaft supports."""
 
 import dataclasses
 import warnings
@@ -28,7 +28,7 @@ from .table import Table, not_among
 
 LAWS = {"fixed_angle": FixedAngle, "moving_angle": MovingAngle, "cubic": CubicExpansion}
 _SAME = 1e-3
-"""Difference of diameters, over the bore, from which a shaft is another one [1]."""
+"""Difference of diameters over the bore above which shafts count as different [1]."""
 
 _OF_BEARING: Any = {
     "needs": ("bearing",),
@@ -61,7 +61,7 @@ class SpringKeys(Keys):
 
     @property
     def diagonal(self) -> tuple[float, ...]:
-        """Of ux, uy, uz, gx, gy (5,) [N/m, N m]; of dampers [N s/m, N m s]."""
+        """Diagonal for ux, uy, uz, gx, gy (5,) [N/m, N m]; dampers [N s/m, N m s]."""
         across = (self.radial if one is None else one for one in (self.x, self.y))
         return (*across, self.axial, self.tilt, self.tilt)
 
@@ -78,7 +78,7 @@ class DamperKeys(SpringKeys):
 
 
 def _of_axes(about: str, kind: str, **default: float) -> Any:
-    """Field of one number for all of x, y and z, or a table with one for each."""
+    """Return a field of one number for x, y and z, or a table with one for each."""
     usual = tuple(default.values())
 
     def read(table: Table, key: str) -> list[float]:
@@ -110,7 +110,7 @@ class HousingKeys(Keys):
 
     @property
     def housing(self) -> Housing:
-        """The housing."""
+        """Housing between the bearing and ground."""
         with self.table.building():
             return Housing(**self.given)
 
@@ -164,8 +164,8 @@ class MountKeys(Keys):
 
 
 class _Bearing(NamedTuple):
-    """A bearing (`None`: springs) by its name, its seats, and what its designation
-    stands for."""
+    """Bearing (`None`: springs) with its name, seats, and the catalogue entry of its
+    designation."""
 
     name: str
     installed: Installed | None
@@ -176,14 +176,14 @@ class _Bearing(NamedTuple):
 def read_mounts(
     top: Table, holds: tuple[MountKeys, ...], shaft: Shaft, speed: float, path: Path
 ) -> tuple[Mount, ...]:
-    """What holds the shaft of a rotor.
+    """Read the supports of the shaft of a rotor.
 
     Args:
         top: The whole scene.
         holds: Its [[rotor.bearings]].
         shaft: The shaft.
-        speed: Of the rotor [rad/s], at which inner rings turn on their seats.
-        path: Of the scene: others are named from there.
+        speed: Speed of the rotor and of the inner rings on their seats [rad/s].
+        path: Path of the scene, to which names of other scenes are relative.
 
     Raises:
         SceneError: For what is missing, unknown or not allowed.
@@ -206,7 +206,7 @@ def read_mounts(
 
 
 def _own(table: Table, name: str, speed: float) -> _Bearing:
-    """A bearing of [bearings.NAME]."""
+    """Read a bearing of [bearings.NAME]."""
     design, force = read_bearing(table, table)
     found = designated(table)
     catalogue = None if found is None else found[1]
@@ -219,14 +219,14 @@ def _own(table: Table, name: str, speed: float) -> _Bearing:
 
 
 def _told(name, element, force, fits, catalogue) -> _Bearing:
-    """A bearing; what is odd about its fits is warned of."""
+    """Return a bearing, and emit the warnings about its fits."""
     for text in () if fits is None else fit_warnings(fits, element.bearing):
         warnings.warn(f"{name}: {text}", stacklevel=2)
     return _Bearing(name, installed(element, force, fits, catalogue), fits, catalogue)
 
 
 def _check_seat(bearing: _Bearing, shaft: Shaft, station: int) -> None:
-    """Warn of a bearing, or of its fit, on another shaft than that of the station."""
+    """Warn if the shaft of a bearing or its fit differs from that at the station."""
     beside = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
     diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
     there = diameters[:, beside].T
@@ -271,7 +271,7 @@ def _bearing(
         scene = scene_of(parse_bearing(found, ()), found)
     except SceneError as error:
         raise table.error("bearing", error) from error
-    # In the echo it is one of [bearings.NAME].
+    # In the echo it becomes one of [bearings.NAME].
     own = name if scene.name in named else scene.name
     table.fill("bearing", own)
     tables.fill(own, _echoed(scene.inputs))
@@ -281,7 +281,7 @@ def _bearing(
 
 
 def _echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """The inputs of a scene as those of one bearing of a rotor."""
+    """Convert the inputs of a scene to those of one bearing of a rotor."""
     beside = {key: dict(inputs[key]) for key in BESIDE if key in inputs}
     beside.get("numerics", {}).pop("tolerance", None)  # of its own load solve
     operating = inputs.get("operating", {})
@@ -310,7 +310,7 @@ def _mount(keys: MountKeys, bearing: _Bearing) -> Mount:
 
 
 def _check_bearing(keys: MountKeys, design: Any) -> None:
-    """Raise SceneError for what this bearing cannot have."""
+    """Raise SceneError for keys that do not suit the bearing."""
     table = keys.table
     if keys.preload is not None and "uz" not in restrained_freedoms(design):
         problem = "is axial, and this bearing holds no axial load; leave it out"

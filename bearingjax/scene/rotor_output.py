@@ -1,4 +1,4 @@
-"""What other programs read of a rotor: JSON and tables, in SI."""
+"""Output of a rotor: JSON and tables, in SI."""
 
 from typing import Any
 
@@ -15,35 +15,35 @@ from .rotor_scene import RotorScene
 UNITS: dict[str, str] = dict(
     zip(STATION_FREEDOMS, ("m", "m", "m", "rad", "rad"), strict=True)
 )
-"""Of the motions of a station."""
+"""Units of the motions of a station."""
 SERIES = "response", "transient"
-"""What has a row per point, and one per time."""
+"""Results with a row per point, and per time."""
 _TURN = 2.0 * np.pi
 
 
 def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
-    """A run as plain numbers and lists, in SI but for frequencies in Hz.
+    """Return a run as plain numbers and lists, in SI, with frequencies in Hz.
 
     Args:
         run: From `run_rotor`.
 
     Returns:
-        `frequency` [Hz], `damping_ratio` and `whirl` of the modes that oscillate;
+        `frequency` [Hz], `damping_ratio` and `whirl` of the oscillating modes;
         `critical_speed` [rad/s] with `critical_whirl` and `critical_damping_ratio`;
         `static`: `station` [m], `displacement` (station, 5), `bearing`,
         `bearing_station`, `load` (bearing, 5), `stiffness` (bearing, 5, 5);
         `campbell`: `speed`, and `frequency`, `damping_ratio`, `whirl` (speed, mode),
-        and of modes that become unstable `onset_speed` [rad/s] with `onset_frequency`
+        and for modes that become unstable `onset_speed` [rad/s] with `onset_frequency`
         [Hz] and `onset_mode`, from 0;
         `response`: `method`, `frequency` [Hz], `coordinate` ("uy_1": uy of station 1),
         `amplitude` (point, coordinate), and unless it is linear `stable`,
         `multipliers` (point, multiplier, real and imaginary part), `events` (`kind`,
         `frequency` [Hz], `amplitude` (coordinate,)), `ending`;
         `transient`: `time`, `speed`, `coordinate`, `displacement` and `velocity`
-        (time, coordinate). Parts that were not asked for or not solved are left out.
-        With fits `fit`, a list: `bearing`, its `stations`, the `speed` [rad/s] at which
-        its inner ring turns, and what `fit_as_dict` has.
-        And result, message, warnings, inputs (the file is a scene again) and version.
+        (time, coordinate). Parts not requested or not solved are left out.
+        With fits `fit`, a list: `bearing`, its `stations`, the `speed` [rad/s] of its
+        inner ring, and the output of `fit_as_dict`.
+        Also result, message, warnings, inputs (readable as a scene) and version.
     """
     from .. import __version__
 
@@ -74,7 +74,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
 
 
 def rotor_message(run: RotorRun) -> str:
-    """What was not solved, in words.
+    """Return the message of a run: the parts that were not solved.
 
     Args:
         run: From `run_rotor`.
@@ -85,10 +85,10 @@ def rotor_message(run: RotorRun) -> str:
 
 
 def mode_numbers(found: Modes) -> list[tuple[str, np.ndarray]]:
-    """Frequency [Hz], damping ratio and whirl of modes, over speeds too.
+    """Return frequency [Hz], damping ratio and whirl of modes, also over speeds.
 
     Args:
-        found: As NumPy holds it.
+        found: Modes, in NumPy.
     """
     value = np.asarray(found.eigenvalue)
     size = np.abs(value)
@@ -101,15 +101,15 @@ def mode_numbers(found: Modes) -> list[tuple[str, np.ndarray]]:
 
 
 def rotor_series(task: RotorScene, wanted: str | None) -> str:
-    """Which series of a scene its table has, "response" or "transient".
+    """Return which series of a scene is tabulated, "response" or "transient".
 
     Args:
         task: From `read_rotor`.
-        wanted: One of them, or `None`: the one that the scene asks for.
+        wanted: One of them, or `None`: the only one in the scene.
 
     Raises:
-        SceneError: If the scene does not ask for it, or asks for both and none is
-            wanted.
+        SceneError: If the scene does not have it, or has both and `wanted` is
+            `None`.
     """
     asked = [name for name in SERIES if getattr(task, name) is not None]
     if wanted is None and len(asked) == 1:
@@ -127,17 +127,17 @@ def rotor_series(task: RotorScene, wanted: str | None) -> str:
 
 
 def rotor_columns(run: RotorRun, series: str) -> dict[str, np.ndarray]:
-    """A run as columns by header, "name [unit]".
+    """Return a run as columns by header, "name [unit]".
 
     Args:
         run: From `run_rotor`.
         series: "response" or "transient".
 
     Returns:
-        Of the response a row for each point: frequency, whether it is stable, half of
-        peak to peak of every motion ("uy_1 [m]": of uy of station 1). Of the motion in
-        time a row for each time that was reached: time, speed, motions. Empty if it
-        was not solved.
+        For the response a row per point: frequency, stability, half the peak-to-peak
+        value of every motion ("uy_1 [m]": uy of station 1). For the motion in time a
+        row for each time reached: time, speed, motions. Empty if it was not
+        solved.
     """
     if series == "response" and run.response is not None:
         first = {"frequency [Hz]": run.response.frequency / _TURN}
@@ -152,12 +152,12 @@ def rotor_columns(run: RotorRun, series: str) -> dict[str, np.ndarray]:
 
 
 def coordinates(count: int) -> list[str]:
-    """Names of the motions of so many stations, such as "uy_1"."""
+    """Return the names of the motions of `count` stations, such as "uy_1"."""
     return [f"{name}_{k}" for k in range(count) for name in STATION_FREEDOMS]
 
 
 def _of_motions(values):
-    """Columns of (row, station, 5)."""
+    """Return the columns of (row, station, 5)."""
     names = coordinates(values.shape[1])
     headers = [f"{name} [{UNITS[name.partition('_')[0]]}]" for name in names]
     flat = values.reshape(len(values), -1).T

@@ -1,4 +1,4 @@
-"""A rotor as text for people: µm, mrad, N, N/µm, Hz, rpm."""
+"""A rotor as text: µm, mrad, N, N/µm, Hz, rpm."""
 
 import numpy as np
 
@@ -15,11 +15,11 @@ _STIFFNESS = 1e-6, "N/µm"
 _AXES = tuple(enumerate("xyz"))
 _WHIRL = {1: "forward", -1: "backward", 0: "-"}
 _AXIAL = 0.9
-"""Share of the largest motion above which a motion along the shaft is the mode [1]."""
+"""Axial share of the largest motion above which a mode counts as axial [1]."""
 
 
 def rotor_report(run: RotorRun) -> Report:
-    """Readable report of a rotor; parts that were not solved are left out.
+    """Return the readable report of a rotor; unsolved parts are left out.
 
     Args:
         run: From `run_rotor`.
@@ -40,7 +40,7 @@ def rotor_report(run: RotorRun) -> Report:
 
 
 def _length(run):
-    """Of the shaft [m]."""
+    """Return the length of the shaft [m]."""
     return float(np.ptp(np.asarray(run.task.shaft.stations)))
 
 
@@ -58,7 +58,7 @@ def _head(run):
 
 
 def _fits(task):
-    """What the fits of each bearing leave, by titles of sections."""
+    """Report the fits of each bearing, by section title."""
     found = {}
     for mount, stations in task.seats:
         where = "station" + "s" * (len(stations) > 1)
@@ -72,7 +72,7 @@ def _fits(task):
 
 
 def _stations(run):
-    """Where every station goes."""
+    """Tabulate the static displacement of every station."""
     task = run.task
     nodes = [task.shaft.node(k) for k in range(task.shaft.n_segments + 1)]
     moved = np.round(np.asarray(run.settled.displacement)[nodes], 9)
@@ -91,11 +91,11 @@ def _stations(run):
 
 
 def _bearings(run):
-    """Load and stiffness of every bearing."""
+    """Tabulate load and stiffness of every bearing."""
     loads, stiffness = (
         np.asarray(part) for part in (run.settled.support_load, run.settled.stiffness)
     )
-    # A bearing without ribs has none along z.
+    # A bearing without ribs has no axial stiffness.
     stiff = [np.diagonal(without_round_off(k[:3, :3])) for k in stiffness]
     names = [
         f"{mount.station} {mount.name}{', turned' if mount.turned else ''}"
@@ -114,12 +114,12 @@ def _bearings(run):
 
 
 def _whirl(whirl, shape, length):
-    """In which sense a mode whirls, in a word.
+    """Describe the whirl direction of a mode in a word.
 
     Args:
-        whirl: Of the mode.
-        shape: Of its nodes (node, 5).
-        length: Of the shaft [m].
+        whirl: Whirl of the mode.
+        shape: Mode shape of the nodes (node, 5).
+        length: Length of the shaft [m].
     """
     size = np.abs(shape) * np.array([1.0, 1.0, 1.0, length, length])
     if size[:, 2].max() > _AXIAL * size.max():
@@ -252,9 +252,9 @@ def _transient(run, found: RotorTransient):
 
 
 def rpm(speed: float) -> str:
-    """A speed for people.
+    """Format a speed in rpm.
 
     Args:
-        speed: [rad/s].
+        speed: Speed [rad/s].
     """
     return f"{float(speed) * _RPM:.5g} rpm"

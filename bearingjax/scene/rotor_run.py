@@ -1,4 +1,4 @@
-"""Running what the scene of a rotor asks for."""
+"""Run the analyses of a rotor scene."""
 
 import contextlib
 import dataclasses
@@ -37,8 +37,8 @@ class Failure:
 
     Attributes:
         part: "preload", "static", "modes", "campbell", "response" or "transient".
-        result: Why.
-        message: Cause and cure in words.
+        result: Result code.
+        message: Cause and remedy in words.
     """
 
     part: str
@@ -48,22 +48,22 @@ class Failure:
 
 @dataclasses.dataclass(frozen=True)
 class RotorRun:
-    """What came of the scene of a rotor.
+    """Result of a rotor run.
 
-    Parts that were not asked for, or not solved, are `None`.
+    Parts not requested or not solved are `None`.
 
     Attributes:
-        task: What was asked.
-        rotor: The rotor on its bearings, preloaded, before it settles.
+        task: The rotor scene.
+        rotor: The rotor on its bearings, preloaded, before static equilibrium.
         settled: Static equilibrium at the speed of the scene; read its `result`.
-        modes: At that speed.
+        modes: Modes at that speed.
         critical: Critical speeds.
         campbell: Modes over `task.campbell`, the speeds [rad/s].
-        onsets: Where modes of it become unstable.
+        onsets: Onsets of instability of its modes.
         response: Periodic vibration over the frequency.
         transient: Motion in time.
         failures: Parts that were not solved.
-        warnings: What is doubtful.
+        warnings: Warnings of doubtful results.
     """
 
     task: RotorScene
@@ -86,9 +86,9 @@ class RotorRun:
 
 _RPM = 30.0 / np.pi
 _DRIFT = 0.5e-6
-"""Change of radial clearance over the speed that is worth a word [m]."""
+"""Change of radial clearance over the speed above which a warning is given [m]."""
 _COARSE = 1e-3
-"""Error of the stiffness over the speed that is worth a word [1]."""
+"""Error of the stiffness over the speed above which a warning is given [1]."""
 _STAGES = {
     "preload": "bearings",
     "static": "static equilibrium",
@@ -101,7 +101,7 @@ _STAGES = {
 
 
 class _Parts:
-    """Results of the parts of a run as they come, their failures and warnings."""
+    """Collected results, failures and warnings of the parts of a run."""
 
     def __init__(self, told: Callable[[str], None] | None):
         self.found: dict[str, Any] = {}
@@ -111,7 +111,7 @@ class _Parts:
 
     @contextlib.contextmanager
     def part(self, name: str) -> Iterator[None]:
-        """What fails within is kept as the failure of this part."""
+        """Context that records a SolveError as the failure of this part."""
         if self._told is not None:
             self._told(_STAGES[name])
         with warnings.catch_warnings(record=True) as caught:
@@ -123,22 +123,22 @@ class _Parts:
         self.warnings += dict.fromkeys(str(w.message) for w in caught)
 
     def failed(self, part: str, result: Result, message: str) -> None:
-        """Keep a failure."""
+        """Record a failure."""
         self.failures.append(Failure(part, result, message))
 
 
 def run_rotor(task: RotorScene, told: Callable[[str], None] | None = None) -> RotorRun:
-    """What a scene of a rotor asks for.
+    """Run the analyses of a rotor scene.
 
     Args:
         task: From `read_rotor`.
         told: Called with the name of each stage as it begins.
 
     Returns:
-        The run; nothing is raised for a part that was not solved.
+        The run; a part that fails does not raise.
 
     Raises:
-        SceneError: For what only shows when the rotor is put together.
+        SceneError: For errors found only when the rotor is assembled.
     """
     parts = _Parts(told)
     with _naming(task):
@@ -159,7 +159,7 @@ def run_rotor(task: RotorScene, told: Callable[[str], None] | None = None) -> Ro
 
 @contextlib.contextmanager
 def _naming(task: RotorScene) -> Iterator[None]:
-    """Names the scene in what a constructor complains of."""
+    """Context that adds the scene name to the ValueError of a constructor."""
     try:
         yield
     except ValueError as error:
@@ -181,7 +181,7 @@ def _static(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
 
 
 def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
-    """Modes, critical speeds, Campbell diagram; the linear rotor at any speed."""
+    """Compute modes, critical speeds, Campbell diagram; return the linear rotor."""
     found, count = parts.found, task.n_modes
     settled = found["settled"]
     with parts.part("modes"):
@@ -211,7 +211,7 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
 
 
 def _following(task, rotor, settled, highest, parts) -> Rotor | None:
-    """The linear rotor at any speed; it settles anew if its bearings feel the speed."""
+    """Return the linear rotor over speed, resettled if its bearings depend on speed."""
     if not any(mount.inertia for mount in task.mounts):
         return settled.rotor
     with parts.part("static"):
@@ -228,7 +228,7 @@ def _following(task, rotor, settled, highest, parts) -> Rotor | None:
 
 
 def top_speed(task: RotorScene) -> float:
-    """Speed up to which bearings follow it, the highest asked for or more [rad/s].
+    """Return the highest speed for speed-dependent bearings [rad/s].
 
     Args:
         task: From `read_rotor`.
@@ -244,7 +244,7 @@ def top_speed(task: RotorScene) -> float:
 
 
 def task_warnings(task: RotorScene) -> Iterator[str]:
-    """What is doubtful about the bearings at the speeds that are asked for, in words.
+    """Yield warnings about the bearings at the speeds of the scene.
 
     Args:
         task: From `read_rotor`.
@@ -258,8 +258,8 @@ def task_warnings(task: RotorScene) -> Iterator[str]:
 
 
 def held_fits(task: RotorScene) -> Iterator[str]:
-    """Bearings whose rings grow over the speeds that are asked for, which their fits
-    leave out, in words.
+    """Yield warnings of fits whose clearance changes notably over the speeds, which
+    the solves neglect.
 
     Args:
         task: From `read_rotor`.
@@ -282,13 +282,13 @@ def held_fits(task: RotorScene) -> Iterator[str]:
 
 
 def _ends(task: RotorScene) -> list[float]:
-    """Ends of the speeds that a scene asks for [rad/s]."""
+    """Return the end speeds of all analyses of a scene [rad/s]."""
     lines = task.campbell
     return [*(() if lines is None else map(float, lines[[0, -1]])), *_run_to(task)]
 
 
 def _run_to(task: RotorScene) -> list[float]:
-    """Ends of the speeds at which it runs, beside the one of the scene [rad/s]."""
+    """Return the end speeds of response and motion, besides the scene's [rad/s]."""
     ends: list[float] = []
     asked, motion = task.response, task.transient
     if asked is not None:
@@ -299,7 +299,7 @@ def _run_to(task: RotorScene) -> list[float]:
 
 
 def _nonlinear(task: RotorScene, rotor: Rotor, linear: Any, parts: _Parts) -> None:
-    """Response and motion in time."""
+    """Compute response and motion in time."""
     found = parts.found
     there = linear is not None or getattr(task.response, "method", "") != "linear"
     if task.response is not None and there:
@@ -319,7 +319,7 @@ def _nonlinear(task: RotorScene, rotor: Rotor, linear: Any, parts: _Parts) -> No
 
 
 def _held(tree: Any) -> Any:
-    """As NumPy holds it: JAX would compile every small operation on the way."""
+    """Convert to NumPy: JAX would compile every small operation."""
     return jax.tree.map(
         lambda leaf: np.asarray(leaf) if isinstance(leaf, jax.Array) else leaf, tree
     )

@@ -1,4 +1,4 @@
-"""What the scene of a rotor asks for."""
+"""Scene of a rotor."""
 
 import dataclasses
 from typing import Any
@@ -14,22 +14,22 @@ from .rotor_tasks import ResponseKeys, TransientKeys
 
 @dataclasses.dataclass(frozen=True)
 class Mount:
-    """What holds a station of the shaft, as a scene has it, in SI.
+    """Support of a station of the shaft, in SI.
 
     Attributes:
         station: Number of the station.
-        name: Of the bearing; "springs" without one.
+        name: Name of the bearing; "springs" without one.
         installed: The bearing with its seats, or `None`: springs.
-        fits: Its seats, temperatures and the speed of the rotor, or `None`: it is
-            taken as on the drawing.
-        preload: Axial force that the bearing alone carries in its place [N], or `None`.
-        offset: Axial displacement of the inner ring in its place [m].
-        law: "fixed_angle", "moving_angle", "cubic", or `None` for the bearing itself.
+        fits: Its seats, temperatures and the speed of the rotor, or `None`: drawing
+            dimensions.
+        preload: Axial preload force of the bearing as mounted [N], or `None`.
+        offset: Axial displacement of the inner ring as mounted [m].
+        law: "fixed_angle", "moving_angle", "cubic", or `None` for the full model.
         turned: Whether it faces the other way.
-        inertia: Whether its rolling elements feel the speed.
-        stiffness: Of springs, in ux uy uz gx gy (5,) [N/m, N m].
-        damping: Likewise (5,) [N s/m, N m s].
-        housing: What it stands on; `None`: ground.
+        inertia: Whether centrifugal and gyroscopic loads act on the rolling elements.
+        stiffness: Stiffness of springs, in ux uy uz gx gy (5,) [N/m, N m].
+        damping: Damping in ux uy uz gx gy (5,) [N s/m, N m s].
+        housing: Housing of the support; `None`: ground.
     """
 
     station: int
@@ -47,30 +47,30 @@ class Mount:
 
     @property
     def element(self) -> BearingElement[Any] | None:
-        """The bearing before it is preloaded and mounted."""
+        """The bearing before preloading and mounting."""
         return None if self.installed is None else self.installed.drawing
 
 
 @dataclasses.dataclass(frozen=True)
 class RotorScene:
-    """What the scene of a rotor asks for, in SI.
+    """Scene of a rotor, in SI.
 
     Attributes:
         name: Name of the file without its ending.
         shaft: The shaft.
         discs: Discs and point masses.
-        mounts: What holds it.
-        damping: Besides that of the mounts, or `None`.
-        rigid: Whether the shaft does not bend.
-        speed: Of the rotor [rad/s].
-        axis: "horizontal", "vertical" or "none": where gravity pulls.
+        mounts: Supports of the shaft.
+        damping: Damping in addition to the mounts, or `None`.
+        rigid: Whether the shaft is rigid.
+        speed: Rotor speed [rad/s].
+        axis: "horizontal", "vertical" or "none": shaft direction relative to gravity.
         loads: `RotorLoads` on it.
-        n_modes: Number of modes that are reported.
+        n_modes: Number of modes reported.
         campbell: Speeds of the Campbell diagram (speed,) [rad/s], or `None`.
-        response, transient: Or `None`.
-        warnings: What is odd but possible.
+        response, transient: Settings of these analyses, or `None`.
+        warnings: Warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`);
-            bearings of other scenes are in it.
+            bearings of other scenes are included.
     """
 
     name: str
@@ -101,7 +101,7 @@ class RotorScene:
 
     @property
     def station_names(self) -> tuple[str, ...]:
-        """Each station with what sits there, such as "1 disc"."""
+        """Number and parts of each station, such as "1 disc"."""
         here: list[list[str]] = [[] for _ in range(self.shaft.n_segments + 1)]
         for disc in self.discs:
             kind = type(disc).__name__

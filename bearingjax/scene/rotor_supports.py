@@ -1,4 +1,4 @@
-"""The supports of a rotor as its scene has them, preloaded."""
+"""Preloaded supports of the rotor of a scene."""
 
 import dataclasses
 
@@ -18,17 +18,17 @@ from .rotor_mounts import LAWS
 from .rotor_scene import Mount
 
 _AT_LEAST = 1e-5
-"""Where nothing is preloaded or loaded [m]."""
+"""Least unit of length, for rotors without preload or load [m]."""
 
 
 def support_of(mount: Mount) -> AbstractSupport:
-    """What holds a station; the rolling elements of a bearing stand still.
+    """Build the support of a mount, with stationary rolling elements.
 
     Args:
-        mount: As the scene has it.
+        mount: Mount of the scene.
 
     Raises:
-        SolveError: If a bearing does not bear its preload.
+        SolveError: If a bearing cannot carry its preload.
     """
     housing = mount.housing
     if mount.installed is None:
@@ -56,10 +56,10 @@ def support_of(mount: Mount) -> AbstractSupport:
 
 
 def with_passage(support: AbstractSupport) -> AbstractSupport:
-    """A support whose rolling elements orbit as the rotor turns.
+    """Return a support whose rolling elements orbit as the rotor turns.
 
     Args:
-        support: Of any kind; those without rolling elements stay as they are.
+        support: Any support; without rolling elements it is returned unchanged.
     """
     if not isinstance(support, BearingSupport):
         return support
@@ -67,10 +67,10 @@ def with_passage(support: AbstractSupport) -> AbstractSupport:
 
 
 def unit_of_length(rotor: Rotor, settled: StaticEquilibrium) -> float:
-    """Displacement that is called one: the largest of preload and equilibrium [m].
+    """Return the unit of length: the largest displacement of preload, equilibrium [m].
 
     Args:
-        rotor: On its true bearings.
+        rotor: Rotor on its nonlinear bearings.
         settled: Its static equilibrium.
     """
     sizes = [_AT_LEAST, float(np.max(np.abs(settled.displacement[:, :3])))]

@@ -1,4 +1,4 @@
-"""Reading the scene of a rotor: shaft, discs, loads; bearings and tasks beside it."""
+"""Read the scene of a rotor: shaft, discs, loads, bearings and analyses."""
 
 import dataclasses
 import warnings
@@ -36,13 +36,13 @@ AXES = {
     "vertical": (0.0, 0.0, -GRAVITY),
     "none": (0.0, 0.0, 0.0),
 }
-"""Where gravity pulls [m/s²]."""
+"""Gravity by shaft axis [m/s²]."""
 MOST_ELEMENTS = 200
 """Most elements of a shaft: eigenvalues of 2000 states take minutes."""
 
 
 def _material(table: Table, key: str) -> Material:
-    """A material, steel if none is named; its numbers stand in the echo."""
+    """Read a material, by default steel; the echo gets its numbers."""
     material = read_material(table, key) or Material()
     table.fill(key, written_numbers(material))
     return material
@@ -106,7 +106,7 @@ class DiscKeys(Keys):
 
     @property
     def part(self) -> AbstractPart:
-        """The disc, or the point mass."""
+        """Disc or point mass."""
         table, sizes = self.table, ("outer_diameter", "width")
         inertias = "polar_inertia", "diametral_inertia"
         with table.building():
@@ -184,10 +184,10 @@ class ExcitationKeys(Keys):
     )
 
     def loads(self, gravity: tuple[float, ...]) -> RotorLoads:
-        """The loads.
+        """Build the loads.
 
         Args:
-            gravity: Along x, y and z [m/s²].
+            gravity: Gravity along x, y and z [m/s²].
         """
         unbalances = tuple(Unbalance(**one.given) for one in self.unbalance)
         forces = tuple(StationForce(one.station, one.force) for one in self.forces)
@@ -255,14 +255,14 @@ class RotorKeys(Keys):
 
     @property
     def own_damping(self) -> AbstractDamping | None:
-        """Damping besides that of the bearings."""
+        """Damping in addition to that of the bearings."""
         if self.damping is not None:
             return ProportionalDamping(**self.damping.given)
         return ModalDamping(self.damping_ratio) if self.damping_ratio else None
 
     @property
     def shown(self) -> int:
-        """Station that report and picture show unless another one is asked for."""
+        """Station shown by default in report and plot."""
         for part in (*self.excitation.unbalance, *self.discs):
             return part.station
         return len(self.shaft) // 2

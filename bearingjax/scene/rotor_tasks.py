@@ -1,4 +1,4 @@
-"""Tables of what a rotor's scene asks for beyond modes: Campbell, response, motion."""
+"""Tables of the rotor analyses beyond modes: Campbell diagram, response, motion."""
 
 import dataclasses
 from typing import Any
@@ -33,7 +33,7 @@ class CampbellKeys(Keys):
 
     @property
     def speeds(self) -> np.ndarray:
-        """The speeds (speed,) [rad/s]."""
+        """Speeds of the Campbell diagram (speed,) [rad/s]."""
         return np.linspace(self.begin, self.end, self.count)
 
 

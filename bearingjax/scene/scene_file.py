@@ -1,4 +1,4 @@
-"""Scene files as text: where they are, TOML, and settings that change them."""
+"""Scene files: search paths, TOML parsing, and settings that change them."""
 
 import json
 import re
@@ -15,7 +15,7 @@ from .quantity import SceneError
 
 
 def shipped_scenes() -> dict[str, Path]:
-    """Scenes that come with the package, by name."""
+    """Return the scenes shipped with the package, by name."""
     folder = Path(str(files("bearingjax.scene") / "examples"))
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
@@ -30,13 +30,13 @@ def need_float64() -> None:
 
 
 def is_scene(source: str | Path) -> bool:
-    """Whether a name can only be that of a scene: of a file, or a shipped one."""
+    """Whether a name denotes a scene: a file, or a shipped scene."""
     path = Path(source)
     return path.suffix == ".toml" or path.is_file() or str(source) in shipped_scenes()
 
 
 def find_scene(source: str | Path) -> Path:
-    """Path of a scene file or of a shipped scene.
+    """Return the path of a scene file or of a shipped scene.
 
     Raises:
         SceneError: If there is none, or float64 is off.
@@ -56,7 +56,7 @@ def find_scene(source: str | Path) -> Path:
 
 
 def _of_catalogue(name: str) -> str:
-    """What to do with a designation that stands for a scene; "" if it is none."""
+    """Return the hint for a designation given as a scene; "" if it is not one."""
     try:
         catalogue_entry(name)
     except SceneError:
@@ -65,17 +65,17 @@ def _of_catalogue(name: str) -> str:
 
 
 def is_contact(data: dict[str, Any]) -> bool:
-    """Whether parsed data are of one contact, not of a bearing."""
+    """Whether parsed data describe one contact, not a bearing."""
     return "bearing" not in data and not {"roller", "raceway"}.isdisjoint(data)
 
 
 def is_rotor(data: dict[str, Any]) -> bool:
-    """Whether parsed data are of a rotor, not of a bearing."""
+    """Whether parsed data describe a rotor, not a bearing."""
     return "bearing" not in data and "rotor" in data
 
 
 def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
-    """As `parse_scene`, of a bearing.
+    """Parse the scene of a bearing; see `parse_scene`.
 
     Raises:
         SceneError: As `parse_scene`; if it is the scene of one contact or of a rotor.
@@ -93,11 +93,11 @@ def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
 
 
 def bearing_files(data: Mapping[str, Any], path: Path) -> list[Path]:
-    """Other scenes from which a rotor takes its bearings.
+    """Return the other scenes from which a rotor takes its bearings.
 
     Args:
-        data: The scene as parsed; what is wrong with it is no matter here.
-        path: Where from.
+        data: The scene as parsed; errors in it are ignored.
+        path: Path of the scene.
     """
     own, rotor = data.get("bearings"), data.get("rotor")
     listed = rotor.get("bearings") if isinstance(rotor, Mapping) else None
@@ -109,7 +109,7 @@ def bearing_files(data: Mapping[str, Any], path: Path) -> list[Path]:
 
 
 def profile_files(data: Mapping[str, Any], path: Path) -> list[Path]:
-    """Files of measured form errors that a scene names; arguments as above."""
+    """Return the files of form errors that a scene names; see `bearing_files`."""
     table = data.get("deviations")
     listed = table.get("profile") if isinstance(table, Mapping) else None
     entries = listed if isinstance(listed, list) else []
@@ -118,19 +118,19 @@ def profile_files(data: Mapping[str, Any], path: Path) -> list[Path]:
 
 
 def bearing_place(name: str, path: Path) -> Path:
-    """Where a scene is that another one names: beside it, or among those shipped."""
+    """Return the path of a scene named in another: a shipped one, or in its folder."""
     return shipped_scenes().get(name, path.parent / name)
 
 
 def parse_scene(path: Path, settings: Iterable[str]) -> dict[str, Any]:
-    """A scene file as parsed, with its settings changed.
+    """Parse a scene file and apply settings to it.
 
     Args:
-        path: Of the file.
+        path: Path of the file.
         settings: As in `read_scene`.
 
     Raises:
-        SceneError: If it is no TOML, or a setting does not fit.
+        SceneError: If it is not TOML, or a setting cannot be applied.
     """
     data = _parse(path)
     for setting in settings:
@@ -141,7 +141,7 @@ def parse_scene(path: Path, settings: Iterable[str]) -> dict[str, Any]:
 def _parse(path):
     kind = "JSON" if path.suffix.lower() == ".json" else "TOML"
     try:
-        # Editors of Windows put a mark before the text.
+        # Windows editors may write a byte order mark.
         text = path.read_text(encoding="utf-8-sig")
         return _echoed(path, text) if kind == "JSON" else tomllib.loads(text)
     except SceneError:
@@ -153,12 +153,12 @@ def _parse(path):
         problem = f"cannot be read as {kind}: {error}; save it as UTF-8"
         raise SceneError(f"{path.name}: {problem}") from error
     except (ValueError, RecursionError) as error:
-        # Syntax, and numbers too long to convert, are ValueErrors.
+        # Syntax errors, and numbers too long to convert, are ValueErrors.
         raise SceneError(f"{path.name}: cannot be read as {kind}: {error}") from error
 
 
 def _echoed(path: Path, text: str) -> dict[str, Any]:
-    """The scene that an output file of `--json` was made of."""
+    """Return the scene of an output file of `--json`."""
     data = json.loads(text)
     inputs = data.get("inputs") if isinstance(data, dict) else None
     if not isinstance(inputs, dict):
@@ -179,7 +179,7 @@ def _set(data: dict, setting: str, file: str) -> None:
         parsed = tomllib.loads(f"value = {text}")
     except ValueError:
         parsed = {}
-    # Lines that follow would be lost: it is text then.
+    # Further lines would be lost: the value is text then.
     value = parsed["value"] if len(parsed) == 1 else text.strip()
     assign(data, ".".join(parts), value, file)
 
@@ -188,13 +188,13 @@ def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
     """Set a dotted key in parsed data.
 
     Args:
-        data: Changed in place.
-        key: Dotted key; numbers from 0 name entries of lists.
-        value: As parsed.
-        file: For the message.
+        data: Parsed data, changed in place.
+        key: Dotted key; numbers from 0 denote list entries.
+        value: Value as parsed.
+        file: File name, for the message.
 
     Raises:
-        SceneError: If the key leads through what is no table.
+        SceneError: If the key passes through a value that is not a table.
     """
     parts = key.split(".")
     inner: Any = data
@@ -214,7 +214,7 @@ def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
 
 
 def _listed(values: list[Any], part: str, key: str, file: str) -> Any:
-    """What stands in a list at a place given by its number."""
+    """Return the list entry with the given index."""
     if not part.isdecimal() or int(part) >= len(values):
         allowed = f"a number from 0 to {len(values) - 1} names one of its entries"
         raise SceneError(f"{file}: `{key}` is a list; {allowed}, {part!r} does not")

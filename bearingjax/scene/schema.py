@@ -1,7 +1,7 @@
 """Schema of scene files: a class describes a table, each of its fields one key.
 
-The fields of a `Keys` class read the table, make its JSON Schema and its part of the
-scene guide (`schema_text`). Rules that concern several keys are the `check` of the
+The fields of a `Keys` class define how the table is read, its JSON Schema and its part
+of the scene guide (`schema_text`). Rules for several keys are in the `check` of the
 class.
 """
 
@@ -21,28 +21,28 @@ _REQUIRED: Any = dataclasses.MISSING
 
 @dataclasses.dataclass(frozen=True)
 class Key:
-    """What a key of a scene may hold, beside the type of its field.
+    """Allowed values of a scene key, in addition to the type of its field.
 
     Attributes:
         about: One line for the scene guide, without a full stop.
         kind: Kind of quantity (`quantity.KINDS`); empty for a pure number.
         above, least, below, most: Range, in `unit`.
-        shown: Unit of the range, in which an error tells the number; empty: SI, of
+        shown: Unit of the range and of numbers in errors; empty: SI, for
             temperatures °C.
-        choices: Words that may stand there.
-        words: The choices as an error tells them, where they are too many to list.
-        of: Classes that may stand there, by the word or the `type` that names them.
-        hint: What an error about the range, missing `needs`, or what is no table, adds.
-        refusal: What an error about the range says, in place of "is not allowed; ...".
-        needs: Keys of which one must stand beside this one.
-        without: Keys that must not stand beside this one, with what an error says;
+        choices: Allowed words.
+        words: The choices as described in errors, where they are too many to list.
+        of: Allowed classes, by the word or the `type` that names them.
+        hint: Addition to errors about the range, missing `needs`, or a non-table.
+        refusal: Error text about the range, in place of "is not allowed; ...".
+        needs: Keys of which one must be given with this one.
+        without: Keys that must not be given with this one, with the error text;
             empty for "give either ... or this, not both".
-        only: Words of other keys for which this one is of use.
-        name: Key in the file, if a field cannot be called so.
-        otherwise: What is taken where the default depends on something else.
-        follows: Works that out from the values of the other keys of the table.
-        reader: Reads what fits no type, from the table and the name of the key.
-        json: JSON Schema of what `reader` reads.
+        only: Words of other keys with which this one is used.
+        name: Key in the file, if it is not a valid field name.
+        otherwise: Description of a default that depends on other values.
+        follows: Computes that default from the other keys of the table.
+        reader: Reads a value of another type, from the table and the key name.
+        json: JSON Schema of the values of `reader`.
     """
 
     about: str
@@ -69,15 +69,15 @@ class Key:
 
     @property
     def unit(self) -> str:
-        """Unit of the range; empty of a pure number."""
+        """Unit of the range; empty for a pure number."""
         unit = KINDS[self.kind][0] if self.kind else ""
         return self.shown or ("°C" if unit == "K" else unit)
 
     def told(self, value: float) -> float:
-        """A number in the unit of the range.
+        """Convert a number to the unit of the range.
 
         Args:
-            value: In SI.
+            value: Number in SI.
         """
         if self.unit == "°C":
             return value - CELSIUS
@@ -85,7 +85,7 @@ class Key:
 
     @property
     def allowed(self) -> str:
-        """Range in words, as "above 0 N"; empty without one."""
+        """Range in words, such as "above 0 N"; empty without one."""
         low, high = ("least", self.least), ("most", self.most)
         if self.above is not None:
             low = ("above", self.above)
@@ -104,7 +104,7 @@ class Key:
 
     @property
     def goes_with(self) -> str:
-        """What must stand beside it, in words; empty if nothing."""
+        """Keys required with this one, in words; empty if none."""
         needs = " or ".join(f"`{other}`" for other in self.needs)
         words = (f"`{other}` = {' or '.join(ws)}" for other, ws in self.only.items())
         return " and ".join(filter(None, (needs, *words)))
@@ -126,12 +126,12 @@ class Key:
 def scene_key(
     about: str, kind: str = "", *, default: Any = _REQUIRED, **rest: Any
 ) -> Any:
-    """Field of a `Keys` class.
+    """Return a field of a `Keys` class.
 
     Args:
-        about, kind: As of `Key`.
-        default: If the key is absent; without a default it is required, unless the
-            field may be `None`. The class of a table: what it reads without keys.
+        about, kind: As in `Key`.
+        default: Value if absent; without a default the key is required, unless the
+            field may be `None`. The class of a table: the table read without keys.
         **rest: Other attributes of `Key`.
     """
     metadata = {"key": Key(about, kind, **rest)}
@@ -142,11 +142,11 @@ class Field(NamedTuple):
     """One key of a table.
 
     Attributes:
-        name: In the file.
-        attribute: In the class.
-        key: What it may hold.
-        kinds: Types that it may have, without `None`.
-        default: If absent, or `dataclasses.MISSING`.
+        name: Name in the file.
+        attribute: Name in the class.
+        key: Allowed values.
+        kinds: Allowed types, without `None`.
+        default: Value if absent, or `dataclasses.MISSING`.
     """
 
     name: str
@@ -170,21 +170,21 @@ class Keys:
     """
 
     numbers: ClassVar[Mapping[str, type]] = {}
-    """Classes whose numbers may stand in the table under their own names, by the key
-    with which they do; read by `built`."""
+    """Classes whose numbers may be given in the table under their field names, by the
+    key that requires them; read by `built`."""
 
     table: Table = dataclasses.field(repr=False, compare=False)
 
     @property
     def given(self) -> dict[str, Any]:
-        """Values of the keys that have one, by the name of the field."""
+        """Values of the keys that have one, by field name."""
         values = {
             f.attribute: getattr(self, f.attribute) for f in fields_of(type(self))
         }
         return {name: value for name, value in values.items() if value is not None}
 
     def built(self, kind: type[Any]) -> Any:
-        """An instance of a class whose numbers stand in the table.
+        """Build an instance of a class from the numbers in the table.
 
         Args:
             kind: One of `numbers`.
@@ -194,14 +194,14 @@ class Keys:
             return kind(**values)
 
     def check(self) -> None:
-        """Raise SceneError where keys do not go together; nothing by default."""
+        """Raise SceneError if keys are inconsistent; does nothing by default."""
 
     def fill(self, **values: int | float | str | None) -> None:
-        """Say what stands for keys in the echo, such as defaults that follow from
-        something else.
+        """Set values of keys in the echo, such as defaults that depend on other
+        values.
 
         Args:
-            **values: By the name of the field; numbers in SI.
+            **values: Values by field name; numbers in SI.
         """
         for one in fields_of(type(self)):
             if one.attribute in values:
@@ -212,10 +212,10 @@ class Keys:
                 self.table.fill(one.name, value)
 
     def with_defaults(self, **values: int | float | str) -> Any:
-        """These keys with defaults that follow from something else, in the echo too.
+        """Return these keys with dependent defaults filled in, also in the echo.
 
         Args:
-            **values: By the name of the field, for those that are `None`; in SI.
+            **values: Defaults by field name, for fields that are `None`; in SI.
         """
         absent = {k: v for k, v in values.items() if getattr(self, k) is None}
         self.fill(**absent)
@@ -226,15 +226,15 @@ K = TypeVar("K", bound=Keys)
 
 
 def read_keys(kind: type[K], table: Table) -> K:
-    """The keys of a table.
+    """Read the keys of a table.
 
     Args:
         kind: Class that describes the table.
         table: The table.
 
     Raises:
-        SceneError: For what is missing, of another kind, out of its range, or does not
-            go together.
+        SceneError: For values that are missing, of the wrong kind, out of range, or
+            inconsistent.
     """
     known = fields_of(kind)
     values = {one.attribute: _value(table, one) for one in known}
@@ -255,7 +255,7 @@ def read_keys(kind: type[K], table: Table) -> K:
 
 @functools.cache
 def fields_of(kind: type[Keys]) -> tuple[Field, ...]:
-    """The keys of a table, in order.
+    """Return the keys of a table, in order.
 
     Args:
         kind: Class of the table.
@@ -275,13 +275,13 @@ def fields_of(kind: type[Keys]) -> tuple[Field, ...]:
 
 
 def _united(hint: Any) -> tuple[Any, ...]:
-    """Types of a union, or the one type."""
+    """Return the types of a union, or the single type."""
     union = get_origin(hint) in (types.UnionType, typing.Union)
     return get_args(hint) if union else (hint,)
 
 
 def element_of(kind: Any) -> Any:
-    """Type of the entries of `tuple[X, ...]`; `None` of any other type."""
+    """Return the entry type of `tuple[X, ...]`; `None` for any other type."""
     return next(iter(get_args(kind)), None) if get_origin(kind) is tuple else None
 
 
@@ -291,7 +291,7 @@ def is_keys(kind: Any) -> bool:
 
 
 def _value(table: Table, field: Field) -> Any:
-    """What stands at a key, in SI, within its range."""
+    """Read the value of a key, in SI, within its range."""
     name, one, kind = field.name, field.key, field.kinds[0]
     default = () if field.required else (field.default,)
     absent = name not in table and not field.required
@@ -314,7 +314,7 @@ def _value(table: Table, field: Field) -> Any:
     if kind is str and not one.choices:
         return _text(table, name, *default)
     word = table.word(name) if str in field.kinds else None
-    # Text where a pure number may stand is a word, and maybe misspelt.
+    # Text in place of a pure number is taken as a word, possibly misspelt.
     if kind is str or (word is not None and (word in one.choices or not one.kind)):
         return table.choice(name, tuple(one.choices), *default, words=one.words)
     if kind is bool:
@@ -332,7 +332,7 @@ def _value(table: Table, field: Field) -> Any:
 
 
 def _text(table: Table, name: str, *default: Any) -> Any:
-    """Any text."""
+    """Read any text."""
     value = table.raw(name, *default)
     if name in table and not isinstance(value, str):
         raise table.error(name, f"{value!r} is not a text")
@@ -340,7 +340,7 @@ def _text(table: Table, name: str, *default: Any) -> Any:
 
 
 def _texts(table: Table, name: str, one: Key) -> tuple[str, ...] | None:
-    """Distinct words out of several, or any texts where none are listed."""
+    """Read distinct words of the choices, or any texts without choices."""
     if one.choices:
         return table.words(name, one.choices)
     value = table.raw(name, None)
@@ -352,7 +352,7 @@ def _texts(table: Table, name: str, one: Key) -> tuple[str, ...] | None:
 
 
 def _count(table: Table, name: str, one: Key, *default: Any) -> Any:
-    """A whole number in the range of a key."""
+    """Read a whole number in the range of a key."""
     least = 1 if one.least is None else int(one.least)
     value = table.integer(name, *default, least=least)
     if name in table and one.most is not None and value > one.most:
@@ -362,7 +362,7 @@ def _count(table: Table, name: str, one: Key, *default: Any) -> Any:
 
 
 def _in_range(table: Table, name: str, value: Any, one: Key) -> Any:
-    """The number, or numbers, if they are in the range of a key that stands there."""
+    """Return the number or numbers of a key after checking its range, if given."""
     if name not in table or value is None:
         return value
     for number in map(one.told, value if isinstance(value, tuple) else (value,)):
@@ -375,14 +375,14 @@ def _in_range(table: Table, name: str, value: Any, one: Key) -> Any:
 
 
 def instance(table: Table, name: str, kinds: Mapping[str, type], *default: Any) -> Any:
-    """An instance of one of several classes: named by a word, or with its numbers.
+    """Read an instance of one of several classes, given by a word or a table.
 
     Args:
-        table: In which it stands.
+        table: Table that holds the key.
         name: Its key.
         kinds: The classes, by their word; a table names one by its `type`, which may be
             left out where there is only one.
-        default: If absent, an instance or its word; without a default the key is
+        default: Instance or word if absent; without a default the key is
             required.
 
     Raises:
@@ -409,8 +409,8 @@ def instance(table: Table, name: str, kinds: Mapping[str, type], *default: Any) 
 
 
 def _check_neighbours(table: Table, field: Field) -> None:
-    """Raise SceneError for keys that must, or must not, stand beside one that does;
-    the default of one that needs others is not echoed without them."""
+    """Raise SceneError for missing required keys, or excluded keys, of a given key;
+    the default of a key that needs others is not echoed without them."""
     needs = field.key.needs
     alone = bool(needs) and not any(other in table for other in needs)
     if field.name not in table:
@@ -428,7 +428,7 @@ def _check_neighbours(table: Table, field: Field) -> None:
 
 
 def _check_use(found: Keys, field: Field) -> None:
-    """Raise SceneError for a key that the words of others leave without a use; its
+    """Raise SceneError for a key that is unused given the words of other keys; its
     default is not echoed."""
     for other, words in field.key.only.items():
         if getattr(found, other) in words:

@@ -1,4 +1,4 @@
-"""JSON Schema of whole scenes: of a bearing, of one contact, of a rotor."""
+"""JSON Schema of complete scenes: of a bearing, of one contact, of a rotor."""
 
 from typing import Any
 
@@ -45,7 +45,7 @@ from .table import not_among
 
 
 def scene_schema() -> dict[str, Any]:
-    """JSON Schema of every scene."""
+    """Return the JSON Schema of all scenes."""
     numbers = {"anyOf": [{"enum": [*MATERIALS]}, class_schema(Material)]}
     defs = {
         "bearing": _bearing(),
@@ -63,7 +63,7 @@ def scene_schema() -> dict[str, Any]:
 
 
 def key_guide(name: str = "") -> str:
-    """Tables of the keys of scenes, in Markdown.
+    """Return the tables of scene keys, in Markdown.
 
     Args:
         name: Dotted name of one table, such as "operating.load"; empty for all.
@@ -86,7 +86,7 @@ def key_guide(name: str = "") -> str:
 
 
 def _bearing_scene() -> dict[str, Any]:
-    """Of a bearing: `solve`, `sweep`, `life`, `optimise`, `skid`, `noise`."""
+    """Schema of a bearing: `solve`, `sweep`, `life`, `optimise`, `skid`, `noise`."""
     tables = {
         "bearing": _ref("bearing"),
         "set": _ref("set"),
@@ -109,7 +109,7 @@ def _bearing_scene() -> dict[str, Any]:
 
 
 def _contact_scene() -> dict[str, Any]:
-    """Of one roller on one raceway: `contact`."""
+    """Schema of one roller on one raceway: `contact`."""
     tables = {
         "roller": table_schema(RollerKeys),
         "raceway": table_schema(RacewayKeys),
@@ -122,7 +122,7 @@ def _contact_scene() -> dict[str, Any]:
 
 
 def _rotor_scene() -> dict[str, Any]:
-    """Of a shaft on its bearings: `rotor`."""
+    """Schema of a shaft on its bearings: `rotor`."""
     within = {
         "set": _ref("set", "as of a bearing alone"),
         "contact": _ref("contact", "as of a bearing alone"),
@@ -139,7 +139,7 @@ def _rotor_scene() -> dict[str, Any]:
 
 
 def _merged(about: str, *kinds: type[Keys]) -> dict[str, Any]:
-    """One table whose keys several classes read."""
+    """Schema of a table whose keys are read by several classes."""
     first, *more = (table_schema(kind) for kind in kinds)
     properties = dict(first["properties"])
     for one in more:
@@ -148,7 +148,7 @@ def _merged(about: str, *kinds: type[Keys]) -> dict[str, Any]:
 
 
 def _set() -> dict[str, Any]:
-    """Of a [set], whose rows may have bearings of their own."""
+    """Schema of a [set], whose rows may define separate bearings."""
     found = table_schema(SetKeys)
     row = found["properties"]["rows"]["items"]
     row["properties"]["bearing"] = _ref("bearing", "bearing of this row alone")
@@ -156,7 +156,7 @@ def _set() -> dict[str, Any]:
 
 
 def _bearing() -> dict[str, Any]:
-    """Of a [bearing]: of each type, or of a designation."""
+    """Schema of a [bearing]: of each type, or by designation."""
     variants = [_of_type(word, kind) for word, kind in {**BALLS, **ROLLERS}.items()]
     every: dict[str, Any] = {}
     for one in variants:
@@ -165,7 +165,7 @@ def _bearing() -> dict[str, Any]:
     name = {"type": "string", "description": "bearing of the catalogue"}
     about = "a bearing of the catalogue, of which single keys may be given otherwise"
     designated = object_schema({"designation": name, **every}, ["designation"], about)
-    # Where a bearing stands, other keys may stand beside its own (`_ref`).
+    # A table with a bearing may hold further keys (`_ref`).
     open_ones = [
         {key: part for key, part in one.items() if key != "additionalProperties"}
         for one in (*variants, designated)

@@ -1,4 +1,4 @@
-"""What a schema of scene files looks like outside: JSON Schema, and tables of keys."""
+"""Export of the schema of scene files: JSON Schema, and tables of keys."""
 
 import dataclasses
 import inspect
@@ -22,7 +22,7 @@ _ENDS = {
 
 
 def table_schema(kind: type[Keys]) -> dict[str, Any]:
-    """JSON Schema of a table.
+    """Return the JSON Schema of a table.
 
     Args:
         kind: Class that describes it.
@@ -40,12 +40,12 @@ def table_schema(kind: type[Keys]) -> dict[str, Any]:
 def object_schema(
     properties: Mapping[str, Any], required: list[str], description: str = ""
 ) -> dict[str, Any]:
-    """JSON Schema of a table with these keys and no others.
+    """Return the JSON Schema of a table with these keys and no others.
 
     Args:
         properties: JSON Schema of each key.
         required: Keys that must be given.
-        description: What the table is.
+        description: Description of the table.
     """
     found: dict[str, Any] = {"type": "object"}
     if description:
@@ -55,7 +55,7 @@ def object_schema(
 
 
 def field_schema(field: Field) -> dict[str, Any]:
-    """JSON Schema of one key.
+    """Return the JSON Schema of one key.
 
     Args:
         field: From `fields_of`.
@@ -75,7 +75,7 @@ def field_schema(field: Field) -> dict[str, Any]:
 
 
 def _bare_schema(field: Field) -> dict[str, Any]:
-    """Type and range of what may stand at a key."""
+    """Return the schema of type and range of a key."""
     key, kinds = field.key, field.kinds
     if key.reader is not None:
         return dict(key.json)
@@ -111,10 +111,10 @@ def _bare_schema(field: Field) -> dict[str, Any]:
 
 
 def number_schema(kind: str) -> dict[str, Any]:
-    """JSON Schema of a quantity, or of a pure number.
+    """Return the JSON Schema of a quantity, or of a pure number.
 
     Args:
-        kind: Of `quantity.KINDS`; empty for a pure number.
+        kind: Key of `quantity.KINDS`; empty for a pure number.
     """
     if not kind:
         return {"type": "number"}
@@ -128,7 +128,7 @@ def number_schema(kind: str) -> dict[str, Any]:
 
 
 def classes_schema(kinds: Mapping[str, type]) -> dict[str, Any]:
-    """JSON Schema of one of several classes: its word, or a table with its numbers.
+    """Return the JSON Schema of one of several classes: a word, or a table of numbers.
 
     Args:
         kinds: The classes by their words.
@@ -140,15 +140,15 @@ def classes_schema(kinds: Mapping[str, type]) -> dict[str, Any]:
 
 
 def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
-    """JSON Schema of a table that holds the numbers of a class.
+    """Return the JSON Schema of a table that holds the numbers of a class.
 
     Args:
         kind: Class whose fields have units.
-        word: Its `type`; empty: the table has none.
+        word: `type` of the class; empty: the table has none.
         **more: JSON Schema of further keys.
 
     Returns:
-        With `required` also if it is empty.
+        Schema that includes `required` even if empty.
     """
     texts, properties, required = attribute_texts(kind), {}, []
     if word:
@@ -175,14 +175,14 @@ def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
 
 
 def _shape(annotation: Any) -> list[str]:
-    """Axes of an array; none of a number."""
+    """Return the axes of an array; none for a number."""
     kinds = get_args(annotation) or (annotation,)
     names = " ".join(str(getattr(kind, "dim_str", "")) for kind in kinds)
     return [*map(str, names.split())]
 
 
 def attribute_texts(kind: type) -> dict[str, str]:
-    """What the docstrings of a class and its bases say of its attributes.
+    """Return the descriptions of attributes in the docstrings of a class and its bases.
 
     Args:
         kind: Class whose docstrings list "name: text" in indented lines.
@@ -210,12 +210,12 @@ def _first_line(kind: type) -> str:
 def key_tables(
     schema: Mapping[str, Any], path: str = "", listed: bool = False
 ) -> Iterator[tuple[str, str]]:
-    """Tables of the keys of a JSON Schema in Markdown, with the names of their tables.
+    """Yield the key tables of a JSON Schema in Markdown, with their names.
 
     Args:
-        schema: Of a table.
+        schema: Schema of a table.
         path: Its dotted name; empty for a whole scene.
-        listed: Whether a scene may have several of it.
+        listed: Whether a scene may have several such tables.
     """
     for table in schema.get("anyOf", [schema]):
         if "properties" not in table:
@@ -241,7 +241,7 @@ def key_tables(
 
 
 def _objects(schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """Tables that may stand at a key."""
+    """Return the table schemas allowed at a key."""
     if "items" in schema:
         return _objects(schema["items"])
     return list(schema.get("anyOf", [schema]))
@@ -257,7 +257,7 @@ def _row(name: str, schema: Mapping[str, Any], must: bool) -> str:
 
 
 def _holds(schema: Mapping[str, Any]) -> str:
-    """What may stand at a key, in a few words."""
+    """Describe the values allowed at a key in a few words."""
     if "$ref" in schema:
         return f"a {schema['$ref'].rpartition('/')[2]}"
     if "x-kind" in schema:

@@ -1,4 +1,4 @@
-"""Preload of a set on its seats: as it is ground, mounted, and in operation."""
+"""Preload of a set on its seats: as ground, mounted, and in operation."""
 
 import dataclasses
 from typing import Any
@@ -18,25 +18,25 @@ from .fit_table import Fits
 from .report_model import Column, Grid, Part
 
 _LEAST = 1e-6
-"""Force below which there is none [N]."""
+"""Force below which the preload counts as zero [N]."""
 
 _MUCH = 2.0
-"""Times the preload of the bearings as ground from which its change is warned of."""
+"""Ratio to the preload as ground from which a change of preload is warned of."""
 
 
 @dataclasses.dataclass(frozen=True)
 class SetPreload:
-    """Axial force with which the rows of a set press each other, unloaded [N].
+    """Axial preload force between the rows of a set, without external load [N].
 
     Attributes:
-        ground: Before they are mounted.
-        mounted: At rest, at the temperature of the measured sizes; at the sizes of the
-            solve.
-        operating: In operation, likewise.
+        ground: As ground, before mounting.
+        mounted: When mounted, at rest, at the reference temperature and the sizes of
+            the solve.
+        operating: In operation, at the sizes of the solve.
         mounted_range: At the loosest and the tightest sizes of shaft, housing and
             rings; `None` where all sizes are exact. NaN: with that fit the balls have
             no contact angle, or no equilibrium was found.
-        operating_range: Likewise in operation.
+        operating_range: The same range in operation.
     """
 
     ground: float
@@ -51,16 +51,16 @@ def set_preload(
     ground: BearingElement[Any],
     speed: Speed | None,
 ) -> SetPreload | None:
-    """Preload of a set on its seats; `None` if its rows do not press each other.
+    """Compute the preload of a set on its seats; `None` if its rows are not opposed.
 
     Args:
         fits: Its seats.
-        ground: The bearing before it is mounted, ground to its preload.
-        speed: Of the rings in operation; `None`: at rest.
+        ground: The bearing before mounting, ground to its preload.
+        speed: Ring speeds in operation; `None`: at rest.
     """
     if not is_opposed(ground.bearing):
         return None
-    # On seats that do not touch the set is as it is ground, and of one structure with
+    # On seats without contact the set stays as ground, and has the same structure as
     # the others.
     loose = -1e-3 * fits.mounting.bore
     states = {
@@ -81,7 +81,7 @@ def set_preload(
         speeds = jax.tree.map(lambda *x: as_array(np.stack(x), float), *given)
     found = np.asarray(called(_preloads, elements, speeds))
     force = dict.fromkeys(states, np.nan)
-    # Of round-off there is no preload.
+    # Round-off is not a preload.
     found = np.where(np.abs(found) < _LEAST, 0.0, found)
     force |= {k: float(x) for k, x in zip(possible, found, strict=True)}
 
@@ -106,7 +106,7 @@ def _preloads(elements, speeds):
 
 
 def _scatters(fits: Fits) -> bool:
-    """Whether the sizes of the seats do; the clearance is what the set is ground at."""
+    """Whether the seat sizes have tolerances; the clearance is that as ground."""
     return any(
         float(ends.lower) != float(ends.upper)
         for name, ends in fits.limits.items()
@@ -115,7 +115,7 @@ def _scatters(fits: Fits) -> bool:
 
 
 def _seats(fits, ground, place) -> Mounting:
-    """The seats somewhere in their tolerances."""
+    """Return the seats at a place within their tolerances."""
     whole = jax.device_get(sized(fits.mounting, ground.bearing))
     own = float(whole.radial_clearance)
     limits = {**fits.limits, "clearance": Limits(own, own)}
@@ -124,7 +124,7 @@ def _seats(fits, ground, place) -> Mounting:
 
 
 def _fitting(mounting, shaft, housing) -> Mounting:
-    """The seats with other interferences [m]."""
+    """Return the seats with other interferences [m]."""
     return eqx.tree_at(
         lambda m: (m.shaft_interference, m.housing_interference),
         mounting,
@@ -133,7 +133,7 @@ def _fitting(mounting, shaft, housing) -> Mounting:
 
 
 def _on(mounting, conditions, ground) -> BearingElement | None:
-    """The set on its seats; `None` if its balls have no contact angle left."""
+    """Return the set on its seats; `None` if its balls have no contact angle left."""
     try:
         return Installed(ground, None, mounting, conditions).at()
     except ValueError:
@@ -141,10 +141,10 @@ def _on(mounting, conditions, ground) -> BearingElement | None:
 
 
 def preload_warnings(found: SetPreload) -> list[str]:
-    """What is odd about the preload of a set on its seats, a sentence each.
+    """Return warnings about the preload of a set on its seats, one sentence each.
 
     Args:
-        found: What there is of it.
+        found: From `set_preload`.
     """
     ground, operating = found.ground, found.operating
     least, most = found.operating_range or (operating, operating)
@@ -170,11 +170,11 @@ def preload_warnings(found: SetPreload) -> list[str]:
 
 
 def range_warnings(ground: float, least: float, most: float) -> list[str]:
-    """What is odd about the preload of a set over cases, a sentence each.
+    """Return warnings about the preload of a set over cases, one sentence each.
 
     Args:
-        ground: Before the set is mounted [N].
-        least, most: In operation, over the cases [N].
+        ground: Preload as ground, before mounting [N].
+        least, most: Preload in operation, over the cases [N].
     """
     if least == 0.0:
         words = "has none left in operation in some of the cases"
@@ -189,13 +189,13 @@ def range_warnings(ground: float, least: float, most: float) -> list[str]:
 
 
 def preload_as_dict(found: SetPreload) -> dict[str, Any]:
-    """The preload of a set as plain numbers [N]; what is not possible is null.
+    """Return the preload of a set as plain numbers [N]; impossible values are null.
 
     Args:
-        found: What there is of it.
+        found: From `set_preload`.
 
     Returns:
-        ground, mounted, operating; where sizes scatter also worst: mounted, operating,
+        ground, mounted, operating; with tolerances also worst: mounted, operating,
         each at the loosest and the tightest sizes.
     """
     numbers: dict[str, Any] = {
@@ -212,10 +212,10 @@ def _plain(force: float) -> float | None:
 
 
 def preload_report(found: SetPreload) -> list[Part]:
-    """The preload of a set for people.
+    """Return the report of the preload of a set.
 
     Args:
-        found: What there is of it.
+        found: From `set_preload`.
     """
     states = {
         "ground": (found.ground, None),

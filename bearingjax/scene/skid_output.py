@@ -1,4 +1,4 @@
-"""What other programs read of balls or rollers that skid: JSON and tables, in SI."""
+"""Output of skidding balls or rollers: JSON and tables, in SI."""
 
 import itertools
 from typing import Any
@@ -29,8 +29,8 @@ UNITS = {
     "rolling_spin": "rad/s",
     "cage_force": "N",
 }
-"""What is told of each ball or roller, with its unit; of rollers, and of balls in time,
-their cage force, of rollers their spin in pure rolling."""
+"""Quantities of each ball or roller, with their units; the cage force is for rollers
+and for balls in time, the rolling spin for rollers."""
 
 OF_ONE = (
     "azimuth",
@@ -41,7 +41,7 @@ OF_ONE = (
     "rolling_spin",
     "cage_force",
 )
-"""Of these a ball or roller has one; of the others one for each raceway."""
+"""Quantities with one value per ball or roller; the others have one per raceway."""
 
 OF_TIME = {
     "time": "s",
@@ -53,26 +53,26 @@ OF_TIME = {
     "potential_energy": "J",
     "imbalance": "J",
 }
-"""What is told of each time, with its unit."""
+"""Quantities at each time, with their units."""
 
 
 def skid_as_dict(run: SkidRun) -> dict[str, Any]:
-    """A run as plain numbers and lists, in SI.
+    """Return a run as plain numbers and lists, in SI.
 
     Args:
         run: From `run_skid`.
 
     Returns:
-        cage_speed, rolling_cage_speed, friction_torque (on the ring that turns faster),
-        ring_torque (outer, inner), power, and what `UNITS` lists for each ball or
-        roller, those of contacts for each raceway (outer, inner), of two arcs that of
-        the more loaded one. Of an end state they are where they stand in the solved
-        bearing, `orbit` has the same at all places, and of balls there is `wander`. Of
-        a motion in time all have a leading axis `time`; besides there are what
-        `OF_TIME` lists, `work`, and `mean_friction_torque`, over the last whole orbits
-        of the cage, null without any; null stands at times that were not reached. And
-        result, message, residual, iterations, warnings, inputs (the file is a scene
-        again) and version. Without a solution numbers are left out.
+        cage_speed, rolling_cage_speed, friction_torque (on the faster ring),
+        ring_torque (outer, inner), power, and the quantities of `UNITS` for each ball
+        or roller, those of contacts per raceway (outer, inner), of two arcs for the
+        more loaded one. For a steady state they are at the positions in the solved
+        bearing, `orbit` has them at all positions, and balls have `wander`. For a
+        motion in time all have a leading axis `time`, with in addition the quantities
+        of `OF_TIME`, `work`, and `mean_friction_torque` over the last complete cage
+        revolutions, null without any; null at times that were not reached. Also
+        result, message, residual, iterations, warnings, inputs (the file can be read
+        as a scene) and version. Without a solution numbers are left out.
     """
     from .. import __version__
 
@@ -91,9 +91,9 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
 
 
 def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
-    """A run as columns by header, "name [unit]": a row for each place along the orbit.
+    """Return a run as columns by header, "name [unit]": a row per orbit position.
 
-    Of a motion in time a row for each time that was reached, with columns of each ball,
+    For a motion in time a row per time reached, with columns for each ball, such as
     "slip_3".
 
     Args:
@@ -117,7 +117,7 @@ def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
 
 
 def _spread(name, values, steady):
-    """Columns of values (row, …) with their headers."""
+    """Return the columns of values (row, …) with their headers."""
     axes: list[Any] = [] if steady else [range(values.shape[1])]
     if name == "spin":
         axes.append("xyz")
@@ -132,7 +132,7 @@ def _spread(name, values, steady):
 
 
 def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
-    """What `UNITS` lists, at all places along the orbit or times; contacts by raceway.
+    """Return the quantities of `UNITS` at all positions or times, contacts by raceway.
 
     Args:
         run: From `run_skid`.
@@ -153,15 +153,15 @@ def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
 
 
 def at_balls(run: SkidRun) -> np.ndarray:
-    """Places at which balls or rollers stand in the solved bearing (ball,)."""
+    """Return the orbit positions of the elements in the solved bearing (ball,)."""
     places, balls = len(run.found.azimuth), len(run.found.solution.azimuth)
     return np.arange(balls) * places // balls
 
 
 def rolling_cage_speed(run: SkidRun) -> np.ndarray:
-    """Speed of the cage if all balls rolled, each where it is [rad/s].
+    """Return the cage speed for pure rolling of all balls at their positions [rad/s].
 
-    Of an end state one number, of a motion in time the mean of the balls (time,).
+    For a steady state one number, for a motion in time the mean of the balls (time,).
 
     Args:
         run: From `run_skid`.
@@ -173,7 +173,7 @@ def rolling_cage_speed(run: SkidRun) -> np.ndarray:
 
 
 def skid_message(run: SkidRun) -> str:
-    """Cause and cure of a result, in words.
+    """Return cause and remedy of a result, in words.
 
     Args:
         run: From `run_skid`.
@@ -198,7 +198,7 @@ def skid_message(run: SkidRun) -> str:
 
 
 def _residual(run) -> float:
-    """Of an end state the forces left, of a motion the work of the drive, relative."""
+    """Return the residual: relative force (steady), or energy over drive work."""
     found = run.found
     if run.task.steady:
         return float(found.residual)
@@ -212,7 +212,7 @@ def _residual(run) -> float:
 def _powers(run) -> dict[str, Any]:
     found = run.found
     powers = found.power._asdict()
-    # Pockets give back what they take up.
+    # Cage pockets return the energy that they store.
     return powers if "cage" in powers else powers | {"cage": 0.0 * powers["drag"]}
 
 

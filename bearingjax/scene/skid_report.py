@@ -1,4 +1,4 @@
-"""Balls or rollers that skid, as text for people."""
+"""Skidding balls or rollers, as text."""
 
 import numpy as np
 
@@ -12,11 +12,11 @@ from .skid_run import SkidRun
 
 _RPM = 30.0 / np.pi
 _SMALL = 1e-6
-"""Load over the largest one up to which a contact counts as open."""
+"""Load over the largest one below which a contact counts as open."""
 
 
 def skid_report(run: SkidRun) -> Report:
-    """Readable report of balls or rollers that skid.
+    """Return the readable report of skidding balls or rollers.
 
     Args:
         run: From `run_skid`, converged.
@@ -141,7 +141,7 @@ def _motion(run):
 
 
 def _balls(run):
-    """A row for each ball or roller, or one where all move alike; in the end."""
+    """Tabulate the final state of each ball or roller, or of one if all are alike."""
     found, steady = run.found, run.task.steady
     balls = run.state is not None
     alike = steady and len(found.azimuth) == 1
@@ -164,7 +164,7 @@ def _balls(run):
         ("sliding", "sliding_speed", "m/s", ".4g", (1e3, "mm/s")),
         ("heat", "heat", "W", ".3g"),
     ):
-        # An open contact has no film worth printing.
+        # An open contact has no meaningful film.
         columns += by_ring(name, np.where(load > small, told[what], np.nan), *scale)
     if alike:
         words = ["all"], ["-"]
@@ -176,12 +176,12 @@ def _balls(run):
 
 
 def _pitch(told):
-    """Angles between spin and bearing axis [rad]."""
+    """Return the angles between spin and bearing axis [rad]."""
     return np.arctan2(told["spin"][:, 1], -told["spin"][:, 2])
 
 
 def _films(run):
-    """Regimes of the films of balls, in the end."""
+    """Name the final lubrication regimes of the ball contacts."""
     if run.state is None:
         return []
     regime, load = run.state.regime, run.found.contact_load
@@ -209,5 +209,5 @@ def _ending(run):
 
 
 def _clean(value):
-    """No minus before a zero."""
+    """Remove the sign of a zero."""
     return float(value) + 0.0

@@ -1,4 +1,4 @@
-"""Running what a scene asks for of balls or rollers that skid."""
+"""Simulate the skidding balls or rollers of a scene."""
 
 import dataclasses
 from typing import Any
@@ -21,14 +21,14 @@ from .skid_table import SkidScene
 
 @dataclasses.dataclass(frozen=True)
 class SkidRun:
-    """What came of a scene of balls or rollers that skid, as NumPy holds it.
+    """Result of a skid run, in NumPy.
 
     Attributes:
-        task: What was asked.
-        found: How they move, `SteadySkid`, `SkidHistory` or those of rollers; read
+        task: The skid scene.
+        found: The motion, `SteadySkid`, `SkidHistory` or those of rollers; read
             its `result`.
-        state: `Conditions` in the contacts; of rollers `None`.
-        warnings: What is doubtful; none where it was not solved to the end.
+        state: `Conditions` in the contacts; `None` for rollers.
+        warnings: Warnings of doubtful results; none if not solved to the end.
     """
 
     task: SkidScene
@@ -48,29 +48,29 @@ class SkidRun:
 
     @property
     def has_numbers(self) -> bool:
-        """Whether there is anything to be told: a motion in time may end early."""
+        """Whether there are results: a motion in time may end early."""
         return self.converged or (not self.task.steady and self.reached > 0)
 
     @property
     def reached(self) -> int:
-        """How many of the times were reached, of a motion in time."""
+        """Number of times reached by a motion in time."""
         return int(np.isfinite(self.found.cage_speed).sum())
 
     @property
     def loads_solved(self) -> bool:
-        """Whether the bearing was solved, in which they move."""
+        """Whether the load solve of the bearing converged."""
         return bool(self.found.solution.converged)
 
 
 def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
-    """How the balls or rollers of a scene skid.
+    """Simulate the skidding of the balls or rollers of a scene.
 
     Args:
         task: From `read_skid`.
-        shown: Show a progress bar on standard error, of a motion in time.
+        shown: Show a progress bar on standard error for a motion in time.
 
     Returns:
-        The run with its result code; nothing is raised for a failed solve.
+        The run with its result code; a failed solve does not raise.
 
     Raises:
         SceneError: For settings that do not suit the load.
@@ -92,7 +92,7 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
 
 
 def _left_out(task):
-    """What the scene has and the end state leaves out."""
+    """Yield warnings of scene contents that the steady state neglects."""
     if task.axis == "horizontal":
         yield "the end state leaves out gravity along the orbits; solve in time"
     if task.loads is not None:
@@ -138,7 +138,7 @@ def _motion(task, shown) -> tuple[Any, Any]:
 
 
 def _still(task) -> SkidState:
-    """Balls or rollers and cage at rest, in the middle of their pockets."""
+    """Return the state of elements and cage at rest, centred in their pockets."""
     bearing = task.model.bearing
     count, spins = bearing.n_elements, 3 if bearing.is_ball else 1
     zero, each = jnp.zeros(()), jnp.zeros(count)
@@ -147,5 +147,5 @@ def _still(task) -> SkidState:
 
 
 def _held(leaf):
-    """As NumPy holds it: JAX would compile every small operation on the way."""
+    """Convert to NumPy: JAX would compile every small operation."""
     return np.asarray(leaf) if isinstance(leaf, jax.Array) else leaf

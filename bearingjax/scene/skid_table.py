@@ -1,4 +1,4 @@
-"""The [lubricant], [cage] and [dynamics] tables of a scene: what skids."""
+"""The [lubricant], [cage] and [dynamics] tables of a scene with skidding."""
 
 import dataclasses
 from collections.abc import Iterable
@@ -25,23 +25,23 @@ from .table import Table
 
 @dataclasses.dataclass(frozen=True)
 class SkidScene:
-    """What a scene asks for of balls or rollers that skid, in SI.
+    """Scene of skidding balls or rollers, in SI.
 
     Attributes:
-        scene: The scene without it; its speeds are those of the load solve.
-        model: The bearing with its oil and what surrounds the balls.
+        scene: The scene of the load solve, with its speeds.
+        model: The bearing with its oil, cage and surroundings.
         oil: Name of the oil, or of the law of its viscosity.
         speeds: Ring speeds over time, or `None` for the constant ones of the scene.
         loads: Load over time, or `None` for the constant one of the scene.
-        balanced: As of `skid.simulate`.
-        duration: Of the motion [s]; `None` if the end state is asked for.
-        start: "rolling" or "rest": how the balls begin.
+        balanced: As in `skid.simulate`.
+        duration: Duration of the motion [s]; `None` for the steady state.
+        start: "rolling" or "rest": initial state of the balls.
         axis: "vertical" or "horizontal".
-        n_times: Number of times that are reported.
-        places: Places along the orbit, or `None` for the default.
-        tolerance: Of the integration in time.
-        max_steps: Step limit of it.
-        warnings: What was assumed, or is odd but possible.
+        n_times: Number of reported times.
+        places: Positions along the orbit, or `None` for the default.
+        tolerance: Tolerance of the time integration.
+        max_steps: Its step limit.
+        warnings: Assumptions, and warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 
@@ -68,7 +68,7 @@ class SkidScene:
 
     @property
     def steady(self) -> bool:
-        """Whether the end state is asked for."""
+        """Whether the steady state is requested."""
         return self.duration is None
 
     @property
@@ -81,12 +81,12 @@ class SkidScene:
 def read_skid(
     source: str | Path, settings: Iterable[str] = (), *, steady: bool = False
 ) -> SkidScene:
-    """Read a scene of balls or rollers that skid.
+    """Read a scene of skidding balls or rollers.
 
     Args:
         source, settings: As in `read_scene`.
-        steady: Whether the end state is asked for; what is of time is checked all the
-            same, but may be missing.
+        steady: Whether the steady state is requested; keys of the motion in time are
+            then optional, but checked.
 
     Raises:
         SceneError: One line that names file, key, fault and what is allowed.
@@ -152,7 +152,7 @@ def read_skid(
 
 
 def _check_bearing(top: Table, scene: Scene) -> None:
-    """One row of balls or cylindrical rollers under rings that turn."""
+    """Require one row of balls or cylindrical rollers between rotating rings."""
     design, bearing = scene.element.bearing, top.table("bearing")
     if isinstance(design, BearingSet):
         key = "set" if "set" in top else "bearing"
@@ -172,7 +172,7 @@ def _check_bearing(top: Table, scene: Scene) -> None:
 
 
 def _check_dynamics(dynamics: DynamicsKeys, scene: Scene, steady: bool) -> None:
-    """A time unless the end state is asked for; loads over time of balls alone."""
+    """Require a duration unless steady; allow loads over time only for balls."""
     if dynamics.duration is None and not steady:
         problem = "is missing; give a time, or ask for the end state with --steady"
         raise dynamics.table.error("duration", problem)
@@ -183,8 +183,8 @@ def _check_dynamics(dynamics: DynamicsKeys, scene: Scene, steady: bool) -> None:
 
 
 def _fastest(speeds: SpeedTable | None, duration: float | None) -> float | None:
-    """Fastest speed of one ring against the other until a time [rad/s]; `None`: that
-    of the scene, which alone counts for an end state."""
+    """Return the largest relative speed of the rings until a time [rad/s]; `None`:
+    that of the scene, used for a steady state."""
     if speeds is None or duration is None:
         return None
     time = np.append(np.asarray(speeds.time), duration)

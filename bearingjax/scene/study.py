@@ -1,4 +1,4 @@
-"""Running whatever a scene describes."""
+"""Run the analysis described by a scene."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -22,12 +22,12 @@ from .sweep_run import run_cases
 
 
 class Study(NamedTuple):
-    """What a scene may ask for.
+    """An analysis that a scene may describe.
 
     Attributes:
-        tables: Of a scene that asks for it, all of them.
-        read: Reads such a scene, from its place and settings.
-        run: Runs what was read.
+        tables: Tables that a scene of this analysis must have.
+        read: Reads such a scene, from its path and settings.
+        run: Runs the scene read.
     """
 
     tables: frozenset[str]
@@ -45,14 +45,14 @@ STUDIES = {
     "sweep": Study(frozenset({"cases"}), read_cases, run_cases),
     "solve": Study(frozenset(), read_scene, run_scene),
 }
-"""By the command that does the same; a scene is the first whose tables it has."""
+"""Studies by command; a scene belongs to the first whose tables it has."""
 
 
 def study_of(source: str | Path, settings: Iterable[str] = ()) -> str:
-    """Which of `STUDIES` a scene describes.
+    """Return which of `STUDIES` a scene describes.
 
     Args:
-        source, settings: As of `read_scene`.
+        source, settings: As in `read_scene`.
 
     Raises:
         SceneError: If there is no such scene, or it cannot be read.
@@ -62,18 +62,18 @@ def study_of(source: str | Path, settings: Iterable[str] = ()) -> str:
 
 
 def run(source: str | Path, settings: Iterable[str] = ()) -> Any:
-    """Run whatever a scene describes.
+    """Run the analysis described by a scene.
 
     Args:
         source: Scene file, or the name of a shipped scene.
-        settings: Changes to it, "key=value", as of `--set`.
+        settings: Changes to it, "key=value", as in `--set`.
 
     Returns:
         By the tables of the scene: `RotorRun` of [rotor], a list of `Compared` of
         [roller], `NoiseRun` of [vibration], `SkidRun` of [dynamics], `Optimised` of
         [optimise], `LifeRun` of [cases] and [life], `Sweep` of [cases], else the
-        `Solution` of the bearing under its load. Read its result code: nothing is
-        raised for a failed solve, but for the start of an optimisation.
+        `Solution` of the bearing under its load. Read its result code: a failed solve
+        does not raise, except at the start of an optimisation.
 
     Raises:
         SceneError: If the scene cannot be read.

@@ -1,4 +1,4 @@
-"""Running the cases of a scene, and what is told of them."""
+"""Solve the cases of a scene, and report them."""
 
 import dataclasses
 from collections.abc import Callable
@@ -31,7 +31,7 @@ OUTPUTS = (
     "iterations",
     "residual",
 )
-"""What is kept of each case if the scene does not say."""
+"""Default outputs kept of each case."""
 
 
 def run_cases(
@@ -41,20 +41,20 @@ def run_cases(
 
     Args:
         table: From `read_cases`.
-        progress: Show a bar.
+        progress: Show a progress bar.
         stop: As in `sweep`.
 
     Returns:
-        Sweep with a result code for each case; of a scene with [fit] with the outputs
-        `OPERATING_CLEARANCE` and, of a set, `OPERATING_PRELOAD` too.
+        Sweep with a result code for each case; for a scene with [fit] also with the
+        outputs `OPERATING_CLEARANCE` and, for a set, `OPERATING_PRELOAD`.
 
     Raises:
-        SceneError: For outputs that do not exist or would not fit memory.
+        SceneError: For outputs that do not exist or exceed the memory.
     """
     done: list[tuple[np.ndarray, Sweep]] = []
     for part in table.structures:
         mine = part.of(table.cases)
-        # A sweep asks after its first block; what was stopped begins no other one.
+        # A sweep polls after its first block; once stopped, no other sweep is started.
         stopped = bool(done) and stop is not None and stop()
         if mine.size and not stopped:
             done.append((mine, _run(table, part, mine, progress, stop)))
@@ -88,9 +88,9 @@ def _run(table, part, mine, progress, stop) -> Sweep:
 
 
 def _life(table: CaseTable, part: Structure) -> LifeConditions | None:
-    """Conditions of the lives that are kept, or with [life] judged; else `None`.
+    """Return the conditions of lives that are output, or checked; otherwise `None`.
 
-    Without speeds a life is judged as `solve` does, which then has no film.
+    Without speeds a life is checked as by `solve`, which then has no film.
     """
     if set(LIFE_OUTPUTS) & set(table.outputs or ()):
         return life_conditions(part.scene)
@@ -100,8 +100,8 @@ def _life(table: CaseTable, part: Structure) -> LifeConditions | None:
 
 
 def _on_seats(part: Structure, solved: Sweep) -> Sweep:
-    """The sweep of a structure with what its seats leave in each case: the radial
-    clearance in operation [m] and, of a set, the preload [N]."""
+    """Add to the sweep of a structure the radial clearance in operation [m] and, for a
+    set, the preload [N] of each case."""
     if part.scene.fits is None:
         return solved
     cases = solved.cases
@@ -121,8 +121,8 @@ def _on_seats(part: Structure, solved: Sweep) -> Sweep:
 
 
 def cases_with_set_preload(table: CaseTable) -> CaseTable:
-    """The cases of one design with what `with_set_preload` finds of its set, the ends
-    over the tolerances of its seats included; others as they are.
+    """Apply `with_set_preload` to the cases of one design, including the range over
+    the seat tolerances; cases of several designs are returned unchanged.
 
     Args:
         table: From `read_cases`.
@@ -135,7 +135,7 @@ def cases_with_set_preload(table: CaseTable) -> CaseTable:
 
 
 def _preloads(part: Structure, cases: Cases) -> np.ndarray:
-    """Force with which the rows of each design press each other, unloaded, at the
+    """Return the preload force between the rows of each design, without load, at the
     speeds of its first case (design,) [N]."""
     if part.scene.set_preload is not None:
         return np.array([part.scene.set_preload.operating])
@@ -164,7 +164,7 @@ def _pressed(solution):
 
 
 def _merged(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:
-    """Sweeps of the structures as one; cases of none were not run."""
+    """Merge the sweeps of the structures; cases without a sweep were not run."""
     outputs: dict[str, np.ndarray] = {}
     for mine, solved in done:
         for name, values in solved.outputs.items():
@@ -183,12 +183,12 @@ def _merged(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:
 
 
 def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
-    """How many cases ended how, and the range of every output over those solved.
+    """Report the counts of result codes, and the range of every output.
 
     Args:
-        table: What was asked.
-        solved: What came out.
-        seconds: How long it took [s].
+        table: The cases of the scene.
+        solved: The solved sweep.
+        seconds: Run time [s].
     """
     counts = ", ".join(f"{n} {label}" for label, n in solved.counts().items())
     count = solved.cases.count
@@ -216,8 +216,8 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
 
 
 def _spans(solved: Sweep) -> dict[str, tuple[float, float]]:
-    """Least and largest number of each result over the cases that were solved; none of
-    what is zero, or round-off beside others of the same result and unit."""
+    """Return the range of each result over the solved cases, without results that are
+    zero, or round-off relative to others of the same result and unit."""
     spans, sizes = {}, {}
     for header, column in columns(solved).items():
         values = np.asarray(column)
@@ -236,7 +236,7 @@ def _spans(solved: Sweep) -> dict[str, tuple[float, float]]:
 
 
 def kind(header: str) -> tuple[str, str]:
-    """First word and unit of a header, alike of numbers that can be compared.
+    """Return first word and unit of a header, equal for comparable numbers.
 
     Args:
         header: "name_axis [unit]".
@@ -245,12 +245,12 @@ def kind(header: str) -> tuple[str, str]:
 
 
 def all_warnings(table: CaseTable, solved: Sweep) -> list[str]:
-    """Warnings of the scene, of the preload of its set and of its cases."""
+    """Return the warnings of the scene, of the preload of its set and of its cases."""
     return [*table.warnings, *set_warnings(table, solved), *solved.warnings]
 
 
 def set_warnings(table: CaseTable, solved: Sweep) -> list[str]:
-    """What is odd about the preload that seats leave in the cases, a sentence each."""
+    """Return warnings about the preload of a set in the cases, one sentence each."""
     if table.scene.set_preload is not None:
         return preload_warnings(table.scene.set_preload)
     preload = solved.outputs.get(OPERATING_PRELOAD)
@@ -264,8 +264,8 @@ def set_warnings(table: CaseTable, solved: Sweep) -> list[str]:
 
 
 def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
-    """What makes the design of each case, by "key [unit]": numbers in SI, and texts as
-    the scene writes them; without numbers that are zero in all cases."""
+    """Return the design settings of each case, by "key [unit]": numbers in SI, texts as
+    written in the scene; without numbers that are zero in all cases."""
     if table.cases.design is None:
         return {}
     design = np.asarray(table.cases.design)
@@ -277,7 +277,7 @@ def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
 
 
 def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
-    """A sweep as plain lists, in SI: a column each, null where a case failed."""
+    """Return a sweep as plain lists by column, in SI; null where a case failed."""
     from .. import __version__
 
     return {
@@ -290,7 +290,7 @@ def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
 
 
 def listed_columns(found: dict[str, Any]) -> dict[str, list]:
-    """Columns of a table as plain lists; null where a number is not finite.
+    """Return the columns of a table as plain lists; non-finite numbers become null.
 
     Args:
         found: NumPy arrays by header.

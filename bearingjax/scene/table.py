@@ -1,4 +1,4 @@
-"""Strict reading of nested tables: every key is asked for, or it is an error."""
+"""Strict reading of nested tables: an unread key is an error."""
 
 import contextlib
 import dataclasses
@@ -13,11 +13,11 @@ from .quantity import KINDS, SceneError, kind_of, to_si
 _MISSING: Any = object()
 _BARE = re.compile(r"[A-Za-z0-9_.\[\]-]+")
 LARGEST = 1e9
-"""Largest bare number that a scene may hold."""
+"""Largest bare number allowed in a scene."""
 
 
 class Table:
-    """One table of a scene file that remembers which of its keys were asked for.
+    """One table of a scene file that records which of its keys were read.
 
     Args:
         data: The table as parsed.
@@ -30,10 +30,10 @@ class Table:
         self._file = file
         self._path = path
         self._asked: list[str] = []
-        # Keys that may stand here, asked for or only looked for.
+        # Known keys, read or only looked for.
         self._known: list[str] = []
         self._children: list[Table] = []
-        # What was read, defaults included, for `echo`.
+        # Values read, defaults included, for `echo`.
         self._read: dict[str, Any] = {}
         self._stand_in: Table | None = None
 
@@ -42,25 +42,25 @@ class Table:
         return key in self._data
 
     def keys(self) -> tuple[str, ...]:
-        """All keys that stand here, for tables whose keys are names; each must yet be
-        asked for."""
+        """Return all keys of the table, for tables whose keys are names; each must
+        still be read."""
         return tuple(self._data)
 
     def error(self, key: str, problem: object) -> SceneError:
-        """Error that names file and key."""
+        """Return an error that names file and key."""
         return SceneError(f"{self._file}: `{self._full(key)}`: {problem}")
 
     def own_error(self, problem: object) -> SceneError:
-        """Error that names file and table."""
+        """Return an error that names file and table."""
         return SceneError(f"{self._file}: `{self._path}`: {problem}")
 
     def quantity(self, key: str, kind: str, default: Any = _MISSING) -> Any:
-        """Number in SI of a quantity with a unit.
+        """Read a quantity with a unit as a number in SI.
 
         Args:
             key: Key in this table.
             kind: Kind of quantity, see `quantity.KINDS`.
-            default: If absent; without a default the key is required.
+            default: Value if absent; without a default the key is required.
         """
         value: Any = self._get(key, default, f"a {kind}, a text with its unit")
         if key in self._data:
@@ -73,7 +73,7 @@ class Table:
         return value
 
     def quantities(self, key: str, kind: str) -> list[float]:
-        """List of numbers in SI, each with a unit."""
+        """Read a list of quantities, each with a unit, as numbers in SI."""
         values = self._get(key, _MISSING, f"a list of quantities ({kind})")
         if not isinstance(values, list):
             raise self.error(key, f"{values!r} is not a list of quantities ({kind})")
@@ -85,7 +85,7 @@ class Table:
         return found
 
     def number(self, key: str, default: Any = _MISSING) -> Any:
-        """Dimensionless number, bare."""
+        """Read a bare dimensionless number."""
         value = self._get(key, default, "a bare number")
         if key not in self._data:
             return value
@@ -99,19 +99,19 @@ class Table:
         return float(value)
 
     def real(self, key: str, unit: str, default: Any = _MISSING) -> Any:
-        """Number in SI: bare, or with a unit.
+        """Read a number in SI: bare, or with a unit.
 
         Args:
             key: Key in this table.
             unit: SI unit, empty for a bare number.
-            default: If absent; without a default the key is required.
+            default: Value if absent; without a default the key is required.
         """
         if not unit:
             return self.number(key, default)
         return self.quantity(key, kind_of(unit), default)
 
     def fields(self, kind: type, *required: str) -> dict[str, Any]:
-        """Numbers of a class that stand here under their own names, in SI.
+        """Read the numbers of a class under their field names, in SI.
 
         Args:
             kind: Class whose fields have units.
@@ -135,7 +135,7 @@ class Table:
         return found
 
     def integer(self, key: str, default: Any = _MISSING, least: int = 1) -> Any:
-        """Whole number of at least `least`."""
+        """Read a whole number of at least `least`."""
         value = self._get(key, default, "a whole number")
         if key not in self._data:
             return value
@@ -153,13 +153,13 @@ class Table:
         default: Any = _MISSING,
         words: str = "",
     ) -> Any:
-        """One of several words.
+        """Read one of several words.
 
         Args:
             key: Key in this table.
-            choices: What may stand there.
-            default: If absent; without a default the key is required.
-            words: The choices as an error tells them, where they are too many to list.
+            choices: Allowed words.
+            default: Value if absent; without a default the key is required.
+            words: The choices as described in errors, where they are too many to list.
         """
         value = self._get(key, default, f"one of {words or listed(choices)}")
         if key in self._data and value not in choices:
@@ -167,22 +167,22 @@ class Table:
         return value
 
     def word(self, key: str) -> str | None:
-        """The text at a key as it stands, or `None` if it is not text."""
+        """Return the text at a key, or `None` if it is not text."""
         self._known.append(key)
         value = self._data.get(key)
         return value if isinstance(value, str) else None
 
     def raw(self, key: str, default: Any = _MISSING) -> Any:
-        """What stands at a key, as parsed."""
+        """Read the value of a key, as parsed."""
         return self._get(key, default, "given")
 
     def skip(self, *keys: str) -> None:
-        """Let keys be that somebody else reads."""
+        """Ignore keys that are read elsewhere."""
         self._asked += keys
         self._known += keys
 
     def words(self, key: str, choices: Sequence[str]) -> tuple[str, ...] | None:
-        """List of distinct words, or `None` if absent."""
+        """Read a list of distinct words; `None` if absent."""
         value = self._get(key, None, "")
         if value is None:
             return None
@@ -197,12 +197,12 @@ class Table:
         return tuple(value)
 
     def table(self, key: str, required: bool = False, hint: str = "") -> "Table":
-        """Sub-table; empty if absent and not required.
+        """Read a sub-table; empty if absent and not required.
 
         Args:
             key: Key in this table.
-            required: Whether it must be there.
-            hint: What the error about something else adds.
+            required: Whether the key is required.
+            hint: Addition to the error about another type of value.
         """
         value = self._get(key, _MISSING if required else {}, "a table")
         if not isinstance(value, Mapping):
@@ -217,11 +217,11 @@ class Table:
         return child
 
     def keys_given(self) -> dict[str, Any]:
-        """What stands here, as parsed; nothing counts as asked for by this."""
+        """Return the table as parsed; no key is marked as read."""
         return dict(self._data)
 
     def completed(self, values: Mapping[str, Any]) -> "Table":
-        """This table with other values; whoever asks for their keys asks that one."""
+        """Return a table with other values that replaces this one for their keys."""
         self._asked += values
         child = Table(values, self._file, self._path)
         child._known = self._known
@@ -230,11 +230,11 @@ class Table:
         return child
 
     def empty(self, key: str) -> "Table":
-        """Sub-table without keys, where a word stands for one."""
+        """Return an empty sub-table, for a key given by a word."""
         return Table({}, self._file, self._full(key))
 
     def tables(self, key: str) -> "list[Table]":
-        """List of sub-tables, at least one."""
+        """Read a list of sub-tables, at least one."""
         values = self._get(key, _MISSING, "a list of tables")
         if not isinstance(values, list) or not values:
             raise self.error(key, f"{values!r} is not a list of tables")
@@ -248,14 +248,14 @@ class Table:
         return children
 
     def flag(self, key: str, default: Any = _MISSING) -> Any:
-        """true or false."""
+        """Read true or false."""
         value = self._get(key, default, "true or false")
         if not isinstance(value, bool):
             raise self.error(key, f"{value!r} is not true or false")
         return value
 
     def table_or_word(self, key: str, choices: Sequence[str]) -> "Table | str | None":
-        """Sub-table, one of several words, or `None` if absent."""
+        """Read a sub-table or one of several words; `None` if absent."""
         if self.word(key) is not None:
             return self.choice(key, choices)
         if key in self and not isinstance(self._data[key], Mapping):
@@ -265,17 +265,17 @@ class Table:
         return self.table(key) if key in self else None
 
     def fill(self, key: str, value: Any) -> None:
-        """Say what stands for a key in `echo`, such as a default that was worked out.
+        """Set the value of a key in `echo`, such as a computed default.
 
         Args:
             key: Key in this table.
-            value: As a scene may write it; `None`: nothing.
+            value: In the form of a scene file; `None`: no entry.
         """
         (self._stand_in or self)._read[key] = value
 
     def echo(self) -> dict[str, Any]:
-        """All that was read here and below, as a scene may write it: quantities in SI
-        with their unit, defaults filled in. What was skipped is not in it."""
+        """Return all values read here and below, as written in a scene: quantities in
+        SI with their unit, defaults filled in, without skipped keys."""
 
         def plain(value):
             if isinstance(value, Table):
@@ -291,7 +291,7 @@ class Table:
 
     @contextlib.contextmanager
     def building(self):
-        """Turns the complaint of a constructor into one that names file and table."""
+        """Context that adds file and table to the error of a constructor."""
         try:
             yield
         except SceneError:
@@ -301,7 +301,7 @@ class Table:
             raise SceneError(f"{self._file}: {where}: {error}") from error
 
     def finish(self) -> None:
-        """Raise SceneError for keys that nobody asked for, here and below."""
+        """Raise SceneError for unread keys, here and below."""
         for key in self._data:
             if key not in self._asked:
                 known = ", ".join(sorted(set(self._known)))
@@ -320,7 +320,7 @@ class Table:
         if default is not _MISSING and isinstance(default, bool | int | float | str):
             self._read.setdefault(key, default)
         if default is _MISSING:
-            # A misspelt key is more likely than a forgotten one.
+            # A misspelt key is more likely than a missing one.
             strange = [k for k in self._data if k not in self._asked]
             close = difflib.get_close_matches(key, strange, 1, 0.7)
             hint = f" (`{close[0]}` is there instead)" if close else ""
@@ -333,20 +333,20 @@ class Table:
 
 
 def written(value: float, unit: str) -> str | float:
-    """A number in SI as a scene writes it, to the last digit.
+    """Format a number in SI as in a scene file, to the last digit.
 
     Args:
-        value: In SI.
+        value: Number in SI.
         unit: SI unit, empty for a bare number.
     """
     return f"{float(value)!r} {unit}" if unit else float(value)
 
 
 def written_numbers(owner: Any) -> dict[str, str | float]:
-    """Numbers of a module under their own names, as a scene writes them.
+    """Return the numbers of a module by field name, as written in a scene.
 
     Args:
-        owner: Concrete; its fields that have units are numbers.
+        owner: Concrete module whose fields with units are numbers.
     """
     return {
         field.name: written(
@@ -364,22 +364,22 @@ def is_array(annotation):
 
 
 def not_among(value: object, choices: Sequence[str], words: str = "") -> str:
-    """Problem of a word that is not one of several.
+    """Return the error text for a word that is not one of several.
 
     Args:
-        value: What stands there.
-        choices: What may.
-        words: The choices as they are told, if not one by one.
+        value: Value given.
+        choices: Allowed words.
+        words: Description of the choices, if not listed one by one.
     """
     hint = _suggest(value, choices) if isinstance(value, str) else ""
     return f"{value!r} is not known{hint}; it must be one of {words or listed(choices)}"
 
 
 def listed(names: Sequence[str]) -> str:
-    """Names one by one, in quotes if a comma in one of them would part it.
+    """Join names with commas, in quotes if one of them contains a comma.
 
     Args:
-        names: As a scene writes them.
+        names: Names as written in a scene.
     """
     apart = any("," in name for name in names)
     return ", ".join(f'"{name}"' if apart else name for name in names)

@@ -1,4 +1,4 @@
-"""The [vibration.tolerance] table of a scene: how bearings off the line scatter."""
+"""The [vibration.tolerance] table of a scene: scatter of production bearings."""
 
 import contextlib
 import dataclasses
@@ -22,14 +22,14 @@ _WAVES = {
     "axial_waviness": ("outer_axial", "inner_axial"),
     "element_waviness": ("elements",),
 }
-"""Keys of the root mean square of waves, and what has it."""
+"""Keys of the root mean square of waves, with the parts concerned."""
 
 _OWN = ("diameter", "spacing", "outer_eccentricity", "inner_eccentricity")
-"""Keys in place of those of the grade and class."""
+"""Keys that override values of the grade and class."""
 
 
 Tighter = tuple[tuple[str, dict[str, float]], ...]
-"""Names of tighter tolerances, and how much smaller they make each source [1]."""
+"""Names of tighter tolerances, with their factor on each source [1]."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -101,7 +101,7 @@ class ToleranceKeys(Keys):
 
 
 def read_tolerance(keys: ToleranceKeys, bearing: Any) -> tuple[Tolerances, Tighter]:
-    """How bearings scatter, and what the next tighter grade and class make of it.
+    """Read the scatter of bearings, and that of the next tighter grade and class.
 
     Args:
         keys: `[vibration.tolerance]`.
@@ -138,7 +138,7 @@ def read_tolerance(keys: ToleranceKeys, bearing: Any) -> tuple[Tolerances, Tight
     if not found.sources:
         raise table.error("grade", "is missing, and so is everything that scatters")
     tighter = (*_next_grade(grade, bearing), *_next_class(keys, runouts))
-    # What is given by its number does not follow from the grade or class.
+    # Values given as numbers do not follow from the grade or class.
     kept = [
         (name, {k: v for k, v in factors.items() if k not in given})
         for name, factors in tighter
@@ -147,7 +147,7 @@ def read_tolerance(keys: ToleranceKeys, bearing: Any) -> tuple[Tolerances, Tight
 
 
 def _next_grade(grade: str | None, bearing: Any) -> Tighter:
-    """The grade of rolling elements that is one better, if there is one."""
+    """Return the next better grade of rolling elements, if there is one."""
     ball = bearing.is_ball
     grades = BALL_GRADES if ball else ROLLER_GRADES
     if grade is None or grade == grades[0]:
@@ -167,7 +167,7 @@ def _next_grade(grade: str | None, bearing: Any) -> Tighter:
 
 
 def _next_class(keys: ToleranceKeys, runouts: list) -> Tighter:
-    """The class of rings that is one better, if there is one."""
+    """Return the next better class of rings, if there is one."""
     if len(runouts) < 2:
         return ()
     worse, better = runouts
@@ -181,7 +181,7 @@ def _next_class(keys: ToleranceKeys, runouts: list) -> Tighter:
 
 
 def _runouts(keys: ToleranceKeys) -> list:
-    """Radial runout of the rings of a tolerance class, and of the next better one."""
+    """Return the radial runout of the rings of a class, and of the next better one."""
     name, table = keys.tolerance_class, keys.table
     if name is None:
         return []
@@ -189,7 +189,7 @@ def _runouts(keys: ToleranceKeys) -> list:
     with table.building():
         found = [running_accuracy(name, *lengths)]
     with contextlib.suppress(IndexError, ValueError):
-        # The standard has no runout of every class for every size.
+        # The standard does not give the runout of every class for every size.
         next_one = TOLERANCE_CLASSES[TOLERANCE_CLASSES.index(name) + 1]
         found.append(running_accuracy(next_one, *lengths))
     return found
