@@ -24,7 +24,9 @@ solved for, not read off, with a warning if strong dampers may have hidden one
 `rotor.linearised(speed)` the matrices M, C, G, K. Frequencies, damping ratios, critical
 speeds and amplitudes have first derivatives with respect to every number of the rotor,
 also where modes coincide. They agree with ROSS to all ten digits that its tests print.
-The eigenvalues come from LAPACK, which JAX has on the CPU only.
+The eigenvalues come from LAPACK, which JAX has on the CPU only. Beside other work on
+the processor set `OPENBLAS_NUM_THREADS=1` (as commands do): threads of LAPACK wait for
+each other otherwise, and a Campbell diagram took thirty times as long.
 
 Coefficients for other programs
 -------------------------------
