@@ -30,8 +30,16 @@ OF_ELEMENTS = {
 }
 
 
+PACKAGES = {
+    "stiffness_table": bj.rotor,
+    "to_ross": bj.rotor,
+    "optimise": bj.optimise,
+    "run_scene": bj.scene,
+}
+
+
 def plain(name):
-    return inspect.unwrap(getattr(bj, name))
+    return inspect.unwrap(getattr(PACKAGES.get(name, bj), name))
 
 
 @pytest.mark.parametrize("name", OF_ELEMENTS)
