@@ -15,11 +15,14 @@ Run: python benchmarks/skid_map.py [--smoke] [--plot OUT.png]
 
 Last run:
 
-axial: 1000 points, first 27.4 s, again 922 ms, 922 us a point; alone 1543 us; not
-solved 0; slip -1.564 to 71.1 %; together and alone differ by 7e-15
-combined: 40 points, first 30.1 s, again 1329 ms, 33214 us a point; alone 41745 us; not
-solved 0; slip 0.044 to 11.4 %; together and alone differ by 1e-16
-AMD EPYC, 2 cores, load average 4.6; devices: 1 cpu; jax 0.10.1
+axial: 1000 points, first 74.9 s, again 7858 ms, 7858 us a point; alone 17054 us; not
+solved 0; slip -1.565 to 73.2 %; together and alone differ by 2e-15
+combined: 40 points, first 65.1 s, again 3406 ms, 85140 us a point; alone 98026 us; not
+solved 0; slip 0.044 to 10.0 %; together and alone differ by 1e-15
+AMD EPYC, 2 cores, load average 3.3; devices: 1 cpu; jax 0.10.1
+
+Contact loads follow the orbit that is found since then: before, with loads of pure
+rolling, the axial map took 0.9 s on a faster machine.
 """
 
 import argparse

@@ -14,6 +14,7 @@ from jax.experimental import multihost_utils
 from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 
+from ..design import rows_of
 from ..numerics.programs import program
 from ..numerics.result import Result
 from .cases import solve_case
@@ -138,6 +139,13 @@ class Program:
                 values[lost] = anew[name]
         return found
 
+    def _may_be_large(self, n):
+        """Whether outputs may take too much; their shapes then cost a tracing."""
+        rows = rows_of(self.element.bearing)
+        elements = sum(row.bearing.n_elements for row in rows)
+        numbers = n * elements * (20 * self.task.options.points + 1000)
+        return 8 * numbers > LARGEST
+
     def _blocks(self, held, like, near, progress=False, stop=None):
         """Outputs of cases, in blocks as in a sweep of `like` cases."""
         n, devices = held[0].count, self.mesh.size
@@ -167,9 +175,12 @@ class Program:
                         alike,
                         self.mesh,
                     )
+                    if not found and self._may_be_large(n):
+                        _check_size(eqx.filter_eval_shape(_solve_block, *given)[0], n)
                     out, known = _solve_block(*given)
                     if not found:
-                        found = _room(out, n, block)
+                        _check_size(out, n)
+                        found = _room(out, n)
                     submitted = (out, begin, end)
                 else:
                     submitted = None
@@ -266,15 +277,19 @@ def not_run(name: str, dtype: np.dtype) -> int | float:
     return np.nan if dtype.kind == "f" else 0
 
 
-def _room(out, n, block):
-    """Empty arrays for the outputs of all cases."""
-    needed = sum(v.dtype.itemsize * v.size // block * n for v in out.values())
+def _check_size(out, n):
+    """Raise if the outputs of all cases take too much memory."""
+    needed = sum(v.dtype.itemsize * math.prod((n, *v.shape[1:])) for v in out.values())
     if needed > LARGEST:
         raise ValueError(
             f"sweep: the outputs of {n} cases take {needed / 2**30:.3g} GiB, more than"
             f" {LARGEST / 2**30:g}; name those that you need in `outputs`, or use fewer"
             " `points`."
         )
+
+
+def _room(out, n):
+    """Empty arrays for the outputs of all cases."""
     return {name: np.empty((n, *v.shape[1:]), v.dtype) for name, v in out.items()}
 
 
