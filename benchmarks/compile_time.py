@@ -41,7 +41,7 @@ life life_spectrum                  41.4     4.2
 sweep load_map                      27.6     3.4
 rotor rotor_spindle                 43.9     7.0
 rotor rotor_flexible               102.2    14.2
-skid skid_axial --steady             65.51     5.1
+skid skid_axial --steady              65.5    5.1
 skid skid_roller --steady           50.0     4.8
 noise noise_deep_groove             77.4    34.1
 """
