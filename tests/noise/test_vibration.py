@@ -193,9 +193,10 @@ def test_a_bearing_that_nothing_loads_has_finite_numbers(slopes):
     loose = np.array([1e-8, 2e-8, 0.2, 0.0, 20e-6, 2e-6])
     gradient, (code, load) = slopes(loose)
     assert int(code) == int(bj.Result.NO_LOAD_PATH)
-    # By the load itself nothing limits the ring: it moves to the end of its clearance.
-    assert np.isinf(gradient[3]) and gradient[0] != 0.0
-    assert np.all(np.isfinite(np.delete(gradient, 3)))
+    # The level does not depend on where the ring floats, which moves without limit
+    # under a load: by the load it changes by round-off, and the code says the rest.
+    assert abs(gradient[3]) < 1e-12 and gradient[0] != 0.0
+    assert np.all(np.isfinite(gradient))
     assert np.all(load[..., 0] > 0.0) and not np.any(load[..., 1])
 
 
