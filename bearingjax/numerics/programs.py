@@ -124,59 +124,47 @@ def program(function: F | None = None, *, quick: bool = False) -> F:
 
     @functools.wraps(function)
     def call(*args, **kwargs):
-        if _STORE.folder is None or not _is_eager(args, kwargs):
-            return jitted(*args, **kwargs)
         given = jax.tree.map(_as_array, (args, kwargs))
-        name = _name(call, given)
+        name = _name(call, given) if _can_keep(given) else None
         if name is None:
             return jitted(*args, **kwargs)
-        flat = _flattened(lambda a, k: function(*a, **k), given)
-        run = _STORE.at_hand.get(name)
-        if run is not None:
-            return run(flat[1])
-        options = OPTIONS if quick else {}
-        run, found = _first_run(flat, name, _STORE.folder, options)
-        _STORE.at_hand[name] = run
-        return found
+        return _kept(name, function, given, OPTIONS if quick else {})
 
     return call  # pyright: ignore
 
 
 def called(function: Callable, *arguments: Any) -> Any:
-    """Call a function as it is, or as one program if programs are kept.
+    """Call a function as it is, or as a quick `program` if programs are kept.
 
     Args:
-        function, arguments: As in `call_once`.
-    """
-    if _STORE.folder is None:
-        return function(*arguments)
-    return call_once(function, *arguments, folder=_STORE.folder)
-
-
-def call_once(function: Callable, *arguments: Any, folder: Path) -> Any:
-    """Call a function, compiled for the shortest wait, or as an earlier run kept it.
-
-    Args:
-        function: One of this package, found by its name; depends on its arguments only.
-        arguments: Nested modules, tuples, dicts; their JAX arrays are traced.
-        folder: As in `keep_programs`.
+        function: As in `program`.
+        arguments: Nested modules, tuples, dicts; their arrays are traced.
 
     Returns:
         Result of the function.
     """
-    if jax.default_backend() != "cpu":
-        return eqx.filter_jit(function)(*arguments)
-    flat = _flattened(function, arguments)
-    return _first_run(flat, _name(function, arguments), folder, OPTIONS)[1]
+    if _STORE.folder is None:
+        return function(*arguments)
+    given = jax.tree.map(_as_array, (arguments, {}))
+    name = _name(function, given) if _can_keep(given) else None
+    if name is None:
+        return function(*arguments)
+    return _kept(name, function, given, OPTIONS)
 
 
-def _is_eager(args: tuple, kwargs: dict) -> bool:
-    """Whether a call is one of its own, on CPUs of this process."""
-    leaves = [x for x in jax.tree.leaves((args, kwargs)) if isinstance(x, jax.Array)]
-    here = jax.default_backend() == "cpu" and jax.process_count() == 1
-    return here and not any(
-        isinstance(x, Tracer) or jnp.issubdtype(x.dtype, jax.dtypes.prng_key)
-        for x in leaves
+def _can_keep(given: tuple) -> bool:
+    """Whether a call may be one of a kept program: of its own, on the first CPUs."""
+    if _STORE.folder is None or jax.config.values["jax_disable_jit"]:
+        return False
+    if jax.default_backend() != "cpu" or jax.process_count() > 1:
+        return False
+    devices = jax.devices()
+    return not any(
+        isinstance(x, Tracer)
+        or jnp.issubdtype(x.dtype, jax.dtypes.prng_key)
+        or x.devices() != set(devices[: len(x.devices())])
+        for x in jax.tree.leaves(given)
+        if isinstance(x, jax.Array)
     )
 
 
@@ -184,20 +172,37 @@ def _as_array(leaf: Any) -> Any:
     return jnp.asarray(leaf) if isinstance(leaf, np.ndarray | np.generic) else leaf
 
 
+def _kept(name: str, function: Callable, given: tuple, options: dict) -> Any:
+    """Result of a program at hand, of one that was kept, or of one made now.
+
+    Args:
+        name: Name of its file.
+        function: The function.
+        given: Its arguments and keyword arguments.
+        options: Options of the compiler.
+    """
+    assert _STORE.folder is not None  # checked by `_can_keep`
+    flat = _flattened(lambda args, kwargs: function(*args, **kwargs), given)
+    run = _STORE.at_hand.get(name)
+    if run is not None:
+        return run(flat[1])
+    _STORE.at_hand[name], found = _first_run(flat, name, _STORE.folder, options)
+    return found
+
+
 def _first_run(
-    flat: tuple, name: str | None, folder: Path, options: dict
+    flat: tuple, name: str, folder: Path, options: dict
 ) -> tuple[Callable, Any]:
     """Load or compile a program, and run it; return the program and its result.
 
     Args:
         flat: From `_flattened`.
-        name: Name of its file; `None`: it is not kept.
+        name: Name of its file.
         folder: As in `keep_programs`.
         options: Options of the compiler.
     """
     function, arrays, outputs = flat
     with _opened(folder) as place:
-        name = None if place is None else name
         kept = _loaded(place, name)
         if kept is not None:
             # A program of another jaxlib may lack a function.
@@ -205,13 +210,12 @@ def _first_run(
                 return kept, kept(arrays)
         lowered = jax.jit(function).lower(*arrays)
         libraries = _libraries(lowered)
-        if not all(library.startswith("lapack_") for library in libraries):
-            name = None
-        compiled = _compiled(lowered, options, keep=name is not None)
-        if name is not None:
+        keep = place is not None and all(x.startswith("lapack_") for x in libraries)
+        compiled = _compiled(lowered, options, keep)
+        if keep:
             devices = max((len(array.devices()) for array in arrays), default=1)
-            kept = len(arrays), outputs[0], bool(libraries), devices
-            _keep(place, name, compiled, *kept)
+            more = len(arrays), outputs[0], bool(libraries), devices
+            _keep(place, name, compiled, *more)
 
     def run(arrays):
         return _filled(outputs[0], compiled(*arrays))
@@ -225,7 +229,7 @@ def _flattened(
     """A function of arrays that returns a list of arrays, as executables are.
 
     Args:
-        function, arguments: As in `call_once`.
+        function, arguments: As in `called`.
 
     Returns:
         The function; its arguments; a list that takes up, when the function is
@@ -371,9 +375,9 @@ def is_private(status: os.stat_result) -> bool:
     return kind and status.st_uid == os.geteuid() and not status.st_mode & shared
 
 
-def _loaded(place: int | None, name: str | None):
+def _loaded(place: int | None, name: str):
     """The kept program as a function of a list of arrays, or `None`."""
-    if place is None or name is None:
+    if place is None:
         return None
     try:
         content = _read(place, name)
