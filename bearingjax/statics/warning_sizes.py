@@ -37,8 +37,8 @@ SOFTEST = 1e-7
 tilt stiffness of a bearing under 0.1 N."""
 
 SOFTEST_SHIFT = 3e-5
-"""The same limit for x, y and z only: the stiffness under less than 1e-6 N, a residual
-force of the solver where there is no load."""
+"""Limit as `SOFTEST` for x, y and z only: the stiffness under less than 1e-6 N, a
+residual force of the solver where there is no load."""
 
 _ROUND_OFF = 1e-9
 """Stiffness up to which a direction counts as free, over the largest stiffness [1]."""
