@@ -26,6 +26,9 @@ Conventions
   So it is for a positive contact angle of balls. `position` along a roller runs from
   the large end to the small one, also in mirrored rows. In a set mirrored rows carry
   the other way.
+- Barrel rollers and their raceways are arcs; profiles are measured from the arcs. The
+  origin of a spherical roller bearing is the centre of its sphere. Thrust bearings:
+  the inner ring is the shaft washer, at -z; an inner-ring load along +z closes them.
 - Osculation is groove radius over ball diameter (0.52). Contact angles are positive
   where a row carries along +z. A deep groove bearing's zero has the rings centred, an
   angular contact bearing's has the balls just touching at their contact angle.
@@ -67,8 +70,10 @@ from . import statics as statics
 from .design import AngularContactBallBearing as AngularContactBallBearing
 from .design import BearingSet as BearingSet
 from .design import CircularCrown as CircularCrown
+from .design import CrossedRollerRow as CrossedRollerRow
 from .design import CrownedEnds as CrownedEnds
 from .design import CylindricalRollerBearing as CylindricalRollerBearing
+from .design import CylindricalThrustRollerBearing as CylindricalThrustRollerBearing
 from .design import DeepGrooveBallBearing as DeepGrooveBallBearing
 from .design import FitConditions as FitConditions
 from .design import FourPointBallBearing as FourPointBallBearing
@@ -84,10 +89,14 @@ from .design import Rib as Rib
 from .design import Ribs as Ribs
 from .design import SelfAligningBallRow as SelfAligningBallRow
 from .design import SetRow as SetRow
+from .design import SphericalRollerRow as SphericalRollerRow
+from .design import SphericalThrustRollerBearing as SphericalThrustRollerBearing
 from .design import Straight as Straight
 from .design import Tabulated as Tabulated
 from .design import TaperedRollerBearing as TaperedRollerBearing
+from .design import TaperedThrustRollerBearing as TaperedThrustRollerBearing
 from .design import ThrustBallBearing as ThrustBallBearing
+from .design import ToroidalRollerBearing as ToroidalRollerBearing
 from .element import FREEDOMS as FREEDOMS
 from .element import BearingElement as BearingElement
 from .element import Speed as Speed

@@ -21,7 +21,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.profile import AbstractProfile
+from ..design.profile import AbstractProfile, sagitta
 from ..numerics.expansion import Expansion, expanded_all
 from ..numerics.implicit import stop
 from ..numerics.pieces import Pieces, of_intervals
@@ -147,6 +147,7 @@ class AbstractSliceLaw(AbstractLineLaw):
             line.diameter,
             line.roller_profile,
             line.raceway_profile,
+            arc_radii=line.arc_radii,
             law=self,
             radius=radius(jnp.zeros_like(one)),
             modulus=modulus,
@@ -162,6 +163,8 @@ class LineContact(AbstractLineContact):
         diameter: Mean roller diameter, on which some profiles depend [m].
         roller_profile: Profile of the roller.
         raceway_profile: Profile of the raceway.
+        arc_radii: Radii of the arcs of roller and raceway from which the profiles are
+            measured, that of the raceway concave [m]; `None`: straight generators.
 
     Traced: all fields.
     """
@@ -171,6 +174,7 @@ class LineContact(AbstractLineContact):
     diameter: Scalar
     roller_profile: AbstractProfile
     raceway_profile: AbstractProfile
+    arc_radii: tuple[Scalar, Scalar] | None = eqx.field(default=None, kw_only=True)
 
     factors: ClassVar[tuple[float, float, float]] = _FACTORS
     """Factors of φ, φ' and φ'', in addition to `constant` and `densities`."""
@@ -183,9 +187,13 @@ class LineContact(AbstractLineContact):
     def drop(self, xi: Float[Array, "..."]) -> Float[Array, "..."]:
         """Material removed from both bodies at ξ [m]."""
         s = 0.5 * self.length * xi
-        return self.roller_profile.drop(
+        drop = self.roller_profile.drop(
             s, self.length, self.diameter
         ) + self.raceway_profile.drop(s, self.length, self.diameter)
+        if self.arc_radii is None:
+            return drop
+        roller, raceway = self.arc_radii
+        return drop + (sagitta(s, roller) - sagitta(s, raceway))
 
     def kinks(self) -> tuple[Scalar, ...]:
         """Interior positions ξ where a derivative of the drop jumps, ascending."""

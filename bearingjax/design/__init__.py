@@ -8,6 +8,13 @@ from .ball_types import DeepGrooveBallBearing as DeepGrooveBallBearing
 from .ball_types import FourPointBallBearing as FourPointBallBearing
 from .ball_types import SelfAligningBallRow as SelfAligningBallRow
 from .ball_types import ThrustBallBearing as ThrustBallBearing
+from .barrel import AbstractBarrelBearing as AbstractBarrelBearing
+from .barrel import CrossedRollerRow as CrossedRollerRow
+from .barrel import CylindricalThrustRollerBearing as CylindricalThrustRollerBearing
+from .barrel import SphericalRollerRow as SphericalRollerRow
+from .barrel import SphericalThrustRollerBearing as SphericalThrustRollerBearing
+from .barrel import TaperedThrustRollerBearing as TaperedThrustRollerBearing
+from .barrel import ToroidalRollerBearing as ToroidalRollerBearing
 from .bearing import AbstractRollerBearing as AbstractRollerBearing
 from .bearing import CylindricalRollerBearing as CylindricalRollerBearing
 from .bearing import NeedleRollerBearing as NeedleRollerBearing

@@ -1,6 +1,7 @@
 """Base class of ball and roller bearings."""
 
 import abc
+from typing import ClassVar
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -24,7 +25,11 @@ class AbstractBearing(eqx.Module):
         ring_material: Material of the rings; `None`: as the rolling elements.
         noun: "ball" or "roller".
         is_thrust: Whether it is a thrust bearing between two washers.
+        aligns: Whether it is a row of a self-aligning bearing, with the centre of its
+            spherical outer raceway in the origin.
     """
+
+    aligns: ClassVar[bool] = False
 
     pitch_diameter: eqx.AbstractVar[Scalar]
     first_azimuth: eqx.AbstractVar[Scalar]

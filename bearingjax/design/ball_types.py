@@ -263,6 +263,8 @@ class SelfAligningBallRow(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
+    aligns: ClassVar[bool] = True
+
     row_offset: Scalar = eqx.field(converter=as_real, metadata=unit("m"), kw_only=True)
     radial_internal_clearance: Scalar = eqx.field(
         converter=as_real, metadata=unit("m"), default=0.0, kw_only=True

@@ -90,6 +90,22 @@ class AbstractRollerBearing(AbstractBearing):
         return jnp.zeros_like(self.pitch_diameter)
 
     @property
+    def arc_radii(self) -> tuple[Scalar, Scalar, Scalar] | None:
+        """Radii of the arcs along the generators of roller, outer and inner raceway
+        [m]; `None`: straight ones."""
+        return None
+
+    @property
+    def axial_place(self) -> Scalar:
+        """z of the circle of roller centres from the origin of the bearing [m]."""
+        return jnp.zeros_like(self.pitch_diameter)
+
+    @property
+    def gap(self) -> Scalar:
+        """Gap at each raceway along the contact normal, unloaded and centred [m]."""
+        return 0.25 * self.radial_internal_clearance
+
+    @property
     def free_cosine(self) -> Scalar:
         return jnp.cos(self.axis_angle)
 
@@ -144,13 +160,13 @@ class AbstractRollerBearing(AbstractBearing):
 
     def _check_deviation(self):
         what = "the mean diameter of each roller less `roller_diameter` in m"
-        value = check_deviation(self, "roller_deviation", self.n_rollers, what)
+        value = check_deviation(self, "roller_deviation", self.n_elements, what)
         numbers = concrete(self.roller_diameter)
         if numbers is None:
             return
         diameter = numbers[0]
-        check_spacing(self, self.n_rollers, diameter)
-        check_raceways(self, self.n_rollers, 0.5 * diameter)
+        check_spacing(self, self.n_elements, diameter)
+        check_raceways(self, self.n_elements, 0.5 * diameter)
         if value is not None:
             allowed = f"smaller in size than the roller diameter, {diameter:.6g} m"
             check(self, "roller_deviation", abs(value) < diameter, allowed)
@@ -189,10 +205,11 @@ class AbstractRollerBearing(AbstractBearing):
         if numbers is None:
             return
         pitch, diameter, length, axis, half, clearance = numbers
-        # Both ends of the roller: radius of the end, and of the circle of its centre.
-        for side in (-1.0, 1.0):
+        lost = self.end_drop()
+        # Middle and ends of the roller: its radius there, and that of their circle.
+        for side in (-1.0, 0.0, 1.0):
             along = 0.5 * side * length * math.cos(half)
-            radius = 0.5 * diameter - along * math.tan(half)
+            radius = 0.5 * diameter - along * math.tan(half) - abs(side) * lost
             circle = 0.5 * pitch - along * math.sin(axis)
             allowed = (
                 "small enough to leave an inner raceway inside the pitch circle of"
@@ -212,6 +229,10 @@ class AbstractRollerBearing(AbstractBearing):
         allowed = "smaller in size than the roller diameter (metres meant?)"
         small = abs(clearance) < diameter
         check(self, "radial_internal_clearance", small, allowed)
+
+    def end_drop(self) -> float:
+        """Roller radius that is missing at the ends, profile apart [m]."""
+        return 0.0
 
 
 class CylindricalRollerBearing(AbstractRollerBearing):

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .abstract import AbstractBearing
-from .ball_types import SelfAligningBallRow
+from .barrel import CrossedRollerRow
 from .checks import concrete, instance, non_negative, number, positive
 from .checks import count as whole
 from .overlap import overlap
@@ -175,22 +175,47 @@ class BearingSet(eqx.Module):
         return cls(tuple(SetRow(bearing, place) for place in places))
 
     @classmethod
-    def self_aligning(cls, row: SelfAligningBallRow) -> "BearingSet":
-        """Self-aligning ball bearing: the row and its mirror image, balls staggered.
+    def self_aligning(
+        cls, row: AbstractBearing, *, staggered: bool = True
+    ) -> "BearingSet":
+        """Self-aligning ball bearing or spherical roller bearing, of two rows.
 
         Args:
-            row: The row on the +z side.
+            row: The row on the +z side; the other is its mirror image.
+            staggered: Whether the elements of one row stand between those of the other.
 
         Raises:
-            TypeError: If `row` is no `SelfAligningBallRow`.
+            TypeError: If `row` is no `SelfAligningBallRow` or `SphericalRollerRow`.
         """
-        if not isinstance(row, SelfAligningBallRow):
+        if not getattr(row, "aligns", False):
             raise TypeError(
                 f"BearingSet: `row` is a {type(row).__name__}; it must be a"
-                " SelfAligningBallRow."
+                " SelfAligningBallRow or a SphericalRollerRow."
             )
-        staggered = row.first_azimuth + jnp.pi / row.n_balls
-        other = eqx.tree_at(lambda r: r.first_azimuth, row, staggered)
+        return cls._mirrored(row, staggered)
+
+    @classmethod
+    def crossed(cls, row: CrossedRollerRow) -> "BearingSet":
+        """Crossed roller bearing: every other roller in the groove is turned round.
+
+        Args:
+            row: The rollers that carry an inner-ring load along +z.
+
+        Raises:
+            TypeError: If `row` is no `CrossedRollerRow`.
+        """
+        if not isinstance(row, CrossedRollerRow):
+            raise TypeError(
+                f"BearingSet: `row` is a {type(row).__name__}; it must be a"
+                " CrossedRollerRow."
+            )
+        return cls._mirrored(row, True)
+
+    @classmethod
+    def _mirrored(cls, row, staggered):
+        turned = jnp.pi / row.n_elements if staggered else 0.0
+        first = row.first_azimuth + turned
+        other = eqx.tree_at(lambda r: r.first_azimuth, row, first)
         return cls((SetRow(row), SetRow(other, mirrored=True)))
 
     @classmethod
@@ -221,10 +246,10 @@ class BearingSet(eqx.Module):
                 )
             # Two spheres about different centres could not tilt together.
             numbers = concrete(row.position)
-            aligning = isinstance(row.bearing, SelfAligningBallRow)
+            aligning = row.bearing.aligns
             if aligning and numbers is not None and numbers[0] != 0.0:
                 raise ValueError(
-                    "BearingSet: `position` of a SelfAligningBallRow is"
+                    f"BearingSet: `position` of a {type(row.bearing).__name__} is"
                     f" {numbers[0]:g} m; it must be 0 m: its origin is the middle of"
                     " the bearing."
                 )
@@ -254,8 +279,7 @@ def rows_of(bearing: AbstractBearing | BearingSet) -> tuple[SetRow, ...]:
 
 def is_self_aligning(bearing: AbstractBearing | BearingSet) -> bool:
     """Whether its rings tilt freely, as in a self-aligning bearing."""
-    rows = rows_of(bearing)
-    return all(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
+    return all(row.bearing.aligns for row in rows_of(bearing))
 
 
 def pitch_radius(bearing: AbstractBearing | BearingSet) -> Scalar:

@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 from .ball import AbstractBallBearing
+from .barrel import CrossedRollerRow
 from .checks import concrete
 
 
@@ -19,6 +20,8 @@ def overlap(one: Any, other: Any) -> bool:
             return False
         apart = math.hypot(mine[0] - others[0], mine[1] - others[1])
         return apart < (mine[2] + others[2]) * (1.0 - 1e-9)
+    if all(isinstance(row.bearing, CrossedRollerRow) for row in (one, other)):
+        return False  # one behind the other in the same groove
     mine, others = _corners(one), _corners(other)
     if mine is None or others is None:
         return False
@@ -48,17 +51,20 @@ def _corners(row):
         bearing.roller_length,
         bearing.axis_angle,
         bearing.half_angle,
+        bearing.axial_place,
     )
     if numbers is None:
         return None
-    position, pitch, diameter, length, axis, half = numbers
+    position, pitch, diameter, length, axis, half, place = numbers
     sine, cosine = math.sin(axis), math.cos(axis)
-    corners = []
-    for end, way in ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)):
+    corners, lost = [], bearing.end_drop()
+    around = (-1.0, -1.0), (0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0)
+    for end, way in around:
         along = 0.5 * end * length * math.cos(half)
-        across = way * (0.5 * diameter - 0.5 * end * length * math.sin(half))
+        radius = 0.5 * diameter - 0.5 * end * length * math.sin(half)
+        across = way * (radius - abs(end) * lost)
         # Roller axes t, m in (z, r): the large end lies at -z, outwards.
-        z = along * cosine + across * sine
+        z = place + along * cosine + across * sine
         corners.append(
             (position + side * z, 0.5 * pitch - along * sine + across * cosine)
         )

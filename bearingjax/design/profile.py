@@ -130,7 +130,7 @@ class CircularCrown(AbstractProfile):
         positive(self, "crown_radius")
 
     def drop(self, position, length, diameter):
-        return _arc(position, self.crown_radius)
+        return sagitta(position, self.crown_radius)
 
     def _check_against(self, length, diameter):
         _check_radius(self, "crown_radius", 0.5 * length)
@@ -178,14 +178,14 @@ class CrownedEnds(AbstractProfile):
     def drop(self, position, length, diameter):
         out = jnp.maximum(jnp.abs(position) - 0.5 * self.straight_length, 0.0)
         if self.dub_off_length is None or self.dub_off_radius is None:
-            return _arc(out, self.crown_radius)
+            return sagitta(out, self.crown_radius)
         begin = 0.5 * (length - self.straight_length) - self.dub_off_length
-        crown = _arc(jnp.minimum(out, begin), self.crown_radius)
+        crown = sagitta(jnp.minimum(out, begin), self.crown_radius)
         # The sharper arc has the same slope at `offset` from its top.
         offset = self.dub_off_radius * begin / self.crown_radius
         beyond = jnp.maximum(out - begin, 0.0)
-        top = _arc(offset, self.dub_off_radius)
-        return crown + _arc(offset + beyond, self.dub_off_radius) - top
+        top = sagitta(offset, self.dub_off_radius)
+        return crown + sagitta(offset + beyond, self.dub_off_radius) - top
 
     def kinks(self, length):
         inner = 0.5 * self.straight_length
@@ -210,16 +210,21 @@ class CrownedEnds(AbstractProfile):
 
 
 @jax.custom_jvp
-def _arc(x, radius):
-    """Drop of a circle, R - sqrt(R² - x²), without cancellation."""
+def sagitta(x: Float[Array, "..."], radius: Scalar) -> Float[Array, "..."]:
+    """Drop of a circle, R - sqrt(R² - x²), without cancellation [m].
+
+    Args:
+        x: Distance from the top, |x| < R [m].
+        radius: R [m].
+    """
     return x * x / (radius + jnp.sqrt(radius * radius - x * x))
 
 
-@_arc.defjvp
-def _arc_rule(primals, tangents):
+@sagitta.defjvp
+def _sagitta_rule(primals, tangents):
     # By hand: differentiated quotients would need a division for each derivative.
     (x, radius), (dx, dradius) = primals, tangents
-    drop = _arc(x, radius)
+    drop = sagitta(x, radius)
     inverse = _inverse_root(radius * radius - x * x)
     return drop, inverse * (x * dx - drop * dradius)
 

@@ -15,8 +15,10 @@ from ..contact.line import AbstractLineLaw, relative_radius
 from ..contact.line_contact import AbstractLineContact, LineContact
 from ..design.bearing import AbstractRollerBearing
 from ..design.material import contact_modulus
+from ..design.profile import sagitta
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Scalar
+from .frame import from_roller_axes, to_roller_axes
 from .rolling_element import RingMotion, Unknowns
 
 # The tether spring, relative to the stiffness of a raceway contact (about 1e-6 N/m). It
@@ -68,6 +70,9 @@ class ContactConstants(eqx.Module):
         tether: Tether spring constant [N/m].
         density: Density of the roller [kg/m³].
         modulus: Contact modulus E* of roller and ring [Pa].
+        axial_place: z of the roller centres from the origin of the row [m].
+        arc_radii: Radii of the arcs along the generators of roller, outer and inner
+            raceway [m]; `None`: straight generators.
     """
 
     lines: tuple[AbstractLineContact, AbstractLineContact]
@@ -82,6 +87,18 @@ class ContactConstants(eqx.Module):
     tether: Scalar
     density: Scalar
     modulus: Scalar
+    axial_place: Scalar
+    arc_radii: tuple[Scalar, Scalar, Scalar] | None
+
+    @property
+    def to_axes(self) -> Float[Array, "3 3"]:
+        """Roller axes from the section motion of a body, `frame.to_roller_axes`."""
+        return to_roller_axes(self.axis_angle, self.pitch_radius, self.axial_place)
+
+    @property
+    def from_axes(self) -> Float[Array, "3 3"]:
+        """Inverse of `to_axes`."""
+        return from_roller_axes(self.axis_angle, self.pitch_radius, self.axial_place)
 
     def motion(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"]:
         """Motion (t, m, θ) of the roller in its own axes [m, m, rad].
@@ -113,18 +130,24 @@ def contact_constants(
         Constants, differentiable with respect to every real number of the design.
     """
     length, diameter = bearing.roller_length, bearing.roller_diameter
-    gap = jnp.repeat(0.25 * bearing.radial_internal_clearance, 2)
+    gap, arcs = jnp.repeat(bearing.gap, 2), bearing.arc_radii
     if deviation is not None:
         diameter = diameter + deviation
         gap = gap - 0.5 * deviation * jnp.cos(bearing.half_angle)
     constant = line_law.constant(bearing.material, bearing.rings, length)
 
-    def line(raceway_profile):
+    def line(ring, raceway_profile):
         return LineContact(
-            constant, length, diameter, bearing.roller_profile, raceway_profile
+            constant,
+            length,
+            diameter,
+            bearing.roller_profile,
+            raceway_profile,
+            arc_radii=None if arcs is None else (arcs[0], arcs[1 + ring]),
         )
 
-    lines = line(bearing.outer_raceway_profile), line(bearing.inner_raceway_profile)
+    raceways = bearing.outer_raceway_profile, bearing.inner_raceway_profile
+    lines = line(0, raceways[0]), line(1, raceways[1])
     # Stiffness of a contact pressed by a ten-thousandth of the roller diameter.
     stiffness = constant * length * (1e-4 * diameter) ** (1.0 / 9.0)
     constants = ContactConstants(
@@ -140,6 +163,8 @@ def contact_constants(
         tether=TETHER * stiffness,
         density=bearing.material.density,
         modulus=contact_modulus(bearing.material, bearing.rings),
+        axial_place=bearing.axial_place,
+        arc_radii=arcs,
     )
 
     def radius(raceway):
@@ -211,22 +236,25 @@ def relative_radii(
         position: Positions s along the generator [m].
 
     Returns:
-        ρ at the outer and the inner raceway [m]; the sections of a taper are taken
-        square to the generator.
+        ρ at the outer and the inner raceway [m]; the sections of tapers and barrels are
+        taken square to their generators.
     """
-    c = constants
-    roller = 0.5 * c.diameter - position * jnp.sin(c.half_angle)
-    along = position * jnp.cos(c.half_angle)
+    c, leans = constants, [constants.half_angle] * 3
+    along, drop = position, 0.0
+    if c.arc_radii is not None:
+        # Angles of the generators there to those of the middle.
+        leans = [c.half_angle + jnp.arcsin(position / r) for r in c.arc_radii]
+        drop = sagitta(position, c.arc_radii[0])
+    sin, cos = jnp.sin(c.half_angle), jnp.cos(c.half_angle)
+    along = position * cos - drop * sin
+    roller = 0.5 * c.diameter - position * sin - drop * cos
     radii = []
-    for ring in (1.0, -1.0):
-        angle = c.axis_angle + ring * c.half_angle
+    for ring, lean in ((1.0, leans[1]), (-1.0, leans[2])):
         race = (
             c.pitch_radius
             - along * jnp.sin(c.axis_angle)
             + ring * roller * jnp.cos(c.axis_angle)
         )
-        race_radius = race / jnp.cos(angle)
-        radii.append(
-            relative_radius(roller / jnp.cos(c.half_angle), -ring * race_radius)
-        )
+        race_radius = race / jnp.cos(c.axis_angle + ring * lean)
+        radii.append(relative_radius(roller / jnp.cos(leans[0]), -ring * race_radius))
     return jnp.stack(radii)

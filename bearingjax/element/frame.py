@@ -81,15 +81,18 @@ def turn_factors(square: Scalar) -> tuple[Scalar, Scalar]:
     return one, jnp.where(small, two, 2.0 * half * half / (angle * angle))
 
 
-def to_roller_axes(axis_angle: Scalar, pitch_radius: Scalar) -> Float[Array, "3 3"]:
+def to_roller_axes(
+    axis_angle: Scalar, pitch_radius: Scalar, place: Scalar
+) -> Float[Array, "3 3"]:
     """Motion of the roller centre's point of a body, along and across the roller.
 
-    (x_t, x_m, θ) = T (u, v, θ): displacement of the point (z, r) = (0, R_m) along
+    (x_t, x_m, θ) = T (u, v, θ): displacement of the point (z, r) = (z_m, R_m) along
     the roller axis t and across it (m, outwards), and the rotation.
 
     Args:
         axis_angle: Angle of the roller axis to the bearing axis [rad].
         pitch_radius: R_m [m].
+        place: z_m [m].
 
     Returns:
         T, of determinant 1.
@@ -99,21 +102,23 @@ def to_roller_axes(axis_angle: Scalar, pitch_radius: Scalar) -> Float[Array, "3 
     o, i = jnp.zeros_like(c), jnp.ones_like(c)
     return jnp.stack(
         [
-            jnp.stack([c, -s, -c * pitch_radius]),
-            jnp.stack([s, c, -s * pitch_radius]),
+            jnp.stack([c, -s, -c * pitch_radius - s * place]),
+            jnp.stack([s, c, c * place - s * pitch_radius]),
             jnp.stack([o, o, i]),
         ]
     )
 
 
-def from_roller_axes(axis_angle: Scalar, pitch_radius: Scalar) -> Float[Array, "3 3"]:
+def from_roller_axes(
+    axis_angle: Scalar, pitch_radius: Scalar, place: Scalar
+) -> Float[Array, "3 3"]:
     """Inverse of `to_roller_axes`."""
     c, s = jnp.cos(axis_angle), jnp.sin(axis_angle)
     o, i = jnp.zeros_like(c), jnp.ones_like(c)
     return jnp.stack(
         [
             jnp.stack([c, s, i * pitch_radius]),
-            jnp.stack([-s, c, o]),
+            jnp.stack([-s, c, -i * place]),
             jnp.stack([o, o, i]),
         ]
     )

@@ -2,13 +2,18 @@
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import number
+from ..design.profile import sagitta
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .constants import ContactConstants
 from .frame import orbit, roll_ratio, rotation
+
+_NODES = 16
+"""Nodes of the volume integrals of a barrel: exact to round-off for a flat arc."""
 
 
 class Speed(eqx.Module):
@@ -50,16 +55,19 @@ def roller_speeds(constants: ContactConstants, speed: Speed) -> tuple[Scalar, Sc
 
 
 def mass_and_inertia(constants: ContactConstants) -> tuple[Scalar, Scalar, Scalar]:
-    """Mass of a roller and its moments of inertia, profile neglected.
+    """Mass of a roller and its moments of inertia, crown and end relief neglected.
 
     Args:
         constants: From `contact_constants`.
 
     Returns:
         Mass [kg], moment about its axis and about a cross axis through the roller
-        centre [kg m²], of a cone frustum (cylinder for a half angle of zero).
+        centre [kg m²], of a cone frustum (cylinder for a half angle of zero), less
+        what the arc of a barrel lacks of it.
     """
     c = constants
+    if c.arc_radii is not None:
+        return _of_barrel(c)
     height = 2.0 * c.half_length * jnp.cos(c.half_angle)
     r2 = (0.5 * c.diameter) ** 2
     g2 = (jnp.tan(c.half_angle) * height) ** 2
@@ -69,6 +77,23 @@ def mass_and_inertia(constants: ContactConstants) -> tuple[Scalar, Scalar, Scala
     spread = height**3 * (r2 / 12.0 + g2 / 80.0)
     factor = jnp.pi * c.density
     return factor * second, 0.5 * factor * fourth, factor * (0.25 * fourth + spread)
+
+
+def _of_barrel(c):
+    """As `mass_and_inertia`: integrals of r², r⁴ and r² z² along the generator."""
+    node, weight = np.polynomial.legendre.leggauss(_NODES)
+    s = c.half_length * jnp.asarray(node, c.diameter.dtype)
+    drop = sagitta(s, c.arc_radii[0])
+    sin, cos = jnp.sin(c.half_angle), jnp.cos(c.half_angle)
+    r2 = (0.5 * c.diameter - s * sin - drop * cos) ** 2
+    z = s * cos - drop * sin
+    # Widths dz of the discs: the slope of the drop is s over the arc's height.
+    slope = s / (c.arc_radii[0] - drop)
+    width = c.half_length * jnp.asarray(weight, s.dtype) * (cos - slope * sin)
+    factor = jnp.pi * c.density * width
+    axial = jnp.sum(factor * 0.5 * r2**2)
+    cross = jnp.sum(factor * (0.25 * r2**2 + r2 * z**2))
+    return jnp.sum(factor * r2), axial, cross
 
 
 def inertia_force(constants: ContactConstants, speed: Speed) -> Float[Array, "3"]:

@@ -15,7 +15,7 @@ from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature
 from .constants import ContactConstants
 from .energy import roller_energy
-from .frame import from_roller_axes, section_matrix, to_roller_axes
+from .frame import section_matrix
 from .roller_geometry import AbstractRollerGeometry, Approaches
 from .rolling_element import AbstractRollingElement
 from .seeking import Seeking
@@ -46,8 +46,7 @@ class Roller(AbstractRollingElement):
     energy = roller_energy
 
     def axes(self, azimuth):
-        c = self.constants
-        return to_roller_axes(c.axis_angle, c.pitch_radius) @ section_matrix(azimuth)
+        return self.constants.to_axes @ section_matrix(azimuth)
 
     def raised(self, heights):
         constants = self.constants
@@ -73,14 +72,12 @@ class Roller(AbstractRollingElement):
         )
 
     def motion(self, rings, x):
-        c = self.constants
-        return from_roller_axes(c.axis_angle, c.pitch_radius) @ c.motion(rings, x)
+        return self.constants.from_axes @ self.constants.motion(rings, x)
 
     def inertia(self, rings, x):
-        c = self.constants
         if self.body_force is None:
             return None
-        return self.body_force @ to_roller_axes(c.axis_angle, c.pitch_radius)
+        return self.body_force @ self.constants.to_axes
 
     @property
     def diameter(self):

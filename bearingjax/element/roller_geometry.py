@@ -17,7 +17,6 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .constants import ContactConstants
-from .frame import from_roller_axes
 from .rolling_element import RingMotion, Unknowns
 
 
@@ -120,11 +119,11 @@ class FiniteRoller(AbstractRollerGeometry):
 
     def approaches(self, rings, x):
         c = self.constants
-        back = from_roller_axes(c.axis_angle, c.pitch_radius)
+        back = c.from_axes
         outer, inner = back @ rings.outer, back @ rings.inner
         roller = back @ c.motion(rings, x)
         axes = _section_axes(c)
-        place = jnp.stack([jnp.zeros_like(c.pitch_radius), c.pitch_radius])
+        place = jnp.stack([c.axial_place, c.pitch_radius])
         out = []
         sin, cos = jnp.sin(c.half_angle), jnp.cos(c.half_angle)
         for k, (ring, sign) in enumerate(((outer, 1.0), (inner, -1.0))):
@@ -162,6 +161,13 @@ def _rows(constants):
         jnp.stack([-sin, cos, -lever]),
         jnp.stack([zero, zero, half]),
     ]
+    if c.arc_radii is not None:
+        # A raceway that moves along the roller by w seems turned by w/radius.
+        for k, (side, radius) in enumerate(
+            zip((1.0, -1.0), c.arc_radii[1:], strict=True)
+        ):
+            along = jnp.stack([cos, -side * sin, -0.5 * side * c.diameter * cos])
+            rows[2 * k + 1] = rows[2 * k + 1] - half / radius * along
     if c.ribs is not None:
         n, s = c.ribs.normal, c.ribs.centre
         turn = s[:, 0] * n[:, 1] - s[:, 1] * n[:, 0]

@@ -1,0 +1,348 @@
+"""Bearings of barrel rollers, thrust rollers and crossed rollers."""
+
+from typing import ClassVar
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from .bearing import AbstractRollerBearing, TaperedRollerBearing
+from .checks import check, concrete, in_range, number, positive
+from .profile import sagitta
+
+_FAR = 0.01
+"""Distance of the centre of the outer sphere from the axis, over its radius, above
+which the drawing contradicts itself."""
+
+
+class AbstractBarrelBearing(AbstractRollerBearing):
+    """Single row of barrel rollers between concave raceways: base class.
+
+    The generators of roller and raceways are arcs that touch in the middle of the
+    roller; `roller_profile` and the raceway profiles are measured from these arcs.
+
+    Attributes are those of `AbstractRollerBearing`, and
+        roller_profile_radius: Radius of the arc of the roller, R_r [m].
+        outer_raceway_radius: Radius of the arc of the outer raceway, r_o [m].
+        inner_raceway_radius: Radius of the arc of the inner raceway, r_i [m].
+
+    The distance of the centres of both raceway arcs, r_o + r_i - D, takes the place of
+    that of the groove centres of a ball bearing.
+    """
+
+    roller_profile_radius: Scalar = eqx.field(
+        converter=as_real, metadata=unit("m"), kw_only=True
+    )
+    outer_raceway_radius: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("m"), kw_only=True
+    )
+    inner_raceway_radius: Scalar = eqx.field(
+        converter=as_real, metadata=unit("m"), kw_only=True
+    )
+
+    @property
+    def arc_radii(self):
+        assert self.outer_raceway_radius is not None
+        return (
+            self.roller_profile_radius,
+            self.outer_raceway_radius,
+            self.inner_raceway_radius,
+        )
+
+    @property
+    def gap(self):
+        return 0.25 * self.radial_internal_clearance * jnp.cos(self.axis_angle)
+
+    @property
+    def holds_axially(self) -> bool:
+        return True
+
+    def __check_init__(self):
+        # Infinite radii are straight generators.
+        for name in ("roller_profile_radius", "inner_raceway_radius"):
+            _radius(self, name)
+        if self.outer_raceway_radius is not None:
+            _radius(self, "outer_raceway_radius")
+        numbers = concrete(*self.arc_radii)
+        if numbers is None:
+            return
+        for name, radius in zip(("outer", "inner"), numbers[1:], strict=True):
+            allowed = (
+                f"at least `roller_profile_radius`, {numbers[0]:.6g} m, or the roller"
+                " would bear on its ends"
+            )
+            key = f"{name}_raceway_radius"
+            check(self, key, radius >= numbers[0], allowed, radius, "m")
+
+    def end_drop(self):
+        numbers = concrete(self.roller_profile_radius, self.roller_length)
+        if numbers is None or not np.isfinite(numbers[0]):
+            return 0.0
+        return float(sagitta(jnp.asarray(0.5 * numbers[1]), jnp.asarray(numbers[0])))
+
+
+class _AbstractSphere(AbstractBarrelBearing):
+    """Barrel rollers whose outer raceway is a sphere about a point of the axis.
+
+    Attributes are those of `AbstractBarrelBearing`, and
+        contact_angle: Contact angle of the outer raceway [rad].
+        outer_raceway_radius: Radius of the sphere [m]; `None`: that about the axis.
+    """
+
+    contact_angle: Scalar = eqx.field(
+        converter=as_real, metadata=unit("rad"), kw_only=True
+    )
+    outer_raceway_radius: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("m"), kw_only=True, default=None
+    )
+
+    @property
+    def axis_angle(self):
+        return self.contact_angle - self.half_angle
+
+    @property
+    def sphere_radius(self) -> Scalar:
+        """Radius of the sphere about the axis that stands at its gap [m]."""
+        radial = 0.5 * (
+            self.pitch_diameter + self.roller_diameter * jnp.cos(self.axis_angle)
+        )
+        return radial / jnp.cos(self.contact_angle) + self.gap
+
+    @property
+    def arc_radii(self):
+        outer = self.outer_raceway_radius
+        return (
+            self.roller_profile_radius,
+            self.sphere_radius if outer is None else outer,
+            self.inner_raceway_radius,
+        )
+
+    @property
+    def play(self):
+        # The gap along the contact angle gives axial play over its sine, radial play
+        # over its cosine.
+        return (
+            2.0
+            * self.gap
+            / jnp.minimum(jnp.sin(self.contact_angle), jnp.cos(self.contact_angle))
+        )
+
+    def __check_init__(self):
+        in_range(self, "contact_angle", 0.0, 0.5 * np.pi)
+        if self.outer_raceway_radius is None:
+            return
+        numbers = concrete(self.outer_raceway_radius, self.sphere_radius)
+        if numbers is not None:
+            allowed = (
+                f"{numbers[1]:.6g} m to {100 * _FAR:g} %, which puts the centre of the"
+                " sphere on the axis (the radius may be left out)"
+            )
+            near = abs(numbers[0] - numbers[1]) <= _FAR * numbers[1]
+            check(self, "outer_raceway_radius", near, allowed)
+
+
+class SphericalRollerRow(_AbstractSphere):
+    """One row of a spherical roller bearing: its outer raceway is a sphere.
+
+    The origin of the bearing is the point of the axis where the contact normals meet,
+    the centre of the sphere, so that the rings tilt freely about it.
+    `BearingSet.self_aligning` makes the bearing of two such rows. At zero displacement
+    the rings are centred.
+
+    Attributes are those of `AbstractBarrelBearing`, and
+        contact_angle: Contact angle of the symmetric rollers, above 0 [rad].
+        outer_raceway_radius: Radius of the sphere [m]; `None`: that about the origin.
+
+    Traced: all fields but `n_rollers`.
+    """
+
+    aligns: ClassVar[bool] = True
+
+    @property
+    def axial_place(self):
+        return 0.5 * self.pitch_diameter * jnp.tan(self.contact_angle)
+
+
+class ToroidalRollerBearing(AbstractBarrelBearing):
+    """Toroidal roller bearing: long barrel rollers, raceways of large profile radius.
+
+    Rings that are moved along the axis by s lose radial clearance by
+    s²/(r_o + r_i - D), and nothing holds them axially but that.
+
+    Attributes are those of `AbstractBarrelBearing`.
+
+    Traced: all fields but `n_rollers`.
+    """
+
+    @property
+    def play(self):
+        assert self.outer_raceway_radius is not None
+        centres = self.outer_raceway_radius + self.inner_raceway_radius
+        half, distance = 0.5 * self.radial_internal_clearance, centres
+        # Axial travel until the raceways touch, of two arcs.
+        free = jnp.maximum(half * (2.0 * (distance - self.roller_diameter) - half), 0.0)
+        return jnp.maximum(half, _root(free))
+
+
+class SphericalThrustRollerBearing(_AbstractSphere):
+    """Spherical roller thrust bearing: asymmetric barrel rollers, one direction.
+
+    The inner ring is the shaft washer, at -z of the rollers; an inner-ring load along
+    +z closes the bearing. Asymmetric rollers bear on a rib of the shaft washer with
+    their large ends (`ribs.inner_minus`). The origin lies in the plane of the roller
+    centres; the rings tilt freely about the centre of the sphere.
+
+    Attributes are those of `AbstractBarrelBearing`, and
+        contact_angle: Contact angle of the outer raceway, above 0 [rad].
+        outer_raceway_radius: Radius of the sphere [m]; `None`: that about the axis.
+        profile_offset: Distance of the largest section from the middle of the roller,
+            towards the large end [m]; zero for symmetric rollers.
+
+    Traced: all fields but `n_rollers`.
+    """
+
+    is_thrust: ClassVar[bool] = True
+
+    profile_offset: Scalar = eqx.field(
+        converter=as_real, metadata=unit("m"), kw_only=True, default=0.0
+    )
+
+    @property
+    def half_angle(self):
+        return jnp.arcsin(self.profile_offset / self.roller_profile_radius)
+
+    @property
+    def gap(self):
+        return jnp.zeros_like(self.pitch_diameter)
+
+    @property
+    def play(self):
+        return jnp.zeros_like(self.pitch_diameter)
+
+    def __check_init__(self):
+        in_range(self, "profile_offset", 0.0, 0.5 * self.roller_length, True)
+        _no_clearance(self)
+
+
+class CylindricalThrustRollerBearing(AbstractRollerBearing):
+    """Cylindrical roller thrust bearing: rollers at 90 degrees between flat washers.
+
+    The inner ring is the shaft washer, at -z of the rollers; an inner-ring load along
+    +z closes the bearing. Several rollers side by side in one pocket are rows of a
+    `BearingSet`, at their own pitch diameters.
+
+    Attributes are those of `AbstractRollerBearing`.
+
+    Traced: all fields but `n_rollers`.
+    """
+
+    is_thrust: ClassVar[bool] = True
+
+    @property
+    def axis_angle(self):
+        return jnp.full_like(self.pitch_diameter, 0.5 * np.pi)
+
+    @property
+    def free_cosine(self):
+        return jnp.zeros_like(self.pitch_diameter)
+
+    @property
+    def holds_axially(self) -> bool:
+        return True
+
+    def __check_init__(self):
+        _no_clearance(self)
+
+
+class TaperedThrustRollerBearing(TaperedRollerBearing):
+    """Tapered roller thrust bearing, one direction.
+
+    Attributes, and the need for a rib, are those of `TaperedRollerBearing`. The inner
+    ring is the shaft washer. The sum of both angles is the contact angle of the outer
+    raceway: 90 degrees for a flat housing washer.
+
+    Traced: all fields but `n_rollers`.
+    """
+
+    is_thrust: ClassVar[bool] = True
+
+    def __check_init__(self):
+        outer = self.axis_angle + self.half_angle
+        numbers = concrete(outer)
+        if numbers is not None:
+            allowed = (
+                "above 45° and at most 90° with `roller_axis_angle` added: the contact"
+                " angle of the outer raceway of a thrust bearing"
+            )
+            steep = 0.25 * np.pi < numbers[0] < 0.5 * np.pi + 1e-6
+            check(self, "roller_half_angle", steep, allowed)
+        _no_clearance(self)
+
+
+class CrossedRollerRow(AbstractRollerBearing):
+    """Rollers of one orientation in a crossed roller bearing, at 45 degrees.
+
+    Every other roller in the groove is turned by 90 degrees. `BearingSet.crossed`
+    makes the bearing of both orientations. The rollers are a little shorter than
+    thick, so that their ends carry nothing.
+
+    Attributes are those of `AbstractRollerBearing`, with
+        n_rollers: Number of rollers of both orientations, even.
+
+    Traced: all fields but `n_rollers`.
+    """
+
+    @property
+    def axis_angle(self):
+        return jnp.full_like(self.pitch_diameter, 0.25 * np.pi)
+
+    @property
+    def gap(self):
+        return 0.25 * self.radial_internal_clearance * jnp.cos(self.axis_angle)
+
+    @property
+    def n_elements(self) -> int:
+        """Number of rollers of one orientation."""
+        return self.n_rollers // 2
+
+    @property
+    def holds_axially(self) -> bool:
+        return True
+
+    def __check_init__(self):
+        even = self.n_rollers % 2 == 0
+        allowed = "even: every other roller is turned"
+        check(self, "n_rollers", even, allowed, self.n_rollers, "rollers")
+        numbers = concrete(self.roller_length, self.roller_diameter)
+        if numbers is not None:
+            allowed = f"at most the roller diameter, {numbers[1]:.6g} m"
+            check(self, "roller_length", numbers[0] <= numbers[1], allowed)
+
+
+def _radius(owner, name):
+    value = getattr(owner, name)
+    numbers = concrete(value)
+    if numbers is not None and numbers[0] == np.inf:
+        return
+    positive(owner, name)
+    length = concrete(owner.roller_length)
+    if numbers is not None and length is not None:
+        least = 0.5 * length[0]
+        allowed = f"above half the roller length, {least:.6g} m"
+        check(owner, name, numbers[0] > least, allowed)
+
+
+def _no_clearance(owner):
+    number(owner, "radial_internal_clearance")
+    numbers = concrete(owner.radial_internal_clearance)
+    if numbers is not None:
+        allowed = "0 m: a thrust bearing of one direction has no clearance"
+        check(owner, "radial_internal_clearance", numbers[0] == 0.0, allowed)
+
+
+def _root(x):
+    """Square root with derivative zero at zero."""
+    some = x > 0
+    return jnp.where(some, jnp.sqrt(jnp.where(some, x, 1.0)), 0.0)
