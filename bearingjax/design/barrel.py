@@ -222,7 +222,9 @@ class SphericalThrustRollerBearing(_AbstractSphere):
         return jnp.zeros_like(self.pitch_diameter)
 
     def __check_init__(self):
-        in_range(self, "profile_offset", 0.0, 0.5 * self.roller_length, True)
+        in_range(
+            self, "profile_offset", 0.0, 0.5 * self.roller_length, include_low=True
+        )
         _no_clearance(self)
 
 
