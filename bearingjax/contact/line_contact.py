@@ -148,6 +148,7 @@ class AbstractSliceLaw(AbstractLineLaw):
             line.roller_profile,
             line.raceway_profile,
             arc_radii=line.arc_radii,
+            exact=line.exact,
             law=self,
             radius=radius(jnp.zeros_like(one)),
             modulus=modulus,
@@ -165,8 +166,9 @@ class LineContact(AbstractLineContact):
         raceway_profile: Profile of the raceway.
         arc_radii: Radii of the arcs of roller and raceway from which the profiles are
             measured, that of the raceway concave [m]; `None`: straight generators.
+        exact: Whether arcs keep their shape when they move, `arc_approach`. Static.
 
-    Traced: all fields.
+    Traced: all fields but `exact`.
     """
 
     constant: Scalar
@@ -175,6 +177,7 @@ class LineContact(AbstractLineContact):
     roller_profile: AbstractProfile
     raceway_profile: AbstractProfile
     arc_radii: tuple[Scalar, Scalar] | None = eqx.field(default=None, kw_only=True)
+    exact: bool = eqx.field(static=True, default=False, kw_only=True)
 
     factors: ClassVar[tuple[float, float, float]] = _FACTORS
     """Factors of φ, φ' and φ'', in addition to `constant` and `densities`."""
@@ -194,6 +197,19 @@ class LineContact(AbstractLineContact):
             return drop
         roller, raceway = self.arc_radii
         return drop + (sagitta(s, roller) - sagitta(s, raceway))
+
+    def approach(
+        self, a: Scalar, b: Scalar, xi: Float[Array, "..."]
+    ) -> Float[Array, "..."]:
+        """Approach at ξ, negative where the bodies are apart [m]."""
+        if not self.exact:
+            return a + b * xi - self.drop(xi)
+        assert self.arc_radii is not None
+        s, (roller, raceway) = 0.5 * self.length * xi, self.arc_radii
+        size = self.length, self.diameter
+        lost = self.roller_profile.drop(s, *size) + sagitta(s, roller)
+        met = arc_approach(a, b, s, 0.5 * self.length, lost, raceway)
+        return met - self.raceway_profile.drop(s, *size)
 
     def kinks(self) -> tuple[Scalar, ...]:
         """Interior positions ξ where a derivative of the drop jumps, ascending."""
@@ -246,6 +262,8 @@ class LineContact(AbstractLineContact):
         return local, rule.table(partial(_offset, local), ends, ends.dtype), rule
 
     def integrals(self, table, quadrature, a, b):
+        if self.exact:
+            return _exact_integrals(self, quadrature, a, b)
         line = self
         if isinstance(table[-1], Pieces):
             line, table, quadrature = table
@@ -272,11 +290,11 @@ class LineContact(AbstractLineContact):
 
     def at(self, carried, xi):
         a, b = carried
-        return self.line_load(a + b * xi - self.drop(xi))
+        return self.line_load(self.approach(a, b, xi))
 
     def summits(self, carried, scan, weight):
         a, b = carried
-        height = weight * (a + b * scan - self.drop(scan))
+        height = weight * self.approach(a, b, scan)
         near = jnp.clip(jnp.argmax(height), 1, scan.shape[0] - 2)
         step = scan[1] - scan[0]
         top = scan[near] + step * _vertex(*(height[near + k] for k in (-1, 0, 1)))
@@ -285,7 +303,7 @@ class LineContact(AbstractLineContact):
         step = 0.25 * step
         middle = jnp.clip(top, step - 1.0, 1.0 - step)
         around = middle + step * jnp.arange(-1.0, 2.0, dtype=step.dtype)
-        height = a + b * around - self.drop(around)
+        height = self.approach(a, b, around)
         height = height * (weight[near] + slope * (around - scan[near]))
         best = middle + step * _vertex(height[0], height[1], height[2])
         places = jnp.stack([scan[0], scan[-1], scan[near], top, best, *self.kinks()])
@@ -347,6 +365,73 @@ def _vertex(left, top, right):
 
 def _offset(line, xi):
     return line.drop(xi)
+
+
+def arc_approach(
+    a: Scalar,
+    b: Scalar,
+    position: Float[Array, "..."],
+    half_length: Scalar,
+    drop: Float[Array, "..."],
+    radius: Scalar,
+) -> Float[Array, "..."]:
+    """Approach of the points of a roller to a concave arc that keeps its shape [m].
+
+    The point at s lies by `drop` below the tangent to the roller in its middle. The
+    centre of the arc stands from the middle by R + a, turned from the normal by the
+    angle τ with b = -sin τ L/2. Then the approach is |P - A| - R; to first order it is
+    a + b 2s/L - drop + s²/(2R).
+
+    Args:
+        a: Approach in the middle of the roller [m].
+        b: Minus the sine of the angle times half the length [m].
+        position: s [m].
+        half_length: L/2 [m].
+        drop: Drop of the roller there [m].
+        radius: R [m]; infinite of a straight raceway.
+    """
+    curvature, sine = 1.0 / radius, b / half_length
+    cosine = jnp.sqrt(1.0 - sine * sine)
+    # (|P - A|² - R²)/R: no difference of large numbers.
+    far = a * (2.0 + a * curvature) + curvature * (position**2 + drop**2)
+    far = far + 2.0 * (1.0 + a * curvature) * (sine * position - drop * cosine)
+    return far / (1.0 + jnp.sqrt(1.0 + curvature * far))
+
+
+def _remainder(args, xi):
+    line, a, b = args
+    return a + b * xi - line.approach(a, b, xi)
+
+
+def _exact_integrals(line, quadrature, a, b) -> Response:
+    """∫ φ ds and its derivatives, of an approach that is not affine in a and b."""
+    args, arcs = (line, a, b), line.arcs
+    table = quadrature.table(
+        partial(_remainder, args), line.kinks(), line.length.dtype, arcs
+    )
+    nodes = quadrature.nodes(_remainder, args, table, a, b, arcs)
+    tau, weight = (jnp.asarray(x, a.dtype) for x in quadrature.reference())
+    xi = nodes.middle[:, None] + nodes.half[:, None] * tau[None]
+
+    def rates(at):
+        rate = jax.jacfwd(lambda at: line.approach(at[0], at[1], xi))(at)
+        return rate, rate
+
+    bend, rate = jax.jacfwd(rates, has_aux=True)(jnp.stack([a, b]))
+    energy, load, stiffness = line.densities(nodes.argument)
+    scale = 0.5 * line.length * line.constant * nodes.half[:, None] * weight[None]
+    load, stiffness = (
+        f * scale * x for f, x in zip(line.factors[1:], (load, stiffness), strict=True)
+    )
+
+    def second(i, k):
+        return jnp.sum(stiffness * rate[..., i] * rate[..., k] + load * bend[..., i, k])
+
+    return Response(
+        line.factors[0] * jnp.sum(scale * energy),
+        jnp.stack([jnp.sum(load * rate[..., k]) for k in range(2)]),
+        jnp.stack([second(0, 0), second(0, 1), second(1, 1)]),
+    )
 
 
 def _integrals(line, nodes, quadrature) -> Response:

@@ -143,13 +143,37 @@ class RollerChoices(AbstractChoices):
         return cls(line_law=law, quadrature=quadrature, kinematics=kinematics)
 
     def check(self, part, speed):
-        self.kinematics.check("roller")
+        kinematics, bearing = self.kinematics, part.bearing
+        kinematics.check("roller")
+        assert isinstance(bearing, AbstractRollerBearing)
+        if not kinematics.keeps_arcs or bearing.arc_radii is None:
+            return
+        name = f"{type(kinematics).__name__}()"
+        if isinstance(self.line_law, CoupledSlices):
+            raise ValueError(
+                f"BearingElement: `kinematics` is {name}, which takes independent"
+                " slices of barrel rollers, but `line_law` is CoupledSlices(); use"
+                " Linearised()."
+            )
+        for which in (
+            "roller_profile",
+            "outer_raceway_profile",
+            "inner_raceway_profile",
+        ):
+            if getattr(bearing, which).knots() is not None:
+                raise ValueError(
+                    f"BearingElement: `kinematics` is {name}, which takes no measured"
+                    f" profiles of barrel rollers, as is `{which}`; use Linearised()."
+                )
 
     def rolling_element(self, part, speed, deviation):
         # Coupled slices ask for a rule as all laws do, and do without.
         quadrature = self.quadrature or ContactMapped()
         bearing: Any = part.bearing
-        constants = contact_constants(bearing, self.line_law, quadrature, deviation)
+        exact = self.kinematics.keeps_arcs
+        constants = contact_constants(
+            bearing, self.line_law, quadrature, deviation, exact=exact
+        )
         force = None if speed is None else inertia_force(constants, speed)
         return Roller(
             constants=constants,

@@ -116,6 +116,8 @@ def contact_constants(
     line_law: AbstractLineLaw,
     quadrature: AbstractQuadrature,
     deviation: Scalar | None = None,
+    *,
+    exact: bool = False,
 ) -> ContactConstants:
     """Constants of every contact of a roller.
 
@@ -125,6 +127,7 @@ def contact_constants(
         quadrature: Rule whose tables are wanted.
         deviation: Mean diameter of this roller less the common one [m]; the raceways
             stay where they are.
+        exact: Whether raceways that are arcs keep their shape when they move. Static.
 
     Returns:
         Constants, differentiable with respect to every real number of the design.
@@ -144,6 +147,7 @@ def contact_constants(
             bearing.roller_profile,
             raceway_profile,
             arc_radii=None if arcs is None else (arcs[0], arcs[1 + ring]),
+            exact=exact and arcs is not None,
         )
 
     raceways = bearing.outer_raceway_profile, bearing.inner_raceway_profile
@@ -209,11 +213,14 @@ def _rib_geometry(bearing, name):
     side = -1.0 if name.endswith("minus") else 1.0
     ring = 1.0 if name.startswith("outer") else -1.0
     half = bearing.half_angle
-    s = 0.5 * side * bearing.roller_length
+    s, arcs = 0.5 * side * bearing.roller_length, bearing.arc_radii
     along = s * jnp.cos(half)
     radius = 0.5 * bearing.roller_diameter - s * jnp.sin(half)
     centre = jnp.stack([along - side * rib.end_radius, jnp.zeros_like(along)])
-    edge = jnp.stack([along, ring * radius])
+    drop = 0.0 if arcs is None else sagitta(s, arcs[1 if ring > 0 else 2])
+    edge = jnp.stack(
+        [along - drop * jnp.sin(half), ring * (radius - drop * jnp.cos(half))]
+    )
     # From the edge to the sphere centre: `inwards` into the row, `up` along m.
     inwards = side * (edge[0] - centre[0])
     up = ring * (edge[1] - centre[1])

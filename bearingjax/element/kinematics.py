@@ -39,6 +39,11 @@ class AbstractKinematics(eqx.Module):
         return False
 
     @property
+    def keeps_arcs(self) -> bool:
+        """Whether arcs of raceways keep their shape when they move. Static."""
+        return False
+
+    @property
     def holds_angles(self) -> bool:
         """Whether balls keep their free contact angle. Static."""
         return False
@@ -109,7 +114,8 @@ class ConstantAngle(Linearised):
 class Finite(AbstractKinematics):
     """Finite rotations: of ball bearings by any angle, of rollers in the section.
 
-    For rollers formula (3) of the paper, normals undeformed, to compare with it. The
+    For rollers formula (3) of the paper, normals undeformed, to compare with it; for
+    barrel rollers the distances between arcs that keep their shape. The
     energy is not convex (tilting an upright roller shortens its projection) and the
     moments of the rings balance only to first order; a solve may end in a saddle and
     then says so.
@@ -119,6 +125,10 @@ class Finite(AbstractKinematics):
 
     @property
     def turns_far(self):
+        return True
+
+    @property
+    def keeps_arcs(self):
         return True
 
     def roller(self, constants):

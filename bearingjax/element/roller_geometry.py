@@ -104,7 +104,10 @@ class LinearisedRoller(AbstractRollerGeometry):
 class FiniteRoller(AbstractRollerGeometry):
     """Finite rotations in the section, normals undeformed: formula (3) of the paper.
 
-    Source: Sorokin, Zhang, Ivannikov (2018), eq. (3).
+    Of barrel rollers the approach is that to the centre of the raceway's arc, and both
+    coordinates are those of `contact.line_contact.arc_approach`.
+
+    Source: Sorokin, Zhang, Ivannikov (2018), eq. (3); arcs by elementary geometry.
     """
 
     constants: ContactConstants
@@ -131,6 +134,12 @@ class FiniteRoller(AbstractRollerGeometry):
             direction = axes @ jnp.stack([cos, -sign * sin])
             middle = place + axes @ jnp.stack([0.0 * cos, sign * 0.5 * c.diameter])
             moved = _displacement(ring, middle) - _displacement(roller, middle)
+            if c.arc_radii is not None:
+                generator = direction + _turn(roller[2], direction)
+                normal = normal + _turn(ring[2], normal)
+                curvature = 1.0 / c.arc_radii[1 + k]
+                out += _of_arc(c, k, curvature, moved, normal, generator)
+                continue
             turned = _turn(ring[2], direction) - _turn(roller[2], direction)
             out += [-c.gap[k] - normal @ moved, -c.half_length * (normal @ turned)]
         ribs = c.ribs
@@ -142,6 +151,20 @@ class FiniteRoller(AbstractRollerGeometry):
             )
             out.append(-ribs.gap[k] - (axes @ ribs.normal[k]) @ moved)
         return _named(jnp.stack(out))
+
+
+def _of_arc(c, k, curvature, moved, normal, generator):
+    """Coordinates of a contact with an arc, from the motion between its middles.
+
+    The centre of the arc stands from the middle of the roller by f - R n, where n is
+    the normal of the moved ring.
+    """
+    f = c.gap[k] * normal + moved
+    far = curvature * (f @ f) - 2.0 * (normal @ f)
+    distance = jnp.sqrt(1.0 + curvature * far)
+    a = far / (1.0 + distance)
+    sine = (curvature * (f @ generator) - normal @ generator) / distance
+    return [a, -c.half_length * sine]
 
 
 def _named(approaches):

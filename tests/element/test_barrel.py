@@ -1,0 +1,440 @@
+"""Barrel, thrust and crossed rollers against closed forms and independent programs.
+
+Cases: two-row spherical bearing 22317 with free contact angle, eccentric thrust, rigid
+crossed roller bearing and barrel rollers of exact arcs, each computed by a program that
+shares no code with the package; brute force by `barrel_oracle`.
+"""
+
+import barrel_oracle
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tolerances import (
+    DIFFERENCE,
+    QUADRATURE_FORCE,
+    QUADRATURE_STIFFNESS,
+    ROUNDING,
+    SOLVER,
+)
+
+import bearingjax as bj
+from bearingjax.element.constants import contact_constants
+from bearingjax.element.inertia import inertia_force, mass_and_inertia
+
+DEG = np.pi / 180
+LAW = bj.contact.LineConstant(3.6e10)
+
+
+def spherical(n=8, **change):
+    values = dict(
+        contact_angle=0.17,
+        roller_profile_radius=0.0745,
+        inner_raceway_radius=0.0767,
+        radial_internal_clearance=20e-6,
+        first_azimuth=0.3,
+    )
+    return bj.SphericalRollerRow(n, 0.13, 0.0215, 0.0185, **(values | change))
+
+
+def toroidal(n=7, **change):
+    values = dict(
+        roller_profile_radius=0.4074,
+        outer_raceway_radius=0.42,
+        inner_raceway_radius=0.42,
+        radial_internal_clearance=40e-6,
+        first_azimuth=-90 * DEG,
+    )
+    return bj.ToroidalRollerBearing(n, 0.140, 0.0195, 0.030, **(values | change))
+
+
+def spherical_thrust(n=6, **change):
+    values = dict(
+        contact_angle=0.87,
+        roller_profile_radius=0.10,
+        inner_raceway_radius=0.104,
+        profile_offset=2e-3,
+        ribs=bj.Ribs(inner_minus=bj.Rib(0.2, 2e-3)),
+    )
+    return bj.SphericalThrustRollerBearing(n, 0.12, 0.022, 0.026, **(values | change))
+
+
+KINDS = {"spherical": spherical, "toroidal": toroidal, "thrust": spherical_thrust}
+KINEMATICS = {"linearised": bj.element.Linearised(), "exact": bj.element.Finite()}
+
+
+def element(bearing, kinematics="exact", **choices):
+    return bj.BearingElement(bearing, kinematics=KINEMATICS[kinematics], **choices)
+
+
+@eqx.filter_jit
+def evaluate(element, q, speed=None):
+    model = element.model(speed)
+    solved = model.solve(q)
+    return model.evaluate(q, solved), model.results(q, solved)
+
+
+def oracle_of(bearing):
+    """The same row in plain numbers; rib geometry is that of `test_rib_contact`."""
+    c = contact_constants(bearing, LAW, bj.numerics.ContactMapped())
+    ribs = ()
+    if c.ribs is not None:
+        parts = c.ribs.centre, c.ribs.point, c.ribs.normal, c.ribs.gap, c.ribs.constant
+        ribs = tuple(zip(c.ribs.on_outer, *map(np.asarray, parts), strict=True))
+    numbers = (
+        bearing.pitch_diameter,
+        bearing.roller_diameter,
+        bearing.roller_length,
+        bearing.axis_angle,
+        bearing.half_angle,
+    )
+    return barrel_oracle.Barrel(
+        bearing.n_elements,
+        *map(float, numbers),
+        tuple(map(float, bearing.arc_radii)),
+        float(bearing.gap),
+        float(LAW.value),
+        float(bearing.axial_place),
+        float(bearing.first_azimuth),
+        ribs,
+    )
+
+
+# Random loads, tilts and speeds against brute force.
+
+
+def random_motion(kind, rng):
+    q = np.zeros(12)
+    q[6:9] = rng.uniform(-1, 1, 3) * 60e-6
+    q[[3, 4, 9, 10]] = rng.uniform(-1, 1, 4) * 1e-3
+    if kind == "thrust":
+        q[8] = rng.uniform(2e-5, 8e-5)
+    if kind == "toroidal":
+        q[8] = 3e-4
+    return q
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("turning", [False, True])
+def test_exact_kinematics_against_brute_force(kind, turning):
+    speed = bj.Speed(inner=150.0) if turning else None
+    rng, done = np.random.default_rng(3), 0
+    for _ in range(3):
+        # At speed all rollers are held: a loose one has no place of its own.
+        tight = {} if kind == "thrust" else {"radial_internal_clearance": -200e-6}
+        bearing = KINDS[kind](**(tight if turning else {}))
+        q = random_motion(kind, rng)
+        row, inertia = oracle_of(bearing), None
+        if speed is not None:
+            c = contact_constants(bearing, LAW, bj.numerics.ContactMapped())
+            inertia = np.asarray(c.to_axes).T @ np.asarray(inertia_force(c, speed))
+        force, stiffness, _ = barrel_oracle.evaluate(row, q, inertia=inertia)
+        got, _ = evaluate(element(bearing, line_law=LAW), jnp.asarray(q), speed)
+        assert int(got.result) == bj.Result.CONVERGED
+        if not np.any(force):
+            assert np.abs(np.asarray(got.force)).max() < 1e-6
+            continue
+        done += 1
+        lever = np.tile(np.repeat([1.0, 0.06], 3), 2)
+        size = np.abs(force / lever).max()
+        wrong = np.abs(np.asarray(got.force) - force) / lever
+        assert wrong.max() < QUADRATURE_FORCE * size
+        diagonal = np.sqrt(np.abs(np.diag(stiffness)))
+        floor = 1e-9 * diagonal.max() ** 2
+        scale = np.outer(diagonal, diagonal) + floor
+        wrong = np.abs(np.asarray(got.stiffness) - stiffness) / scale
+        assert wrong.max() < QUADRATURE_STIFFNESS
+    assert done >= 1
+
+
+def test_mass_of_a_barrel_by_summing_discs():
+    bearing = spherical_thrust()
+    c = contact_constants(bearing, LAW, bj.numerics.ContactMapped())
+    half, length = float(c.half_angle), float(bearing.roller_length)
+    s = np.linspace(-0.5 * length, 0.5 * length, 200_001)
+    drop = 0.10 - np.sqrt(0.10**2 - s**2)
+    z = s * np.cos(half) - drop * np.sin(half)
+    r = 0.011 - s * np.sin(half) - drop * np.cos(half)
+
+    def integral(f):
+        return 7850 * np.pi * np.trapezoid(f, z)
+
+    exact = (
+        integral(r**2),
+        integral(0.5 * r**4),
+        integral(0.25 * r**4 + r**2 * z**2),
+    )
+    np.testing.assert_allclose(mass_and_inertia(c), exact, rtol=1e-9)
+
+
+# What geometry alone says.
+
+
+@pytest.mark.parametrize("kinematics", KINEMATICS)
+def test_tilt_about_the_sphere_costs_nothing(kinematics):
+    """An outer ring turned about the centre of its sphere, by up to 2.5 degrees."""
+    aligning = element(bj.BearingSet.self_aligning(spherical(9)), kinematics)
+    q = jnp.zeros(12).at[6:9].set(jnp.asarray([60e-6, 10e-6, 40e-6]))
+    straight, _ = evaluate(aligning, q)
+    force, stiff = np.asarray(straight.force), np.asarray(straight.stiffness)
+    largest = np.abs(force).max()
+    assert np.abs(stiff[3:5]).max() < ROUNDING * np.abs(stiff).max()
+    for tilt in (1e-4, 0.01, 2.5 * DEG):
+        turned, _ = evaluate(aligning, q.at[3:5].set(tilt * np.array([0.6, 0.8])))
+        assert int(turned.result) == bj.Result.CONVERGED
+        # The spring that guides loose rollers stores 1e-11 of the energy.
+        assert float(turned.energy) == pytest.approx(float(straight.energy), rel=1e-10)
+        # Two solves of the rollers, from different starts.
+        assert np.abs(np.asarray(turned.force) - force).max() < 1e-11 * largest
+        wrong = np.abs(np.asarray(turned.stiffness) - stiff)
+        assert wrong.max() < SOLVER * np.abs(stiff).max()
+
+
+def test_toroidal_bearing_loses_clearance_as_two_arcs():
+    """A roller between two arcs feels the distance of their centres alone.
+
+    So clearance is lost to a shift s as 2 (A0 - sqrt(A0² - s²)), A0 = r_o + r_i - D.
+    """
+    bearing = toroidal(1, first_azimuth=0.0, radial_internal_clearance=0.0)
+    distance = 0.42 + 0.42 - 0.0195
+    one = element(bearing)
+    push = 30e-6
+    centred, _ = evaluate(one, jnp.zeros(12).at[6].set(push))
+    for shift in (1e-3, 6.5e-3, 12.7e-3):
+        # The roller stands at +x: the inner ring there moves by ux outwards.
+        radial = np.sqrt((distance + push) ** 2 - shift**2) - distance
+        q = jnp.zeros(12).at[6].set(radial).at[8].set(shift)
+        moved, _ = evaluate(one, q)
+        assert int(moved.result) == bj.Result.CONVERGED
+        assert float(moved.energy) == pytest.approx(float(centred.energy), rel=1e-9)
+        force = np.asarray(moved.force[6:9])
+        along = np.array([distance + radial, 0.0, shift]) / (distance + push)
+        size = float(centred.force[6])
+        np.testing.assert_allclose(force, size * along, atol=SOLVER * size)
+    # The tilt of the inner ring shifts the centre of its arc by R_I times the tilt.
+    arm = 0.5 * 0.140 - 0.5 * 0.0195 + 0.42
+    tilt = 5e-3
+    exact = np.array([arm * np.sin(tilt), -arm * (1.0 - np.cos(tilt))])
+    radial = np.sqrt((distance + push) ** 2 - exact[0] ** 2) - distance - exact[1]
+    # θ = -sin φ gx + cos φ gy turns +z towards +r; at φ = 0 that is gy.
+    q = jnp.zeros(12).at[6].set(radial).at[10].set(tilt)
+    turned, _ = evaluate(one, q)
+    assert float(turned.energy) == pytest.approx(float(centred.energy), rel=1e-9)
+
+
+def test_axial_clearance_of_a_spherical_bearing():
+    """Ga = 2 (sqrt(A² - (A cos α - Gr/2)²) - A sin α), 22317 with Gr = 60 µm."""
+    aligning = two_rows(60e-6)
+    for side, touches in ((0.99, False), (1.01, True)):
+        q = jnp.zeros(12).at[8].set(0.5 * 0.281556589e-3 * side)
+        got, _ = evaluate(element(aligning, line_law=LAW), q)
+        assert (float(got.force[8]) > 0.1) is touches
+
+
+def test_infinite_radii_are_the_straight_roller():
+    straight = dict(
+        roller_profile_radius=np.inf,
+        outer_raceway_radius=np.inf,
+        inner_raceway_radius=np.inf,
+        radial_internal_clearance=10e-6,
+        roller_profile=bj.Logarithmic(),
+    )
+    barrel = bj.ToroidalRollerBearing(7, 0.065, 0.010, 0.010, **straight)
+    cylinder = bj.CylindricalRollerBearing(
+        7,
+        0.065,
+        0.010,
+        0.010,
+        roller_profile=bj.Logarithmic(),
+        radial_internal_clearance=10e-6,
+    )
+    thrust = dict(contact_angle=55 * DEG, profile_offset=0.0, **straight)
+    thrust |= dict(radial_internal_clearance=0.0, outer_raceway_radius=None)
+    q = jnp.zeros(12).at[6].set(30e-6).at[9].set(1e-3).at[3].set(-2e-4)
+    got, want = (evaluate(element(b, "linearised"), q)[0] for b in (barrel, cylinder))
+    for name in ("energy", "force", "stiffness"):
+        a, b = np.asarray(getattr(got, name)), np.asarray(getattr(want, name))
+        assert np.abs(a - b).max() < ROUNDING * np.abs(b).max()
+
+
+# Independent programs.
+
+
+def line_of_two(length):
+    """Line constant of one contact, two of which yield 3.84e-5 Q^0.9/L^0.8 (mm, N)."""
+    return 3.84e-5 ** (-10 / 9) * (1e3 * length) ** (8 / 9) * 1e3 ** (10 / 9) / length
+
+
+def two_rows(clearance):
+    """22317 after Harris with rollers that fit their raceways: a constant line law."""
+    row = bj.SphericalRollerRow(
+        14,
+        0.135077,
+        0.025,
+        0.020762,
+        contact_angle=12 * DEG,
+        roller_profile_radius=0.081585,
+        outer_raceway_radius=0.081585,
+        inner_raceway_radius=0.081585,
+        radial_internal_clearance=clearance,
+    )
+    return bj.BearingSet.self_aligning(row, staggered=False)
+
+
+def test_22317_with_one_number_per_contact():
+    """Constant angle against free angle: 1e-3 radially, 2e-3 of combined loads."""
+    per_pair = 553002.138 * 1e3 ** (10 / 9)  # Q of both contacts over δ^(10/9)
+    law = bj.contact.LineConstant(per_pair * 2 ** (10 / 9) / 0.020762)
+    cases = [
+        (0.0, [50000.0, 0.0], 0.0212098002, [7458.695, 6642.754, 4412.98, 1405.011]),
+        (60e-6, [89000.0, 22250.0], 0.0664324195, [25746.623, 22855.828, 14961.879]),
+    ]
+    for clearance, (radial, axial), travel, loads in cases:
+        found = bj.solve_load(
+            element(two_rows(clearance), "linearised", line_law=law),
+            [radial, 0.0, axial, 0.0, 0.0, 0.0],
+            free=("ux", "uy", "uz"),
+        )
+        tolerance = 1e-3 if axial == 0.0 else 3e-3
+        got = np.asarray(found.roller_load)[: len(loads), 0]
+        np.testing.assert_allclose(got, loads, atol=tolerance * loads[0])
+        ux = 1e3 * float(found.displacement[6])
+        assert ux == pytest.approx(travel, rel=tolerance)
+
+
+@pytest.mark.parametrize(
+    "eccentricity, tilt, most",
+    [(0, 0, 952.38095), (10e-3, 0.0764141215e-3, 1450.13642)],
+)
+def test_eccentric_thrust(eccentricity, tilt, most):
+    """81212-like washer, free to tilt, one number per contact."""
+    bearing = bj.CylindricalThrustRollerBearing(21, 0.0775, 0.009, 0.009)
+    law = bj.contact.LineConstant(line_of_two(0.009))
+    found = bj.solve_load(
+        bj.BearingElement(bearing, line_law=law, quadrature=bj.numerics.Midpoint(1)),
+        [0.0, 0.0, 20000.0, 0.0, -20000.0 * eccentricity, 0.0],
+        free=("uz", "gx", "gy"),
+    )
+    travel = 0.0063518004e-3 if tilt == 0 else 0.0063122715e-3
+    assert float(found.displacement[8]) == pytest.approx(travel, rel=1e-5)
+    assert abs(float(found.displacement[10])) == pytest.approx(
+        tilt, rel=1e-5, abs=1e-12
+    )
+    assert float(np.max(found.roller_load)) == pytest.approx(most, rel=1e-5)
+
+
+def test_crossed_rollers_of_a_rigid_model():
+    row = bj.CrossedRollerRow(40, 0.2775, 0.014, 0.010)
+    law, rule = bj.contact.LineConstant(line_of_two(0.010)), bj.numerics.Midpoint(1)
+    crossed = bj.BearingElement(
+        bj.BearingSet.crossed(row), line_law=law, quadrature=rule
+    )
+    cases = [
+        ([0.0, 20000.0, 0.0], (0.0, 0.0117852749e-3, 0.0), 1414.21356),
+        (
+            [20000.0, 0.0, 0.0],
+            (0.0224138024e-3, 0.000322969508e-3, 2.93792918e-06),
+            2876.63046,
+        ),
+        ([0.0, 0.0, 2000.0], (0.00030357e-3, 0.00024052e-3, 0.0001203), 2073.24718),
+    ]
+    for (fx, fz, my), place, most in cases:
+        found = bj.solve_load(
+            crossed, [fx, 0.0, fz, 0.0, my, 0.0], free=("ux", "uy", "uz", "gx", "gy")
+        )
+        got = np.asarray(found.displacement)[[6, 8, 10]]
+        # The last case is printed with five digits.
+        size = np.array([1e-5, 1e-5, 1e-4])
+        rtol = 1e-5 if my == 0 else 3e-5
+        np.testing.assert_allclose(got, place, rtol=rtol, atol=1e-6 * size.min())
+        assert float(np.max(found.roller_load)) == pytest.approx(most, rel=1e-5)
+        assert int((np.asarray(found.roller_load)[:, 0] > 0).sum()) == (
+            20 if fz else 21
+        )
+
+
+def srb_of_the_case():
+    angle, gap = 9.5 * DEG, 5e-6
+    row = bj.SphericalRollerRow(
+        18,
+        2 * (0.0805 - 0.0215 / 2) * np.cos(angle),
+        0.0215,
+        0.0185,
+        contact_angle=angle,
+        roller_profile_radius=0.078085,
+        outer_raceway_radius=0.0805,
+        inner_raceway_radius=0.0805,
+        radial_internal_clearance=4 * gap / np.cos(angle),
+        first_azimuth=-90 * DEG,
+    )
+    return bj.BearingSet.self_aligning(row)
+
+
+def test_barrel_rollers_of_exact_arcs_by_another_program():
+    """Loads there are sums over the slices, here resultants: compared as sums."""
+    cases = [
+        (
+            srb_of_the_case(),
+            [2.56900105e-18, -7.20261092e-05, 5.12151384e-07, 0.0, 0.0],
+            [0.0, -40000.0, 0.0, -0.019501577, 0.0],
+            {0: [5143.498, 4659.75, 3298.362, 1387.269, 31.11584]},
+        ),
+        (
+            toroidal(20),
+            [1.23573686e-17, -0.000101846344, 0.001, 0.0, 0.0],
+            [0.0, -60000.0, 86.342002, -35.115125, 0.0],
+            {0: [13426.25, 12463.65, 9713.928, 5593.011, 947.7796]},
+        ),
+    ]
+    for bearing, q, force, loads in cases:
+        one = element(bearing, line_law=LAW)
+        q = jnp.zeros(12).at[6:11].set(jnp.asarray(q))
+        got, rows = evaluate(one, q)
+        assert int(got.result) == bj.Result.CONVERGED
+        wrong = np.abs(np.asarray(got.force[6:11]) - force)
+        assert wrong[:3].max() < 1e-6 * abs(force[1])
+        assert wrong[3:].max() < 1e-5
+        along = bj.statics.rollers.distribution(rows[0], 401)
+        sums = np.trapezoid(
+            np.asarray(along.line_load), np.asarray(along.position), axis=-1
+        )
+        for k, load in enumerate(loads[0]):
+            assert sums[k] == pytest.approx([load, load], abs=1e-4 * loads[0][0])
+
+
+# Derivatives.
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_derivatives_by_every_number_of_the_drawing(kind):
+    """Through the load solve, against central differences."""
+    bearing = KINDS[kind]()
+    if kind == "spherical":
+        bearing = spherical(outer_raceway_radius=float(spherical().sphere_radius))
+    load = [0.0, 0.0, 20e3] if kind == "thrust" else [9e3, 4e3, 0.0]
+    free = ("ux", "uy", "uz") if kind == "thrust" else ("ux", "uy")
+    names = [
+        *("roller_profile_radius", "inner_raceway_radius", "outer_raceway_radius"),
+        *("contact_angle", "profile_offset"),
+    ]
+    names = [n for n in names if getattr(bearing, n, None) is not None]
+
+    @eqx.filter_jit
+    def measure(values):
+        changed = eqx.tree_at(
+            lambda b: [getattr(b, n) for n in names], bearing, list(values)
+        )
+        found = bj.solve_load(
+            element(changed, line_law=LAW), [*load, 0.0, 0.0, 0.0], free=free
+        )
+        return found.displacement[8 if kind == "thrust" else 6]
+
+    at = jnp.stack([getattr(bearing, n) for n in names])
+    slopes = np.asarray(eqx.filter_jit(jax.jacfwd(measure))(at))
+    for k, name in enumerate(names):
+        step = 1e-4 * max(float(at[k]), 1e-3)
+        found = [float(measure(at.at[k].add(d * step))) for d in (-2, -1, 1, 2)]
+        difference = (found[0] - 8 * found[1] + 8 * found[2] - found[3]) / (12 * step)
+        size = max(abs(difference), 1e-3 * np.abs(slopes).max())
+        assert abs(slopes[k] - difference) < 10 * DIFFERENCE * size, name
