@@ -19,6 +19,7 @@ from .ball_types import (
     DeepGrooveBallBearing,
     FourPointBallBearing,
 )
+from .barrel import AbstractBarrelBearing, CrossedRollerRow
 from .bearing import AbstractRollerBearing
 from .bearing_set import AbstractBearing, BearingSet, SetRow, is_self_aligning, rows_of
 from .checks import check, concrete, number
@@ -67,7 +68,7 @@ def radial_clearance(bearing: AbstractBearing) -> Scalar:
     """
     check_radial("radial_clearance", bearing)
     if isinstance(bearing, AbstractRollerBearing):
-        return bearing.radial_internal_clearance / _outer_cosine(bearing)
+        return 4.0 * bearing.gap / _outer_cosine(bearing)
     assert isinstance(bearing, AbstractBallBearing)
     return bearing.clearance
 
@@ -121,9 +122,11 @@ def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
         return replace(bearing, radial_internal_clearance=clearance, contact_angle=None)
     if isinstance(bearing, AbstractBallBearing):
         return replace(bearing, radial_internal_clearance=clearance)
-    # Made again, a taper would repeat the warning of its apexes.
-    normal = clearance * _outer_cosine(bearing)
-    return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, normal)
+    # Made again, a taper would repeat the warning of its apexes. Its clearance is along
+    # the normal, that of barrel and crossed rollers radial.
+    radial = isinstance(bearing, AbstractBarrelBearing | CrossedRollerRow)
+    own = clearance if radial else clearance * _outer_cosine(bearing)
+    return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, own)
 
 
 def sized(mounting: Mounting, bearing: AbstractBearing | BearingSet) -> Mounting:
@@ -261,8 +264,8 @@ def row_shifts(
         mounting, conditions: As in `mounted`.
 
     Returns:
-        Of each row, along +z of the set [m]; 0 of a self-aligning bearing, whose rows
-        share both rings.
+        Of each row, along +z of the set [m]; 0 of self-aligning and crossed roller
+        bearings, whose rows share both rings.
 
     Raises:
         ValueError: If `mounting.ring_width` is `None`.
@@ -272,7 +275,8 @@ def row_shifts(
 
 def _shifts(bearing: BearingSet, mounting, states: list[FitState]) -> list[Any]:
     """Row shifts as in `row_shifts`, from the fit state of each row."""
-    if is_self_aligning(bearing):
+    crossed = all(isinstance(row.bearing, CrossedRollerRow) for row in bearing.rows)
+    if crossed or is_self_aligning(bearing):
         return [0.0] * len(bearing.rows)
     width = mounting.ring_width
     if width is None:
