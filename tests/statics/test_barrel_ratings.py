@@ -307,7 +307,9 @@ def solved():
     found = {}
     for name, (load, held) in CASES.items():
         element = bj.BearingElement(EXAMPLES[name][0])
-        found[name] = bj.solve_load(element, load, prescribed=held, speed=SPEED)
+        # Without ribs nothing holds turning cylinders that do not lie along the axis.
+        speed = None if name in ("cylindrical thrust", "crossed") else SPEED
+        found[name] = bj.solve_load(element, load, prescribed=held, speed=speed)
     return found
 
 
@@ -316,7 +318,8 @@ def test_lives_of_every_type(solved, name):
     """P and its life by hand; the reference life is near that of P."""
     solution, (load, _) = solved[name], CASES[name]
     bearing = EXAMPLES[name][0]
-    life = bj.rating_life(solution, viscosity=2e-5, contamination="grease, normal")
+    clean = dict(viscosity=2e-5, contamination="grease, normal")
+    life = bj.rating_life(solution, speed=SPEED, **clean)
     p = float(equivalent_load(bearing, jnp.asarray(load, float)).dynamic)
     c = by_hand(name)[0]
     assert float(life.equivalent_load) == pytest.approx(p, rel=1e-6)
@@ -344,7 +347,7 @@ def test_refined_contact_has_the_bearings_geometry(solved):
     washer."""
     for name, near in (("spherical", 2e-4), ("toroidal", 2e-4), ("crossed", 1e-9)):
         solution = solved[name]
-        got = bj.refine(solution.element, solution, speed=SPEED)
+        got = bj.refine(solution.element, solution, speed=solution.speed)
         constants = solution.element.model().rows[0].element.constants
         y = jnp.linspace(-0.9, 0.9, 5) * constants.half_length
         wanted = relative_radii(constants, y)[1]
@@ -358,7 +361,7 @@ def test_refined_contact_has_the_bearings_geometry(solved):
             # The ellipse ends short of the roller's ends: slices are near.
             assert got.edge_factor == pytest.approx(1.0, abs=0.05)
     solution = solved["cylindrical thrust"]
-    got = bj.refine(solution.element, solution, speed=SPEED)
+    got = bj.refine(solution.element, solution)
     assert float(got.contact.relative_radius(jnp.asarray(1e-3))) == pytest.approx(
         4.5e-3
     )
@@ -367,8 +370,14 @@ def test_refined_contact_has_the_bearings_geometry(solved):
 def test_films_of_flat_thrust_rollers_roll_at_the_pitch_circle(solved):
     from bearingjax.lubrication import OILS
 
-    found = bj.films(solved["cylindrical thrust"], OILS["ISO VG 46"](), 323.15)
+    still = solved["cylindrical thrust"]
+    turning = eqx.tree_at(lambda s: s.speed, still, SPEED, is_leaf=is_none)
+    found = bj.films(turning, OILS["ISO VG 46"](), 323.15)
     np.testing.assert_allclose(found.entrainment, 0.5 * 50.0 * 0.5 * 77.5e-3, rtol=1e-9)
+
+
+def is_none(leaf):
+    return leaf is None
 
 
 def palmgren(name, radial, axial, supply="oil_bath"):
@@ -414,9 +423,9 @@ def test_friction_by_skf():
     assert r == pytest.approx(1.6e-6 * 140**1.85 * (1e3 + 584) ** 0.54)
     both = 3.62e-3 * 140**0.25 * (1e12 + 508e8) ** (1 / 3)
     assert s == pytest.approx(both)
-    r, s = found("spherical", "222E", 8e4, 1e4)
-    assert r == pytest.approx(2.81e-6 * 140**2.3 * (8e4 + 5.8e4) ** 0.31)
-    assert s == pytest.approx(8.8e-3 * 140**0.94 * (8e4**3 + 117 * 1e12) ** (1 / 3))
+    r, s = found("spherical", "222E", 8e5, 1e5)
+    assert r == pytest.approx(2.81e-6 * 140**2.3 * (8e5 + 58e4) ** 0.31)
+    assert s == pytest.approx(8.8e-3 * 140**0.94 * (8e5**3 + 117 * 1e5**3) ** (1 / 3))
     for load in (1e2, 1e5):
         forms = 1.17e-6 * 140**1.97 * load**0.54, 2.08e-6 * 140**2.37 * load**0.31
         slides = 1.32e-3 * 140**-0.19 * load ** (5 / 3), 0.8e-2 * 140**1.05 * load
@@ -438,8 +447,9 @@ def test_friction_of_a_solution(solved):
     assert found.rolling_torque.shape == (1,) and float(found.torque) > 0
     with pytest.raises(ValueError, match="`diameters` is None; it must be bore and"):
         skf(solved["toroidal"], 2e-5)
+    turning = eqx.tree_at(lambda s: s.speed, solved["crossed"], SPEED, is_leaf=is_none)
     with pytest.raises(ValueError, match="no CrossedRollerRow; it must be one of"):
-        skf(solved["crossed"], 2e-5)
+        skf(turning, 2e-5)
     assert bj.statics.skf_series(EXAMPLES["crossed"][0]) == ()
 
 
