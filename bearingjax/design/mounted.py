@@ -264,8 +264,8 @@ def row_shifts(
         mounting, conditions: As in `mounted`.
 
     Returns:
-        Of each row, along +z of the set [m]; 0 of self-aligning and crossed roller
-        bearings, whose rows share both rings.
+        Of each row, along +z of the set [m]; 0 of a self-aligning bearing, whose rows
+        share both rings.
 
     Raises:
         ValueError: If `mounting.ring_width` is `None`.
@@ -275,8 +275,7 @@ def row_shifts(
 
 def _shifts(bearing: BearingSet, mounting, states: list[FitState]) -> list[Any]:
     """Row shifts as in `row_shifts`, from the fit state of each row."""
-    crossed = all(isinstance(row.bearing, CrossedRollerRow) for row in bearing.rows)
-    if crossed or is_self_aligning(bearing):
+    if is_self_aligning(bearing):
         return [0.0] * len(bearing.rows)
     width = mounting.ring_width
     if width is None:
