@@ -19,6 +19,7 @@ from .ball_types import (
     DeepGrooveBallBearing,
     FourPointBallBearing,
 )
+from .barrel import AbstractBarrelBearing, CrossedRollerRow
 from .bearing import AbstractRollerBearing
 from .bearing_set import AbstractBearing, BearingSet, SetRow, is_self_aligning, rows_of
 from .checks import check, concrete, number
@@ -67,7 +68,7 @@ def radial_clearance(bearing: AbstractBearing) -> Scalar:
     """
     check_radial("radial_clearance", bearing)
     if isinstance(bearing, AbstractRollerBearing):
-        return bearing.radial_internal_clearance / _outer_cosine(bearing)
+        return 4.0 * bearing.gap / _outer_cosine(bearing)
     assert isinstance(bearing, AbstractBallBearing)
     return bearing.clearance
 
@@ -121,9 +122,11 @@ def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
         return replace(bearing, radial_internal_clearance=clearance, contact_angle=None)
     if isinstance(bearing, AbstractBallBearing):
         return replace(bearing, radial_internal_clearance=clearance)
-    # Made again, a taper would repeat the warning of its apexes.
-    normal = clearance * _outer_cosine(bearing)
-    return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, normal)
+    # Made again, a taper would repeat the warning of its apexes. Its clearance is along
+    # the normal, that of barrel and crossed rollers radial.
+    radial = isinstance(bearing, AbstractBarrelBearing | CrossedRollerRow)
+    own = clearance if radial else clearance * _outer_cosine(bearing)
+    return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, own)
 
 
 def sized(mounting: Mounting, bearing: AbstractBearing | BearingSet) -> Mounting:

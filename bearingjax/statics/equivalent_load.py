@@ -6,19 +6,20 @@ ISO 281 passes from one pair of factors to the other at Fa/Fr = e, where its rou
 factors leave a step of up to 2 %; the greatest value of both pairs has none.
 
 Moments, speeds and clearance are not in it: the reference rating life has them
-(`left_out`).
+(`left_out`). Only crossed roller bearings count a moment, as 2 M/D_pw beside Fr.
 
 How far the tables are confirmed, number by number: deep groove and 10 degrees by SKF
 (normal and C3 clearance); 15, 25 and 40 degrees, single and double, dynamic and static,
 by Luoyang Bearing (LYC), 15 degrees by SKF too (C4); double rows of 30 and 35 degrees
-by LYC, the latter by SKF as well, of four-point bearings; tapers by e, Y and Y0 of NSK.
+by LYC, the latter by SKF as well, of four-point bearings; tapers by e, Y and Y0 of NSK;
+crossed rollers, the double rows of 45 degrees, by THK, IKO and Harmonic Drive.
 5, 20 and 45 degrees, and all others again, agree with the theory they were made by
 (ISO/TR 1281-1, 7.2) to their last digit; Y0 of 5, 10, 20 and 45 degrees was found
 nowhere but in the standard.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -29,8 +30,10 @@ from ..design import (
     AbstractBearing,
     AngularContactBallBearing,
     BearingSet,
+    CrossedRollerRow,
     FourPointBallBearing,
     SelfAligningBallRow,
+    SphericalThrustRollerBearing,
     rows_of,
 )
 from ..numerics.linear import lengths
@@ -103,8 +106,8 @@ def equivalent_load(
         bearing: The design. A set whose rows carry axial load in both directions
             counts as a double-row bearing, one of rows in tandem as single rows side
             by side.
-        load: On the moving ring (6,) [N, N m]; the moments do not count, nor does axial
-            load of cylindrical rollers, which their ribs bear.
+        load: On the moving ring (6,) [N, N m]; the moments do not count but of crossed
+            rollers, nor does axial load of rollers without a contact angle.
 
     Returns:
         P and P0: axial loads of thrust bearings, else radial ones; NaN if a force is.
@@ -122,6 +125,9 @@ def equivalent_load(
             " Mx My Mz in N, N m."
         )
     radial = lengths(load[:2])
+    if _is_crossed(bearing):
+        pitch = rows_of(bearing)[0].bearing.pitch_diameter
+        radial = radial + 2.0 * lengths(load[3:5]) / pitch
     axial = jnp.abs(load[2])
     factors = load_factors(bearing, axial)
     both = jnp.stack([radial, axial])
@@ -135,10 +141,11 @@ class LeftOut(NamedTuple):
     """Parts of a load that the equivalent loads leave out.
 
     Attributes:
-        radial: Load of thrust ball bearings, without factor in ISO 281 at 90° [N].
-        axial: Axial load of cylindrical and needle rollers, whose ribs bear it [N].
+        radial: Load of thrust bearings at 90°, without factor in ISO 281 [N].
+        axial: Axial load of rollers without a contact angle: cylindrical and needle
+            rollers, whose ribs bear it, and shifted toroidal rollers [N].
         moment: Moment about the pressure centre, the intersection of contact normals
-            and axis, along the tilts that are free [N m].
+            and axis, along the tilts that are free; none of crossed rollers [N m].
     """
 
     radial: Scalar
@@ -159,25 +166,38 @@ def left_out(
             its support: the standard too takes rings that are held parallel.
     """
     rows = rows_of(bearing)
-    row = rows[0].bearing
+    row: Any = rows[0].bearing
     angle = nominal_contact_angle(row)
-    is_thrust = row.is_thrust
+    flat = _is_flat(angle)
     straight = jnp.where(angle > 0, 0.0, 1.0)
     if isinstance(row, AbstractBallBearing):
         straight = 0.0 * straight
-    centre = jnp.zeros_like(angle)
-    if not is_thrust:
-        reach = 0.5 * row.pitch_diameter * jnp.tan(angle)
-        places = [r.position + (reach if r.mirrored else -reach) for r in rows]
-        # Of a bearing that is rated axially it is far away.
-        centre = jnp.where(rated_axially(bearing), 0.0, sum(places) / len(rows))
+    below = jnp.where(flat, 0.0, angle)
+    reach = 0.5 * row.pitch_diameter * jnp.tan(below) - row.axial_place
+    places = [r.position + (reach if r.mirrored else -reach) for r in rows]
+    # Of a bearing that is rated axially it is far away, but for the centre of a sphere.
+    sphere = isinstance(row, SphericalThrustRollerBearing)
+    far = flat if sphere else rated_axially(bearing)
+    centre = jnp.where(far, 0.0, sum(places) / len(rows))
     across = load[3:5] + centre * jnp.stack([load[1], -load[0]])
     across = across * jnp.asarray([name in free for name in ("gx", "gy")], load.dtype)
     return LeftOut(
-        lengths(load[:2]) * float(is_thrust),
+        lengths(load[:2]) * jnp.where(flat, 1.0, 0.0),
         jnp.abs(load[2]) * straight,
-        lengths(across),
+        lengths(across) * (0.0 if _is_crossed(bearing) else 1.0),
     )
+
+
+def _is_crossed(bearing) -> bool:
+    """Whether it has crossed rollers of both orientations."""
+    rows = rows_of(bearing)
+    crossed = all(isinstance(row.bearing, CrossedRollerRow) for row in rows)
+    return crossed and len({row.mirrored for row in rows}) == 2
+
+
+def _is_flat(angle):
+    """Whether a contact angle is 90 degrees: the row carries no radial load."""
+    return angle > 0.5 * np.pi - 1e-5
 
 
 def load_factors(bearing: AbstractBearing | BearingSet, axial: Scalar) -> Factors:
@@ -192,17 +212,18 @@ def load_factors(bearing: AbstractBearing | BearingSet, axial: Scalar) -> Factor
     turned = sum(row.mirrored for row in rows)
     double = 0 < turned < len(rows)
     angle = nominal_contact_angle(row)
-    if row.is_thrust:
-        # It carries no radial load at all.
-        alone = jnp.stack([jnp.zeros_like(angle), jnp.ones_like(angle)])[None]
-        return Factors(alone, alone)
     if isinstance(row, AbstractBallBearing):
         # Rows that share the axial load: all of radial contact, else those of a side.
         sharing = len(rows), max(turned, len(rows) - turned)
         radial = _of_balls(row, angle, double, sharing, axial)
     else:
         radial = _of_rollers(angle, double)
-    thrust = _of_thrust(angle, isinstance(row, AbstractBallBearing), double)
+    # At 90 degrees it carries no radial load at all.
+    alone = jnp.stack([jnp.zeros_like(angle), jnp.ones_like(angle)])[None]
+    thrust = [
+        jnp.where(_is_flat(angle), alone, factors)
+        for factors in _of_thrust(angle, isinstance(row, AbstractBallBearing), double)
+    ]
     steep = rated_axially(bearing)
     return Factors(
         *(jnp.where(steep, t, r) for t, r in zip(thrust, radial, strict=True))
@@ -263,7 +284,7 @@ def _of_rollers(angle, double):
 def _of_thrust(angle, balls, double):
     """Thrust bearings below 90 degrees."""
     one = jnp.ones_like(angle)
-    tangent = jnp.tan(jnp.minimum(angle, 1.5))
+    tangent = jnp.tan(jnp.where(_is_flat(angle), 0.0, angle))
     if balls:
         sine = jnp.sin(angle)
         x = 1.25 * tangent * (1.0 - 2.0 / 3.0 * sine)

@@ -36,9 +36,9 @@ from .life_factor import (
     viscosity_ratio,
 )
 from .rating import (
-    THRUST_ANGLE,
     Ratings,
     arc_rows,
+    is_axial,
     nominal_contact_angle,
     ratings,
 )
@@ -534,7 +534,7 @@ def _rows(bearing, row_sizes, loads, rated, turning) -> list[_RowPart]:
     parts = []
     for row, size, end in zip(rows, row_sizes, ends, strict=True):
         angle = nominal_contact_angle(row.bearing)
-        thrust = angle > THRUST_ANGLE
+        thrust = is_axial(row.bearing.is_thrust, angle)
         together = 0.7 if isinstance(row.bearing, AbstractBallBearing) else 7.0 / 9.0
         count = jnp.where(thrust, float(one_way), float(arcs * len(rows)))
         fatigue = row_fatigue(

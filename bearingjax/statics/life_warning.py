@@ -201,7 +201,8 @@ LIFE_KINDS: dict[str, LifeKind] = {
     "axial_left_out": LifeKind(
         0.0,
         lambda size, where: (
-            f"axial load of {size:.4g} N, which ribs bear: P and P0 have no part of it"
+            f"axial load of {size:.4g} N, for which ISO 281 has no factor at 0°: P and"
+            " P0 have no part of it"
         ),
     ),
     "moment_left_out": LifeKind(

@@ -13,9 +13,11 @@ import numpy as np
 
 from ..design import (
     AbstractBallBearing,
+    AbstractBarrelBearing,
     AbstractBearing,
     AbstractRollerBearing,
     BearingSet,
+    CylindricalThrustRollerBearing,
     DeepGrooveBallBearing,
     FourPointBallBearing,
     SelfAligningBallRow,
@@ -96,7 +98,8 @@ def dynamic_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
     """Basic dynamic load rating C by ISO 281 from the geometry [N].
 
     Nine of ten bearings last a million revolutions under it. Balls count with b_m =
-    1.3, rollers with 1.1 (drawn-cup needle bearings have 1.0 and are rated 10 % high
+    1.3, rollers with 1.1, spherical rollers with 1.15, cylindrical thrust rollers with
+    1.0 (`rating_factor`; drawn-cup needle bearings have 1.0 and are rated 10 % high
     here). Makers print more of their improved classes, by factors of their own: SKF 4
     to 7 % of balls, 12 to 14 % of cylindrical rollers. Grooves closer than 0.52 (outer
     ring 0.53, thrust bearings 0.54) do not raise it. Several rows: C_1 i^0.7 of balls,
@@ -201,13 +204,26 @@ def fatigue_load_limit(
 def rated_axially(bearing: AbstractBearing | BearingSet) -> Flag:
     """Whether the ratings are axial loads: contact angles above 45 degrees.
 
+    A crossed roller bearing, at 45 degrees, is rated as a double-row radial bearing.
+
     Raises:
         TypeError: If it is no bearing.
         ValueError: If the rows of a set are unlike.
 
     Source: ISO 281:2007, definition of thrust bearings.
     """
-    return _alike(bearing)[0].row.contact_angle > THRUST_ANGLE
+    rows, is_thrust = _alike(bearing)
+    return is_axial(is_thrust, rows.row.contact_angle)
+
+
+def is_axial(is_thrust: bool, angle: Scalar) -> Flag:
+    """Whether a row is rated by an axial load: thrust bearings and steep ones.
+
+    Args:
+        is_thrust: Whether it is a row of a thrust bearing.
+        angle: Its nominal contact angle [rad].
+    """
+    return (angle > THRUST_ANGLE) | is_thrust
 
 
 _capacities = eqx.filter_jit(by_row.capacities)
@@ -222,7 +238,7 @@ def _limit(row, static):
 @program(quick=True)
 def _contact_limit(rows, is_thrust):
     row, angle = rows.row, rows.row.contact_angle
-    axial = is_thrust | (angle > THRUST_ANGLE)
+    axial = is_axial(is_thrust, angle)
     radial = 0.2288 * rows.count * jnp.cos(angle)
     share = jnp.where(axial, rows.one_way * jnp.sin(angle), radial)
     return row.count * by_row.ball_fatigue(row) * share / _large(row) ** 0.5
@@ -241,7 +257,25 @@ def _row(bearing) -> BallRow | RollerRow:
         osculation = bearing.outer_osculation, bearing.inner_osculation
         return BallRow(count, bearing.ball_diameter, pitch, angle, osculation)
     diameter, length = bearing.roller_diameter, bearing.roller_length
-    return RollerRow(count, diameter, length, pitch, angle)
+    quality = as_real(rating_factor(bearing))
+    return RollerRow(count, diameter, length, pitch, angle, quality)
+
+
+def rating_factor(bearing: AbstractBearing) -> float:
+    """b_m of a row of rollers, for today's material and manufacture [1].
+
+    1.15 of spherical roller bearings, radial and thrust, 1.0 of cylindrical roller
+    thrust bearings, 1.1 of all other rollers. ISO 281 does not name toroidal roller
+    bearings: they count as the spherical ones, whose rollers they share.
+
+    Args:
+        bearing: A single row of rollers.
+
+    Source: ISO 281:2007, tables 6 and 10.
+    """
+    if isinstance(bearing, AbstractBarrelBearing):
+        return 1.15
+    return 1.0 if isinstance(bearing, CylindricalThrustRollerBearing) else 1.1
 
 
 def nominal_contact_angle(bearing: AbstractBearing) -> Scalar:

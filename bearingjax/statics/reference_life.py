@@ -34,7 +34,7 @@ from jaxtyping import Array, Float
 from ..design import AbstractBallBearing, AbstractBearing
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar
-from .rating import THRUST_ANGLE
+from .rating import is_axial
 
 LEAST_LAMINAE = 30
 """Laminae of a roller, at least (ISO/TS 16281)."""
@@ -112,7 +112,7 @@ def contact_capacities(
     Source: ISO/TS 16281:2008, but cos α as above.
     """
     kind = exponents_of(bearing)
-    thrust = angle > THRUST_ANGLE
+    thrust = is_axial(bearing.is_thrust, angle)
     many = bearing.n_elements * jnp.where(thrust, jnp.sin(angle), jnp.cos(angle))
     weaker = _ring_ratio(bearing, angle) * jnp.where(thrust, 1.0, kind.ratio)
     outer, inner = (jnp.where(thrust, 1.0, j) for j in kind.radial)
@@ -168,7 +168,7 @@ def row_fatigue(
     turns = positive_power(jnp.mean(positive_power(x, *kind.load), 0), *kind.spread)
     stands = jnp.mean(positive_power(x, *kind.share), 0)
     share = jnp.where(turning[:, None] > 0, turns, stands)
-    thrust = angle > THRUST_ANGLE
+    thrust = is_axial(bearing.is_thrust, angle)
     whole = capacity / jnp.where(thrust, *reversed(kind.reduction))
     n, d = kind.share
     # Balls have no parts of their own in the standard: their load follows from L10r.

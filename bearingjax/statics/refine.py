@@ -152,7 +152,11 @@ def roller_contact(
     zero = jnp.zeros((1,), constants.diameter.dtype)
     roller_radius = 0.5 * constants.diameter / jnp.cos(half)
     relative = relative_radii(constants, zero)[ring, 0]
-    taper = bearing.roller_length * jnp.sin(half)
+    taper, arcs = bearing.roller_length * jnp.sin(half), bearing.arc_radii
+    angle = bearing.axis_angle + sign * half
+    raceway = 1.0 / (1.0 / relative - 1.0 / roller_radius)
+    # A flat washer: a plane at any angle.
+    flat = angle > 0.5 * np.pi - 1e-5
     profiles = (bearing.outer_raceway_profile, bearing.inner_raceway_profile)
     with warnings.catch_warnings():
         # Half angle and diameters agree: the length is that of the generatrix.
@@ -162,8 +166,9 @@ def roller_contact(
             constants.diameter - taper,
             constants.diameter + taper,
             half_angle=half,
-            raceway_radius=1.0 / (1.0 / relative - 1.0 / roller_radius),
-            raceway_half_angle=bearing.axis_angle + sign * half,
+            raceway_radius=jnp.where(flat, jnp.inf, raceway),
+            raceway_half_angle=jnp.where(flat, 0.0, angle),
+            arc_radii=None if arcs is None else (arcs[0], arcs[1 + ring]),
             roller_profile=bearing.roller_profile,
             raceway_profile=profiles[ring],
             material=bearing.material,

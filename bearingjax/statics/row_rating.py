@@ -86,6 +86,7 @@ class RollerRow(NamedTuple):
         length: Effective length [m].
         pitch_diameter: Pitch diameter [m].
         contact_angle: Nominal contact angle [rad].
+        quality: b_m of the type, for today's material and manufacture [1].
     """
 
     count: Scalar | int
@@ -93,6 +94,7 @@ class RollerRow(NamedTuple):
     length: Scalar
     pitch_diameter: Scalar
     contact_angle: Scalar
+    quality: Scalar | float = 1.1
 
 
 class Rows(NamedTuple):
@@ -116,7 +118,7 @@ def capacities(rows: Rows, is_thrust: bool) -> tuple[Scalar, Scalar]:
 
     Args:
         rows: The rows.
-        is_thrust: Whether their contact angle is 90 degrees. Static.
+        is_thrust: Whether they are of a thrust bearing; of balls at 90 degrees. Static.
     """
     row, angle = rows.row, rows.row.contact_angle
     axial = is_thrust | (angle > THRUST_ANGLE)
@@ -184,21 +186,23 @@ def thrust_ball_dynamic(row: BallRow, kind: BallKind, rows: Scalar | int) -> Sca
 def radial_roller_dynamic(row: RollerRow, rows: Scalar | int) -> Scalar:
     """Basic dynamic radial load rating of alike rows of rollers [N].
 
-    C = 1.1 f_c (i L cos α)^(7/9) Z^(3/4) D^(29/27).
+    C = b_m f_c (i L cos α)^(7/9) Z^(3/4) D^(29/27).
     """
-    factor = _roller_factor(row, 0.377 * 0.83, 1.04)
-    return 1.1 * factor * jnp.cos(row.contact_angle) ** (7 / 9) * _rollers(row, rows)
+    size = row.diameter / row.pitch_diameter
+    factor = _roller_factor(row, 0.377 * 0.83, 1.04) * size ** (2 / 9)
+    return factor * jnp.cos(row.contact_angle) * _rollers(row, rows)
 
 
 def steep_roller_dynamic(row: RollerRow, rows: Scalar | int) -> Scalar:
-    """Basic dynamic axial load rating of alike tapers at 45 to below 90 degrees [N].
+    """Basic dynamic axial load rating of alike rows of rollers, 45 to 90 degrees [N].
 
-    C = 1.1 f_c (i L cos α)^(7/9) tan α Z^(3/4) D^(29/27).
+    C = b_m f_c (i L cos α)^(7/9) tan α Z^(3/4) D^(29/27), at 90 degrees
+    b_m f_c (i L)^(7/9) Z^(3/4) D^(29/27) with f_c = 293.1 (D/D_pw)^(2/9). The cosines
+    of f_c and of the length make one formula of both: sin α in place of tan α.
     """
-    angle = row.contact_angle
-    factor = _roller_factor(row, 0.73 * (1 - 0.15 * jnp.sin(angle)), 1.0)
-    along = jnp.cos(angle) ** (7 / 9) * jnp.tan(angle)
-    return 1.1 * factor * along * _rollers(row, rows)
+    sine, size = jnp.sin(row.contact_angle), row.diameter / row.pitch_diameter
+    factor = _roller_factor(row, 0.73 * (1 - 0.15 * sine), 1.0) * size ** (2 / 9)
+    return factor * sine * _rollers(row, rows)
 
 
 def ball_static(row: BallRow, kind: BallKind) -> Scalar:
@@ -289,13 +293,15 @@ def _balls(row):
 
 
 def _roller_factor(row, reduction, weight):
+    """f_c without (D cos α/D_pw)^(2/9), which has no derivative at 90 degrees."""
     gamma = _gamma(row)
     ratio = weight * _speeds(gamma) ** (143 / 108)
-    shape = gamma ** (2 / 9) * (1 - gamma) ** (29 / 27) / (1 + gamma) ** 0.25
+    shape = (1 - gamma) ** (29 / 27) / (1 + gamma) ** 0.25
     return 551.13373 * reduction * shape * (1 + ratio**4.5) ** (-2 / 9)
 
 
 def _rollers(row, rows):
-    """(i L)^(7/9) Z^(3/4) D^(29/27) [mm^(50/27)]."""
+    """b_m (i L)^(7/9) Z^(3/4) D^(29/27) [mm^(50/27)]."""
     size, length = _PER_MM * row.diameter, _PER_MM * row.length
-    return (rows * length) ** (7 / 9) * row.count**0.75 * size ** (29 / 27)
+    grown = row.count**0.75 * size ** (29 / 27)
+    return row.quality * (rows * length) ** (7 / 9) * grown

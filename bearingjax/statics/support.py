@@ -8,6 +8,8 @@ from jaxtyping import Array, Float
 from ..design import (
     AbstractBearing,
     BearingSet,
+    CylindricalThrustRollerBearing,
+    SphericalThrustRollerBearing,
     is_self_aligning,
     rows_of,
 )
@@ -18,15 +20,19 @@ from ..element.frame import FREEDOMS, LOADS
 def restrained_freedoms(bearing: AbstractBearing | BearingSet) -> tuple[str, ...]:
     """Freedoms that the bearing can restrain, against a load in the right direction.
 
-    Never gz. Not gx and gy of a self-aligning bearing. uz with balls and tapered
-    rollers, and where a pair of ribs passes axial load from ring to ring.
+    Never gz. Not gx and gy of a self-aligning bearing or of a single spherical roller
+    thrust bearing, not ux and uy of cylindrical roller thrust bearings. uz with balls
+    and tapered rollers, and where a pair of ribs passes axial load from ring to ring.
 
     Args:
         bearing: The design.
     """
-    axial = any(row.bearing.holds_axially for row in rows_of(bearing))
-    tilts = () if is_self_aligning(bearing) else ("gx", "gy")
-    return ("ux", "uy", *(("uz",) if axial else ()), *tilts)
+    rows = [row.bearing for row in rows_of(bearing)]
+    axial = any(row.holds_axially for row in rows)
+    flat = all(isinstance(row, CylindricalThrustRollerBearing) for row in rows)
+    sphere = len(rows) == 1 and isinstance(rows[0], SphericalThrustRollerBearing)
+    tilts = () if sphere or is_self_aligning(bearing) else ("gx", "gy")
+    return (*(() if flat else ("ux", "uy")), *(("uz",) if axial else ()), *tilts)
 
 
 def check_held(

@@ -9,6 +9,8 @@ from ..design import (
     AbstractBallBearing,
     AbstractRollerBearing,
     AngularContactBallBearing,
+    SphericalThrustRollerBearing,
+    is_self_aligning,
     rows_of,
 )
 from ..element.bearing_element import BearingElement
@@ -61,6 +63,17 @@ def _has_shoulder(element, speed):
     balls = [b for b in bearings if isinstance(b, AbstractBallBearing)]
     shoulders = [s for b in balls for s in (b.outer_shoulder, b.inner_shoulder)]
     return any(shoulder is not None for shoulder in shoulders)
+
+
+def _is_linearised(element, speed):
+    # About the centre of a sphere linearised rings tilt as exactly as finite ones.
+    linearised = isinstance(element.kinematics, Linearised)
+    return linearised and not is_self_aligning(element.bearing)
+
+
+def _is_spherical_thrust(element, speed):
+    rows = [row.bearing for row in rows_of(element.bearing)]
+    return all(isinstance(row, SphericalThrustRollerBearing) for row in rows)
 
 
 def _in_brackets(where):
@@ -141,6 +154,14 @@ def _free_tilt_words(size, where):
 
 def _prescribed_tilt_words(size, where):
     return f"prescribed tilt of {where or f'{size:.3g} times what makers allow for'}"
+
+
+def _radial_words(size, where):
+    return (
+        f"radial load of {size:.3g} times the axial one: beyond"
+        f" {of.LARGEST_RADIAL_SHARE:g} makers of spherical roller thrust bearings ask"
+        " for another bearing that carries it"
+    )
 
 
 def _clearance_words(size, where):
@@ -232,7 +253,7 @@ KINDS: dict[str, Kind] = {
     "contact_ellipse": Kind(_of_balls, of.ellipses, of.LARGEST_ELLIPSE, _ellipse_words),
     "contact_angle": Kind(_of_balls, of.groove_angles, of.LARGEST_ANGLE, _groove_words),
     "tilt": Kind(
-        lambda element, _: isinstance(element.kinematics, Linearised),
+        _is_linearised,
         of.tilt_error,
         of.LARGEST_TILT_ERROR,
         _tilt_words,
@@ -267,6 +288,12 @@ KINDS: dict[str, Kind] = {
         of.clearance_lost,
         0.0,
         _clearance_words,
+    ),
+    "radial_share": Kind(
+        _is_spherical_thrust,
+        of.radial_share,
+        of.LARGEST_RADIAL_SHARE,
+        _radial_words,
     ),
     "rib_interference": Kind(_has_ribs, of.interference, 0.0, _rib_words),
     "truncated_ellipse": Kind(

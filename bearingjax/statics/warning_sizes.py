@@ -18,6 +18,9 @@ from ..design import (
     CylindricalRollerBearing,
     NeedleRollerBearing,
     SelfAligningBallRow,
+    SphericalRollerRow,
+    SphericalThrustRollerBearing,
+    ToroidalRollerBearing,
     is_self_aligning,
     rows_of,
 )
@@ -52,6 +55,13 @@ USUAL_TILT_OF_ROLLERS, USUAL_TILT_OF_BALLS = math.radians(4 / 60), math.radians(
 Source: catalogues: cylindrical rollers 3' to 4', tapered rollers 2' to 4', deep groove
     ball bearings 2' to 10'. Upper ends, rough ones.
 """
+
+USUAL_TILT_OF_TOROIDAL_ROLLERS = math.radians(0.5)
+"""Largest tilt of toroidal roller bearings that SKF allows for [rad] (catalogue)."""
+
+LARGEST_RADIAL_SHARE = 0.55
+"""Radial over axial load of a spherical roller thrust bearing above which SKF asks for
+another bearing beside it [1]: some rollers then run without load."""
 
 LARGEST_SPEED = 1e6
 """n·dm, speed times pitch diameter [mm/min].
@@ -339,9 +349,17 @@ def prescribed_tilt(solution: Solution) -> Any:
 
 
 def usual_tilt(bearing: AbstractBearing | BearingSet) -> float:
-    """Largest tilt of ring against ring that makers allow for [rad]."""
+    """Largest tilt of ring against ring that makers allow for [rad].
+
+    None of bearings with a spherical raceway: their rings tilt freely.
+    """
+    rows = [row.bearing for row in rows_of(bearing)]
+    if all(isinstance(row, SphericalThrustRollerBearing) for row in rows):
+        return math.inf
     if is_self_aligning(bearing):
         return math.inf
+    if all(isinstance(row, ToroidalRollerBearing) for row in rows):
+        return USUAL_TILT_OF_TOROIDAL_ROLLERS
     return USUAL_TILT_OF_BALLS if bearing.is_ball else USUAL_TILT_OF_ROLLERS
 
 
@@ -370,7 +388,18 @@ def has_clearance(bearing: AbstractBearing | BearingSet) -> bool:
         return False
     if isinstance(row, AbstractBallBearing):
         return not row.is_one_sided
-    return isinstance(row, CylindricalRollerBearing | NeedleRollerBearing)
+    kinds = CylindricalRollerBearing | NeedleRollerBearing
+    return isinstance(row, kinds | SphericalRollerRow | ToroidalRollerBearing)
+
+
+def radial_share(solution: Solution) -> Any:
+    """Radial over axial load of the moving ring [1]."""
+    xp = namespace(solution.result)
+    first = 6 * RINGS.index(solution.moving_ring)
+    x, y, z = (solution.force[first + k] for k in range(3))
+    # Without load there is none, of a radial load alone it is endless.
+    radial = xp.hypot(x, y)
+    return radial / xp.where(radial > 0, abs(z), 1.0)
 
 
 def clearance_lost(solution: Solution) -> Any:

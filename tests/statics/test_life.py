@@ -917,7 +917,7 @@ def test_what_is_doubtful_about_a_life_is_told(untyped):
     # What P has no part of; of the moment a tenth of P times the pitch radius may be.
     for name, size, words in (
         ("moment", 10.0, "10 N m about the pressure centre"),
-        ("axial", 20.0, "20 N, which ribs bear"),
+        ("axial", 20.0, "20 N, for which ISO 281 has no factor at 0°"),
         ("radial", 20.0, "20 N, for which ISO 281 has no factor"),
     ):
         (only,) = told(**{f"{name}_left_out": np.array(size)})

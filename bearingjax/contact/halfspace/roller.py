@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 
 from ...design.checks import check, concrete, in_range, is_traced, positive
 from ...design.material import Material, contact_modulus
-from ...design.profile import AbstractProfile, Straight
+from ...design.profile import AbstractProfile, Straight, sagitta
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 from .ends import FreeEnds
@@ -46,6 +46,9 @@ class RollerContact(eqx.Module):
             (outer ring), infinite for a plane [m].
         raceway_half_angle: Half cone angle of the raceway, which widens towards the
             roller's large end, y < 0 [rad].
+        arc_radii: Radii of the arcs along the generatrices of roller and raceway, that
+            of the raceway hollow, from which the profiles are measured [m]; `None`:
+            straight ones.
         roller_profile, raceway_profile: Profiles.
         material, raceway_material: Materials.
         free_ends: `FreeEnds()`: the roller's end faces are free; `None`: it is taken as
@@ -68,6 +71,7 @@ class RollerContact(eqx.Module):
     raceway_half_angle: Scalar = eqx.field(
         converter=as_real, metadata=unit("rad"), default=0.0, kw_only=True
     )
+    arc_radii: tuple[Scalar, Scalar] | None = eqx.field(default=None, kw_only=True)
     roller_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
     raceway_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
     material: Material = eqx.field(default_factory=Material, kw_only=True)
@@ -85,9 +89,9 @@ class RollerContact(eqx.Module):
             radius != 0,
             "positive (convex), negative (hollow) or infinite (plane)",
         )
-        for name in ("half_angle", "raceway_half_angle"):
-            if getattr(self, name) is not None:
-                in_range(self, name, -0.7, 0.7)
+        if self.half_angle is not None:
+            in_range(self, "half_angle", -0.7, 0.7)
+        in_range(self, "raceway_half_angle", -0.5 * np.pi, 0.5 * np.pi)
         numbers = concrete(
             self.roller_length, self.small_diameter, self.large_diameter, self.angle
         )
@@ -153,7 +157,12 @@ class RollerContact(eqx.Module):
     def roller_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
         """Radius of curvature of the roller normal to the generatrix at y [m]."""
         slope = (self.large_diameter - self.small_diameter) / self.roller_length
-        return 0.5 * (self.diameter - slope * y) / jnp.cos(self.angle)
+        radius, cosine = 0.5 * (self.diameter - slope * y), jnp.cos(self.angle)
+        if self.arc_radii is None:
+            return radius / cosine
+        arc = self.arc_radii[0]
+        lean = self.angle + jnp.arcsin(y / arc)
+        return (radius - sagitta(y, arc) * cosine) / jnp.cos(lean)
 
     def relative_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
         """Radius of relative curvature 1/(1/roller + 1/raceway) at y [m]."""
@@ -161,15 +170,26 @@ class RollerContact(eqx.Module):
 
     def _raceway_curvature(self, y):
         """One over the radius, so that a plane is a number like any other."""
-        wider = -y * jnp.tan(self.raceway_half_angle)
-        return 1.0 / (self.raceway_radius + jnp.sign(self.raceway_radius) * wider)
+        side, angle = jnp.sign(self.raceway_radius), self.raceway_half_angle
+        wider = -y * jnp.tan(angle)
+        if self.arc_radii is None:
+            return 1.0 / (self.raceway_radius + side * wider)
+        # Over the cosine of the angle, as is what becomes wider.
+        arc = self.arc_radii[1]
+        wider = wider + side * sagitta(y, arc)
+        lean = jnp.cos(angle - side * jnp.arcsin(y / arc)) / jnp.cos(angle)
+        return lean / (self.raceway_radius + side * wider)
 
     def drop(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
         """Material removed from both bodies at y [m]."""
         length, diameter = self.roller_length, self.diameter
-        return self.roller_profile.drop(
+        drop = self.roller_profile.drop(
             y, length, diameter
         ) + self.raceway_profile.drop(y, length, diameter)
+        if self.arc_radii is None:
+            return drop
+        roller, raceway = self.arc_radii
+        return drop + (sagitta(y, roller) - sagitta(y, raceway))
 
     def gap(self, grid: Grid) -> Float[Array, "m n"]:
         """Distance of roller and raceway as they touch, at each cell [m].
