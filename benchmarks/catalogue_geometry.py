@@ -54,8 +54,8 @@ SIZES = sorted(
 )
 """Diameters in which balls are made [mm]."""
 
-IMPROVED = 1.06
-"""C of four-point bearings, all of the improved class, over that of ISO 281."""
+IMPROVED = {"four_point_ball": 1.06, "deep_groove_ball": 1.05}
+"""C of SKF's improved class over that of ISO 281, by type; if no "other" tells it."""
 
 KINDS = {
     "deep_groove_ball": (by_row.ANGULAR_CONTACT, (0.53, 0.52), 1),
@@ -97,6 +97,12 @@ def capacities(values):
     return tuple(number(given, name, "force") for name in names)
 
 
+def improved(kind, values) -> float:
+    """C over that of the ordinary class, where C of the ordinary class is not known."""
+    known = "other" in values or values["capacity_source"] != "skf"
+    return 1.0 if known else IMPROVED.get(kind, 1.0)
+
+
 @functools.cache
 def rating(kind):
     """C and C0 [kN] of arrays of numbers, diameters, pitch diameters and angles."""
@@ -128,8 +134,7 @@ def balls(kind, values) -> dict[str, float]:
     full = [np.resize(np.broadcast_to(x, size.shape), 4096) for x in (pitch, angle)]
     rates = rating(kind)(np.resize(count, 4096), np.resize(size, 4096), *full)
     mine, mine0 = (np.asarray(x)[: size.size] for x in rates)
-    if kind == "four_point_ball":
-        mine = IMPROVED * mine
+    mine = improved(kind, values) * mine
     off = ((mine / c - 1) / 0.01) ** 2
     # C0 of thrust bearings is no guide; 83 % of their circle is filled.
     filled = ((count * lean / math.pi - 0.83) / 0.03) ** 2
@@ -228,8 +233,7 @@ def blind(kind, values, size) -> float | None:
         number(values, key) / 1e3 for key in ("bore", "outside_diameter", "width")
     )
     c, c0 = (1e3 * load for load in capacities(values))
-    if kind == "four_point_ball":
-        c /= IMPROVED
+    c /= improved(kind, values)
     known = kind in ("angular_contact_ball", "four_point_ball", "tapered_roller")
     given = {"contact_angle": contact_angle(kind, values)} if known else {}
     try:
