@@ -54,8 +54,13 @@ SIZES = sorted(
 )
 """Diameters in which balls are made [mm]."""
 
-IMPROVED = {"four_point_ball": 1.06, "deep_groove_ball": 1.05}
-"""C of SKF's improved class over that of ISO 281, by type; if no "other" tells it."""
+IMPROVED = {
+    ("four_point_ball", "skf"): 1.06,
+    ("deep_groove_ball", "skf"): 1.05,
+    ("tapered_roller", "skf_improved"): 1.15,
+}
+"""C of the improved class over that of ISO 281, by type and source of C; if no "other"
+tells it."""
 
 KINDS = {
     "deep_groove_ball": (by_row.ANGULAR_CONTACT, (0.53, 0.52), 1),
@@ -99,8 +104,9 @@ def capacities(values):
 
 def improved(kind, values) -> float:
     """C over that of the ordinary class, where C of the ordinary class is not known."""
-    known = "other" in values or values["capacity_source"] != "skf"
-    return 1.0 if known else IMPROVED.get(kind, 1.0)
+    if "other" in values:
+        return 1.0
+    return IMPROVED.get((kind, values["capacity_source"]), 1.0)
 
 
 @functools.cache
@@ -185,9 +191,14 @@ def rollers(kind, values) -> dict[str, float]:
         return of_roller(size, pitch, 0.0, c0, 0.835)[0]
     bore, outside = (number(values, key) for key in ("bore", "outside_diameter"))
     angle, tries = contact_angle(kind, values), []
+    longest = 0.84 * number(values, "outer_width") / math.cos(angle)
+    c /= improved(kind, values)
     for share in np.arange(0.20, 0.2801, 0.005):
         size = round(share * (outside - bore), 1)
-        found, mine = of_roller(size, 0.5 * (bore + outside), angle, c0, 0.885)
+        for filled in (0.885, 0.915, 0.945):
+            found, mine = of_roller(size, 0.5 * (bore + outside), angle, c0, filled)
+            if found["roller_length"] < longest:
+                break
         off = ((mine / c - 1) / 0.01) ** 2 + ((share - 0.24) / 0.02) ** 2
         tries.append((off, found))
     return min(tries, key=lambda one: one[0])[1]

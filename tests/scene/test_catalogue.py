@@ -294,7 +294,7 @@ WRONG = {
     "6205 C5P": "`name` is 'C5P'; it must be one of C2, CN, C3, C4, C5 for a bore",
     "NU 209 ECK": "NU 209 ECK: classes of clearance of tapered bores (K) are known",
     "1205 C5": "`name` is 'C5'; it must be one of C2, CN, C3, C4",
-    "N 2205": "'N 2205' is not a bearing of the catalogue; near it: 2205, N205",
+    "N 2205": "'N 2205' is not a bearing of the catalogue; near it: N205, N220, NJ2205",
     "deep_grove": "nor is it a .toml file or a shipped scene (angular_contact,",
 }
 
