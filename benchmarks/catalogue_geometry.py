@@ -183,8 +183,14 @@ def rollers(kind, values) -> dict[str, float]:
     if kind != "tapered_roller":
         inner = number(values["printed"], "inner_raceway_diameter")
         if kind == "needle_roller":
-            # Of 2.5 and 3.5 mm the one that gives C.
-            tries = [of_roller(d, inner + d, 0.0, c0, 0.79) for d in (2.5, 3.5)]
+            # Of the diameters that leave it a needle the one that gives C.
+            sizes = (2.5, 3.5, 4.5, 5.0, 6.0)
+            tries = [of_roller(d, inner + d, 0.0, c0, 0.79) for d in sizes]
+            tries = [
+                (one, mine)
+                for one, mine in tries
+                if one["roller_length"] > 2.5 * one["roller_diameter"]
+            ]
             return min(tries, key=lambda one: abs(one[1] / c - 1))[0]
         outer = number(values["printed"], "outer_raceway_diameter")
         size, pitch = 0.5 * (outer - inner), 0.5 * (outer + inner)
