@@ -32,7 +32,7 @@ C of the ordinary class within 2 %: 11 of 14
 estimated geometry, C of the ordinary class: mean and worst, %
 angular_contact_ball   100    -0.0    +3.2
 cylindrical_roller      71   -11.0   -14.1
-deep_groove_ball       128    -1.2    -6.7
+deep_groove_ball       153    -0.7    -5.6
 four_point_ball         33    -3.7    -7.4
 needle_roller           28    -2.8    -7.6
 self_aligning_ball      77    -0.4    -2.4

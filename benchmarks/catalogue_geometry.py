@@ -16,18 +16,21 @@ Run: python benchmarks/catalogue_geometry.py [--smoke] [--json]
 
 Last run:
 
-    0 of 85 differ
+    0 of 663 differ
     estimate_geometry, diameter of rolling elements: mean and worst, %
-    angular_contact_ball   17 of 17    -0.4    -6.8
-    cylindrical_roller     14 of 14    -2.2    -4.0
-    deep_groove_ball       13 of 13    -0.1    -0.5
-    four_point_ball         7 of 7     +0.1    +3.4
-    needle_roller           6 of 6     +7.1   +12.3
-    self_aligning_ball      8 of 8     -1.1    -3.2
-    tapered_roller         12 of 12    -1.6    -3.4
-    thrust_ball             8 of 8     -3.7    -5.3
+    angular_contact_ball  100 of 100    -0.1    -6.8
+    cylindrical_roller     71 of 71    -2.1    -4.6
+    deep_groove_ball      153 of 153    -0.5   -15.6
+    four_point_ball        33 of 33    +0.0    -5.0
+    needle_roller          28 of 28    +2.6   -12.9
+    self_aligning_ball     77 of 77    -0.7    -6.2
+    tapered_roller        140 of 140    -1.9    -4.4
+    thrust_ball            61 of 61    -2.7    -5.5
 
-C of four-point bearings is divided by that of their class, 1.06.
+C of four-point bearings, deep groove bearings and tapers is divided by that of their
+class, 1.06, 1.05 and 1.15, where the ordinary one is not printed. Deep groove bearings
+that `estimate_geometry` misses by 5 to 16 % are 15 with bores to 10 mm or thin sections
+and six large ones.
 """
 
 import argparse
@@ -50,7 +53,7 @@ from bearingjax.statics import row_rating as by_row  # noqa: E402
 
 INCH = 25.4
 SIZES = sorted(
-    {round(k * INCH / 64, 3) for k in range(5, 97)} | {0.5 * k for k in range(4, 80)}
+    {round(k * INCH / 64, 3) for k in range(3, 97)} | {0.5 * k for k in range(3, 80)}
 )
 """Diameters in which balls are made [mm]."""
 

@@ -284,7 +284,7 @@ def test_capacities_from_the_balls_of_another_angle_are_as_far_off_as_told():
 
 WRONG = {
     "6299": "'6299' is not a bearing of the catalogue; near it: 6209",
-    "62055": "'62055' is not a bearing of the catalogue; near it: 6205",
+    "62055": "'62055' is not a bearing of the catalogue; near it: 605, 6205, 625",
     "": "'' is not a designation, such as",
     "6205-XQ": "has letters after 6205 that are not known: 'XQ'",
     "6205/C9": "has letters after 6205 that are not known: 'C9' (known are C2, CN, C3,",
