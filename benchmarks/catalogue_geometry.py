@@ -16,18 +16,21 @@ Run: python benchmarks/catalogue_geometry.py [--smoke] [--json]
 
 Last run:
 
-    0 of 85 differ
+    0 of 663 differ
     estimate_geometry, diameter of rolling elements: mean and worst, %
-    angular_contact_ball   17 of 17    -0.4    -6.8
-    cylindrical_roller     14 of 14    -2.2    -4.0
-    deep_groove_ball       13 of 13    -0.1    -0.5
-    four_point_ball         7 of 7     +0.1    +3.4
-    needle_roller           6 of 6     +7.1   +12.3
-    self_aligning_ball      8 of 8     -1.1    -3.2
-    tapered_roller         12 of 12    -1.6    -3.4
-    thrust_ball             8 of 8     -3.7    -5.3
+    angular_contact_ball  100 of 100    -0.1    -6.8
+    cylindrical_roller     71 of 71    -2.1    -4.6
+    deep_groove_ball      153 of 153    -0.5   -15.6
+    four_point_ball        33 of 33    +0.0    -5.0
+    needle_roller          28 of 28    +2.6   -12.9
+    self_aligning_ball     77 of 77    -0.7    -6.2
+    tapered_roller        140 of 140    -1.9    -4.4
+    thrust_ball            61 of 61    -2.7    -5.5
 
-C of four-point bearings is divided by that of their class, 1.06.
+C of four-point bearings, deep groove bearings and tapers is divided by that of their
+class, 1.06, 1.05 and 1.15, where the ordinary one is not printed. Deep groove bearings
+that `estimate_geometry` misses by 5 to 16 % are 15 with bores to 10 mm or thin sections
+and six large ones.
 """
 
 import argparse
@@ -50,12 +53,17 @@ from bearingjax.statics import row_rating as by_row  # noqa: E402
 
 INCH = 25.4
 SIZES = sorted(
-    {round(k * INCH / 64, 3) for k in range(5, 97)} | {0.5 * k for k in range(4, 80)}
+    {round(k * INCH / 64, 3) for k in range(3, 97)} | {0.5 * k for k in range(3, 80)}
 )
 """Diameters in which balls are made [mm]."""
 
-IMPROVED = 1.06
-"""C of four-point bearings, all of the improved class, over that of ISO 281."""
+IMPROVED = {
+    ("four_point_ball", "skf"): 1.06,
+    ("deep_groove_ball", "skf"): 1.05,
+    ("tapered_roller", "skf_improved"): 1.15,
+}
+"""C of the improved class over that of ISO 281, by type and source of C; if no "other"
+tells it."""
 
 KINDS = {
     "deep_groove_ball": (by_row.ANGULAR_CONTACT, (0.53, 0.52), 1),
@@ -97,6 +105,13 @@ def capacities(values):
     return tuple(number(given, name, "force") for name in names)
 
 
+def improved(kind, values) -> float:
+    """C over that of the ordinary class, where C of the ordinary class is not known."""
+    if "other" in values:
+        return 1.0
+    return IMPROVED.get((kind, values["capacity_source"]), 1.0)
+
+
 @functools.cache
 def rating(kind):
     """C and C0 [kN] of arrays of numbers, diameters, pitch diameters and angles."""
@@ -128,8 +143,7 @@ def balls(kind, values) -> dict[str, float]:
     full = [np.resize(np.broadcast_to(x, size.shape), 4096) for x in (pitch, angle)]
     rates = rating(kind)(np.resize(count, 4096), np.resize(size, 4096), *full)
     mine, mine0 = (np.asarray(x)[: size.size] for x in rates)
-    if kind == "four_point_ball":
-        mine = IMPROVED * mine
+    mine = improved(kind, values) * mine
     off = ((mine / c - 1) / 0.01) ** 2
     # C0 of thrust bearings is no guide; 83 % of their circle is filled.
     filled = ((count * lean / math.pi - 0.83) / 0.03) ** 2
@@ -172,17 +186,28 @@ def rollers(kind, values) -> dict[str, float]:
     if kind != "tapered_roller":
         inner = number(values["printed"], "inner_raceway_diameter")
         if kind == "needle_roller":
-            # Of 2.5 and 3.5 mm the one that gives C.
-            tries = [of_roller(d, inner + d, 0.0, c0, 0.79) for d in (2.5, 3.5)]
+            # Of the diameters that leave it a needle the one that gives C.
+            sizes = (2.5, 3.5, 4.5, 5.0, 6.0)
+            tries = [of_roller(d, inner + d, 0.0, c0, 0.79) for d in sizes]
+            tries = [
+                (one, mine)
+                for one, mine in tries
+                if one["roller_length"] > 2.5 * one["roller_diameter"]
+            ]
             return min(tries, key=lambda one: abs(one[1] / c - 1))[0]
         outer = number(values["printed"], "outer_raceway_diameter")
         size, pitch = 0.5 * (outer - inner), 0.5 * (outer + inner)
         return of_roller(size, pitch, 0.0, c0, 0.835)[0]
     bore, outside = (number(values, key) for key in ("bore", "outside_diameter"))
     angle, tries = contact_angle(kind, values), []
+    longest = 0.84 * number(values, "outer_width") / math.cos(angle)
+    c /= improved(kind, values)
     for share in np.arange(0.20, 0.2801, 0.005):
         size = round(share * (outside - bore), 1)
-        found, mine = of_roller(size, 0.5 * (bore + outside), angle, c0, 0.885)
+        for filled in (0.885, 0.915, 0.945):
+            found, mine = of_roller(size, 0.5 * (bore + outside), angle, c0, filled)
+            if found["roller_length"] < longest:
+                break
         off = ((mine / c - 1) / 0.01) ** 2 + ((share - 0.24) / 0.02) ** 2
         tries.append((off, found))
     return min(tries, key=lambda one: one[0])[1]
@@ -228,8 +253,7 @@ def blind(kind, values, size) -> float | None:
         number(values, key) / 1e3 for key in ("bore", "outside_diameter", "width")
     )
     c, c0 = (1e3 * load for load in capacities(values))
-    if kind == "four_point_ball":
-        c /= IMPROVED
+    c /= improved(kind, values)
     known = kind in ("angular_contact_ball", "four_point_ball", "tapered_roller")
     given = {"contact_angle": contact_angle(kind, values)} if known else {}
     try:

@@ -67,11 +67,11 @@ def test_another_geometry_is_rated_by_the_standards(read):
 
 
 def test_ratings_that_nobody_prints_are_told_so(read):
-    scene = read('designation = "7208 C"', "[life]\n")
+    scene = read('designation = "7308 C"', "[life]\n")
     assert rated(life_conditions(scene)) == (None, None, None)
     (line,) = not_published(scene)
-    assert "those of 7208 C are not known for this contact angle; from the" in line
-    given = read('designation = "7208 C"', '[life]\ndynamic_capacity = "32 kN"\n')
+    assert "those of 7308 C are not known for this contact angle; from the" in line
+    given = read('designation = "7308 C"', '[life]\ndynamic_capacity = "32 kN"\n')
     assert not_published(given) == []
 
 
@@ -206,7 +206,7 @@ def test_each_bearing_of_a_sweep_has_its_own_speeds(tmp_path):
 
 
 def test_each_bearing_of_a_sweep_has_its_own_ratings(tmp_path):
-    names = ["7208 BE", "7210 BE", "7208 C"]
+    names = ["7208 BE", "7210 BE", "7308 C"]
     table = cases(tmp_path, f"{CATALOGUED}bearing.designation = {names}")
     assert [made["bearing.designation"] for made in table.settings] == names
     found = {
@@ -215,7 +215,7 @@ def test_each_bearing_of_a_sweep_has_its_own_ratings(tmp_path):
         for number in np.asarray(part.designs)
     }
     assert found == {n: bj.catalogue_entry(n).dynamic_capacity for n in names}
-    assert found["7208 C"] is None  # from the geometry
+    assert found["7308 C"] is None  # from the geometry
 
 
 def test_rows_that_vary_have_their_ratings(tmp_path):
