@@ -125,6 +125,8 @@ def test_exact_kinematics_against_brute_force(kind, turning):
         tight = {} if kind == "thrust" else {"radial_internal_clearance": -200e-6}
         bearing = KINDS[kind](**(tight if turning else {}))
         q = random_motion(kind, rng)
+        if turning and kind == "thrust":
+            q[[3, 4, 9, 10]] *= 0.1
         row, inertia = oracle_of(bearing), None
         if speed is not None:
             c = contact_constants(bearing, LAW, bj.numerics.ContactMapped())
