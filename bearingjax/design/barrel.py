@@ -169,7 +169,8 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
     """Toroidal roller bearing: long barrel rollers, raceways of large profile radius.
 
     Rings that are moved along the axis by s lose radial clearance by
-    s²/(r_o + r_i - D), and nothing holds them axially but that.
+    s²/(r_o + r_i - D), and nothing holds them axially but that; `Finite` kinematics,
+    the default for this bearing, see it.
 
     Attributes are those of `AbstractBarrelBearing`.
 
@@ -178,12 +179,8 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
 
     @property
     def play(self):
-        assert self.outer_raceway_radius is not None
-        centres = self.outer_raceway_radius + self.inner_raceway_radius
-        half, distance = 0.5 * self.radial_internal_clearance, centres
-        # Axial travel until the raceways touch, of two arcs.
-        free = jnp.maximum(half * (2.0 * (distance - self.roller_diameter) - half), 0.0)
-        return jnp.maximum(half, _root(free))
+        # Radial: axial travel is free over millimetres, and a search begins with this.
+        return 0.5 * self.radial_internal_clearance
 
 
 class SphericalThrustRollerBearing(_AbstractSphere):
@@ -342,9 +339,3 @@ def _no_clearance(owner):
     if numbers is not None:
         allowed = "0 m: a thrust bearing of one direction has no clearance"
         check(owner, "radial_internal_clearance", numbers[0] == 0.0, allowed)
-
-
-def _root(x):
-    """Square root with derivative zero at zero."""
-    some = x > 0
-    return jnp.where(some, jnp.sqrt(jnp.where(some, x, 1.0)), 0.0)

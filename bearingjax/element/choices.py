@@ -18,6 +18,7 @@ from ..contact.line import AbstractLineLaw, Palmgren
 from ..contact.point_law import AbstractPointLaw, FreeAngle, balls_of
 from ..design import AbstractBallBearing, AbstractRollerBearing, SetRow
 from ..design.ball_types import SelfAligningBallRow
+from ..design.barrel import ToroidalRollerBearing
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
@@ -139,7 +140,9 @@ class RollerChoices(AbstractChoices):
                 )
         else:
             quadrature = quadrature or ContactMapped()
-        kinematics = kinematics or Linearised()
+        # To first order a toroidal bearing loses no clearance to a shift.
+        arcs = any(isinstance(row.bearing, ToroidalRollerBearing) for row in rows)
+        kinematics = kinematics or (Finite() if arcs else Linearised())
         return cls(line_law=law, quadrature=quadrature, kinematics=kinematics)
 
     def check(self, part, speed):

@@ -22,6 +22,9 @@ from .seeking import Seeking
 
 _N, _D = EXPONENT
 
+_TURNED = 0.5
+"""Tilt of a roller against its rings beyond which it has left them [rad]."""
+
 
 class Roller(AbstractRollingElement):
     """One roller: its contacts, its kinematics and the inertia force on it.
@@ -116,6 +119,17 @@ class RollerSeeking(Seeking):
 
     def pressed(self, approach):
         return self.element.constants.lines[0].pressed(approach)
+
+    @property
+    def may_be_ejected(self):
+        return not self.element.geometry.is_linear or super().may_be_ejected
+
+    def is_ejected(self, rings, x):
+        gone = super().is_ejected(rings, x)
+        if self.element.geometry.is_linear:
+            return gone
+        # A roller that is turned over meets no raceway.
+        return gone | (jnp.abs(x[2]) > _TURNED * self.element.constants.half_length)
 
     def inertia_size(self):
         return None if self.element.body_force is None else norm(self._on_unknowns())
