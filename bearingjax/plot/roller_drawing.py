@@ -69,14 +69,14 @@ def _sizes(ax, bearing, parts):
     yield Label(label(bearing, "roller_diameter"), at - 0.5 * half)
     ax.plot(*np.stack([parts.axis[0], parts.axis[1]]).T, **AXIS)
     # Along the outer generator, inside of the roller.
-    low, high = parts.raceways[0] - 0.55 * half
+    low, high = parts.raceways[0, [0, -1]] - 0.55 * half
     at = between(ax, low, high)
     yield Label(label(bearing, "roller_length"), at + 0.25 * (low - high))
 
 
 def _straight(bearing, parts):
     """Yield labels of surfaces without a profile; the others have views."""
-    at = parts.roller[0], parts.raceways[0, 1], parts.raceways[1, 1]
+    at = parts.roller[0], parts.raceways[0, -1], parts.raceways[1, -1]
     for name, point in zip(PROFILES, at, strict=True):
         if isinstance(getattr(bearing, name), Straight):
             yield Label(f"{name}: Straight", point)
@@ -93,7 +93,7 @@ def _angles(ax, bearing, parts):
     ends = (np.pi, np.pi - turn - half), (np.pi, np.pi - turn + half)
     words = "outer raceway (cup) at", "inner raceway (cone) at"
     for k in range(2):
-        foot = parts.raceways[k, 1]
+        foot = parts.raceways[k, -1]
         at = angle(ax, foot, 0.45 * length, ends[k])
         yield Label(f"{words[k]} {quantity(np.pi - ends[k][1], 'rad')}", at)
 

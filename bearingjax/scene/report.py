@@ -9,7 +9,13 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..design import AbstractBearing, BearingSet, TaperedRollerBearing, rows_of
+from ..design import (
+    AbstractBearing,
+    BearingSet,
+    CrossedRollerRow,
+    TaperedRollerBearing,
+    rows_of,
+)
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..statics.solution import BallSolution, Solution
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
@@ -80,7 +86,8 @@ def bearing_text(
         solution: If given, springs are described too.
     """
     lines = []
-    if isinstance(bearing, BearingSet):
+    crossed = isinstance(rows_of(bearing)[0].bearing, CrossedRollerRow)
+    if isinstance(bearing, BearingSet) and not crossed:
         places = ", ".join(
             f"{1e3 * _place(row):.4g} mm{' (mirrored)' if row.mirrored else ''}"
             for row in bearing.rows
@@ -138,16 +145,20 @@ def _springs(bearing, solution):
     ]
 
 
+def _kind(bearing):
+    """Describe the type of a bearing: "deep groove ball", "spherical roller"."""
+    name = type(bearing).__name__.removesuffix("Bearing").removesuffix("Row")
+    return "".join(f" {c.lower()}" if c.isupper() else c for c in name).strip()
+
+
 def ball_row(bearing, head) -> list[str]:
     """Describe type and sizes of a row of balls."""
     pitch, diameter = (
         1e3 * float(x) for x in (bearing.pitch_diameter, bearing.ball_diameter)
     )
-    kind = type(bearing).__name__.removesuffix("BallBearing").removesuffix("BallRow")
-    words = "".join(f" {c.lower()}" if c.isupper() else c for c in kind).strip()
     angle = np.rad2deg(float(bearing.free_contact_angle))
     return [
-        f"{head}: {words} ball bearing, {bearing.n_balls} balls of {diameter:.4g} mm on"
+        f"{head}: {_kind(bearing)} bearing, {bearing.n_balls} balls of {diameter:.4g} mm on"
         f" a pitch circle of {pitch:.4g} mm",
         f"osculation: outer {_osculation(bearing.outer_osculation)}, inner"
         f" {float(bearing.inner_osculation):.4g}; free contact angle {angle:.4g} deg"
@@ -171,22 +182,37 @@ def roller_row(bearing, head) -> list[str]:
     """Describe type and sizes of a row of rollers."""
     size = [bearing.pitch_diameter, bearing.roller_diameter, bearing.roller_length]
     pitch, diameter, length = (1e3 * float(x) for x in size)
-    kind = type(bearing).__name__.removesuffix("RollerBearing").lower()
     ribs = ", ".join(bearing.ribs.present) or "none"
+    told = "" if bearing.is_thrust else f"{_roller_clearance(bearing)}; "
     lines = [
-        f"{head}: {kind} roller bearing, {bearing.n_rollers} rollers"
+        f"{head}: {_kind(bearing)} bearing, {bearing.n_rollers} rollers"
         f" {diameter:.4g} x {length:.4g} mm on a pitch circle of {pitch:.4g} mm",
-        f"{_roller_clearance(bearing)}; ribs: {ribs};"
-        f" roller profile: {type(bearing.roller_profile).__name__}",
+        f"{told}ribs: {ribs}; roller profile: {type(bearing.roller_profile).__name__}",
     ]
-    if isinstance(bearing, TaperedRollerBearing):
-        angles = (bearing.roller_axis_angle, bearing.roller_half_angle)
-        axis, half = (float(np.rad2deg(float(angle))) for angle in angles)
+    angles = float(bearing.axis_angle), float(bearing.half_angle)
+    axis, half = (float(np.rad2deg(angle)) for angle in angles)
+    if isinstance(bearing, CrossedRollerRow):
+        lines.append(
+            f"contact angle: {axis:.4g} deg, of every other roller -{axis:.4g}"
+        )
+    elif half:
         raceways = [axis + half, axis - half]
         lines.append(
             f"contact angle: outer {raceways[0]:.4g}, inner {raceways[1]:.4g} deg"
         )
+    elif axis:
+        lines.append(f"contact angle: {axis:.4g} deg")
+    if bearing.arc_radii is not None:
+        roller, outer, inner = (1e3 * float(radius) for radius in bearing.arc_radii)
+        lines.append(
+            f"profile radii: roller {roller:.5g}, raceways outer {outer:.5g}"
+            f"{' (a sphere)' if _is_sphere(bearing) else ''}, inner {inner:.5g} mm"
+        )
     return lines
+
+
+def _is_sphere(bearing):
+    return hasattr(bearing, "sphere_radius")
 
 
 def _roller_clearance(bearing):
