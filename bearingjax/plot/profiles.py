@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design import AbstractRollerBearing
-from ..design.profile import drops
+from ..design.profile import drops, sagitta
 from .style import COLOURS, ROLLER, SMALL, axes_or_new
 
 if TYPE_CHECKING:
@@ -19,7 +19,8 @@ def profile(
     """Plot the drop [µm] of the roller and of both raceways along the roller.
 
     The drop points downwards, as the material falls away. Profiles that grow without
-    limit at their very end are cut there.
+    limit at their very end are cut there. Of barrel rollers the profile of the roller
+    is measured from its arc, those of the raceways from the same arc.
 
     Args:
         bearing: The design.
@@ -40,9 +41,13 @@ def profile(
         "outer raceway": (bearing.outer_raceway_profile, COLOURS["outer"], "--", 1.8),
         "inner raceway": (bearing.inner_raceway_profile, COLOURS["inner"], ":", 2.4),
     }
-    limit = 0.0
-    for name, (shape, colour, style, width) in lines.items():
-        drop = 1e6 * np.asarray(drops(shape, position, length, diameter))
+    arcs, limit = bearing.arc_radii, 0.0
+    flatter = np.zeros((3, len(along)))
+    if arcs is not None:
+        backs = [np.asarray(sagitta(position, radius)) for radius in arcs]
+        flatter[1:] = 1e6 * (backs[0] - np.stack(backs[1:]))
+    for k, (name, (shape, colour, style, width)) in enumerate(lines.items()):
+        drop = 1e6 * np.asarray(drops(shape, position, length, diameter)) + flatter[k]
         ax.plot(x, drop, color=colour, linestyle=style, linewidth=width, label=name)
         full = float(np.max(drop, initial=0.0, where=np.isfinite(drop)))
         inside = float(np.max(drop[near_end], initial=0.0))
@@ -53,6 +58,6 @@ def profile(
     ax.grid(color="0.9")
     ax.set_xlabel("position along the roller [mm]")
     ax.set_ylabel("drop [µm]")
-    ax.set_title("Profiles")
+    ax.set_title("Profiles" if arcs is None else "Profiles, from the roller's arc")
     ax.legend(fontsize=SMALL, loc="lower center")
     return ax

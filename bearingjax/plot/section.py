@@ -91,7 +91,7 @@ def cross_section(
         ax.legend(
             handles=[ax.lines[-1]],
             fontsize=SMALL,
-            loc="upper left",
+            loc="lower left" if bearing.is_thrust else "upper left",
             frameon=False,
             handletextpad=0.2,
             borderpad=0.1,
@@ -107,7 +107,9 @@ def cross_section(
         ]
     )
     ax.margins(0.0)
-    ax.set_xlabel("z [mm]")
+    angle = float(bearing.axis_angle) + float(bearing.half_angle)
+    note = f"    (contact angle {quantity(angle, 'rad')})" if angle >= STEEP else ""
+    ax.set_xlabel(f"z [mm]{note}")
     ax.set_ylabel("radius [mm]")
     ax.set_title("Axial section, to scale; ring bodies schematic")
     return ax
@@ -124,8 +126,9 @@ def _name_rings(ax, bearing, parts):
     for i, name in enumerate(RACEWAYS):
         back = parts.rings[i][-1]
         at = parts.raceways[i, 0, 0] + 0.22 * parts.length, 0.5 * (middle[i] + back)[1]
-        if bearing.is_thrust:
-            at = 0.5 * (middle[i] + back)[0], parts.centre[1]
+        if bearing.is_thrust:  # where the washer is thick
+            end = parts.raceways[i, -i]
+            at = 0.5 * (end + back)[0], 0.75 * end[1] + 0.25 * parts.centre[1]
         word = "washer" if bearing.is_thrust else "ring"
         ax.text(
             *at,
@@ -199,7 +202,7 @@ def _set_section(ax, rows):
     if 0.0 < angle < STEEP:
         top = high[1] + 0.07 * tall, high[1] + 0.14 * tall
         sense = -1.0 if row.mirrored else 1.0
-        contact_angle(ax, centre, angle, top, sense, alone=False)
+        contact_angle(ax, centre, angle, top, sense, alone=crossed)
     ax.set_aspect("equal", adjustable="datalim")
     room = np.array([0.5 * diameter, 0.2 * tall])
     ax.update_datalim([low, high + room])

@@ -9,7 +9,6 @@ from ..design import (
     BearingSet,
     CrossedRollerRow,
     is_self_aligning,
-    shares_rings,
 )
 from .ball_section import ball_row, row_position
 from .dimension import AXIS, LINE, between, fit, label, quantity, spread, width
@@ -39,12 +38,15 @@ def arrangement_view(
     points = np.concatenate(outlines)
     (left, low), (right, high) = points.min(axis=0), points.max(axis=0)
     tall = high - low
+    names = [f"rows.{k}" for k in range(len(outlines))]
+    if _is_crossed(bearing):
+        names = ["rows.0, dashed rows.1", ""]
     for k, (row, outline) in enumerate(zip(bearing.rows, outlines, strict=True)):
         middle = outline.mean(axis=0)[0]
         ax.text(
             middle,
             high + 0.05 * tall,
-            f"rows.{k}",
+            names[k],
             ha="center",
             fontsize=SMALL,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
@@ -166,8 +168,12 @@ def _draw(ax, row, bearing):
             [1e3 * float(row.position), 0.0]
         )
 
-    crossed = isinstance(part, CrossedRollerRow) and row is not bearing.rows[0]
-    return roller_row(ax, section(part), turned, behind=crossed)
+    behind = _is_crossed(bearing) and row is not bearing.rows[0]
+    return roller_row(ax, section(part), turned, behind=behind)
+
+
+def _is_crossed(bearing):
+    return isinstance(bearing.rows[0].bearing, CrossedRollerRow)
 
 
 def _spring(row, name):
@@ -192,7 +198,7 @@ def _arrangement(bearing):
         word = "Tandem"
     if is_self_aligning(bearing):
         word = "Self-aligning"
-    elif shares_rings(bearing):
+    elif _is_crossed(bearing):
         return "Crossed rollers, every other one turned"
     gaps = [quantity(1e-3 * gap, "m") for gap in spacing]
     return f"{word}, spacing {', '.join(gaps[:1] if len(set(gaps)) == 1 else gaps)}"

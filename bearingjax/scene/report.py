@@ -158,8 +158,8 @@ def ball_row(bearing, head) -> list[str]:
     )
     angle = np.rad2deg(float(bearing.free_contact_angle))
     return [
-        f"{head}: {_kind(bearing)} bearing, {bearing.n_balls} balls of {diameter:.4g} mm on"
-        f" a pitch circle of {pitch:.4g} mm",
+        f"{head}: {_kind(bearing)} bearing, {bearing.n_balls} balls of"
+        f" {diameter:.4g} mm on a pitch circle of {pitch:.4g} mm",
         f"osculation: outer {_osculation(bearing.outer_osculation)}, inner"
         f" {float(bearing.inner_osculation):.4g}; free contact angle {angle:.4g} deg"
         + _clearance(bearing),
