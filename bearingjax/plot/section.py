@@ -205,7 +205,7 @@ def _set_section(ax, rows):
         contact_angle(ax, centre, angle, top, sense, alone=crossed)
     ax.set_aspect("equal", adjustable="datalim")
     room = np.array([0.5 * diameter, 0.2 * tall])
-    ax.update_datalim([low, high + room])
+    ax.update_datalim([low - [0.0, 0.16 * tall], high + room])
     ax.margins(0.05)
     ax.set_xlabel("z [mm]")
     ax.set_ylabel("radius [mm]")

@@ -145,8 +145,12 @@ def _springs(bearing, solution):
     ]
 
 
-def _kind(bearing):
-    """Describe the type of a bearing: "deep groove ball", "spherical roller"."""
+def kind_words(bearing: AbstractBearing) -> str:
+    """Return the type of a bearing in words: "deep groove ball", "spherical roller".
+
+    Args:
+        bearing: A single row.
+    """
     name = type(bearing).__name__.removesuffix("Bearing").removesuffix("Row")
     return "".join(f" {c.lower()}" if c.isupper() else c for c in name).strip()
 
@@ -158,7 +162,7 @@ def ball_row(bearing, head) -> list[str]:
     )
     angle = np.rad2deg(float(bearing.free_contact_angle))
     return [
-        f"{head}: {_kind(bearing)} bearing, {bearing.n_balls} balls of"
+        f"{head}: {kind_words(bearing)} bearing, {bearing.n_balls} balls of"
         f" {diameter:.4g} mm on a pitch circle of {pitch:.4g} mm",
         f"osculation: outer {_osculation(bearing.outer_osculation)}, inner"
         f" {float(bearing.inner_osculation):.4g}; free contact angle {angle:.4g} deg"
@@ -185,7 +189,7 @@ def roller_row(bearing, head) -> list[str]:
     ribs = ", ".join(bearing.ribs.present) or "none"
     told = "" if bearing.is_thrust else f"{_roller_clearance(bearing)}; "
     lines = [
-        f"{head}: {_kind(bearing)} bearing, {bearing.n_rollers} rollers"
+        f"{head}: {kind_words(bearing)} bearing, {bearing.n_rollers} rollers"
         f" {diameter:.4g} x {length:.4g} mm on a pitch circle of {pitch:.4g} mm",
         f"{told}ribs: {ribs}; roller profile: {type(bearing.roller_profile).__name__}",
     ]
@@ -203,16 +207,13 @@ def roller_row(bearing, head) -> list[str]:
     elif axis:
         lines.append(f"contact angle: {axis:.4g} deg")
     if bearing.arc_radii is not None:
+        sphere = hasattr(bearing, "sphere_radius")
         roller, outer, inner = (1e3 * float(radius) for radius in bearing.arc_radii)
         lines.append(
             f"profile radii: roller {roller:.5g}, raceways outer {outer:.5g}"
-            f"{' (a sphere)' if _is_sphere(bearing) else ''}, inner {inner:.5g} mm"
+            f"{' (a sphere)' if sphere else ''}, inner {inner:.5g} mm"
         )
     return lines
-
-
-def _is_sphere(bearing):
-    return hasattr(bearing, "sphere_radius")
 
 
 def _roller_clearance(bearing):
