@@ -134,7 +134,7 @@ class _AbstractSphere(AbstractBarrelBearing):
         if self.outer_raceway_radius is None:
             return
         numbers = concrete(self.outer_raceway_radius, self.sphere_radius)
-        if numbers is not None:
+        if numbers is not None and np.isfinite(numbers[1]):
             allowed = (
                 f"{numbers[1]:.6g} m to {100 * _FAR:g} %, which puts the centre of the"
                 " sphere on the axis (the radius may be left out)"
