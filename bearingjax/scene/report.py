@@ -10,6 +10,7 @@ import jax
 import numpy as np
 
 from ..design import (
+    AbstractBarrelBearing,
     AbstractBearing,
     BearingSet,
     CrossedRollerRow,
@@ -129,7 +130,11 @@ def _oil(scene, solution):
 
 
 def _place(row):
-    within = float(getattr(row.bearing, "axial_place", 0.0))
+    part, within = row.bearing, 0.0
+    if part.is_ball:
+        within = float(part.axial_place)
+    elif part.aligns:
+        within = 0.5 * float(part.pitch_diameter) * np.tan(float(part.contact_angle))
     return float(row.position) + (-within if row.mirrored else within)
 
 
@@ -193,8 +198,7 @@ def roller_row(bearing, head) -> list[str]:
         f" {diameter:.4g} x {length:.4g} mm on a pitch circle of {pitch:.4g} mm",
         f"{told}ribs: {ribs}; roller profile: {type(bearing.roller_profile).__name__}",
     ]
-    angles = float(bearing.axis_angle), float(bearing.half_angle)
-    axis, half = (float(np.rad2deg(angle)) for angle in angles)
+    axis, half = _angles(bearing)
     if isinstance(bearing, CrossedRollerRow):
         lines.append(
             f"contact angle: {axis:.4g} deg, of every other roller -{axis:.4g}"
@@ -206,14 +210,34 @@ def roller_row(bearing, head) -> list[str]:
         )
     elif axis:
         lines.append(f"contact angle: {axis:.4g} deg")
-    if bearing.arc_radii is not None:
-        sphere = hasattr(bearing, "sphere_radius")
-        roller, outer, inner = (1e3 * float(radius) for radius in bearing.arc_radii)
+    if isinstance(bearing, AbstractBarrelBearing):
+        radius = bearing.outer_raceway_radius
+        outer = "a sphere about the axis"
+        if radius is not None:
+            sphere = " (a sphere)" if hasattr(bearing, "contact_angle") else ""
+            outer = f"{1e3 * float(radius):.5g} mm{sphere}"
+        radii = bearing.roller_profile_radius, bearing.inner_raceway_radius
+        roller, inner = (f"{1e3 * float(one):.5g} mm" for one in radii)
         lines.append(
-            f"profile radii: roller {roller:.5g}, raceways outer {outer:.5g}"
-            f"{' (a sphere)' if sphere else ''}, inner {inner:.5g} mm"
+            f"profile radii: roller {roller}, raceways outer {outer}, inner {inner}"
         )
     return lines
+
+
+def _angles(bearing):
+    """Return the angles of the axis of the rollers and of their half cone [deg]."""
+    half = 0.0
+    if isinstance(bearing, TaperedRollerBearing):
+        axis, half = bearing.roller_axis_angle, bearing.roller_half_angle
+    elif isinstance(bearing, CrossedRollerRow):
+        axis = 0.25 * np.pi
+    elif hasattr(bearing, "contact_angle"):
+        offset = float(getattr(bearing, "profile_offset", 0.0))
+        half = np.arcsin(offset / float(bearing.roller_profile_radius))
+        axis = float(bearing.contact_angle) - half
+    else:
+        axis = 0.5 * np.pi if bearing.is_thrust else 0.0
+    return np.rad2deg(float(axis)), np.rad2deg(float(half))
 
 
 def _roller_clearance(bearing):

@@ -16,6 +16,7 @@ from registry import balls, taper
 import bearingjax as bj
 from bearingjax import plot
 from bearingjax.plot.section import section
+from bearingjax.plot.style import ROLLER
 
 MM = 1e3
 
@@ -310,7 +311,7 @@ def test_a_crossed_set_has_one_solid_roller_and_one_behind():
     bearing = bj.BearingSet.crossed(bj.CrossedRollerRow(40, 0.2775, 0.014, 0.010))
     ax = plot.cross_section(bearing)
     assert len(ax.patches) == 3  # both rings and a roller
-    (behind,) = [line for line in ax.lines if line.get_color() == plot.style.ROLLER]
+    (behind,) = [line for line in ax.lines if line.get_color() == ROLLER]
     assert behind.get_linestyle() == "--"
     words = " ".join(text.get_text() for text in ax.texts)
     assert "contact angle α = 45°" in words
