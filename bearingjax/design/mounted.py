@@ -19,7 +19,7 @@ from .ball_types import (
     DeepGrooveBallBearing,
     FourPointBallBearing,
 )
-from .bearing import AbstractRollerBearing
+from .bearing import AbstractRollerBearing, TaperedRollerBearing
 from .bearing_set import AbstractBearing, BearingSet, SetRow, rows_of, shares_rings
 from .checks import check, concrete, number
 from .fits import AxialStrains, FitConditions, FitState, Mounting, fit_state
@@ -67,7 +67,7 @@ def radial_clearance(bearing: AbstractBearing) -> Scalar:
     """
     check_radial("radial_clearance", bearing)
     if isinstance(bearing, AbstractRollerBearing):
-        return bearing.radial_internal_clearance / _outer_cosine(bearing)
+        return bearing.radial_internal_clearance / _of_radial(bearing)
     assert isinstance(bearing, AbstractBallBearing)
     return bearing.clearance
 
@@ -77,8 +77,10 @@ def _outer_angle(rollers):
     return rollers.axis_angle + rollers.half_angle
 
 
-def _outer_cosine(rollers):
-    return jnp.cos(_outer_angle(rollers))
+def _of_radial(rollers):
+    """Specified clearance of rollers over the radial one; that of tapers is normal."""
+    tapered = isinstance(rollers, TaperedRollerBearing)
+    return jnp.cos(_outer_angle(rollers)) if tapered else 1.0
 
 
 def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
@@ -122,8 +124,8 @@ def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
     if isinstance(bearing, AbstractBallBearing):
         return replace(bearing, radial_internal_clearance=clearance)
     # Made again, a taper would repeat the warning of its apexes.
-    normal = clearance * _outer_cosine(bearing)
-    return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, normal)
+    given = clearance * _of_radial(bearing)
+    return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, given)
 
 
 def sized(mounting: Mounting, bearing: AbstractBearing | BearingSet) -> Mounting:
