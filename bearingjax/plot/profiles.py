@@ -41,11 +41,8 @@ def profile(
         "outer raceway": (bearing.outer_raceway_profile, COLOURS["outer"], "--", 1.8),
         "inner raceway": (bearing.inner_raceway_profile, COLOURS["inner"], ":", 2.4),
     }
-    arcs, limit = bearing.arc_radii, 0.0
-    flatter = np.zeros((3, len(along)))
-    if arcs is not None:
-        backs = [np.asarray(sagitta(position, radius)) for radius in arcs]
-        flatter[1:] = 1e6 * (backs[0] - np.stack(backs[1:]))
+    limit, barrel = 0.0, bearing.arc_radii is not None
+    flatter = 1e6 * np.concatenate([[0.0 * x], arc_gaps(bearing, position)])
     for k, (name, (shape, colour, style, width)) in enumerate(lines.items()):
         drop = 1e6 * np.asarray(drops(shape, position, length, diameter)) + flatter[k]
         ax.plot(x, drop, color=colour, linestyle=style, linewidth=width, label=name)
@@ -58,6 +55,22 @@ def profile(
     ax.grid(color="0.9")
     ax.set_xlabel("position along the roller [mm]")
     ax.set_ylabel("drop [µm]")
-    ax.set_title("Profiles" if arcs is None else "Profiles, from the roller's arc")
+    ax.set_title("Profiles, from the roller's arc" if barrel else "Profiles")
     ax.legend(fontsize=SMALL, loc="lower center")
     return ax
+
+
+def arc_gaps(bearing: AbstractRollerBearing, position) -> np.ndarray:
+    """Return the gaps that the arcs of roller and raceways leave along the roller.
+
+    Args:
+        bearing: The design.
+        position: Positions along the roller (point,) [m].
+
+    Returns:
+        At outer and inner raceway (2, point) [m]; zero without arcs.
+    """
+    if bearing.arc_radii is None:
+        return np.zeros((2, len(position)))
+    own, *raceways = (np.asarray(sagitta(position, r)) for r in bearing.arc_radii)
+    return np.stack([own - raceway for raceway in raceways])

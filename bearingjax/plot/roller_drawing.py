@@ -165,7 +165,9 @@ def roller_clearance_view(
             squeeze(ax, ends[0], ends[1], 0.25 * parts.diameter)
     fit(ax, corners, size, (0.8, 0.9))
     text = label(bearing, "radial_internal_clearance")
-    ax.set_title(clearance_title(text, gap, times), fontsize=SMALL)
+    quarter = 0.25e3 * float(bearing.radial_internal_clearance)
+    share = "" if np.isclose(gap, quarter) else f", times {gap / quarter:.4g},"
+    ax.set_title(clearance_title(text, gap, times, share), fontsize=SMALL)
 
 
 def rib_view(
