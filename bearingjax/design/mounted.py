@@ -19,7 +19,8 @@ from .ball_types import (
     DeepGrooveBallBearing,
     FourPointBallBearing,
 )
-from .bearing import AbstractRollerBearing, TaperedRollerBearing
+from .barrel import AbstractBarrelBearing, CrossedRollerRow
+from .bearing import AbstractRollerBearing
 from .bearing_set import AbstractBearing, BearingSet, SetRow, rows_of, shares_rings
 from .checks import check, concrete, number
 from .fits import AxialStrains, FitConditions, FitState, Mounting, fit_state
@@ -67,7 +68,7 @@ def radial_clearance(bearing: AbstractBearing) -> Scalar:
     """
     check_radial("radial_clearance", bearing)
     if isinstance(bearing, AbstractRollerBearing):
-        return bearing.radial_internal_clearance / _of_radial(bearing)
+        return 4.0 * bearing.gap / _outer_cosine(bearing)
     assert isinstance(bearing, AbstractBallBearing)
     return bearing.clearance
 
@@ -77,10 +78,8 @@ def _outer_angle(rollers):
     return rollers.axis_angle + rollers.half_angle
 
 
-def _of_radial(rollers):
-    """Specified clearance of rollers over the radial one; that of tapers is normal."""
-    tapered = isinstance(rollers, TaperedRollerBearing)
-    return jnp.cos(_outer_angle(rollers)) if tapered else 1.0
+def _outer_cosine(rollers):
+    return jnp.cos(_outer_angle(rollers))
 
 
 def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
@@ -123,9 +122,11 @@ def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
         return replace(bearing, radial_internal_clearance=clearance, contact_angle=None)
     if isinstance(bearing, AbstractBallBearing):
         return replace(bearing, radial_internal_clearance=clearance)
-    # Made again, a taper would repeat the warning of its apexes.
-    given = clearance * _of_radial(bearing)
-    return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, given)
+    # Made again, a taper would repeat the warning of its apexes. Its clearance is along
+    # the normal, that of barrel and crossed rollers radial.
+    radial = isinstance(bearing, AbstractBarrelBearing | CrossedRollerRow)
+    own = clearance if radial else clearance * _outer_cosine(bearing)
+    return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, own)
 
 
 def sized(mounting: Mounting, bearing: AbstractBearing | BearingSet) -> Mounting:

@@ -9,7 +9,6 @@ import jax.numpy as jnp
 from ..contact.halfspace import ConjugateGradients, FreeEnds
 from ..contact.line import Palmgren
 from ..contact.slices import Compared, slices
-from ..design import AbstractBarrelBearing, CrossedRollerRow, rows_of
 from ..element import RINGS
 from ..numerics.programs import program
 from ..statics.refine import refine
@@ -18,7 +17,6 @@ from ..statics.warning import warnings
 from .contact_table import ContactScene
 from .quantity import SceneError
 from .read import Scene
-from .report import kind_words
 
 
 def run_contact(scene: ContactScene) -> list[Compared]:
@@ -64,17 +62,10 @@ def run_refined(
         The scene of that contact, and its single case.
 
     Raises:
-        SceneError: For a bearing with balls, barrel, thrust or crossed rollers, or an
-            unknown or unloaded roller.
+        SceneError: For a bearing with balls, or an unknown or unloaded roller.
 
     Fails: as `solve_pressure`.
     """
-    for row in rows_of(solution.element.bearing):
-        kinds = AbstractBarrelBearing | CrossedRollerRow
-        if isinstance(row.bearing, kinds) or row.bearing.is_thrust:
-            problem = f"`contact` is not for a {kind_words(row.bearing)} bearing"
-            allowed = "cylindrical, needle and radial tapered rollers"
-            raise SceneError(f"{scene.name}: {problem}; it is for {allowed}")
     try:
         found = refine(
             solution.element,

@@ -150,12 +150,8 @@ def _springs(bearing, solution):
     ]
 
 
-def kind_words(bearing: AbstractBearing) -> str:
-    """Return the type of a bearing in words: "deep groove ball", "spherical roller".
-
-    Args:
-        bearing: A single row.
-    """
+def _kind(bearing):
+    """Return the type of a bearing in words: "deep groove ball", "spherical roller"."""
     name = type(bearing).__name__.removesuffix("Bearing").removesuffix("Row")
     return "".join(f" {c.lower()}" if c.isupper() else c for c in name).strip()
 
@@ -167,7 +163,7 @@ def ball_row(bearing, head) -> list[str]:
     )
     angle = np.rad2deg(float(bearing.free_contact_angle))
     return [
-        f"{head}: {kind_words(bearing)} bearing, {bearing.n_balls} balls of"
+        f"{head}: {_kind(bearing)} bearing, {bearing.n_balls} balls of"
         f" {diameter:.4g} mm on a pitch circle of {pitch:.4g} mm",
         f"osculation: outer {_osculation(bearing.outer_osculation)}, inner"
         f" {float(bearing.inner_osculation):.4g}; free contact angle {angle:.4g} deg"
@@ -194,7 +190,7 @@ def roller_row(bearing, head) -> list[str]:
     ribs = ", ".join(bearing.ribs.present) or "none"
     told = "" if bearing.is_thrust else f"{_roller_clearance(bearing)}; "
     lines = [
-        f"{head}: {kind_words(bearing)} bearing, {bearing.n_rollers} rollers"
+        f"{head}: {_kind(bearing)} bearing, {bearing.n_rollers} rollers"
         f" {diameter:.4g} x {length:.4g} mm on a pitch circle of {pitch:.4g} mm",
         f"{told}ribs: {ribs}; roller profile: {type(bearing.roller_profile).__name__}",
     ]

@@ -14,7 +14,6 @@ from tolerances import PUBLISHED, ROUNDING
 import bearingjax as bj
 from bearingjax.design import rows_of
 from bearingjax.scene import shipped_scenes
-from bearingjax.scene.contact_run import run_refined
 from bearingjax.scene.report import design_sections
 
 DEG = np.pi / 180.0
@@ -186,16 +185,6 @@ def test_shipped_spherical_roller_bearing_says_what_it_is():
     ]
     text = told("thrust_roller")
     assert "clearance" not in text and "contact angle: 90 deg" in text
-
-
-@pytest.mark.parametrize("kind", ["spherical_roller", "thrust_roller"])
-def test_contact_of_curved_and_steep_rollers_is_refused(kind):
-    scene = bj.read_scene(kind)
-    # Refused by its bearing alone.
-    solution = object.__new__(bj.statics.solution.RollerSolution)
-    object.__setattr__(solution, "element", scene.element)
-    with pytest.raises(bj.scene.SceneError, match=f"{kind}: `contact` is not for a"):
-        run_refined(scene, solution)
 
 
 def test_fits_of_a_crossed_roller_bearing_need_no_ring_width():
