@@ -15,6 +15,7 @@ from .barrel import SphericalRollerRow as SphericalRollerRow
 from .barrel import SphericalThrustRollerBearing as SphericalThrustRollerBearing
 from .barrel import TaperedThrustRollerBearing as TaperedThrustRollerBearing
 from .barrel import ToroidalRollerBearing as ToroidalRollerBearing
+from .barrel import pitch_on_sphere as pitch_on_sphere
 from .bearing import AbstractRollerBearing as AbstractRollerBearing
 from .bearing import CylindricalRollerBearing as CylindricalRollerBearing
 from .bearing import NeedleRollerBearing as NeedleRollerBearing
@@ -25,6 +26,7 @@ from .bearing_set import SetRow as SetRow
 from .bearing_set import is_self_aligning as is_self_aligning
 from .bearing_set import pitch_radius as pitch_radius
 from .bearing_set import rows_of as rows_of
+from .bearing_set import shares_rings as shares_rings
 from .deviation import Deviation as Deviation
 from .deviation import deviation_of as deviation_of
 from .deviation import with_raceways as with_raceways

@@ -134,7 +134,7 @@ class _AbstractSphere(AbstractBarrelBearing):
         if self.outer_raceway_radius is None:
             return
         numbers = concrete(self.outer_raceway_radius, self.sphere_radius)
-        if numbers is not None:
+        if numbers is not None and np.isfinite(numbers[1]):
             allowed = (
                 f"{numbers[1]:.6g} m to {100 * _FAR:g} %, which puts the centre of the"
                 " sphere on the axis (the radius may be left out)"
@@ -318,6 +318,30 @@ class CrossedRollerRow(AbstractRollerBearing):
         if numbers is not None:
             allowed = f"at most the roller diameter, {numbers[1]:.6g} m"
             check(self, "roller_length", numbers[0] <= numbers[1], allowed)
+
+
+def pitch_on_sphere(
+    *,
+    outer_raceway_radius: float,
+    contact_angle: float,
+    roller_diameter: float,
+    roller_profile_radius: float,
+    profile_offset: float = 0.0,
+    radial_internal_clearance: float = 0.0,
+    **_: object,
+) -> float:
+    """Return the pitch diameter at which a spherical outer raceway is about the axis.
+
+    Args: numbers, under the names of their fields; others have no effect.
+
+    Returns:
+        Inverse of `sphere_radius` [m].
+    """
+    with np.errstate(all="ignore"):  # nonsense is refused with the bearing
+        half = np.arcsin(np.divide(profile_offset, roller_profile_radius))
+    axis = contact_angle - half
+    radius = outer_raceway_radius - 0.25 * radial_internal_clearance * np.cos(axis)
+    return float(2.0 * radius * np.cos(contact_angle) - roller_diameter * np.cos(axis))
 
 
 def _radius(owner, name):

@@ -282,6 +282,13 @@ def is_self_aligning(bearing: AbstractBearing | BearingSet) -> bool:
     return all(row.bearing.aligns for row in rows_of(bearing))
 
 
+def shares_rings(bearing: AbstractBearing | BearingSet) -> bool:
+    """Whether its rows run on the same two rings, as of self-aligning, spherical and
+    crossed roller bearings; a row of such a bearing counts too."""
+    rows = [row.bearing for row in rows_of(bearing)]
+    return all(row.aligns or isinstance(row, CrossedRollerRow) for row in rows)
+
+
 def pitch_radius(bearing: AbstractBearing | BearingSet) -> Scalar:
     """Largest pitch radius of the rows [m]."""
     radii = [0.5 * row.bearing.pitch_diameter for row in rows_of(bearing)]

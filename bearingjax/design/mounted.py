@@ -21,7 +21,7 @@ from .ball_types import (
 )
 from .barrel import AbstractBarrelBearing, CrossedRollerRow
 from .bearing import AbstractRollerBearing
-from .bearing_set import AbstractBearing, BearingSet, SetRow, is_self_aligning, rows_of
+from .bearing_set import AbstractBearing, BearingSet, SetRow, rows_of, shares_rings
 from .checks import check, concrete, number
 from .fits import AxialStrains, FitConditions, FitState, Mounting, fit_state
 
@@ -264,8 +264,8 @@ def row_shifts(
         mounting, conditions: As in `mounted`.
 
     Returns:
-        Of each row, along +z of the set [m]; 0 of a self-aligning bearing, whose rows
-        share both rings.
+        Of each row, along +z of the set [m]; 0 of a bearing whose rows share both
+        rings (`shares_rings`).
 
     Raises:
         ValueError: If `mounting.ring_width` is `None`.
@@ -275,7 +275,7 @@ def row_shifts(
 
 def _shifts(bearing: BearingSet, mounting, states: list[FitState]) -> list[Any]:
     """Row shifts as in `row_shifts`, from the fit state of each row."""
-    if is_self_aligning(bearing):
+    if shares_rings(bearing):
         return [0.0] * len(bearing.rows)
     width = mounting.ring_width
     if width is None:

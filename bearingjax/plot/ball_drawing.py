@@ -190,16 +190,17 @@ def ball_clearance_view(ax: "matplotlib.axes.Axes", bearing, size) -> None:
     ax.set_title(clearance_title(text, gap, times), fontsize=SMALL)
 
 
-def clearance_title(text: str, gap: float, times: float) -> str:
+def clearance_title(text: str, gap: float, times: float, share: str = "") -> str:
     """Return the title of the view of a clearance.
 
     Args:
         text: Name and value.
         gap: At each raceway [mm].
         times: Magnification of the drawing.
+        share: What is told of the gap over a quarter of the clearance.
     """
     if gap == 0.0:
         return f"{text}\nno gap at the raceways"
     word = "gap" if gap > 0.0 else "overlap"
     drawn = f"drawn {times:g} times" if times != 1.0 else "drawn to scale"
-    return f"{text}\na quarter of it is the {word} at each raceway\n{drawn}"
+    return f"{text}\na quarter of it{share} is the {word} at each raceway\n{drawn}"

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 _BODY = 0.30  # thickness of the schematic rings under the groove, ball diameters
 _WIDTH = 0.75  # half width of the schematic rings, ball diameters
-_STEEP = np.deg2rad(75.0)  # contact angles beyond have no room above the section
+STEEP = np.deg2rad(75.0)
+"""Contact angle above which there is no room for it above a section [rad]."""
 SHOULDER = 0.2
 """Schematic height of an unspecified shoulder, ball diameters."""
 
@@ -61,7 +62,7 @@ def ball_section(
     ax.margins(0.05)
     note = ""
     assert isinstance(first.bearing, AbstractBallBearing)
-    if (angle := float(first.bearing.free_contact_angle)) >= _STEEP:
+    if (angle := float(first.bearing.free_contact_angle)) >= STEEP:
         note = f"    (free contact angle {quantity(angle, 'rad')})"
     ax.set_xlabel(f"z [mm]{note}")
     ax.set_ylabel("radius [mm]")
@@ -91,7 +92,7 @@ def _dimensions(ax, row, low, high, alone):
     beyond = np.array([high[0] + 0.2 * diameter, centre[1]])
     ax.plot([low[0], beyond[0] + 0.1 * diameter], [centre[1]] * 2, **AXIS)
     pitch_arrow(ax, beyond, part.pitch_diameter)
-    if 0.0 < angle < _STEEP:
+    if 0.0 < angle < STEEP:
         top = high[1] + 0.07 * tall, high[1] + 0.14 * tall
         contact_angle(ax, centre, angle, top, sign, "free contact angle", alone)
     left = low - np.array([0.35 * diameter, 0.0])
@@ -117,10 +118,10 @@ def ball_row(ax, bearing, place, reach=np.inf, apart=0.0) -> np.ndarray:
 
 
 def row_position(row) -> float:
-    """Return z of the circle of ball centres [mm].
+    """Return z of the circle of the centres of its rolling elements [mm].
 
     Args:
-        row: A `SetRow` of balls.
+        row: A `SetRow`.
     """
     within = 1e3 * float(row.bearing.axial_place)
     return 1e3 * float(row.position) + (-within if row.mirrored else within)

@@ -31,16 +31,18 @@ def face_view(ax: "matplotlib.axes.Axes", bearing: AbstractBearing, size) -> Non
     from matplotlib.patches import Circle
 
     pitch = 0.5e3 * float(bearing.pitch_diameter)
-    word, own = bearing.noun, 0.5e3 * float(bearing.element_diameter)
+    word = bearing.noun
     count, first = bearing.n_elements, float(bearing.first_azimuth)
     azimuth = first + 2.0 * np.pi * np.arange(count) / count
     if bearing.azimuth_deviation is not None:
         azimuth = azimuth + np.asarray(bearing.azimuth_deviation)
     centres = pitch * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1)
-    for centre in centres:
-        ax.add_patch(
-            Circle(tuple(centre), own, facecolor="#DDF1EA", edgecolor=ROLLER, zorder=3)
-        )
+    shape = _seen(bearing)
+    for turn in azimuth:
+        way = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+        place = way[0] * pitch + shape @ way
+        ax.fill(*place.T, facecolor="#DDF1EA", edgecolor=ROLLER, zorder=3)
+    own = shape[:, 0].max()
     ax.add_patch(Circle((0.0, 0.0), pitch, fill=False, **AXIS))
     reach = pitch + own
     # Towards the upper left, between two rolling elements.
@@ -48,6 +50,7 @@ def face_view(ax: "matplotlib.axes.Axes", bearing: AbstractBearing, size) -> Non
     turn = gaps[np.argmax(np.cos(gaps - 0.75 * np.pi))]
     way = np.array([np.cos(turn), np.sin(turn)])
     across = between(ax, -pitch * way, pitch * way) + 0.75 * pitch * way
+    half = "" if count == getattr(bearing, f"n_{word}s") else "\nhere every other one"
     start = angle(ax, (0.0, 0.0), 0.55 * pitch, (0.0, first))
     ax.text(
         centres[0, 0],
@@ -63,7 +66,7 @@ def face_view(ax: "matplotlib.axes.Axes", bearing: AbstractBearing, size) -> Non
         "lower right": (f"{label(bearing, 'first_azimuth')}, of {word} 0", start),
         "upper left": (label(bearing, "pitch_diameter"), across),
         "upper right": (
-            label(bearing, f"n_{word}s"),
+            label(bearing, f"n_{word}s") + half,
             centres[np.argmax(centres.sum(axis=1))],
         ),
     }
@@ -75,6 +78,28 @@ def face_view(ax: "matplotlib.axes.Axes", bearing: AbstractBearing, size) -> Non
         beside = (5, -3) if name == "y" else (4, 4)
         ax.annotate(name, end, beside, textcoords="offset points", color=GREY)
     ax.set_title(f"{word.capitalize()}s, seen against z, to scale")
+
+
+def _seen(bearing):
+    """Outline of a rolling element along the axis (point, 2), radial coordinate first,
+    from its centre [mm]."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 60)
+    circle = 0.5e3 * float(bearing.element_diameter)
+    circle = circle * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    if bearing.is_ball or not float(bearing.axis_angle):
+        return circle
+    from scipy.spatial import ConvexHull
+
+    lean, half = float(bearing.axis_angle), float(bearing.half_angle)
+    discs, flat = [], np.array([np.cos(lean), 1.0])
+    for side in (-1.0, 0.0, 1.0):
+        along = 0.5e3 * side * float(bearing.roller_length)
+        size = 1.0 - along * np.sin(half) / circle[0, 0]
+        size -= abs(side) * 1e3 * bearing.end_drop() / circle[0, 0]
+        middle = np.array([-along * np.sin(lean), 0.0])
+        discs.append(middle + size * circle * flat)
+    points = np.concatenate(discs)
+    return points[ConvexHull(points).vertices]
 
 
 def _in_corner(ax, corner, text, at):

@@ -12,6 +12,7 @@ from ..optimise.life import Damage
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, label_of
 from ..optimise.optimise import Optimised
 from ..optimise.system import element_of, loads_of
+from .profiles import arc_gaps
 from .style import (
     COLOURS,
     GREY,
@@ -113,7 +114,8 @@ def _profiles(found, roller, raceway, ax):
         position = -0.5 * length * jnp.cos(jnp.linspace(0.0, jnp.pi, 801))
         profiles = (bearing.roller_profile, getattr(bearing, f"{ring}_raceway_profile"))
         drops = [p.drop(position, length, diameter) for p in profiles]
-        drop, along = np.sum(drops, axis=0), np.asarray(position)
+        drop = np.sum(drops, axis=0) + arc_gaps(bearing, position)[raceway]
+        along = np.asarray(position)
         colour, style = _SIDES[side]
         ax.plot(1e3 * along, 1e6 * drop, style, color=colour, linewidth=2, label=side)
         near = np.abs(along) <= 0.97 * along[-1]

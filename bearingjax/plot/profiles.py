@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design import AbstractRollerBearing
-from ..design.profile import drops
+from ..design.profile import drops, sagitta
 from .style import COLOURS, ROLLER, SMALL, axes_or_new
 
 if TYPE_CHECKING:
@@ -19,7 +19,8 @@ def profile(
     """Plot the drop [µm] of the roller and of both raceways along the roller.
 
     The drop points downwards, as the material falls away. Profiles that grow without
-    limit at their very end are cut there.
+    limit at their very end are cut there. Of barrel rollers the profile of the roller
+    is measured from its arc, those of the raceways from the same arc.
 
     Args:
         bearing: The design.
@@ -40,9 +41,10 @@ def profile(
         "outer raceway": (bearing.outer_raceway_profile, COLOURS["outer"], "--", 1.8),
         "inner raceway": (bearing.inner_raceway_profile, COLOURS["inner"], ":", 2.4),
     }
-    limit = 0.0
-    for name, (shape, colour, style, width) in lines.items():
-        drop = 1e6 * np.asarray(drops(shape, position, length, diameter))
+    limit, barrel = 0.0, bearing.arc_radii is not None
+    flatter = 1e6 * np.concatenate([[0.0 * x], arc_gaps(bearing, position)])
+    for k, (name, (shape, colour, style, width)) in enumerate(lines.items()):
+        drop = 1e6 * np.asarray(drops(shape, position, length, diameter)) + flatter[k]
         ax.plot(x, drop, color=colour, linestyle=style, linewidth=width, label=name)
         full = float(np.max(drop, initial=0.0, where=np.isfinite(drop)))
         inside = float(np.max(drop[near_end], initial=0.0))
@@ -53,6 +55,22 @@ def profile(
     ax.grid(color="0.9")
     ax.set_xlabel("position along the roller [mm]")
     ax.set_ylabel("drop [µm]")
-    ax.set_title("Profiles")
+    ax.set_title("Profiles, from the roller's arc" if barrel else "Profiles")
     ax.legend(fontsize=SMALL, loc="lower center")
     return ax
+
+
+def arc_gaps(bearing: AbstractRollerBearing, position) -> np.ndarray:
+    """Return the gaps that the arcs of roller and raceways leave along the roller.
+
+    Args:
+        bearing: The design.
+        position: Positions along the roller (point,) [m].
+
+    Returns:
+        At outer and inner raceway (2, point) [m]; zero without arcs.
+    """
+    if bearing.arc_radii is None:
+        return np.zeros((2, len(position)))
+    own, *raceways = (np.asarray(sagitta(position, r)) for r in bearing.arc_radii)
+    return np.stack([own - raceway for raceway in raceways])

@@ -4,7 +4,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design import AbstractRollerBearing, Straight, TaperedRollerBearing
+from ..design import (
+    AbstractBarrelBearing,
+    AbstractRollerBearing,
+    Straight,
+    TaperedRollerBearing,
+)
 from .ball_drawing import clearance_title
 from .dimension import (
     ARROW,
@@ -47,6 +52,8 @@ def dimensioned_rollers(
     """
     seen = [roller_row(ax, parts)]
     labels = [*_sizes(ax, bearing, parts), *_straight(bearing, parts)]
+    if isinstance(bearing, AbstractBarrelBearing):
+        labels += _barrel(ax, bearing, parts)
     if isinstance(bearing, TaperedRollerBearing):
         labels += _angles(ax, bearing, parts)
         seen.append(parts.axis + np.array([0.3 * parts.length, 0.0]))
@@ -54,8 +61,10 @@ def dimensioned_rollers(
         ax.plot(*parts.rib_points.T, "o", color="black", markersize=5, zorder=7)
     else:
         labels.append(Label("ribs: none", parts.axis[0]))
-    fit(ax, np.concatenate(seen), size)
-    put_labels(ax, labels, size)
+    # Names of radii are long.
+    column = 0.29 if isinstance(bearing, AbstractBarrelBearing) else 0.25
+    fit(ax, np.concatenate(seen), size, (0.98 - 2.0 * column, 0.86))
+    put_labels(ax, labels, size, column)
     ax.set_title("Axial section, to scale; ring bodies schematic")
 
 
@@ -69,17 +78,49 @@ def _sizes(ax, bearing, parts):
     yield Label(label(bearing, "roller_diameter"), at - 0.5 * half)
     ax.plot(*np.stack([parts.axis[0], parts.axis[1]]).T, **AXIS)
     # Along the outer generator, inside of the roller.
-    low, high = parts.raceways[0] - 0.55 * half
+    low, high = parts.raceways[0, [0, -1]] - 0.55 * half
     at = between(ax, low, high)
     yield Label(label(bearing, "roller_length"), at + 0.25 * (low - high))
 
 
 def _straight(bearing, parts):
     """Yield labels of surfaces without a profile; the others have views."""
-    at = parts.roller[0], parts.raceways[0, 1], parts.raceways[1, 1]
+    at = parts.roller[0], parts.raceways[0, -1], parts.raceways[1, -1]
     for name, point in zip(PROFILES, at, strict=True):
         if isinstance(getattr(bearing, name), Straight):
             yield Label(f"{name}: Straight", point)
+
+
+def _barrel(ax, bearing, parts):
+    """Draw the radii of all arcs, and the numbers of a spherical outer raceway."""
+    arrow = ARROW | {"arrowstyle": "-|>"}
+    names = "roller_profile_radius", "outer_raceway_radius", "inner_raceway_radius"
+    for name, k, share in zip(names, (1, 0, 1), (0.8, 0.8, 0.2), strict=True):
+        wall = parts.raceways[k, round(share * (parts.raceways.shape[1] - 1))]
+        start = wall - 0.3 * parts.diameter * _outwards(parts, k)
+        ax.annotate("", tuple(wall), tuple(start), arrowprops=arrow, zorder=6)
+        text = label(bearing, name)
+        if getattr(bearing, name) is None:
+            text += f"\nsphere of radius {quantity(bearing.arc_radii[1], 'm')}"
+        yield Label(text, 0.3 * wall + 0.7 * start)
+    if hasattr(bearing, "contact_angle"):
+        turn = float(bearing.contact_angle)
+        ends = 0.5 * np.pi, 0.5 * np.pi - turn
+        at = angle(ax, parts.centre, 0.4 * parts.diameter, ends)
+        yield Label(label(bearing, "contact_angle"), at)
+    if hasattr(bearing, "profile_offset"):
+        back = parts.axis.mean(axis=0) - parts.axis[0]
+        back *= -1e3 * float(bearing.profile_offset) / np.linalg.norm(back)
+        at, aside = parts.centre, -0.25 * parts.diameter * _outwards(parts, 0)
+        if back.any():
+            at = between(ax, parts.centre, parts.centre + back, aside)
+        yield Label(label(bearing, "profile_offset"), at)
+
+
+def _outwards(parts, k):
+    """Return the normal of a raceway in the middle, from the roller to the ring."""
+    g = parts.generators[k]
+    return (1.0, -1.0)[k] * np.array([-g[1], g[0]])
 
 
 def _angles(ax, bearing, parts):
@@ -92,8 +133,10 @@ def _angles(ax, bearing, parts):
     yield Label(label(bearing, "roller_half_angle"), at)
     ends = (np.pi, np.pi - turn - half), (np.pi, np.pi - turn + half)
     words = "outer raceway (cup) at", "inner raceway (cone) at"
+    if bearing.is_thrust:
+        words = "outer washer at", "inner washer at"
     for k in range(2):
-        foot = parts.raceways[k, 1]
+        foot = parts.raceways[k, -1]
         at = angle(ax, foot, 0.45 * length, ends[k])
         yield Label(f"{words[k]} {quantity(np.pi - ends[k][1], 'rad')}", at)
 
@@ -109,20 +152,22 @@ def roller_clearance_view(
         parts: Its outlines.
         size: Width and height of the axes [inch].
     """
-    gap = 0.25e3 * float(bearing.radial_internal_clearance)
+    gap = 1e3 * float(bearing.gap)
     times = magnification(gap, _GAP * parts.diameter)
     apart = (times - 1.0) * gap
     corners = roller_row(ax, parts, apart=apart)
-    for k, sign in enumerate((1.0, -1.0)):
-        way = sign * np.array([-parts.generators[k, 1], parts.generators[k, 0]])
-        wall = parts.raceways[k].mean(axis=0)
+    for k in range(2):
+        way = _outwards(parts, k)
+        wall = parts.centre + (0.5 * parts.diameter + gap) * way
         near, far = wall - gap * way, wall + apart * way
         if gap != 0.0:
             ends = (near, far) if gap > 0.0 else (far, near)
             squeeze(ax, ends[0], ends[1], 0.25 * parts.diameter)
     fit(ax, corners, size, (0.8, 0.9))
     text = label(bearing, "radial_internal_clearance")
-    ax.set_title(clearance_title(text, gap, times), fontsize=SMALL)
+    quarter = 0.25e3 * float(bearing.radial_internal_clearance)
+    share = "" if np.isclose(gap, quarter) else f", times {gap / quarter:.4g},"
+    ax.set_title(clearance_title(text, gap, times, share), fontsize=SMALL)
 
 
 def rib_view(
@@ -153,7 +198,7 @@ def rib_view(
     ax.fill(*parts.roller.T, facecolor="#DDF1EA", edgecolor=ROLLER, linewidth=1.4)
     # Along the face of the rib, from the raceway on.
     rise = np.array([-away[1], away[0]])
-    rise *= -(1.0, -1.0)[ring] * np.sign(rise[1])
+    rise *= -np.sign(rise @ _outwards(parts, ring))
     point = point - gap * away  # of the roller
     face = point + times * gap * away
     foot, top = face - height * rise, face + 0.7 * reach * rise

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..design import AbstractBallBearing, Material, rows_of
 from ..rotor import AbstractSupport, BearingSupport, Disc
-from .ball_section import ball_row, row_position
+from .ball_section import STEEP, ball_row, row_position
 from .outline import section
 from .style import COLOURS, GREY, RACEWAYS, ROLLER, towards_white
 
@@ -114,8 +114,8 @@ def _draw_rollers(ax, bearing, sense, at):
             ax.fill(*place(ring).T, facecolor=fill, edgecolor=COLOURS[name], zorder=3)
         ax.fill(*place(parts.roller).T, facecolor="#DDF1EA", edgecolor=ROLLER, zorder=4)
     angle = float(bearing.axis_angle) + float(bearing.half_angle)
-    if angle > 0:
-        centre = at + np.array([0.0, parts.pitch_radius])
+    if 0.0 < angle < STEEP:
+        centre = at + parts.centre * np.array([sense, 1.0])
         _line_of_action(ax, angle, sense, centre)
     return max(ring[:, 1].max() for ring in parts.rings)
 

@@ -4,8 +4,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design import AbstractBearing, AbstractRollerBearing, BearingSet, rows_of
-from .ball_section import ball_section
+from ..design import (
+    AbstractBearing,
+    AbstractRollerBearing,
+    BearingSet,
+    CrossedRollerRow,
+    rows_of,
+)
+from .ball_section import STEEP, ball_section, row_position
 from .dimension import AXIS, between, contact_angle, on_line, pitch_arrow, quantity
 from .outline import section
 from .roller_section import roller_row
@@ -85,12 +91,12 @@ def cross_section(
         ax.legend(
             handles=[ax.lines[-1]],
             fontsize=SMALL,
-            loc="upper left",
+            loc="lower left" if bearing.is_thrust else "upper left",
             frameon=False,
             handletextpad=0.2,
             borderpad=0.1,
         )
-    _name_rings(ax, parts)
+    _name_rings(ax, bearing, parts)
     _dimensions(ax, bearing, parts, left, right, high, height)
     ax.set_aspect("equal", adjustable="datalim")
     # Limits that stay automatic may widen to keep the aspect.
@@ -101,7 +107,9 @@ def cross_section(
         ]
     )
     ax.margins(0.0)
-    ax.set_xlabel("z [mm]")
+    angle = float(bearing.axis_angle) + float(bearing.half_angle)
+    note = f"    (contact angle {quantity(angle, 'rad')})" if angle >= STEEP else ""
+    ax.set_xlabel(f"z [mm]{note}")
     ax.set_ylabel("radius [mm]")
     ax.set_title("Axial section, to scale; ring bodies schematic")
     return ax
@@ -113,14 +121,19 @@ def _rgb(colour):
     return to_rgb(colour)
 
 
-def _name_rings(ax, parts):
+def _name_rings(ax, bearing, parts):
     middle = parts.raceways.mean(axis=1)
     for i, name in enumerate(RACEWAYS):
-        back = parts.rings[i][-1, 1]
+        back = parts.rings[i][-1]
+        at = parts.raceways[i, 0, 0] + 0.22 * parts.length, 0.5 * (middle[i] + back)[1]
+        if bearing.is_thrust:  # where the washer is thick
+            end = parts.raceways[i, -i]
+            at = 0.5 * (end + back)[0], 0.75 * end[1] + 0.25 * parts.centre[1]
+        word = "washer" if bearing.is_thrust else "ring"
         ax.text(
-            parts.raceways[i, 0, 0] + 0.22 * parts.length,
-            0.5 * (middle[i, 1] + back),
-            f"{name} ring",
+            *at,
+            f"{name} {word}",
+            rotation=90 * bearing.is_thrust,
             fontsize=SMALL,
             color=COLOURS[name],
             ha="center",
@@ -132,14 +145,14 @@ def _name_rings(ax, parts):
 
 def _dimensions(ax, bearing, parts, left, right, high, height):
     """Draw centre lines and dimensions with their labels."""
-    centre = np.array([0.0, parts.pitch_radius])
+    centre = parts.centre
     angle = float(bearing.axis_angle)
     along = (parts.axis[1] - parts.axis[0]) / np.linalg.norm(
         parts.axis[1] - parts.axis[0]
     )
     across = np.array([-along[1], along[0]])
     beyond = right + 0.22 * parts.diameter
-    ax.plot([left, beyond + 0.1 * parts.diameter], [parts.pitch_radius] * 2, **AXIS)
+    ax.plot([left, beyond + 0.1 * parts.diameter], [centre[1]] * 2, **AXIS)
     if angle > 0:
         over = 0.12 * parts.length * along
         ax.plot(*np.stack([parts.axis[0] - over, parts.axis[1] + over]).T, **AXIS)
@@ -158,8 +171,8 @@ def _dimensions(ax, bearing, parts, left, right, high, height):
     between(ax, parts.axis[0] + below, parts.axis[1] + below)
     text = f"L = {quantity(bearing.roller_length, 'm')}"
     on_line(ax, centre + below + 0.05 * parts.length * along, text, turn)
-    pitch_arrow(ax, (beyond, parts.pitch_radius), bearing.pitch_diameter)
-    if angle > 0:
+    pitch_arrow(ax, (beyond, centre[1]), bearing.pitch_diameter)
+    if 0.0 < angle + half < STEEP:
         top = high + 0.07 * height, high + 0.14 * height
         contact_angle(ax, centre, angle + half, top)
 
@@ -167,30 +180,32 @@ def _dimensions(ax, bearing, parts, left, right, high, height):
 def _set_section(ax, rows):
     """Draw all rows of a set; pitch circle and contact angle of the first one."""
     corners = []
-    for row in rows:
+    crossed = isinstance(rows[0].bearing, CrossedRollerRow)
+    for k, row in enumerate(rows):
         at = np.array([1e3 * float(row.position), 0.0])
         sense = np.array([-1.0 if row.mirrored else 1.0, 1.0])
 
         def place(points, at=at, sense=sense):
             return at + np.asarray(points) * sense
 
-        corners.append(roller_row(ax, section(row.bearing), place))
+        parts = section(row.bearing)
+        corners.append(roller_row(ax, parts, place, behind=crossed and k > 0))
     points = np.concatenate(corners)
     low, high = points.min(axis=0), points.max(axis=0)
     row, part = rows[0], rows[0].bearing
-    centre = np.array([1e3 * float(row.position), 0.5e3 * float(part.pitch_diameter)])
+    centre = np.array([row_position(row), 0.5e3 * float(part.pitch_diameter)])
     diameter, tall = 1e3 * float(part.roller_diameter), high[1] - low[1]
     beyond = high[0] + 0.2 * diameter
     ax.plot([low[0], beyond + 0.1 * diameter], [centre[1]] * 2, **AXIS)
     pitch_arrow(ax, (beyond, centre[1]), part.pitch_diameter)
     angle = float(part.axis_angle) + float(part.half_angle)
-    if angle > 0.0:
+    if 0.0 < angle < STEEP:
         top = high[1] + 0.07 * tall, high[1] + 0.14 * tall
         sense = -1.0 if row.mirrored else 1.0
-        contact_angle(ax, centre, angle, top, sense, alone=False)
+        contact_angle(ax, centre, angle, top, sense, alone=crossed)
     ax.set_aspect("equal", adjustable="datalim")
     room = np.array([0.5 * diameter, 0.2 * tall])
-    ax.update_datalim([low, high + room])
+    ax.update_datalim([low - [0.0, 0.16 * tall], high + room])
     ax.margins(0.05)
     ax.set_xlabel("z [mm]")
     ax.set_ylabel("radius [mm]")

@@ -4,7 +4,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design import AbstractBallBearing, BearingSet, is_self_aligning
+from ..design import (
+    AbstractBallBearing,
+    BearingSet,
+    CrossedRollerRow,
+    is_self_aligning,
+)
 from .ball_section import ball_row, row_position
 from .dimension import AXIS, LINE, between, fit, label, quantity, spread, width
 from .outline import section
@@ -33,12 +38,15 @@ def arrangement_view(
     points = np.concatenate(outlines)
     (left, low), (right, high) = points.min(axis=0), points.max(axis=0)
     tall = high - low
+    names = [f"rows.{k}" for k in range(len(outlines))]
+    if _is_crossed(bearing):
+        names = ["rows.0, dashed rows.1", ""]
     for k, (row, outline) in enumerate(zip(bearing.rows, outlines, strict=True)):
         middle = outline.mean(axis=0)[0]
         ax.text(
             middle,
             high + 0.05 * tall,
-            f"rows.{k}",
+            names[k],
             ha="center",
             fontsize=SMALL,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
@@ -160,7 +168,12 @@ def _draw(ax, row, bearing):
             [1e3 * float(row.position), 0.0]
         )
 
-    return roller_row(ax, section(part), turned)
+    behind = _is_crossed(bearing) and row is not bearing.rows[0]
+    return roller_row(ax, section(part), turned, behind=behind)
+
+
+def _is_crossed(bearing):
+    return isinstance(bearing.rows[0].bearing, CrossedRollerRow)
 
 
 def _spring(row, name):
@@ -174,8 +187,8 @@ def _spring(row, name):
 
 def _arrangement(bearing):
     """Return the name of the arrangement, and the spacing of its rows."""
-    rows = sorted(bearing.rows, key=_place)
-    spacing = np.diff([_place(row) for row in rows])
+    rows = sorted(bearing.rows, key=row_position)
+    spacing = np.diff([row_position(row) for row in rows])
     turned = tuple(row.mirrored for row in rows)
     if len(rows) == 1:
         return "One row"
@@ -185,12 +198,7 @@ def _arrangement(bearing):
         word = "Tandem"
     if is_self_aligning(bearing):
         word = "Self-aligning"
+    elif _is_crossed(bearing):
+        return "Crossed rollers, every other one turned"
     gaps = [quantity(1e-3 * gap, "m") for gap in spacing]
     return f"{word}, spacing {', '.join(gaps[:1] if len(set(gaps)) == 1 else gaps)}"
-
-
-def _place(row):
-    """Return z of the middle of the rolling elements of a row [mm]."""
-    if isinstance(row.bearing, AbstractBallBearing):
-        return row_position(row)
-    return 1e3 * float(row.position)

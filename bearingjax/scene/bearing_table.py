@@ -14,8 +14,10 @@ from ..design import (
     AngularContactBallBearing,
     BearingSet,
     CircularCrown,
+    CrossedRollerRow,
     CrownedEnds,
     CylindricalRollerBearing,
+    CylindricalThrustRollerBearing,
     DeepGrooveBallBearing,
     FourPointBallBearing,
     FujiwaraKawase,
@@ -29,22 +31,34 @@ from ..design import (
     Ribs,
     SelfAligningBallRow,
     SetRow,
+    SphericalRollerRow,
+    SphericalThrustRollerBearing,
     Straight,
     Tabulated,
     TaperedRollerBearing,
+    TaperedThrustRollerBearing,
     ThrustBallBearing,
+    ToroidalRollerBearing,
+    pitch_on_sphere,
+    shares_rings,
 )
 from ..element import RINGS
 from ..statics.preload import check_preload
 from .catalogue_entry import FromCatalogue, catalogue_entry, taken_from
 from .quantity import SceneError
 from .schema import Keys, read_keys, scene_key
-from .table import Table, written_numbers
+from .table import Table, written, written_numbers
 
 ROLLERS = {
     "cylindrical_roller": CylindricalRollerBearing,
     "needle_roller": NeedleRollerBearing,
     "tapered_roller": TaperedRollerBearing,
+    "spherical_roller": SphericalRollerRow,
+    "toroidal_roller": ToroidalRollerBearing,
+    "cylindrical_thrust_roller": CylindricalThrustRollerBearing,
+    "tapered_thrust_roller": TaperedThrustRollerBearing,
+    "spherical_thrust_roller": SphericalThrustRollerBearing,
+    "crossed_roller": CrossedRollerRow,
 }
 BALLS = {
     "deep_groove_ball": DeepGrooveBallBearing,
@@ -53,6 +67,10 @@ BALLS = {
     "self_aligning_ball": SelfAligningBallRow,
     "thrust_ball": ThrustBallBearing,
 }
+SPHERES = "spherical_roller", "spherical_thrust_roller"
+"""Rollers in an outer raceway whose radius may stand for the pitch diameter."""
+WITH_LETTERS = "cylindrical_roller", "needle_roller"
+"""Rollers whose ribs have an `arrangement` by letters."""
 SETS = ("back_to_back", "face_to_face", "tandem", "rows")
 
 BESIDE = (
@@ -94,16 +112,29 @@ def read_bearing(
         SceneError: For what is missing, unknown or not allowed.
     """
     bearing = _single(table)
-    if isinstance(bearing, SelfAligningBallRow):
+    if shares_rings(bearing):
         if "set" in beside:
-            raise beside.error(
-                "set", "a self-aligning bearing has both its rows already"
-            )
+            problem = f"a {_named(bearing)} bearing has both its rows already"
+            raise beside.error("set", problem)
+        if isinstance(bearing, CrossedRollerRow):
+            return BearingSet.crossed(bearing), None
+        staggered = bearing.is_ball or table.flag("staggered", True)
         with table.building():
-            return BearingSet.self_aligning(bearing), None
+            return BearingSet.self_aligning(bearing, staggered=staggered), None
     if "set" not in beside:
         return bearing, None
     return _set(beside.table("set"), bearing)
+
+
+def _named(bearing: AbstractBearing) -> str:
+    """Name the kind of a bearing of two rows."""
+    if bearing.is_ball:
+        return "self-aligning"
+    return (
+        "crossed roller"
+        if isinstance(bearing, CrossedRollerRow)
+        else "spherical roller"
+    )
 
 
 def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
@@ -200,8 +231,8 @@ class RowKeys(SpringKeys):
         bearing = common
         if "bearing" in self.table:
             bearing = _single(self.table.table("bearing"))
-        if isinstance(bearing, SelfAligningBallRow):
-            problem = "a self-aligning bearing is no row of a set"
+        if shares_rings(bearing):
+            problem = f"a {_named(bearing)} bearing is no row of a set"
             raise self.table.error("bearing", problem)
         place = {"position": self.position, "inner_offset": self.inner_offset}
         with self.table.building():
@@ -280,7 +311,7 @@ def required_numbers(kind: str) -> tuple[str, ...]:
     Args:
         kind: `type` of the bearing.
     """
-    if kind == "tapered_roller":
+    if kind in ("tapered_roller", "tapered_thrust_roller"):
         return ("roller_axis_angle", "roller_half_angle")
     grooved = kind in BALLS and kind != "self_aligning_ball"
     return ("outer_osculation",) if grooved else ()
@@ -297,11 +328,19 @@ def _balls(table: Table, kind: str) -> AbstractBearing:
 
 
 def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
+    derived = kind in SPHERES and "pitch_diameter" not in table
+    if derived and "outer_raceway_radius" not in table:
+        problem = "is missing, and so is `outer_raceway_radius`; one of them must be a"
+        raise table.error("pitch_diameter", f"{problem} length, a text with its unit")
+    left_out = ("pitch_diameter",) if derived else ()
     values = {
         "n_rollers": table.integer("n_rollers"),
-        **table.fields(ROLLERS[kind], *required_numbers(kind)),
+        **table.fields(ROLLERS[kind], *required_numbers(kind), left_out=left_out),
         "roller_profile": read_profile(table.table("roller_profile")),
     }
+    if derived:
+        values["pitch_diameter"] = pitch_on_sphere(**values)
+        table.fill("pitch_diameter", written(values["pitch_diameter"], "m"))
     raceways = table.table("raceway_profile")
     for ring in RINGS:
         values[f"{ring}_raceway_profile"] = read_profile(raceways.table(ring))
@@ -335,6 +374,11 @@ def read_material(table: Table, key: str) -> Material | None:
 
 
 def _ribs(table: Table, kind: str) -> Ribs:
+    if kind == "crossed_roller":
+        for key in ("ribs", "rib", "arrangement"):
+            if key in table:
+                raise table.error(key, "is for others; crossed rollers have no ribs")
+        return Ribs()
     if "arrangement" not in table:
         for key in ("rib", "axial_internal_clearance"):
             if key in table:
@@ -344,8 +388,8 @@ def _ribs(table: Table, kind: str) -> Ribs:
         return Ribs(**{name: _rib(given[name]) for name in RIB_NAMES if name in ribs})
     if "ribs" in table:
         raise table.error("ribs", "give either `arrangement` or `ribs`, not both")
-    if kind == "tapered_roller":
-        problem = "is for cylindrical and needle rollers; a taper names its `ribs`"
+    if kind not in WITH_LETTERS:
+        problem = "is for cylindrical and needle rollers; others name their `ribs`"
         raise table.error("arrangement", problem)
     name = table.choice("arrangement", tuple(ARRANGEMENTS))
     play = table.quantity("axial_internal_clearance", "length", None)

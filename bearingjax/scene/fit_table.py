@@ -22,7 +22,6 @@ from ..design import (
     bore_limits,
     clearance_range,
     fit_state,
-    is_self_aligning,
     limit_classes,
     limits,
     mounted,
@@ -30,6 +29,7 @@ from ..design import (
     outside_limits,
     radial_clearance,
     rows_of,
+    shares_rings,
     sized,
     smoothing,
     with_radial_clearance,
@@ -305,9 +305,8 @@ def read_fits(
     if row.is_thrust:
         problem = "is for radial bearings; a thrust bearing has no play to be changed:"
         raise beside.error("fit", f"{problem} leave [fit] and [temperature] out")
-    if len({id(one.bearing) for one in rows_of(bearing)}) > 1 and not is_self_aligning(
-        bearing
-    ):
+    designs = {id(one.bearing) for one in rows_of(bearing)}
+    if len(designs) > 1 and not shares_rings(bearing):
         problem = "is for rows of one bearing; those of this set differ"
         raise beside.error("fit", problem)
     keys = read_keys(FitKeys, beside.table("fit"))
@@ -453,7 +452,7 @@ def _catalogued(keys: FitKeys, key: str, name: str, catalogue) -> float:
 def _width(keys: FitKeys, bearing, catalogue) -> dict[str, float]:
     """Return the ring width, required for a set whose rows have separate rings."""
     key, own = "ring_width", catalogue.entry.width if catalogue else None
-    apart = isinstance(bearing, BearingSet) and not is_self_aligning(bearing)
+    apart = isinstance(bearing, BearingSet) and not shares_rings(bearing)
     if not apart and keys.ring_width is None:
         return {}
     if keys.ring_width is None and own is None:

@@ -7,7 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from ..design import BearingSet, FormErrors, rows_of
+from ..design import (
+    BearingSet,
+    CylindricalThrustRollerBearing,
+    FormErrors,
+    rows_of,
+)
 from ..element import FREEDOMS, RINGS
 from ..element.bearing_element import BearingElement
 from ..noise import (
@@ -161,6 +166,10 @@ def read_noise(
     scene = with_speed_told(scene_of(data, path))
     vibration = read_keys(VibrationKeys, top.table("vibration", required=True))
     operating, deviations = top.table("operating"), top.table("deviations")
+    row = rows_of(scene.element.bearing)[0].bearing
+    if isinstance(row, CylindricalThrustRollerBearing):
+        problem = "'cylindrical_thrust_roller' has no noise here: it does not hold the"
+        raise top.table("bearing").error("type", f"{problem} shaking ring radially")
     _check_operating(operating, scene)
     element = scene.running()
     bearing: Any = element.bearing

@@ -9,7 +9,14 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..design import AbstractBearing, BearingSet, TaperedRollerBearing, rows_of
+from ..design import (
+    AbstractBarrelBearing,
+    AbstractBearing,
+    BearingSet,
+    CrossedRollerRow,
+    TaperedRollerBearing,
+    rows_of,
+)
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..statics.solution import BallSolution, Solution
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
@@ -80,7 +87,8 @@ def bearing_text(
         solution: If given, springs are described too.
     """
     lines = []
-    if isinstance(bearing, BearingSet):
+    crossed = isinstance(rows_of(bearing)[0].bearing, CrossedRollerRow)
+    if isinstance(bearing, BearingSet) and not crossed:
         places = ", ".join(
             f"{1e3 * _place(row):.4g} mm{' (mirrored)' if row.mirrored else ''}"
             for row in bearing.rows
@@ -122,7 +130,11 @@ def _oil(scene, solution):
 
 
 def _place(row):
-    within = float(getattr(row.bearing, "axial_place", 0.0))
+    part, within = row.bearing, 0.0
+    if part.is_ball:
+        within = float(part.axial_place)
+    elif part.aligns:
+        within = 0.5 * float(part.pitch_diameter) * np.tan(float(part.contact_angle))
     return float(row.position) + (-within if row.mirrored else within)
 
 
@@ -138,17 +150,21 @@ def _springs(bearing, solution):
     ]
 
 
+def _kind(bearing):
+    """Return the type of a bearing in words: "deep groove ball", "spherical roller"."""
+    name = type(bearing).__name__.removesuffix("Bearing").removesuffix("Row")
+    return "".join(f" {c.lower()}" if c.isupper() else c for c in name).strip()
+
+
 def ball_row(bearing, head) -> list[str]:
     """Describe type and sizes of a row of balls."""
     pitch, diameter = (
         1e3 * float(x) for x in (bearing.pitch_diameter, bearing.ball_diameter)
     )
-    kind = type(bearing).__name__.removesuffix("BallBearing").removesuffix("BallRow")
-    words = "".join(f" {c.lower()}" if c.isupper() else c for c in kind).strip()
     angle = np.rad2deg(float(bearing.free_contact_angle))
     return [
-        f"{head}: {words} ball bearing, {bearing.n_balls} balls of {diameter:.4g} mm on"
-        f" a pitch circle of {pitch:.4g} mm",
+        f"{head}: {_kind(bearing)} bearing, {bearing.n_balls} balls of"
+        f" {diameter:.4g} mm on a pitch circle of {pitch:.4g} mm",
         f"osculation: outer {_osculation(bearing.outer_osculation)}, inner"
         f" {float(bearing.inner_osculation):.4g}; free contact angle {angle:.4g} deg"
         + _clearance(bearing),
@@ -171,22 +187,53 @@ def roller_row(bearing, head) -> list[str]:
     """Describe type and sizes of a row of rollers."""
     size = [bearing.pitch_diameter, bearing.roller_diameter, bearing.roller_length]
     pitch, diameter, length = (1e3 * float(x) for x in size)
-    kind = type(bearing).__name__.removesuffix("RollerBearing").lower()
     ribs = ", ".join(bearing.ribs.present) or "none"
+    told = "" if bearing.is_thrust else f"{_roller_clearance(bearing)}; "
     lines = [
-        f"{head}: {kind} roller bearing, {bearing.n_rollers} rollers"
+        f"{head}: {_kind(bearing)} bearing, {bearing.n_rollers} rollers"
         f" {diameter:.4g} x {length:.4g} mm on a pitch circle of {pitch:.4g} mm",
-        f"{_roller_clearance(bearing)}; ribs: {ribs};"
-        f" roller profile: {type(bearing.roller_profile).__name__}",
+        f"{told}ribs: {ribs}; roller profile: {type(bearing.roller_profile).__name__}",
     ]
-    if isinstance(bearing, TaperedRollerBearing):
-        angles = (bearing.roller_axis_angle, bearing.roller_half_angle)
-        axis, half = (float(np.rad2deg(float(angle))) for angle in angles)
+    axis, half = _angles(bearing)
+    if isinstance(bearing, CrossedRollerRow):
+        lines.append(
+            f"contact angle: {axis:.4g} deg, of every other roller -{axis:.4g}"
+        )
+    elif half:
         raceways = [axis + half, axis - half]
         lines.append(
             f"contact angle: outer {raceways[0]:.4g}, inner {raceways[1]:.4g} deg"
         )
+    elif axis:
+        lines.append(f"contact angle: {axis:.4g} deg")
+    if isinstance(bearing, AbstractBarrelBearing):
+        radius = bearing.outer_raceway_radius
+        outer = "a sphere about the axis"
+        if radius is not None:
+            sphere = " (a sphere)" if hasattr(bearing, "contact_angle") else ""
+            outer = f"{1e3 * float(radius):.5g} mm{sphere}"
+        radii = bearing.roller_profile_radius, bearing.inner_raceway_radius
+        roller, inner = (f"{1e3 * float(one):.5g} mm" for one in radii)
+        lines.append(
+            f"profile radii: roller {roller}, raceways outer {outer}, inner {inner}"
+        )
     return lines
+
+
+def _angles(bearing):
+    """Return the angles of the axis of the rollers and of their half cone [deg]."""
+    half = 0.0
+    if isinstance(bearing, TaperedRollerBearing):
+        axis, half = bearing.roller_axis_angle, bearing.roller_half_angle
+    elif isinstance(bearing, CrossedRollerRow):
+        axis = 0.25 * np.pi
+    elif hasattr(bearing, "contact_angle"):
+        offset = float(getattr(bearing, "profile_offset", 0.0))
+        half = np.arcsin(offset / float(bearing.roller_profile_radius))
+        axis = float(bearing.contact_angle) - half
+    else:
+        axis = 0.5 * np.pi if bearing.is_thrust else 0.0
+    return np.rad2deg(float(axis)), np.rad2deg(float(half))
 
 
 def _roller_clearance(bearing):

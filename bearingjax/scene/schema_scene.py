@@ -4,7 +4,15 @@ from typing import Any
 
 from ..design import ARRANGEMENTS, MATERIALS, RIB_NAMES, Material, Rib
 from ..element import RINGS
-from .bearing_table import BALLS, PROFILES, ROLLERS, SetKeys, required_numbers
+from .bearing_table import (
+    BALLS,
+    PROFILES,
+    ROLLERS,
+    SPHERES,
+    WITH_LETTERS,
+    SetKeys,
+    required_numbers,
+)
 from .cases_table import CasesKeys
 from .choices_table import (
     BallNumericsKeys,
@@ -184,9 +192,17 @@ def _of_type(word: str, kind: type) -> dict[str, Any]:
         more |= {
             "roller_profile": _ref("profile", "profile of the rollers"),
             "raceway_profile": object_schema(dict.fromkeys(RINGS, raceway), []),
-            "ribs": object_schema(ribs, [], "ribs by name"),
         }
-        if word != "tapered_roller":
+        if word != "crossed_roller":
+            more["ribs"] = object_schema(ribs, [], "ribs by name")
+        if word == "spherical_roller":
+            about = "whether rollers of one row stand between those of the other"
+            more["staggered"] = {
+                "type": "boolean",
+                "description": about,
+                "default": True,
+            }
+        if word in WITH_LETTERS:
             letters, play = {"enum": [*ARRANGEMENTS]}, number_schema("length")
             more |= {
                 "arrangement": {**letters, "description": "letters of the ribs"},
@@ -199,8 +215,13 @@ def _of_type(word: str, kind: type) -> dict[str, Any]:
     more["material"] = _ref("material", "material of the rolling elements")
     more["ring_material"] = _ref("material", "material of the rings, if another")
     found = class_schema(kind, word, **more)
-    must = ("type", count, *required_numbers(word), *found["required"])
-    return {**found, "required": [*dict.fromkeys(must)]}
+    must = dict.fromkeys(("type", count, *required_numbers(word), *found["required"]))
+    if word in SPHERES:
+        either = ("pitch_diameter", "outer_raceway_radius")
+        found["properties"][either[0]]["x-otherwise"] = f"that of `{either[1]}`"
+        found["anyOf"] = [{"required": [one]} for one in either]
+        del must[either[0]]
+    return {**found, "required": [*must]}
 
 
 def _profiles() -> list[dict[str, Any]]:

@@ -12,6 +12,7 @@ from ..design import (
     BearingSet,
     CylindricalRollerBearing,
     NeedleRollerBearing,
+    rows_of,
 )
 from ..element import Speed
 from ..skid import Cage, Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable
@@ -154,14 +155,14 @@ def read_skid(
 def _check_bearing(top: Table, scene: Scene) -> None:
     """Require one row of balls or cylindrical rollers between rotating rings."""
     design, bearing = scene.element.bearing, top.table("bearing")
-    if isinstance(design, BearingSet):
-        key = "set" if "set" in top else "bearing"
-        raise top.error(key, "is of several rows; balls or rollers skid in one")
-    rollers = isinstance(design, CylindricalRollerBearing | NeedleRollerBearing)
-    if not rollers and not isinstance(design, AbstractBallBearing):
+    kinds = AbstractBallBearing | CylindricalRollerBearing | NeedleRollerBearing
+    if not all(isinstance(row.bearing, kinds) for row in rows_of(design)):
         kind = bearing.word("type") or bearing.word("designation")
         problem = f"{kind!r} does not skid; balls, cylindrical and needle rollers do"
         raise bearing.error("type", problem)
+    if isinstance(design, BearingSet):
+        key = "set" if "set" in top else "bearing"
+        raise top.error(key, "is of several rows; balls or rollers skid in one")
     if scene.speed is None:
         operating = top.table("operating")
         given = [key for key in ("inner_speed", "outer_speed") if key in operating]

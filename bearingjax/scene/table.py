@@ -110,16 +110,19 @@ class Table:
             return self.number(key, default)
         return self.quantity(key, kind_of(unit), default)
 
-    def fields(self, kind: type, *required: str) -> dict[str, Any]:
+    def fields(
+        self, kind: type, *required: str, left_out: Sequence[str] = ()
+    ) -> dict[str, Any]:
         """Read the numbers of a class under their field names, in SI.
 
         Args:
             kind: Class whose fields have units.
             required: Fields that must be given although the class has a default.
+            left_out: Fields that need not be given although the class has no default.
         """
         found = {}
         for field in dataclasses.fields(kind):
-            if "unit" not in field.metadata:
+            if "unit" not in field.metadata or field.name in left_out:
                 continue
             name, unit = field.name, unit_of(kind, field.name)
             must = field.default is dataclasses.MISSING or name in required

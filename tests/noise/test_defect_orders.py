@@ -93,6 +93,23 @@ def test_published_orders(name):
     np.testing.assert_allclose(found.outer_passage + found.inner_passage, 25.0 * z)
 
 
+def test_orders_of_a_spherical_roller_bearing():
+    """22220, printed by Schaeffler: 18 rollers in each row, γ = 0.1539."""
+    row = bj.SphericalRollerRow(
+        18,
+        0.1376,
+        0.1539 * 0.1376 / np.cos(np.radians(9.5)),
+        0.0185,
+        contact_angle=np.radians(9.5),
+        roller_profile_radius=0.078,
+        inner_raceway_radius=0.0805,
+    )
+    found = kinematic_frequencies(row, bj.Speed(inner=TURN))
+    printed = [7.6149, 10.385]
+    orders = [found.outer_passage, found.inner_passage]
+    np.testing.assert_allclose(orders, printed, rtol=0.0, atol=2e-4)
+
+
 def test_both_rings_turn():
     bearing = ROWS["176211"][0]
     of_inner = kinematic_frequencies(bearing, bj.Speed(inner=25 * TURN))

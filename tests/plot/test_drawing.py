@@ -26,6 +26,10 @@ def cylinder(**change):
     return bj.CylindricalRollerBearing(5, 0.065, 0.010, 0.010, **change)
 
 
+def arcs(roller, inner):
+    return dict(roller_profile_radius=roller, inner_raceway_radius=inner)
+
+
 DESIGNS = {
     "deep groove": balls(
         5, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6, **SAME_FOR_ALL
@@ -66,6 +70,33 @@ DESIGNS = {
     ),
     "needle": bj.NeedleRollerBearing(5, 0.03, 0.003, 0.012),
     "taper": taper(5),
+    "spherical": bj.SphericalRollerRow(
+        5, 0.1376, 0.0215, 0.0185, contact_angle=0.1658, **arcs(0.0781, 0.0805)
+    ),
+    "toroidal": bj.ToroidalRollerBearing(
+        5, 0.14, 0.0195, 0.03, outer_raceway_radius=0.42, **arcs(0.4074, 0.42)
+    ),
+    "cylindrical thrust": bj.CylindricalThrustRollerBearing(5, 0.0775, 0.009, 0.009),
+    "tapered thrust": bj.TaperedThrustRollerBearing(
+        5,
+        0.12,
+        0.01,
+        0.014,
+        roller_axis_angle=1.488,
+        roller_half_angle=0.08276,
+        ribs=bj.Ribs(inner_minus=RIB),
+    ),
+    "spherical thrust": bj.SphericalThrustRollerBearing(
+        5,
+        0.1204,
+        0.022,
+        0.026,
+        contact_angle=0.87,
+        profile_offset=2e-3,
+        ribs=bj.Ribs(inner_minus=RIB),
+        **arcs(0.1018, 0.105),
+    ),
+    "crossed": bj.CrossedRollerRow(6, 0.06, 0.014, 0.010),
 }
 
 

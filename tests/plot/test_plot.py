@@ -16,6 +16,7 @@ from registry import balls, taper
 import bearingjax as bj
 from bearingjax import plot
 from bearingjax.plot.section import section
+from bearingjax.plot.style import ROLLER
 
 MM = 1e3
 
@@ -246,6 +247,85 @@ def test_section_of_a_taper_is_inclined_with_the_large_end_at_minus_z():
     )
     centre = parts.axis[0] + 90.0 * along
     np.testing.assert_allclose(np.linalg.norm(parts.rib_points - centre, axis=1), 90.0)
+
+
+SPHERICAL = bj.SphericalRollerRow(
+    18,
+    0.1376,
+    0.0215,
+    0.0185,
+    contact_angle=0.1658,
+    roller_profile_radius=0.0781,
+    inner_raceway_radius=0.0805,
+    radial_internal_clearance=40e-6,
+)
+
+
+def arc_through(points):
+    """Centre and radius of the circle through both ends and the middle."""
+    first, middle, last = points[0], points[len(points) // 2], points[-1]
+    sides = 2.0 * np.stack([middle - first, last - first])
+    squares = [end @ end - first @ first for end in (middle, last)]
+    centre = np.linalg.solve(sides, squares)
+    return centre, np.linalg.norm(middle - centre)
+
+
+def test_section_of_a_spherical_row_has_its_arcs():
+    """The outer raceway is about the origin; gaps along the normal, 10 µm cos α."""
+    parts = section(SPHERICAL)
+    outer, inner = parts.raceways
+    normal = np.array([np.sin(0.1658), np.cos(0.1658)])
+    r = 0.5 * (137.6 + 21.5 * np.cos(0.1658)) / np.cos(0.1658)
+    gap = 10e-3 * np.cos(0.1658)
+    np.testing.assert_allclose(np.linalg.norm(outer, axis=1), r + gap, rtol=1e-12)
+    centre, radius = arc_through(inner)
+    np.testing.assert_allclose(radius, 80.5, rtol=1e-9)
+    wanted = parts.centre + (80.5 - 10.75 - gap) * normal
+    np.testing.assert_allclose(centre, wanted, rtol=1e-9)
+    np.testing.assert_allclose(parts.centre, r * normal - 10.75 * normal, rtol=1e-12)
+    # The generator of the roller, away from its ends.
+    away = np.linalg.norm(parts.roller - (parts.centre - 67.35 * normal), axis=1)
+    assert np.sum(np.abs(away - 78.1) < 1e-6) > 300
+    # Rings of both rows meet in the middle of the bearing.
+    assert all(ring[:, 0].min() == pytest.approx(0.0, abs=1e-9) for ring in parts.rings)
+
+
+def test_section_of_washers_and_crossed_rollers():
+    parts = section(bj.CylindricalThrustRollerBearing(21, 0.0775, 0.009, 0.008))
+    outer, inner = parts.rings
+    np.testing.assert_allclose(np.ptp(parts.roller, axis=0), [9.0, 8.0], atol=1e-9)
+    faces = [outer[:, 0].min(), inner[:, 0].max()]
+    np.testing.assert_allclose(faces, [4.5, -4.5], rtol=1e-12)
+    assert inner[:, 1].min() < 34.75 and inner[:, 1].max() > 42.75
+    # Of crossed rollers the ends stay clear of the groove.
+    parts = section(bj.CrossedRollerRow(40, 0.2775, 0.014, 0.010))
+    z, r = (parts.roller - parts.centre).T
+    np.testing.assert_allclose(
+        [(z + r).max(), (z - r).max()], np.sqrt(2.0) * np.array([7, 5])
+    )
+    apex = parts.rings[0][0] - parts.centre
+    np.testing.assert_allclose(apex, [0.0, 7.0 * np.sqrt(2.0)], atol=1e-9)
+
+
+def test_a_crossed_set_has_one_solid_roller_and_one_behind():
+    bearing = bj.BearingSet.crossed(bj.CrossedRollerRow(40, 0.2775, 0.014, 0.010))
+    ax = plot.cross_section(bearing)
+    assert len(ax.patches) == 3  # both rings and a roller
+    (behind,) = [line for line in ax.lines if line.get_color() == ROLLER]
+    assert behind.get_linestyle() == "--"
+    words = " ".join(text.get_text() for text in ax.texts)
+    assert "contact angle α = 45°" in words
+    thrust = bj.CylindricalThrustRollerBearing(21, 0.0775, 0.009, 0.009)
+    assert "contact angle 90°" in plot.cross_section(thrust).get_xlabel()
+
+
+def test_profiles_of_barrels_are_counted_from_the_roller():
+    """Sagitta of the roller's arc less that of the raceway."""
+    lines = plot.profile(SPHERICAL).lines
+    x = data(lines[2])[0]
+    back = [r - np.sqrt(r**2 - x**2) for r in (78.1, 80.5)]
+    np.testing.assert_allclose(data(lines[0])[1], 0.0, atol=1e-9)
+    np.testing.assert_allclose(data(lines[2])[1], 1e3 * (back[0] - back[1]), atol=1e-6)
 
 
 def test_cross_section_draws_to_scale_and_names_dimensions(bearing):

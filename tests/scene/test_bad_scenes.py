@@ -20,7 +20,9 @@ roller_half_angle = "1.7235 deg"
 """
 
 KNOWN_BEARINGS = (
-    "cylindrical_roller, needle_roller, tapered_roller, deep_groove_ball,"
+    "cylindrical_roller, needle_roller, tapered_roller, spherical_roller,"
+    " toroidal_roller, cylindrical_thrust_roller, tapered_thrust_roller,"
+    " spherical_thrust_roller, crossed_roller, deep_groove_ball,"
     " angular_contact_ball, four_point_ball, self_aligning_ball, thrust_ball"
 )
 WHOLE = "is not a whole number of at least 1"
@@ -391,8 +393,8 @@ SETTINGS = {
     ),
     "unknown bearing": (
         "cylindrical_rig",
-        "bearing.type=spherical_roller",
-        "`bearing.type`: 'spherical_roller' is not known (did you mean"
+        "bearing.type=conical_roller",
+        "`bearing.type`: 'conical_roller' is not known (did you mean"
         f" `cylindrical_roller`?); it must be one of {KNOWN_BEARINGS}",
     ),
     # Balls.
@@ -881,8 +883,8 @@ TEXTS = {
     ),
     "arrangement of a taper": (
         TAPER + f'arrangement = "NJ"\nrib = {RIB}',
-        "`bearing.arrangement`: is for cylindrical and needle rollers; a taper names"
-        " its `ribs`",
+        "`bearing.arrangement`: is for cylindrical and needle rollers; others name"
+        " their `ribs`",
     ),
     "rib without height": (
         TAPER + '[bearing.ribs.inner_minus]\nend_radius = "90 mm"',
@@ -1018,6 +1020,140 @@ def test_ratings_in_another_unit(name, unit):
 def test_errors_are_value_errors():
     with pytest.raises(ValueError, match="no such file"):
         read_scene("none.toml")
+
+
+# Scene, setting, text of the message after "file: ".
+SHAPED = [
+    (
+        "spherical",
+        "type=sphericl_roller",
+        "`bearing.type`: 'sphericl_roller' is not kn",
+    ),
+    ("spherical", "n_balls=18", "`bearing.n_balls`: unknown key (did you mean `n_rol"),
+    ("spherical", "contact_angle=9.5", "`bearing.contact_angle`: 9.5 has no unit; an"),
+    (
+        "spherical",
+        "contact_angle=0 deg",
+        "[bearing]: SphericalRollerRow: `contact_angl",
+    ),
+    (
+        "spherical",
+        "contact_angle=95 deg",
+        "[bearing]: SphericalRollerRow: `contact_ang",
+    ),
+    (
+        "spherical",
+        "profile_offset=1 mm",
+        "`bearing.profile_offset`: unknown key; known",
+    ),
+    ("spherical", "staggered=yes", "`bearing.staggered`: 'yes' is not true or false"),
+    (
+        "spherical",
+        "arrangement=NJ",
+        "`bearing.arrangement`: is for cylindrical and need",
+    ),
+    (
+        "spherical",
+        "pitch_diameter=130 mm",
+        "[bearing]: SphericalRollerRow: `outer_raceway_radius` is 0.0805 m; it must be"
+        " 0.0766588 m to 1 %, which puts the centre of the sphere on the axis",
+    ),
+    (
+        "spherical",
+        "inner_raceway_radius=78 mm",
+        "[bearing]: SphericalRollerRow: `inner_raceway_radius` is 0.078 m; it must be"
+        " at least `roller_profile_radius`, 0.078085 m",
+    ),
+    (
+        "spherical",
+        "roller_profile_radius=0 mm",
+        "[bearing]: SphericalRollerRow: `roller_profile_radius` is 0 m; it must be",
+    ),
+    (
+        "spherical",
+        "roller_profile_radius=9 mm",
+        "[bearing]: SphericalRollerRow: `roller_profile_radius` is 0.009 m; it must be"
+        " above half the roller length, 0.00925 m",
+    ),
+    (
+        "thrust",
+        "radial_internal_clearance=20 um",
+        "[bearing]: CylindricalThrustRollerBearing: `radial_internal_clearance` is"
+        " 2e-05 m; it must be 0 m: a thrust bearing of one direction",
+    ),
+    (
+        "thrust",
+        "n_rollers=30",
+        "[bearing]: CylindricalThrustRollerBearing: `n_rollers` is 30 rollers; it must"
+        " be low enough that rollers do not overlap",
+    ),
+    (
+        "thrust",
+        "staggered=true",
+        "`bearing.staggered`: unknown key; known in [bearing]",
+    ),
+    (
+        "thrust",
+        "contact_angle=9 deg",
+        "`bearing.contact_angle`: unknown key; known in ",
+    ),
+    (
+        "thrust",
+        "type=spherical_thrust_roller",
+        "`bearing.roller_profile_radius`: is missing",
+    ),
+    ("thrust", "type=tapered_thrust_roller", "`bearing.roller_axis_angle`: is missing"),
+    (
+        "crossed",
+        "n_rollers=41",
+        "[bearing]: CrossedRollerRow: `n_rollers` is 41 rollers; it must be even: every"
+        " other roller is turned",
+    ),
+    (
+        "crossed",
+        "roller_length=15 mm",
+        "[bearing]: CrossedRollerRow: `roller_length` is 0.015 m; it must be at most"
+        " the roller diameter, 0.014 m",
+    ),
+    (
+        "crossed",
+        f"ribs.inner_minus={RIB}",
+        "`bearing.ribs`: is for others; crossed rol",
+    ),
+]
+
+
+@pytest.mark.parametrize("kind, setting, message", SHAPED)
+def test_wrong_barrels_thrust_and_crossed_rollers(kind, setting, message):
+    with pytest.raises(SceneError) as caught:
+        read_scene(f"{kind}_roller", [f"bearing.{setting}"])
+    assert str(caught.value).startswith(f"{kind}_roller.toml: {message}")
+
+
+@pytest.mark.parametrize("kind", ["spherical", "crossed"])
+def test_bearings_of_two_rows_are_in_no_set(kind):
+    told = f"`set`: a {kind} roller bearing has both its rows already"
+    with pytest.raises(SceneError, match=told):
+        read_scene(f"{kind}_roller", ["set.arrangement=tandem"])
+    row = read_scene(f"{kind}_roller").inputs["bearing"]
+    row.pop("staggered", None)
+    text = ", ".join(
+        f"{key} = {value if isinstance(value, int) else repr(value)}"
+        for key, value in row.items()
+        if not isinstance(value, dict)
+    )
+    rows = f"set={{arrangement='rows', rows=[{{position='0 mm', bearing={{{text}}}}}]}}"
+    told = rf"`set.rows\[0\].bearing`: a {kind} roller bearing is no row of a set"
+    with pytest.raises(SceneError, match=told):
+        read_scene("cylindrical_rig", [rows])
+
+
+def test_a_sphere_or_a_pitch_diameter_is_needed(tmp_path):
+    text = shipped_scenes()["spherical_roller"].read_text("utf-8")
+    text = re.sub("(?m)^outer_raceway_radius.*$", "", text)
+    told = "`bearing.pitch_diameter`: is missing, and so is `outer_raceway_radius`; one"
+    with pytest.raises(SceneError, match=told):
+        read_scene(a_file(tmp_path, text))
 
 
 BAD_UNITS = [

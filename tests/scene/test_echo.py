@@ -30,6 +30,7 @@ SCENES = (
     "load_map",
     "self_aligning",
     "skid_roller",
+    "spherical_roller",
     "sprung_pair",
     "tapered",
 )

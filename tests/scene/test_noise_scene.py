@@ -258,6 +258,14 @@ def test_rows_of_a_set_have_errors_of_their_own():
     assert not np.array_equal(*phases)
 
 
+def test_rings_of_spherical_rollers_shift_and_washers_of_cylinders_do_not():
+    settings = ["vibration.mass=4 kg", "operating.inner_speed=1500 rpm"]
+    model = read_noise("spherical_roller", settings).model
+    assert model.freedoms == ("ux", "uy", "uz")
+    with pytest.raises(SceneError, match="'cylindrical_thrust_roller' has no noise he"):
+        read_noise("thrust_roller", settings)
+
+
 def test_a_bearing_without_a_rig_has_no_noise():
     with pytest.raises(SceneError, match="deep_groove.toml: `vibration`: is missing"):
         read_noise("deep_groove", ["operating.inner_speed=1500 rpm"])

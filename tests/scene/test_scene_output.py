@@ -243,6 +243,29 @@ def test_telling_compiles_nothing(solved):
         assert np.allclose(turning.pitch_angle, np.pi / 4, rtol=SOLVER, atol=0.0)
 
 
+def test_spherical_roller_bearing_of_a_fan():
+    """Rollers of row 0, then of row 1; no moment about the middle of the bearing."""
+    fan = solve("spherical_roller", TAPER, "operating.inner_speed=0 rpm")
+    assert tuple(fan.numbers) == NUMBERS + WORDS
+    assert fan["roller_load"].shape == (36, 2)
+    assert fan["position"].shape == (36, POINTS)
+    angle = np.deg2rad(9.5)
+    shift = np.repeat([0.0, np.pi / 18], 18)
+    turn = np.tile(2.0 * np.pi / 18 * np.arange(18), 2) + shift
+    np.testing.assert_allclose(fan["azimuth"], turn, rtol=ROUNDING)
+    load = np.array([0.0, -40e3, 8e3])
+    atol = SOLVER * 40e3
+    np.testing.assert_allclose(fan["force"][6:9], load, rtol=0.0, atol=atol)
+    np.testing.assert_allclose(fan["force"][9:11], 0.0, rtol=0.0, atol=0.1 * atol)
+    # The outer raceways see forces through the middle: along these normals.
+    normal = [np.cos(turn) * np.cos(angle), np.sin(turn) * np.cos(angle)]
+    normal.append(np.repeat([1.0, -1.0], 18) * np.sin(angle))
+    sums = np.array(normal) @ fan["roller_load"][:, 0]
+    np.testing.assert_allclose(sums, load, rtol=0.0, atol=1e-3 * 40e3)
+    with jax.transfer_guard("disallow"):
+        assert "each row: spherical roller" in str(report(fan.scene, fan.solution))
+
+
 def test_report_tells_the_motion_of_the_loaded_ring(solved):
     text = str(report(solved.scene, solved.solution))
     moving, fixed = solved.scene.moving_ring, solved.scene.fixed_ring

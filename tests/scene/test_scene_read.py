@@ -1,7 +1,11 @@
 """Scene files say what they say: every value in its place, in SI."""
 
+import dataclasses
+import json
 import tomllib
+from typing import Any
 
+import equinox as eqx
 import jax
 import numpy as np
 import pytest
@@ -10,6 +14,7 @@ from tolerances import PUBLISHED, ROUNDING
 import bearingjax as bj
 from bearingjax.design import rows_of
 from bearingjax.scene import shipped_scenes
+from bearingjax.scene.report import design_sections
 
 DEG = np.pi / 180.0
 RPM = 2.0 * np.pi / 60.0
@@ -17,6 +22,7 @@ RPM = 2.0 * np.pi / 60.0
 SHIPPED = (
     "angular_contact",
     "ball_pair",
+    "crossed_roller",
     "cylindrical_ribs",
     "cylindrical_rig",
     "deep_groove",
@@ -31,9 +37,11 @@ SHIPPED = (
     "skid_axial",
     "skid_combined",
     "skid_roller",
+    "spherical_roller",
     "sprung_pair",
     "tapered",
     "thrust_ball",
+    "thrust_roller",
 )
 CONTACT = "taper_contact"  # of one roller, for `read_contact`
 ROTORS = {  # for `read_rotor`
@@ -81,12 +89,117 @@ def test_every_shipped_scene_reads(name):
     raw = tomllib.loads(shipped_scenes()[name].read_text(encoding="utf-8"))
     assert scene.name == name
     assert scene.warnings == ()
-    counts = [row.bearing.n_elements for row in rows_of(scene.element.bearing)]
+    rows = [row.bearing for row in rows_of(scene.element.bearing)]
+    counts = [getattr(row, f"n_{row.noun}s") for row in rows]
     written = {raw["bearing"].get(key) for key in ("n_rollers", "n_balls")}
     assert set(counts) == written - {None}
     assert scene.points == (101 if "n_rollers" in raw["bearing"] else 2)
     assert scene.tolerance is None
     assert any(scene.load)
+
+
+ARCS = dict(roller_profile_radius=0.078, inner_raceway_radius=0.08)
+SHAPES = {
+    "spherical_roller": bj.BearingSet.self_aligning(
+        bj.SphericalRollerRow(18, 0.138, 0.0215, 0.0185, contact_angle=0.2, **ARCS),
+        staggered=False,
+    ),
+    "toroidal_roller": bj.ToroidalRollerBearing(
+        20, 0.14, 0.0195, 0.03, outer_raceway_radius=0.11, **ARCS
+    ),
+    "cylindrical_thrust_roller": bj.CylindricalThrustRollerBearing(
+        21, 0.0775, 0.009, 0.009
+    ),
+    "tapered_thrust_roller": bj.TaperedThrustRollerBearing(
+        20, 0.12, 0.01, 0.014, roller_axis_angle=1.488, roller_half_angle=0.08276
+    ),
+    "spherical_thrust_roller": bj.SphericalThrustRollerBearing(
+        14, 0.12, 0.022, 0.026, contact_angle=0.9, profile_offset=1e-3, **ARCS
+    ),
+    "crossed_roller": bj.BearingSet.crossed(
+        bj.CrossedRollerRow(40, 0.2775, 0.014, 0.01, radial_internal_clearance=-4e-6)
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", SHAPES)
+def test_barrel_thrust_and_crossed_rollers_are_those_of_python(kind, tmp_path):
+    meant = SHAPES[kind]
+    row: Any = rows_of(meant)[0].bearing
+    lines = [f"[bearing]\ntype = '{kind}'\nn_rollers = {row.n_rollers}"]
+    for field in dataclasses.fields(row):
+        value = getattr(row, field.name)
+        if "unit" in field.metadata and value is not None and np.ndim(value) == 0:
+            lines.append(f"{field.name} = '{float(value)!r} {field.metadata['unit']}'")
+    if kind == "spherical_roller":
+        lines.append("staggered = false")
+    found = read_text(tmp_path, "\n".join(lines))
+    assert eqx.tree_equal(found.element.bearing, meant)
+    again = tmp_path / "again.json"
+    again.write_text(json.dumps({"inputs": found.inputs}), encoding="utf-8")
+    assert eqx.tree_equal(bj.read_scene(again).element.bearing, meant)
+
+
+@pytest.mark.parametrize("offset", [0.0, 3e-3])
+def test_pitch_diameter_follows_from_the_sphere(offset, tmp_path):
+    """The sphere is about the axis: D_pw = 2 (r - gap - D/2) cos(angle)."""
+    scene = bj.read_scene("spherical_roller")
+    row = scene.element.bearing.rows[0].bearing
+    gap = 5e-6 * np.cos(9.5 * DEG)
+    pitch = 2.0 * (80.5e-3 - gap - 10.75e-3) * np.cos(9.5 * DEG)
+    assert float(row.pitch_diameter) == near(pitch)
+    assert scene.inputs["bearing"]["pitch_diameter"] == f"{float(pitch)!r} m"
+    assert float(row.sphere_radius) == near(80.5e-3)
+    text = "[bearing]\ntype = 'spherical_thrust_roller'\nn_rollers = 14\n"
+    sizes = dict(roller_diameter=22, roller_length=26, outer_raceway_radius=105)
+    sizes |= dict(inner_raceway_radius=105, roller_profile_radius=101.85)
+    sizes |= dict(profile_offset=1e3 * offset)
+    text += "\n".join(f"{key} = '{value} mm'" for key, value in sizes.items())
+    found = read_text(tmp_path, f"{text}\ncontact_angle = '50 deg'")
+    # Contact in the middle of the roller, on the normal through the centre.
+    half = np.arcsin(offset / 101.85e-3)
+    pitch = 2 * 105e-3 * np.cos(50 * DEG) - 22e-3 * np.cos(50 * DEG - half)
+    assert float(found.element.bearing.pitch_diameter) == near(pitch)
+
+
+def test_shipped_spherical_roller_bearing_says_what_it_is():
+    """No solution is needed for its sizes."""
+
+    def told(name):
+        return str(design_sections(bj.read_scene(name))["Bearing"][0])
+
+    assert told("spherical_roller").splitlines() == [
+        "spherical_roller: set of 2 rows at z = 11.51 mm, -11.51 mm (mirrored)",
+        "each row: spherical roller bearing, 18 rollers 21.5 x 18.5 mm on a pitch"
+        " circle of 137.6 mm",
+        "radial internal clearance 20 µm; ribs: none; roller profile: Straight",
+        "contact angle: 9.5 deg",
+        "profile radii: roller 78.085 mm, raceways outer 80.5 mm (a sphere), inner"
+        " 80.5 mm",
+    ]
+    assert told("crossed_roller").splitlines() == [
+        "crossed_roller: crossed roller bearing, 40 rollers 14 x 10 mm on a pitch"
+        " circle of 277.5 mm",
+        "radial internal clearance 0 µm; ribs: none; roller profile: Logarithmic",
+        "contact angle: 45 deg, of every other roller -45",
+    ]
+    text = told("thrust_roller")
+    assert "clearance" not in text and "contact angle: 90 deg" in text
+
+
+def test_fits_of_a_crossed_roller_bearing_need_no_ring_width():
+    """Both rows are in the same rings: no rings of their own grow between them."""
+    seats = 'bore = "230 mm", outside_diameter = "330 mm", housing_diameter = "500 mm"'
+    tight = 'shaft_interference = "40 um", housing_interference = "0 um"'
+    fit = f"fit={{ {seats}, {tight} }}"
+    scene = bj.read_scene("crossed_roller", [fit])
+    rows = scene.running().bearing.rows
+    clearance = float(rows[0].bearing.radial_internal_clearance)
+    # Radially, as specified: a solid shaft passes on the ratio of the diameters.
+    passed = 230.0 / (277.5 - 14.0 * np.sqrt(0.5))
+    assert clearance == near(-40e-6 * passed)
+    assert float(rows[1].bearing.radial_internal_clearance) == clearance
+    assert [float(row.inner_offset) for row in rows] == [0.0, 0.0]
 
 
 ROWS = """

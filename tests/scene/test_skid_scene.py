@@ -316,6 +316,9 @@ def test_rollers_and_places_of_the_end_state():
         read_skid("skid_roller", ["dynamics.balanced=true"])
     with pytest.raises(SceneError, match="'tapered_roller' does not skid; balls, cyl"):
         read_skid("tapered", steady=True)
+    for kind in ("spherical", "crossed"):
+        with pytest.raises(SceneError, match=f"'{kind}_roller' does not skid; balls,"):
+            read_skid(f"{kind}_roller", steady=True)
     with pytest.raises(SceneError, match="`bearing`: is of several rows; balls or rol"):
         read_skid("self_aligning", steady=True)
     with pytest.raises(
