@@ -230,7 +230,8 @@ class CylindricalThrustRollerBearing(AbstractRollerBearing):
 
     The inner ring is the shaft washer, at -z of the rollers; an inner-ring load along
     +z closes the bearing. Several rollers side by side in one pocket are rows of a
-    `BearingSet`, at their own pitch diameters.
+    `BearingSet`, at their own pitch diameters. Without ribs the cage bears the
+    centrifugal force of the rollers.
 
     Attributes are those of `AbstractRollerBearing`.
 
@@ -238,6 +239,7 @@ class CylindricalThrustRollerBearing(AbstractRollerBearing):
     """
 
     is_thrust: ClassVar[bool] = True
+    caged: ClassVar[bool] = True
 
     @property
     def axis_angle(self):
@@ -285,13 +287,16 @@ class CrossedRollerRow(AbstractRollerBearing):
 
     Every other roller in the groove is turned by 90 degrees. `BearingSet.crossed`
     makes the bearing of both orientations. The rollers are a little shorter than
-    thick, so that their ends carry nothing.
+    thick, so that their ends carry nothing but, at speed, the axial part of their own
+    inertia force, which is left out.
 
     Attributes are those of `AbstractRollerBearing`, with
         n_rollers: Number of rollers of both orientations, even.
 
     Traced: all fields but `n_rollers`.
     """
+
+    caged: ClassVar[bool] = True
 
     @property
     def axis_angle(self):

@@ -44,10 +44,13 @@ class AbstractRollerBearing(AbstractBearing):
         ribs: The ribs.
         material: Material of the rollers.
         ring_material: Material of the rings; `None`: as the rollers.
+        caged: Whether without ribs the cage, or a free end, bears what inertia pushes
+            the rollers along their axes.
     """
 
     noun: ClassVar[str] = "roller"
     is_thrust: ClassVar[bool] = False
+    caged: ClassVar[bool] = False
 
     n_rollers: int = eqx.field(static=True, converter=as_count)
     pitch_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))

@@ -178,6 +178,8 @@ class RollerChoices(AbstractChoices):
             bearing, self.line_law, quadrature, deviation, exact=exact
         )
         force = None if speed is None else inertia_force(constants, speed)
+        if force is not None and bearing.caged and constants.ribs is None:
+            force = force.at[0].set(0.0)
         return Roller(
             constants=constants,
             geometry=self.kinematics.roller(constants),
