@@ -145,7 +145,7 @@ class RollerSeeking(Seeking):
         return open_ if at.rib is None else open_ & jnp.all(at.rib <= 0)
 
     def start(self, rings):
-        element, midway = self.element, self.midpoint(rings)
+        element, midway = self.element, self._aligned(rings)
         if element.body_force is None:
             return midway
         # A loose roller is thrown on the outer raceway: from anywhere but flat on it,
@@ -176,6 +176,24 @@ class RollerSeeking(Seeking):
         size = self.gap + self.reach(rings) + norm(seat)
         thrown = norm(self._on_unknowns()) > 10.0 * element.tether * size
         return midway + jnp.where(thrown & (before < 0), share, 0.0) * seat
+
+    def _aligned(self, rings):
+        """The midpoint; of a barrel where it lies even on both raceways (3,) [m].
+
+        That is its equilibrium between equal raceways, apart from ribs.
+        """
+        midway, element = self.midpoint(rings), self.element
+        if element.constants.arc_radii is None:
+            return midway
+
+        def uneven(x):
+            at = element.coordinates(rings, x).raceway
+            return jnp.stack([at[0, 1], at[1, 1], at[0, 0] - at[1, 0]])
+
+        # Least squares: straight raceways say nothing of a shift along them.
+        rates = jax.jacfwd(uneven)(midway)
+        normal = rates.T @ rates + 1e-12 * jnp.eye(3, dtype=midway.dtype)
+        return midway - solve(normal, rates.T @ uneven(midway), symmetric=True)
 
     def _on_unknowns(self):
         """Generalised force on x: the tilt unknown is θ·L/2."""
