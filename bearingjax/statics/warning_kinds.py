@@ -7,6 +7,7 @@ import numpy as np
 
 from ..design import (
     AbstractBallBearing,
+    AbstractBarrelBearing,
     AbstractRollerBearing,
     AngularContactBallBearing,
     SphericalThrustRollerBearing,
@@ -69,6 +70,12 @@ def _is_linearised(element, speed):
     # About the centre of a sphere linearised rings tilt as exactly as finite ones.
     linearised = isinstance(element.kinematics, Linearised)
     return linearised and not is_self_aligning(element.bearing)
+
+
+def _is_linearised_barrel(element, speed):
+    rows = [row.bearing for row in rows_of(element.bearing)]
+    barrels = all(isinstance(row, AbstractBarrelBearing) for row in rows)
+    return barrels and isinstance(element.kinematics, Linearised)
 
 
 def _is_spherical_thrust(element, speed):
@@ -140,6 +147,13 @@ def _tilt_words(size, where):
     return (
         "tilt beyond small rotations: linearised kinematics leave out"
         f" {100.0 * size:.2g} % of {what} (Finite() kinematics do not)"
+    )
+
+
+def _travel_words(size, where):
+    return (
+        "travel along barrel rollers: linearised kinematics leave out"
+        f" {100 * size:.2g} % of the axial force (Finite() kinematics do not)"
     )
 
 
@@ -262,6 +276,12 @@ KINDS: dict[str, Kind] = {
             if {"gx", "gy"} <= set(s.free)
             else "the approach of the contacts, and loads err by about as much"
         ),
+    ),
+    "arc_travel": Kind(
+        _is_linearised_barrel,
+        of.travel_error,
+        of.LARGEST_TILT_ERROR,
+        _travel_words,
     ),
     "free_tilt": Kind(
         _always,

@@ -315,20 +315,67 @@ def tilt_error(solution: Solution) -> Any:
     if isinstance(solution, BallSolution):
         approach = solution.approach.max()
     else:
-        # About the approach by Palmgren's law, 2.5 b²/ρ, half width b = 2 p ρ/E*.
-        approach = _largest(
-            solution,
-            [
-                5.0 * _diameter(bearing) * (pressure.max() / _modulus(bearing)) ** 2
-                for bearing, pressure in _by_row(solution, solution.roller_pressure)
-            ],
-        )
+        approach = _line_approach(solution)
     pressed = approach > 0
     size = approach
     if {"gx", "gy"} <= set(solution.free):
         size = xp.maximum(approach, radius * square**0.5)
     share = 0.5 * radius * square / xp.where(pressed, size, 1.0)
     return xp.where(pressed, share, 0.0)
+
+
+def _line_approach(solution):
+    """About the largest approach of a contact of rollers [m].
+
+    By Palmgren's law, 2.5 b²/ρ, half width b = 2 p ρ/E*.
+    """
+    return _largest(
+        solution,
+        [
+            5.0 * _diameter(bearing) * (pressure.max() / _modulus(bearing)) ** 2
+            for bearing, pressure in _by_row(solution, solution.roller_pressure)
+        ],
+    )
+
+
+def travel_error(solution: Solution) -> Any:
+    """Error of linearised kinematics of barrel rollers by travel along them [1].
+
+    With A = r_o + r_i - D, the distance of the centres of both raceway arcs, and their
+    travel w across it, contacts approach by w²/(2 A), here over the largest approach,
+    and turn by w/A, here over the contact angle, as the axial force does.
+    """
+    xp = namespace(solution.result)
+    q, shares = solution.displacement, []
+    approach = 2.0 * _line_approach(solution)
+    pressed = approach > 0
+    for row in rows_of(solution.element.bearing):
+        b: Any = row.bearing
+        _, outer, inner = b.arc_radii
+        sin, cos, half = (
+            xp.sin(b.axis_angle),
+            xp.cos(b.axis_angle),
+            b.roller_diameter / 2,
+        )
+        sign = -1.0 if row.mirrored else 1.0
+        travel, levers = [], []
+        for side, radius, ring in ((-1.0, outer, q[:6]), (1.0, inner, q[6:])):
+            # Centre of the arc in (z, r), and the travel of a ring that turns about O.
+            beyond = side * (radius - half)
+            z = b.axial_place + sign * row.position + beyond * sin
+            lever = cos * (b.pitch_diameter / 2 + beyond * cos) + sin * z
+            levers.append(side * sign * lever)
+            travel.append(side * xp.stack([ring[0], ring[1], ring[2]]))
+        x, y, along = travel[0] + travel[1]
+        gx = levers[0] * q[3] + levers[1] * q[9]
+        gy = levers[0] * q[4] + levers[1] * q[10]
+        around = (sin * x + gy) ** 2 + (sin * y - gx) ** 2
+        across = abs(cos * along) + around**0.5
+        turned = across / (outer + inner - b.roller_diameter)
+        slope = xp.where(sin > 0, sin / cos, 1.0)
+        closed = 0.5 * across * turned / xp.where(pressed, approach, 1.0)
+        shares.append(closed + turned / slope)
+    return xp.where(pressed, _largest(solution, shares), 0.0)
 
 
 def free_tilt(solution: Solution) -> Any:

@@ -22,6 +22,7 @@ from tolerances import (
 import bearingjax as bj
 from bearingjax.element.constants import contact_constants
 from bearingjax.element.inertia import inertia_force, mass_and_inertia
+from bearingjax.statics.warning_sizes import travel_error
 
 DEG = np.pi / 180
 LAW = bj.contact.LineConstant(3.6e10)
@@ -223,6 +224,24 @@ def test_toroidal_bearing_loses_clearance_as_two_arcs():
     q = jnp.zeros(12).at[6].set(radial).at[10].set(tilt)
     turned, _ = evaluate(one, q)
     assert float(turned.energy) == pytest.approx(float(centred.energy), rel=1e-9)
+
+
+def test_warning_of_travel_along_the_rollers():
+    """Of the axial force linearised kinematics leave out about what it says."""
+    aligning, load = srb_of_the_case(), [0.0, -40000.0, 0.0, 0.0, 0.0, 0.0]
+    for travel, warned in ((0.2e-3, False), (0.6e-3, True)):
+        linear, exact = (
+            bj.solve_load(
+                element(aligning, k), load, free=("ux", "uy"), prescribed={"uz": travel}
+            )
+            for k in ("linearised", "exact")
+        )
+        share = float(travel_error(linear))
+        wrong = 1.0 - float(linear.force[8] / exact.force[8])
+        assert 0.4 < wrong / share < 2.5
+        text = "travel along barrel rollers"
+        assert any(text in w for w in bj.warnings(linear)) is warned
+        assert not any(text in w for w in bj.warnings(exact))
 
 
 def test_axial_clearance_of_a_spherical_bearing():
