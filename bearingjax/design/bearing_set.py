@@ -284,9 +284,14 @@ def is_self_aligning(bearing: AbstractBearing | BearingSet) -> bool:
 
 def shares_rings(bearing: AbstractBearing | BearingSet) -> bool:
     """Whether its rows run on the same two rings, as of self-aligning, spherical and
-    crossed roller bearings; a row of such a bearing counts too."""
+    crossed roller bearings; a row of such a bearing counts too.
+
+    More than two rows of crossed rollers are several bearings.
+    """
     rows = [row.bearing for row in rows_of(bearing)]
-    return all(row.aligns or isinstance(row, CrossedRollerRow) for row in rows)
+    if all(row.aligns for row in rows):
+        return True
+    return len(rows) <= 2 and all(isinstance(row, CrossedRollerRow) for row in rows)
 
 
 def pitch_radius(bearing: AbstractBearing | BearingSet) -> Scalar:

@@ -16,7 +16,11 @@ from slopes import with_slopes
 from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
-from bearingjax.design.mounted import radial_clearance, with_radial_clearance
+from bearingjax.design.mounted import (
+    radial_clearance,
+    row_shifts,
+    with_radial_clearance,
+)
 from bearingjax.element.constants import relative_radii
 from bearingjax.statics import row_rating
 from bearingjax.statics.equivalent_load import equivalent_load, left_out, load_factors
@@ -509,6 +513,24 @@ def test_mounted_clearance_of_rows_whose_clearance_is_radial():
     for row in (flat(), spherical_thrust(), tapered_thrust()):
         with pytest.raises(TypeError, match="it must be a radial ball or roller"):
             radial_clearance(row)
+
+
+def test_two_crossed_bearings_move_apart_as_their_shaft_grows():
+    """By 40 K over half their distance; the rows of either stay together."""
+    row = crossed()
+    other = eqx.tree_at(lambda r: r.first_azimuth, row, row.first_azimuth + np.pi / 20)
+    rows = [
+        bj.SetRow(b, position=z, mirrored=mirrored)
+        for z in (-0.1, 0.1)
+        for b, mirrored in ((row, False), (other, True))
+    ]
+    pair = bj.BearingSet(tuple(rows))
+    seats = bj.Mounting(0.25, 0.33, 0.5, 0.0, 0.0, ring_width=0.025)
+    warm = bj.FitConditions(shaft=40.0, inner_ring=40.0)
+    half = 0.1 * 40 * 12e-6
+    shifts = np.asarray(row_shifts(pair, seats, warm))
+    np.testing.assert_allclose(shifts, [-half, -half, half, half], rtol=ROUNDING)
+    assert row_shifts(bj.BearingSet.crossed(row), seats, warm) == [0.0, 0.0]
 
 
 SLOPES = {
