@@ -20,8 +20,9 @@ which the drawing contradicts itself."""
 class AbstractBarrelBearing(AbstractRollerBearing):
     """Single row of barrel rollers between concave raceways: base class.
 
-    The generators of roller and raceways are arcs that touch in the middle of the
-    roller; `roller_profile` and the raceway profiles are measured from these arcs.
+    `Finite` kinematics are the default, with independent slices and without measured
+    profiles. The generators of roller and raceways are arcs that touch in the middle of
+    the roller; `roller_profile` and the raceway profiles are measured from these arcs.
 
     Attributes are those of `AbstractRollerBearing`, and
         roller_profile_radius: Radius of the arc of the roller, R_r [m].
@@ -149,7 +150,8 @@ class SphericalRollerRow(_AbstractSphere):
     The origin of the bearing is the point of the axis where the contact normals meet,
     the centre of the sphere, so that the rings tilt freely about it.
     `BearingSet.self_aligning` makes the bearing of two such rows. At zero displacement
-    the rings are centred.
+    the rings are centred. Guide ring and cage bear what inertia pushes the rollers
+    along their axes.
 
     Attributes are those of `AbstractBarrelBearing`, and
         contact_angle: Contact angle of the symmetric rollers, above 0 [rad].
@@ -159,6 +161,7 @@ class SphericalRollerRow(_AbstractSphere):
     """
 
     aligns: ClassVar[bool] = True
+    caged: ClassVar[bool] = True
 
     @property
     def axial_place(self):
@@ -169,8 +172,8 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
     """Toroidal roller bearing: long barrel rollers, raceways of large profile radius.
 
     Rings that are moved along the axis by s lose radial clearance by
-    s²/(r_o + r_i - D), and nothing holds them axially but that; `Finite` kinematics,
-    the default for this bearing, see it.
+    s²/(r_o + r_i - D), and nothing holds them axially but that, as `Finite` kinematics
+    see it.
 
     Attributes are those of `AbstractBarrelBearing`.
 

@@ -85,8 +85,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             `CoupledSlices()` slices press on each other; it takes no `quadrature`.
         kinematics: Small ring rotations, `Linearised()`; `ConstantAngle()`: the same,
             the contact angles of balls held; or `Finite()`: rings of ball bearings
-            turn by any angle, of rollers the paper's formula. Self-aligning bearings:
-            `Finite()`.
+            turn by any angle, of rollers the paper's formula. Self-aligning ball
+            bearings and barrel rollers: `Finite()`.
         quadrature: Rule for roller contacts, `ContactMapped(points)` or
             `Midpoint(points)`; `None` with balls and `CoupledSlices()`.
         equilibrium: Local solver, `TrustRegionNewton()` or `BFGS()`.

@@ -18,7 +18,6 @@ from ..contact.line import AbstractLineLaw, Palmgren
 from ..contact.point_law import AbstractPointLaw, FreeAngle, balls_of
 from ..design import AbstractBallBearing, AbstractRollerBearing, SetRow
 from ..design.ball_types import SelfAligningBallRow
-from ..design.barrel import ToroidalRollerBearing
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
@@ -31,6 +30,9 @@ from .inertia import Speed, inertia_force
 from .kinematics import AbstractKinematics, Finite, Linearised
 from .roller import Roller
 from .rolling_element import AbstractRollingElement
+
+PROFILES = "roller_profile", "outer_raceway_profile", "inner_raceway_profile"
+"""Fields of a roller bearing that hold profiles."""
 
 KINDS = {
     "line_law": (
@@ -113,6 +115,29 @@ def choices_for(bearing: Any) -> type[AbstractChoices]:
     )
 
 
+def usual_kinematics(
+    rows: tuple[SetRow, ...], law: AbstractLineLaw
+) -> AbstractKinematics:
+    """Kinematics of rollers for which none are chosen.
+
+    `Finite` for barrel rollers: to first order a toroidal bearing loses no clearance to
+    a shift, and rollers that a spherical inner ring takes along as it tilts see no
+    axial load. `Linearised` for others, and where `Finite` is not for the choices.
+
+    Args:
+        rows: The rows.
+        law: Law of the raceway contacts.
+    """
+    bearings: list[Any] = [row.bearing for row in rows]
+    barrels = all(b.arc_radii is not None for b in bearings)
+    measured = any(
+        getattr(b, p).knots() is not None for b in bearings for p in PROFILES
+    )
+    exact = barrels and not measured and not isinstance(law, CoupledSlices)
+    sprung = any(row.spring is not None for row in rows)
+    return Finite() if exact and not sprung else Linearised()
+
+
 class RollerChoices(AbstractChoices):
     """Line law, quadrature and kinematics of rollers.
 
@@ -140,9 +165,7 @@ class RollerChoices(AbstractChoices):
                 )
         else:
             quadrature = quadrature or ContactMapped()
-        # To first order a toroidal bearing loses no clearance to a shift.
-        arcs = any(isinstance(row.bearing, ToroidalRollerBearing) for row in rows)
-        kinematics = kinematics or (Finite() if arcs else Linearised())
+        kinematics = kinematics or usual_kinematics(rows, law)
         return cls(line_law=law, quadrature=quadrature, kinematics=kinematics)
 
     def check(self, part, speed):
@@ -158,11 +181,7 @@ class RollerChoices(AbstractChoices):
                 " slices of barrel rollers, but `line_law` is CoupledSlices(); use"
                 " Linearised()."
             )
-        for which in (
-            "roller_profile",
-            "outer_raceway_profile",
-            "inner_raceway_profile",
-        ):
+        for which in PROFILES:
             if getattr(bearing, which).knots() is not None:
                 raise ValueError(
                     f"BearingElement: `kinematics` is {name}, which takes no measured"

@@ -180,10 +180,10 @@ class RollerSeeking(Seeking):
     def _aligned(self, rings):
         """The midpoint; of a barrel where it lies even on both raceways (3,) [m].
 
-        That is its equilibrium between equal raceways, apart from ribs.
+        That is its equilibrium between equal raceways without ribs.
         """
         midway, element = self.midpoint(rings), self.element
-        if element.constants.arc_radii is None:
+        if element.constants.arc_radii is None or element.constants.ribs is not None:
             return midway
 
         def uneven(x):

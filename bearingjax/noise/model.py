@@ -125,7 +125,8 @@ class NoiseModel(eqx.Module):
     def _check_rows(self):
         bearing, kinematics = self.element.bearing, self.element.kinematics
         aligning = is_self_aligning(bearing)
-        if kinematics.turns_far and not aligning:
+        arcs = getattr(rows_of(bearing)[0].bearing, "arc_radii", None) is not None
+        if kinematics.turns_far and not (aligning or arcs):
             raise ValueError(
                 f"NoiseModel: `element` has {type(kinematics).__name__}() kinematics;"
                 " it must have Linearised()."

@@ -26,6 +26,7 @@ from ..element import (
     OperatingCentrifugal,
     OuterControl,
 )
+from ..element.choices import usual_kinematics
 from ..numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
 from ..statics.load_search import SLOTS
@@ -207,6 +208,17 @@ class RollerNumericsKeys(BallNumericsKeys):
         return chosen
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class BarrelNumericsKeys(RollerNumericsKeys):
+    """[numerics] of barrel rollers."""
+
+    kinematics: str | None = scene_key(
+        "how rings displace the raceways",
+        choices=tuple(KINEMATICS),
+        otherwise="`finite`, or `linearised` with coupled slices or measured profiles",
+    )
+
+
 def read_choices(
     contact: Table,
     operating: Table,
@@ -228,7 +240,14 @@ def read_choices(
     else:
         law = read_keys(LineContactKeys, contact).law
         choices = {"line_law": law}
-        keys = rollers = read_keys(RollerNumericsKeys, numerics)
+        rows: Any = rows_of(bearing)
+        barrels = all(row.bearing.arc_radii is not None for row in rows)
+        kind = BarrelNumericsKeys if barrels else RollerNumericsKeys
+        keys = rollers = read_keys(kind, numerics)
+        if keys.kinematics is None:
+            choices["kinematics"] = usual_kinematics(rows, law)
+            names = {kind: name for name, kind in KINEMATICS.items()}
+            numerics.fill("kinematics", names[type(choices["kinematics"])])
         if not isinstance(law, CoupledSlices):
             count = sum(row.bearing.n_elements for row in rows_of(bearing))
             choices["quadrature"] = rollers.rule(count)

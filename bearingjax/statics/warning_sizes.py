@@ -343,7 +343,9 @@ def travel_error(solution: Solution) -> Any:
 
     With A = r_o + r_i - D, the distance of the centres of both raceway arcs, and their
     travel w across it, contacts approach by w²/(2 A), here over the largest approach,
-    and turn by w/A, here over the contact angle, as the axial force does.
+    and turn by w/A, here over the contact angle, as the axial force does. Rollers of a
+    spherical bearing go with a tilted inner ring, and a radial load F across the tilt γ
+    gets the axial part F γ, to be added to it with the factor Y0 = 0.44 cot α.
     """
     xp = namespace(solution.result)
     q, shares = solution.displacement, []
@@ -364,7 +366,8 @@ def travel_error(solution: Solution) -> Any:
             beyond = side * (radius - half)
             z = b.axial_place + sign * row.position + beyond * sin
             lever = cos * (b.pitch_diameter / 2 + beyond * cos) + sin * z
-            levers.append(side * sign * lever)
+            # About the centre of the sphere nothing else moves.
+            levers.append(0.0 if b.aligns else side * sign * lever)
             travel.append(side * xp.stack([ring[0], ring[1], ring[2]]))
         x, y, along = travel[0] + travel[1]
         gx = levers[0] * q[3] + levers[1] * q[9]
@@ -374,7 +377,12 @@ def travel_error(solution: Solution) -> Any:
         turned = across / (outer + inner - b.roller_diameter)
         slope = xp.where(sin > 0, sin / cos, 1.0)
         closed = 0.5 * across * turned / xp.where(pressed, approach, 1.0)
-        shares.append(closed + turned / slope)
+        f, tilted = solution.force[6:8], 0.0
+        if b.aligns:
+            size = xp.sum(xp.abs(f))
+            across = abs(f[0] * q[10] - f[1] * q[9]) / xp.where(size > 0, size, 1.0)
+            tilted = 0.44 / slope * across
+        shares.append(closed + turned / slope + tilted)
     return xp.where(pressed, _largest(solution, shares), 0.0)
 
 
