@@ -1,10 +1,11 @@
 """Does a load solve ever fail, or answer wrongly? 2100 loads per decade and clearance.
 
 Loads from 1e-3 N to 1e7 N in random directions that the bearing can carry, with and
-without clearance, on a crowned cylindrical bearing, an NUP and a taper; then loads
-that nothing can carry (a taper pulled apart, axial load on an NU), each of which must
-be named. Every answer is checked by the residual of a fresh evaluation: at most 1e-8
-of the load, or 1e-13 of the forces that cancel in it.
+without clearance, on a crowned cylindrical bearing, an NUP, a taper, spherical,
+toroidal and crossed roller bearings and two roller thrust bearings; then loads that
+nothing can carry (a taper pulled apart, axial load on an NU), each of which must be
+named. Every answer is checked by the residual of a fresh evaluation: at most 1e-8 of
+the load, or 1e-13 of the forces that cancel in it.
 
 Run: python benchmarks/robust_loads.py [--count 700] [--smoke]
 """
@@ -46,6 +47,28 @@ def designs():
             roller_axis_angle=angle(11), roller_half_angle=angle(1.7235),
             ribs=bj.Ribs(inner_minus=bj.Rib(0.09, 1.2e-3)),
         ),
+        "spherical": lambda c: bj.BearingSet.self_aligning(bj.SphericalRollerRow(
+            18, 0.1376, 0.0215, 0.0185, contact_angle=angle(9.5),
+            roller_profile_radius=0.078, inner_raceway_radius=0.0805,
+            radial_internal_clearance=c,
+        )),
+        "toroidal": lambda c: bj.ToroidalRollerBearing(
+            20, 0.140, 0.0195, 0.030, roller_profile_radius=0.4074,
+            outer_raceway_radius=0.42, inner_raceway_radius=0.42,
+            radial_internal_clearance=c,
+        ),
+        "spherical thrust": lambda c: bj.SphericalThrustRollerBearing(
+            14, 0.12, 0.022, 0.026, contact_angle=angle(50),
+            roller_profile_radius=0.10, inner_raceway_radius=0.104,
+            profile_offset=2e-3, ribs=bj.Ribs(inner_minus=bj.Rib(0.2, 2e-3)),
+        ),
+        "cylindrical thrust": lambda c: bj.CylindricalThrustRollerBearing(
+            21, 0.0775, 0.009, 0.009, roller_profile=bj.Logarithmic(),
+        ),
+        "crossed": lambda c: bj.BearingSet.crossed(bj.CrossedRollerRow(
+            40, 0.2775, 0.014, 0.010, radial_internal_clearance=c,
+            roller_profile=bj.Logarithmic(),
+        )),
     }  # fmt: skip
 
 
@@ -56,9 +79,12 @@ def random_loads(rng, name, decade, count):
     radial, axial = np.ones(count), np.zeros(count)
     if name == "NUP, logarithmic":
         axial = rng.uniform(-0.1, 0.1, count)
-    if name == "taper":
+    if name in ("taper", "spherical thrust", "cylindrical thrust"):
         # Enough axial load to hold the cone against the radial load and moment.
         radial, axial = rng.uniform(0, 1, count), rng.uniform(0.6, 1, count)
+        radial = {"taper": radial, "spherical thrust": 0.3 * radial}.get(name, 0.0)
+    if name in ("spherical", "crossed"):
+        axial = rng.uniform(-1, 1, count)
     arm = rng.uniform(-1, 1, (2, count)) * 1e-3
     zero = np.zeros(count)
     loads = [radial * np.cos(way), radial * np.sin(way), axial, *arm, zero]
@@ -81,7 +107,8 @@ def solve(element, loads):
         free = jnp.asarray(
             [n in bj.statics.restrained_freedoms(element.bearing) for n in bj.FREEDOMS]
         )
-        scale = jnp.where(jnp.arange(6) < 3, 1.0, 2.0 / element.bearing.pitch_diameter)
+        radius = bj.design.pitch_radius(element.bearing)
+        scale = jnp.where(jnp.arange(6) < 3, 1.0, 1.0 / radius)
         fresh = element.model().evaluate(s.displacement)
         out = jnp.where(free, scale * (fresh.force[6:] - load), 0.0)
         size = jnp.sqrt(jnp.sum((scale * jnp.where(free, load, 0.0)) ** 2))

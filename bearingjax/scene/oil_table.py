@@ -1,5 +1,6 @@
 """The [lubricant] table of a solved scene: oil, films and friction."""
 
+import contextlib
 import dataclasses
 import re
 from typing import Any, NamedTuple
@@ -44,12 +45,12 @@ class OilFacts(NamedTuple):
     """Friction and films of a solved scene, in NumPy.
 
     Attributes:
-        friction: Friction by Palmgren.
+        friction: Friction by Palmgren; `None` for types without known constants.
         skf: Friction by SKF's model; `None` for types that it does not cover.
         films: Films of every contact.
     """
 
-    friction: Friction
+    friction: Friction | None
     skf: SkfFriction | None
     films: Films
 
@@ -124,11 +125,16 @@ def _turning(solution):
 @program(quick=True)
 def _facts(solution, lubricant, temperature, supply, roughness, series, diameters):
     viscosity = lubricant.kinematic_viscosity(temperature)
-    skf, more = None, dict(series=series, diameters=diameters)
+    friction, skf = None, None
+    more = dict(series=series, diameters=diameters)
+    # Types without constants, or without the diameters that those are for, are refused.
+    with contextlib.suppress(ValueError):
+        friction = friction_torque(solution, viscosity, supply)
     if skf_series(solution.element.bearing):
-        skf = skf_friction_torque(solution, viscosity, supply, **more)
+        with contextlib.suppress(ValueError):
+            skf = skf_friction_torque(solution, viscosity, supply, **more)
     return OilFacts(
-        friction_torque(solution, viscosity, supply),
+        friction,
         skf,
         films(solution, lubricant, temperature, roughness),
     )
@@ -146,18 +152,24 @@ def oil_report(
     if facts is None:
         return []
     friction = facts.friction
-    parts = {
-        "load": friction.load_torque,
-        "oil": friction.viscous_torque,
-        "ribs": friction.flange_torque,
-    }
-    told = ", ".join(f"{k} {1e3 * v.sum():.4g}" for k, v in parts.items() if v.any())
     lines = [
         f"{oil.name}, {oil.supply.replace('_', ' ')}, at"
-        f" {described(oil.lubricant, oil.temperature)}",
-        f"friction torque (Palmgren) {1e3 * float(friction.torque):.4g} N mm ({told});"
-        f" {float(friction.power):.4g} W",
+        f" {described(oil.lubricant, oil.temperature)}"
     ]
+    if friction is None:
+        lines.append("friction torque: no constants of Palmgren's formula are known")
+    else:
+        parts = {
+            "load": friction.load_torque,
+            "oil": friction.viscous_torque,
+            "ribs": friction.flange_torque,
+        }
+        sums = {k: 1e3 * v.sum() for k, v in parts.items() if v.any()}
+        told = ", ".join(f"{k} {value:.4g}" for k, value in sums.items())
+        lines.append(
+            f"friction torque (Palmgren) {1e3 * float(friction.torque):.4g} N mm"
+            f" ({told}); {float(friction.power):.4g} W"
+        )
     if facts.skf is not None:
         skf = facts.skf
         lines.append(
@@ -189,6 +201,7 @@ def oil_as_dict(
 
     Returns:
         friction_torque [N m]; friction: load, viscous, flange (row) [N m], power [W];
+        both for types with known constants;
         friction_skf, for types covered by SKF's model: torque [N m], rolling, sliding
         (row) [N m], power [W], series of the constants used;
         film: central, minimum [m], entrainment [m/s] and with a roughness ratio, each
@@ -201,14 +214,19 @@ def oil_as_dict(
     friction, skf, found = facts
     names = ["entrainment", "central", "minimum"]
     names += ["ratio"] if found.ratio is not None else []
+    by_palmgren = {}
+    if friction is not None:
+        by_palmgren = {
+            "friction_torque": float(friction.torque),
+            "friction": {
+                "load": friction.load_torque.tolist(),
+                "viscous": friction.viscous_torque.tolist(),
+                "flange": friction.flange_torque.tolist(),
+                "power": float(friction.power),
+            },
+        }
     return {
-        "friction_torque": float(friction.torque),
-        "friction": {
-            "load": friction.load_torque.tolist(),
-            "viscous": friction.viscous_torque.tolist(),
-            "flange": friction.flange_torque.tolist(),
-            "power": float(friction.power),
-        },
+        **by_palmgren,
         **({} if skf is None else {"friction_skf": _skf_as_dict(skf)}),
         "film": {name: _listed(getattr(found, name)) for name in names},
     }
