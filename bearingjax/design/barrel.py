@@ -1,5 +1,6 @@
 """Bearings of barrel rollers, thrust rollers and crossed rollers."""
 
+import math
 from typing import ClassVar
 
 import equinox as eqx
@@ -10,7 +11,6 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .bearing import AbstractRollerBearing, TaperedRollerBearing
 from .checks import check, concrete, in_range, number, positive
-from .profile import sagitta
 
 _FAR = 0.01
 """Distance of the centre of the outer sphere from the axis, over its radius, above
@@ -81,7 +81,9 @@ class AbstractBarrelBearing(AbstractRollerBearing):
         numbers = concrete(self.roller_profile_radius, self.roller_length)
         if numbers is None or not np.isfinite(numbers[0]):
             return 0.0
-        return float(sagitta(jnp.asarray(0.5 * numbers[1]), jnp.asarray(numbers[0])))
+        # In Python's numbers: under `vmap` what JAX computes is traced, even of these.
+        radius, half = numbers[0], 0.5 * numbers[1]
+        return half * half / (radius + math.sqrt(radius * radius - half * half))
 
 
 class _AbstractSphere(AbstractBarrelBearing):

@@ -275,6 +275,19 @@ def test_axial_clearance_of_a_spherical_bearing():
         assert (float(got.force[8]) > 0.1) is touches
 
 
+def test_sets_are_made_under_vmap():
+    """Rows of one mapped number: the others are still checked, without a trace."""
+    clearances = jnp.array([20e-6, 30e-6])
+    made = jax.vmap(
+        lambda c: bj.BearingSet.self_aligning(spherical(radial_internal_clearance=c))
+    )(clearances)
+    for row in made.rows:
+        assert np.array_equal(row.bearing.radial_internal_clearance, clearances)
+    # A chord of the roller's arc, as long as the roller.
+    drop = 0.0745 * (1.0 - np.cos(np.arcsin(0.0185 / 2 / 0.0745)))
+    assert spherical().end_drop() == pytest.approx(drop, rel=1e-12)
+
+
 def test_infinite_radii_are_the_straight_roller():
     straight = dict(
         roller_profile_radius=np.inf,

@@ -39,7 +39,7 @@ def test_code_runs(path):
 
 def test_they_are_found_executed_and_name_no_machine():
     paths = sorted(FOLDER.glob("*.ipynb"))
-    assert len(paths) == 8
+    assert len(paths) == 9
     for path in paths:
         for cell in cells(path):
             if cell["cell_type"] == "code":
