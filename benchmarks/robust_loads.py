@@ -86,6 +86,8 @@ def random_loads(rng, name, decade, count):
     if name in ("spherical", "crossed"):
         axial = rng.uniform(-1, 1, count)
     arm = rng.uniform(-1, 1, (2, count)) * 1e-3
+    if name in ("spherical", "toroidal", "spherical thrust"):
+        arm = 0.0 * arm  # their rings tilt freely
     zero = np.zeros(count)
     loads = [radial * np.cos(way), radial * np.sin(way), axial, *arm, zero]
     return np.stack(loads, axis=1) * size[:, None]

@@ -183,6 +183,10 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
     """
 
     @property
+    def holds_axially(self) -> bool:
+        return False
+
+    @property
     def play(self):
         # Radial: axial travel is free over millimetres, and a search begins with this.
         return 0.5 * self.radial_internal_clearance

@@ -10,6 +10,7 @@ from ..design import (
     BearingSet,
     CylindricalThrustRollerBearing,
     SphericalThrustRollerBearing,
+    ToroidalRollerBearing,
     is_self_aligning,
     rows_of,
 )
@@ -21,8 +22,9 @@ def restrained_freedoms(bearing: AbstractBearing | BearingSet) -> tuple[str, ...
     """Freedoms that the bearing can restrain, against a load in the right direction.
 
     Never gz. Not gx and gy of a self-aligning bearing or of a single spherical roller
-    thrust bearing, not ux and uy of cylindrical roller thrust bearings. uz with balls
-    and tapered rollers, and where a pair of ribs passes axial load from ring to ring.
+    thrust bearing, not ux and uy of cylindrical roller thrust bearings; of a toroidal
+    roller bearing ux and uy alone. uz with balls and tapered rollers, and where a pair
+    of ribs passes axial load from ring to ring.
 
     Args:
         bearing: The design.
@@ -30,7 +32,8 @@ def restrained_freedoms(bearing: AbstractBearing | BearingSet) -> tuple[str, ...
     rows = [row.bearing for row in rows_of(bearing)]
     axial = any(row.holds_axially for row in rows)
     flat = all(isinstance(row, CylindricalThrustRollerBearing) for row in rows)
-    sphere = len(rows) == 1 and isinstance(rows[0], SphericalThrustRollerBearing)
+    tilting = SphericalThrustRollerBearing | ToroidalRollerBearing
+    sphere = len(rows) == 1 and isinstance(rows[0], tilting)
     tilts = () if sphere or is_self_aligning(bearing) else ("gx", "gy")
     return (*(() if flat else ("ux", "uy")), *(("uz",) if axial else ()), *tilts)
 
