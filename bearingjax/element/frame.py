@@ -82,7 +82,7 @@ def turn_factors(square: Scalar) -> tuple[Scalar, Scalar]:
 
 
 def to_roller_axes(
-    axis_angle: Scalar, pitch_radius: Scalar, place: Scalar
+    axis_angle: Scalar, pitch_radius: Scalar, place: Scalar | float = 0.0
 ) -> Float[Array, "3 3"]:
     """Motion of the roller centre's point of a body, along and across the roller.
 
@@ -110,7 +110,7 @@ def to_roller_axes(
 
 
 def from_roller_axes(
-    axis_angle: Scalar, pitch_radius: Scalar, place: Scalar
+    axis_angle: Scalar, pitch_radius: Scalar, place: Scalar | float = 0.0
 ) -> Float[Array, "3 3"]:
     """Inverse of `to_roller_axes`."""
     c, s = jnp.cos(axis_angle), jnp.sin(axis_angle)

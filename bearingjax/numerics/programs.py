@@ -391,12 +391,27 @@ def _loaded(place: int | None, name: str):
         inputs = jax.tree.structure((tuple(range(program.inputs)), {}))
         outputs = jax.tree.structure([0] * program.count)
         devices = jax.devices()[: program.devices]
-        run = deserialize_and_load(
-            program.executable, inputs, outputs, execution_devices=devices
-        )
+        with _quiet():
+            run = deserialize_and_load(
+                program.executable, inputs, outputs, execution_devices=devices
+            )
     except Exception:  # of whatever a strange file leads to
         return None
     return lambda arrays: _filled(program.outputs, run(*arrays))
+
+
+@contextlib.contextmanager
+def _quiet():
+    """Silence XLA, which takes preferences of its own for features that the CPU lacks.
+
+    The name of a kept program has the CPU in it: its features are the same.
+    """
+    level = getattr(jax.config, "jax_logging_level")  # noqa: B009
+    jax.config.update("jax_logging_level", "CRITICAL")
+    try:
+        yield
+    finally:
+        jax.config.update("jax_logging_level", level)
 
 
 def _read(place: int, name: str) -> bytes | None:
