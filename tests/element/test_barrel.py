@@ -22,6 +22,7 @@ from tolerances import (
 import bearingjax as bj
 from bearingjax.element.constants import contact_constants
 from bearingjax.element.inertia import inertia_force, mass_and_inertia
+from bearingjax.statics.rollers import distribution
 from bearingjax.statics.warning_sizes import travel_error
 
 DEG = np.pi / 180
@@ -83,22 +84,19 @@ def oracle_of(bearing):
     if c.ribs is not None:
         parts = c.ribs.centre, c.ribs.point, c.ribs.normal, c.ribs.gap, c.ribs.constant
         ribs = tuple(zip(c.ribs.on_outer, *map(np.asarray, parts), strict=True))
-    numbers = (
-        bearing.pitch_diameter,
-        bearing.roller_diameter,
-        bearing.roller_length,
-        bearing.axis_angle,
-        bearing.half_angle,
-    )
     return barrel_oracle.Barrel(
-        bearing.n_elements,
-        *map(float, numbers),
-        tuple(map(float, bearing.arc_radii)),
-        float(bearing.gap),
-        float(LAW.value),
-        float(bearing.axial_place),
-        float(bearing.first_azimuth),
-        ribs,
+        n=bearing.n_elements,
+        pitch=float(bearing.pitch_diameter),
+        diameter=float(bearing.roller_diameter),
+        length=float(bearing.roller_length),
+        axis=float(bearing.axis_angle),
+        half=float(bearing.half_angle),
+        radii=tuple(map(float, bearing.arc_radii)),
+        gap=float(bearing.gap),
+        constant=float(LAW.value),
+        place=float(bearing.axial_place),
+        first=float(bearing.first_azimuth),
+        ribs=ribs,
     )
 
 
@@ -282,6 +280,7 @@ def test_sets_are_made_under_vmap():
         lambda c: bj.BearingSet.self_aligning(spherical(radial_internal_clearance=c))
     )(clearances)
     for row in made.rows:
+        assert isinstance(row.bearing, bj.SphericalRollerRow)
         assert np.array_equal(row.bearing.radial_internal_clearance, clearances)
     # A chord of the roller's arc, as long as the roller.
     drop = 0.0745 * (1.0 - np.cos(np.arcsin(0.0185 / 2 / 0.0745)))
@@ -451,7 +450,7 @@ def test_barrel_rollers_of_exact_arcs_by_another_program():
         wrong = np.abs(np.asarray(got.force[6:11]) - force)
         assert wrong[:3].max() < 1e-6 * abs(force[1])
         assert wrong[3:].max() < 1e-5
-        along = bj.statics.rollers.distribution(rows[0], 401)
+        along = distribution(rows[0], 401)
         sums = np.trapezoid(
             np.asarray(along.line_load), np.asarray(along.position), axis=-1
         )
