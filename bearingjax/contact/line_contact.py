@@ -21,7 +21,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.profile import AbstractProfile, sagitta
+from ..design.profile import AbstractProfile, between_arcs, sagitta
 from ..numerics.expansion import Expansion, expanded_all
 from ..numerics.implicit import stop
 from ..numerics.pieces import Pieces, of_intervals
@@ -195,8 +195,7 @@ class LineContact(AbstractLineContact):
         ) + self.raceway_profile.drop(s, self.length, self.diameter)
         if self.arc_radii is None:
             return drop
-        roller, raceway = self.arc_radii
-        return drop + (sagitta(s, roller) - sagitta(s, raceway))
+        return drop + between_arcs(s, self.arc_radii)
 
     def approach(
         self, a: Scalar, b: Scalar, xi: Float[Array, "..."]

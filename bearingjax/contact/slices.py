@@ -70,6 +70,7 @@ def slices(
         diameter=contact.diameter,
         roller_profile=contact.roller_profile,
         raceway_profile=contact.raceway_profile,
+        arc_radii=contact.arc_radii,
     )
     rule = ContactMapped()
     made = line.table(rule)

@@ -66,6 +66,11 @@ class AbstractBarrelBearing(AbstractRollerBearing):
             _radius(self, name)
         if self.outer_raceway_radius is not None:
             _radius(self, "outer_raceway_radius")
+        elif not isinstance(self, _AbstractSphere):
+            raise ValueError(
+                f"{type(self).__name__}: `outer_raceway_radius` is None; it must be a"
+                " number in m: only that of a sphere follows from other sizes."
+            )
         numbers = concrete(*self.arc_radii)
         if numbers is None:
             return
@@ -107,7 +112,7 @@ class _AbstractSphere(AbstractBarrelBearing):
 
     @property
     def sphere_radius(self) -> Scalar:
-        """Radius of the sphere about the axis that stands at its gap [m]."""
+        """Radius of a sphere about the axis that leaves `gap` at the rollers [m]."""
         radial = 0.5 * (
             self.pitch_diameter + self.roller_diameter * jnp.cos(self.axis_angle)
         )

@@ -220,6 +220,18 @@ def sagitta(x: Float[Array, "..."], radius: Scalar) -> Float[Array, "..."]:
     return x * x / (radius + jnp.sqrt(radius * radius - x * x))
 
 
+def between_arcs(
+    position: Float[Array, "..."], radii: tuple[Scalar, Scalar]
+) -> Float[Array, "..."]:
+    """Drop of a barrel from a concave raceway that it touches in the middle [m].
+
+    Args:
+        position: s from the middle [m].
+        radii: Radii of the arcs of roller and raceway [m].
+    """
+    return sagitta(position, radii[0]) - sagitta(position, radii[1])
+
+
 @sagitta.defjvp
 def _sagitta_rule(primals, tangents):
     # By hand: differentiated quotients would need a division for each derivative.

@@ -247,7 +247,7 @@ def relative_radii(
         taken square to their generators.
     """
     c, leans = constants, [constants.half_angle] * 3
-    along, drop = position, 0.0
+    drop = jnp.zeros_like(position)
     if c.arc_radii is not None:
         # Angles of the generators there to those of the middle.
         leans = [c.half_angle + jnp.arcsin(position / r) for r in c.arc_radii]

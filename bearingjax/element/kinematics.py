@@ -115,10 +115,10 @@ class Finite(AbstractKinematics):
     """Finite rotations: of ball bearings by any angle, of rollers in the section.
 
     For rollers formula (3) of the paper, normals undeformed, to compare with it; for
-    barrel rollers the distances between arcs that keep their shape. The
-    energy is not convex (tilting an upright roller shortens its projection) and the
-    moments of the rings balance only to first order; a solve may end in a saddle and
-    then says so.
+    barrel rollers the distances to arcs that keep their shape: raceways that are tilted
+    against each other then push a roller out of the wedge between them. The energy is
+    not convex (tilting an upright roller shortens its projection) and the moments of
+    the rings balance only to first order; a solve may end in a saddle and then says so.
 
     Source: Sorokin, Zhang, Ivannikov (2018), eq. (3).
     """

@@ -20,6 +20,8 @@ from tolerances import (
 )
 
 import bearingjax as bj
+from bearingjax.contact.halfspace import RollerContact
+from bearingjax.contact.slices import slices
 from bearingjax.element.constants import contact_constants
 from bearingjax.element.inertia import inertia_force, mass_and_inertia
 from bearingjax.statics.rollers import distribution
@@ -78,7 +80,7 @@ def evaluate(element, q, speed=None):
 
 
 def oracle_of(bearing):
-    """The same row in plain numbers; rib geometry is that of `test_rib_contact`."""
+    """Return the row in plain numbers; `test_rib_contact` checks the rib geometry."""
     c = contact_constants(bearing, LAW, bj.numerics.ContactMapped())
     ribs = ()
     if c.ribs is not None:
@@ -228,7 +230,7 @@ def test_toroidal_bearing_loses_clearance_as_two_arcs():
 
 
 def test_warning_of_travel_along_the_rollers():
-    """Of the axial force linearised kinematics leave out about what it says."""
+    """The warning states about the share of the axial force that is left out."""
     aligning, load = srb_of_the_case(), [0.0, -40000.0, 0.0, 0.0, 0.0, 0.0]
     for travel, warned in ((0.2e-3, False), (0.6e-3, True)):
         linear, exact = (
@@ -285,6 +287,28 @@ def test_sets_are_made_under_vmap():
     # A chord of the roller's arc, as long as the roller.
     drop = 0.0745 * (1.0 - np.cos(np.arcsin(0.0185 / 2 / 0.0745)))
     assert spherical().end_drop() == pytest.approx(drop, rel=1e-12)
+
+
+def test_toroidal_bearing_needs_its_outer_radius():
+    with pytest.raises(ValueError, match="`outer_raceway_radius` is None"):
+        toroidal(outer_raceway_radius=None)
+
+
+def test_slices_of_a_contact_between_arcs():
+    """Their loads add up to the given one, and fall with the drop of the arcs."""
+    radii, half = (0.078085, 0.0805), 0.5 * 0.0185
+    contact = RollerContact(
+        *(0.0185, 0.0215, 0.0215),
+        raceway_radius=0.06,
+        arc_radii=(jnp.asarray(radii[0]), jnp.asarray(radii[1])),
+    )
+    s = jnp.linspace(-half, half, 4001)
+    found = slices(contact, 5e3, 0.0, s, law=LAW)
+    rolls, races = (r - np.sqrt(r**2 - np.asarray(s) ** 2) for r in radii)
+    pressed = np.maximum(float(found.approach) - (rolls - races), 0.0)
+    want = float(LAW.value) * pressed ** (10 / 9)
+    np.testing.assert_allclose(found.line_load, want, atol=1e-9 * want.max())
+    assert np.trapezoid(want, s) == pytest.approx(5e3, rel=1e-6)
 
 
 def test_infinite_radii_are_the_straight_roller():

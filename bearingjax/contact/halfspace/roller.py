@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 
 from ...design.checks import check, concrete, in_range, is_traced, positive
 from ...design.material import Material, contact_modulus
-from ...design.profile import AbstractProfile, Straight, sagitta
+from ...design.profile import AbstractProfile, Straight, between_arcs, sagitta
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 from .ends import FreeEnds
@@ -188,8 +188,7 @@ class RollerContact(eqx.Module):
         ) + self.raceway_profile.drop(y, length, diameter)
         if self.arc_radii is None:
             return drop
-        roller, raceway = self.arc_radii
-        return drop + (sagitta(y, roller) - sagitta(y, raceway))
+        return drop + between_arcs(y, self.arc_radii)
 
     def gap(self, grid: Grid) -> Float[Array, "m n"]:
         """Distance of roller and raceway as they touch, at each cell [m].
