@@ -67,7 +67,7 @@ def _has_shoulder(element, speed):
 
 
 def _is_linearised(element, speed):
-    # About the centre of a sphere linearised rings tilt as exactly as finite ones.
+    # A spherical outer ring tilts exactly; `arc_travel` says what the inner one lacks.
     linearised = isinstance(element.kinematics, Linearised)
     return linearised and not is_self_aligning(element.bearing)
 
