@@ -12,7 +12,6 @@ from jaxtyping import Array, Float
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar
 from .held import of_each
-from .loads import RotorLoads
 from .parts import AbstractSupport
 from .reduction import held_motions
 from .rotor import N_HOUSING, N_STATION, Rotor
@@ -33,7 +32,8 @@ class Condensed(eqx.Module):
         rows: Motion of every support (support, 5, m) [1, 1/m].
         back, there: All motions (motion, m) and what the forces between supports add
             (motion,) [m, rad].
-        supports, speed: As in the rotor.
+        supports: As in the rotor.
+        speed: Of the rotor, or of each support (support,) [rad/s].
     """
 
     stiffness: Float[Array, "m m"]
@@ -42,7 +42,7 @@ class Condensed(eqx.Module):
     back: Float[Array, "motion m"]
     there: Float[Array, " motion"]
     supports: tuple[AbstractSupport, ...]
-    speed: Scalar
+    speed: Scalar | Float[Array, " support"]
 
     def motion(self, y):
         """Return all motions [m, rad]."""
@@ -50,11 +50,12 @@ class Condensed(eqx.Module):
 
     def of_supports(self, y) -> Supported:
         """Force, stiffness and damping of every support."""
-        return of_each(
-            lambda support, moved: support.pushed(moved, self.speed),
-            self.supports,
-            self.rows @ y,
-        )
+        moved = self.rows @ y
+        if jnp.ndim(self.speed):
+            return of_each(
+                lambda s, *at: s.pushed(*at), self.supports, moved, self.speed
+            )
+        return of_each(lambda s, at: s.pushed(at, self.speed), self.supports, moved)
 
     def nothing(self) -> Supported:
         """Return zeros of the shapes of `of_supports`."""
@@ -73,17 +74,17 @@ class Condensed(eqx.Module):
         return jnp.einsum("sim,sij,sjn->mn", rows, stiffness, rows) + self.stiffness
 
 
-def condensed(rotor: Rotor, loads: RotorLoads, speed: Scalar) -> Condensed:
+def condensed(rotor: Rotor, force: Float[Array, " motion"], speed: Scalar) -> Condensed:
     """Return a rotor condensed to its supported stations.
 
     Shifts of supported stations are in m, tilts in m at the end of half the shaft.
 
     Args:
         rotor: With supports.
-        loads: The constant ones count.
+        force: Constant force on all motions (motion,) [N, N m].
         speed: Of the rotor [rad/s].
     """
-    own, force = rotor.unsupported().stiffness, loads.constant(rotor)
+    own = rotor.unsupported().stiffness
     rows, every = rotor.at_supports(), rotor.motions()
     n, shaft = own.shape[0], rotor.shaft
     arm = 0.5 * (shaft.stations[-1] - shaft.stations[0])

@@ -152,9 +152,14 @@ class Shaft(eqx.Module):
     @property
     def mass(self) -> Scalar:
         """Mass [kg]."""
+        return jnp.sum(self.element_masses())
+
+    def element_masses(self) -> Float[Array, " element"]:
+        """Return the mass of each beam element [kg]."""
         _, _, density = self._material_numbers()
         area = 0.25 * jnp.pi * (self.outer_diameter**2 - self.bore**2)
-        return jnp.sum(density * area * jnp.diff(self.stations))
+        whole = density * area * jnp.diff(self.stations)
+        return (whole / as_real(self.divisions))[self._segment]
 
     @property
     def _segment(self) -> np.ndarray:

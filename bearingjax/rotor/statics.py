@@ -20,8 +20,8 @@ from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
 from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
-from .condensed import Condensed, condensed
-from .loads import RotorLoads
+from .condensed import Condensed, Supported, condensed
+from .loads import Motions, RotorLoads
 from .parts import LinearSupport
 from .rotor import N_HOUSING, N_STATION, Rotor
 from .statics_words import unsettled, warn_of
@@ -136,8 +136,13 @@ def checked_loads(owner: str, rotor: Any, loads: Any) -> RotorLoads:
     return loads
 
 
-def _searched(parts: Condensed, length) -> Minimum:
-    """Return equilibrium and state of the supports, without derivatives."""
+def searched(parts: Condensed, length) -> Minimum:
+    """Search the equilibrium, without derivatives; its memory are the supports.
+
+    Args:
+        parts: Condensed rotor, or several.
+        length: Limit of the displacements [m].
+    """
     load = parts.force
     size = jnp.linalg.norm(load)
 
@@ -177,6 +182,22 @@ def _undone(of_y, y, change, parts):
     return -solve(parts.slope(parts.of_supports(y)[1]), change, False)
 
 
+def at_equilibrium(found: Minimum, parts: Condensed) -> tuple[Array, *Supported]:
+    """Return the condensed motions, and force, stiffness, damping of the supports.
+
+    They are differentiable with respect to `parts`, and NaN if the search failed.
+
+    Args:
+        found: From `searched`.
+        parts: Condensed rotor, or several.
+    """
+    solved = found.result == Result.CONVERGED
+    y = attach_by(_balance, found.x, parts, _undone)
+    known = jax.tree.map(lambda leaf: jnp.where(solved, leaf, jnp.nan), found.memory)
+    states = recall(lambda parts, y: parts.of_supports(y), known, (parts, y))
+    return jnp.where(solved, y, jnp.nan), *states
+
+
 @program(quick=True)
 def settled_at(
     rotor, loads, speed
@@ -186,26 +207,22 @@ def settled_at(
     Args:
         rotor, loads, speed: As in `static_equilibrium`, checked.
     """
-    parts = condensed(rotor, loads, speed)
+    parts = condensed(rotor, loads.constant(rotor), speed)
     length = rotor.shaft.stations[-1] - rotor.shaft.stations[0]
-    found = _searched(stop(parts), stop(length))
+    found = searched(stop(parts), stop(length))
     solved = found.result == Result.CONVERGED
 
     def there(*given):
-        return _settled(found, solved, *given)
+        return _settled(found, *given)
 
     settled = unless_failed(there, (rotor, parts, speed), solved)
     return settled, stop(parts).motion(found.x)
 
 
-def _settled(found, solved, rotor, parts, speed) -> StaticEquilibrium:
+def _settled(found, rotor, parts, speed) -> StaticEquilibrium:
     """Return the result of the search with derivatives; NaN if it failed."""
-    y = attach_by(_balance, found.x, parts, _undone)
-    motion = parts.motion(jnp.where(solved, y, jnp.nan))
-    known = jax.tree.map(lambda leaf: jnp.where(solved, leaf, jnp.nan), found.memory)
-    load, stiffness, damping = recall(
-        lambda parts, y: parts.of_supports(y), known, (parts, y)
-    )
+    y, load, stiffness, damping = at_equilibrium(found, parts)
+    motion = parts.motion(y)
     springs = [
         LinearSupport(support.station, k, c, housing=support.housing)
         for support, k, c in zip(rotor.supports, stiffness, damping, strict=True)
@@ -223,12 +240,17 @@ def _settled(found, solved, rotor, parts, speed) -> StaticEquilibrium:
         residual=found.residual,
         steps=found.steps,
         result=found.result,
-        free=_free(stop(parts), stop(parts.slope(stiffness))),
+        free=softest(stop(parts), stop(parts.slope(stiffness))),
     )
 
 
-def _free(parts, slope):
-    """Return the softest motion, if it is free."""
+def softest(parts: Condensed, slope: Array) -> Motions:
+    """Return the softest of all motions if it is free, else zeros.
+
+    Args:
+        parts: Condensed rotor, or several.
+        slope: Its total stiffness (m, m) [N/m].
+    """
     known = jnp.where(jnp.isfinite(slope), slope, 0.0)
     values, vectors = eigh(known)
     moved = parts.back @ vectors[:, 0]

@@ -1,0 +1,17 @@
+"""Systems of shafts: gears, belts, bearings in place, housing, load cases, heat."""
+
+from .equilibrium import ShaftState as ShaftState
+from .equilibrium import SystemSolution as SystemSolution
+from .equilibrium import bearing_solutions as bearing_solutions
+from .equilibrium import solve_system as solve_system
+from .line import ShaftLine as ShaftLine
+from .parts import Coupling as Coupling
+from .parts import Drive as Drive
+from .parts import Gear as Gear
+from .parts import Pulley as Pulley
+from .parts import Seat as Seat
+from .parts import ShaftLoad as ShaftLoad
+from .power import PowerFlow as PowerFlow
+from .power import power_flow as power_flow
+from .system import HousingStiffness as HousingStiffness
+from .system import ShaftSystem as ShaftSystem

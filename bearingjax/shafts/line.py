@@ -1,0 +1,197 @@
+"""A shaft of a system: its segments, its place in space, and the stations on it.
+
+Bearings and wheels sit at any position along the shaft. The stations of its beam are
+the ends of the segments and these positions, in an order that is fixed when the system
+is built: positions may then be changed and differentiated as long as none passes
+another station.
+"""
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design.checks import check, is_traced
+from ..design.material import Material
+from ..numerics.types import as_real
+from ..numerics.units import unit
+from ..rotor import Shaft
+
+_SAME = 1e-9
+"""Distance over the length of the shaft below which two positions are one station."""
+_FINE = 24
+"""Beam elements over the length of a shaft, about, for smooth lines."""
+_ALONG = 0.9
+"""Component of the axis along global x from which y points out local x [1]."""
+
+
+class Plan(NamedTuple):
+    """Order of the stations of a shaft; static.
+
+    Attributes:
+        stations: Of each station, the name of the part there, or the number of the end
+            of a segment.
+        segments: Number of the segment between each station and the next.
+        divisions: Beam elements there.
+        place: Station of each part, by name.
+    """
+
+    stations: tuple[str | int, ...]
+    segments: tuple[int, ...]
+    divisions: tuple[int, ...]
+    place: tuple[tuple[str, int], ...]
+
+
+class ShaftLine(eqx.Module):
+    """A shaft of cylindrical segments, and its place in space.
+
+    Positions along the shaft count from the start of its first segment. Its local axes
+    are z along `axis`, x the global x made perpendicular to it (or the global y, where
+    the axis is along x), and y completing a right-handed system. Angles around the
+    shaft count from local x towards local y; a speed is positive in that sense.
+
+    Attributes:
+        name: Name, unique in the system.
+        length, outer_diameter, bore: Of each segment (segment,) [m].
+        material: Of all segments, or a tuple with one for each.
+        axis: Direction of the shaft in global axes (3,) [1].
+        origin: Start of the first segment in global axes (3,) [m]; `None`: not known,
+            meshes are then placed by their angles.
+        rigid: Whether it cannot bend or stretch.
+
+    Traced: all numbers. Static: name, rigid.
+    """
+
+    name: str = eqx.field(static=True)
+    length: Float[Array, " segment"] = eqx.field(converter=as_real, metadata=unit("m"))
+    outer_diameter: Float[Array, " segment"] = eqx.field(
+        converter=as_real, metadata=unit("m")
+    )
+    bore: Float[Array, " segment"] = eqx.field(
+        converter=as_real, metadata=unit("m"), default=0.0
+    )
+    material: Material | tuple[Material, ...] = eqx.field(default_factory=Material)
+    axis: Float[Array, "3"] = eqx.field(
+        converter=as_real, metadata=unit(3 * ("1",)), default=(0.0, 0.0, 1.0)
+    )
+    origin: Float[Array, "3"] | None = eqx.field(
+        converter=as_real, metadata=unit(3 * ("m",)), default=None
+    )
+    rigid: bool = eqx.field(static=True, default=False)
+
+    def __check_init__(self):
+        if jnp.ndim(self.length) != 1:
+            raise ValueError(
+                f"ShaftLine: `length` has shape {jnp.shape(self.length)}; it must be"
+                " (segment,), the length of each segment in m."
+            )
+        for name, shape in (("axis", (3,)), ("origin", (3,))):
+            value = getattr(self, name)
+            if value is not None and jnp.shape(value) != shape:
+                raise ValueError(
+                    f"ShaftLine: `{name}` has shape {jnp.shape(value)}; it must be"
+                    f" {shape}."
+                )
+        if not is_traced(self.axis):
+            long = np.linalg.norm(np.asarray(self.axis)) > 0
+            check(self, "axis", long, "a direction, not three zeros")
+        if not is_traced(self.length):
+            check(self, "length", np.asarray(self.length) > 0, "above 0 m")
+
+    @property
+    def frame(self) -> Float[Array, "3 3"]:
+        """Local x, y and z in global axes (local, global) [1]."""
+        z = self.axis / jnp.sqrt(self.axis @ self.axis)
+        across = jnp.where(jnp.abs(z[0]) > _ALONG, 1, 0)
+        out = jnp.eye(3, dtype=z.dtype)[across]
+        x = out - (out @ z) * z
+        x = x / jnp.sqrt(x @ x)
+        return jnp.stack([x, jnp.cross(z, x), z])
+
+    def around(self, angle: Any) -> Float[Array, "3"]:
+        """Return the radial direction at an angle around the shaft, in global axes.
+
+        Args:
+            angle: From local x towards local y [rad].
+        """
+        x, y, _ = self.frame
+        return jnp.cos(angle) * x + jnp.sin(angle) * y
+
+    def plan(self, places: dict[str, Any]) -> Plan:
+        """Return the order of its stations.
+
+        Args:
+            places: Positions of the parts on it by name, concrete [m].
+
+        Raises:
+            ValueError: If a part is beyond the ends of the shaft.
+        """
+        ends = np.concatenate([[0.0], np.cumsum(np.asarray(self.length))])
+        whole = ends[-1]
+        slack = _SAME * whole
+        knots: list[tuple[float, str | int]] = [(end, k) for k, end in enumerate(ends)]
+        for name, given in places.items():
+            position = float(given)
+            if not -slack <= position <= whole + slack:
+                raise ValueError(
+                    f"ShaftSystem: {name} is at {1e3 * position:.6g} mm, beyond the"
+                    f" ends of shaft {self.name}, 0 to {1e3 * whole:.6g} mm."
+                )
+            knots.append((position, name))
+        # Of a step and a part in one place the part moves the station.
+        knots.sort(key=lambda knot: (knot[0], isinstance(knot[1], int)))
+        groups: list[list[tuple[float, str | int]]] = []
+        for knot in knots:
+            if groups and knot[0] - groups[-1][0][0] <= slack:
+                groups[-1].append(knot)
+            else:
+                groups.append([knot])
+        heads = [
+            next((k for k in group if isinstance(k[1], str)), group[0])
+            for group in groups
+        ]
+        z = np.array([head[0] for head in heads])
+        middles = 0.5 * (z[1:] + z[:-1])
+        segments = np.searchsorted(ends, middles) - 1
+        divisions = np.maximum(1, np.round(_FINE * np.diff(z) / whole)).astype(int)
+        place = tuple(
+            (name, station)
+            for station, group in enumerate(groups)
+            for _, name in group
+            if isinstance(name, str)
+        )
+        if self.rigid:
+            divisions = np.ones_like(divisions)
+        return Plan(
+            tuple(head[1] for head in heads),
+            tuple(map(int, segments)),
+            tuple(map(int, divisions)),
+            place,
+        )
+
+    def shaft(self, plan: Plan, places: dict[str, Any]) -> Shaft:
+        """Return the beam of the shaft; NaN if the stations are no longer in order.
+
+        Args:
+            plan: From `plan`.
+            places: Positions of the parts on it by name [m].
+        """
+        ends = jnp.concatenate(
+            [jnp.zeros(1, self.length.dtype), jnp.cumsum(self.length)]
+        )
+        z = jnp.stack(
+            [places[s] if isinstance(s, str) else ends[s] for s in plan.stations]
+        )
+        z = jnp.where(jnp.all(jnp.diff(z) > 0), z, jnp.nan) if is_traced(z) else z
+        of = np.array(plan.segments)
+        n = self.length.shape[0]
+        outer, bore = (
+            jnp.broadcast_to(value, (n,))[of]
+            for value in (self.outer_diameter, self.bore)
+        )
+        material = self.material
+        if isinstance(material, tuple):
+            material = tuple(material[k] for k in plan.segments)
+        return Shaft(z, outer, bore, material, plan.divisions)

@@ -1,0 +1,382 @@
+"""Parts on the shafts of a system: gears, pulleys, couplings, loads, bearings.
+
+The force of a wheel follows from the torque T by which its mesh or belt acts on its
+shaft, positive about the local z of the shaft. A gear is touched at the radius r of its
+pitch circle, in the radial direction e_r; e_t is the direction in which a positive
+rotation moves this point, g the line of the tooth of a spur gear (along the cone of a
+bevel gear) towards local +z, and n the outward normal of the pitch surface:
+
+    F = T/r (e_t - tan β g) - |T|/r tan α / cos β n
+
+with β positive for a right-hand helix (a tooth that advances along +z turns from x
+towards y).
+
+Source: the normal force of involute gears, resolved; ISO 21771 for the geometry.
+"""
+
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design.checks import check, in_range, instance, is_traced, number, positive
+from ..design.checks import count as whole
+from ..numerics.types import Scalar, as_count, as_real
+from ..numerics.units import unit
+from ..statics.installed import Installed
+
+HANDS = {"right": 1.0, "left": -1.0, "none": 0.0}
+"""Sense of the helix, by its name."""
+APEXES = {"+z": 1.0, "-z": -1.0}
+"""Side of a bevel gear on which the apex of its cone lies, along the shaft."""
+
+
+class AbstractPlaced(eqx.Module):
+    """A part on a shaft.
+
+    Attributes:
+        name: Name, unique in the system.
+        shaft: Name of the shaft.
+        position: Along the shaft, from the start of its first segment [m].
+    """
+
+    name: eqx.AbstractVar[str]
+    shaft: eqx.AbstractVar[str]
+    position: eqx.AbstractVar[Scalar]
+
+
+def _one_source(owner) -> None:
+    """Raise unless at most one of torque and power is given, both finite."""
+    for name in ("torque", "power"):
+        if getattr(owner, name) is not None:
+            number(owner, name)
+    if owner.torque is not None and owner.power is not None:
+        raise ValueError(
+            f"{type(owner).__name__}: `torque` and `power` are given; give one of them."
+        )
+
+
+def torque_of(part: Any, speed: Any) -> Any:
+    """Return the given torque on the shaft of a part [N m]; `None` if none is given.
+
+    Args:
+        part: Part with `torque` and `power`.
+        speed: Of its shaft [rad/s].
+    """
+    return part.torque if part.power is None else part.power / speed
+
+
+class AbstractWheel(AbstractPlaced):
+    """A wheel that drives, or is driven, at its circumference.
+
+    Attributes:
+        mates_with: Name of the wheel that it meshes with, or whose belt it shares;
+            `None`: none of the system.
+        torque: By which a wheel outside the system acts on the shaft, about its local z
+            [N m]. Of one wheel without a mate it follows from the balance of torques.
+        power: The same as power into the shaft, negative out of it [W].
+        efficiency: Power out over power in, with its mate [1].
+    """
+
+    mates_with: eqx.AbstractVar[str | None]
+    torque: eqx.AbstractVar[Scalar | None]
+    power: eqx.AbstractVar[Scalar | None]
+    efficiency: eqx.AbstractVar[Scalar]
+
+
+class Gear(AbstractWheel):
+    """An external involute gear: spur, helical, or bevel.
+
+    Attributes:
+        name, shaft, position: As in `AbstractPlaced`; of a bevel gear the middle of the
+            face.
+        teeth: Number of teeth.
+        normal_module: Module normal to the teeth; of a bevel gear in the middle of the
+            face [m].
+        helix_angle: At the pitch circle; of a bevel gear its spiral angle [rad].
+        hand: "right" or "left"; "none" of straight teeth.
+        pressure_angle: Normal to the teeth [rad].
+        mesh_angle: Angle of the mesh around the shaft, from local x towards local
+            y [rad]; `None`: from the places of both shafts.
+        pitch_angle: Half the angle of the pitch cone of a bevel gear [rad]; `None`:
+            cylindrical.
+        apex: Side of its apex, "+z" or "-z" of the shaft; `None` of a cylindrical gear.
+        mates_with, torque, power, efficiency: As in `AbstractWheel`.
+
+    Traced: all numbers but `teeth`.
+    """
+
+    name: str = eqx.field(static=True)
+    shaft: str = eqx.field(static=True)
+    position: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    teeth: int = eqx.field(static=True, converter=as_count)
+    normal_module: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    helix_angle: Scalar = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=0.0
+    )
+    hand: str = eqx.field(static=True, default="none")
+    pressure_angle: Scalar = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=np.deg2rad(20.0)
+    )
+    mesh_angle: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None
+    )
+    pitch_angle: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None
+    )
+    apex: str | None = eqx.field(static=True, default=None)
+    mates_with: str | None = eqx.field(static=True, default=None)
+    torque: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("N m"), default=None
+    )
+    power: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("W"), default=None
+    )
+    efficiency: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1.0)
+
+    def __check_init__(self):
+        whole(self, "teeth", self.teeth)
+        positive(self, "normal_module")
+        in_range(self, "helix_angle", 0.0, np.deg2rad(60.0), include_low=True)
+        in_range(self, "pressure_angle", np.deg2rad(5.0), np.deg2rad(45.0))
+        in_range(self, "efficiency", 0.0, 1.0 + 1e-12)
+        if self.hand not in HANDS:
+            raise ValueError(
+                f"Gear: `hand` of {self.name} is {self.hand!r}; it must be one of"
+                f" {', '.join(map(repr, HANDS))}."
+            )
+        straight = not is_traced(self.helix_angle) and float(self.helix_angle) == 0.0
+        if not straight and self.hand == "none":
+            raise ValueError(
+                f"Gear: `hand` of {self.name} is missing; a helix is 'right' or 'left'."
+            )
+        if (self.pitch_angle is None) != (self.apex is None):
+            raise ValueError(
+                f"Gear: `pitch_angle` and `apex` of {self.name} are of a bevel gear;"
+                " give both or neither."
+            )
+        if self.pitch_angle is not None:
+            in_range(self, "pitch_angle", 0.0, 0.5 * np.pi)
+            if self.apex not in APEXES:
+                raise ValueError(
+                    f"Gear: `apex` of {self.name} is {self.apex!r}; it must be '+z' or"
+                    " '-z', the side of the shaft on which the apex lies."
+                )
+        _one_source(self)
+
+    @property
+    def radius(self) -> Scalar:
+        """Radius of the pitch circle; of a bevel gear in the middle of the face [m]."""
+        return 0.5 * self.normal_module * self.teeth / jnp.cos(self.helix_angle)
+
+    @property
+    def base_radius(self) -> Scalar:
+        """Radius of the base circle of a cylindrical gear [m]."""
+        tangent = jnp.tan(self.pressure_angle) / jnp.cos(self.helix_angle)
+        return self.radius / jnp.sqrt(1.0 + tangent**2)
+
+    def push(
+        self, axis: Array, radial: Array, radius: Scalar, sign: Array
+    ) -> tuple[Array, Array]:
+        """Return force over T/r on the gear at its mesh, and the line of its tooth.
+
+        Args:
+            axis: Local z of the shaft in global axes (3,) [1].
+            radial: Direction from the shaft to the mesh (3,) [1].
+            radius: Working pitch radius [m].
+            sign: 1, or -1 of a negative torque [1].
+        """
+        along = jnp.cross(axis, radial)
+        line, normal = axis, radial
+        slope = HANDS[self.hand] * jnp.tan(self.helix_angle) * radius / self.radius
+        if self.pitch_angle is None:
+            cosine = self.base_radius / radius
+            push = jnp.sqrt(1.0 - cosine**2) / cosine
+        else:
+            side = APEXES[self.apex or "+z"]
+            cone = jnp.cos(self.pitch_angle), side * jnp.sin(self.pitch_angle)
+            line = cone[0] * axis - cone[1] * radial
+            normal = cone[0] * radial + cone[1] * axis
+            push = jnp.tan(self.pressure_angle) / jnp.cos(self.helix_angle)
+        return along - slope * line - sign * push * normal, line
+
+
+class Pulley(AbstractWheel):
+    """A belt pulley, or a chain wheel.
+
+    Attributes:
+        name, shaft, position: As in `AbstractPlaced`.
+        diameter: Effective diameter [m].
+        force_ratio: Force of the belt on the shaft over the tangential force, such as
+            1.0 to 1.3 of chains and toothed belts, 1.5 to 2.5 of V-belts, 2 to 5 of
+            flat belts [1].
+        direction: Direction of the force on the shaft, as angle around it [rad];
+            `None`: towards the shaft of the mate.
+        mates_with, torque, power, efficiency: As in `AbstractWheel`.
+
+    Traced: all numbers.
+    """
+
+    name: str = eqx.field(static=True)
+    shaft: str = eqx.field(static=True)
+    position: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    force_ratio: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    direction: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("rad"), default=None
+    )
+    mates_with: str | None = eqx.field(static=True, default=None)
+    torque: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("N m"), default=None
+    )
+    power: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("W"), default=None
+    )
+    efficiency: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1.0)
+
+    def __check_init__(self):
+        positive(self, "diameter")
+        positive(self, "force_ratio")
+        in_range(self, "efficiency", 0.0, 1.0 + 1e-12)
+        _one_source(self)
+
+    @property
+    def radius(self) -> Scalar:
+        """Half the diameter [m]."""
+        return 0.5 * self.diameter
+
+
+class Coupling(eqx.Module):
+    """A coupling: torque enters or leaves a shaft without a force.
+
+    Attributes:
+        name: Name, unique in the system.
+        shaft: Name of the shaft.
+        torque: On the shaft about its local z [N m]; `None`: from the balance.
+        power: The same as power into the shaft, negative out of it [W].
+    """
+
+    name: str = eqx.field(static=True)
+    shaft: str = eqx.field(static=True)
+    torque: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("N m"), default=None
+    )
+    power: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("W"), default=None
+    )
+
+    def __check_init__(self):
+        _one_source(self)
+
+
+class Drive(eqx.Module):
+    """The place at which the system is driven, its speed and its torque.
+
+    Attributes:
+        into: Name of a shaft, driven through a coupling, or of a wheel without a mate.
+        speed: Of that shaft [rad/s].
+        torque: On that shaft about its local z [N m].
+        power: In place of the torque, into the shaft [W].
+    """
+
+    into: str = eqx.field(static=True)
+    speed: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"), default=0.0)
+    torque: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("N m"), default=None
+    )
+    power: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("W"), default=None
+    )
+
+    def __check_init__(self):
+        number(self, "speed")
+        _one_source(self)
+        turns = is_traced(self.speed) or float(self.speed) != 0.0
+        if self.power is not None and not turns:
+            raise ValueError(
+                "Drive: `power` needs a `speed`, from which its torque follows; give"
+                " the `torque` of a machine at rest."
+            )
+
+
+class ShaftLoad(AbstractPlaced):
+    """A force and a moment on a shaft, in global axes.
+
+    Attributes:
+        name, shaft, position: As in `AbstractPlaced`.
+        force: (3,) [N].
+        moment: (3,) [N m]; its part about the shaft counts in the balance of torques.
+    """
+
+    name: str = eqx.field(static=True)
+    shaft: str = eqx.field(static=True)
+    position: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    force: Float[Array, "3"] = eqx.field(
+        converter=as_real, metadata=unit(3 * ("N",)), default=(0.0, 0.0, 0.0)
+    )
+    moment: Float[Array, "3"] = eqx.field(
+        converter=as_real, metadata=unit(3 * ("N m",)), default=(0.0, 0.0, 0.0)
+    )
+
+    def __check_init__(self):
+        for name in ("force", "moment"):
+            value = getattr(self, name)
+            if jnp.shape(value) != (3,):
+                raise ValueError(
+                    f"ShaftLoad: `{name}` of {self.name} has shape {jnp.shape(value)};"
+                    " it must be (3,), in global axes."
+                )
+            if not is_traced(value):
+                check(self, name, np.isfinite(value).all(), "finite")
+
+
+class Seat(AbstractPlaced):
+    """A bearing in its place: on a shaft, in the housing.
+
+    Attributes:
+        name, shaft, position: As in `AbstractPlaced`; the position is that of the
+            origin of the bearing.
+        installed: The bearing with its preload, seats and temperatures.
+        preload: Axial force with which it is adjusted in the cold, before the shaft or
+            the housing give way [N]; `None`: none.
+        axial_offset: Axial displacement of its inner ring against the outer one as
+            mounted in the cold, along the z of the bearing: negative values are play
+            before an adjusted bearing touches [m].
+        turned: Whether it is mounted the other way round, its +z along the shaft's -z,
+            by a half turn about local x.
+        floating: Whether its outer ring slides along the housing, so that it carries no
+            axial force.
+        stiffness: Of springs in place of the bearing, in local ux uy uz gx gy (5,)
+            [N/m, N m]; `None`: the bearing.
+
+    Traced: all numbers. Static: names, floating, turned.
+    """
+
+    name: str = eqx.field(static=True)
+    shaft: str = eqx.field(static=True)
+    position: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    installed: Installed | None = None
+    preload: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("N"), default=None
+    )
+    axial_offset: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
+    turned: bool = eqx.field(static=True, default=False)
+    floating: bool = eqx.field(static=True, default=False)
+    stiffness: Float[Array, "5"] | None = eqx.field(
+        converter=as_real,
+        metadata=unit(("N/m", "N/m", "N/m", "N m", "N m")),
+        default=None,
+    )
+
+    def __check_init__(self):
+        instance(self, "installed", Installed, None)
+        if (self.installed is None) == (self.stiffness is None):
+            raise ValueError(
+                f"Seat: {self.name} needs a bearing (`installed`) or springs"
+                " (`stiffness`), not both."
+            )
+        if self.preload is not None:
+            positive(self, "preload")
+        number(self, "axial_offset")

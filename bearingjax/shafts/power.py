@@ -1,0 +1,355 @@
+"""Speeds and torques of a system of shafts: ratios of wheels, balance of torques."""
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..numerics.lapack import solve_any
+from ..numerics.types import Scalar, as_real
+from .line import ShaftLine
+from .parts import APEXES, Gear, Pulley, torque_of
+from .system import ShaftSystem
+
+
+class Contact(NamedTuple):
+    """Where a wheel is touched.
+
+    Attributes:
+        wheel: The wheel.
+        mate: Its mate in the system; `None`: outside of it.
+        radial: Direction from the shaft to the mesh, of a pulley of the pull (3,) [1].
+        radius: Working pitch radius [m].
+    """
+
+    wheel: Gear | Pulley
+    mate: Gear | Pulley | None
+    radial: Float[Array, "3"]
+    radius: Scalar
+
+
+class Mesh(eqx.Module):
+    """A mesh, or an end of a belt, with its force on the wheel.
+
+    Attributes:
+        wheel: Name of the wheel.
+        mate: Name of its mate; `None`: outside of the system.
+        torque: On the shaft of the wheel about its local z [N m].
+        force: On the wheel in global axes (3,) [N].
+        place: Point of the force, from the shaft at the wheel (3,) [m].
+        line: Line of the tooth in global axes (3,) [1]; zero of a belt.
+    """
+
+    wheel: str = eqx.field(static=True)
+    mate: str | None = eqx.field(static=True)
+    torque: Scalar
+    force: Float[Array, "3"]
+    place: Float[Array, "3"]
+    line: Float[Array, "3"]
+
+
+class PowerFlow(eqx.Module):
+    """Speeds and torques.
+
+    Attributes:
+        speed: Speed of each shaft (shaft,) [rad/s].
+        meshes: Each wheel with each of its mates.
+        coupling: Torque of each coupling on its shaft (coupling,) [N m].
+        drive: Torque of the drive on its shaft [N m].
+        output: Torque that leaves by a shaft end that nothing names [N m]; `None` if
+            there is none.
+        output_shaft: Name of that shaft.
+        loss: Power lost in meshes and belts [W].
+    """
+
+    speed: Float[Array, " shaft"]
+    meshes: tuple[Mesh, ...]
+    coupling: Float[Array, " coupling"]
+    drive: Scalar
+    output: Scalar | None
+    output_shaft: str | None = eqx.field(static=True)
+    loss: Scalar
+
+
+def contacts(system: ShaftSystem) -> list[tuple[Contact, Contact | None]]:
+    """Return where wheels touch: pairs of mates, and wheels with a mate outside.
+
+    Args:
+        system: The system.
+    """
+    found: list[tuple[Contact, Contact | None]] = []
+    taken = {wheel.mates_with for wheel in system.wheels}
+    for wheel in system.wheels:
+        shaft = system.shaft(wheel.shaft)
+        if wheel.mates_with is None:
+            if wheel.name not in taken:
+                found.append((_alone(wheel, shaft), None))
+            continue
+        mate = system.wheel(wheel.mates_with)
+        pair = _between(wheel, mate, shaft, system.shaft(mate.shaft))
+        found.append(pair)
+    return found
+
+
+def _alone(wheel: Any, shaft: ShaftLine) -> Contact:
+    name = "mesh_angle" if isinstance(wheel, Gear) else "direction"
+    angle = getattr(wheel, name)
+    if angle is None:
+        raise ValueError(
+            f"ShaftSystem: `{name}` of {wheel.name} is missing; it has no mate in the"
+            " system from which it follows."
+        )
+    return Contact(wheel, None, shaft.around(angle), wheel.radius)
+
+
+def _between(one, other, shaft, far) -> tuple[Contact, Contact]:
+    """Return both contacts of a pair."""
+    z, known = shaft.frame[2], shaft.origin is not None and far.origin is not None
+    if isinstance(one, Gear) and one.pitch_angle is not None:
+        outward = [
+            -APEXES[g.apex] * s.frame[2] for g, s in ((one, shaft), (other, far))
+        ]
+        radial = [_unit(_across(b, a)) for a, b in (outward, outward[::-1])]
+        radii = one.radius, other.radius
+    elif known:
+        apart = _across(far.origin - shaft.origin, z)
+        distance = jnp.sqrt(apart @ apart)
+        radial = [apart / distance, -apart / distance]
+        share = distance / (one.radius + other.radius)
+        share = share if isinstance(one, Gear) else jnp.ones_like(share)
+        radii = one.radius * share, other.radius * share
+    else:
+        name = "mesh_angle" if isinstance(one, Gear) else "direction"
+        angles = [getattr(wheel, name) for wheel in (one, other)]
+        if angles == [None, None]:
+            raise ValueError(
+                f"ShaftSystem: `{name}` of {one.name} and {other.name} are missing, and"
+                " so is the origin of a shaft; give one or the other."
+            )
+        ways = [
+            None if angle is None else s.around(angle)
+            for angle, s in zip(angles, (shaft, far), strict=True)
+        ]
+        first = ways[0] if ways[0] is not None else -ways[1]
+        radial, radii = [first, -first], (one.radius, other.radius)
+    given = [getattr(wheel, "direction", None) for wheel in (one, other)]
+    radial = [
+        s.around(angle) if angle is not None else way
+        for s, angle, way in zip((shaft, far), given, radial, strict=True)
+    ]
+    return (
+        Contact(one, other, radial[0], radii[0]),
+        Contact(other, one, radial[1], radii[1]),
+    )
+
+
+def _across(vector, axis):
+    return vector - (vector @ axis) * axis
+
+
+def _unit(vector):
+    return vector / jnp.sqrt(vector @ vector)
+
+
+def power_flow(system: ShaftSystem) -> PowerFlow:
+    """Return speeds and torques of a system, and the forces of its wheels.
+
+    Args:
+        system: The system.
+
+    Raises:
+        ValueError: If the torques cannot balance: several outputs are unknown, or none
+            is where the given torques do not add up; or a shaft is not driven.
+    """
+    pairs = contacts(system)
+    names = [shaft.name for shaft in system.shafts]
+    drive = system.drive
+    root = _root(system, names)
+    ratio, away, order = _ratios(system, pairs, names, root)
+    zero = as_real(0.0)
+    speed = [r * (zero if drive is None else drive.speed) for r in ratio]
+    # Unknown torques: of each pair that on its first wheel, and one that closes.
+    rows = [[zero] * (len(pairs) + 1) for _ in names]
+    known = [zero for _ in names]
+    torques: list[Any] = []
+    free: list[tuple[str, int]] = []
+
+    def given(part, own):
+        shaft = names.index(part.shaft)
+        if own is None:
+            free.append((part.name, shaft))
+        else:
+            known[shaft] = known[shaft] + own
+
+    for k, (one, other) in enumerate(pairs):
+        shaft = names.index(one.wheel.shaft)
+        if other is not None:
+            mate = names.index(other.wheel.shaft)
+            eta = one.wheel.efficiency * other.wheel.efficiency
+            # Power comes from the side of the drive.
+            share = 1.0 / eta if away[shaft] > away[mate] else eta
+            rows[shaft][k] = rows[shaft][k] + 1.0
+            rows[mate][k] = rows[mate][k] - ratio[shaft] / ratio[mate] * share
+            torques.append(None)
+        elif drive is not None and drive.into == one.wheel.name:
+            torques.append(torque_of(drive, speed[shaft]))
+            given(one.wheel, torques[-1])
+        else:
+            torques.append(torque_of(one.wheel, speed[shaft]))
+            given(one.wheel, torques[-1])
+    for coupling in system.couplings:
+        given(coupling, torque_of(coupling, speed[names.index(coupling.shaft)]))
+    own = None
+    if drive is not None:
+        own = torque_of(drive, speed[root])
+        if drive.into in names:
+            if own is None:
+                free.append(("drive", root))
+            else:
+                known[root] = known[root] + own
+    for load in system.loads:
+        shaft = names.index(load.shaft)
+        known[shaft] = known[shaft] + load.moment @ system.shafts[shaft].frame[2]
+    output = _closing(system, names, free, away, order)
+    rows[output[1]][-1] = rows[output[1]][-1] + 1.0
+    coupled = [k for k, pair in enumerate(pairs) if pair[1] is not None]
+    matrix = jnp.stack([jnp.stack([row[k] for k in (*coupled, -1)]) for row in rows])
+    found = solve_any(matrix, -jnp.stack(known))
+    closing = found[-1]
+    for k, value in zip(coupled, found[:-1], strict=True):
+        torques[k] = value
+    torques = [closing if t is None else t for t in torques]
+    meshes: list[Mesh] = []
+    loss = zero
+    for (one, other), torque in zip(pairs, torques, strict=True):
+        meshes.append(_mesh(system, one, torque))
+        if other is not None:
+            a, b = names.index(one.wheel.shaft), names.index(other.wheel.shaft)
+            eta = one.wheel.efficiency * other.wheel.efficiency
+            share = 1.0 / eta if away[a] > away[b] else eta
+            back = -torque * ratio[a] / ratio[b] * share
+            meshes.append(_mesh(system, other, back))
+            loss = loss - torque * speed[a] - back * speed[b]
+    every = [torque_of(c, speed[names.index(c.shaft)]) for c in system.couplings]
+    every = [closing if t is None else t for t in every]
+    named = output[0] is not None
+    return PowerFlow(
+        speed=jnp.stack(speed),
+        meshes=tuple(meshes),
+        coupling=jnp.stack(every) if every else jnp.zeros(0, closing.dtype),
+        drive=zero if drive is None else closing if own is None else own,
+        output=None if named else closing,
+        output_shaft=None if named else names[output[1]],
+        loss=loss,
+    )
+
+
+def _root(system: ShaftSystem, names: list[str]) -> int:
+    """Return the number of the driven shaft; the first without a drive."""
+    drive = system.drive
+    if drive is None:
+        return 0
+    if drive.into in names:
+        return names.index(drive.into)
+    wheel = system.wheel(drive.into)
+    mated = wheel.mates_with or any(w.mates_with == wheel.name for w in system.wheels)
+    if mated or wheel.torque is not None or wheel.power is not None:
+        raise ValueError(
+            f"ShaftSystem: `drive.into` is {wheel.name}, which has a mate or a torque"
+            " already; name its shaft, or a wheel that is driven from outside."
+        )
+    return names.index(wheel.shaft)
+
+
+def _ratios(system, pairs, names, root):
+    """Return speed of each shaft over that of the root, its distance from the root in
+    meshes, and the numbers of the shafts in the order of the flow."""
+    ratio: dict[int, Any] = {root: as_real(1.0)}
+    away, order = {root: 0}, [root]
+    links = [
+        (names.index(one.wheel.shaft), names.index(other.wheel.shaft), one, other)
+        for one, other in pairs
+        if other is not None
+    ]
+    used: set[int] = set()
+    for here in order:
+        for k, (a, b, one, other) in enumerate(links):
+            if k in used or here not in (a, b):
+                continue
+            used.add(k)
+            there, near, far = (b, one, other) if here == a else (a, other, one)
+            if there in ratio:
+                raise ValueError(
+                    f"ShaftSystem: {one.wheel.name} and {other.wheel.name} close a loop"
+                    " of meshes; how the torque divides between two ways depends on"
+                    " their stiffness and is not modelled."
+                )
+            ratio[there] = ratio[here] * _ratio(system, near, far)
+            away[there] = away[here] + 1
+            order.append(there)
+    for k, name in enumerate(names):
+        if k not in ratio:
+            raise ValueError(
+                f"ShaftSystem: no mesh or belt connects shaft {name} with shaft"
+                f" {names[root]}."
+            )
+    return [ratio[k] for k in range(len(names))], away, order
+
+
+def _ratio(system, near: Contact, far: Contact):
+    """Return the speed of the shaft of `far` over that of `near`."""
+    axes = [system.shaft(c.wheel.shaft).frame[2] for c in (near, far)]
+    if isinstance(near.wheel, Pulley):
+        return near.wheel.radius / far.wheel.radius * jnp.sign(axes[0] @ axes[1])
+    moves = [jnp.cross(z, c.radial) for z, c in zip(axes, (near, far), strict=True)]
+    assert isinstance(near.wheel, Gear) and isinstance(far.wheel, Gear)
+    return near.wheel.teeth / far.wheel.teeth * jnp.sign(moves[0] @ moves[1])
+
+
+def _closing(system, names, free, away, order) -> tuple[str | None, int]:
+    """Return name and shaft of the part whose torque follows from the balance."""
+    if len(free) > 1:
+        raise ValueError(
+            "ShaftSystem: the torques of"
+            f" {', '.join(name for name, _ in free)} are not given; one of them"
+            " can follow from the balance."
+        )
+    if free:
+        return free[0]
+    ends = [k for k in order if k != order[0]]
+    last = [k for k in ends if not _feeds(system, names, k, away)]
+    if not ends:
+        return None, order[0]
+    if len(last) > 1:
+        outputs = ", ".join(names[k] for k in last)
+        raise ValueError(
+            f"ShaftSystem: power may leave by the shafts {outputs}; give the torque or"
+            " power of all but one, by a coupling or wheel there."
+        )
+    return None, last[0]
+
+
+def _feeds(system, names, shaft, away) -> bool:
+    """Whether a shaft drives another, farther from the drive."""
+    for wheel in system.wheels:
+        if wheel.mates_with is not None:
+            pair = wheel, system.wheel(wheel.mates_with)
+            a, b = (names.index(one.shaft) for one in pair)
+            if shaft in (a, b) and away[a if shaft == b else b] > away[shaft]:
+                return True
+    return False
+
+
+def _mesh(system: ShaftSystem, contact: Contact, torque) -> Mesh:
+    wheel = contact.wheel
+    axis = system.shaft(wheel.shaft).frame[2]
+    mate = None if contact.mate is None else contact.mate.name
+    if isinstance(wheel, Pulley):
+        pull = wheel.force_ratio * jnp.abs(torque) / contact.radius * contact.radial
+        nothing = jnp.zeros_like(pull)
+        return Mesh(wheel.name, mate, torque, pull, nothing, nothing)
+    sign = jnp.where(torque < 0, -1.0, 1.0)
+    push, line = wheel.push(axis, contact.radial, contact.radius, sign)
+    force = torque / contact.radius * push
+    return Mesh(wheel.name, mate, torque, force, contact.radius * contact.radial, line)

@@ -1,0 +1,330 @@
+"""A system of shafts: wheels that couple them, bearings that hold them, a housing."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..design.checks import check, concrete, is_traced
+from ..numerics.types import as_real
+from ..numerics.units import unit
+from ..rotor import Shaft
+from .line import Plan, ShaftLine
+from .parts import (
+    AbstractPlaced,
+    AbstractWheel,
+    Coupling,
+    Drive,
+    Gear,
+    Pulley,
+    Seat,
+    ShaftLoad,
+)
+
+_APART = 0.06
+"""Largest distance between centre distance and that of the pitch circles, over it [1]:
+profile shifts do not take gears farther."""
+_ACROSS = 1e-6
+"""Sine of the angle between two axes from which they are not parallel [1]."""
+
+
+def _all(parts: Any) -> tuple:
+    """Converter: one part, or several, as a tuple."""
+    return tuple(parts) if isinstance(parts, Iterable) else (parts,)
+
+
+class HousingStiffness(eqx.Module):
+    """Stiffness of the housing between the seats of its bearings.
+
+    Attributes:
+        seats: Names of the bearings, in the order of the matrix.
+        matrix: Force and moment over displacement and rotation of all seats in global
+            axes, seat by seat (ux uy uz), or (ux uy uz gx gy gz), as a finite element
+            program reduces it (n, n) [N/m, N, N m].
+    """
+
+    seats: tuple[str, ...] = eqx.field(static=True, converter=tuple)
+    matrix: Float[Array, "n n"] = eqx.field(converter=as_real, metadata=unit("N/m"))
+
+    def __check_init__(self):
+        n, shape = len(self.seats), jnp.shape(self.matrix)
+        if not n or shape not in ((3 * n, 3 * n), (6 * n, 6 * n)):
+            raise ValueError(
+                f"HousingStiffness: `matrix` has shape {shape}; for the {n} seats"
+                f" {', '.join(self.seats)} it must be ({3 * n}, {3 * n}), or"
+                f" ({6 * n}, {6 * n}) with rotations."
+            )
+        if is_traced(self.matrix):
+            return
+        known = np.asarray(self.matrix)
+        check(self, "matrix", np.isfinite(known).all(), "finite")
+        size = np.sqrt(np.abs(np.diagonal(known)))
+        odd = np.abs(known - known.T) > 1e-6 * np.outer(size, size) + 1e-300
+        if odd.any():
+            row, column = map(int, np.argwhere(odd)[0])
+            raise ValueError(
+                f"HousingStiffness: `matrix` is not symmetric: {known[row, column]:.6g}"
+                f" in row {row}, column {column}, {known[column, row]:.6g} in its"
+                " place across the diagonal."
+            )
+        least = np.linalg.eigvalsh(known / np.outer(size, size).clip(1e-300)).min()
+        check(self, "matrix", least > -1e-6, "positive semi-definite")
+
+    @property
+    def freedoms(self) -> int:
+        """Freedoms of a seat, 3 or 6."""
+        return self.matrix.shape[0] // len(self.seats)
+
+    @classmethod
+    def of_seats(cls, seats: dict[str, Any]) -> "HousingStiffness":
+        """Create a housing whose seats do not act on each other.
+
+        Args:
+            seats: Stiffness of each seat by name, in global axes: a matrix or a
+                diagonal of three, or of six with rotations.
+
+        Raises:
+            ValueError: If some have three and some six freedoms.
+        """
+        blocks = [as_real(value) for value in seats.values()]
+        blocks = [jnp.diag(b) if jnp.ndim(b) == 1 else b for b in blocks]
+        sizes = {block.shape for block in blocks}
+        if len(sizes) > 1:
+            raise ValueError(
+                "HousingStiffness: some seats have three freedoms and some six; give"
+                " all of them the same."
+            )
+        n, size = len(blocks), blocks[0].shape[0]
+        whole = jnp.zeros((n, size, n, size), blocks[0].dtype)
+        for k, block in enumerate(blocks):
+            whole = whole.at[k, :, k].set(block)
+        return cls(tuple(seats), whole.reshape(n * size, n * size))
+
+
+class ShaftSystem(eqx.Module):
+    """Shafts on bearings in a housing, loaded by gears, belts, forces and weight.
+
+    Attributes:
+        shafts: One or several.
+        seats: The bearings in their places.
+        drive: Where the system is driven; `None`: no power.
+        wheels: Gears and pulleys.
+        couplings: Where torque enters or leaves besides.
+        loads: Free forces and moments.
+        housing: Stiffness of the housing; `None`: rigid.
+        gravity: Acceleration of free fall in global axes (3,) [m/s²].
+        plans: Order of the stations on each shaft, from `ShaftLine.plan`.
+
+    Traced: all numbers. Static: names, plans. A changed copy is made by
+    `equinox.tree_at`, or with `jax.vmap` over changed leaves.
+
+    Raises:
+        TypeError: For a part of another kind.
+        ValueError: For names that are not unique or not there, wheels that cannot mesh,
+            a shaft without bearing, or torques that cannot balance.
+    """
+
+    shafts: tuple[ShaftLine, ...]
+    seats: tuple[Seat, ...]
+    drive: Drive | None
+    wheels: tuple[Gear | Pulley, ...]
+    couplings: tuple[Coupling, ...]
+    loads: tuple[ShaftLoad, ...]
+    housing: HousingStiffness | None
+    gravity: Float[Array, "3"] = eqx.field(metadata=unit(3 * ("m/s²",)))
+    plans: tuple[Plan, ...] = eqx.field(static=True)
+
+    def __init__(
+        self,
+        shafts: Any,
+        seats: Any,
+        drive: Drive | None = None,
+        wheels: Any = (),
+        couplings: Any = (),
+        loads: Any = (),
+        housing: HousingStiffness | None = None,
+        gravity: Any = (0.0, 0.0, 0.0),
+    ):
+        self.shafts, self.seats = _all(shafts), _all(seats)
+        self.drive, self.housing = drive, housing
+        self.wheels, self.couplings = _all(wheels), _all(couplings)
+        self.loads, self.gravity = _all(loads), as_real(gravity)
+        self._check_kinds()
+        self._check_names()
+        self.plans = tuple(
+            shaft.plan({p.name: p.position for p in self.on(shaft.name)})
+            for shaft in self.shafts
+        )
+        for wheel in self.wheels:
+            if wheel.mates_with is not None:
+                self._check_mesh(wheel, self.wheel(wheel.mates_with))
+
+    def _check_kinds(self):
+        kinds = {
+            "shafts": ShaftLine,
+            "seats": Seat,
+            "wheels": (Gear, Pulley),
+            "couplings": Coupling,
+            "loads": ShaftLoad,
+        }
+        for name, kind in kinds.items():
+            for part in getattr(self, name):
+                if not isinstance(part, kind):
+                    raise TypeError(
+                        f"ShaftSystem: `{name}` holds a {type(part).__name__}."
+                    )
+        for name, kind in (("drive", Drive), ("housing", HousingStiffness)):
+            value = getattr(self, name)
+            if not isinstance(value, kind | None):
+                raise TypeError(
+                    f"ShaftSystem: `{name}` is a {type(value).__name__}; it must be a"
+                    f" {kind.__name__}."
+                )
+
+    def _check_names(self):
+        placed = *self.seats, *self.wheels, *self.loads
+        names = [part.name for part in (*self.shafts, *placed, *self.couplings)]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ValueError(
+                f"ShaftSystem: two parts are called {twice[0]}; names are unique."
+            )
+        shafts = [shaft.name for shaft in self.shafts]
+        for part in (*placed, *self.couplings):
+            if part.shaft not in shafts:
+                raise ValueError(
+                    f"ShaftSystem: `shaft` of {part.name} is {part.shaft!r}; the shafts"
+                    f" are {', '.join(shafts)}."
+                )
+        for name in shafts:
+            if not any(seat.shaft == name for seat in self.seats):
+                raise ValueError(f"ShaftSystem: no bearing holds shaft {name}.")
+        wheels = [wheel.name for wheel in self.wheels]
+        for wheel in self.wheels:
+            if wheel.mates_with is not None and wheel.mates_with not in wheels:
+                raise ValueError(
+                    f"ShaftSystem: `mates_with` of {wheel.name} is"
+                    f" {wheel.mates_with!r}; the wheels are {', '.join(wheels)}."
+                )
+        if self.drive is not None and self.drive.into not in (*shafts, *wheels):
+            raise ValueError(
+                f"ShaftSystem: `drive.into` is {self.drive.into!r}; it must be a shaft"
+                f" ({', '.join(shafts)}) or a wheel without a mate."
+            )
+        if self.housing is not None:
+            seats = [seat.name for seat in self.seats]
+            for name in self.housing.seats:
+                if name not in seats:
+                    raise ValueError(
+                        f"ShaftSystem: the housing has a seat {name!r}; the bearings"
+                        f" are {', '.join(seats)}."
+                    )
+
+    def _check_mesh(self, one, other):
+        pair = f"{one.name} and {other.name}"
+        if type(one) is not type(other):
+            raise ValueError(f"ShaftSystem: {pair} are not of one kind.")
+        if one.shaft == other.shaft:
+            raise ValueError(f"ShaftSystem: {pair} sit on one shaft.")
+        for wheel in (one, other):
+            if wheel.mates_with is not None and (
+                wheel.torque is not None or wheel.power is not None
+            ):
+                raise ValueError(
+                    f"ShaftSystem: {wheel.name} has a mate, from which its torque"
+                    " follows; leave out its `torque` or `power`."
+                )
+        shafts = [self.shaft(w.shaft) for w in (one, other)]
+        across = np.cross(*(np.asarray(s.frame[2]) for s in shafts))
+        parallel = np.linalg.norm(across) < _ACROSS
+        if isinstance(one, Pulley):
+            if not parallel:
+                raise ValueError(f"ShaftSystem: the shafts of {pair} are not parallel.")
+            return
+        for name in ("normal_module", "pressure_angle", "helix_angle"):
+            known = concrete(getattr(one, name), getattr(other, name))
+            if known and abs(known[0] - known[1]) > 1e-6 * max(map(abs, known)):
+                raise ValueError(
+                    f"ShaftSystem: `{name}` is {known[0]:.9g} of {one.name} and"
+                    f" {known[1]:.9g} of {other.name}; meshing gears have the same."
+                )
+        if {one.hand, other.hand} not in ({"none"}, {"left", "right"}):
+            raise ValueError(
+                f"ShaftSystem: `hand` is {one.hand!r} of {one.name} and {other.hand!r}"
+                f" of {other.name}; one must be left, one right."
+            )
+        if (one.pitch_angle is None) != (other.pitch_angle is None):
+            raise ValueError(f"ShaftSystem: one of {pair} is bevel, one cylindrical.")
+        if one.pitch_angle is None:
+            if not parallel:
+                raise ValueError(
+                    f"ShaftSystem: the shafts of {pair} are not parallel; crossed"
+                    " helical gears and worms are not modelled."
+                )
+            self._check_distance(one, other, shafts)
+            return
+        sides = (1.0 if g.apex == "+z" else -1.0 for g in (one, other))
+        a, b = (
+            -side * np.asarray(s.frame[2])
+            for side, s in zip(sides, shafts, strict=True)
+        )
+        between = np.arccos(np.clip(a @ b, -1.0, 1.0))
+        known = concrete(one.pitch_angle, other.pitch_angle)
+        if known and abs(between - sum(known)) > 1e-3:
+            raise ValueError(
+                f"ShaftSystem: the pitch angles of {pair} add up to"
+                f" {np.degrees(sum(known)):.5g} deg; between the shafts, from the apex"
+                f" to the gears, are {np.degrees(between):.5g} deg."
+            )
+
+    def _check_distance(self, one, other, shafts):
+        first, second = (shaft.origin for shaft in shafts)
+        if first is None or second is None:
+            if one.mesh_angle is None and other.mesh_angle is None:
+                raise ValueError(
+                    f"ShaftSystem: it is not known where {one.name} and {other.name}"
+                    " mesh; give a `mesh_angle` of one of them, or the origins of both"
+                    " shafts."
+                )
+            return
+        apart = np.asarray(second) - np.asarray(first)
+        z = np.asarray(shafts[0].frame[2])
+        distance = np.linalg.norm(apart - (apart @ z) * z)
+        usual = float(one.radius + other.radius)
+        if abs(distance - usual) > _APART * usual:
+            raise ValueError(
+                f"ShaftSystem: the shafts of {one.name} and {other.name} are"
+                f" {1e3 * distance:.6g} mm apart, their pitch circles touch at"
+                f" {1e3 * usual:.6g} mm."
+            )
+
+    def shaft(self, name: str) -> ShaftLine:
+        """Return a shaft by its name."""
+        return next(shaft for shaft in self.shafts if shaft.name == name)
+
+    def wheel(self, name: str) -> AbstractWheel:
+        """Return a wheel by its name."""
+        return next(wheel for wheel in self.wheels if wheel.name == name)
+
+    def on(self, shaft: str) -> list[AbstractPlaced]:
+        """Return bearings, wheels and loads of a shaft by its name."""
+        placed = *self.seats, *self.wheels, *self.loads
+        return [part for part in placed if part.shaft == shaft]
+
+    def beam(self, index: int) -> Shaft:
+        """Return the beam of a shaft.
+
+        Args:
+            index: Number of the shaft.
+        """
+        line = self.shafts[index]
+        places = {part.name: part.position for part in self.on(line.name)}
+        return line.shaft(self.plans[index], places)
+
+    def station(self, part: AbstractPlaced) -> tuple[int, int]:
+        """Return number of shaft and station of a part."""
+        index = [shaft.name for shaft in self.shafts].index(part.shaft)
+        return index, dict(self.plans[index].place)[part.name]
