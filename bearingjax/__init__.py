@@ -129,6 +129,7 @@ if _TYPE_CHECKING:
     from . import plot as plot
     from . import rotor as rotor
     from . import scene as scene
+    from . import shafts as shafts
     from . import skid as skid
     from .scene import SceneError as SceneError
     from .scene import catalogue as catalogue
@@ -140,7 +141,9 @@ if _TYPE_CHECKING:
 __version__ = _version("bearingjax")
 
 # Imported at first use: packages, and names of the top level with their package.
-_LATE = dict.fromkeys("noise optimise plot rotor scene skid".split()) | dict.fromkeys(
+_LATE = dict.fromkeys(
+    "noise optimise plot rotor scene shafts skid".split()
+) | dict.fromkeys(
     "SceneError catalogue catalogue_entry load_bearing read_scene run".split(), "scene"
 )
 

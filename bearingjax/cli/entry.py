@@ -20,6 +20,7 @@ from . import (
     optimise,
     rotor,
     schema,
+    shaft,
     skid,
     solve,
     sweep,
@@ -36,6 +37,7 @@ _SOLVING = (
     contact,
     skid,
     rotor,
+    shaft,
     noise,
 )
 """Commands that solve scenes; `execute` writes their outcome."""

@@ -41,6 +41,7 @@ from .rotor_response import response_curve as response_curve
 from .rotor_response import speed_curve as speed_curve
 from .section import cross_section as cross_section
 from .sections import cross_sections as cross_sections
+from .shafts import shaft_overview as shaft_overview
 from .skid import cage_speed as cage_speed
 from .skid import power_bars as power_bars
 from .skid import skid_overview as skid_overview

@@ -112,7 +112,7 @@ class CaseTable:
 
 
 @dataclasses.dataclass(frozen=True)
-class _Column:
+class Varied:
     """Values of one key: case k takes `values[index[k]]`."""
 
     key: str
@@ -162,6 +162,22 @@ class CasesKeys(Keys):
             problem = "must have one of `grid`, `file` or `spectrum`"
             raise self.table.own_error(problem)
 
+    def columns(self, path: Path) -> list["Varied"]:
+        """Return the values of each key that varies.
+
+        Args:
+            path: Path of the scene.
+        """
+        if self.grid is not None:
+            found = _grid(self.table, self.grid)
+        elif self.spectrum is not None:
+            found = _spectrum(self.table, self.spectrum)
+        else:
+            lists = read_list(self.table, path.parent, OPERATING).items()
+            found = [Varied(key, v, np.arange(len(v))) for key, v in lists]
+        self.table.finish()
+        return found
+
 
 def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     """Read a scene with `[cases]`.
@@ -179,17 +195,9 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
             f"{path.name}: `cases` is missing; it must be a table with one of `grid`,"
             " `file` or `spectrum`"
         )
-    top = Table(data, path.name)
-    keys = read_keys(CasesKeys, top.table("cases"))
+    keys = read_keys(CasesKeys, Table(data, path.name).table("cases"))
     table, outputs = keys.table, keys.outputs
-    if keys.grid is not None:
-        columns = _grid(table, keys.grid)
-    elif keys.spectrum is not None:
-        columns = _spectrum(table, keys.spectrum)
-    else:
-        lists = read_list(table, path.parent, OPERATING).items()
-        columns = [_Column(key, v, np.arange(len(v))) for key, v in lists]
-    table.finish()
+    columns = keys.columns(path)
     data = _begun(data, columns, path.name)
     scene = scene_of(data, path)
     for column in columns:
@@ -210,7 +218,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     )
 
 
-def _begun(data: dict[str, Any], columns: list[_Column], file: str) -> dict[str, Any]:
+def _begun(data: dict[str, Any], columns: list[Varied], file: str) -> dict[str, Any]:
     """Fill in the first value of each varied key that the scene does not give: a
     varied interference need not be repeated in [fit]."""
     begun = copy.deepcopy(data)
@@ -344,7 +352,7 @@ def _flat(table, where: str, data: dict) -> dict[str, Any]:
     return out
 
 
-def _grid(table, data) -> list[_Column]:
+def _grid(table, data) -> list[Varied]:
     if not isinstance(data, dict) or not data:
         raise table.error("grid", f"{data!r} is not a table of keys with their values")
     axes = {}
@@ -361,7 +369,7 @@ def _grid(table, data) -> list[_Column]:
         raise table.error("grid", problem)
     grid = np.indices(sizes).reshape(len(sizes), -1)
     pairs = zip(axes.items(), grid, strict=True)
-    return [_Column(key, values, index) for (key, values), index in pairs]
+    return [Varied(key, values, index) for (key, values), index in pairs]
 
 
 def _range(table, key, data) -> Any:
@@ -375,7 +383,7 @@ def _range(table, key, data) -> Any:
         raise table.error(path, f"`count` is {count!r}; a whole number from 2 to 10^6")
     ends = [data["start"], data["stop"]]
     if key in OPERATING:
-        start, stop = _numbers(table, _Column(key, ends, np.arange(2)))
+        start, stop = _numbers(table, Varied(key, ends, np.arange(2)))
         return np.linspace(start, stop, count)
     # The kind of design numbers is not known here: the unit is kept.
     parts = [_split(end) for end in ends]
@@ -400,7 +408,7 @@ def _split(value) -> Any:
         return None
 
 
-def _spectrum(table, data) -> list[_Column]:
+def _spectrum(table, data) -> list[Varied]:
     tables = isinstance(data, list) and all(isinstance(e, dict) for e in data)
     if not data or not tables:
         problem = "must be a list of tables, [[cases.spectrum]], one at least"
@@ -415,7 +423,7 @@ def _spectrum(table, data) -> list[_Column]:
     if "hours" not in keys:
         raise table.error("spectrum[0].hours", "is missing; a spectrum has hours")
     index = np.arange(len(entries))
-    return [_Column(key, [entry[key] for entry in entries], index) for key in keys]
+    return [Varied(key, [entry[key] for entry in entries], index) for key in keys]
 
 
 def _designs(data, path, columns):

@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from .quantity import SceneError
 from .scene_file import bearing_files, find_scene, parse_scene, profile_files
 
@@ -166,6 +168,39 @@ def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
     name = cases.get("file") if isinstance(cases, dict) else None
     listed = [path.parent / name] if isinstance(name, str) else []
     return [path, *listed, *profile_files(data, path), *bearing_files(data, path)]
+
+
+def read_matrix(path: Path) -> np.ndarray:
+    """Read a matrix of numbers.
+
+    Args:
+        path: A NumPy file (.npy), a MatrixMarket file (.mtx), or text with commas or
+            blanks between the numbers of a row.
+
+    Raises:
+        ValueError: If it cannot be read, or is no square matrix.
+    """
+    try:
+        if path.suffix == ".npy":
+            found = np.load(path, allow_pickle=False)
+        elif path.suffix == ".mtx":
+            from scipy.io import mmread
+
+            found = mmread(path)
+            found = found.toarray() if hasattr(found, "toarray") else found
+        else:
+            text = path.read_text(encoding="utf-8-sig").replace(",", " ")
+            found = np.loadtxt(text.splitlines(), ndmin=2)
+        found = np.asarray(found, float)
+    except OSError as error:
+        raise ValueError(f"{path.name}: cannot be read: {error.strerror}") from error
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"{path.name}: cannot be read: {error}") from error
+    if found.ndim != 2 or found.shape[0] != found.shape[1]:
+        raise ValueError(
+            f"{path.name}: has the shape {found.shape}; a square is wanted"
+        )
+    return found
 
 
 def write_numbers(path: str | Path, numbers: Mapping[str, Any]) -> None:

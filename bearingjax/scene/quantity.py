@@ -62,6 +62,7 @@ KINDS = {
     "damping": ("N s/m", "N s/mm"),
     "tilting damping": ("N m s/rad", "N m s/rad"),
     "rate": ("1/s", "1/s"),
+    "power": ("W", "kW"),
 }
 """Kind of quantity to its SI unit and a unit suggested in messages. Of several kinds
 with the same unit, the first is taken where only the unit is known."""

@@ -48,7 +48,7 @@ def _material(table: Table, key: str) -> Material:
     return material
 
 
-_MATERIAL: Any = {
+MATERIAL: Any = {
     "default": None,
     "otherwise": "steel",
     "reader": _material,
@@ -66,7 +66,7 @@ class SegmentKeys(Keys):
     divisions: int = scene_key(
         f"elements of the segment; at most {MOST_ELEMENTS} of all", default=1
     )
-    material: Material = scene_key("material, or its numbers", **_MATERIAL)
+    material: Material = scene_key("material, or its numbers", **MATERIAL)
 
     def check(self) -> None:
         if not self.bore < self.outer_diameter:
@@ -101,7 +101,7 @@ class DiscKeys(Keys):
         "bore", "length", default=0.0, least=0, needs=("outer_diameter",), **_OF_DISC
     )
     material: Material = scene_key(
-        "material, or its numbers", needs=("outer_diameter",), **_MATERIAL, **_OF_DISC
+        "material, or its numbers", needs=("outer_diameter",), **MATERIAL, **_OF_DISC
     )
 
     @property

@@ -74,6 +74,11 @@ def is_rotor(data: dict[str, Any]) -> bool:
     return "bearing" not in data and "rotor" in data
 
 
+def is_shafts(data: dict[str, Any]) -> bool:
+    """Whether parsed data describe a system of shafts, not a bearing."""
+    return "bearing" not in data and "shaft" in data
+
+
 def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
     """Parse the scene of a bearing; see `parse_scene`.
 
@@ -88,6 +93,10 @@ def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
     if is_rotor(data):
         problem = "is the scene of a [rotor], not of a [bearing]"
         cure = f"`bearingjax rotor {path.stem}` solves it"
+        raise SceneError(f"{path.name}: {problem}; {cure}")
+    if is_shafts(data):
+        problem = "is the scene of a system of shafts, not of a [bearing]"
+        cure = f"`bearingjax shaft {path.stem}` solves it"
         raise SceneError(f"{path.name}: {problem}; {cure}")
     return data
 

@@ -16,6 +16,8 @@ from .read import read_scene
 from .rotor_run import run_rotor
 from .rotor_table import read_rotor
 from .scene_file import find_scene, parse_scene
+from .shaft_run import run_shafts
+from .shaft_table import read_shafts
 from .skid_run import run_skid
 from .skid_table import read_skid
 from .sweep_run import run_cases
@@ -36,6 +38,7 @@ class Study(NamedTuple):
 
 
 STUDIES = {
+    "shaft": Study(frozenset({"shaft"}), read_shafts, run_shafts),
     "rotor": Study(frozenset({"rotor"}), read_rotor, run_rotor),
     "contact": Study(frozenset({"roller"}), read_contact, run_contact),
     "noise": Study(frozenset({"vibration"}), read_noise, run_noise),
@@ -69,9 +72,10 @@ def run(source: str | Path, settings: Iterable[str] = ()) -> Any:
         settings: Changes to it, "key=value", as in `--set`.
 
     Returns:
-        By the tables of the scene: `RotorRun` of [rotor], a list of `Compared` of
-        [roller], `NoiseRun` of [vibration], `SkidRun` of [dynamics], `Optimised` of
-        [optimise], `LifeRun` of [cases] and [life], `Sweep` of [cases], else the
+        By the tables of the scene: `ShaftRun` of [shaft.NAME], `RotorRun` of [rotor],
+        a list of `Compared` of [roller], `NoiseRun` of [vibration], `SkidRun` of
+        [dynamics], `Optimised` of [optimise], `LifeRun` of [cases] and [life], `Sweep`
+        of [cases], else the
         `Solution` of the bearing under its load. Read its result code: a failed solve
         does not raise, except at the start of an optimisation.
 

@@ -1,5 +1,9 @@
 """Systems of shafts: gears, belts, bearings in place, housing, load cases, heat."""
 
+from .duty import DutyResult as DutyResult
+from .duty import bearing_hours as bearing_hours
+from .duty import solve_duty as solve_duty
+from .duty import system_life as system_life
 from .equilibrium import ShaftState as ShaftState
 from .equilibrium import SystemSolution as SystemSolution
 from .equilibrium import bearing_solutions as bearing_solutions

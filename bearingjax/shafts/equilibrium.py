@@ -15,24 +15,31 @@ from jax.scipy.linalg import block_diag
 from jaxtyping import Array, Float, Int
 
 from ..design.checks import is_traced
+from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
 from ..numerics.implicit import stop, unless_failed
 from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
-from ..rotor import BearingSupport, LinearSupport, Rotor, preload_offset
+from ..rotor import (
+    STATION_FREEDOMS,
+    BearingSupport,
+    LinearSupport,
+    Rotor,
+    preload_offset,
+)
 from ..rotor.condensed import Condensed, condensed
 from ..rotor.loads import accelerated
 from ..rotor.rotor import N_STATION
 from ..rotor.statics import at_equilibrium, searched, softest
-from ..statics.load import solve
-from ..statics.options import SolveOptions
+from ..statics.installed import Installed
+from ..statics.load_result import solution_at
 from ..statics.solution import Solution
 from .parts import Seat
 from .power import PowerFlow, power_flow
 from .system import ShaftSystem
 
-_HELD = ("ux", "uy", "uz", "gx", "gy")
+_RING = len(FREEDOMS)
 _TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0])
 """Signs of (ux uy uz gx gy) from a half turn about x."""
 
@@ -128,13 +135,28 @@ def solve_system(system: ShaftSystem, *, throw: bool = True) -> SystemSolution:
             f"solve_system: `system` is a {type(system).__name__}; it must be a"
             " ShaftSystem."
         )
-    found, place = _solved(adjusted(system))
-    _check_torques(system, found.power)
+    found, place = searched_system(system)
     if throw:
         found = raise_unless_converged(
             found, found.result, lambda: unsolved(system, found, place)
         )
     return found
+
+
+def searched_system(
+    system: ShaftSystem,
+) -> tuple[SystemSolution, Float[Array, " motion"]]:
+    """Return the solution, and the end of the search even if it failed (motion,).
+
+    Args:
+        system: The system.
+
+    Raises:
+        ValueError, SolveError: As `solve_system`, but for a failed search.
+    """
+    found, place = system_state(adjusted(system))
+    _check_torques(system, found.power)
+    return found, place
 
 
 def _check_torques(system, power) -> None:
@@ -157,24 +179,32 @@ def _check_torques(system, power) -> None:
         )
 
 
-def adjusted(system: ShaftSystem) -> ShaftSystem:
+def adjusted(
+    system: ShaftSystem, known: dict[Any, Scalar] | None = None
+) -> ShaftSystem:
     """Return a system whose bearings have their preload as an axial offset.
 
     Args:
         system: The system.
+        known: Offsets of bearings met before, which is added to.
 
     Raises:
         SolveError: If a bearing cannot bear its preload.
     """
+    known = {} if known is None else known
     seats = []
     for seat in system.seats:
         if seat.preload is not None and seat.installed is not None:
-            cold = _as_mounted(seat.installed)
-            offset = seat.axial_offset + preload_offset(cold, seat.preload)
+            key = id(seat.installed), id(seat.preload)
+            if not is_traced(seat.preload):
+                key = id(seat.installed), float(seat.preload)
+            if key not in known:
+                cold = _as_mounted(seat.installed)
+                known[key] = preload_offset(cold, seat.preload)
             seat = eqx.tree_at(
                 lambda s: (s.axial_offset, s.preload),
                 seat,
-                (offset, None),
+                (seat.axial_offset + known[key], None),
                 is_leaf=lambda leaf: leaf is None,
             )
         seats.append(seat)
@@ -261,8 +291,14 @@ def _strain(seat: Seat) -> Any:
 
 
 @program(quick=True)
-def _solved(system: ShaftSystem):
-    """Return the solution, and the end of the search even if it failed (motion,)."""
+def system_state(
+    system: ShaftSystem,
+) -> tuple[SystemSolution, Float[Array, " motion"]]:
+    """Return the solution, and the end of the search even if it failed (motion,).
+
+    Args:
+        system: From `adjusted`.
+    """
     power = power_flow(system)
     rotors, points = [], []
     supports = supports_of(system, power)
@@ -481,26 +517,50 @@ def bearing_solutions(
         `None` for springs. Lives, friction and films follow from it. Differentiable.
     """
     found: list[Solution | None] = []
-    turning = _turns(system)
     for k, seat in enumerate(system.seats):
         if seat.installed is None:
             found.append(None)
             continue
-        turns = solution.power.speed[system.station(seat)[0]]
-        turns = -turns if seat.turned else turns
-        speed = Speed(inner=turns) if turning else None
-        found.append(
-            _in_place(seat.installed, solution.motion[k], turns, speed, points)
-        )
+        speed = speed_of(system, k, solution.power.speed)
+        found.append(in_place(seat.installed, solution.motion[k], *speed, points))
     return tuple(found)
 
 
+def speed_of(
+    system: ShaftSystem, index: int, speeds: Float[Array, " shaft"]
+) -> tuple[Speed, bool]:
+    """Return the ring speeds of a bearing, and whether its elements feel them.
+
+    Args:
+        system: The system.
+        index: Number of the bearing.
+        speeds: Of all shafts [rad/s].
+    """
+    seat = system.seats[index]
+    turns = speeds[system.station(seat)[0]]
+    return Speed(inner=-turns if seat.turned else turns), _turns(system)
+
+
 @program(quick=True)
-def _in_place(installed, motion, turns, speed, points):
-    element = installed.at(Speed(inner=turns), throw=False)
-    options = SolveOptions((), "outer", points, None, 200)
-    given = dict(zip(_HELD, motion, strict=True))
-    return solve(element, None, options, prescribed=given, speed=speed)
+def in_place(
+    installed: Installed,
+    motion: Float[Array, "5"],
+    speed: Speed,
+    turning: bool,
+    points: int,
+) -> Solution:
+    """Return the solution of a bearing whose inner ring is held by its shaft.
+
+    Args:
+        installed: The bearing.
+        motion: Of its inner ring, in its axes [m, rad].
+        speed: Ring speeds, for its fits.
+        turning: Whether rolling elements feel them. Static.
+        points: Positions along the rollers at which loads are reported. Static.
+    """
+    rings = jnp.zeros(2 * _RING, motion.dtype).at[_RING : _RING + N_STATION].set(motion)
+    element = installed.at(speed, throw=False)
+    return solution_at(element, rings, speed if turning else None, points)
 
 
 def unsolved(system: ShaftSystem, found: SystemSolution, place: Any) -> str:
@@ -546,7 +606,7 @@ def moving(system: ShaftSystem, motion: Any) -> str:
         first += count
         if sizes.max() > best:
             best = sizes.max()
-            words = f"{_HELD[int(np.argmax(sizes))]} of shaft {line.name}"
+            words = f"{STATION_FREEDOMS[int(np.argmax(sizes))]} of shaft {line.name}"
     rest = np.abs(motion[first:])
     if rest.size and rest.max() > best:
         words = "a seat of the housing, or a floating outer ring"

@@ -6,11 +6,14 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
+from ..design import pitch_radius
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS
+from ..element.inertia import Speed
 from ..numerics.implicit import stop
 from ..numerics.minimise import Minimum
+from ..numerics.programs import program
 from ..numerics.result import Result
 from ..numerics.types import Ring
 from .balance import Balance
@@ -85,6 +88,35 @@ def solution_of(
         result=ending.result,
         unrestrained=ending.unrestrained,
         stats=Stats(residual, minimum.steps, evaluated.residual, evaluated.steps),
+    )
+
+
+@program(quick=True)
+def solution_at(
+    element: BearingElement, q: Ring, speed: Speed | None, points: int
+) -> Solution:
+    """Solution of a bearing whose rings are held where they are given.
+
+    Args:
+        element: The bearing.
+        q: Ring freedoms [m, rad].
+        speed: Ring speeds, or `None`.
+        points: Positions along the rollers at which loads are reported. Static.
+    """
+    model = element.model(speed)
+    fields, found = describe(element, model, q, points, model.solve(q))
+    nothing = jnp.zeros_like(q[0])
+    return solution_kind(element.choices)(
+        **fields,
+        element=element,
+        speed=speed,
+        free=(),
+        held=FREEDOMS[:5],
+        moving_ring="inner",
+        pitch_radius=pitch_radius(element.bearing),
+        result=found.result,
+        unrestrained=jnp.full_like(found.result, -1),
+        stats=Stats(nothing, jnp.zeros_like(found.result), found.residual, found.steps),
     )
 
 

@@ -6,8 +6,10 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design import (
+    AbstractBallBearing,
     AbstractBearing,
     BearingSet,
+    CylindricalRollerBearing,
     CylindricalThrustRollerBearing,
     SphericalThrustRollerBearing,
     ToroidalRollerBearing,
@@ -36,6 +38,31 @@ def restrained_freedoms(bearing: AbstractBearing | BearingSet) -> tuple[str, ...
     sphere = len(rows) == 1 and isinstance(rows[0], tilting)
     tilts = () if sphere or is_self_aligning(bearing) else ("gx", "gy")
     return (*(() if flat else ("ux", "uy")), *(("uz",) if axial else ()), *tilts)
+
+
+def axial_senses(bearing: AbstractBearing | BearingSet) -> set[int]:
+    """Senses in which the bearing carries axial load on its inner ring: 1 along +z, -1.
+
+    Args:
+        bearing: The design.
+    """
+    found: set[int] = set()
+    for row in rows_of(bearing):
+        part, sense = row.bearing, -1 if row.mirrored else 1
+        if not part.holds_axially:
+            continue
+        if isinstance(part, AbstractBallBearing):
+            found |= {sense} if part.is_one_sided else {1, -1}
+        elif isinstance(part, CylindricalRollerBearing):
+            ribs = part.ribs
+            paths = {
+                sense: (ribs.inner_minus, ribs.outer_plus),
+                -sense: (ribs.inner_plus, ribs.outer_minus),
+            }
+            found |= {s for s, pair in paths.items() if None not in pair}
+        else:
+            found.add(sense)
+    return found
 
 
 def check_held(

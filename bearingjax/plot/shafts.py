@@ -1,0 +1,132 @@
+"""Picture of a system of shafts: drawing to scale, lines, load zones."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..numerics.gravity import GRAVITY
+from ..rotor import BearingSupport, LinearSupport, Rotor
+from .load import load_zone
+from .rotor import rotor_section
+from .style import GREY, INNER, OUTER, head, pyplot, towards_white
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+
+_ACROSS = 4
+"""Load zones side by side."""
+_AXES = ("x", "y")
+_COLOURS = (INNER, OUTER)
+
+
+def shaft_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
+    """Plot each shaft to scale with its lines, and the load zone of each bearing.
+
+    Args:
+        run: Result of the scene of a system of shafts, solved.
+        title: Head of the page; "Shafts" if empty.
+
+    Returns:
+        The figure, 16 inches wide.
+    """
+    system = run.task.system
+    shown = [b for b in run.bearings if b.solution is not None]
+    n_shafts, rows = len(system.shafts), -(-len(shown) // _ACROSS)
+    figure = pyplot().figure(figsize=(18.0, 1.0 + 4.6 * n_shafts + 4.4 * rows))
+    grid = figure.add_gridspec(
+        n_shafts + rows, 15, left=0.05, right=0.95, wspace=1.6, hspace=0.42,
+        top=1.0 - 0.9 / figure.get_figheight(), bottom=0.6 / figure.get_figheight(),
+    )  # fmt: skip
+    for k, line in enumerate(system.shafts):
+        state = run.solution.shafts[k]
+        ax = figure.add_subplot(grid[k, :6])
+        _drawing(ax, run, k)
+        ax.set_title(f"Shaft {line.name}, to scale; forces on it (x, y, z) in kN")
+        # The moment that bends in the plane of x is about y.
+        bent = np.stack([state.moment[:, 1], -state.moment[:, 0]], axis=1)
+        lines = {
+            "Deflection [µm]": 1e6 * state.displacement[:, :2],
+            "Shear force [kN]": 1e-3 * state.shear[:, :2],
+            "Bending moment [N m]": bent,
+        }
+        for place, (label, values) in enumerate(lines.items()):
+            ax = figure.add_subplot(grid[k, 6 + 3 * place : 9 + 3 * place])
+            _line(ax, state.position, values, label)
+    for k, bearing in enumerate(shown):
+        row, place = divmod(k, _ACROSS)
+        wide = 15 // _ACROSS
+        spec = grid[n_shafts + row, place * wide : (place + 1) * wide]
+        ax = figure.add_subplot(spec, projection="polar")
+        load_zone(bearing.solution, ax)
+        ax.set_title(f"Bearing {bearing.name}")
+        if place + 1 < _ACROSS and k + 1 < len(shown) and ax.get_legend():
+            ax.get_legend().remove()
+    head(figure, title or "Shafts")
+    return figure
+
+
+def _line(ax, position, values, label):
+    for k, axis in enumerate(_AXES):
+        ax.plot(1e3 * position, values[:, k], color=_COLOURS[k], label=axis)
+    ax.axhline(0.0, color=GREY, lw=0.7)
+    ax.set_xlabel("z [mm]")
+    ax.set_title(label)
+    ax.legend(fontsize="small")
+
+
+def _drawing(ax, run, index):
+    """Draw a shaft with its bearings and wheels, and the forces on it."""
+    system = run.task.system
+    line, frame = system.shafts[index], np.asarray(system.shafts[index].frame)
+    supports, radius = [], 500.0 * float(np.max(line.outer_diameter))
+    for k, seat in enumerate(system.seats):
+        if seat.shaft != line.name:
+            continue
+        station = system.station(seat)[1]
+        solution = run.bearings[k].solution
+        if solution is None:
+            supports.append(LinearSupport(station, seat.stiffness))
+        else:
+            element = solution.element
+            supports.append(BearingSupport(station, element, turned=seat.turned))
+    rotor_section(Rotor(system.beam(index), (), supports), ax)
+    forces = [(s, run.solution.load[k], True) for k, s in enumerate(system.seats)]
+    forces += [(load, np.asarray(load.force), False) for load in system.loads]
+    for mesh in run.solution.power.meshes:
+        wheel = system.wheel(mesh.wheel)
+        forces.append((wheel, np.asarray(mesh.force), False))
+        if wheel.shaft == line.name:
+            z, r = 1e3 * float(wheel.position), 1e3 * float(wheel.radius)
+            width = run.task.face_widths.get(wheel.name, 0.25 * float(wheel.radius))
+            half = 500.0 * width
+            ax.fill(
+                [z - half, z + half, z + half, z - half],
+                [-r, -r, r, r],
+                facecolor=towards_white(OUTER, 0.75),
+                edgecolor=OUTER,
+                alpha=0.8,
+                zorder=1,
+            )
+            radius = max(radius, r)
+    for part, force, reaction in forces:
+        if part.shaft != line.name:
+            continue
+        own = frame @ np.asarray(force)[:3] * (-1.0 if reaction else 1.0)
+        own = np.where(np.abs(own) > 1e-6 * np.abs(own).max(), own, 0.0) + 0.0
+        words = ", ".join(f"{1e-3 * f:.3g}" for f in own)
+        ax.text(
+            1e3 * float(part.position),
+            0.03 if reaction else 0.95,
+            f"{part.name}\n({words})",
+            transform=ax.get_xaxis_transform(),
+            ha="center",
+            va="bottom" if reaction else "top",
+            fontsize="x-small",
+            zorder=9,
+        )
+    middle = 500.0 * float(np.sum(line.length))
+    ax.update_datalim([(middle, 1.5 * radius), (middle, -1.5 * radius)])
+    ax.autoscale_view()
+    if float(np.linalg.norm(system.gravity)) > 0:
+        pull = frame @ np.asarray(system.gravity) / GRAVITY
+        ax.set_xlabel(f"z [mm]; weight along ({', '.join(f'{g:.2g}' for g in pull)})")

@@ -1,0 +1,463 @@
+"""Run the scene of a system of shafts; its numbers in SI and its table."""
+
+import dataclasses
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import jax
+import numpy as np
+
+from ..numerics.programs import called
+from ..numerics.result import Result
+from ..shafts import (
+    DutyResult,
+    ShaftSystem,
+    SystemSolution,
+    bearing_hours,
+    bearing_solutions,
+    solve_duty,
+    system_life,
+)
+from ..shafts.equilibrium import moving, searched_system, speed_of, unsolved
+from ..statics.life import Life, life_of
+from ..statics.solution import Solution
+from ..statics.support import axial_senses
+from .fit_report import fit_as_dict
+from .fit_table import fit_facts, turning
+from .life_report import life_as_dict, solved_warnings
+from .life_table import rating_origins
+from .oil_table import OilFacts, oil_as_dict, oil_facts
+from .quantity import SceneError
+from .read import Scene, with_speed_told
+from .shaft_table import ShaftScene
+
+_LOST = 1e-9
+"""Axial load over the radial one, or the largest of all, that counts as none [1]."""
+
+
+@dataclasses.dataclass(frozen=True)
+class InPlace:
+    """A bearing in the solved system.
+
+    Attributes:
+        name: Its name.
+        scene: Scene of it alone, at its speed; `None` of springs.
+        solution: Its solution, in NumPy; `None` of springs.
+        life: Its life, likewise.
+        oil: Friction and films; `None` without lubricant, or at rest.
+    """
+
+    name: str
+    scene: Scene | None
+    solution: Solution | None
+    life: Life | None
+    oil: OilFacts | None
+
+    @property
+    def friction_torque(self) -> float | None:
+        """Friction torque by the model of SKF, else of Palmgren [N m], or `None`."""
+        found = None if self.oil is None else self.oil.skf or self.oil.friction
+        return None if found is None else float(found.torque)
+
+    @property
+    def clearance(self) -> float | None:
+        """Radial clearance in operation [m]; `None` of bearings without fits."""
+        if self.scene is None or self.scene.fits is None:
+            return None
+        facts = fit_facts(self.scene.fits, self.scene.element.bearing)
+        return float(facts.operating.radial_clearance)
+
+
+@dataclasses.dataclass(frozen=True)
+class ShaftRun:
+    """Result of the scene of a system of shafts.
+
+    Attributes:
+        task: The scene.
+        solution: Equilibrium, in NumPy; of several cases that of the first.
+        bearings: Each bearing in it; empty if it was not solved.
+        duty: All cases, in NumPy; `None` without [cases].
+        problem: Why it was not solved, in words; empty if it was.
+        warnings: Warnings of doubtful results.
+    """
+
+    task: ShaftScene
+    solution: SystemSolution
+    bearings: tuple[InPlace, ...]
+    duty: DutyResult | None
+    problem: str
+    warnings: tuple[str, ...]
+
+    @property
+    def converged(self) -> bool:
+        """Whether all cases were solved."""
+        return not self.problem
+
+    @property
+    def hours(self) -> np.ndarray:
+        """Life of each bearing, under all cases (bearing,) [h]; NaN of springs."""
+        system = self.task.system
+        if self.duty is not None:
+            of = [system.station(seat)[0] for seat in system.seats]
+            given = [case.hours for case in self.task.cases]
+            share = None if None in given else np.array(given, float)
+            speed = self.duty.speed[:, of]
+            return np.asarray(bearing_hours(self.duty.lives["damage"], speed, share))
+        found = []
+        for bearing in self.bearings:
+            life = None if bearing.life is None else bearing.life.life_hours
+            found.append(np.nan if life is None else float(life))
+        return np.array(found)
+
+    @property
+    def system_hours(self) -> float | None:
+        """Life that all bearings reach together [h]; `None` at rest or unsolved."""
+        hours = self.hours
+        sprung = np.array([seat.installed is None for seat in self.task.system.seats])
+        if self.problem or np.isnan(hours[~sprung]).any() or sprung.all():
+            return None
+        known = np.where(sprung, np.inf, hours)
+        return float(called(system_life, self.task.system, known))
+
+
+def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> ShaftRun:
+    """Run the scene of a system of shafts.
+
+    Args:
+        task: From `read_shafts`.
+        told: Called with the name of each stage as it begins.
+
+    Returns:
+        The run; a system without equilibrium does not raise.
+
+    Raises:
+        SceneError: For torques that do not balance.
+    """
+    say = told or (lambda name: None)
+    system = task.system
+    say("static equilibrium")
+    try:
+        found, place = searched_system(system)
+    except ValueError as error:
+        raise SceneError(f"{task.name}: {error}") from error
+    found = jax.device_get(found)
+    problem = ""
+    bearings: tuple[InPlace, ...] = ()
+    if not found.converged:
+        problem = unsolved(system, found, np.asarray(place))
+    else:
+        say("bearings")
+        bearings = tuple(_in_place(task, found))
+    duty = None
+    if task.cases and not problem:
+        say("load cases")
+        duty = solve_duty(
+            [case.system for case in task.cases], [case.lives for case in task.cases]
+        )
+        failed = np.flatnonzero(duty.result != Result.CONVERGED)
+        if failed.size:
+            label = Result(int(duty.result[failed[0]])).label
+            problem = (
+                f"{failed.size} of {len(task.cases)} cases not solved (case"
+                f" {failed[0]}: {label})"
+            )
+    run = ShaftRun(task, found, bearings, duty, problem, ())
+    odd = dict.fromkeys((*task.warnings, *_warnings(run)))
+    return dataclasses.replace(run, warnings=tuple(odd))
+
+
+def _in_place(task: ShaftScene, found: SystemSolution) -> Iterator[InPlace]:
+    """Yield each bearing in the equilibrium, with life, friction and films."""
+    system = task.system
+    solutions = bearing_solutions(system, found)
+    for k, (seat, scene) in enumerate(zip(system.seats, task.bearings, strict=True)):
+        solution, conditions = jax.device_get(solutions[k]), task.lives[k]
+        if scene is None or solution is None or conditions is None:
+            yield InPlace(seat.name, None, None, None, None)
+            continue
+        speed, turning_now = jax.device_get(speed_of(system, k, found.power.speed))
+        scene = dataclasses.replace(
+            scene,
+            speed=speed if turning_now else None,
+            fits=turning(scene.fits, float(speed.inner)),
+        )
+        try:
+            life = jax.device_get(life_of(solution.element, solution, conditions))
+        except ValueError as error:
+            raise SceneError(f"{task.name}: {seat.name}: {error}") from error
+        oil = None
+        if scene.oil is not None:
+            oil = oil_facts(scene.oil, solution, scene.catalogue)
+        yield InPlace(seat.name, with_speed_told(scene), solution, life, oil)
+
+
+def _warnings(run: ShaftRun) -> Iterator[str]:
+    """Yield warnings about the equilibrium and each bearing."""
+    system, found = run.task.system, run.solution
+    if run.problem and run.duty is None:
+        return
+    if np.any(found.free):
+        yield (
+            f"nothing holds {moving(system, found.free)}: it stays where it is; locate"
+            " the shaft by a bearing"
+        )
+    most = float(np.abs(found.load).max())
+    for k, (seat, bearing) in enumerate(zip(system.seats, run.bearings, strict=True)):
+        if bearing.scene is None or bearing.solution is None:
+            continue
+        for text in solved_warnings(bearing.scene, bearing.solution, bearing.life):
+            yield f"{bearing.name}: {text}"
+        load = float(np.abs(found.load[k, :3]).max())
+        if load <= _LOST * most:
+            yield f"{bearing.name}: it bears nothing; its ring may skid"
+        if seat.preload is not None:
+            kept = _axial(system, k, found)
+            if kept < 0.05 * float(seat.preload):
+                yield (
+                    f"{bearing.name}: adjusted with {float(seat.preload):.5g} N, it"
+                    f" keeps an axial load of {max(kept, 0.0):.4g} N: the preload is"
+                    " lost to loads or heat"
+                )
+    yield from _over_determined(run)
+
+
+def _axial(system: ShaftSystem, index: int, found: SystemSolution) -> float:
+    """Return the axial load of a bearing along its own z [N]."""
+    seat = system.seats[index]
+    along = np.asarray(system.shaft(seat.shaft).frame[2]) @ found.load[index, :3]
+    return float(-along if seat.turned else along)
+
+
+def _over_determined(run: ShaftRun) -> Iterator[str]:
+    """Yield a warning for each shaft that several bearings hold both ways."""
+    system = run.task.system
+    for shaft in system.shafts:
+        both = [
+            seat.name
+            for seat in system.seats
+            if seat.shaft == shaft.name
+            and seat.installed is not None
+            and not seat.floating
+            and len(axial_senses(seat.installed.drawing.bearing)) == 2
+        ]
+        if len(both) > 1:
+            yield (
+                f"shaft {shaft.name} is located by {' and '.join(both)}: warmth and"
+                " tolerances of the distance press them against each other; let all but"
+                " one float (`floating`)"
+            )
+
+
+def shafts_as_dict(run: ShaftRun) -> dict[str, Any]:
+    """Return the numbers of a run as plain numbers and lists, in SI.
+
+    Args:
+        run: From `run_shafts`.
+
+    Returns:
+        `bearings`, `gear`, `belt`, `shaft` by name, `system_life_hours`, `power`, of
+        several cases `cases`; `result`, `message`, `warnings`, `inputs`, `version`.
+    """
+    from .. import __version__
+
+    found = run.solution
+    code = Result(int(found.result))
+    if run.duty is not None and not run.converged:
+        code = Result(int(np.max(run.duty.result)))
+    numbers: dict[str, Any] = {}
+    if run.bearings:
+        numbers = {
+            "bearings": {
+                bearing.name: _bearing(run, k) for k, bearing in enumerate(run.bearings)
+            },
+            **_wheels(run),
+            "shaft": {
+                line.name: _shaft(state)
+                for line, state in zip(
+                    run.task.system.shafts, found.shafts, strict=True
+                )
+            },
+            "power": {
+                "drive": float(found.power.drive),
+                "output": _number(found.power.output),
+                "output_shaft": found.power.output_shaft,
+                "mesh_loss": float(found.power.loss),
+                "bearing_loss": bearing_loss(run),
+            },
+            "system_life_hours": _number(run.system_hours),
+        }
+        if run.duty is not None:
+            numbers["cases"] = _cases(run, run.duty)
+    return {
+        **numbers,
+        "result": code.label,
+        "message": run.problem,
+        "residual": _number(found.residual),
+        "iterations": int(found.steps),
+        "warnings": list(run.warnings),
+        "inputs": run.task.inputs,
+        "version": __version__,
+    }
+
+
+def bearing_loss(run: ShaftRun) -> float | None:
+    """Return the power lost in all bearings [W]; `None` where a model is missing."""
+    total = 0.0
+    for bearing in run.bearings:
+        if bearing.scene is None:
+            continue
+        torque = bearing.friction_torque
+        if torque is None or bearing.scene.speed is None:
+            return None
+        total += torque * abs(float(bearing.scene.speed.inner))
+    return total
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None or not np.isfinite(value) else float(value)
+
+
+def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
+    found, bearing = run.solution, run.bearings[k]
+    seat = run.task.system.seats[k]
+    frame = np.asarray(run.task.system.shaft(seat.shaft).frame)
+    moved = found.displacement[k]
+    told: dict[str, Any] = {
+        "load": found.load[k].tolist(),
+        "displacement": moved.tolist(),
+        "tilt": (frame[:2] @ moved[3:]).tolist(),
+        "axial_load": _axial(run.task.system, k, found),
+        "stiffness": found.stiffness[k].tolist(),
+    }
+    scene, solution, life = bearing.scene, bearing.solution, bearing.life
+    if scene is None or solution is None or life is None:
+        return told
+    of_balls = solution.element.bearing.is_ball
+    names = ["roller_load", "azimuth", "roller_pressure"]
+    names += ["contact_load", "contact_angle"] if of_balls else []
+    told |= {name: np.asarray(getattr(solution, name)).tolist() for name in names}
+    told["peak_pressure"] = float(np.max(solution.roller_pressure))
+    told |= life_as_dict(life, rating_origins(scene))
+    hours = run.hours[k]
+    told["life_hours"] = _number(hours)
+    if scene.oil is not None:
+        told |= oil_as_dict(scene.oil, solution, scene.catalogue)
+        told["temperature"] = scene.oil.temperature
+    told["friction_torque"] = _number(bearing.friction_torque)
+    told["clearance"] = bearing.clearance
+    if scene.fits is not None:
+        told["fit"] = fit_as_dict(scene.fits, scene.element.bearing)
+    return told
+
+
+def _wheels(run: ShaftRun) -> dict[str, Any]:
+    found: dict[str, dict[str, Any]] = {"gear": {}, "belt": {}}
+    task = run.task
+    for mesh, apart in zip(
+        run.solution.power.meshes, run.solution.misalignment, strict=True
+    ):
+        wheel = task.system.wheel(mesh.wheel)
+        numbers = {
+            "force": mesh.force.tolist(),
+            "torque": float(mesh.torque),
+            "mate": mesh.mate,
+        }
+        kind = "gear" if hasattr(wheel, "teeth") else "belt"
+        if kind == "gear":
+            numbers["misalignment"] = float(apart)
+            numbers["radius"] = float(np.linalg.norm(mesh.place))
+        same = found[kind].get(mesh.wheel)
+        if same is None:
+            found[kind][mesh.wheel] = numbers
+        else:
+            # An idler: the sum, and each mesh.
+            meshes = same.pop("meshes", [dict(same)])
+            total = np.asarray(same["force"]) + mesh.force
+            same |= {"force": total.tolist(), "meshes": [*meshes, numbers]}
+    return found
+
+
+def _shaft(state: Any) -> dict[str, Any]:
+    moved = state.displacement
+    return {
+        "position": state.position.tolist(),
+        "deflection": moved[:, :3].tolist(),
+        "tilt": moved[:, 3:].tolist(),
+        "shear": state.shear.tolist(),
+        "moment": state.moment.tolist(),
+        "speed": float(state.speed),
+    }
+
+
+def _cases(run: ShaftRun, duty: DutyResult) -> dict[str, Any]:
+    hours = [case.hours for case in run.task.cases]
+    names = [seat.name for seat in run.task.system.seats]
+    return {
+        "hours": None if None in hours else hours,
+        "settings": list(run.task.settings),
+        "result": [Result(int(code)).label for code in duty.result],
+        "misalignment": duty.misalignment.tolist(),
+        "speed": duty.speed.tolist(),
+        "bearings": {
+            name: {
+                "load": duty.load[:, k].tolist(),
+                "peak_pressure": _plain(duty.peak_pressure[:, k]),
+                **{key: _plain(of[:, k]) for key, of in duty.lives.items()},
+            }
+            for k, name in enumerate(names)
+        },
+    }
+
+
+def _plain(values: Any) -> list[float | None]:
+    return [_number(value) for value in values]
+
+
+def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
+    """Return a row for each bearing, of several cases one for each bearing and case.
+
+    Args:
+        run: Solved run.
+    """
+    names = [seat.name for seat in run.task.system.seats]
+    forces = "Fx Fy Fz Mx My Mz".split()
+    units = ["N"] * 3 + ["N m"] * 3
+    if run.duty is None:
+        found: dict[str, Any] = {"bearing": names}
+        load = run.solution.load
+        pressure = [
+            np.nan if b.solution is None else np.max(b.solution.roller_pressure)
+            for b in run.bearings
+        ]
+        lives = {
+            key: [
+                np.nan if getattr(b.life, key, None) is None else getattr(b.life, key)
+                for b in run.bearings
+            ]
+            for key in (
+                "static_safety",
+                "basic_rating_life",
+                "reference_rating_life",
+                "modified_rating_life",
+                "life_hours",
+            )
+        }
+    else:
+        count = len(run.task.cases)
+        found = {
+            "case": np.repeat(np.arange(count), len(names)),
+            "bearing": names * count,
+        }
+        for key in run.task.varied:
+            values = [one[key] for one in run.task.settings]
+            found[key] = np.repeat(np.array(values), len(names))
+        load = run.duty.load.reshape(-1, 6)
+        pressure = run.duty.peak_pressure.ravel()
+        lives = {key: of.ravel() for key, of in run.duty.lives.items()}
+    for k, (name, unit) in enumerate(zip(forces, units, strict=True)):
+        found[f"{name} [{unit}]"] = load[:, k]
+    found["peak_pressure [Pa]"] = np.asarray(pressure, float)
+    for key, values in lives.items():
+        unit = {"life_hours": " [h]", "static_safety": "", "damage": " [1/rev]"}
+        found[key + unit.get(key, " [rev]")] = np.asarray(values, float)
+    return {name: np.asarray(values) for name, values in found.items()}

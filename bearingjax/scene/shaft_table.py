@@ -1,0 +1,730 @@
+"""Read the scene of a system of shafts: shafts, wheels, bearings, housing, drive."""
+
+import contextlib
+import copy
+import dataclasses
+import re
+import warnings
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..design import Material
+from ..element.frame import LOADS
+from ..numerics.gravity import GRAVITY
+from ..shafts import (
+    Coupling,
+    Drive,
+    Gear,
+    HousingStiffness,
+    Pulley,
+    Seat,
+    ShaftLine,
+    ShaftLoad,
+    ShaftSystem,
+)
+from ..shafts.parts import APEXES, HANDS
+from ..statics.life import LifeConditions
+from .bearing_table import BALLS, BESIDE
+from .cases_table import CasesKeys, Varied
+from .catalogue_entry import catalogue_entry
+from .files import read_matrix
+from .life_table import life_conditions
+from .quantity import SceneError, to_si
+from .read import Scene, scene_of
+from .rotor_mounts import SpringKeys
+from .rotor_table import MATERIAL
+from .scene_file import assign, find_scene, is_shafts, parse_scene
+from .schema import Keys, read_keys, scene_key
+from .table import Table
+
+AXES = {
+    sign + name: tuple(factor * np.eye(3)[k])
+    for sign, factor in (("", 1.0), ("-", -1.0))
+    for k, name in enumerate("xyz")
+}
+"""Directions along the global axes, by name."""
+_MOST_CASES = 20_000
+
+
+def _vector(table: Table, key: str) -> tuple[float, ...]:
+    """Read a direction: a name of `AXES`, or three bare numbers."""
+    value = table.raw(key, "z")
+    if isinstance(value, str):
+        return AXES[table.choice(key, tuple(AXES), "z")]
+    numbers = isinstance(value, list) and len(value) == 3
+    if not numbers or not all(isinstance(x, int | float) for x in value):
+        problem = (
+            f"{value!r} is not a direction; one of {', '.join(AXES)}, or [x, y, z]"
+        )
+        raise table.error(key, problem)
+    if not any(value):
+        raise table.error(key, "has no direction: all three numbers are 0")
+    return tuple(map(float, value))
+
+
+def _axis(about: str) -> Any:
+    numbers = {"type": "array", "items": {"type": "number"}}
+    json = {"anyOf": [{"enum": [*AXES]}, {**numbers, "minItems": 3, "maxItems": 3}]}
+    return scene_key(about, reader=_vector, json=json, default=None, otherwise="z")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SegmentKeys(Keys):
+    """[[shaft.NAME.segments]]: segments of the shaft, one after the other."""
+
+    length: float = scene_key("length", "length", above=0)
+    outer_diameter: float = scene_key("outer diameter", "length", above=0)
+    bore: float = scene_key("bore", "length", default=0.0, least=0)
+    material: Material = scene_key("material, or its numbers", **MATERIAL)
+
+    def check(self) -> None:
+        if not self.bore < self.outer_diameter:
+            problem = f"{self.bore:g} m is not below the outer diameter"
+            raise self.table.error("bore", problem)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class ShaftKeys(Keys):
+    """[shaft.NAME]: a shaft; positions on it count from its first segment."""
+
+    segments: tuple[SegmentKeys, ...] = scene_key("segments of the shaft")
+    axis: tuple[float, ...] = _axis("direction of the shaft in global axes")
+    position: tuple[float, ...] | None = scene_key(
+        "start of the first segment in global axes, [x, y, z]",
+        "length",
+        otherwise="not known: meshes are placed by `mesh_angle`",
+    )
+    rigid: bool = scene_key("whether the shaft does not bend", default=False)
+    speed: float | None = scene_key(
+        "speed, from local x towards local y, in place of `drive.speed`", "speed"
+    )
+
+    def check(self) -> None:
+        if self.position is not None and len(self.position) != 3:
+            problem = f"has {len(self.position)} numbers; it must have three, x, y, z"
+            raise self.table.error("position", problem)
+
+    def line(self, name: str) -> ShaftLine:
+        """Build the shaft."""
+        rows = [(s.length, s.outer_diameter, s.bore, s.material) for s in self.segments]
+        length, outer, bore, material = zip(*rows, strict=True)
+        with self.table.building():
+            return ShaftLine(
+                name,
+                length,
+                outer,
+                bore,
+                material,
+                self.axis,
+                self.position,
+                self.rigid,
+            )
+
+
+_SHAFT: Any = {"otherwise": "the only one"}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class PlacedKeys(Keys):
+    """A part on a shaft."""
+
+    shaft: str | None = scene_key("name of the shaft", **_SHAFT)
+    position: float | None = scene_key(
+        "place along the shaft, from its first segment", "length"
+    )
+    station: int | None = scene_key(
+        "in place of `position`: 0 is the start of the shaft, k the end of segment k",
+        least=0,
+        without={"position": ""},
+    )
+
+    def placed(self, shafts: Mapping[str, ShaftKeys]) -> dict[str, Any]:
+        """Return name of the shaft and position on it.
+
+        Args:
+            shafts: All shafts by their names.
+
+        Raises:
+            SceneError: If the shaft or the place is missing, or not there.
+        """
+        shaft = self.shaft
+        if shaft is None and len(shafts) == 1:
+            shaft = next(iter(shafts))
+            self.table.fill("shaft", shaft)
+        if shaft not in shafts:
+            problem = "is missing" if shaft is None else f"{shaft!r} is not a shaft"
+            raise self.table.error("shaft", f"{problem}; one of {', '.join(shafts)}")
+        lengths = [segment.length for segment in shafts[shaft].segments]
+        if self.station is not None:
+            if self.station > len(lengths):
+                problem = f"{self.station} is not a station; from 0 to {len(lengths)}"
+                raise self.table.error("station", problem)
+            return {"shaft": shaft, "position": sum(lengths[: self.station])}
+        if self.position is None:
+            problem = "is missing; give the place along the shaft, or a `station`"
+            raise self.table.error("position", problem)
+        if not 0 <= self.position <= sum(lengths) * (1 + 1e-9):
+            ends = f"0 to {1e3 * sum(lengths):.6g} mm"
+            problem = f"{1e3 * self.position:.6g} mm is beyond the ends of {shaft},"
+            raise self.table.error("position", f"{problem} {ends}")
+        return {"shaft": shaft, "position": self.position}
+
+
+def _source(about: str, kind: str, other: str) -> Any:
+    return scene_key(about, kind, without={other: ""})
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class WheelKeys(PlacedKeys):
+    """A wheel on a shaft."""
+
+    mates_with: str | None = scene_key(
+        "wheel of another shaft that it meshes with; each pair is named once"
+    )
+    torque: float | None = _source(
+        "of a mate outside the system on the shaft, about its z", "moment", "power"
+    )
+    power: float | None = _source(
+        "of a mate outside the system, into the shaft", "power", "torque"
+    )
+    efficiency: float = scene_key(
+        "power out over power in, of the pair", default=1.0, above=0, most=1
+    )
+
+
+_BEVEL: Any = {"needs": ("pitch_angle",)}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class GearKeys(WheelKeys):
+    """[gear.NAME]: an external gear, spur, helical or bevel."""
+
+    teeth: int = scene_key("number of teeth")
+    normal_module: float | None = scene_key(
+        "module normal to the teeth; of a bevel gear in the middle of the face",
+        "length",
+        above=0,
+    )
+    outer_module: float | None = scene_key(
+        "of a bevel gear, in place of it: transverse module at the large end",
+        "length",
+        above=0,
+        needs=("face_width",),
+        without={"normal_module": ""},
+    )
+    face_width: float | None = scene_key("width of the teeth", "length", above=0)
+    helix_angle: float = scene_key(
+        "helix angle at the pitch circle; spiral angle of a bevel gear",
+        "angle",
+        default=0.0,
+        least=0,
+        below=60,
+        shown="deg",
+    )
+    hand: str = scene_key("hand of the helix", choices=tuple(HANDS), default="none")
+    pressure_angle: float = scene_key(
+        "pressure angle normal to the teeth",
+        "angle",
+        default=np.deg2rad(20.0),
+        above=5,
+        below=45,
+        shown="deg",
+    )
+    mesh_angle: float | None = scene_key(
+        "angle of the mesh around the shaft, from local x to y",
+        "angle",
+        otherwise="from the places of both shafts",
+    )
+    pitch_angle: float | None = scene_key(
+        "half the angle of the pitch cone of a bevel gear", "angle", above=0
+    )
+    apex: str | None = scene_key(
+        "side of the shaft on which the apex of a bevel gear lies",
+        choices=tuple(APEXES),
+        **_BEVEL,
+    )
+
+    def check(self) -> None:
+        if self.normal_module is None and self.outer_module is None:
+            raise self.table.error("normal_module", "is missing")
+        if self.outer_module is not None and self.pitch_angle is None:
+            raise self.table.error("outer_module", "is of a bevel gear (`pitch_angle`)")
+        if self.pitch_angle is not None and self.apex is None:
+            raise self.table.error("apex", "is missing; '+z' or '-z'")
+
+    def wheel(self, name: str, shafts: Mapping[str, ShaftKeys]) -> Gear:
+        """Build the gear."""
+        module = self.normal_module
+        if module is None:
+            assert self.outer_module and self.face_width and self.pitch_angle
+            less = self.face_width * np.sin(self.pitch_angle) / self.teeth
+            if not less < self.outer_module:
+                problem = "reaches beyond the apex of the cone"
+                raise self.table.error("face_width", problem)
+            module = (self.outer_module - less) * np.cos(self.helix_angle)
+        names = (
+            "teeth helix_angle hand pressure_angle mesh_angle pitch_angle apex"
+            " mates_with torque power efficiency"
+        ).split()
+        given = {one: getattr(self, one) for one in names}
+        with self.table.building():
+            return Gear(name, **self.placed(shafts), normal_module=module, **given)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class BeltKeys(WheelKeys):
+    """[belt.NAME]: a pulley of a belt, or a chain wheel."""
+
+    diameter: float = scene_key("effective diameter", "length", above=0)
+    force_ratio: float = scene_key(
+        "force on the shaft over the tangential force: chains and toothed belts 1 to"
+        " 1.3, V-belts 1.5 to 2.5, flat belts 2 to 5",
+        above=0,
+    )
+    direction: float | None = scene_key(
+        "direction of the force on the shaft, as angle from local x to y",
+        "angle",
+        otherwise="towards the shaft of its mate",
+    )
+
+    def wheel(self, name: str, shafts: Mapping[str, ShaftKeys]) -> Pulley:
+        """Build the pulley."""
+        names = "diameter force_ratio direction mates_with torque power efficiency"
+        given = {one: getattr(self, one) for one in names.split()}
+        with self.table.building():
+            return Pulley(name, **self.placed(shafts), **given)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class CouplingKeys(Keys):
+    """[coupling.NAME]: torque that enters or leaves a shaft without a force."""
+
+    shaft: str | None = scene_key("name of the shaft", **_SHAFT)
+    torque: float | None = _source(
+        "on the shaft, about its z; without it from the balance", "moment", "power"
+    )
+    power: float | None = _source("into the shaft", "power", "torque")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class LoadKeys(PlacedKeys):
+    """[load.NAME]: a force and a moment on a shaft, in global axes."""
+
+    Fx: float = scene_key("force along x", "force", default=0.0)
+    Fy: float = scene_key("force along y", "force", default=0.0)
+    Fz: float = scene_key("force along z", "force", default=0.0)
+    Mx: float = scene_key("moment about x", "moment", default=0.0)
+    My: float = scene_key("moment about y", "moment", default=0.0)
+    Mz: float = scene_key("moment about z", "moment", default=0.0)
+
+    def load(self, name: str, shafts: Mapping[str, ShaftKeys]) -> ShaftLoad:
+        """Build the load."""
+        six = [getattr(self, one) for one in LOADS]
+        with self.table.building():
+            return ShaftLoad(name, **self.placed(shafts), force=six[:3], moment=six[3:])
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class DriveKeys(Keys):
+    """[drive]: where power enters the system, and how fast it turns."""
+
+    into: str | None = scene_key(
+        "shaft, driven through a coupling, or wheel without a mate",
+        otherwise="the first shaft",
+    )
+    speed: float | None = scene_key("speed of that shaft", "speed")
+    torque: float | None = _source("on that shaft, about its z", "moment", "power")
+    power: float | None = _source("into that shaft", "power", "torque")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SeatKeys(PlacedKeys):
+    """[bearings.NAME]: a bearing on a shaft, and beside these the keys of a bearing."""
+
+    turned: bool = scene_key(
+        "whether it is mounted the other way round, its +z along the shaft's -z",
+        default=False,
+    )
+    floating: bool = scene_key(
+        "whether its outer ring slides in the housing, without axial force",
+        default=False,
+    )
+    preload: float | None = scene_key(
+        "axial force of an adjusted bearing in the cold, before shaft and housing give"
+        " way",
+        "force",
+        above=0,
+    )
+    axial_offset: float = scene_key(
+        "axial displacement of the inner ring as adjusted in the cold, along the z of"
+        " the bearing; negative: play",
+        "length",
+        default=0.0,
+        without={"preload": ""},
+    )
+    housing: tuple[float, ...] | None = scene_key(
+        "stiffness of the housing at this seat along global x, y and z",
+        "stiffness",
+        otherwise="rigid",
+    )
+    stiffness: SpringKeys | None = scene_key("springs in place of the bearing")
+
+    def check(self) -> None:
+        if self.housing is not None and len(self.housing) != 3:
+            problem = f"has {len(self.housing)} numbers; it must have three, x, y, z"
+            raise self.table.error("housing", problem)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class HousingKeys(Keys):
+    """[housing]: one stiffness matrix over several seats."""
+
+    file: str = scene_key(
+        "matrix in SI, in global axes, seat by seat (ux uy uz), or with (gx gy gz):"
+        " .csv, .npy, or MatrixMarket .mtx"
+    )
+    seats: tuple[str, ...] = scene_key("bearings, in the order of the matrix")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SystemKeys(Keys):
+    """[system]: what acts on all shafts."""
+
+    gravity: str = scene_key(
+        "direction of the weight of the shafts in global axes",
+        choices=("none", *AXES),
+        default="none",
+    )
+
+
+@dataclasses.dataclass(frozen=True)
+class ShaftScene:
+    """Scene of a system of shafts, in SI.
+
+    Attributes:
+        name: Name of the file without its ending.
+        system: The system.
+        bearings: Scene of each bearing alone, turning as in the system; `None` of
+            springs.
+        lives: Conditions of the life of each bearing; `None` of springs.
+        face_widths: Face width of gears by name [m].
+        hours: Time in this case [h]; `None` without cases.
+        cases: Each load case as a scene of its own; empty without [cases].
+        varied: Keys that vary from case to case.
+        settings: Their values as written, of each case.
+        warnings: Warnings of suspicious but possible values.
+        inputs: The scene as it was read, in SI (`Scene.inputs`).
+    """
+
+    name: str
+    system: ShaftSystem
+    bearings: tuple[Scene | None, ...]
+    lives: tuple[LifeConditions | None, ...]
+    face_widths: dict[str, float]
+    hours: float | None
+    cases: tuple["ShaftScene", ...]
+    varied: tuple[str, ...]
+    settings: tuple[dict[str, Any], ...]
+    warnings: tuple[str, ...]
+    inputs: dict[str, Any]
+
+
+def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
+    """Read the scene of a system of shafts.
+
+    Args:
+        source, settings: As in `read_scene`.
+
+    Raises:
+        SceneError: One line that names file, key, fault and what is allowed.
+    """
+    path = find_scene(source)
+    data = parse_scene(path, settings)
+    if not is_shafts(data):
+        problem = "the scene of a system of shafts has [shaft.NAME] and [bearings.NAME]"
+        raise SceneError(f"{path.name}: `shaft`: {problem}")
+    known: dict[str, Any] = {}
+    columns: list[Varied] = []
+    if "cases" in data:
+        columns = read_keys(CasesKeys, Table(data, path.name).table("cases")).columns(
+            path
+        )
+    alone = {key: value for key, value in data.items() if key != "cases"}
+    if not columns:
+        return _read(alone, path, known)
+    count = columns[0].index.size
+    if count > _MOST_CASES:
+        problem = f"{count} cases are too many; at most {_MOST_CASES}"
+        raise SceneError(f"{path.name}: `cases`: {problem}")
+    cases, every = [], []
+    for case in range(count):
+        changed = copy.deepcopy(alone)
+        values = {c.key: c.values[c.index[case]] for c in columns}
+        hours = values.pop("hours", None)
+        for key, value in values.items():
+            if key.partition(".")[0] not in _VARYING:
+                problem = f"cannot vary; what can: hours, and keys of {_ALLOWED}"
+                raise SceneError(f"{path.name}: `cases.{key}`: {problem}")
+            assign(changed, key, value, path.name)
+        try:
+            one = _read(changed, path, known)
+        except SceneError as error:
+            raise SceneError(f"{error} (case {case})") from error
+        cases.append(dataclasses.replace(one, hours=_hours(hours)))
+        every.append(values)
+    first = cases[0]
+    odd = dict.fromkeys(text for one in cases for text in one.warnings)
+    return dataclasses.replace(
+        first,
+        hours=None,
+        cases=tuple(cases),
+        varied=tuple(c.key for c in columns if c.key != "hours"),
+        settings=tuple(every),
+        warnings=tuple(odd),
+        inputs={**first.inputs, "cases": data["cases"]},
+    )
+
+
+_VARYING = "drive load bearings gear belt coupling shaft life lubricant system".split()
+_ALLOWED = ", ".join(_VARYING)
+
+
+def _hours(value: Any) -> float | None:
+    """Return the hours of a case, of which a CSV has numbers already [h]."""
+    if value is None or not isinstance(value, str):
+        return value if value is None else float(value)
+    return to_si(value, "duration")
+
+
+def _read(data: dict[str, Any], path: Path, known: dict[str, Any]) -> ShaftScene:
+    top = Table(data, path.name)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        scene = _scene(top, path, known)
+    top.finish()
+    odd = dict.fromkeys((*(str(w.message) for w in caught), *scene.warnings))
+    return dataclasses.replace(scene, warnings=tuple(odd), inputs=top.echo())
+
+
+def _named(top: Table, key: str, kind: type[Any]) -> dict[str, Any]:
+    """Read the tables [key.NAME] by their names."""
+    tables = top.table(key)
+    return {name: read_keys(kind, tables.table(name)) for name in tables.keys()}
+
+
+def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
+    shafts: dict[str, ShaftKeys] = _named(top, "shaft", ShaftKeys)
+    gears: dict[str, GearKeys] = _named(top, "gear", GearKeys)
+    belts: dict[str, BeltKeys] = _named(top, "belt", BeltKeys)
+    couplings: dict[str, CouplingKeys] = _named(top, "coupling", CouplingKeys)
+    loads: dict[str, LoadKeys] = _named(top, "load", LoadKeys)
+    if "bearings" not in top:
+        raise top.error("bearings", "is missing; [bearings.NAME] hold the shafts")
+    drive = _drive(top, shafts, (*gears, *belts))
+    wheels = [
+        keys.wheel(name, shafts) for name, keys in (*gears.items(), *belts.items())
+    ]
+    tables = top.table("bearings")
+    seats: dict[str, SeatKeys] = {}
+    alone: dict[str, Scene | None] = {}
+    placed = {}
+    for name in tables.keys():
+        table = tables.table(name)
+        seats[name] = read_keys(SeatKeys, table)
+        placed[name] = seats[name].placed(shafts)
+        alone[name] = _bearing(top, table, seats[name], name, path, known)
+    system = read_keys(SystemKeys, top.table("system"))
+    pull = (0.0, 0.0, 0.0)
+    if system.gravity != "none":
+        pull = tuple(GRAVITY * x for x in AXES[system.gravity])
+    housing = _housing(top, seats, path)
+    made = []
+    for name, keys in seats.items():
+        scene = alone[name]
+        with keys.table.building():
+            made.append(
+                Seat(
+                    name,
+                    **placed[name],
+                    installed=None if scene is None else scene.installed,
+                    preload=keys.preload,
+                    axial_offset=keys.axial_offset,
+                    turned=keys.turned,
+                    floating=keys.floating,
+                    stiffness=None
+                    if keys.stiffness is None
+                    else keys.stiffness.diagonal,
+                )
+            )
+    with top.building():
+        whole = ShaftSystem(
+            [keys.line(name) for name, keys in shafts.items()],
+            made,
+            drive,
+            wheels,
+            [_coupling(name, keys, shafts) for name, keys in couplings.items()],
+            [keys.load(name, shafts) for name, keys in loads.items()],
+            housing,
+            pull,
+        )
+    turning = drive is not None and float(drive.speed) != 0.0
+    return ShaftScene(
+        name=path.stem,
+        system=whole,
+        bearings=tuple(alone.values()),
+        lives=tuple(
+            None if scene is None else life_conditions(scene, (), turning)
+            for scene in alone.values()
+        ),
+        face_widths={n: k.face_width for n, k in gears.items() if k.face_width},
+        hours=None,
+        cases=(),
+        varied=(),
+        settings=(),
+        warnings=tuple(
+            f"{name}: {text}"
+            for name, scene in alone.items()
+            if scene is not None
+            for text in scene.warnings
+        ),
+        inputs={},
+    )
+
+
+def _coupling(
+    name: str, keys: CouplingKeys, shafts: Mapping[str, ShaftKeys]
+) -> Coupling:
+    shaft = keys.shaft
+    if shaft is None and len(shafts) == 1:
+        shaft = next(iter(shafts))
+    if shaft is None:
+        raise keys.table.error("shaft", f"is missing; one of {', '.join(shafts)}")
+    with keys.table.building():
+        return Coupling(name, shaft, keys.torque, keys.power)
+
+
+def _drive(top: Table, shafts: Mapping[str, ShaftKeys], wheels: Any) -> Drive | None:
+    """Read the drive; the speed of any shaft may stand in place of its own."""
+    given = {
+        name: keys.speed for name, keys in shafts.items() if keys.speed is not None
+    }
+    if "drive" not in top and not given:
+        return None
+    keys = read_keys(DriveKeys, top.table("drive"))
+    into = keys.into
+    if into is None:
+        into = next(iter(given), next(iter(shafts)))
+        keys.fill(into=into)
+    if into not in (*shafts, *wheels):
+        problem = f"{into!r} is neither a shaft nor a wheel; one of"
+        raise keys.table.error("into", f"{problem} {', '.join((*shafts, *wheels))}")
+    speed = keys.speed
+    for name, value in given.items():
+        if speed is not None or name != into or len(given) > 1:
+            problem = "is given beside `drive.speed` or of a shaft that is not driven;"
+            cure = "give one speed, that of the driven shaft; the teeth give the others"
+            raise shafts[name].table.error("speed", f"{problem} {cure}")
+        speed = value
+    with keys.table.building():
+        return Drive(into, 0.0 if speed is None else speed, keys.torque, keys.power)
+
+
+def _housing(
+    top: Table, seats: Mapping[str, SeatKeys], path: Path
+) -> HousingStiffness | None:
+    springs = {
+        name: keys.housing for name, keys in seats.items() if keys.housing is not None
+    }
+    if "housing" not in top:
+        return HousingStiffness.of_seats(springs) if springs else None
+    keys = read_keys(HousingKeys, top.table("housing"))
+    if springs:
+        problem = f"stands beside `housing` of bearing {next(iter(springs))}; give one"
+        raise keys.table.error("file", problem)
+    try:
+        matrix = read_matrix(path.parent / keys.file)
+    except ValueError as error:
+        raise keys.table.error("file", error) from error
+    with keys.table.building():
+        return HousingStiffness(keys.seats, matrix)
+
+
+_OF_SEAT = {field.name for field in dataclasses.fields(SeatKeys)} - {"table"}
+_OWN = (*BESIDE, "life", "lubricant")
+
+
+def _bearing(
+    top: Table,
+    table: Table,
+    keys: SeatKeys,
+    name: str,
+    path: Path,
+    known: dict[str, Any],
+) -> Scene | None:
+    """Read a bearing as a scene of its own; `known` are those read before."""
+    own = {k: v for k, v in table.keys_given().items() if k not in _OF_SEAT}
+    table.skip(*own)
+    common = {k: top.raw(k) for k in ("life", "lubricant", "output") if k in top}
+    if keys.stiffness is not None:
+        if own:
+            problem = "goes with a bearing, not with springs (`stiffness`)"
+            raise table.error(next(iter(own)), problem)
+        return None
+    data: dict[str, Any] = {
+        "bearing": {k: v for k, v in own.items() if k not in _OWN},
+        **{k: v for k, v in own.items() if k in BESIDE and k not in _CONTROL},
+    }
+    operating = {k: own[k] for k in _CONTROL if k in own}
+    # Any speed will do: lives and fits take that of the system.
+    data["operating"] = {**operating, "inner_speed": "1 rad/s"}
+    for key, value in common.items():
+        data[key] = {**value, **own.get(key, {})} if isinstance(value, dict) else value
+    for key in ("life", "lubricant"):
+        if key in own:
+            data.setdefault(key, own[key])
+    if isinstance(data.get("life"), dict) and _is_ball(own):
+        data["life"].pop("edge_stress", None)
+    mark = repr(data)
+    if mark not in known:
+        known[mark] = _scene_of(data, name, path, own)
+    scene = known[mark]
+    inputs = dict(scene.inputs)
+    beside = {k: inputs[k] for k in BESIDE if k in inputs}
+    for key, value in {**inputs["bearing"], **beside}.items():
+        table.fill(key, value)
+    for key in common:
+        top.fill(key, common[key])
+    for key in ("life", "lubricant"):
+        if key in own:
+            table.fill(key, own[key])
+    return scene
+
+
+_CONTROL = ("raceway_control", "friction_coefficient")
+
+
+def _scene_of(data: dict[str, Any], name: str, path: Path, own: Any) -> Scene:
+    """Read the scene of one bearing; errors name the keys of the system's scene."""
+
+    def renamed(match: re.Match) -> str:
+        key = match[1]
+        if key == "bearing":
+            return f"`bearings.{name}{match[2]}"
+        return f"`bearings.{name}.{key}{match[2]}" if key in own else match[0]
+
+    try:
+        return dataclasses.replace(scene_of(data, path), name=name)
+    except SceneError as error:
+        raise SceneError(re.sub(r"`(\w+)([.`])", renamed, str(error))) from error
+
+
+def _is_ball(own: Mapping[str, Any]) -> bool:
+    """Whether the keys of a bearing are of one with balls."""
+    kind, name = own.get("type"), own.get("designation")
+    if kind is None and isinstance(name, str):
+        with contextlib.suppress(SceneError):
+            kind = catalogue_entry(name).type
+    return kind in BALLS

@@ -1,0 +1,222 @@
+"""Lives of all bearings of a system of shafts, under one load case or many."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Float, Int
+
+from ..design import rows_of
+from ..numerics.programs import program
+from ..numerics.types import Scalar
+from ..numerics.units import unit
+from ..statics.life import LifeConditions, life_of
+from ..statics.reference_life import BALLS, exponents_of
+from .equilibrium import adjusted, in_place, speed_of, system_state
+from .system import ShaftSystem
+
+BATCH = 64
+"""Cases that are solved side by side."""
+_NEWTON = 40
+"""Steps of Newton's method for the life of a system, which is convex: 8 suffice."""
+
+LIVES = (
+    "static_safety",
+    "basic_rating_life",
+    "reference_rating_life",
+    "modified_rating_life",
+    "damage",
+)
+"""Numbers of a `Life` that a `DutyResult` has."""
+
+
+class DutyResult(eqx.Module):
+    """Load cases of a system of shafts. Numbers of failed cases are NaN.
+
+    Attributes:
+        load: On each inner ring in global axes (case, bearing, 6) [N, N m].
+        displacement: As in `SystemSolution` (case, bearing, 6) [m, rad].
+        misalignment: Of each mesh (case, mesh) [rad].
+        speed: Of each shaft (case, shaft) [rad/s].
+        loss: Power lost in meshes (case,) [W].
+        result: `Result` code (case,).
+        peak_pressure: Largest contact pressure (case, bearing) [Pa]; NaN of springs.
+        lives: Numbers of `LIVES` by name (case, bearing); infinite of springs.
+    """
+
+    load: Float[Array, "case bearing 6"] = eqx.field(metadata=unit(6 * ("N",)))
+    displacement: Float[Array, "case bearing 6"] = eqx.field(metadata=unit(6 * ("m",)))
+    misalignment: Float[Array, "case mesh"] = eqx.field(metadata=unit("rad"))
+    speed: Float[Array, "case shaft"] = eqx.field(metadata=unit("rad/s"))
+    loss: Float[Array, " case"] = eqx.field(metadata=unit("W"))
+    result: Int[Array, " case"]
+    peak_pressure: Float[Array, "case bearing"] = eqx.field(metadata=unit("Pa"))
+    lives: dict[str, Float[Array, "case bearing"]]
+
+
+def solve_duty(
+    systems: Sequence[ShaftSystem],
+    conditions: Sequence[Sequence[LifeConditions | None]],
+) -> DutyResult:
+    """Solve many load cases of a system of shafts, with the lives of its bearings.
+
+    Args:
+        systems: The system in each case: one structure, other numbers.
+        conditions: Conditions of the life of each bearing in each case
+            (case, bearing); `None` of springs.
+
+    Returns:
+        DutyResult; nothing is raised for a failed case, read `result`.
+
+    Raises:
+        ValueError: If there are no cases, or they differ in structure.
+    """
+    if not systems or len(systems) != len(conditions):
+        raise ValueError(
+            f"solve_duty: {len(systems)} systems and {len(conditions)} conditions; give"
+            " one case at least, and both for each."
+        )
+    known: dict[Any, Any] = {}
+    whole = [adjusted(system, known) for system in systems]
+    found = _map(_state, whole)
+    lives: list[tuple[Any, Any]] = []
+    first = systems[0]
+    for k, seat in enumerate(first.seats):
+        if seat.installed is None:
+            none = np.full(len(systems), np.nan)
+            lives.append((none, dict.fromkeys(LIVES, none)))
+            continue
+        speeds = [speed_of(first, k, speed)[0] for speed in np.asarray(found["speed"])]
+        given = [
+            (system.seats[k].installed, motion, speed, of_case[k])
+            for system, motion, speed, of_case in zip(
+                systems, found["motion"][:, k], speeds, conditions, strict=True
+            )
+        ]
+        lives.append(_map(_rated, given, speed_of(first, k, found["speed"][0])[1]))
+    names = [n for n in LIVES if any(n in life[1] for life in lives)]
+    never = np.full(len(systems), np.nan)
+    return DutyResult(
+        load=found["load"],
+        displacement=found["displacement"],
+        misalignment=found["misalignment"],
+        speed=found["speed"],
+        loss=found["loss"],
+        result=found["result"],
+        peak_pressure=np.stack([life[0] for life in lives], axis=1),
+        lives={
+            name: np.stack([life[1].get(name, never) for life in lives], axis=1)
+            for name in names
+        },
+    )
+
+
+def _map(function: Any, given: Sequence[Any], *static: Any) -> Any:
+    """Return function(one) of all, stacked in NumPy; what they share is not copied."""
+    trees = [jax.tree.structure(one) for one in given]
+    if any(tree != trees[0] for tree in trees):
+        raise ValueError("solve_duty: the cases differ in more than numbers.")
+    leaves = [jax.tree.leaves(one) for one in given]
+    varying, shared = [], []
+    for column in zip(*leaves, strict=True):
+        arrays = eqx.is_array_like(column[0])
+        same = all(x is column[0] for x in column) or (
+            arrays and all(np.array_equal(x, column[0]) for x in column[1:])
+        )
+        varying.append(None if same else np.stack([np.asarray(x) for x in column]))
+        shared.append(column[0] if same else None)
+    if all(v is None for v in varying):
+        once = jax.device_get(function(given[0], *static))
+        return jax.tree.map(lambda x: np.stack([x] * len(given)), once)
+    both = _mapped(function, varying, shared, trees[0], static)
+    return jax.device_get(both)
+
+
+@program
+def _mapped(function, varying, shared, tree, static):
+    def one(mine):
+        leaves = [s if v is None else v for v, s in zip(mine, shared, strict=True)]
+        return function(jax.tree.unflatten(tree, leaves), *static)
+
+    return lax.map(one, varying, batch_size=BATCH)
+
+
+def _state(system: ShaftSystem) -> dict[str, Any]:
+    found, _ = system_state(system)
+    names = "load displacement misalignment motion result".split()
+    kept = {name: getattr(found, name) for name in names}
+    return {**kept, "speed": found.power.speed, "loss": found.power.loss}
+
+
+def _rated(given: Any, turning: bool) -> tuple[Scalar, dict[str, Any]]:
+    installed, motion, speed, conditions = given
+    solution = in_place(installed, motion, speed, turning, 101)
+    life = life_of(solution.element, solution, conditions, speed=speed)
+    lives = {name: getattr(life, name) for name in LIVES}
+    lives = {name: value for name, value in lives.items() if value is not None}
+    return jnp.max(solution.roller_pressure), lives
+
+
+def bearing_hours(
+    damage: Float[Array, "case bearing"],
+    speed: Float[Array, "case bearing"],
+    hours: Float[Array, " case"] | None = None,
+) -> Any:
+    """Return the life of each bearing under a spectrum (bearing,) [h].
+
+    Args:
+        damage: Of `DutyResult` [1/rev].
+        speed: Of the shaft of each bearing [rad/s].
+        hours: Time in each case [h]; `None`: the same in all.
+
+    Source: Palmgren (1924), Miner (1945); ISO 281.
+    """
+    share = jnp.ones(damage.shape[0]) if hours is None else jnp.asarray(hours)
+    share = share / jnp.sum(share)
+    used = share @ (damage * jnp.abs(speed) * (3600.0 / (2.0 * jnp.pi)))
+    return jnp.where(used == 0, jnp.inf, 1.0 / jnp.where(used == 0, 1.0, used))
+
+
+def system_life(system: ShaftSystem, hours: Any) -> Scalar:
+    """Return the life that all bearings together reach with their reliability [h].
+
+    The probabilities that the bearings survive multiply; each follows Weibull's
+    distribution with the slope of its rolling elements, 10/9 of balls and 9/8 of
+    rollers: the sum of (L/L_k)^e_k is one at the life L of the system.
+
+    Args:
+        system: The system.
+        hours: Life of each bearing (bearing,), infinite of springs [h].
+
+    Returns:
+        Life; infinite if no bearing is tired. Differentiable.
+    """
+    kinds = [
+        BALLS
+        if seat.installed is None
+        else exponents_of(rows_of(seat.installed.drawing.bearing)[0].bearing)
+        for seat in system.seats
+    ]
+    slope = jnp.asarray([kind.spread[0] / kind.spread[1] for kind in kinds])
+    mortal = jnp.isfinite(hours) | jnp.isnan(hours)
+    log = jnp.where(mortal, jnp.log(jnp.where(mortal, hours, 1.0)), 0.0)
+
+    def excess(x, log):
+        part = jnp.where(mortal, jnp.exp(slope * (x - log)), 0.0)
+        return jnp.sum(part) - 1.0, jnp.sum(slope * part)
+
+    def step(x, log):
+        value, rate = excess(x, log)
+        return x - value / jnp.where(rate > 0, rate, 1.0)
+
+    still = lax.stop_gradient(log)
+    start = jnp.min(jnp.where(mortal, still, jnp.inf))
+    start = jnp.where(jnp.isfinite(start), start, 0.0)
+    x = lax.fori_loop(0, _NEWTON, lambda _, x: step(x, still), start)
+    # One step more has the derivatives of the root.
+    life = jnp.exp(step(lax.stop_gradient(x), log))
+    return jnp.where(jnp.any(mortal), life, jnp.inf)
