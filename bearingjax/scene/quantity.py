@@ -63,6 +63,8 @@ KINDS = {
     "tilting damping": ("N m s/rad", "N m s/rad"),
     "rate": ("1/s", "1/s"),
     "power": ("W", "kW"),
+    "thermal conductance": ("W/K", "W/K"),
+    "heat capacity": ("J/K", "kJ/K"),
 }
 """Kind of quantity to its SI unit and a unit suggested in messages. Of several kinds
 with the same unit, the first is taken where only the unit is known."""

@@ -24,6 +24,7 @@ def shaft_report(run: ShaftRun) -> Report:
         "System": [*_head(run), _shafts(run)],
         "Wheels": _wheels(run),
         "Bearings": _bearings(run),
+        "Temperatures": _temperatures(run),
         "Rating life": _lives(run),
         "Load cases": _cases(run),
         "Solution": [
@@ -161,6 +162,28 @@ def _bearings(run: ShaftRun) -> Section:
     if any(value is not None for value in clearance):
         columns.append(Column("clearance", clearance, "m", ".1f"))
     return [Grid(columns, "load of the shaft on the inner ring; axial along its shaft")]
+
+
+def _temperatures(run: ShaftRun) -> Section:
+    state = run.thermal
+    if state is None:
+        return []
+    celsius = [np.asarray(t) - 273.15 for t in (state.inner_ring, state.outer_ring)]
+    columns = [
+        Column("bearing", [seat.name for seat in run.task.system.seats]),
+        Column("inner ring", celsius[0], ["°C"] * len(celsius[0]), ".1f"),
+        Column("outer ring", celsius[1], ["°C"] * len(celsius[1]), ".1f"),
+        Column("friction", state.friction, "W", ".4g"),
+    ]
+    told: list[Part] = [Grid(columns, "in equilibrium with friction")]
+    if run.task.heat is not None and run.task.heat.housing is not None:
+        told.append(f"housing and oil: {float(state.housing) - 273.15:.1f} °C")
+    if float(state.slowest) > 0:
+        told.append(
+            "the slowest disturbance decays in"
+            f" {1.0 / float(state.slowest) / 60.0:.3g} min"
+        )
+    return told
 
 
 def _called(bearing: Any) -> str:

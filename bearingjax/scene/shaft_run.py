@@ -13,12 +13,16 @@ from ..shafts import (
     DutyResult,
     ShaftSystem,
     SystemSolution,
+    ThermalState,
     bearing_hours,
     bearing_solutions,
     solve_duty,
+    solve_heat,
     system_life,
+    warm_up,
 )
 from ..shafts.equilibrium import moving, searched_system, speed_of, unsolved
+from ..shafts.heat import overheated
 from ..statics.life import Life, life_of
 from ..statics.solution import Solution
 from ..statics.support import axial_senses
@@ -76,6 +80,8 @@ class ShaftRun:
         task: The scene.
         solution: Equilibrium, in NumPy; of several cases that of the first.
         bearings: Each bearing in it; empty if it was not solved.
+        thermal: Temperatures, in NumPy; `None` without [heat].
+        warming: Temperatures over `task.times`, as of `warm_up` (time, node) [K].
         duty: All cases, in NumPy; `None` without [cases].
         problem: Why it was not solved, in words; empty if it was.
         warnings: Warnings of doubtful results.
@@ -84,6 +90,8 @@ class ShaftRun:
     task: ShaftScene
     solution: SystemSolution
     bearings: tuple[InPlace, ...]
+    thermal: ThermalState | None
+    warming: np.ndarray | None
     duty: DutyResult | None
     problem: str
     warnings: tuple[str, ...]
@@ -135,19 +143,31 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
     """
     say = told or (lambda name: None)
     system = task.system
-    say("static equilibrium")
+    state, problem = None, ""
     try:
-        found, place = searched_system(system)
+        if task.heat is None:
+            say("static equilibrium")
+            found, place = searched_system(system)
+            if not found.converged:
+                problem = unsolved(system, jax.device_get(found), np.asarray(place))
+        else:
+            say("thermal equilibrium")
+            state = solve_heat(system, task.heat, throw=False)
+            found = state.solution
+            if int(state.result) != Result.CONVERGED:
+                problem = overheated(state)
+            task = _warm(task, state)
     except ValueError as error:
         raise SceneError(f"{task.name}: {error}") from error
     found = jax.device_get(found)
-    problem = ""
     bearings: tuple[InPlace, ...] = ()
-    if not found.converged:
-        problem = unsolved(system, found, np.asarray(place))
-    else:
+    if not problem:
         say("bearings")
         bearings = tuple(_in_place(task, found))
+    warming = None
+    if task.heat is not None and task.times is not None:
+        say("warming up")
+        warming = np.asarray(warm_up(system, task.heat, task.times))
     duty = None
     if task.cases and not problem:
         say("load cases")
@@ -161,9 +181,37 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
                 f"{failed.size} of {len(task.cases)} cases not solved (case"
                 f" {failed[0]}: {label})"
             )
-    run = ShaftRun(task, found, bearings, duty, problem, ())
+    state = jax.device_get(state)
+    run = ShaftRun(task, found, bearings, state, warming, duty, problem, ())
     odd = dict.fromkeys((*task.warnings, *_warnings(run)))
     return dataclasses.replace(run, warnings=tuple(odd))
+
+
+def _warm(task: ShaftScene, state: ThermalState) -> ShaftScene:
+    """Return a scene whose bearings and oil have the temperatures that were found."""
+    scenes, lives = [], []
+    rings = np.asarray([state.inner_ring, state.outer_ring]).mean(axis=0)
+    for k, (seat, scene) in enumerate(
+        zip(state.system.seats, task.bearings, strict=True)
+    ):
+        life, oil = task.lives[k], None if scene is None else scene.oil
+        if scene is None or seat.installed is None or life is None or oil is None:
+            scenes.append(scene)
+            lives.append(life)
+            continue
+        own = life.viscosity is not None and oil is not None
+        if own and "viscosity" not in scene.inputs.get("life", {}):
+            viscosity = oil.lubricant.kinematic_viscosity(rings[k])
+            life = dataclasses.replace(life, viscosity=viscosity)
+        fits, warm = scene.fits, jax.device_get(seat.installed.conditions)
+        if fits is not None and warm is not None:
+            fits = dataclasses.replace(fits, conditions=warm)
+        oil = dataclasses.replace(oil, temperature=float(rings[k]))
+        scenes.append(dataclasses.replace(scene, oil=oil, fits=fits))
+        lives.append(life)
+    return dataclasses.replace(
+        task, system=state.system, bearings=tuple(scenes), lives=tuple(lives)
+    )
 
 
 def _in_place(task: ShaftScene, found: SystemSolution) -> Iterator[InPlace]:
@@ -285,6 +333,7 @@ def shafts_as_dict(run: ShaftRun) -> dict[str, Any]:
                 "bearing_loss": bearing_loss(run),
             },
             "system_life_hours": _number(run.system_hours),
+            **_thermal(run),
         }
         if run.duty is not None:
             numbers["cases"] = _cases(run, run.duty)
@@ -298,6 +347,31 @@ def shafts_as_dict(run: ShaftRun) -> dict[str, Any]:
         "inputs": run.task.inputs,
         "version": __version__,
     }
+
+
+def _thermal(run: ShaftRun) -> dict[str, Any]:
+    state, warming = run.thermal, run.warming
+    if state is None:
+        return {}
+    names = [seat.name for seat in run.task.system.seats]
+    found: dict[str, Any] = {
+        "inner_ring": dict(zip(names, map(_number, state.inner_ring), strict=True)),
+        "outer_ring": dict(zip(names, map(_number, state.outer_ring), strict=True)),
+        "housing": _number(state.housing),
+        "friction": dict(zip(names, map(_number, state.friction), strict=True)),
+        "slowest_rate": _number(state.slowest),
+    }
+    if warming is not None and run.task.times is not None:
+        found["time"] = run.task.times.tolist()
+        for k, name in enumerate(names):
+            both = zip(("inner_ring", "outer_ring"), (2 * k, 2 * k + 1), strict=True)
+            for ring, node in both:
+                found.setdefault(f"{ring}_over_time", {})[name] = _plain(
+                    warming[:, node]
+                )
+        if warming.shape[1] > 2 * len(names):
+            found["housing_over_time"] = _plain(warming[:, -1])
+    return {"heat": found}
 
 
 def bearing_loss(run: ShaftRun) -> float | None:

@@ -18,6 +18,7 @@ from ..shafts import (
     Coupling,
     Drive,
     Gear,
+    HeatNetwork,
     HousingStiffness,
     Pulley,
     Seat,
@@ -31,6 +32,7 @@ from .bearing_table import BALLS, BESIDE
 from .cases_table import CasesKeys, Varied
 from .catalogue_entry import catalogue_entry
 from .files import read_matrix
+from .heat_table import read_heat
 from .life_table import life_conditions
 from .quantity import SceneError, to_si
 from .read import Scene, scene_of
@@ -411,6 +413,8 @@ class ShaftScene:
             springs.
         lives: Conditions of the life of each bearing; `None` of springs.
         face_widths: Face width of gears by name [m].
+        heat: Paths of the friction heat, or `None`: temperatures are as given.
+        times: Times at which the warming up is reported (time,) [s], or `None`.
         hours: Time in this case [h]; `None` without cases.
         cases: Each load case as a scene of its own; empty without [cases].
         varied: Keys that vary from case to case.
@@ -424,6 +428,8 @@ class ShaftScene:
     bearings: tuple[Scene | None, ...]
     lives: tuple[LifeConditions | None, ...]
     face_widths: dict[str, float]
+    heat: HeatNetwork | None
+    times: np.ndarray | None
     hours: float | None
     cases: tuple["ShaftScene", ...]
     varied: tuple[str, ...]
@@ -455,6 +461,9 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     alone = {key: value for key, value in data.items() if key != "cases"}
     if not columns:
         return _read(alone, path, known)
+    if "heat" in data:
+        problem = "does not go with [heat]; give each case its temperatures"
+        raise SceneError(f"{path.name}: `cases`: {problem}")
     count = columns[0].index.size
     if count > _MOST_CASES:
         problem = f"{count} cases are too many; at most {_MOST_CASES}"
@@ -528,11 +537,12 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
         keys.wheel(name, shafts) for name, keys in (*gears.items(), *belts.items())
     ]
     tables = top.table("bearings")
+    own: dict[str, Table] = {}
     seats: dict[str, SeatKeys] = {}
     alone: dict[str, Scene | None] = {}
     placed = {}
     for name in tables.keys():
-        table = tables.table(name)
+        table = own[name] = tables.table(name)
         seats[name] = read_keys(SeatKeys, table)
         placed[name] = seats[name].placed(shafts)
         alone[name] = _bearing(top, table, seats[name], name, path, known)
@@ -570,6 +580,9 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
             housing,
             pull,
         )
+    heat, times = read_heat(top, own, alone)
+    if heat is not None and (drive is None or float(drive.speed) == 0.0):
+        raise top.error("heat", "needs a `speed` of the drive; at rest nothing warms")
     turning = drive is not None and float(drive.speed) != 0.0
     return ShaftScene(
         name=path.stem,
@@ -580,6 +593,8 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
             for scene in alone.values()
         ),
         face_widths={n: k.face_width for n, k in gears.items() if k.face_width},
+        heat=heat,
+        times=times,
         hours=None,
         cases=(),
         varied=(),
@@ -666,6 +681,7 @@ def _bearing(
 ) -> Scene | None:
     """Read a bearing as a scene of its own; `known` are those read before."""
     own = {k: v for k, v in table.keys_given().items() if k not in _OF_SEAT}
+    own.pop("heat", None)  # read later, by `read_heat`
     table.skip(*own)
     common = {k: top.raw(k) for k in ("life", "lubricant", "output") if k in top}
     if keys.stiffness is not None:

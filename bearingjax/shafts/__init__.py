@@ -8,6 +8,11 @@ from .equilibrium import ShaftState as ShaftState
 from .equilibrium import SystemSolution as SystemSolution
 from .equilibrium import bearing_solutions as bearing_solutions
 from .equilibrium import solve_system as solve_system
+from .heat import HeatNetwork as HeatNetwork
+from .heat import ThermalPaths as ThermalPaths
+from .heat import ThermalState as ThermalState
+from .heat import solve_heat as solve_heat
+from .heat import warm_up as warm_up
 from .line import ShaftLine as ShaftLine
 from .parts import Coupling as Coupling
 from .parts import Drive as Drive

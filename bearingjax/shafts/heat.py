@@ -1,0 +1,520 @@
+"""Temperatures of a system of shafts: friction warms bearings, and warmth loads them.
+
+Each bearing has two temperatures, of its inner ring with the shaft below it and of its
+outer ring with the seat around it; the housing with the oil sump may have one more.
+Friction heats both rings alike, losses of meshes heat the housing. Heat flows from the
+inner ring along the shaft to the ambience, from ring to ring, from the outer ring to
+the housing, or without one to the ambience, and from the housing to the ambience.
+Friction depends on temperature through viscosity, and through the clearance and the
+preload of warm rings, shafts and housings.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Float, Int
+
+from ..design import FitConditions
+from ..design.checks import check, in_range, is_traced, number, positive
+from ..lubrication import Lubricant
+from ..numerics.implicit import attach_by, stop
+from ..numerics.lapack import eigvals, solve_any
+from ..numerics.programs import program
+from ..numerics.result import Result, raise_unless_converged
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from ..statics.friction import friction_torque
+from ..statics.friction_skf import skf_friction_torque
+from .equilibrium import SystemSolution, adjusted, in_place, speed_of, system_state
+from .system import ShaftSystem
+
+_HOTTEST = 300.0
+"""Rise above the ambience from which there is no thermal equilibrium [K]."""
+_STEPS = 100
+_TOLERANCE = 1e-10
+"""Heat out of balance over the heat that is made [1]."""
+_GROWTH = 4.0
+"""Factor by which the steps in time grow as the balance is approached [1]."""
+
+
+class ThermalPaths(eqx.Module):
+    """Paths of the heat of a bearing.
+
+    Attributes:
+        inner: From the inner ring along the shaft to the ambience [W/K].
+        outer: From the outer ring to the housing, or without one to the ambience [W/K].
+        through: From ring to ring, by rolling elements and oil [W/K].
+        shaft_share: Rise of the shaft below the bearing over that of the inner ring,
+            above the ambience [1].
+        housing_share: Rise of the seat over that of the outer ring [1].
+        inner_capacity, outer_capacity: Heat capacities of the rings with what goes with
+            them [J/K]; they count in time only.
+        lubricant: The oil.
+        supply: As in `friction_torque`.
+        series, diameters: Of SKF's friction model, as in `skf_friction_torque`; without
+            a series Palmgren's model counts.
+
+    Traced: all numbers. Static: supply, series.
+    """
+
+    inner: Scalar = eqx.field(converter=as_real, metadata=unit("W/K"))
+    outer: Scalar = eqx.field(converter=as_real, metadata=unit("W/K"))
+    lubricant: Lubricant
+    through: Scalar = eqx.field(converter=as_real, metadata=unit("W/K"), default=0.0)
+    shaft_share: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1.0)
+    housing_share: Scalar = eqx.field(
+        converter=as_real, metadata=unit("1"), default=1.0
+    )
+    inner_capacity: Scalar = eqx.field(
+        converter=as_real, metadata=unit("J/K"), default=1000.0
+    )
+    outer_capacity: Scalar = eqx.field(
+        converter=as_real, metadata=unit("J/K"), default=1000.0
+    )
+    supply: str = eqx.field(static=True, default="oil_bath")
+    series: str | None = eqx.field(static=True, default=None)
+    diameters: tuple[Scalar, Scalar] | None = None
+
+    def __check_init__(self):
+        for name in ("inner", "outer", "inner_capacity", "outer_capacity"):
+            positive(self, name)
+        for name in ("shaft_share", "housing_share"):
+            in_range(self, name, 0.0, 1.0 + 1e-9, include_low=True)
+
+
+class HeatNetwork(eqx.Module):
+    """Paths of all heat of a system.
+
+    Attributes:
+        ambient: Temperature of the ambience [K].
+        paths: Of each bearing; `None` of springs.
+        housing: From the housing to the ambience [W/K]; `None`: the housing is as cold
+            as the ambience, and takes the losses of the meshes.
+        housing_capacity: Heat capacity of housing and oil [J/K].
+    """
+
+    ambient: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+    paths: tuple[ThermalPaths | None, ...] = eqx.field(converter=tuple)
+    housing: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("W/K"), default=None
+    )
+    housing_capacity: Scalar = eqx.field(
+        converter=as_real, metadata=unit("J/K"), default=20e3
+    )
+
+    def __check_init__(self):
+        number(self, "ambient")
+        if not is_traced(self.ambient):
+            warm = 150.0 < float(self.ambient) < 600.0
+            check(self, "ambient", warm, "a temperature in K, from 150 to 600 K")
+        if self.housing is not None:
+            positive(self, "housing")
+        positive(self, "housing_capacity")
+
+    @property
+    def nodes(self) -> int:
+        """Number of temperatures."""
+        return 2 * len(self.paths) + (self.housing is not None)
+
+    def conductance(self) -> Float[Array, "node node"]:
+        """Matrix of conductances: heat that leaves each node over all rises [W/K]."""
+        n, house = self.nodes, 2 * len(self.paths)
+        matrix = jnp.zeros((n, n), jnp.result_type(float))
+        for k, path in enumerate(self.paths):
+            i, o = 2 * k, 2 * k + 1
+            if path is None:
+                matrix = matrix.at[i, i].set(1.0).at[o, o].set(1.0)
+                continue
+            matrix = matrix.at[i, i].add(path.inner).at[o, o].add(path.outer)
+            matrix = _between(matrix, i, o, path.through)
+            if self.housing is not None:
+                matrix = matrix.at[house, house].add(path.outer)
+                matrix = matrix.at[house, o].add(-path.outer)
+                matrix = matrix.at[o, house].add(-path.outer)
+        if self.housing is not None:
+            matrix = matrix.at[house, house].add(self.housing)
+        return matrix
+
+    def capacity(self) -> Float[Array, " node"]:
+        """Heat capacity of each node [J/K]."""
+        found = [
+            one
+            for path in self.paths
+            for one in (
+                (as_real(1.0),) * 2
+                if path is None
+                else (path.inner_capacity, path.outer_capacity)
+            )
+        ]
+        more = [] if self.housing is None else [self.housing_capacity]
+        return jnp.stack([*found, *more])
+
+
+def _between(matrix, i, j, conductance):
+    matrix = matrix.at[i, i].add(conductance).at[j, j].add(conductance)
+    return matrix.at[i, j].add(-conductance).at[j, i].add(-conductance)
+
+
+class ThermalState(eqx.Module):
+    """Temperatures of a system in equilibrium with its friction.
+
+    Attributes:
+        inner_ring, outer_ring: Of each bearing (bearing,) [K].
+        housing: Of housing and oil [K]; the ambience without a node of its own.
+        friction: Power lost in each bearing (bearing,) [W].
+        system: The system with these temperatures.
+        solution: Its equilibrium.
+        slowest: Rate at which the slowest disturbance decays [1/s]: as it approaches
+            zero friction grows as fast with temperature as cooling does. Not
+            differentiable.
+        residual: Heat out of balance over the heat made [1].
+        steps: Steps of the search.
+        result: `Result` code; `STEP_LIMIT` where temperatures run away.
+    """
+
+    inner_ring: Float[Array, " bearing"] = eqx.field(metadata=unit("K"))
+    outer_ring: Float[Array, " bearing"] = eqx.field(metadata=unit("K"))
+    housing: Scalar = eqx.field(metadata=unit("K"))
+    friction: Float[Array, " bearing"] = eqx.field(metadata=unit("W"))
+    system: ShaftSystem
+    solution: SystemSolution
+    slowest: Scalar = eqx.field(metadata=unit("1/s"))
+    residual: Scalar
+    steps: Int[Array, ""]
+    result: Int[Array, ""]
+
+
+Balance = Callable[[Float[Array, " node"], Any], Float[Array, " node"]]
+"""Heat made at every node over the rises of temperature [W]."""
+
+
+def steady_rises(
+    heat: Balance, args: Any, conductance: Array, capacity: Array
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Find the temperatures that a system reaches from the cold.
+
+    Time steps of the linearly implicit Euler rule follow the warming up and grow as it
+    ends, where they become Newton's: a state that is not stable is not reached.
+
+    Args:
+        heat: Function (rises, args) -> heat made at each node (node,) [W].
+        args: Pytree with all that the heat depends on.
+        conductance: Of the network (node, node) [W/K].
+        capacity: Of the nodes (node,) [J/K].
+
+    Returns:
+        Rises above the ambience (node,) [K], differentiable with respect to args,
+        conductance and capacity; rate of the slowest disturbance [1/s]; residual [1];
+        steps; whether it was found. Rises are those of the last step if it was not.
+    """
+    still = stop((args, conductance, capacity))
+    shortest = jnp.min(still[2] / jnp.diagonal(still[1]))
+
+    def state(rise):
+        def out(rise):
+            made = heat(rise, still[0])
+            left = made - still[1] @ rise
+            return left, (left, jnp.sum(jnp.abs(made)))
+
+        slope, rest = jax.jacfwd(out, has_aux=True)(rise)
+        return slope, *rest
+
+    def going(carry):
+        _, rise, _, residual, _, steps = carry
+        cool = jnp.all(rise < _HOTTEST)
+        return (residual > _TOLERANCE) & cool & (steps < _STEPS)
+
+    def step(carry):
+        rise, _, _, residual, time, steps = carry
+        slope, left, made = state(rise)
+        size = jnp.max(jnp.abs(left))
+        new = jnp.where(size > 0, size / jnp.maximum(made, 1e-30), 0.0)
+        grown = jnp.where(steps > 0, jnp.clip(residual / new, 0.5, _GROWTH), 1.0) * time
+        after = rise + solve_any(jnp.diag(still[2] / grown) - slope, left)
+        return after, rise, slope, new, grown, steps + 1
+
+    rise = jnp.zeros_like(still[2])
+    far = jnp.full_like(shortest, jnp.inf)
+    begin = rise, rise, -still[1], far, 0.3 * shortest, jnp.zeros((), jnp.int32)
+    _, rise, slope, residual, _, steps = lax.while_loop(going, step, begin)
+    rates = eigvals(slope / still[2][:, None])
+    slowest = -jnp.max(jnp.real(rates))
+    solved = (residual <= _TOLERANCE) & (slowest > 0)
+
+    def balance(rise, args):
+        heat_args, conductance = args
+        return heat(rise, heat_args) - conductance @ rise
+
+    def undone(of_rise, rise, change, args):
+        matrix = jax.jacfwd(of_rise)(rise)
+        return -solve_any(matrix, change)
+
+    rise = attach_by(balance, rise, (args, conductance), undone)
+    return rise, slowest, residual, steps, solved
+
+
+def rises_over_time(
+    heat: Balance, args: Any, conductance: Array, capacity: Array, times: Array, n: int
+) -> Array:
+    """Integrate the warming up from the cold.
+
+    Args:
+        heat, args, conductance, capacity: As in `steady_rises`.
+        times: Rising, from 0 (time,) [s].
+        n: Steps between two times. Static.
+
+    Returns:
+        Rises above the ambience (time, node) [K]; NaN from where they run away.
+
+    Source: Verwer's ROS2, linearly implicit, of second order and L-stable.
+    """
+    gamma = 1.0 - np.sqrt(0.5)
+    eye = jnp.eye(capacity.shape[0], dtype=capacity.dtype)
+
+    def rate(rise):
+        out = (heat(rise, args) - conductance @ rise) / capacity
+        return out, out
+
+    def step(rise, length):
+        slope, first = jax.jacfwd(rate, has_aux=True)(rise)
+        matrix = eye - gamma * length * slope
+        k1 = solve_any(matrix, first)
+        k2 = solve_any(matrix, rate(rise + length * k1)[0] - 2.0 * k1)
+        after = rise + length * (1.5 * k1 + 0.5 * k2)
+        return jnp.where(jnp.all(after < _HOTTEST), after, jnp.nan), after
+
+    def interval(rise, length):
+        after, _ = lax.scan(step, rise, jnp.full(n, length / n))
+        return after, after
+
+    start = jnp.zeros_like(capacity)
+    _, found = lax.scan(interval, start, jnp.diff(times))
+    return jnp.concatenate([start[None], found])
+
+
+def solve_heat(
+    system: ShaftSystem, network: HeatNetwork, *, throw: bool = True
+) -> ThermalState:
+    """Find the temperatures of a turning system, and its equilibrium at them.
+
+    Args:
+        system: The system; clearances, preloads and the distance of its bearings change
+            with temperature where bearings have seats (`Installed.mounting`).
+        network: Paths of the heat.
+        throw: Raise if there is no thermal equilibrium. Static.
+
+    Returns:
+        ThermalState, differentiable with respect to all numbers of both.
+
+    Fails: `STEP_LIMIT`: temperatures run away.
+
+    Raises:
+        ValueError: If the system is at rest, or paths and bearings differ in number.
+        SolveError: If no equilibrium was found and `throw`.
+    """
+    _check(system, network)
+    cold = adjusted(system)
+    rise, slowest, residual, steps, solved = _steady(cold, network)
+    warm = with_temperatures(cold, network, rise)
+    solution, _ = system_state(warm)
+    flow = network.conductance() @ rise
+    known = jnp.where(solved, rise, jnp.nan) + network.ambient
+    rings = known[: 2 * len(network.paths)].reshape(-1, 2)
+    result = jnp.where(solved, solution.result, int(Result.STEP_LIMIT))
+    found = ThermalState(
+        inner_ring=rings[:, 0],
+        outer_ring=rings[:, 1],
+        housing=network.ambient if network.housing is None else known[-1],
+        friction=flow[: 2 * len(network.paths)].reshape(-1, 2).sum(axis=1),
+        system=warm,
+        solution=solution,
+        slowest=slowest,
+        residual=residual,
+        steps=steps,
+        result=result,
+    )
+
+    return (
+        raise_unless_converged(found, result, lambda: overheated(found))
+        if throw
+        else found
+    )
+
+
+def overheated(state: ThermalState) -> str:
+    """Return the message on a system without thermal equilibrium.
+
+    Args:
+        state: From `solve_heat`.
+    """
+    if int(state.solution.result) not in (Result.CONVERGED, Result.NON_FINITE):
+        label = Result(int(state.solution.result)).label
+        return f"solve_heat: the shafts have no equilibrium when warm: {label}."
+    return (
+        "solve_heat: no thermal equilibrium within"
+        f" {_HOTTEST:g} K above the ambience: friction grows faster with temperature"
+        " than cooling. Give less preload or speed, more clearance, or larger"
+        " conductances."
+    )
+
+
+def warm_up(
+    system: ShaftSystem, network: HeatNetwork, times: Any, *, steps: int = 1
+) -> Float[Array, "time node"]:
+    """Integrate the temperatures of a system that starts from the cold.
+
+    Args:
+        system, network: As in `solve_heat`.
+        times: Rising from 0 (time,) [s].
+        steps: Steps between two times; twice as many tell the error.
+
+    Returns:
+        Temperatures (time, node) [K]: inner and outer ring of each bearing in turn,
+        then the housing if it has a node; NaN from where they run away.
+    """
+    _check(system, network)
+    rises = _transient(adjusted(system), network, as_real(times), steps)
+    return network.ambient + rises
+
+
+def runaway_speed(
+    system: ShaftSystem, network: HeatNetwork, highest: float, tolerance: float = 1e-3
+) -> float:
+    """Return the speed of the drive from which temperatures run away [rad/s].
+
+    Args:
+        system, network: As in `solve_heat`; the sign of the drive's speed is kept.
+        highest: Speed up to which it is sought, above 0 [rad/s].
+        tolerance: Of the speed, relative [1].
+
+    Returns:
+        Speed, infinite if they do not run away up to the highest.
+    """
+    assert system.drive is not None
+    sense = -1.0 if float(system.drive.speed) < 0 else 1.0
+
+    def stays(speed):
+        turning = eqx.tree_at(lambda s: s.drive.speed, system, as_real(sense * speed))
+        found = solve_heat(turning, network, throw=False)
+        return int(found.result) == Result.CONVERGED
+
+    if stays(highest):
+        return np.inf
+    low, high = 0.0, highest
+    while high - low > tolerance * high:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if stays(middle) else (low, middle)
+    return high
+
+
+def _check(system, network) -> None:
+    if len(network.paths) != len(system.seats):
+        raise ValueError(
+            f"solve_heat: the network has {len(network.paths)} paths and the system"
+            f" {len(system.seats)} bearings; give one for each, `None` of springs."
+        )
+    for seat, path in zip(system.seats, network.paths, strict=True):
+        if (seat.installed is None) != (path is None):
+            raise ValueError(
+                f"solve_heat: {seat.name} is a bearing without paths of its heat, or"
+                " springs with them."
+            )
+    if system.drive is None or (
+        not is_traced(system.drive.speed) and float(system.drive.speed) == 0.0
+    ):
+        raise ValueError("solve_heat: the system is at rest; nothing warms it.")
+
+
+@program(quick=True)
+def _steady(system, network):
+    given = network.conductance(), network.capacity()
+    return steady_rises(heat_made, (system, network), *given)
+
+
+@program(quick=True)
+def _transient(system, network, times, n):
+    given = network.conductance(), network.capacity()
+    return rises_over_time(heat_made, (system, network), *given, times, n)
+
+
+def with_temperatures(
+    system: ShaftSystem, network: HeatNetwork, rises: Float[Array, " node"]
+) -> ShaftSystem:
+    """Return a system whose bearings on seats have the temperatures of a network.
+
+    Args:
+        system: The system.
+        network: Paths of the heat.
+        rises: Of its nodes above the ambience (node,) [K].
+    """
+    seats = []
+    for k, (seat, path) in enumerate(zip(system.seats, network.paths, strict=True)):
+        installed = seat.installed
+        if installed is None or path is None or installed.mounting is None:
+            seats.append(seat)
+            continue
+        inner, outer = rises[2 * k], rises[2 * k + 1]
+        known = installed.conditions
+        cold = as_real(293.15) if known is None else known.reference
+        base = network.ambient - jnp.where(cold > 0, 0.0, 293.15)
+        parts = {
+            "shaft": path.shaft_share * inner,
+            "inner_ring": inner,
+            "elements": 0.5 * (inner + outer),
+            "outer_ring": outer,
+            "housing": path.housing_share * outer,
+        }
+        warm = FitConditions(
+            **{name: base + rise for name, rise in parts.items()}, reference=cold
+        )
+        seats.append(
+            eqx.tree_at(
+                lambda s: s.installed.conditions,
+                seat,
+                warm,
+                is_leaf=lambda leaf: leaf is None,
+            )
+        )
+    return eqx.tree_at(lambda s: s.seats, system, tuple(seats))
+
+
+def heat_made(
+    rises: Float[Array, " node"], args: tuple[ShaftSystem, HeatNetwork]
+) -> Float[Array, " node"]:
+    """Return the heat made at every node [W].
+
+    Args:
+        rises: Of the nodes above the ambience (node,) [K].
+        args: The system, from `adjusted`, and its network.
+    """
+    system, network = args
+    warm = with_temperatures(system, network, rises)
+    solution, _ = system_state(warm)
+    made = []
+    for k, (seat, path) in enumerate(zip(warm.seats, network.paths, strict=True)):
+        if seat.installed is None or path is None:
+            made += [jnp.zeros_like(rises[0])] * 2
+            continue
+        speed, turning = speed_of(warm, k, solution.power.speed)
+        found = in_place(seat.installed, solution.motion[k], speed, turning, 2)
+        oil = network.ambient + 0.5 * (rises[2 * k] + rises[2 * k + 1])
+        viscosity = path.lubricant.kinematic_viscosity(oil)
+        if path.series is None:
+            friction = friction_torque(found, viscosity, path.supply)
+        else:
+            friction = skf_friction_torque(
+                found,
+                viscosity,
+                path.supply,
+                series=path.series,
+                diameters=path.diameters,
+            )
+        made += [0.5 * friction.power] * 2
+    if network.housing is not None:
+        made.append(solution.power.loss)
+    return jnp.stack(made)
