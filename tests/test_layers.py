@@ -17,7 +17,7 @@ import bearingjax as bj
 PACKAGE = Path(bj.__file__).parent
 LAYERS = (
     "numerics design contact lubrication element statics optimise skid rotor"
-    " noise scene plot cli"
+    " shafts noise scene plot cli"
 ).split()
 # What the plots show is what all layers below the scene provide; scene and plot stand
 # side by side, and only the command line and the top level see both.

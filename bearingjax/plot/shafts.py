@@ -97,8 +97,8 @@ def _drawing(ax, run, index):
         forces.append((wheel, np.asarray(mesh.force), False))
         if wheel.shaft == line.name:
             z, r = 1e3 * float(wheel.position), 1e3 * float(wheel.radius)
-            width = run.task.face_widths.get(wheel.name, 0.25 * float(wheel.radius))
-            half = 500.0 * width
+            width = getattr(wheel, "face_width", None)
+            half = 500.0 * float(0.25 * wheel.radius if width is None else width)
             ax.fill(
                 [z - half, z + half, z + half, z - half],
                 [-r, -r, r, r],

@@ -2,7 +2,6 @@
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -16,63 +15,26 @@ from .table import Table
 _FLOW = 16e3 / 50.0
 """Heat flow that ISO 15312 takes from the seats of a radial bearing, over the area of
 the seats and the rise of temperature [W/(m² K)]."""
-_BY_SEATS = "half of 320 W/(m² K) over the area of the seats, as in ISO 15312"
-
-
-def _share(about: str) -> Any:
-    return scene_key(about, default=1.0, least=0, most=1)
-
-
-def _capacity(about: str, default: float) -> Any:
-    return scene_key(about, "heat capacity", default=default, above=0)
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class PathKeys(Keys):
-    """[bearings.NAME.heat]: where the friction heat of a bearing goes."""
-
-    inner: float | None = scene_key(
-        "conductance from the inner ring along the shaft to the ambience",
-        "thermal conductance",
-        above=0,
-        otherwise=_BY_SEATS,
-    )
-    outer: float | None = scene_key(
-        "conductance from the outer ring to the housing, or without it to ambience",
-        "thermal conductance",
-        above=0,
-        otherwise=_BY_SEATS,
-    )
-    through: float = scene_key(
-        "conductance from ring to ring", "thermal conductance", default=0.0, least=0
-    )
-    shaft_share: float = _share(
-        "rise of the shaft below the bearing over that of the inner ring"
-    )
-    housing_share: float = _share("rise of the seat over that of the outer ring")
-    inner_capacity: float = _capacity("heat capacity of the inner ring and shaft", 1e3)
-    outer_capacity: float = _capacity("heat capacity of the outer ring and seat", 1e3)
+_CONDUCTANCES = "inner", "outer"
+"""By default half of this each, over the area of the seats."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class HeatKeys(Keys):
     """[heat]: temperatures from friction, in equilibrium and in time."""
 
+    numbers = {"": HeatNetwork}
+
     ambient: float = scene_key(
         "temperature of the ambience",
         "temperature",
-        default=293.15,
+        default=None,
         least=-60,
         most=200,
         shown="°C",
+        otherwise="20 °C",
+        follows=lambda values: 293.15,
     )
-    housing: float | None = scene_key(
-        "conductance from housing and oil sump to the ambience",
-        "thermal conductance",
-        above=0,
-        otherwise="the housing is as cold as the ambience",
-    )
-    housing_capacity: float = _capacity("heat capacity of housing and oil", 20e3)
     duration: float | None = scene_key(
         "time over which the warming up is followed", "time", above=0, most=1e7
     )
@@ -110,38 +72,32 @@ def read_heat(
     keys = read_keys(HeatKeys, top.table("heat"))
     paths = [_path(own[name], scene) for name, scene in bearings.items()]
     with keys.table.building():
-        network = HeatNetwork(keys.ambient, paths, keys.housing, keys.housing_capacity)
+        more = keys.table.fields(HeatNetwork, left_out=("ambient",))
+        network = HeatNetwork(**more | {"ambient": keys.ambient}, paths=paths)
     return network, keys.instants
 
 
 def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
     if scene is None:
         return None
-    keys = read_keys(PathKeys, table.table("heat"))
+    heat = table.table("heat")
+    given = heat.fields(ThermalPaths, left_out=_CONDUCTANCES)
     if scene.oil is None:
         problem = "is missing; [heat] needs the oil that makes the friction"
         raise table.error("lubricant", problem)
-    usual = None
-    series, diameters = None, None
+    usual, series, diameters = None, None, None
     if scene.catalogue is not None:
         entry = scene.catalogue.entry
         area = np.pi * entry.width * (entry.outside_diameter + entry.bore)
-        usual = 0.5 * _FLOW * area
-        bearing = scene.element.bearing
-        series = series_of(entry.designation, skf_series(bearing))
+        usual = float(0.5 * _FLOW * area)
+        series = series_of(entry.designation, skf_series(scene.element.bearing))
         diameters = entry.bore, entry.outside_diameter
-    given = {}
-    for name in ("inner", "outer"):
-        given[name] = getattr(keys, name)
-        if given[name] is None and usual is None:
+    for name in _CONDUCTANCES:
+        if name not in heat and usual is None:
             problem = "is missing; without a `designation` the area of its seats is not"
-            raise keys.table.error(name, f"{problem} known")
-        if given[name] is None:
-            given[name] = usual
-            keys.fill(**{name: usual})
-    rest = "through shaft_share housing_share inner_capacity outer_capacity".split()
-    given |= {name: getattr(keys, name) for name in rest}
-    with keys.table.building():
+            raise heat.error(name, f"{problem} known")
+        given[name] = heat.quantity(name, "thermal conductance", usual)
+    with heat.building():
         return ThermalPaths(
             **given,
             lubricant=scene.oil.lubricant,

@@ -274,14 +274,18 @@ def _bearing(
     # In the echo it becomes one of [bearings.NAME].
     own = name if scene.name in named else scene.name
     table.fill("bearing", own)
-    tables.fill(own, _echoed(scene.inputs))
+    tables.fill(own, echoed(scene.inputs))
     fits = turning(scene.fits, speed)
     force = scene.preload_force
     return _told(scene.name, scene.element, force, fits, scene.catalogue)
 
 
-def _echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Convert the inputs of a scene to those of one bearing of a rotor."""
+def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Convert the inputs of a scene to those of one [bearings.NAME].
+
+    Args:
+        inputs: `Scene.inputs`.
+    """
     beside = {key: dict(inputs[key]) for key in BESIDE if key in inputs}
     beside.get("numerics", {}).pop("tolerance", None)  # of its own load solve
     operating = inputs.get("operating", {})

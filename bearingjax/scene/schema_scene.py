@@ -4,6 +4,8 @@ from typing import Any
 
 from ..design import ARRANGEMENTS, MATERIALS, RIB_NAMES, Material, Rib
 from ..element import RINGS
+from ..element.frame import LOADS
+from ..shafts import ShaftLoad, ThermalPaths
 from .bearing_table import (
     BALLS,
     PROFILES,
@@ -32,22 +34,33 @@ from .contact_table import (
 from .deviations_table import DeviationsKeys
 from .dynamics_table import CageKeys, DynamicsKeys
 from .fit_table import FitKeys, TemperatureKeys
+from .heat_table import HeatKeys
 from .life_table import LifeKeys
 from .lubricant_table import LubricantKeys
 from .noise_table import VibrationKeys
 from .operating_table import OperatingKeys, OutputKeys, SolveKeys
 from .optimise_table import OptimiseKeys
 from .quantity import SceneError
+from .rotor_mounts import SpringKeys
 from .rotor_table import RotorKeys
 from .schema import Keys
 from .schema_text import (
     DIALECT,
+    attribute_texts,
     class_schema,
     classes_schema,
     key_tables,
     number_schema,
     object_schema,
     table_schema,
+)
+from .shaft_table import (
+    PARTS,
+    DriveKeys,
+    HousingKeys,
+    SeatKeys,
+    ShaftKeys,
+    SystemKeys,
 )
 from .table import not_among
 
@@ -64,9 +77,13 @@ def scene_schema() -> dict[str, Any]:
         "material": numbers,
         "profile": {"anyOf": _profiles()},
         "rib": class_schema(Rib),
+        "life": table_schema(LifeKeys),
+        "lubricant": table_schema(LubricantKeys),
+        "output": table_schema(OutputKeys),
+        "cases": table_schema(CasesKeys),
     }
     head = {"$schema": DIALECT, "title": "Scene of bearingjax"}
-    kinds = [_bearing_scene(), _contact_scene(), _rotor_scene()]
+    kinds = [_bearing_scene(), _contact_scene(), _rotor_scene(), _shaft_scene()]
     return {**head, "anyOf": kinds, "$defs": defs}
 
 
@@ -103,10 +120,10 @@ def _bearing_scene() -> dict[str, Any]:
         "numerics": _merged("solvers", BallNumericsKeys, RollerNumericsKeys, SolveKeys),
         "fit": _ref("fit"),
         "temperature": _ref("temperature"),
-        "lubricant": table_schema(LubricantKeys),
-        "life": table_schema(LifeKeys),
-        "output": table_schema(OutputKeys),
-        "cases": table_schema(CasesKeys),
+        "lubricant": _ref("lubricant"),
+        "life": _ref("life"),
+        "output": _ref("output"),
+        "cases": _ref("cases"),
         "optimise": table_schema(OptimiseKeys),
         "cage": table_schema(CageKeys),
         "dynamics": table_schema(DynamicsKeys),
@@ -139,11 +156,93 @@ def _rotor_scene() -> dict[str, Any]:
         "numerics": _merged("solvers", BallNumericsKeys, RollerNumericsKeys),
         **table_schema(ControlKeys)["properties"],
     }
-    about = "a bearing by its name: the keys of a bearing, and beside them"
-    named = {**_ref("bearing", about), "properties": within}
-    bearings = {"type": "object", "additionalProperties": named}
+    bearings = _by_name({**_ref("bearing", _NAMED), "properties": within})
     tables = {"rotor": table_schema(RotorKeys), "bearings": bearings}
     return object_schema(tables, ["rotor"], "a shaft on its bearings")
+
+
+_NAMED = "a bearing by its name: the keys of a bearing, and beside them"
+
+
+def _by_name(schema: dict[str, Any]) -> dict[str, Any]:
+    """Schema of tables by name."""
+    return {"type": "object", "additionalProperties": schema}
+
+
+def _shaft_scene() -> dict[str, Any]:
+    """Schema of a system of shafts: `shaft`."""
+    place = {
+        "shaft": {"type": "string", "description": "name of its shaft"},
+        "position": {
+            **number_schema("length"),
+            "description": "place along the shaft, from its first segment",
+        },
+        "station": {
+            "type": "integer",
+            "minimum": 0,
+            "description": "in place of it: 0 is the start, k the end of segment k",
+        },
+    }
+    tables = {"shaft": _by_name(table_schema(ShaftKeys))}
+    for key, (kind, words) in PARTS.items():
+        here = dict(place) if key != "coupling" else {"shaft": place["shaft"]}
+        texts = attribute_texts(kind)
+        more = {
+            word: {"enum": [*choices]} if choices else {"type": "string"}
+            for word, choices in words.items()
+        }
+        if key == "gear":
+            more["teeth"] = {"type": "integer", "minimum": 1}
+        more = {
+            k: {**v, "description": texts[k].split("; `")[0]} for k, v in more.items()
+        }
+        if kind is ShaftLoad:
+            units = ["force"] * 3 + ["moment"] * 3
+            loads = dict(zip(LOADS, map(number_schema, units), strict=True))
+            tables[key] = _by_name(object_schema(here | loads, [], _first(kind)))
+            continue
+        found = class_schema(kind, **here | more)
+        must = [k for k in found["required"] if k not in place]
+        must += ["teeth"] if key == "gear" else []
+        tables[key] = _by_name({**found, "required": must})
+    beside = {
+        **place,
+        "preload": {
+            **number_schema("force"),
+            "description": "axial force with which it is adjusted in the cold",
+        },
+        "axial_offset": {
+            **number_schema("length"),
+            "description": "axial displacement as adjusted; negative: play",
+        },
+        **table_schema(SeatKeys)["properties"],
+        "heat": class_schema(ThermalPaths) | {"required": []},
+        "life": _ref("life"),
+        "lubricant": _ref("lubricant"),
+    }
+    within = _rotor_scene()["properties"]["bearings"]["additionalProperties"]
+    bearing = {**within, "properties": beside | within["properties"]}
+    springs = {**place, "stiffness": table_schema(SpringKeys)}
+    springs["housing"] = beside["housing"]
+    springs = object_schema(springs, ["stiffness"], "springs in place of a bearing")
+    del beside["stiffness"]
+    tables |= {
+        "bearings": _by_name({"anyOf": [bearing, springs]}),
+        "drive": table_schema(DriveKeys),
+        "housing": table_schema(HousingKeys),
+        "system": table_schema(SystemKeys),
+        "heat": table_schema(HeatKeys),
+        "life": _ref("life"),
+        "lubricant": _ref("lubricant"),
+        "output": _ref("output"),
+        "cases": _ref("cases"),
+    }
+    return object_schema(tables, ["shaft", "bearings"], "a system of shafts")
+
+
+def _first(kind: type) -> str:
+    """First line of the docstring of a class, without a full stop."""
+    return (kind.__doc__ or "").splitlines()[0].rstrip(".")
 
 
 def _merged(about: str, *kinds: type[Keys]) -> dict[str, Any]:

@@ -226,8 +226,9 @@ def key_tables(
             part = _objects(one)
             inner += [(place, t, "items" in one) for t in part if "properties" in t]
             named = one.get("additionalProperties")
-            if isinstance(named, dict) and "properties" in named:
-                inner.append((f"{place}.NAME", named, False))
+            for one_of in _objects(named) if isinstance(named, dict) else ():
+                if "properties" in one_of:
+                    inner.append((f"{place}.NAME", one_of, False))
             rows += _row(name, one, name in table.get("required", ()))
         if path and rows:
             about = re.sub(r"^\[+[\w.]+\]+: ", "", table.get("description", ""))

@@ -108,10 +108,13 @@ def _wheels(run: ShaftRun) -> Section:
     meshes = run.solution.power.meshes
     if not meshes:
         return []
-    widths = run.task.face_widths
+    widths = [
+        getattr(run.task.system.wheel(mesh.wheel), "face_width", None)
+        for mesh in meshes
+    ]
     across = [
-        abs(apart) * widths[mesh.wheel] if mesh.wheel in widths else None
-        for mesh, apart in zip(meshes, run.solution.misalignment, strict=True)
+        None if width is None else abs(apart) * float(width)
+        for width, apart in zip(widths, run.solution.misalignment, strict=True)
     ]
     force = np.array([mesh.force for mesh in meshes])
     columns = [

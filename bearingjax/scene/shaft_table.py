@@ -36,7 +36,7 @@ from .heat_table import read_heat
 from .life_table import life_conditions
 from .quantity import SceneError, to_si
 from .read import Scene, scene_of
-from .rotor_mounts import SpringKeys
+from .rotor_mounts import SpringKeys, echoed
 from .rotor_table import MATERIAL
 from .scene_file import assign, find_scene, is_shafts, parse_scene
 from .schema import Keys, read_keys, scene_key
@@ -126,207 +126,74 @@ class ShaftKeys(Keys):
             )
 
 
-_SHAFT: Any = {"otherwise": "the only one"}
+PARTS: dict[str, tuple[type[Any], dict[str, tuple[str, ...]]]] = {
+    "gear": (Gear, {"hand": tuple(HANDS), "apex": tuple(APEXES), "mates_with": ()}),
+    "belt": (Pulley, {"mates_with": ()}),
+    "coupling": (Coupling, {}),
+    "load": (ShaftLoad, {}),
+}
+"""Tables [KIND.NAME] of parts: their class, and its words with the choices."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class PlacedKeys(Keys):
-    """A part on a shaft."""
+def _part(
+    table: Table,
+    kind: type[Any],
+    name: str,
+    shafts: Mapping[str, ShaftKeys],
+    words: Mapping[str, tuple[str, ...]],
+) -> Any:
+    """Build a part from the numbers and words of its class."""
+    known = {field.name for field in dataclasses.fields(kind)}
+    values: dict[str, Any] = {"name": name, "shaft": _shaft_of(table, shafts)}
+    if "position" in known:
+        values["position"] = _position(table, values["shaft"], shafts)
+    if kind is ShaftLoad:
+        kinds = ["force"] * 3 + ["moment"] * 3
+        six = [table.quantity(n, k, 0.0) for n, k in zip(LOADS, kinds, strict=True)]
+        values |= {"force": six[:3], "moment": six[3:]}
+    else:
+        values |= table.fields(kind, left_out=("position", *words))
+    if "teeth" in known:
+        values["teeth"] = table.integer("teeth")
+    for key, choices in words.items():
+        word = table.word(key)
+        if word is None and key in table:
+            raise table.error(key, f"{table.raw(key)!r} is not a text")
+        if word is not None:
+            values[key] = table.choice(key, choices) if choices else table.raw(key)
+    with table.building():
+        return kind(**values)
 
-    shaft: str | None = scene_key("name of the shaft", **_SHAFT)
-    position: float | None = scene_key(
-        "place along the shaft, from its first segment", "length"
-    )
-    station: int | None = scene_key(
-        "in place of `position`: 0 is the start of the shaft, k the end of segment k",
-        least=0,
-        without={"position": ""},
-    )
 
-    def placed(self, shafts: Mapping[str, ShaftKeys]) -> dict[str, Any]:
-        """Return name of the shaft and position on it.
+def _shaft_of(table: Table, shafts: Mapping[str, ShaftKeys]) -> str:
+    """Return the name of the shaft of a part, by default of the only one."""
+    if "shaft" not in table and len(shafts) == 1:
+        table.fill("shaft", next(iter(shafts)))
+        return next(iter(shafts))
+    return table.choice("shaft", tuple(shafts))
 
-        Args:
-            shafts: All shafts by their names.
 
-        Raises:
-            SceneError: If the shaft or the place is missing, or not there.
-        """
-        shaft = self.shaft
-        if shaft is None and len(shafts) == 1:
-            shaft = next(iter(shafts))
-            self.table.fill("shaft", shaft)
-        if shaft not in shafts:
-            problem = "is missing" if shaft is None else f"{shaft!r} is not a shaft"
-            raise self.table.error("shaft", f"{problem}; one of {', '.join(shafts)}")
-        lengths = [segment.length for segment in shafts[shaft].segments]
-        if self.station is not None:
-            if self.station > len(lengths):
-                problem = f"{self.station} is not a station; from 0 to {len(lengths)}"
-                raise self.table.error("station", problem)
-            return {"shaft": shaft, "position": sum(lengths[: self.station])}
-        if self.position is None:
-            problem = "is missing; give the place along the shaft, or a `station`"
-            raise self.table.error("position", problem)
-        if not 0 <= self.position <= sum(lengths) * (1 + 1e-9):
-            ends = f"0 to {1e3 * sum(lengths):.6g} mm"
-            problem = f"{1e3 * self.position:.6g} mm is beyond the ends of {shaft},"
-            raise self.table.error("position", f"{problem} {ends}")
-        return {"shaft": shaft, "position": self.position}
+def _position(table: Table, shaft: str, shafts: Mapping[str, ShaftKeys]) -> float:
+    """Return the position of a part on its shaft, given or that of a station [m]."""
+    lengths = [segment.length for segment in shafts[shaft].segments]
+    if "station" in table:
+        if "position" in table:
+            raise table.error("station", "give either `position` or this, not both")
+        station = table.integer("station", least=0)
+        if station > len(lengths):
+            problem = f"{station} is not a station; from 0 to {len(lengths)}"
+            raise table.error("station", problem)
+        return sum(lengths[:station])
+    position = table.quantity("position", "length")
+    if not -1e-12 <= position <= sum(lengths) * (1 + 1e-9):
+        ends = f"from 0 to {1e3 * sum(lengths):.6g} mm"
+        problem = f"{1e3 * position:.6g} mm is beyond the ends of {shaft}, {ends}"
+        raise table.error("position", problem)
+    return position
 
 
 def _source(about: str, kind: str, other: str) -> Any:
     return scene_key(about, kind, without={other: ""})
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class WheelKeys(PlacedKeys):
-    """A wheel on a shaft."""
-
-    mates_with: str | None = scene_key(
-        "wheel of another shaft that it meshes with; each pair is named once"
-    )
-    torque: float | None = _source(
-        "of a mate outside the system on the shaft, about its z", "moment", "power"
-    )
-    power: float | None = _source(
-        "of a mate outside the system, into the shaft", "power", "torque"
-    )
-    efficiency: float = scene_key(
-        "power out over power in, of the pair", default=1.0, above=0, most=1
-    )
-
-
-_BEVEL: Any = {"needs": ("pitch_angle",)}
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class GearKeys(WheelKeys):
-    """[gear.NAME]: an external gear, spur, helical or bevel."""
-
-    teeth: int = scene_key("number of teeth")
-    normal_module: float | None = scene_key(
-        "module normal to the teeth; of a bevel gear in the middle of the face",
-        "length",
-        above=0,
-    )
-    outer_module: float | None = scene_key(
-        "of a bevel gear, in place of it: transverse module at the large end",
-        "length",
-        above=0,
-        needs=("face_width",),
-        without={"normal_module": ""},
-    )
-    face_width: float | None = scene_key("width of the teeth", "length", above=0)
-    helix_angle: float = scene_key(
-        "helix angle at the pitch circle; spiral angle of a bevel gear",
-        "angle",
-        default=0.0,
-        least=0,
-        below=60,
-        shown="deg",
-    )
-    hand: str = scene_key("hand of the helix", choices=tuple(HANDS), default="none")
-    pressure_angle: float = scene_key(
-        "pressure angle normal to the teeth",
-        "angle",
-        default=np.deg2rad(20.0),
-        above=5,
-        below=45,
-        shown="deg",
-    )
-    mesh_angle: float | None = scene_key(
-        "angle of the mesh around the shaft, from local x to y",
-        "angle",
-        otherwise="from the places of both shafts",
-    )
-    pitch_angle: float | None = scene_key(
-        "half the angle of the pitch cone of a bevel gear", "angle", above=0
-    )
-    apex: str | None = scene_key(
-        "side of the shaft on which the apex of a bevel gear lies",
-        choices=tuple(APEXES),
-        **_BEVEL,
-    )
-
-    def check(self) -> None:
-        if self.normal_module is None and self.outer_module is None:
-            raise self.table.error("normal_module", "is missing")
-        if self.outer_module is not None and self.pitch_angle is None:
-            raise self.table.error("outer_module", "is of a bevel gear (`pitch_angle`)")
-        if self.pitch_angle is not None and self.apex is None:
-            raise self.table.error("apex", "is missing; '+z' or '-z'")
-
-    def wheel(self, name: str, shafts: Mapping[str, ShaftKeys]) -> Gear:
-        """Build the gear."""
-        module = self.normal_module
-        if module is None:
-            assert self.outer_module and self.face_width and self.pitch_angle
-            less = self.face_width * np.sin(self.pitch_angle) / self.teeth
-            if not less < self.outer_module:
-                problem = "reaches beyond the apex of the cone"
-                raise self.table.error("face_width", problem)
-            module = (self.outer_module - less) * np.cos(self.helix_angle)
-        names = (
-            "teeth helix_angle hand pressure_angle mesh_angle pitch_angle apex"
-            " mates_with torque power efficiency"
-        ).split()
-        given = {one: getattr(self, one) for one in names}
-        with self.table.building():
-            return Gear(name, **self.placed(shafts), normal_module=module, **given)
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class BeltKeys(WheelKeys):
-    """[belt.NAME]: a pulley of a belt, or a chain wheel."""
-
-    diameter: float = scene_key("effective diameter", "length", above=0)
-    force_ratio: float = scene_key(
-        "force on the shaft over the tangential force: chains and toothed belts 1 to"
-        " 1.3, V-belts 1.5 to 2.5, flat belts 2 to 5",
-        above=0,
-    )
-    direction: float | None = scene_key(
-        "direction of the force on the shaft, as angle from local x to y",
-        "angle",
-        otherwise="towards the shaft of its mate",
-    )
-
-    def wheel(self, name: str, shafts: Mapping[str, ShaftKeys]) -> Pulley:
-        """Build the pulley."""
-        names = "diameter force_ratio direction mates_with torque power efficiency"
-        given = {one: getattr(self, one) for one in names.split()}
-        with self.table.building():
-            return Pulley(name, **self.placed(shafts), **given)
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class CouplingKeys(Keys):
-    """[coupling.NAME]: torque that enters or leaves a shaft without a force."""
-
-    shaft: str | None = scene_key("name of the shaft", **_SHAFT)
-    torque: float | None = _source(
-        "on the shaft, about its z; without it from the balance", "moment", "power"
-    )
-    power: float | None = _source("into the shaft", "power", "torque")
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class LoadKeys(PlacedKeys):
-    """[load.NAME]: a force and a moment on a shaft, in global axes."""
-
-    Fx: float = scene_key("force along x", "force", default=0.0)
-    Fy: float = scene_key("force along y", "force", default=0.0)
-    Fz: float = scene_key("force along z", "force", default=0.0)
-    Mx: float = scene_key("moment about x", "moment", default=0.0)
-    My: float = scene_key("moment about y", "moment", default=0.0)
-    Mz: float = scene_key("moment about z", "moment", default=0.0)
-
-    def load(self, name: str, shafts: Mapping[str, ShaftKeys]) -> ShaftLoad:
-        """Build the load."""
-        six = [getattr(self, one) for one in LOADS]
-        with self.table.building():
-            return ShaftLoad(name, **self.placed(shafts), force=six[:3], moment=six[3:])
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -343,7 +210,7 @@ class DriveKeys(Keys):
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class SeatKeys(PlacedKeys):
+class SeatKeys(Keys):
     """[bearings.NAME]: a bearing on a shaft, and beside these the keys of a bearing."""
 
     turned: bool = scene_key(
@@ -353,19 +220,6 @@ class SeatKeys(PlacedKeys):
     floating: bool = scene_key(
         "whether its outer ring slides in the housing, without axial force",
         default=False,
-    )
-    preload: float | None = scene_key(
-        "axial force of an adjusted bearing in the cold, before shaft and housing give"
-        " way",
-        "force",
-        above=0,
-    )
-    axial_offset: float = scene_key(
-        "axial displacement of the inner ring as adjusted in the cold, along the z of"
-        " the bearing; negative: play",
-        "length",
-        default=0.0,
-        without={"preload": ""},
     )
     housing: tuple[float, ...] | None = scene_key(
         "stiffness of the housing at this seat along global x, y and z",
@@ -378,6 +232,34 @@ class SeatKeys(PlacedKeys):
         if self.housing is not None and len(self.housing) != 3:
             problem = f"has {len(self.housing)} numbers; it must have three, x, y, z"
             raise self.table.error("housing", problem)
+
+    def seat(
+        self, name: str, shafts: Mapping[str, ShaftKeys], scene: Scene | None
+    ) -> Seat:
+        """Build the bearing in its place.
+
+        Args:
+            name: Name of the bearing.
+            shafts: All shafts by their names.
+            scene: The bearing alone; `None` of springs.
+        """
+        table, springs = self.table, self.stiffness
+        shaft = _shaft_of(table, shafts)
+        position = _position(table, shaft, shafts)
+        preload = table.quantity("preload", "force", None)
+        offset = table.quantity("axial_offset", "length", 0.0)
+        with table.building():
+            return Seat(
+                name,
+                shaft,
+                position,
+                None if scene is None else scene.installed,
+                preload,
+                offset,
+                self.turned,
+                self.floating,
+                None if springs is None else springs.diagonal,
+            )
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -412,7 +294,6 @@ class ShaftScene:
         bearings: Scene of each bearing alone, turning as in the system; `None` of
             springs.
         lives: Conditions of the life of each bearing; `None` of springs.
-        face_widths: Face width of gears by name [m].
         heat: Paths of the friction heat, or `None`: temperatures are as given.
         times: Times at which the warming up is reported (time,) [s], or `None`.
         hours: Time in this case [h]; `None` without cases.
@@ -427,7 +308,6 @@ class ShaftScene:
     system: ShaftSystem
     bearings: tuple[Scene | None, ...]
     lives: tuple[LifeConditions | None, ...]
-    face_widths: dict[str, float]
     heat: HeatNetwork | None
     times: np.ndarray | None
     hours: float | None
@@ -518,65 +398,41 @@ def _read(data: dict[str, Any], path: Path, known: dict[str, Any]) -> ShaftScene
     return dataclasses.replace(scene, warnings=tuple(odd), inputs=top.echo())
 
 
-def _named(top: Table, key: str, kind: type[Any]) -> dict[str, Any]:
-    """Read the tables [key.NAME] by their names."""
-    tables = top.table(key)
-    return {name: read_keys(kind, tables.table(name)) for name in tables.keys()}
-
-
 def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
-    shafts: dict[str, ShaftKeys] = _named(top, "shaft", ShaftKeys)
-    gears: dict[str, GearKeys] = _named(top, "gear", GearKeys)
-    belts: dict[str, BeltKeys] = _named(top, "belt", BeltKeys)
-    couplings: dict[str, CouplingKeys] = _named(top, "coupling", CouplingKeys)
-    loads: dict[str, LoadKeys] = _named(top, "load", LoadKeys)
+    tables = top.table("shaft")
+    shafts = {name: read_keys(ShaftKeys, tables.table(name)) for name in tables.keys()}
+    parts: dict[str, list[Any]] = {}
+    for key, (kind, words) in PARTS.items():
+        tables = top.table(key)
+        parts[key] = [
+            _part(tables.table(name), kind, name, shafts, words)
+            for name in tables.keys()
+        ]
     if "bearings" not in top:
         raise top.error("bearings", "is missing; [bearings.NAME] hold the shafts")
-    drive = _drive(top, shafts, (*gears, *belts))
-    wheels = [
-        keys.wheel(name, shafts) for name, keys in (*gears.items(), *belts.items())
-    ]
+    wheels = *parts["gear"], *parts["belt"]
+    drive = _drive(top, shafts, tuple(wheel.name for wheel in wheels))
     tables = top.table("bearings")
-    own: dict[str, Table] = {}
-    seats: dict[str, SeatKeys] = {}
-    alone: dict[str, Scene | None] = {}
-    placed = {}
-    for name in tables.keys():
-        table = own[name] = tables.table(name)
-        seats[name] = read_keys(SeatKeys, table)
-        placed[name] = seats[name].placed(shafts)
-        alone[name] = _bearing(top, table, seats[name], name, path, known)
+    own = {name: tables.table(name) for name in tables.keys()}
+    seats = {name: read_keys(SeatKeys, table) for name, table in own.items()}
+    alone = {
+        name: _bearing(top, own[name], keys, name, path, known)
+        for name, keys in seats.items()
+    }
     system = read_keys(SystemKeys, top.table("system"))
     pull = (0.0, 0.0, 0.0)
     if system.gravity != "none":
         pull = tuple(GRAVITY * x for x in AXES[system.gravity])
     housing = _housing(top, seats, path)
-    made = []
-    for name, keys in seats.items():
-        scene = alone[name]
-        with keys.table.building():
-            made.append(
-                Seat(
-                    name,
-                    **placed[name],
-                    installed=None if scene is None else scene.installed,
-                    preload=keys.preload,
-                    axial_offset=keys.axial_offset,
-                    turned=keys.turned,
-                    floating=keys.floating,
-                    stiffness=None
-                    if keys.stiffness is None
-                    else keys.stiffness.diagonal,
-                )
-            )
+    made = [keys.seat(name, shafts, alone[name]) for name, keys in seats.items()]
     with top.building():
         whole = ShaftSystem(
             [keys.line(name) for name, keys in shafts.items()],
             made,
             drive,
             wheels,
-            [_coupling(name, keys, shafts) for name, keys in couplings.items()],
-            [keys.load(name, shafts) for name, keys in loads.items()],
+            parts["coupling"],
+            parts["load"],
             housing,
             pull,
         )
@@ -592,7 +448,6 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
             None if scene is None else life_conditions(scene, (), turning)
             for scene in alone.values()
         ),
-        face_widths={n: k.face_width for n, k in gears.items() if k.face_width},
         heat=heat,
         times=times,
         hours=None,
@@ -607,18 +462,6 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
         ),
         inputs={},
     )
-
-
-def _coupling(
-    name: str, keys: CouplingKeys, shafts: Mapping[str, ShaftKeys]
-) -> Coupling:
-    shaft = keys.shaft
-    if shaft is None and len(shafts) == 1:
-        shaft = next(iter(shafts))
-    if shaft is None:
-        raise keys.table.error("shaft", f"is missing; one of {', '.join(shafts)}")
-    with keys.table.building():
-        return Coupling(name, shaft, keys.torque, keys.power)
 
 
 def _drive(top: Table, shafts: Mapping[str, ShaftKeys], wheels: Any) -> Drive | None:
@@ -667,7 +510,9 @@ def _housing(
         return HousingStiffness(keys.seats, matrix)
 
 
-_OF_SEAT = {field.name for field in dataclasses.fields(SeatKeys)} - {"table"}
+_OF_SEAT = {"shaft", "position", "station", "preload", "axial_offset"} | {
+    field.name for field in dataclasses.fields(SeatKeys) if field.name != "table"
+}
 _OWN = (*BESIDE, "life", "lubricant")
 
 
@@ -707,9 +552,7 @@ def _bearing(
     if mark not in known:
         known[mark] = _scene_of(data, name, path, own)
     scene = known[mark]
-    inputs = dict(scene.inputs)
-    beside = {k: inputs[k] for k in BESIDE if k in inputs}
-    for key, value in {**inputs["bearing"], **beside}.items():
+    for key, value in echoed(scene.inputs).items():
         table.fill(key, value)
     for key in common:
         top.fill(key, common[key])

@@ -10,8 +10,8 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import jax.scipy as jsp
 import numpy as np
-from jax.scipy.linalg import block_diag
 from jaxtyping import Array, Float, Int
 
 from ..design.checks import is_traced
@@ -365,7 +365,9 @@ def _coupled(system, rotors, points, power) -> Condensed:
     if floating:
         stiffness.append(jnp.zeros((len(floating),) * 2))
         back.append(jnp.eye(len(floating)))
-    rows = block_diag(*(part.rows.reshape(-1, part.rows.shape[-1]) for part in parts))
+    rows = jsp.linalg.block_diag(
+        *(part.rows.reshape(-1, part.rows.shape[-1]) for part in parts)
+    )
     rows = rows.reshape(len(order), N_STATION, -1)
     n_more = sum(k.shape[0] for k in stiffness[len(parts) :])
     more = jnp.zeros((len(order), N_STATION, n_more), rows.dtype)
@@ -384,10 +386,10 @@ def _coupled(system, rotors, points, power) -> Condensed:
     supports = [support for rotor in rotors for support in rotor.supports]
     still = jnp.zeros(n_more, rows.dtype)
     return Condensed(
-        stiffness=block_diag(*stiffness),
+        stiffness=jsp.linalg.block_diag(*stiffness),
         force=jnp.concatenate([*(part.force for part in parts), still]),
         rows=jnp.concatenate([rows, more], axis=2)[back_at],
-        back=block_diag(*back),
+        back=jsp.linalg.block_diag(*back),
         there=jnp.concatenate([*(part.there for part in parts), still]),
         supports=tuple(supports[k] for k in back_at),
         speed=jnp.stack([turns[k] for k in back_at]),

@@ -72,10 +72,10 @@ class AbstractWheel(AbstractPlaced):
     """A wheel that drives, or is driven, at its circumference.
 
     Attributes:
-        mates_with: Name of the wheel that it meshes with, or whose belt it shares;
-            `None`: none of the system.
-        torque: By which a wheel outside the system acts on the shaft, about its local z
-            [N m]. Of one wheel without a mate it follows from the balance of torques.
+        mates_with: Wheel of another shaft that it meshes with, or whose belt it shares;
+            each pair is named once. `None`: none of the system.
+        torque: By which a mate outside the system acts on the shaft, about its local z
+            [N m]; `None`: from the balance of torques, of one wheel at most.
         power: The same as power into the shaft, negative out of it [W].
         efficiency: Power out over power in, with its mate [1].
     """
@@ -103,9 +103,9 @@ class Gear(AbstractWheel):
         pitch_angle: Half the angle of the pitch cone of a bevel gear [rad]; `None`:
             cylindrical.
         apex: Side of its apex, "+z" or "-z" of the shaft; `None` of a cylindrical gear.
-        mates_with, torque, power, efficiency: As in `AbstractWheel`.
+        face_width: Width of the teeth, over which a misalignment is told [m].
 
-    Traced: all numbers but `teeth`.
+    Others as in `AbstractWheel`. Traced: all numbers but `teeth`.
     """
 
     name: str = eqx.field(static=True)
@@ -127,6 +127,9 @@ class Gear(AbstractWheel):
         converter=as_real, metadata=unit("rad"), default=None
     )
     apex: str | None = eqx.field(static=True, default=None)
+    face_width: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("m"), default=None
+    )
     mates_with: str | None = eqx.field(static=True, default=None)
     torque: Scalar | None = eqx.field(
         converter=as_real, metadata=unit("N m"), default=None
@@ -142,6 +145,8 @@ class Gear(AbstractWheel):
         in_range(self, "helix_angle", 0.0, np.deg2rad(60.0), include_low=True)
         in_range(self, "pressure_angle", np.deg2rad(5.0), np.deg2rad(45.0))
         in_range(self, "efficiency", 0.0, 1.0 + 1e-12)
+        if self.face_width is not None:
+            positive(self, "face_width")
         if self.hand not in HANDS:
             raise ValueError(
                 f"Gear: `hand` of {self.name} is {self.hand!r}; it must be one of"
@@ -214,9 +219,8 @@ class Pulley(AbstractWheel):
             flat belts [1].
         direction: Direction of the force on the shaft, as angle around it [rad];
             `None`: towards the shaft of the mate.
-        mates_with, torque, power, efficiency: As in `AbstractWheel`.
 
-    Traced: all numbers.
+    Others as in `AbstractWheel`. Traced: all numbers.
     """
 
     name: str = eqx.field(static=True)
