@@ -47,23 +47,22 @@ _TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0])
 class ShaftState(eqx.Module):
     """A shaft in equilibrium, in its local axes.
 
-    Shear, axial force, moments and torque are those by which the part of the shaft at
-    larger z acts on the part before it; `side` counts the end and the begin of the two
-    beam elements that meet: every inner node occurs twice, just before and just after
-    what acts there.
+    Forces and moments are those by which the part of the shaft at larger z acts on the
+    part before it; `side` counts both ends of every beam element, so that an inner node
+    occurs twice, just before and just after what acts there.
 
     Attributes:
         position: Along the shaft (side,) [m].
         displacement: (ux uy uz gx gy) (side, 5) [m, rad].
         shear: Force (Fx, Fy, Fz) in the section (side, 3) [N].
-        moment: Bending moment and torque (Mx, My, Mz) (side, 3) [N m].
+        moment: Bending moment (Mx, My) (side, 2) [N m].
         speed: Of the shaft [rad/s].
     """
 
     position: Float[Array, " side"]
     displacement: Float[Array, "side 5"]
     shear: Float[Array, "side 3"]
-    moment: Float[Array, "side 3"]
+    moment: Float[Array, "side 2"]
     speed: Scalar
 
 
@@ -414,7 +413,7 @@ def _described(system, rotors, points, whole, power, found) -> SystemSolution:
             node = beam.node(system.station(system.seats[k])[1])
             acting = acting.at[node].add(-force[k])
         line = system.shafts[index]
-        weight = line.frame @ system.gravity * beam.element_masses()[:, None]
+        weight = jnp.outer(beam.element_masses(), line.frame @ system.gravity)
         speed = power.speed[index]
         shafts.append(ShaftState(*_lines(beam.nodes, acting, weight, moved), speed))
         turned = jnp.concatenate([moved[:, 3:], jnp.zeros_like(moved[:, :1])], axis=1)

@@ -235,6 +235,10 @@ def steady_rises(
         size = jnp.max(jnp.abs(left))
         new = jnp.where(size > 0, size / jnp.maximum(made, 1e-30), 0.0)
         grown = jnp.where(steps > 0, jnp.clip(residual / new, 0.5, _GROWTH), 1.0) * time
+        # A step past the growth of what is not stable would lead anywhere.
+        fastest = jnp.max(jnp.real(eigvals(slope / still[2][:, None])))
+        limit = 0.5 / jnp.where(fastest > 0, fastest, 1.0)
+        grown = jnp.where(fastest > 0, jnp.minimum(grown, limit), grown)
         after = rise + solve_any(jnp.diag(still[2] / grown) - slope, left)
         return after, rise, slope, new, grown, steps + 1
 
@@ -320,7 +324,8 @@ def solve_heat(
     _check(system, network)
     cold = adjusted(system)
     rise, slowest, residual, steps, solved = _steady(cold, network)
-    warm = with_temperatures(cold, network, rise)
+    # Of what has run away numbers stay within those of materials.
+    warm = with_temperatures(cold, network, jnp.clip(rise, -_HOTTEST / 3.0, _HOTTEST))
     solution, _ = system_state(warm)
     flow = network.conductance() @ rise
     known = jnp.where(solved, rise, jnp.nan) + network.ambient

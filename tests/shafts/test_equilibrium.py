@@ -1,0 +1,380 @@
+"""Equilibrium of shafts on bearings, against beams and iterations written anew."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from systems import ELEMENT, STIFF, ball, springs, stage, three_bearings
+
+import bearingjax as bj
+from bearingjax.shafts import (
+    HousingStiffness,
+    Seat,
+    ShaftLine,
+    ShaftLoad,
+    ShaftSystem,
+    bearing_solutions,
+    solve_system,
+)
+from bearingjax.shafts.equilibrium import axial_growth
+
+LOAD = [
+    ShaftLoad("p", "s", 0.12, (300.0, -2000.0, 700.0), (10.0, -25.0, 0.0)),
+    ShaftLoad("q", "s", 0.35, (-1500.0, 800.0, -500.0)),
+]
+
+
+def beam(z, diameters, modulus=206e9, poisson=0.3):
+    """Stiffness of a Timoshenko shaft of the nodes z, in NumPy."""
+    n = len(z)
+    matrix = np.zeros((5 * n, 5 * n))
+    shear = modulus / (2 * (1 + poisson))
+    kappa = 6 * (1 + poisson) / (7 + 6 * poisson)
+    for k, d in enumerate(diameters):
+        long, area, inertia = z[k + 1] - z[k], np.pi / 4 * d**2, np.pi / 64 * d**4
+        phi = 12 * modulus * inertia / (kappa * shear * area * long**2)
+        c = modulus * inertia / (long**3 * (1 + phi))
+        bent = c * np.array(
+            [
+                [12, 6 * long, -12, 6 * long],
+                [6 * long, (4 + phi) * long**2, -6 * long, (2 - phi) * long**2],
+                [-12, -6 * long, 12, -6 * long],
+                [6 * long, (2 - phi) * long**2, -6 * long, (4 + phi) * long**2],
+            ]
+        )
+        for freedoms, sign in (((0, 4), 1.0), ((1, 3), -1.0)):
+            at = [5 * k + freedoms[0], 5 * k + freedoms[1]]
+            at += [5 * k + 5 + freedoms[0], 5 * k + 5 + freedoms[1]]
+            turn = np.diag([1.0, sign, 1.0, sign])
+            matrix[np.ix_(at, at)] += turn @ bent @ turn
+        along = modulus * area / long * np.array([[1, -1], [-1, 1]])
+        at = [5 * k + 2, 5 * k + 7]
+        matrix[np.ix_(at, at)] += along
+    return matrix
+
+
+Z = np.array([0.0, 0.05, 0.12, 0.15, 0.25, 0.35, 0.4, 0.45, 0.5])
+D = np.array([0.04, 0.04, 0.04, 0.05, 0.05, 0.05, 0.04, 0.04])
+AT = {"A": 1, "B": 4, "C": 7}
+
+
+def forces():
+    force = np.zeros(5 * len(Z))
+    force[10:15] = [300.0, -2000.0, 700.0, 10.0, -25.0]
+    force[25:28] = [-1500.0, 800.0, -500.0]
+    return force
+
+
+def by_hand(bearing):
+    """Loads of three bearings (bearing, 5) by Newton's method over all nodes, each
+    bearing a function of its displacement called as a black box."""
+    shaft, force = beam(Z, D), forces()
+    x = np.zeros(len(force))
+    # The balls touch: by hand Newton's method finds no way from the play.
+    x[1::5], x[2::5] = -3e-5, 1e-5
+    for _ in range(60):
+        left, slope = shaft @ x - force, shaft.copy()
+        for node in AT.values():
+            at = slice(5 * node, 5 * node + 5)
+            pushed, stiffness = bearing(x[at])
+            left[at] += pushed
+            slope[at, at] += stiffness
+        step = np.linalg.solve(slope, left)
+        x -= step * min(1.0, 2e-6 / np.abs(step).max() * 10)
+        if np.abs(step).max() < 1e-16:
+            break
+    return np.array([bearing(x[5 * n : 5 * n + 5])[0] for n in AT.values()]), x
+
+
+def test_three_bearings_by_hand():
+    """AF006-2: a statically indeterminate shaft on true bearings."""
+
+    @jax.jit
+    def rings(q):
+        model = ELEMENT.model(None)
+        found = model.evaluate(q, model.solve(q))
+        return found.force[6:11], found.stiffness[6:11, 6:11]
+
+    def bearing(moved):
+        q = np.zeros(12)
+        q[6:11] = moved
+        return [np.asarray(part) for part in rings(q)]
+
+    wanted, moved = by_hand(bearing)
+    found = solve_system(three_bearings(LOAD))
+    load = np.asarray(found.load)[:, :5]
+    np.testing.assert_allclose(load, wanted, atol=1e-8 * np.abs(wanted).max())
+    state = found.shafts[0]
+    own = np.array([state.displacement[np.isclose(state.position, z)][0] for z in Z])
+    np.testing.assert_allclose(own.ravel(), moved, atol=1e-8 * np.abs(moved).max())
+
+
+def test_springs_by_hand():
+    """On springs it is one linear system; shear and moment lines are those of cuts."""
+    springy = np.array([2e8, 1e8, 5e7, 1e4, 2e4])
+    system = three_bearings(LOAD, lambda n, s, z: springs(n, s, z, springy))
+    found = solve_system(system)
+    matrix = beam(Z, D)
+    for node in AT.values():
+        at = range(5 * node, 5 * node + 5)
+        matrix[at, at] += springy
+    x = np.linalg.solve(matrix, forces())
+    wanted = np.array([springy * x[5 * n : 5 * n + 5] for n in AT.values()])
+    np.testing.assert_allclose(found.load[:, :5], wanted, rtol=1e-9, atol=1e-6)
+    state = found.shafts[0]
+    z, cut = np.asarray(state.position), 0.3
+    k = int(np.flatnonzero(z <= cut)[-1])
+    acting = [(p.position, p.force, p.moment) for p in LOAD]
+    acting += [
+        (Z[n], -w[:3], -np.append(w[3:], 0.0))
+        for n, w in zip(AT.values(), wanted, strict=True)
+    ]
+    before = [(float(p), np.asarray(f), np.asarray(m)) for p, f, m in acting if p < cut]
+    shear = -sum(f for _, f, _ in before)
+    bent = -sum(m + np.cross([0, 0, p - z[k]], f) for p, f, m in before)
+    np.testing.assert_allclose(state.shear[k], shear, rtol=1e-9)
+    np.testing.assert_allclose(state.moment[k], bent[:2], rtol=1e-9, atol=1e-9)
+    for end in (0, -1):
+        assert np.abs(state.shear[end]).max() < 1e-8
+        assert np.abs(state.moment[end]).max() < 1e-9
+
+
+def test_weight_between_supports():
+    """The line of a shaft of even weight: q L²/8 in the middle, 5 q L⁴/384 E I and the
+    share of shear."""
+    line = ShaftLine("s", [0.5, 0.5], [0.05])
+    seats = [springs(n, "s", z) for n, z in (("A", 0.0), ("B", 1.0))]
+    found = solve_system(ShaftSystem(line, seats, gravity=(0.0, -9.81, 0.0)))
+    state = found.shafts[0]
+    weight = 7850.0 * np.pi / 4 * 0.05**2 * 9.81
+    middle = np.argmin(np.abs(np.asarray(state.position) - 0.5))
+    np.testing.assert_allclose(abs(state.moment[middle, 0]), weight / 8, rtol=1e-9)
+    np.testing.assert_allclose(found.load[:, 1], -weight / 2, rtol=1e-9)
+    stiff = 206e9 * np.pi / 64 * 0.05**4
+    kappa = 6 * 1.3 / (7 + 6 * 0.3)
+    area = np.pi / 4 * 0.05**2
+    sag = 5 * weight / (384 * stiff) + weight / (8 * kappa * 206e9 / 2.6 * area)
+    own = -float(state.displacement[middle, 1]) - weight / 2 / STIFF[0]
+    np.testing.assert_allclose(own, sag, rtol=1e-9)
+
+
+def test_stiff_surroundings():
+    """AF006-3: on a rigid shaft in a rigid housing a determinate system loads each
+    bearing by statics alone, and each is as if alone under that load."""
+    line = ShaftLine("s", [0.3], [0.05], rigid=True)
+    seats = [
+        Seat("A", "s", 0.05, bj.Installed(ELEMENT)),
+        Seat("B", "s", 0.25, stiffness=np.array([1e13, 1e13, 0.0, 0.0, 0.0])),
+    ]
+    load = ShaftLoad("p", "s", 0.1, (800.0, -3000.0, 1200.0))
+    found = solve_system(ShaftSystem(line, seats, loads=load))
+    # The bearing holds a tilt too: its moment comes with the loads.
+    own = np.asarray(found.load[0])
+    alone = bj.solve_load(ELEMENT, own)
+    np.testing.assert_allclose(alone.displacement[6:11], found.motion[0], rtol=1e-7)
+    lever = (0.25 - 0.1) / 0.2 * np.array([800.0, -3000.0])
+    held = own[[4, 3]] * np.array([1.0, -1.0]) / 0.2
+    np.testing.assert_allclose(own[:2], lever + held, rtol=1e-9)
+
+
+def test_self_aligning_bearing_is_a_hinge():
+    hinge = bj.Installed(bj.BearingElement(bj.load_bearing("1206")))
+    line = ShaftLine("s", [0.4], [0.03])
+    seats = [Seat("A", "s", 0.02, hinge), springs("B", "s", 0.38)]
+    load = ShaftLoad("p", "s", 0.2, (0.0, -3000.0, 0.0))
+    found = solve_system(ShaftSystem(line, seats, loads=load))
+    # What is left of the moment is of second order in the tilt.
+    np.testing.assert_allclose(found.load[:, 1], -1500.0, rtol=1e-6)
+    assert np.abs(found.load[0, 3:]).max() < 1e-5 * 1500.0 * 0.024
+    assert float(found.displacement[0, 3]) > 1e-4
+
+
+def test_soft_housing_shares_the_load():
+    """Of three springs in a line, a housing in series softens the middle one."""
+    line = ShaftLine("s", [0.4], [0.05], rigid=True)
+    k = np.array([1e8, 1e8, 1e8, 0.0, 0.0])
+    seats = [springs(n, "s", z, k) for n, z in (("A", 0.1), ("B", 0.2), ("C", 0.3))]
+    load = ShaftLoad("p", "s", 0.2, (0.0, -900.0, 0.0))
+    stiff = solve_system(ShaftSystem(line, seats, loads=load))
+    np.testing.assert_allclose(stiff.load[:, 1], -300.0, rtol=1e-9)
+    housing = HousingStiffness.of_seats({"B": [5e7, 5e7, 5e7]})
+    soft = solve_system(ShaftSystem(line, seats, loads=load, housing=housing))
+    series = 1 / (1 / 1e8 + 1 / 5e7)
+    share = np.array([1e8, series, 1e8]) / (2e8 + series)
+    np.testing.assert_allclose(soft.load[:, 1], -900.0 * share, rtol=1e-9)
+    np.testing.assert_allclose(soft.housing[0, 1], -900.0 * share[1] / 5e7, rtol=1e-9)
+
+
+def test_housing_matrix():
+    """A housing that couples its seats, with rotations, on an oblique shaft: the whole
+    linear system in global axes."""
+    generator = np.random.default_rng(3)
+    root = generator.normal(size=(12, 12)) * 1e3 + 1e4 * np.eye(12)
+    matrix = root @ root.T
+    axis = np.array([1.0, 2.0, 2.0]) / 3.0
+    line = ShaftLine("s", [0.2], [0.05], axis=axis, rigid=True)
+    k = np.array([1e8, 2e8, 3e8, 1e4, 1e4])
+    seats = [springs(n, "s", z, k) for n, z in (("A", 0.0), ("B", 0.2))]
+    load = ShaftLoad("p", "s", 0.05, (100.0, -250.0, 300.0))
+    found = solve_system(
+        ShaftSystem(
+            line, seats, loads=load, housing=HousingStiffness(("A", "B"), matrix)
+        )
+    )
+    frame = np.asarray(line.frame)
+    assert np.allclose(frame @ frame.T, np.eye(3)) and np.linalg.det(frame) > 0
+    np.testing.assert_allclose(frame[2], axis, rtol=1e-14)
+    np.testing.assert_allclose(found.load[:, :3].sum(axis=0), load.force, rtol=1e-9)
+    # Loads on the seats move them by the matrix.
+    loads = np.asarray(found.load).reshape(-1)
+    moved = np.linalg.solve(matrix, loads)
+    np.testing.assert_allclose(found.housing.reshape(-1), moved, rtol=1e-8)
+
+
+def test_floating_bearing():
+    """A floating ring carries no axial load; the other one takes it all."""
+    line = ShaftLine("s", [0.3], [0.04])
+    load = ShaftLoad("p", "s", 0.12, (0.0, -2000.0, 900.0))
+    for floating in ("A", "B"):
+        seats = [
+            ball(n, "s", z, floating=n == floating)
+            for n, z in (("A", 0.05), ("B", 0.25))
+        ]
+        found = solve_system(ShaftSystem(line, seats, loads=load))
+        axial = np.asarray(found.load[:, 2])
+        wanted = np.array([0.0, 900.0]) if floating == "A" else np.array([900.0, 0.0])
+        np.testing.assert_allclose(axial, wanted, atol=1e-6)
+
+
+def test_nothing_holds_the_shaft():
+    line = ShaftLine("s", [0.3], [0.04])
+    seats = [ball(n, "s", z, floating=True) for n, z in (("A", 0.05), ("B", 0.25))]
+    load = ShaftLoad("p", "s", 0.12, (0.0, -2000.0, 900.0))
+    with pytest.raises(bj.SolveError, match="takes up the load along uz of shaft s"):
+        solve_system(ShaftSystem(line, seats, loads=load))
+
+
+def test_places_of_gears_and_bearings():
+    """Of the gear stage the loads balance forces and moments of each shaft, and the
+    solutions of the bearings have the loads of the system."""
+    system = stage(ball, housing=[3e8, 2e8, 1e8], gravity=(0.0, -9.81, 0.0))
+    found = solve_system(system)
+    origin = {s.name: np.asarray(s.origin) for s in system.shafts}
+    for name in ("in", "out"):
+        force, moment = np.zeros(3), np.zeros(3)
+        for mesh in found.power.meshes:
+            wheel = system.wheel(mesh.wheel)
+            if wheel.shaft == name:
+                at = np.array([0.0, 0.0, float(wheel.position)]) + np.asarray(
+                    mesh.place
+                )
+                force += np.asarray(mesh.force)
+                moment += np.cross(at, np.asarray(mesh.force))
+        for k, seat in enumerate(system.seats):
+            if seat.shaft == name:
+                own = -np.asarray(found.load[k])
+                force += own[:3]
+                moment += own[3:] + np.cross([0, 0, float(seat.position)], own[:3])
+        index = [s.name for s in system.shafts].index(name)
+        shaft = system.beam(index)
+        mass = np.asarray(shaft.element_masses())
+        middle = 0.5 * (np.asarray(shaft.nodes)[1:] + np.asarray(shaft.nodes)[:-1])
+        force[1] -= 9.81 * mass.sum()
+        moment[0] += 9.81 * (mass * middle).sum()
+        assert np.abs(force).max() < 1e-7 and np.abs(moment[:2]).max() < 1e-8, origin
+    for k, one in enumerate(bearing_solutions(system, found)):
+        np.testing.assert_allclose(
+            one.force[6:11], found.load[k, :5], rtol=1e-7, atol=1e-6
+        )
+        assert one.speed is not None
+
+
+def test_shaft_drawn_from_its_other_end():
+    """It is the same shaft, with its bearings turned. The elements stand mirrored about
+    local x, and so in the same places: one of them stands at azimuth 0."""
+    taper = bj.Installed(bj.BearingElement(bj.load_bearing("30206")))
+    loads = []
+    for end in (False, True):
+        line = ShaftLine("s", [0.3], [0.04], axis=(0.0, 0.0, -1.0 if end else 1.0))
+        a, b, at = (0.25, 0.05, 0.2) if end else (0.05, 0.25, 0.1)
+        seats = [
+            Seat("A", "s", a, taper, preload=200.0, turned=end),
+            Seat("B", "s", b, taper, preload=200.0, turned=not end),
+        ]
+        load = ShaftLoad("p", "s", at, (500.0, -2000.0, 400.0), (3.0, 4.0, 0.0))
+        loads.append(solve_system(ShaftSystem(line, seats, loads=load)).load)
+    np.testing.assert_allclose(loads[1], loads[0], rtol=1e-7, atol=1e-5)
+
+
+def test_growth_by_heat():
+    """Axial growth of shaft against housing between two bearings."""
+    seat = bj.Mounting(0.04, 0.09, 0.12, 0.0, 0.0)
+    warm = bj.FitConditions(shaft=30.0, housing=10.0)
+    installed = bj.Installed(ELEMENT, None, seat, warm)
+    cool = bj.Installed(ELEMENT, None, seat, bj.FitConditions(shaft=10.0, housing=10.0))
+    line = ShaftLine("s", [0.5], [0.04])
+    seats = [Seat("A", "s", 0.05, installed), Seat("B", "s", 0.45, cool)]
+    growth = axial_growth(ShaftSystem(line, seats))
+    steel = float(bj.design.WarmMaterial().expansion)
+    np.testing.assert_allclose(growth, [0.0, 0.5 * steel * 20.0 * 0.4], rtol=1e-12)
+
+
+NUMBERS = {
+    "position of a bearing": lambda s: s.seats[1].position,
+    "position of the wheel": lambda s: s.wheels[1].position,
+    "diameter of a segment": lambda s: s.shafts[0].outer_diameter,
+    "length of a segment": lambda s: s.shafts[0].length,
+    "helix angle": lambda s: s.wheels[0].helix_angle,
+    "place of a shaft": lambda s: s.shafts[1].origin,
+    "power": lambda s: s.drive.power,
+    "speed": lambda s: s.drive.speed,
+    "ball diameter": lambda s: s.seats[0].installed.drawing.bearing.ball_diameter,
+    "housing": lambda s: s.housing.matrix,
+}
+
+
+@pytest.fixture(scope="module")
+def answers():
+    """Loads, tilts, misalignment, and life of the first bearing, over the numbers."""
+    system = stage(ball, housing=[3e8, 2e8, 1e8])
+    arrays, rest = eqx.partition(system, eqx.is_inexact_array)
+
+    @jax.jit
+    def value(arrays):
+        whole = eqx.combine(arrays, rest)
+        found = solve_system(whole, throw=False)
+        one = bearing_solutions(whole, found)[0]
+        life = bj.rating_life(one.element, one).reference_rating_life
+        parts = [found.load.ravel(), 1e6 * found.displacement.ravel()]
+        return jnp.concatenate([*parts, 1e6 * found.misalignment, life[None] / 1e6])
+
+    @jax.jit
+    def slope(arrays, change):
+        return jax.jvp(value, (arrays,), (change,))[1]
+
+    return arrays, value, slope
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_derivatives(answers, name):
+    """AF006-6: every answer has a derivative by every number."""
+    arrays, value, slope = answers
+    still = jax.tree.map(jnp.zeros_like, arrays)
+    here = NUMBERS[name](arrays)
+    way = jnp.zeros_like(here)
+    way = way + 1.0 if way.ndim == 0 else way.at[(0,) * way.ndim].set(1.0)
+    own = np.asarray(slope(arrays, eqx.tree_at(NUMBERS[name], still, way)))
+    size = float(jnp.max(jnp.abs(here)))
+
+    def difference(step):
+        ends = [
+            value(eqx.tree_at(NUMBERS[name], arrays, here + way * (sign * step)))
+            for sign in (1.0, -1.0)
+        ]
+        return np.asarray((ends[0] - ends[1]) / (2.0 * step))
+
+    coarse, fine = difference(2e-4 * size), difference(1e-4 * size)
+    wanted = (4.0 * fine - coarse) / 3.0
+    assert np.abs(own).max() > 0
+    np.testing.assert_allclose(own, wanted, atol=1e-6 * np.abs(wanted).max())

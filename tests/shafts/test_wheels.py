@@ -1,0 +1,253 @@
+"""Forces of gears and belts, speeds and torques of the shafts that they couple."""
+
+import jax
+import numpy as np
+import pytest
+from systems import springs, stage
+
+from bearingjax.shafts import (
+    Coupling,
+    Drive,
+    Gear,
+    Pulley,
+    ShaftLine,
+    ShaftLoad,
+    ShaftSystem,
+    power_flow,
+    solve_system,
+)
+
+RPM = np.pi / 30.0
+MEAN = 49.39342e-3
+"""Mean radius of the bevel gear of the published example [m]."""
+
+
+def published(rigid=True):
+    """First shaft of example 3 of pygritbx (Politecnico di Torino)."""
+    wheels = [
+        Gear("G2", "A1", 0.0435, 24, 4e-3, np.deg2rad(21.0), "right",
+             mesh_angle=-np.pi / 2),
+        Gear("G3", "A1", 0.2785, 24, 2 * MEAN / 24, mesh_angle=-np.pi / 2,
+             pitch_angle=np.pi / 4, apex="+z"),
+    ]  # fmt: skip
+    return ShaftSystem(
+        ShaftLine("A1", [0.3], [0.05], rigid=rigid),
+        [springs("A", "A1", 0.151), springs("B", "A1", 0.214)],
+        Drive("G2", -750.0 * 32 / 24 * RPM, power=15e3),
+        wheels,
+    )
+
+
+def test_published_gear_shaft():
+    """AF006-1: gear forces and reactions on rigid supports."""
+    found = solve_system(published())
+    force = {mesh.wheel: np.asarray(mesh.force) for mesh in found.power.meshes}
+    np.testing.assert_allclose(force["G2"], [-2785.95, 1086.14, 1069.43], rtol=1e-5)
+    np.testing.assert_allclose(force["G3"], [2899.97, 746.35, -746.35], rtol=1e-5)
+    np.testing.assert_allclose(found.power.meshes[1].torque, 143.24, rtol=1e-5)
+    load = -np.asarray(found.load)
+    np.testing.assert_allclose(load[0, :2], [10508.77, -1887.75], rtol=1e-5)
+    np.testing.assert_allclose(load[1, :2], [-10622.79, 55.25], rtol=5e-5)
+    # Of the axial reactions only the sum is given by statics.
+    np.testing.assert_allclose(load[:, 2].sum(), 6085.88 - 6408.95, rtol=1e-4)
+
+
+def pair(gear=None, far=None, **axis):
+    """Two shafts on springs with a pair of gears."""
+    gear = {"helix_angle": 0.3, **(gear or {})}
+    hands = ("right", "left") if gear["helix_angle"] else ("none", "none")
+    one = Gear("one", "a", 0.1, 20, 3e-3, hand=hands[0], **gear)
+    other = Gear("two", "b", 0.1, 37, 3e-3, hand=hands[1], mates_with="one",
+                 **{**gear, **(far or {})})  # fmt: skip
+    shafts = [ShaftLine("a", [0.2], [0.03]), ShaftLine("b", [0.2], [0.03], **axis)]
+    seats = [springs(f"{s}{k}", s, z) for s in "ab" for k, z in enumerate((0.02, 0.18))]
+    return ShaftSystem(shafts, seats, Drive("a", 100.0, torque=50.0), [one, other])
+
+
+CONE = np.arctan(20.0 / 37.0)
+BEVEL = {"pitch_angle": CONE, "apex": "+z"}
+BACK = {"pitch_angle": np.pi / 2 - CONE}
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        pair({"helix_angle": 0.0, "mesh_angle": 0.4}),
+        pair({"mesh_angle": -2.0}, {"mesh_angle": None}),
+        pair({"mesh_angle": 0.4}, {"mesh_angle": None}, axis=(0.0, 0.0, -1.0)),
+        pair({**BEVEL, "helix_angle": 0.0}, {**BACK, "apex": "-z"}, axis=(0.6, 0.8, 0)),
+        pair(BEVEL, {**BACK, "apex": "+z"}, axis=(0.6, -0.8, 0.0)),
+        pair({**BEVEL, "helix_angle": 0.5}, {**BACK, "apex": "-z"}, axis=(-1, 0, 0)),
+        stage(),
+    ],
+)  # fmt: skip
+def test_action_is_reaction(system):
+    """The force on each gear, from its own torque and geometry, is minus that on its
+    mate; and power comes out."""
+    flow = power_flow(system)
+    one, other = flow.meshes
+    size = float(np.abs(np.asarray(one.force)).max())
+    np.testing.assert_allclose(one.force, -np.asarray(other.force), atol=1e-9 * size)
+    assert abs(float(flow.loss)) < 1e-9
+    drive = float(flow.drive * flow.speed[0])
+    np.testing.assert_allclose(-flow.output * flow.speed[1], drive, rtol=1e-12)
+    # The teeth move along with each other: the normal force does no work.
+    names = [shaft.name for shaft in system.shafts]
+    speeds = []
+    for mesh in (one, other):
+        k = names.index(system.wheel(mesh.wheel).shaft)
+        axis = np.asarray(system.shafts[k].frame[2])
+        speeds.append(float(flow.speed[k]) * np.cross(axis, mesh.place))
+    work = np.dot(np.asarray(one.force), speeds[0] - speeds[1])
+    assert abs(work) < 1e-9 * size
+
+
+def test_forces_of_a_textbook_pinion():
+    """Ft = T/r, Fr = Ft tan α/cos β, Fa = Ft tan β, and their senses: a right-hand
+    pinion that drives in the positive sense is pressed along +z."""
+    system = pair({"mesh_angle": 0.0, "helix_angle": 0.3}, {"mesh_angle": None})
+    mesh = power_flow(system).meshes[1]
+    radius = 0.5 * 20 * 3e-3 / np.cos(0.3)
+    tangential = 50.0 / radius
+    wanted = [
+        -tangential * np.tan(np.deg2rad(20.0)) / np.cos(0.3),
+        -tangential,
+        tangential * np.tan(0.3),
+    ]
+    assert mesh.wheel == "one"
+    np.testing.assert_allclose(mesh.force, wanted, rtol=1e-12)
+
+
+def test_working_pitch_circles():
+    """Gears apart by more than their pitch circles work on larger ones, with a larger
+    pressure angle: the normal force is the torque over the base circle."""
+    system = stage()
+    wider = np.asarray(system.shafts[1].origin) * np.array([1.01, 1.01, 1.0])
+    lines = [system.shafts[0], ShaftLine("out", [0.3], [0.06], origin=wider)]
+    system = ShaftSystem(lines, system.seats, system.drive, system.wheels)
+    flow = power_flow(system)
+    mesh = flow.meshes[1]
+    force, gear = np.asarray(mesh.force), system.wheels[0]
+    distance = np.linalg.norm(wider[:2])
+    radius = distance * 23 / 91
+    np.testing.assert_allclose(np.linalg.norm(mesh.place), radius, rtol=1e-12)
+    across = force[:2]
+    base = float(gear.base_radius)
+    np.testing.assert_allclose(np.linalg.norm(across), abs(float(mesh.torque)) / base)
+    lead = np.tan(np.deg2rad(15.0)) / float(gear.radius)
+    np.testing.assert_allclose(force[2], abs(float(mesh.torque)) * lead, rtol=1e-12)
+    with pytest.raises(ValueError, match="mm apart, their pitch circles touch at"):
+        far = ShaftLine("out", [0.3], [0.06], origin=wider * 1.2)
+        ShaftSystem([system.shafts[0], far], system.seats, system.drive, system.wheels)
+
+
+def test_losses():
+    """What a mesh loses is missing at the output, whichever wheel names the other."""
+    for first in ("one", "two"):
+        system = pair({"mesh_angle": 0.3}, {"mesh_angle": None})
+        one, two = system.wheels
+        if first == "two":
+            gear = {"helix_angle": 0.3, "efficiency": 0.97}
+            one = Gear(
+                "one", "a", 0.1, 20, 3e-3, hand="right", mates_with="two", **gear
+            )
+            two = Gear("two", "b", 0.1, 37, 3e-3, hand="left", mesh_angle=0.3,
+                       helix_angle=0.3)  # fmt: skip
+        else:
+            two = Gear("two", "b", 0.1, 37, 3e-3, 0.3, "left", mates_with="one",
+                       efficiency=0.97)  # fmt: skip
+        system = ShaftSystem(system.shafts, system.seats, system.drive, [one, two])
+        flow = power_flow(system)
+        np.testing.assert_allclose(flow.loss, 0.03 * 5000.0, rtol=1e-12)
+        out = -float(flow.output * flow.speed[1])
+        np.testing.assert_allclose(out, 0.97 * 5000.0, rtol=1e-12)
+
+
+def test_idler_and_belt():
+    """Three shafts in a row: the idler turns the other way, carries both meshes, and no
+    torque; a belt keeps the sense and pulls each shaft to the other."""
+    lines = [
+        ShaftLine("a", [0.2], [0.03], origin=(0.0, 0.0, 0.0)),
+        ShaftLine("b", [0.2], [0.03], origin=(0.06, 0.0, 0.0)),
+        ShaftLine("c", [0.2], [0.03], origin=(0.12, 0.0, 0.0)),
+        ShaftLine("d", [0.2], [0.03], origin=(0.12, 0.5, 0.0)),
+    ]
+    seats = [
+        springs(f"{s}{k}", s, z) for s in "abcd" for k, z in enumerate((0.02, 0.18))
+    ]
+    wheels = [
+        Gear("1", "a", 0.1, 20, 3e-3),
+        Gear("2", "b", 0.1, 20, 3e-3, mates_with="1"),
+        Gear("3", "c", 0.1, 20, 3e-3, mates_with="2"),
+        Pulley("4", "c", 0.15, 0.1, 2.0),
+        Pulley("5", "d", 0.15, 0.2, 2.0, mates_with="4"),
+    ]
+    system = ShaftSystem(lines, seats, Drive("a", 50.0, torque=30.0), wheels)
+    flow = power_flow(system)
+    np.testing.assert_allclose(flow.speed, [50.0, -50.0, 50.0, 25.0], rtol=1e-14)
+    np.testing.assert_allclose(flow.output, -60.0, rtol=1e-12)
+    assert flow.output_shaft == "d"
+    total = sum(np.asarray(m.force) for m in flow.meshes if m.wheel == "2")
+    np.testing.assert_allclose(total, [0.0, 2 * 30.0 / 0.03, 0.0], atol=1e-9)
+    pulls = {m.wheel: np.asarray(m.force) for m in flow.meshes if m.wheel in "45"}
+    np.testing.assert_allclose(pulls["4"], [0.0, 2.0 * 30.0 / 0.05, 0.0], atol=1e-9)
+    np.testing.assert_allclose(pulls["5"], -pulls["4"], atol=1e-9)
+
+
+def test_free_loads_count_in_the_balance():
+    system = pair({"mesh_angle": 0.3}, {"mesh_angle": None})
+    brake = ShaftLoad("brake", "b", 0.05, moment=(0.0, 0.0, 7.0))
+    loaded = ShaftSystem(
+        system.shafts, system.seats, system.drive, system.wheels, loads=brake
+    )
+    out = [power_flow(s).output for s in (system, loaded)]
+    np.testing.assert_allclose(out[1], out[0] - 7.0, rtol=1e-12)
+
+
+def fork(*outputs):
+    lines = [ShaftLine(s, [0.2], [0.03]) for s in "abc"]
+    seats = [
+        springs(f"{s}{k}", s, z) for s in "abc" for k, z in enumerate((0.02, 0.18))
+    ]
+    wheels = [
+        Gear("1", "a", 0.1, 20, 3e-3, mesh_angle=0.0),
+        Gear("2", "b", 0.1, 20, 3e-3, mates_with="1"),
+        Gear("3", "c", 0.1, 20, 3e-3, mates_with="1", mesh_angle=0.0),
+    ]
+    drive = Drive("a", 50.0, torque=30.0)
+    return ShaftSystem(lines, seats, drive, wheels, couplings=outputs)
+
+
+def test_power_that_divides():
+    """One of two outputs follows from the other."""
+    with pytest.raises(ValueError, match="may leave by the shafts b, c"):
+        power_flow(fork())
+    flow = power_flow(fork(Coupling("x", "b", power=-500.0), Coupling("y", "c")))
+    np.testing.assert_allclose(flow.coupling, [10.0, 20.0], rtol=1e-12)
+    with pytest.raises(ValueError, match="torques of x, y are not given"):
+        power_flow(fork(Coupling("x", "b"), Coupling("y", "c")))
+
+
+def test_torques_that_do_not_balance():
+    system = published()
+    wheel = Gear("G3", "A1", 0.2785, 24, 4e-3, mesh_angle=0.0, torque=100.0)
+    wrong = ShaftSystem(system.shafts, system.seats, system.drive,
+                        [system.wheels[0], wheel])  # fmt: skip
+    with pytest.raises(
+        ValueError, match="do not balance: 43.239. N m are left on shaft"
+    ):
+        solve_system(wrong)
+
+
+def test_torque_has_derivatives():
+    def force(power):
+        system = published()
+        drive = Drive("G2", system.drive.speed, power=power)
+        return (
+            power_flow(ShaftSystem(system.shafts, system.seats, drive, system.wheels))
+            .meshes[0]
+            .force
+        )
+
+    slope = jax.jacfwd(force)(15e3)
+    np.testing.assert_allclose(slope, np.asarray(force(15e3)) / 15e3, rtol=1e-12)
