@@ -85,12 +85,13 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
     if scene.oil is None:
         problem = "is missing; [heat] needs the oil that makes the friction"
         raise table.error("lubricant", problem)
+    known = skf_series(scene.element.bearing)
     usual, series, diameters = None, None, None
     if scene.catalogue is not None:
         entry = scene.catalogue.entry
         area = np.pi * entry.width * (entry.outside_diameter + entry.bore)
         usual = float(0.5 * _FLOW * area)
-        series = series_of(entry.designation, skf_series(scene.element.bearing))
+        series = series_of(entry.designation, known)
         diameters = entry.bore, entry.outside_diameter
     for name in _CONDUCTANCES:
         if name not in heat and usual is None:
@@ -102,6 +103,7 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
             **given,
             lubricant=scene.oil.lubricant,
             supply=scene.oil.supply,
+            skf=bool(known),
             series=series,
-            diameters=diameters if series is not None else None,
+            diameters=diameters,
         )

@@ -56,10 +56,10 @@ class ThermalPaths(eqx.Module):
             them [J/K]; they count in time only.
         lubricant: The oil.
         supply: As in `friction_torque`.
-        series, diameters: Of SKF's friction model, as in `skf_friction_torque`; without
-            a series Palmgren's model counts.
+        skf: Whether friction is that of SKF's model, else of Palmgren's.
+        series, diameters: Of SKF's model, as in `skf_friction_torque`.
 
-    Traced: all numbers. Static: supply, series.
+    Traced: all numbers. Static: supply, skf, series.
     """
 
     inner: Scalar = eqx.field(converter=as_real, metadata=unit("W/K"))
@@ -77,6 +77,7 @@ class ThermalPaths(eqx.Module):
         converter=as_real, metadata=unit("J/K"), default=1000.0
     )
     supply: str = eqx.field(static=True, default="oil_bath")
+    skf: bool = eqx.field(static=True, default=False)
     series: str | None = eqx.field(static=True, default=None)
     diameters: tuple[Scalar, Scalar] | None = None
 
@@ -325,18 +326,18 @@ def solve_heat(
     cold = adjusted(system)
     rise, slowest, residual, steps, solved = _steady(cold, network)
     # Of what has run away numbers stay within those of materials.
-    warm = with_temperatures(cold, network, jnp.clip(rise, -_HOTTEST / 3.0, _HOTTEST))
-    solution, _ = system_state(warm)
+    known = jnp.clip(rise, -_HOTTEST / 3.0, _HOTTEST)
+    solution, _ = system_state(with_temperatures(cold, network, known))
     flow = network.conductance() @ rise
-    known = jnp.where(solved, rise, jnp.nan) + network.ambient
-    rings = known[: 2 * len(network.paths)].reshape(-1, 2)
+    warm = jnp.where(solved, rise, jnp.nan) + network.ambient
+    rings = warm[: 2 * len(network.paths)].reshape(-1, 2)
     result = jnp.where(solved, solution.result, int(Result.STEP_LIMIT))
     found = ThermalState(
         inner_ring=rings[:, 0],
         outer_ring=rings[:, 1],
-        housing=network.ambient if network.housing is None else known[-1],
+        housing=network.ambient if network.housing is None else warm[-1],
         friction=flow[: 2 * len(network.paths)].reshape(-1, 2).sum(axis=1),
-        system=warm,
+        system=with_temperatures(system, network, known),
         solution=solution,
         slowest=slowest,
         residual=residual,
@@ -509,16 +510,12 @@ def heat_made(
         found = in_place(seat.installed, solution.motion[k], speed, turning, 2)
         oil = network.ambient + 0.5 * (rises[2 * k] + rises[2 * k + 1])
         viscosity = path.lubricant.kinematic_viscosity(oil)
-        if path.series is None:
-            friction = friction_torque(found, viscosity, path.supply)
+        given = found, viscosity, path.supply
+        if path.skf:
+            more = {"series": path.series, "diameters": path.diameters}
+            friction = skf_friction_torque(*given, **more)
         else:
-            friction = skf_friction_torque(
-                found,
-                viscosity,
-                path.supply,
-                series=path.series,
-                diameters=path.diameters,
-            )
+            friction = friction_torque(*given)
         made += [0.5 * friction.power] * 2
     if network.housing is not None:
         made.append(solution.power.loss)

@@ -126,6 +126,7 @@ def test_balance_of_heat():
     warm = found.system.seats[0].installed.conditions
     np.testing.assert_allclose(warm.inner_ring, found.inner_ring[0])
     assert float(found.slowest) > 0
+    assert found.system.seats[0].axial_offset == spindle().seats[0].axial_offset
 
 
 def test_warming_up_ends_in_the_equilibrium():
