@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 
 from ..numerics.gravity import GRAVITY
@@ -87,7 +89,7 @@ def _drawing(ax, run, index):
         if solution is None:
             supports.append(LinearSupport(station, seat.stiffness))
         else:
-            element = solution.element
+            element = jax.tree.map(jnp.asarray, solution.element)
             supports.append(BearingSupport(station, element, turned=seat.turned))
     rotor_section(Rotor(system.beam(index), (), supports), ax)
     forces = [(s, run.solution.load[k], True) for k, s in enumerate(system.seats)]

@@ -48,14 +48,22 @@ class DutyResult(eqx.Module):
         lives: Numbers of `LIVES` by name (case, bearing); infinite of springs.
     """
 
-    load: Float[Array, "case bearing 6"] = eqx.field(metadata=unit(6 * ("N",)))
-    displacement: Float[Array, "case bearing 6"] = eqx.field(metadata=unit(6 * ("m",)))
-    misalignment: Float[Array, "case mesh"] = eqx.field(metadata=unit("rad"))
-    speed: Float[Array, "case shaft"] = eqx.field(metadata=unit("rad/s"))
-    loss: Float[Array, " case"] = eqx.field(metadata=unit("W"))
-    result: Int[Array, " case"]
-    peak_pressure: Float[Array, "case bearing"] = eqx.field(metadata=unit("Pa"))
-    lives: dict[str, Float[Array, "case bearing"]]
+    load: Float[Array | np.ndarray, "case bearing 6"] = eqx.field(
+        metadata=unit(6 * ("N",))
+    )
+    displacement: Float[Array | np.ndarray, "case bearing 6"] = eqx.field(
+        metadata=unit(6 * ("m",))
+    )
+    misalignment: Float[Array | np.ndarray, "case mesh"] = eqx.field(
+        metadata=unit("rad")
+    )
+    speed: Float[Array | np.ndarray, "case shaft"] = eqx.field(metadata=unit("rad/s"))
+    loss: Float[Array | np.ndarray, " case"] = eqx.field(metadata=unit("W"))
+    result: Int[Array | np.ndarray, " case"]
+    peak_pressure: Float[Array | np.ndarray, "case bearing"] = eqx.field(
+        metadata=unit("Pa")
+    )
+    lives: dict[str, Float[Array | np.ndarray, "case bearing"]]
 
 
 def solve_duty(
@@ -162,9 +170,9 @@ def _rated(given: Any, turning: bool) -> tuple[Scalar, dict[str, Any]]:
 
 
 def bearing_hours(
-    damage: Float[Array, "case bearing"],
-    speed: Float[Array, "case bearing"],
-    hours: Float[Array, " case"] | None = None,
+    damage: Float[Array | np.ndarray, "case bearing"],
+    speed: Float[Array | np.ndarray, "case bearing"],
+    hours: Float[Array | np.ndarray, " case"] | None = None,
 ) -> Any:
     """Return the life of each bearing under a spectrum (bearing,) [h].
 

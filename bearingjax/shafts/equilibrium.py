@@ -528,7 +528,7 @@ def bearing_solutions(
 
 
 def speed_of(
-    system: ShaftSystem, index: int, speeds: Float[Array, " shaft"]
+    system: ShaftSystem, index: int, speeds: Float[Array | np.ndarray, " shaft"]
 ) -> tuple[Speed, bool]:
     """Return the ring speeds of a bearing, and whether its elements feel them.
 
@@ -545,7 +545,7 @@ def speed_of(
 @program(quick=True)
 def in_place(
     installed: Installed,
-    motion: Float[Array, "5"],
+    motion: Float[Array | np.ndarray, "5"],
     speed: Speed,
     turning: bool,
     points: int,

@@ -45,6 +45,8 @@ def test_schema_holds_for_shipped_scenes_and_their_echo(name, validator):
     assert not faults(validator, data)
     if "rotor" in data:
         found = scene.read_rotor(name)
+    elif "shaft" in data:
+        found = scene.read_shafts(name)
     elif "roller" in data:
         found = scene.read_contact(name)
     elif "vibration" in data:
