@@ -7,10 +7,11 @@ def add(commands):
     """Add the command and its options."""
     command = commands.add_parser(
         "new",
-        help="a scene of a bearing of the catalogue, or of one that it does not list",
+        help="a scene of a bearing of the catalogue or another, or of shafts",
         description="Print a scene of a bearing under a tenth of its capacity:"
         " bearingjax new 6205 > my.toml. Of a bearing that the catalogue does not list"
-        " give type, sizes and ratings; its inner geometry is then an estimate.",
+        " give type, sizes and ratings; its inner geometry is then an estimate."
+        " `bearingjax new shaft` prints a commented scene of a gearbox.",
         epilog="Exit status: 0, or 2 for bad input.",
     )
     command.add_argument("designation", metavar="DESIGNATION", nargs="*")
@@ -31,13 +32,23 @@ def add(commands):
 
 
 def run(options) -> int:
-    """Print a scene of a bearing of the catalogue, or of an estimated one."""
-    from ..scene import SceneError, catalogue_entry, estimated_entry, new_scene
+    """Print a scene of a bearing of the catalogue, of an estimated one, or of shafts."""
+    from ..scene import (
+        SceneError,
+        catalogue_entry,
+        estimated_entry,
+        new_scene,
+        shipped_scenes,
+    )
     from ..scene.estimated_entry import SIZES
 
     given = {name: getattr(options, name) for name in SIZES}
     name = " ".join(options.designation)
     others = [*given.values(), options.contact_angle]
+    if name == "shaft":
+        scene = shipped_scenes()["shaft_gearbox"]
+        print(scene.read_text("utf-8"), end="", flush=True)
+        return SOLVED
     if options.type is None:
         if not name:
             raise SceneError("new: give a designation, or --type and sizes")

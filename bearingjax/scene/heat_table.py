@@ -81,7 +81,7 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
     if scene is None:
         return None
     heat = table.table("heat")
-    given = heat.fields(ThermalPaths, left_out=_CONDUCTANCES)
+    given = heat.fields(ThermalPaths, left_out=(*_CONDUCTANCES, "diameters"))
     if scene.oil is None:
         problem = "is missing; [heat] needs the oil that makes the friction"
         raise table.error("lubricant", problem)

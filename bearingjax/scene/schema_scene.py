@@ -205,6 +205,8 @@ def _shaft_scene() -> dict[str, Any]:
         must = [k for k in found["required"] if k not in place]
         must += ["teeth"] if key == "gear" else []
         tables[key] = _by_name({**found, "required": must})
+    heat = class_schema(ThermalPaths) | {"required": []}
+    del heat["properties"]["diameters"]
     beside = {
         **place,
         "preload": {
@@ -216,7 +218,7 @@ def _shaft_scene() -> dict[str, Any]:
             "description": "axial displacement as adjusted; negative: play",
         },
         **table_schema(SeatKeys)["properties"],
-        "heat": class_schema(ThermalPaths) | {"required": []},
+        "heat": heat,
         "life": _ref("life"),
         "lubricant": _ref("lubricant"),
     }

@@ -57,7 +57,8 @@ class ThermalPaths(eqx.Module):
         lubricant: The oil.
         supply: As in `friction_torque`.
         skf: Whether friction is that of SKF's model, else of Palmgren's.
-        series, diameters: Of SKF's model, as in `skf_friction_torque`.
+        series, diameters: Of SKF's model, as in `skf_friction_torque`; bore and outside
+            diameter (2,) [m].
 
     Traced: all numbers. Static: supply, skf, series.
     """
@@ -79,7 +80,9 @@ class ThermalPaths(eqx.Module):
     supply: str = eqx.field(static=True, default="oil_bath")
     skf: bool = eqx.field(static=True, default=False)
     series: str | None = eqx.field(static=True, default=None)
-    diameters: tuple[Scalar, Scalar] | None = None
+    diameters: Float[Array, "2"] | None = eqx.field(
+        converter=as_real, metadata=unit(2 * ("m",)), default=None
+    )
 
     def __check_init__(self):
         for name in ("inner", "outer", "inner_capacity", "outer_capacity"):
@@ -512,7 +515,8 @@ def heat_made(
         viscosity = path.lubricant.kinematic_viscosity(oil)
         given = found, viscosity, path.supply
         if path.skf:
-            more = {"series": path.series, "diameters": path.diameters}
+            sizes = None if path.diameters is None else tuple(path.diameters)
+            more = {"series": path.series, "diameters": sizes}
             friction = skf_friction_torque(*given, **more)
         else:
             friction = friction_torque(*given)
