@@ -32,7 +32,7 @@ def add(commands):
 
 
 def run(options) -> int:
-    """Print a scene of a bearing of the catalogue, of an estimated one, or of shafts."""
+    """Print a scene of a bearing, of the catalogue or estimated, or of shafts."""
     from ..scene import (
         SceneError,
         catalogue_entry,

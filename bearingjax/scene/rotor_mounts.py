@@ -9,17 +9,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..design import AbstractBallBearing
-from ..element import Speed
 from ..rotor import Housing, Shaft
 from ..rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
 from ..statics.installed import Installed
-from .bearing_table import BESIDE, designated, read_bearing
-from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue
-from .fit_table import Fits, fit_warnings, installed, read_fits, turning
+from .fit_table import Fits, fit_warnings, installed, turning
+from .placed_bearing import echoed, placed_bearing
 from .quantity import SceneError
-from .read import read_element, scene_of
+from .read import Scene, scene_of
 from .rotor_scene import Mount
 from .scene_file import bearing_place, find_scene, parse_bearing, shipped_scenes
 from .schema import Keys, scene_key
@@ -164,13 +162,14 @@ class MountKeys(Keys):
 
 
 class _Bearing(NamedTuple):
-    """Bearing (`None`: springs) with its name, seats, and the catalogue entry of its
-    designation."""
+    """Bearing (`None`: springs) with its name, seats, the catalogue entry of its
+    designation, and its scene."""
 
     name: str
     installed: Installed | None
     fits: Fits | None = None
     catalogue: FromCatalogue | None = None
+    scene: Scene | None = None
 
 
 def read_mounts(
@@ -193,7 +192,9 @@ def read_mounts(
             problem = "belongs to one of the bearings: write"
             raise top.error(key, f"{problem} [bearings.NAME.{key}]")
     tables = top.table("bearings")
-    named = {name: _own(tables.table(name), name, speed) for name in tables.keys()}
+    named = {
+        name: _own(top, tables.table(name), name, speed, path) for name in tables.keys()
+    }
     mounts = []
     for keys in holds:
         bearing = _bearing(keys, tables, named, speed, path)
@@ -205,24 +206,19 @@ def read_mounts(
     return tuple(mounts)
 
 
-def _own(table: Table, name: str, speed: float) -> _Bearing:
+def _own(top: Table, table: Table, name: str, speed: float, path: Path) -> _Bearing:
     """Read a bearing of [bearings.NAME]."""
-    design, force = read_bearing(table, table)
-    found = designated(table)
-    catalogue = None if found is None else found[1]
-    for text in () if found is None else catalogue_doubts(*found):
+    scene = placed_bearing(top, table, name, path, speed=speed)
+    for text in scene.warnings:
         warnings.warn(f"{name}: {text}", stacklevel=2)
-    design, fits = read_fits(table, table, design, Speed(speed, 0.0), catalogue)
-    contact, numerics = table.table("contact"), table.table("numerics")
-    element = read_element(design, contact, table, numerics)
-    return _told(name, element, force, fits, catalogue)
+    return _in_rotor(scene, speed)
 
 
-def _told(name, element, force, fits, catalogue) -> _Bearing:
-    """Return a bearing, and emit the warnings about its fits."""
-    for text in () if fits is None else fit_warnings(fits, element.bearing):
-        warnings.warn(f"{name}: {text}", stacklevel=2)
-    return _Bearing(name, installed(element, force, fits, catalogue), fits, catalogue)
+def _in_rotor(scene: Scene, speed: float) -> _Bearing:
+    """Return the bearing of a scene with its fits at the speed of the rotor."""
+    fits, taken = turning(scene.fits, speed), scene.catalogue
+    running = installed(scene.element, scene.preload_force, fits, taken)
+    return _Bearing(scene.name, running, fits, taken, scene)
 
 
 def _check_seat(bearing: _Bearing, shaft: Shaft, station: int) -> None:
@@ -275,22 +271,11 @@ def _bearing(
     own = name if scene.name in named else scene.name
     table.fill("bearing", own)
     tables.fill(own, echoed(scene.inputs))
-    fits = turning(scene.fits, speed)
-    force = scene.preload_force
-    return _told(scene.name, scene.element, force, fits, scene.catalogue)
-
-
-def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Convert the inputs of a scene to those of one [bearings.NAME].
-
-    Args:
-        inputs: `Scene.inputs`.
-    """
-    beside = {key: dict(inputs[key]) for key in BESIDE if key in inputs}
-    beside.get("numerics", {}).pop("tolerance", None)  # of its own load solve
-    operating = inputs.get("operating", {})
-    chosen = {key: operating[key] for key in BESIDE if key in operating}
-    return {**inputs["bearing"], **beside, **chosen}
+    found = _in_rotor(scene, speed)
+    if found.fits is not None:
+        for text in fit_warnings(found.fits, scene.element.bearing):
+            warnings.warn(f"{scene.name}: {text}", stacklevel=2)
+    return found
 
 
 def _mount(keys: MountKeys, bearing: _Bearing) -> Mount:

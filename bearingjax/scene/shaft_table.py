@@ -1,9 +1,7 @@
 """Read the scene of a system of shafts: shafts, wheels, bearings, housing, drive."""
 
-import contextlib
 import copy
 import dataclasses
-import re
 import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -28,15 +26,14 @@ from ..shafts import (
 )
 from ..shafts.parts import APEXES, HANDS
 from ..statics.life import LifeConditions
-from .bearing_table import BALLS, BESIDE
 from .cases_table import CasesKeys, Varied
-from .catalogue_entry import catalogue_entry
 from .files import read_matrix
 from .heat_table import read_heat
 from .life_table import life_conditions
+from .placed_bearing import placed_bearing
 from .quantity import SceneError, to_si
-from .read import Scene, scene_of
-from .rotor_mounts import SpringKeys, echoed
+from .read import Scene
+from .rotor_mounts import SpringKeys
 from .rotor_table import MATERIAL
 from .scene_file import assign, find_scene, is_shafts, parse_scene
 from .schema import Keys, read_keys, scene_key
@@ -510,10 +507,9 @@ def _housing(
         return HousingStiffness(keys.seats, matrix)
 
 
-_OF_SEAT = {"shaft", "position", "station", "preload", "axial_offset"} | {
+_OF_SEAT = ("shaft", "position", "station", "preload", "axial_offset", "heat") + tuple(
     field.name for field in dataclasses.fields(SeatKeys) if field.name != "table"
-}
-_OWN = (*BESIDE, "life", "lubricant")
+)
 
 
 def _bearing(
@@ -524,66 +520,11 @@ def _bearing(
     path: Path,
     known: dict[str, Any],
 ) -> Scene | None:
-    """Read a bearing as a scene of its own; `known` are those read before."""
-    own = {k: v for k, v in table.keys_given().items() if k not in _OF_SEAT}
-    own.pop("heat", None)  # read later, by `read_heat`
-    table.skip(*own)
-    common = {k: top.raw(k) for k in ("life", "lubricant", "output") if k in top}
-    if keys.stiffness is not None:
-        if own:
-            problem = "goes with a bearing, not with springs (`stiffness`)"
-            raise table.error(next(iter(own)), problem)
-        return None
-    data: dict[str, Any] = {
-        "bearing": {k: v for k, v in own.items() if k not in _OWN},
-        **{k: v for k, v in own.items() if k in BESIDE and k not in _CONTROL},
-    }
-    operating = {k: own[k] for k in _CONTROL if k in own}
-    # Any speed will do: lives and fits take that of the system.
-    data["operating"] = {**operating, "inner_speed": "1 rad/s"}
-    for key, value in common.items():
-        data[key] = {**value, **own.get(key, {})} if isinstance(value, dict) else value
-    for key in ("life", "lubricant"):
-        if key in own:
-            data.setdefault(key, own[key])
-    if isinstance(data.get("life"), dict) and _is_ball(own):
-        data["life"].pop("edge_stress", None)
-    mark = repr(data)
-    if mark not in known:
-        known[mark] = _scene_of(data, name, path, own)
-    scene = known[mark]
-    for key, value in echoed(scene.inputs).items():
-        table.fill(key, value)
-    for key in common:
-        top.fill(key, common[key])
-    for key in ("life", "lubricant"):
-        if key in own:
-            table.fill(key, own[key])
-    return scene
-
-
-_CONTROL = ("raceway_control", "friction_coefficient")
-
-
-def _scene_of(data: dict[str, Any], name: str, path: Path, own: Any) -> Scene:
-    """Read the scene of one bearing; errors name the keys of the system's scene."""
-
-    def renamed(match: re.Match) -> str:
-        key = match[1]
-        if key == "bearing":
-            return f"`bearings.{name}{match[2]}"
-        return f"`bearings.{name}.{key}{match[2]}" if key in own else match[0]
-
-    try:
-        return dataclasses.replace(scene_of(data, path), name=name)
-    except SceneError as error:
-        raise SceneError(re.sub(r"`(\w+)([.`])", renamed, str(error))) from error
-
-
-def _is_ball(own: Mapping[str, Any]) -> bool:
-    """Whether the keys of a bearing are of one with balls."""
-    kind, name = own.get("type"), own.get("designation")
-    if kind is None and isinstance(name, str):
-        with contextlib.suppress(SceneError):
-            kind = catalogue_entry(name).type
-    return kind in BALLS
+    """Read a bearing as a scene of its own; `None` of springs."""
+    if keys.stiffness is None:
+        return placed_bearing(top, table, name, path, _OF_SEAT, known=known)
+    own = [key for key in table.keys_given() if key not in _OF_SEAT]
+    if own:
+        problem = "goes with a bearing, not with springs (`stiffness`)"
+        raise table.error(own[0], problem)
+    return None

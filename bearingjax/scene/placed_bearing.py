@@ -1,0 +1,122 @@
+"""A bearing of a machine, [bearings.NAME], read as the scene of a bearing alone."""
+
+import contextlib
+import dataclasses
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from .bearing_table import BALLS, BESIDE
+from .catalogue_entry import catalogue_entry
+from .quantity import SceneError
+from .read import Scene, scene_of
+from .table import Table
+
+_CONTROL = ("raceway_control", "friction_coefficient")
+"""Keys of `BESIDE` that stand in [operating] of a bearing alone."""
+_AT_REST = "constant_angle"
+"""Kinematics that know no speed."""
+_COMMON = ("life", "lubricant")
+"""Tables of the machine that a bearing may have for itself."""
+
+
+def placed_bearing(
+    top: Table,
+    table: Table,
+    name: str,
+    path: Path,
+    beside: tuple[str, ...] = (),
+    speed: float = 1.0,
+    known: dict[str, Any] | None = None,
+) -> Scene:
+    """Read [bearings.NAME] as a scene, with [life] and [lubricant] of the machine.
+
+    Args:
+        top: Scene of the machine.
+        table: `[bearings.NAME]`.
+        name: NAME.
+        path: Path of the scene.
+        beside: Keys of the table that the machine reads itself.
+        speed: Of the inner ring [rad/s]; lives and fits take that of the machine.
+        known: Scenes read before, by what was read; added to.
+
+    Raises:
+        SceneError: For what is missing, unknown or not allowed; the message names the
+            keys of the machine.
+    """
+    known = {} if known is None else known
+    own = {k: v for k, v in table.keys_given().items() if k not in beside}
+    table.skip(*own)
+    inside = (*BESIDE, *_COMMON)
+    data: dict[str, Any] = {
+        "bearing": {k: v for k, v in own.items() if k not in inside},
+        **{k: v for k, v in own.items() if k in BESIDE and k not in _CONTROL},
+        "operating": {k: own[k] for k in _CONTROL if k in own},
+    }
+    numerics = data.get("numerics")
+    held = isinstance(numerics, Mapping) and numerics.get("kinematics") == _AT_REST
+    if speed and not held:
+        data["operating"]["inner_speed"] = f"{speed!r} rad/s"
+    for key in (*_COMMON, "output"):
+        both = []
+        if key in top:
+            both.append(top.raw(key))
+            top.fill(key, both[0])
+        if key in own and key != "output":
+            both.append(own[key])
+        if all(isinstance(one, Mapping) for one in both):
+            data |= (
+                {key: {k: v for one in both for k, v in one.items()}} if both else {}
+            )
+        else:
+            data[key] = both[-1]
+    if isinstance(data.get("life"), dict) and _is_ball(own):
+        data["life"].pop("edge_stress", None)
+    mark = repr(data)
+    if mark not in known:
+        known[mark] = _scene(data, name, path, own)
+    scene = known[mark]
+    for key, value in echoed(scene.inputs).items():
+        table.fill(key, value)
+    for key in _COMMON:
+        if key in own:
+            table.fill(key, own[key])
+    return scene
+
+
+def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Convert the inputs of a scene to those of one [bearings.NAME].
+
+    Args:
+        inputs: `Scene.inputs`.
+    """
+    beside = {key: dict(inputs[key]) for key in BESIDE if key in inputs}
+    beside.get("numerics", {}).pop("tolerance", None)  # of its own load solve
+    operating = inputs.get("operating", {})
+    chosen = {key: operating[key] for key in BESIDE if key in operating}
+    return {**inputs["bearing"], **beside, **chosen}
+
+
+def _scene(data: dict[str, Any], name: str, path: Path, own: Any) -> Scene:
+    # The message names tables of a bearing alone: [bearing], `fit.bore`.
+    tables = [key for key in (*BESIDE, *_COMMON) if key in own]
+    pattern = rf"(?<=[`\[])({'|'.join(['bearing', *tables])})(?=[.`\]])"
+
+    def renamed(match: re.Match) -> str:
+        inside = "" if match[1] == "bearing" else f".{match[1]}"
+        return f"bearings.{name}{inside}"
+
+    try:
+        return dataclasses.replace(scene_of(data, path), name=name)
+    except SceneError as error:
+        raise SceneError(re.sub(pattern, renamed, str(error))) from error
+
+
+def _is_ball(own: Mapping[str, Any]) -> bool:
+    """Whether the keys of a bearing are of one with balls."""
+    kind, name = own.get("type"), own.get("designation")
+    if kind is None and isinstance(name, str):
+        with contextlib.suppress(SceneError):
+            kind = catalogue_entry(name).type
+    return kind in BALLS
