@@ -145,8 +145,15 @@ class BearingSupport(AbstractSupport):
 
     def _model(self, motion, speed):
         """Return the bearing at the speed, and the freedoms of its rings (12,)."""
-        sense, sign = self._sense(motion.dtype)
-        rings = jnp.zeros(2 * _N_RING, motion.dtype)
-        rings = rings.at[_INNER].set(self.offset + sense * motion)
+        sign = self._sense(motion.dtype)[1]
         turning = Speed(inner=sign * speed) if self.inertia else None
-        return self.element.model(turning), rings
+        return self.element.model(turning), self.rings(motion)
+
+    def rings(self, motion: Float[Array, "5"]) -> Float[Array, "12"]:
+        """Return the freedoms of both rings at a motion of the station [m, rad].
+
+        Args:
+            motion: Of the station less that of the housing (5,) [m, rad].
+        """
+        rings = jnp.zeros(2 * _N_RING, motion.dtype)
+        return rings.at[_INNER].set(self.offset + self._sense(motion.dtype)[0] * motion)

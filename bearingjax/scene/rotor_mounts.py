@@ -295,6 +295,7 @@ def _mount(keys: MountKeys, bearing: _Bearing) -> Mount:
         stiffness=() if springs is None else springs.diagonal,
         damping=keys.damping.diagonal,
         housing=None if housing is None else housing.housing,
+        scene=bearing.scene,
     )
 
 

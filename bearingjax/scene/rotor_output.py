@@ -7,6 +7,8 @@ import numpy as np
 from ..numerics.result import Result
 from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
 from .fit_report import fit_as_dict
+from .life_report import life_as_dict
+from .life_table import rating_origins
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient
 from .rotor_run import RotorRun
@@ -41,8 +43,10 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         `frequency` [Hz], `amplitude` (coordinate,)), `ending`;
         `transient`: `time`, `speed`, `coordinate`, `displacement` and `velocity`
         (time, coordinate). Parts not requested or not solved are left out.
-        With fits `fit`, a list: `bearing`, its `stations`, the `speed` [rad/s] of its
-        inner ring, and the output of `fit_as_dict`.
+        With [life] `life`, a list: `bearing`, `station`, and the output of
+        `life_as_dict`, under the loads of `static`. With fits `fit`, a list: `bearing`,
+        its `stations`, the `speed` [rad/s] of its inner ring, and the output of
+        `fit_as_dict`.
         Also result, message, warnings, inputs (readable as a scene) and version.
     """
     from .. import __version__
@@ -56,6 +60,16 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         parts["fit"] = _fits(run.task)
     if run.settled is not None:
         parts["static"] = _static(run)
+    if run.lives:
+        parts["life"] = [
+            {
+                "bearing": mount.name,
+                "station": mount.station,
+                **life_as_dict(life, rating_origins(mount.scene)),
+            }
+            for mount, life in run.lives
+            if mount.scene is not None
+        ]
     if run.campbell is not None and run.task.campbell is not None:
         parts["campbell"] = _campbell(run.campbell, run.task.campbell, run.onsets)
     if run.response is not None:

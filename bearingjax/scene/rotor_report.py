@@ -28,6 +28,7 @@ def rotor_report(run: RotorRun) -> Report:
         "Rotor": [_head(run)],
         **_fits(run.task),
         "At rest": [] if run.settled is None else [_stations(run), _bearings(run)],
+        "Rating life": _lives(run),
         "Modes": [] if run.modes is None else _modes(run),
         "Critical speeds": [] if run.critical is None else [_critical(run)],
         "Campbell diagram": [] if run.campbell is None else _campbell(run),
@@ -55,6 +56,25 @@ def _head(run):
         f" segments, {task.shaft.n_nodes - 1} elements; {mass:.4g} kg; {gravity};"
         f" {rpm(task.speed)}"
     )
+
+
+def _lives(run) -> Section:
+    """Tabulate the lives of the bearings in the equilibrium."""
+    if not run.lives:
+        return []
+    lives = [life for _, life in run.lives]
+    columns = [
+        Column("bearing", [f"{m.station} {m.name}" for m, _ in run.lives]),
+        Column("C0/P0", [float(x.static_safety) for x in lives], "1", ".3g", (1.0, "")),
+        Column("basic", [float(x.basic_rating_life) for x in lives], "rev"),
+        Column("reference", [float(x.reference_rating_life) for x in lives], "rev"),
+    ]
+    if any(life.modified_rating_life is not None for life in lives):
+        modified = [x.modified_rating_life for x in lives]
+        columns.append(Column("modified", modified, "rev"))
+    if any(life.life_hours is not None for life in lives):
+        columns.append(Column("life", [life.life_hours for life in lives], "h"))
+    return [Grid(columns, "rating lives under the loads of the static equilibrium")]
 
 
 def _fits(task):

@@ -7,11 +7,14 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
+from ..element import Speed
 from ..numerics.result import Result, SolveError
 from ..numerics.types import as_array
 from ..rotor import (
+    BearingSupport,
     CriticalSpeeds,
     Modes,
     Onset,
@@ -24,10 +27,14 @@ from ..rotor import (
     static_equilibrium,
     static_equilibrium_over,
 )
+from ..statics.life import Life, life_of
+from ..statics.life_warning import life_warnings
+from ..statics.load_result import solution_at
 from .fit_table import fit_facts, turning
+from .life_table import life_conditions
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient, respond, run_in_time
-from .rotor_scene import RotorScene
+from .rotor_scene import Mount, RotorScene
 from .rotor_supports import support_of
 
 
@@ -56,6 +63,7 @@ class RotorRun:
         task: The rotor scene.
         rotor: The rotor on its bearings, preloaded, before static equilibrium.
         settled: Static equilibrium at the speed of the scene; read its `result`.
+        lives: Rating life there of each mount with [life], in NumPy.
         modes: Modes at that speed.
         critical: Critical speeds.
         campbell: Modes over `task.campbell`, the speeds [rad/s].
@@ -69,6 +77,7 @@ class RotorRun:
     task: RotorScene
     rotor: Rotor | None
     settled: StaticEquilibrium | None = None
+    lives: tuple[tuple[Mount, Life], ...] = ()
     modes: Modes | None = None
     critical: CriticalSpeeds | None = None
     campbell: Modes | None = None
@@ -146,6 +155,7 @@ def run_rotor(task: RotorScene, told: Callable[[str], None] | None = None) -> Ro
         if rotor is not None:
             _static(task, rotor, parts)
             if "settled" in parts.found:
+                _lives(task, rotor, parts)
                 linear = _linear(task, rotor, parts)
                 _nonlinear(task, rotor, linear, parts)
     return RotorRun(
@@ -178,6 +188,34 @@ def _static(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
         parts.found["settled"] = static_equilibrium(
             rotor, task.loads, as_array(task.speed, float)
         )
+
+
+def _lives(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
+    """Compute the lives of the bearings under the loads of the equilibrium."""
+    settled, found = parts.found["settled"], []
+    moved = np.asarray(rotor.at_supports()) @ np.asarray(settled.motion)
+    for mount, support, motion in zip(task.mounts, rotor.supports, moved, strict=True):
+        scene = mount.scene
+        if scene is None or scene.life is None:
+            continue
+        if not isinstance(support, BearingSupport):
+            parts.warnings.append(f"{mount.name}: a `law` has no life; leave it out")
+            continue
+        turns = -task.speed if mount.turned else task.speed
+        speed = Speed(as_array(turns, float)) if task.speed else None
+        solution = solution_at(
+            support.element,
+            support.rings(jnp.asarray(motion)),
+            speed if mount.inertia else None,
+            scene.points,
+        )
+        conditions = life_conditions(scene, (), speed is not None)
+        life = life_of(support.element, solution, conditions, speed=speed)
+        found.append((mount, jax.device_get(life)))
+        bearing = support.element.bearing
+        for text in life_warnings(bearing, found[-1][1].ratings, vars(found[-1][1])):
+            parts.warnings.append(f"{mount.name}: {text}")
+    parts.found["lives"] = tuple(found)
 
 
 def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:

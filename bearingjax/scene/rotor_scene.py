@@ -9,6 +9,7 @@ from ..element import BearingElement
 from ..rotor import AbstractDamping, AbstractPart, Housing, Shaft
 from ..statics.installed import Installed
 from .fit_table import Fits
+from .read import Scene
 from .rotor_tasks import ResponseKeys, TransientKeys
 
 
@@ -30,6 +31,7 @@ class Mount:
         stiffness: Stiffness of springs, in ux uy uz gx gy (5,) [N/m, N m].
         damping: Damping in ux uy uz gx gy (5,) [N s/m, N m s].
         housing: Housing of the support; `None`: ground.
+        scene: The bearing as a scene of its own, with its [life]; `None`: springs.
     """
 
     station: int
@@ -44,6 +46,7 @@ class Mount:
     stiffness: tuple[float, ...]
     damping: tuple[float, ...]
     housing: Housing | None
+    scene: Scene | None = None
 
     @property
     def element(self) -> BearingElement[Any] | None:

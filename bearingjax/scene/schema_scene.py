@@ -156,8 +156,12 @@ def _rotor_scene() -> dict[str, Any]:
         "numerics": _merged("solvers", BallNumericsKeys, RollerNumericsKeys),
         **table_schema(ControlKeys)["properties"],
     }
-    bearings = _by_name({**_ref("bearing", _NAMED), "properties": within})
-    tables = {"rotor": table_schema(RotorKeys), "bearings": bearings}
+    within |= {"life": _ref("life"), "lubricant": _ref("lubricant")}
+    tables = {
+        "rotor": table_schema(RotorKeys),
+        "bearings": _by_name({**_ref("bearing", _NAMED), "properties": within}),
+        **{name: _ref(name) for name in ("life", "lubricant", "output")},
+    }
     return object_schema(tables, ["rotor"], "a shaft on its bearings")
 
 
@@ -219,8 +223,6 @@ def _shaft_scene() -> dict[str, Any]:
         },
         **table_schema(SeatKeys)["properties"],
         "heat": heat,
-        "life": _ref("life"),
-        "lubricant": _ref("lubricant"),
     }
     within = _rotor_scene()["properties"]["bearings"]["additionalProperties"]
     bearing = {**within, "properties": beside | within["properties"]}

@@ -3,13 +3,14 @@
 import dataclasses
 from types import SimpleNamespace
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from tolerances import ROUNDING
 
 import bearingjax as bj
 from bearingjax import SceneError
-from bearingjax.scene import read_rotor, scene_files, shipped_scenes
+from bearingjax.scene import read_rotor, rotor_run, scene_files, shipped_scenes
 from bearingjax.scene.rotor_report import _bearings
 from bearingjax.scene.rotor_supports import with_passage
 
@@ -430,3 +431,31 @@ def test_round_off_of_a_bearing_without_ribs_is_no_axial_stiffness(untyped):
         task=SimpleNamespace(mounts=[mount]),
     )
     assert _bearings(run).rows()[0][-3:] == ("400", "300", "0")
+
+
+def test_lives_of_the_bearings():
+    """With [life] each bearing has the life under its load in the equilibrium."""
+    settings = ["life.contamination=0.5", "lubricant.name=ISO VG 68"]
+    task = read_rotor("rotor_flexible", [*settings, "lubricant.temperature=60 °C"])
+    assert task.mounts[0].scene.life.contamination == 0.5
+    parts = rotor_run._Parts(None)
+    rotor = rotor_run._rotor(task, parts)
+    rotor_run._static(task, rotor, parts)
+    rotor_run._lives(task, rotor, parts)
+    (ball, life), (roller, _) = parts.found["lives"]
+    assert [ball.name, roller.name] == ["locating", "free"]
+    load = np.append(parts.found["settled"].support_load[0], 0.0)
+    element = rotor.supports[0].element
+    alone = bj.solve_load(element, load)
+    scene = task.mounts[0].scene
+    viscosity = scene.oil.lubricant.kinematic_viscosity(jnp.asarray(333.15))
+    wanted = bj.rating_life(
+        element,
+        alone,
+        viscosity=viscosity,
+        contamination=0.5,
+        speed=bj.Speed(jnp.asarray(task.speed)),
+    )
+    np.testing.assert_allclose(life.life_hours, wanted.life_hours, rtol=1e-6)
+    echo = task.inputs
+    assert echo["life"]["contamination"] == 0.5 and "lubricant" in echo
