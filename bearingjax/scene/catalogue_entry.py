@@ -20,6 +20,8 @@ from ..design.fit_limits import (
     ball_clearance,
     roller_clearance,
     self_aligning_clearance,
+    spherical_roller_clearance,
+    toroidal_roller_clearance,
 )
 from ..design.iso286 import Limits
 from .designation import Suffixes, compact, split_designation
@@ -30,10 +32,16 @@ CLEARANCES = {
     "cylindrical_roller": roller_clearance,
     "needle_roller": roller_clearance,
     "self_aligning_ball": self_aligning_clearance,
+    "spherical_roller": spherical_roller_clearance,
+    "toroidal_roller": toroidal_roller_clearance,
 }
 """Limits of radial internal clearance by type, where classes are defined."""
 
-_TAPERED = {"self_aligning_ball": partial(self_aligning_clearance, tapered=True)}
+_TAPERED = {
+    "self_aligning_ball": partial(self_aligning_clearance, tapered=True),
+    "spherical_roller": partial(spherical_roller_clearance, tapered=True),
+    "toroidal_roller": partial(toroidal_roller_clearance, tapered=True),
+}
 """Limits of radial internal clearance by type for tapered bores."""
 
 CLEARANCE = "radial_internal_clearance"
@@ -56,6 +64,7 @@ _QUANTITIES = {
     "fatigue_load_limit": "force",
     "reference_speed": "speed",
     "limiting_speed": "speed",
+    "mass": "mass",
 }
 
 
@@ -101,6 +110,7 @@ class CatalogueEntry:
         fatigue_load_limit: Pu [N].
         reference_speed: Thermal reference speed [rad/s].
         limiting_speed: Limiting speed [rad/s].
+        mass: Mass [kg].
         other: Ratings in another catalogue, or of the standard class for an improved
             one.
         geometry: "published" or "estimated": number and size of the rolling elements
@@ -110,6 +120,8 @@ class CatalogueEntry:
         notes: Interpretation of the designation, in words.
         table: Keys of [bearing] as written in a scene.
         taper: "K" or "K30" for a tapered bore, else "".
+        printed: What else the publisher prints, as in the file: lengths as texts, pure
+            numbers such as the limit e and factors Y1, Y2, Y0 of axial loads.
     """
 
     designation: str
@@ -124,6 +136,7 @@ class CatalogueEntry:
     fatigue_load_limit: float | None
     reference_speed: float | None
     limiting_speed: float | None
+    mass: float | None
     other: OtherRating | None
     geometry: str
     assumed: tuple[str, ...]
@@ -131,6 +144,7 @@ class CatalogueEntry:
     notes: tuple[str, ...]
     table: dict[str, Any]
     taper: str = ""
+    printed: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property
     def clearance_class(self) -> str | None:
@@ -251,7 +265,7 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         sources["geometry"] = (
             f"balls and pitch circle of {key} (of that one: {sources['geometry']})"
         )
-        for name in _RATINGS:
+        for name in (*_RATINGS, "mass"):
             si[name] = None
         for name in ("outer_shoulder", "inner_shoulder"):
             table.pop(name)
@@ -261,7 +275,8 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
     assumed = list(values.get("assumed", data.get("assumed", ())))
     taper = suffixes.taper
     if kind in CLEARANCES:
-        shown, name = f"{shown}{taper}", suffixes.clearance or "CN"
+        apart = " " if taper and shown[-1].isdigit() else ""
+        shown, name = f"{shown}{apart}{taper}", suffixes.clearance or "CN"
         if class_limits(kind, taper) is None:
             problem = (
                 f"classes of clearance of tapered bores ({taper}) are known here of"
@@ -292,6 +307,7 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         notes=tuple(notes),
         table=table,
         taper=taper,
+        printed={} if "contact_angle" in changes else dict(values.get("printed", {})),
     )
 
 
