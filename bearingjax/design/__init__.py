@@ -47,6 +47,7 @@ from .fits import FitConditions as FitConditions
 from .fits import FitState as FitState
 from .fits import Mounting as Mounting
 from .fits import fit_state as fit_state
+from .fits import needed_drive_up as needed_drive_up
 from .fits import smoothing as smoothing
 from .form_error import FormErrors as FormErrors
 from .form_error import Harmonics as Harmonics

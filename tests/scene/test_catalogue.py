@@ -210,7 +210,7 @@ def test_every_bearing_loads_and_its_new_scene_reads(kind, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name", ["6205", "30205", "7208B", "51108", "NU 208", "22220", "29412", "C2218"]
+    "name", ["6205", "30205", "7208B", "51108", "NU 208", "22220", "29412", "C2218K"]
 )
 def test_what_a_new_scene_offers_can_be_taken(name, tmp_path):
     """All that may be added to it, with its # taken off, is a scene with a life."""
@@ -334,7 +334,8 @@ def test_clearances_of_tapered_bores_and_parts_of_a_class(written, low, high):
     limits = entry.class_limits(entry.clearance_class, entry.bore)
     np.testing.assert_allclose(np.array(limits) * 1e6, [low, high])
     assert bj.catalogue_entry(entry.designation).table == entry.table
-    text = f'[bearing]\ndesignation = "{written}"\n[fit]\nshaft = "k5"\n'
+    seat = 'drive_up = "0 mm"' if entry.taper else 'shaft = "k5"'
+    text = f'[bearing]\ndesignation = "{written}"\n[fit]\n{seat}\n'
     text += f'housing = "H7"\nhousing_diameter = "{1.5 * entry.outside_diameter} m"\n'
     scene = scene_of(tomllib.loads(text), Path("fitted.toml"))
     np.testing.assert_allclose(
