@@ -8,6 +8,7 @@ holds keys of a scene's `[bearing]`.
 import dataclasses
 import functools
 import math
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
@@ -24,6 +25,7 @@ from ..design.fit_limits import (
     toroidal_roller_clearance,
 )
 from ..design.iso286 import Limits
+from ..statics import heat_area, reference_factors, reference_speed
 from .designation import Suffixes, compact, split_designation
 from .quantity import SceneError, to_si
 
@@ -45,6 +47,17 @@ _TAPERED = {
 """Limits of radial internal clearance by type for tapered bores."""
 
 CLEARANCE = "radial_internal_clearance"
+
+_SERIES = {
+    "deep_groove_ball": r"^6([23])\d\d$",
+    "angular_contact_ball": r"^7(2)\d\d ",
+    "cylindrical_roller": r"^[A-Z]+ (2[23]|2)\d\d ",
+    "spherical_roller": r"^2([2-4][0-3])\d\d ",
+    "tapered_roller": r"^3([0-3][0-3]|[02])\d\d ",
+    "cylindrical_thrust_roller": r"^8(1[12])\d\d ",
+    "spherical_thrust_roller": r"^2(9[2-4])\d\d ",
+}
+"""Dimension series within a designation."""
 
 _OTHER_BALLS = (
     "bearings of other contact angles often have other balls; C, C0 worked out from"
@@ -153,6 +166,26 @@ class CatalogueEntry:
             return None
         after = self.designation.rpartition("/")[2]
         return after if after[:2] in CLEARANCE_CLASSES else "CN"
+
+    @property
+    def thermal_speed(self) -> float | None:
+        """Thermal reference speed by ISO 15312 [rad/s]; `None` without factors."""
+        found = re.search(_SERIES.get(self.type, "$^"), self.designation)
+        factors = found and reference_factors(self.type, found[1].zfill(2))
+        if not factors or self.static_capacity is None:
+            return None
+        d, outside = self.bore, self.outside_diameter
+        thrust = self.type.endswith("thrust_roller")
+        flat = self.type == "cylindrical_thrust_roller"
+        area = heat_area(d, outside, self.width, flat=flat)
+        if thrust and not flat:
+            shaft, housing = (
+                to_si(self.printed[key], "length")
+                for key in ("shaft_washer_diameter", "housing_washer_bore")
+            )
+            area = 0.25 * math.pi * (outside**2 + shaft**2 - housing**2 - d**2)
+        mean, load = 0.5 * (d + outside), self.static_capacity
+        return float(reference_speed(mean, area, load, factors, thrust=thrust))
 
     @property
     def class_limits(self) -> Callable[..., Limits] | None:

@@ -145,6 +145,8 @@ def catalogue_details(entry: CatalogueEntry) -> str:
         "limiting speed": entry.limiting_speed,
     }
     known = [f"{k} {_rpm(v):.0f} rpm" for k, v in speeds.items() if v is not None]
+    if (speed := entry.thermal_speed) is not None:
+        known.append(f"thermal reference speed {_rpm(speed):.0f} rpm (ISO 15312)")
     if entry.mass is not None:
         known.append(f"mass {entry.mass:.4g} kg")
     if known:
@@ -168,11 +170,15 @@ def catalogue_as_dict(entries: Iterable[CatalogueEntry]) -> dict[str, Any]:
 
     Returns:
         `bearings`: the fields of `CatalogueEntry` of each, with `table` as written in
-        a scene.
+        a scene, and its `thermal_speed`.
     """
     return {
         "bearings": [
-            {**vars(entry), "other": entry.other and entry.other._asdict()}
+            {
+                **vars(entry),
+                "other": entry.other and entry.other._asdict(),
+                "thermal_speed": entry.thermal_speed,
+            }
             for entry in entries
         ]
     }
