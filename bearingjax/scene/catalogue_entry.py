@@ -416,6 +416,9 @@ class FromCatalogue:
         return ", ".join(words)
 
 
+CLEARED_ROLLERS = ("spherical_roller", "toroidal_roller")
+"""Types with clearance classes whose clearance does not follow from an angle."""
+
 _INSTEAD = {
     "contact_angle": (CLEARANCE,),
     "ribs": ("arrangement", "rib", "axial_internal_clearance"),
@@ -437,6 +440,8 @@ def taken_from(
         All keys, and the record of the catalogue entry.
     """
     dropped = {name for key in given for name in _INSTEAD.get(key, ())}
+    if entry.type in CLEARED_ROLLERS:
+        dropped.discard(CLEARANCE)
     merged = {k: v for k, v in entry.table.items() if k not in dropped}
     changed = []
     for key, value in given.items():

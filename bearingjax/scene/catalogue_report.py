@@ -294,7 +294,7 @@ def _seats(entry: CatalogueEntry) -> list[str]:
     if entry.type == "tapered_roller":
         classes = ['shaft_interference = "10 um"', 'housing_interference = "-10 um"']
     if entry.taper:
-        less = f'"{500.0 * entry.bore:.3g} um"  # of which driving it up takes so much'
+        less = f'"{500.0 * entry.bore:.3g} um"  # taken as it is driven up its seat'
         classes = [f"clearance_reduction = {less}", 'housing = "H7"']
     outside = 5.0 * round(1.5e3 * entry.outside_diameter / 5.0)
     lines = [*classes, f'housing_diameter = "{outside:g} mm"']

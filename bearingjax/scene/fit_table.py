@@ -40,7 +40,7 @@ from ..design.fits import PARTS, FitState
 from ..element import BearingElement, Speed
 from ..statics.installed import Installed
 from ..statics.service_warning import seat_warnings
-from .catalogue_entry import CLEARANCE, FromCatalogue, class_limits
+from .catalogue_entry import CLEARANCE, CLEARED_ROLLERS, FromCatalogue, class_limits
 from .quantity import SceneError
 from .schema import Keys, read_keys, scene_key
 from .schema_text import class_schema, number_schema
@@ -342,7 +342,7 @@ def read_fits(
     sizes = _sizes(keys, catalogue)
     taper = _taper(keys, catalogue)
     given = _limits(keys, row, sizes)
-    given["clearance"] = _clearance(keys, own, sizes["bore"], catalogue)
+    given["clearance"] = _clearance(keys, own, sizes["bore"], catalogue, taper)
     scatters = given["clearance"] is not None
     if place != "middle" and not (scatters or keys.shaft or keys.housing):
         problem = "goes with tolerance classes, or a class of clearance"
@@ -541,19 +541,22 @@ def _limits(keys: FitKeys, row, sizes) -> dict[str, Any]:
     return found
 
 
-def _clearance(keys: FitKeys, own: Table, bore, catalogue) -> Limits | None:
+def _clearance(keys: FitKeys, own: Table, bore, catalogue, taper) -> Limits | None:
     """Return the limits of a clearance class; `None`: clearance given as a number."""
     table, name, drawn = keys.table, keys.clearance, own.keys_given()
     # A line that only restates the catalogue is not a change.
     changed = drawn if catalogue is None else catalogue.overridden
-    stated = [key for key in (CLEARANCE, "contact_angle") if key in changed]
+    kind = catalogue.entry.type if catalogue else drawn["type"]
+    linked = [CLEARANCE] if kind in CLEARED_ROLLERS else [CLEARANCE, "contact_angle"]
+    stated = [key for key in linked if key in changed]
     if name is None and catalogue is not None and not stated:
         name = catalogue.entry.clearance_class
     if name is None:
         return None
-    find = catalogue.entry.class_limits if catalogue else class_limits(drawn["type"])
+    find = class_limits(kind, "K" if taper else "")
     if find is None:
-        problem = "is for bearings with classes of radial clearance, not of this type;"
+        bore = "this type with a tapered bore" if taper else "this type"
+        problem = f"is for bearings with classes of radial clearance, not of {bore};"
         raise table.error("clearance", f"{problem} give its own clearance or angle")
     for key in stated:
         problem = f"stands beside `bearing.{key}`; one follows from the other"

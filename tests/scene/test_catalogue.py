@@ -165,6 +165,15 @@ def test_tilt_factors_of_toroidal_bearings():
         arm = 0.5 * (pitch - length(entry, "roller_diameter")) + arc
         printed = entry.printed["tilt_factor"] * entry.width * 180.0 / np.pi
         assert arm == pytest.approx(printed, rel=0.04)
+    # Examples that SKF prints of a C 3052: travel of 6.5 mm costs 0.039 mm of radial
+    # clearance, 0.15 mm are gone after 12.7 mm.
+    row: Any = bj.catalogue_entry("C 3052").bearing
+    apart = float(row.outer_raceway_radius + row.inner_raceway_radius)
+    apart -= float(row.roller_diameter)
+    lost = 2.0 * (apart - np.sqrt(apart**2 - 6.5e-3**2))
+    assert lost == pytest.approx(0.039e-3, abs=0.5e-6)
+    travel = np.sqrt(apart**2 - (apart - 0.5 * 0.15e-3) ** 2)
+    assert travel == pytest.approx(12.7e-3, abs=0.05e-3)
 
 
 @pytest.mark.slow
@@ -419,6 +428,12 @@ def test_single_dimensions_override(tmp_path):
     read = bj.read_scene(scene(tmp_path, text))
     # The clearance of the class gives way to the angle it would follow from.
     assert read.element.bearing.radial_internal_clearance is None
+    assert read.catalogue.overridden == ("contact_angle",)
+    # Of a spherical roller bearing it does not follow.
+    text = 'designation = "22220 E"\ncontact_angle = "9.3 deg"\n'
+    read = bj.read_scene(scene(tmp_path, text), ["operating.prescribed.gx=0 deg"])
+    row: Any = rows_of(read.element.bearing)[0].bearing
+    assert float(row.radial_internal_clearance) == pytest.approx(80e-6)
     assert read.catalogue.overridden == ("contact_angle",)
     # The same in other units is no other dimension.
     text = 'designation = "6205"\nball_diameter = "0.00794 m"\ninner_osculation = 0.52'

@@ -239,6 +239,42 @@ def test_a_tapered_bore_is_driven_up_its_seat(scene):
     assert float(other.fits.mounting.bore_taper) == pytest.approx(1 / 30)
 
 
+def test_classes_of_a_tapered_bore_without_a_designation(scene):
+    entry = bj.catalogue_entry("22220 E")
+    keys = "\n".join(
+        f'{k} = "{v}"' if isinstance(v, str) else f"{k} = {v}"
+        for k, v in entry.table.items()
+        if k != "radial_internal_clearance"
+    )
+    sizes = 'bore = "100 mm"\noutside_diameter = "180 mm"\nclearance = "C3"\n'
+    seat = f'{sizes}bore_taper = "1:12"\ndrive_up = "0.6 mm"'
+    text = TAPERED.format("22220", seat).replace('designation = "22220"', keys)
+    limits = bj.read_scene(scene(text)).fits.limits["clearance"]
+    np.testing.assert_allclose(np.array(limits) / MICRON, [110, 140])
+    # Cylindrical: 100 to 135 µm.
+    for line in ('bore_taper = "1:12"', 'drive_up = "0.6 mm"'):
+        text = text.replace(line, "" if "taper" in line else 'shaft = "m5"')
+    limits = bj.read_scene(scene(text)).fits.limits["clearance"]
+    np.testing.assert_allclose(np.array(limits) / MICRON, [100, 135])
+
+
+def test_the_drive_up_varies_and_is_sought(scene):
+    text = TAPERED.format("1205 EK", 'drive_up = "0.1 mm"').replace("-42 kN", "-1 kN")
+    text = text.replace('"270 mm"', '"80 mm"')
+    grid = '[cases.grid]\nfit.drive_up = ["0.1 mm", "0.2 mm"]\n'
+    table = read_cases(scene(text + grid))
+    row: Any = rows_of(table.structures[0].element.bearing)[0].bearing
+    left = row.radial_internal_clearance
+    seats = table.scene.fits.mounting
+    inner = float(raceway_diameters(rows_of(bj.load_bearing("1205 EK"))[0].bearing)[0])
+    share = (float(seats.bore) + 0.5 * 0.015 / 12) / inner
+    assert left[0] - left[1] == pytest.approx(0.1e-3 / 12 * share, rel=1e-6)
+    task = text + '[optimise]\nobjective = "peak_pressure"\n[optimise.variables]\n'
+    task += '"fit.drive_up" = { from = "0 mm", to = "0.2 mm" }\n'
+    (variable,) = read_optimisation(scene(task)).variables
+    assert variable.path == ("mounting.drive_up",)
+
+
 # Bores up to [mm]: reduction of the clearance [µm], drive-up of 1:12, of 1:30 [mm].
 DRIVEN = {
     65: ((30, 40), (0.45, 0.6), (3.0, 4.0)),
