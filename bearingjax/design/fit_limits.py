@@ -163,7 +163,7 @@ _SPHERICAL = {
     500: (140, 260, 260, 410, 410, 550, 550, 720, 720, 900),
 }
 _SPHERICAL_TAPERED = {
-    30: (20, 30, 30, 40, 40, 55, 55, 75),
+    30: (20, 30, 30, 40, 40, 55, 55, 75, 75, 95),
     40: (25, 35, 35, 50, 50, 65, 65, 85, 85, 105),
     50: (30, 45, 45, 60, 60, 80, 80, 100, 100, 130),
     65: (40, 55, 55, 75, 75, 95, 95, 120, 120, 160),
@@ -292,8 +292,9 @@ def spherical_roller_clearance(name: str, bore: Any, tapered: bool = False) -> L
     Raises:
         ValueError: If there is no such class, or for other bores.
 
-    Source: ISO 5753-1 (2009), as the catalogue of SKF prints it; that of tapered bores
-        up to 24 mm is not printed there, and left out.
+    Source: ISO 5753-1 (2009), as the catalogues of SKF and NSK print it (of bores from
+        65 to 80 mm C5 ends at 185 µm, NSK's at 180); that of tapered bores up to 24 mm
+        is not printed there, and left out.
     """
     table, least = (_SPHERICAL_TAPERED, 24.0) if tapered else (_SPHERICAL, 18.0)
     return _clearance("spherical_roller_clearance", name, bore, table, least)
