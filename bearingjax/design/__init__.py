@@ -36,6 +36,9 @@ from .fit_limits import ball_clearance as ball_clearance
 from .fit_limits import bore_limits as bore_limits
 from .fit_limits import outside_limits as outside_limits
 from .fit_limits import roller_clearance as roller_clearance
+from .fit_limits import self_aligning_clearance as self_aligning_clearance
+from .fit_limits import spherical_roller_clearance as spherical_roller_clearance
+from .fit_limits import toroidal_roller_clearance as toroidal_roller_clearance
 from .fit_range import PLACES as PLACES
 from .fit_range import ClearanceRange as ClearanceRange
 from .fit_range import clearance_range as clearance_range
@@ -44,6 +47,7 @@ from .fits import FitConditions as FitConditions
 from .fits import FitState as FitState
 from .fits import Mounting as Mounting
 from .fits import fit_state as fit_state
+from .fits import needed_drive_up as needed_drive_up
 from .fits import smoothing as smoothing
 from .form_error import FormErrors as FormErrors
 from .form_error import Harmonics as Harmonics

@@ -1,7 +1,7 @@
 """Bearings of barrel rollers, thrust rollers and crossed rollers."""
 
 import math
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -10,7 +10,7 @@ import numpy as np
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .bearing import AbstractRollerBearing, TaperedRollerBearing
-from .checks import check, concrete, in_range, number, positive
+from .checks import check, concrete, in_range, is_traced, number, positive
 
 _FAR = 0.01
 """Distance of the centre of the outer sphere from the axis, over its radius, above
@@ -341,26 +341,31 @@ class CrossedRollerRow(AbstractRollerBearing):
 
 def pitch_on_sphere(
     *,
-    outer_raceway_radius: float,
-    contact_angle: float,
-    roller_diameter: float,
-    roller_profile_radius: float,
-    profile_offset: float = 0.0,
-    radial_internal_clearance: float = 0.0,
+    outer_raceway_radius: Scalar | float,
+    contact_angle: Scalar | float,
+    roller_diameter: Scalar | float,
+    roller_profile_radius: Scalar | float,
+    profile_offset: Scalar | float = 0.0,
+    radial_internal_clearance: Scalar | float = 0.0,
     **_: object,
-) -> float:
+) -> Any:
     """Return the pitch diameter at which a spherical outer raceway is about the axis.
 
     Args: numbers, under the names of their fields; others have no effect.
 
     Returns:
-        Inverse of `sphere_radius` [m].
+        Inverse of `sphere_radius`, a float; differentiable if a number is traced [m].
     """
+    radius, angle, gap = outer_raceway_radius, contact_angle, radial_internal_clearance
+    numbers = radius, angle, gap, roller_diameter, roller_profile_radius, profile_offset
+    traced = any(map(is_traced, numbers))
+    xp: Any = jnp if traced else np
     with np.errstate(all="ignore"):  # nonsense is refused with the bearing
-        half = np.arcsin(np.divide(profile_offset, roller_profile_radius))
-    axis = contact_angle - half
-    radius = outer_raceway_radius - 0.25 * radial_internal_clearance * np.cos(axis)
-    return float(2.0 * radius * np.cos(contact_angle) - roller_diameter * np.cos(axis))
+        half = xp.arcsin(xp.divide(profile_offset, roller_profile_radius))
+    axis = angle - half
+    radius = radius - 0.25 * gap * xp.cos(axis)
+    pitch = 2.0 * radius * xp.cos(angle) - roller_diameter * xp.cos(axis)
+    return pitch if traced else float(pitch)
 
 
 def _radius(owner, name):

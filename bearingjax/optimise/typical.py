@@ -23,7 +23,7 @@ class Proportions(NamedTuple):
 
     Attributes:
         element: Diameter of the rolling elements over the section [1]; of thrust
-            bearings over the height.
+            ball bearings over the height.
         pitch: Pitch diameter over the mean of bore and outside diameter [1].
         filling: Filling of the row: arc of the pitch circle over which the elements
             of a deep groove bearing lie, from the first to the last [rad]; for other
@@ -102,6 +102,41 @@ PROPORTIONS = {
         Typical(0.88, 0.05),
         Typical(0.68, 0.07),
         Typical(14 * _DEG, 2.5 * _DEG),
+    ),
+    "spherical_roller": Proportions(
+        Typical(0.515, 0.018),
+        Typical(1.013, 0.008),
+        Typical(0.87, 0.02),
+        Typical(0.355, 0.02),
+        Typical(11.3 * _DEG, 1.8 * _DEG),
+    ),
+    "toroidal_roller": Proportions(
+        Typical(0.525, 0.023),
+        Typical(1.004, 0.016),
+        Typical(0.87, 0.02),
+        Typical(0.71, 0.065),
+        _NONE,
+    ),
+    "spherical_thrust_roller": Proportions(
+        Typical(0.55, 0.025),
+        Typical(1.02, 0.006),
+        Typical(0.82, 0.02),
+        Typical(0.60, 0.025),
+        Typical(50.5 * _DEG, 1.2 * _DEG),
+    ),
+    "cylindrical_thrust_roller": Proportions(
+        Typical(0.60, 0.035),
+        Typical(1.0, 0.006),
+        Typical(0.73, 0.08),
+        Typical(0.41, 0.03),
+        Typical(90 * _DEG, 1e-4),
+    ),
+    "crossed_roller": Proportions(
+        Typical(0.35, 0.045),
+        Typical(0.992, 0.007),
+        Typical(0.71, 0.09),
+        Typical(0.32, 0.05),
+        Typical(45 * _DEG, 1e-4),
     ),
 }
 """By name of the type."""

@@ -184,6 +184,8 @@ def _single(table: Table) -> AbstractBearing:
         # The echo states whose ratings apply, and the clearance.
         table.fill("designation", found[1].entry.designation)
     kind = table.choice("type", (*ROLLERS, *BALLS))
+    if found is not None and kind == "spherical_roller":
+        table.skip("staggered")  # of both rows, read with them
     return _balls(table, kind) if kind in BALLS else _rollers(table, kind)
 
 

@@ -8,6 +8,7 @@ holds keys of a scene's `[bearing]`.
 import dataclasses
 import functools
 import math
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
@@ -20,8 +21,11 @@ from ..design.fit_limits import (
     ball_clearance,
     roller_clearance,
     self_aligning_clearance,
+    spherical_roller_clearance,
+    toroidal_roller_clearance,
 )
 from ..design.iso286 import Limits
+from ..statics import heat_area, reference_factors, reference_speed
 from .designation import Suffixes, compact, split_designation
 from .quantity import SceneError, to_si
 
@@ -30,13 +34,30 @@ CLEARANCES = {
     "cylindrical_roller": roller_clearance,
     "needle_roller": roller_clearance,
     "self_aligning_ball": self_aligning_clearance,
+    "spherical_roller": spherical_roller_clearance,
+    "toroidal_roller": toroidal_roller_clearance,
 }
 """Limits of radial internal clearance by type, where classes are defined."""
 
-_TAPERED = {"self_aligning_ball": partial(self_aligning_clearance, tapered=True)}
+_TAPERED = {
+    "self_aligning_ball": partial(self_aligning_clearance, tapered=True),
+    "spherical_roller": partial(spherical_roller_clearance, tapered=True),
+    "toroidal_roller": partial(toroidal_roller_clearance, tapered=True),
+}
 """Limits of radial internal clearance by type for tapered bores."""
 
 CLEARANCE = "radial_internal_clearance"
+
+_SERIES = {
+    "deep_groove_ball": r"^6([23])\d\d$",
+    "angular_contact_ball": r"^7(2)\d\d ",
+    "cylindrical_roller": r"^[A-Z]+ (2[23]|2)\d\d ",
+    "spherical_roller": r"^2([2-4][0-3])\d\d ",
+    "tapered_roller": r"^3([0-3][0-3]|[02])\d\d ",
+    "cylindrical_thrust_roller": r"^8(1[12])\d\d ",
+    "spherical_thrust_roller": r"^2(9[2-4])\d\d ",
+}
+"""Dimension series within a designation."""
 
 _OTHER_BALLS = (
     "bearings of other contact angles often have other balls; C, C0 worked out from"
@@ -56,6 +77,7 @@ _QUANTITIES = {
     "fatigue_load_limit": "force",
     "reference_speed": "speed",
     "limiting_speed": "speed",
+    "mass": "mass",
 }
 
 
@@ -101,6 +123,7 @@ class CatalogueEntry:
         fatigue_load_limit: Pu [N].
         reference_speed: Thermal reference speed [rad/s].
         limiting_speed: Limiting speed [rad/s].
+        mass: Mass [kg].
         other: Ratings in another catalogue, or of the standard class for an improved
             one.
         geometry: "published" or "estimated": number and size of the rolling elements
@@ -110,6 +133,8 @@ class CatalogueEntry:
         notes: Interpretation of the designation, in words.
         table: Keys of [bearing] as written in a scene.
         taper: "K" or "K30" for a tapered bore, else "".
+        printed: What else the publisher prints, as in the file: lengths as texts, pure
+            numbers such as the limit e and factors Y1, Y2, Y0 of axial loads.
     """
 
     designation: str
@@ -124,6 +149,7 @@ class CatalogueEntry:
     fatigue_load_limit: float | None
     reference_speed: float | None
     limiting_speed: float | None
+    mass: float | None
     other: OtherRating | None
     geometry: str
     assumed: tuple[str, ...]
@@ -131,6 +157,7 @@ class CatalogueEntry:
     notes: tuple[str, ...]
     table: dict[str, Any]
     taper: str = ""
+    printed: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property
     def clearance_class(self) -> str | None:
@@ -139,6 +166,26 @@ class CatalogueEntry:
             return None
         after = self.designation.rpartition("/")[2]
         return after if after[:2] in CLEARANCE_CLASSES else "CN"
+
+    @property
+    def thermal_speed(self) -> float | None:
+        """Thermal reference speed by ISO 15312 [rad/s]; `None` without factors."""
+        found = re.search(_SERIES.get(self.type, "$^"), self.designation)
+        factors = found and reference_factors(self.type, found[1].zfill(2))
+        if not factors or self.static_capacity is None:
+            return None
+        d, outside = self.bore, self.outside_diameter
+        thrust = self.type.endswith("thrust_roller")
+        flat = self.type == "cylindrical_thrust_roller"
+        area = heat_area(d, outside, self.width, flat=flat)
+        if thrust and not flat:
+            shaft, housing = (
+                to_si(self.printed[key], "length")
+                for key in ("shaft_washer_diameter", "housing_washer_bore")
+            )
+            area = 0.25 * math.pi * (outside**2 + shaft**2 - housing**2 - d**2)
+        mean, load = 0.5 * (d + outside), self.static_capacity
+        return float(reference_speed(mean, area, load, factors, thrust=thrust))
 
     @property
     def class_limits(self) -> Callable[..., Limits] | None:
@@ -251,7 +298,7 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         sources["geometry"] = (
             f"balls and pitch circle of {key} (of that one: {sources['geometry']})"
         )
-        for name in _RATINGS:
+        for name in (*_RATINGS, "mass"):
             si[name] = None
         for name in ("outer_shoulder", "inner_shoulder"):
             table.pop(name)
@@ -261,7 +308,8 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
     assumed = list(values.get("assumed", data.get("assumed", ())))
     taper = suffixes.taper
     if kind in CLEARANCES:
-        shown, name = f"{shown}{taper}", suffixes.clearance or "CN"
+        apart = " " if taper and shown[-1].isdigit() else ""
+        shown, name = f"{shown}{apart}{taper}", suffixes.clearance or "CN"
         if class_limits(kind, taper) is None:
             problem = (
                 f"classes of clearance of tapered bores ({taper}) are known here of"
@@ -292,6 +340,7 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         notes=tuple(notes),
         table=table,
         taper=taper,
+        printed={} if "contact_angle" in changes else dict(values.get("printed", {})),
     )
 
 
@@ -367,6 +416,9 @@ class FromCatalogue:
         return ", ".join(words)
 
 
+CLEARED_ROLLERS = ("spherical_roller", "toroidal_roller")
+"""Types with clearance classes whose clearance does not follow from an angle."""
+
 _INSTEAD = {
     "contact_angle": (CLEARANCE,),
     "ribs": ("arrangement", "rib", "axial_internal_clearance"),
@@ -388,6 +440,8 @@ def taken_from(
         All keys, and the record of the catalogue entry.
     """
     dropped = {name for key in given for name in _INSTEAD.get(key, ())}
+    if entry.type in CLEARED_ROLLERS:
+        dropped.discard(CLEARANCE)
     merged = {k: v for k, v in entry.table.items() if k not in dropped}
     changed = []
     for key, value in given.items():

@@ -17,7 +17,8 @@ from .table import not_among
 _SHARE = 0.1
 """Load of a new scene over the dynamic capacity."""
 
-_SPEED = "1500 rpm"
+_SPEED = 1500.0
+"""Speed of a new scene, or half of the reference speed if that is less [rpm]."""
 
 _DIRT = 'contamination = "grease, normal"  # of an oil "oil bath -/17/14" and the like'
 
@@ -97,7 +98,7 @@ def _range(option, text, kind, least=False) -> tuple[float, float] | None:
 def catalogue_table(entries: Sequence[CatalogueEntry]) -> str:
     """Format a line for each bearing: sizes in mm, capacities in kN."""
     head = (
-        f"{'designation':<13}{'type':<21}{'d':>6}{'D':>7}{'B, T, H':>9}{'C':>8}"
+        f"{'designation':<13}{'type':<26}{'d':>6}{'D':>7}{'B, T, H':>9}{'C':>8}"
         f"{'C0':>8}{'Pu':>8}  geometry"
     )
     lines = [head]
@@ -107,12 +108,12 @@ def catalogue_table(entries: Sequence[CatalogueEntry]) -> str:
         loads = (e.dynamic_capacity, e.static_capacity, e.fatigue_load_limit)
         c, c0, pu = (_number(load, 1e-3) for load in loads)
         lines.append(
-            f"{e.designation:<13}{e.type:<21}{d:>6}{outside:>7}{width:>9}{c:>8}{c0:>8}"
+            f"{e.designation:<13}{e.type:<26}{d:>6}{outside:>7}{width:>9}{c:>8}{c0:>8}"
             f"{pu:>8}  {e.geometry}"
         )
     lines.append(
         f"{len(entries)} bearings (mm, kN; C axial of thrust bearings, of both rows of"
-        " self-aligning ones)"
+        " self-aligning and spherical roller ones)"
     )
     return "\n".join(lines)
 
@@ -144,8 +145,15 @@ def catalogue_details(entry: CatalogueEntry) -> str:
         "limiting speed": entry.limiting_speed,
     }
     known = [f"{k} {_rpm(v):.0f} rpm" for k, v in speeds.items() if v is not None]
+    if (speed := entry.thermal_speed) is not None:
+        known.append(f"thermal reference speed {_rpm(speed):.0f} rpm (ISO 15312)")
+    if entry.mass is not None:
+        known.append(f"mass {entry.mass:.4g} kg")
     if known:
         lines.append(", ".join(known))
+    if entry.printed:
+        words = (f"{k.replace('_', ' ')} {_plain(v)}" for k, v in entry.printed.items())
+        lines.append(f"printed: {', '.join(words)}")
     lines.append(f"inner geometry {entry.geometry}: {entry.sources['geometry']}")
     lines += [f"  {key} = {_toml(value)}" for key, value in entry.table.items()]
     if entry.assumed:
@@ -153,16 +161,24 @@ def catalogue_details(entry: CatalogueEntry) -> str:
     return "\n".join([*lines, *entry.notes])
 
 
+def _plain(value: Any) -> str:
+    return " / ".join(map(str, value)) if isinstance(value, list) else f"{value}"
+
+
 def catalogue_as_dict(entries: Iterable[CatalogueEntry]) -> dict[str, Any]:
     """Return the bearings as plain numbers in SI.
 
     Returns:
         `bearings`: the fields of `CatalogueEntry` of each, with `table` as written in
-        a scene.
+        a scene, and its `thermal_speed`.
     """
     return {
         "bearings": [
-            {**vars(entry), "other": entry.other and entry.other._asdict()}
+            {
+                **vars(entry),
+                "other": entry.other and entry.other._asdict(),
+                "thermal_speed": entry.thermal_speed,
+            }
             for entry in entries
         ]
     }
@@ -193,7 +209,7 @@ def new_scene(entry: CatalogueEntry) -> str:
         "[operating]",
         'fixed_ring = "outer"',
         *_load(entry),
-        f'inner_speed = "{_SPEED}"',
+        f'inner_speed = "{_speed(entry)}"',
         "# Shaft and housing hold the ring straight; without this line it tilts.",
         'prescribed = { gx = "0 mrad", gy = "0 mrad" }',
         "",
@@ -225,7 +241,7 @@ def _further(entry: CatalogueEntry) -> list[str]:
             'arrangement = "back_to_back"  # or "face_to_face"',
             f'spacing = "{1e3 * entry.width:.5g} mm"',
         ]
-    if entry.type != "thrust_ball":
+    if not _row(entry).is_thrust:
         lines += [
             "",
             "[fit]  # seats, from which the clearance in operation follows",
@@ -250,7 +266,7 @@ def _further(entry: CatalogueEntry) -> list[str]:
         ),
         "[[cases.spectrum]]  # its loads, a table for each",
         'hours = "1000 h"',
-        f'operating.inner_speed = "{_SPEED}"',
+        f'operating.inner_speed = "{_speed(entry)}"',
         *(f"operating.load.{part}" for part in share.split(", ")),
     ]
 
@@ -277,6 +293,9 @@ def _seats(entry: CatalogueEntry) -> list[str]:
     classes = ['shaft = "k5"', 'housing = "H7"']
     if entry.type == "tapered_roller":
         classes = ['shaft_interference = "10 um"', 'housing_interference = "-10 um"']
+    if entry.taper:
+        less = f'"{500.0 * entry.bore:.3g} um"  # taken as it is driven up its seat'
+        classes = [f"clearance_reduction = {less}", 'housing = "H7"']
     outside = 5.0 * round(1.5e3 * entry.outside_diameter / 5.0)
     lines = [*classes, f'housing_diameter = "{outside:g} mm"']
     if entry.designation:
@@ -290,21 +309,20 @@ def _seats(entry: CatalogueEntry) -> list[str]:
 
 def _load(entry: CatalogueEntry) -> list[str]:
     """Return the lines of a load within the capacity, known or estimated."""
-    bearing = entry.bearing
     capacity = entry.dynamic_capacity
     share = "a tenth of C"
     if capacity is None:
-        capacity, share = _rough_capacity(rows_of(bearing)[0].bearing), "moderate"
+        capacity, share = _rough_capacity(_row(entry)), "moderate"
     load = f"{_rounded(_SHARE * capacity):g} N"
     half = f"{_rounded(0.5 * _SHARE * capacity):g} N"
-    if entry.type == "thrust_ball":
+    if _row(entry).is_thrust:
         comment = f"# axial, {share}, from the shaft washer at -z"
         return [f'load = {{ Fz = "{load}" }}  {comment}']
     if entry.type in ("angular_contact_ball", "four_point_ball"):
         comment = f"# axial {share}, radial half of it; +z closes the bearing"
         return [comment, f'load = {{ Fy = "-{half}", Fz = "{load}" }}']
     if entry.type == "tapered_roller":
-        row: Any = rows_of(bearing)[0].bearing
+        row = _row(entry)
         # More for steep contact angles, so that about half of the rollers are loaded.
         needed = 1.3 * np.tan(float(row.axis_angle + row.half_angle))
         axial = f"{_rounded(max(0.5, needed) * _SHARE * capacity):g} N"
@@ -312,6 +330,17 @@ def _load(entry: CatalogueEntry) -> list[str]:
         comment = f"# radial {share}, axial {words}; +z closes the bearing"
         return [comment, f'load = {{ Fy = "-{load}", Fz = "{axial}" }}']
     return [f'load = {{ Fy = "-{load}" }}  # radial, {share}']
+
+
+def _row(entry: CatalogueEntry) -> Any:
+    """Return the first row of the bearing."""
+    return rows_of(entry.bearing)[0].bearing
+
+
+def _speed(entry: CatalogueEntry) -> str:
+    known = entry.reference_speed
+    speed = _SPEED if known is None else min(_SPEED, 0.5 * _rpm(known))
+    return f"{_rounded(speed):g} rpm"
 
 
 def _rough_capacity(ball) -> float:

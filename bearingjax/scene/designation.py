@@ -8,15 +8,28 @@ from typing import NamedTuple
 from ..design.fit_limits import CLEARANCE_CLASSES
 from .quantity import SceneError
 
-MAKERS = ("SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "TIMKEN", "NACHI", "URB")
+MAKERS = (
+    "SKF",
+    "FAG",
+    "INA",
+    "NSK",
+    "NTN",
+    "SNR",
+    "KOYO",
+    "TIMKEN",
+    "NACHI",
+    "URB",
+    "THK",
+)
 """Manufacturer names that may precede a designation."""
 
 # Suffixes of several makers that do not affect the calculation.
 _WITHOUT_EFFECT = {
-    "seals or shields": r"2?RS[RHL12]?\d?|2?RZ|2?ZZ?|LL[UBHX]|DDU?|VV",
+    "seals or shields": r"2?RS[RHL12]?\d?|2?RZ|2?ZZ?|LL[UBHX]|DDU?|VV|UU?",
     "cage": r"TN[9HG]?|TNP|TVP2?B?|TVPB|TVH|TV|TB|T2X?|J[12]?|M[ABLPT]?[12]?|PH[AS]*|P"
     r"|Y|L|W",
-    "accuracy or steel": r"P[654]X?|P0|PN|QE[456]|VA\d+|Q|QCL7C|A",
+    "accuracy or steel": r"P[654]X?|P0|PN|QE[456]|VA\d+|Q|QCL7C|A|XL",
+    "lubrication holes": r"W(?:20|26|33|64)|S",
     "grease": r"HT\d*|LT\d*|WT|[MV]T\d+|LHT\d+|GJN",
     "mounting": r"C[ABC]|G[ABC]?|U[ALO]|N[12]?|Z?NR",
     "tapered bore": r"K(?:30)?",

@@ -22,6 +22,7 @@ SIZES = {
 
 _LENGTHS = ("pitch_diameter", "ball_diameter", "roller_diameter", "roller_length")
 _ANGLES = ("contact_angle", "shim_angle", "roller_axis_angle", "roller_half_angle")
+_INNER = "inner_raceway_radius"
 _PARTS = {
     "deep_groove_ball": (),
     "angular_contact_ball": ("contact_angle",),
@@ -31,6 +32,11 @@ _PARTS = {
     "cylindrical_roller": (),
     "needle_roller": (),
     "tapered_roller": ("roller_axis_angle", "roller_half_angle"),
+    "spherical_roller": ("contact_angle", "roller_profile_radius", _INNER),
+    "toroidal_roller": ("roller_profile_radius", "outer_raceway_radius", _INNER),
+    "spherical_thrust_roller": ("contact_angle", "roller_profile_radius", _INNER),
+    "cylindrical_thrust_roller": (),
+    "crossed_roller": (),
 }
 """Keys of each type besides the number and sizes of the rolling elements."""
 
@@ -97,6 +103,7 @@ def estimated_entry(
         fatigue_load_limit=None,
         reference_speed=None,
         limiting_speed=None,
+        mass=None,
         other=None,
         geometry="estimated",
         assumed=tuple(k for k in _USUAL if k in table),
@@ -106,7 +113,13 @@ def estimated_entry(
     )
 
 
-_USUAL = ("outer_osculation", "inner_osculation", "roller_profile", "ribs")
+_USUAL = (
+    "outer_osculation",
+    "inner_osculation",
+    "roller_profile",
+    "roller_profile_radius",
+    "ribs",
+)
 
 
 def _read(name, text, unit) -> float:
@@ -141,7 +154,7 @@ def _table(kind: str, row: Any) -> dict[str, Any]:
         # The outer raceway of a self-aligning bearing is a sphere.
         if hasattr(row, name) and (kind, name) != _SPHERE:
             table[name] = _written(name, getattr(row, name))
-    if element == "rollers":
+    if element == "rollers" and _INNER not in table:
         table["roller_profile"] = {"type": "logarithmic"}
     if kind == "tapered_roller":
         rib = row.ribs.inner_minus

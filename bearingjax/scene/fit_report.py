@@ -30,6 +30,8 @@ def fit_report(fits: Fits, bearing: AbstractBearing | BearingSet) -> list[Part]:
     """
     facts = fit_facts(fits, bearing)
     shaft, housing = (name or "as given" for name in fits.names)
+    if float(fits.mounting.bore_taper):
+        shaft = "tapered"
     states = {
         "free": facts.free,
         "mounted": facts.mounted.radial_clearance,
@@ -47,10 +49,22 @@ def fit_report(fits: Fits, bearing: AbstractBearing | BearingSet) -> list[Part]:
     return [
         f"fits: shaft {shaft}, housing {housing}; sizes of the solve:"
         f" {fits.place.replace('_', ' ')}",
+        *_driven(fits),
         Grid(columns, "radial clearance"),
         _seats(facts),
         "hoop stress of the inner ring at its bore, operating"
         f" {1e-6 * float(facts.operating.ring_stress):.4g} MPa",
+    ]
+
+
+def _driven(fits: Fits) -> list[Part]:
+    """Return what driving up a tapered seat does, if there is one."""
+    taper, travel = float(fits.mounting.bore_taper), float(fits.mounting.drive_up)
+    if not taper:
+        return []
+    return [
+        f"tapered seat 1:{1.0 / taper:.4g}: driven up by {1e3 * travel:.4g} mm, an"
+        f" interference of {_micron(taper * travel)} µm"
     ]
 
 
@@ -91,7 +105,8 @@ def fit_as_dict(fits: Fits, bearing: AbstractBearing | BearingSet) -> dict[str, 
         fits, bearing: As in `fit_facts`.
 
     Returns:
-        place; radial_clearance: free, mounted, operating; worst and probable: mounted,
+        place; bore_taper [1] and drive_up [m], 0 of cylindrical seats;
+        radial_clearance: free, mounted, operating; worst and probable: mounted,
         operating, each least and largest [m]; and mounted and operating:
         shaft_interference, housing_interference [m], shaft_pressure, housing_pressure,
         ring_stress [Pa].
@@ -108,6 +123,8 @@ def fit_as_dict(fits: Fits, bearing: AbstractBearing | BearingSet) -> dict[str, 
     )
     return {
         "place": fits.place,
+        "bore_taper": float(fits.mounting.bore_taper),
+        "drive_up": float(fits.mounting.drive_up),
         "radial_clearance": {
             "free": facts.free,
             **{k: float(state.radial_clearance) for k, state in states.items()},

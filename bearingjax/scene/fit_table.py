@@ -26,6 +26,7 @@ from ..design import (
     limits,
     mounted,
     mounting_at,
+    needed_drive_up,
     outside_limits,
     radial_clearance,
     rows_of,
@@ -39,7 +40,7 @@ from ..design.fits import PARTS, FitState
 from ..element import BearingElement, Speed
 from ..statics.installed import Installed
 from ..statics.service_warning import seat_warnings
-from .catalogue_entry import CLEARANCE, FromCatalogue, class_limits
+from .catalogue_entry import CLEARANCE, CLEARED_ROLLERS, FromCatalogue, class_limits
 from .quantity import SceneError
 from .schema import Keys, read_keys, scene_key
 from .schema_text import class_schema, number_schema
@@ -110,6 +111,14 @@ def _interference(of: str) -> Any:
 
 _BY_CLASS = "by the tolerance class"
 
+TAPERS = {"1:12": 1 / 12, "1:30": 1 / 30}
+"""Tapers of bores."""
+
+_OF_SUFFIX = {"K": "1:12", "K30": "1:30"}
+
+_DRIVEN = ("drive_up", "clearance_reduction")
+"""Keys that say how far a tapered bore is driven up its seat."""
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class FitKeys(Keys):
@@ -128,6 +137,22 @@ class FitKeys(Keys):
     housing: str | None = scene_key("tolerance class of the housing", **_of_seat(False))
     shaft_interference: float | None = _interference("of shaft and bore")
     housing_interference: float | None = _interference("of bearing and housing")
+    bore_taper: str | None = scene_key(
+        "taper of bore and seat, of the diameter over the length",
+        choices=tuple(TAPERS),
+        otherwise="that of the `designation` (K, K30)",
+    )
+    drive_up: float | None = scene_key(
+        "travel of the inner ring up a tapered seat, from where it just touches",
+        "length",
+        least=0,
+    )
+    clearance_reduction: float | None = scene_key(
+        "radial clearance that driving up takes, in place of `drive_up`",
+        "length",
+        least=0,
+        without={"drive_up": ""},
+    )
     shaft_bore: float = scene_key("bore of a hollow shaft", "length", default=0.0)
     clearance: str | None = scene_key(
         "class of the clearance before mounting",
@@ -172,8 +197,11 @@ class FitKeys(Keys):
         for seat, example in (("shaft", '"k5"'), ("housing", '"H7"')):
             key = f"{seat}_interference"
             given = getattr(self, seat) is not None
-            if given == (getattr(self, key) is not None):
-                problem = f"stands beside `{key}`" if given else "is missing"
+            others = (key, *_DRIVEN) if seat == "shaft" else (key,)
+            beside = [name for name in others if getattr(self, name) is not None]
+            if len(beside) + given != 1:
+                seat, *rest = [seat, *beside] if given else beside or [seat]
+                problem = f"stands beside `{rest[0]}`" if rest else "is missing"
                 cure = f"give a tolerance class, such as {example}, or `{key}`"
                 raise self.table.error(seat, f"{problem}; {cure}")
         if self.ring_roughness and not {"shaft_roughness", "housing_roughness"} & set(
@@ -312,8 +340,9 @@ def read_fits(
     keys = read_keys(FitKeys, beside.table("fit"))
     table, place = keys.table, keys.at
     sizes = _sizes(keys, catalogue)
+    taper = _taper(keys, catalogue)
     given = _limits(keys, row, sizes)
-    given["clearance"] = _clearance(keys, own, sizes["bore"], catalogue)
+    given["clearance"] = _clearance(keys, own, sizes["bore"], catalogue, taper)
     scatters = given["clearance"] is not None
     if place != "middle" and not (scatters or keys.shaft or keys.housing):
         problem = "goes with tolerance classes, or a class of clearance"
@@ -324,13 +353,18 @@ def read_fits(
         if float(getattr(conditions, part)) != float(conditions.reference):
             raise no_expansion(table, part, key)
     seats: dict[str, Any] = (
-        sizes | _seats(keys, own, row) | _width(keys, bearing, catalogue)
+        sizes | _seats(keys, own, row) | _width(keys, bearing, catalogue, taper)
     )
+    seats["bore_taper"], seats["drive_up"] = taper, keys.drive_up or 0.0
     # `Mounting` checks these by name; `mounting_at` sets them again.
     for seat in ("shaft_interference", "housing_interference"):
         seats[seat] = getattr(keys, seat) or 0.0
     with table.building():
         whole = sized(Mounting(**seats), row)
+        if keys.clearance_reduction is not None:
+            whole = jax.device_get(whole)
+            seats["drive_up"] = needed_drive_up(whole, keys.clearance_reduction)
+            whole = sized(Mounting(**seats), row)
         if not scatters:
             free = float(radial_clearance(row))
             given["clearance"] = Limits(free, free)
@@ -449,11 +483,33 @@ def _catalogued(keys: FitKeys, key: str, name: str, catalogue) -> float:
     return keys.table.quantity(key, "length", *([] if own is None else [own]))
 
 
-def _width(keys: FitKeys, bearing, catalogue) -> dict[str, float]:
+def _taper(keys: FitKeys, catalogue: FromCatalogue | None) -> float:
+    """Return the taper of the bore, 0 if it is cylindrical."""
+    table, suffix = keys.table, catalogue.entry.taper if catalogue else ""
+    name = keys.bore_taper or _OF_SUFFIX.get(suffix)
+    if name is None:
+        for key in _DRIVEN:
+            if key in table:
+                problem = "is of a tapered bore: give `bore_taper`, or a designation"
+                raise table.error(key, f"{problem} with K or K30")
+        return 0.0
+    if suffix and name != _OF_SUFFIX[suffix]:
+        problem = f"is {name!r}, but {suffix} of the designation means"
+        raise table.error("bore_taper", f"{problem} {_OF_SUFFIX[suffix]!r}")
+    if keys.shaft is not None:
+        problem = "is a class of cylindrical seats, and this bore is tapered; give"
+        cure = "`drive_up` or `clearance_reduction` (or `shaft_interference`)"
+        raise table.error("shaft", f"{problem} {cure}")
+    keys.fill(bore_taper=name)
+    return TAPERS[name]
+
+
+def _width(keys: FitKeys, bearing, catalogue, taper: float) -> dict[str, float]:
     """Return the ring width, required for a set whose rows have separate rings."""
     key, own = "ring_width", catalogue.entry.width if catalogue else None
     apart = isinstance(bearing, BearingSet) and not shares_rings(bearing)
-    if not apart and keys.ring_width is None:
+    mean = taper > 0.0 and own is not None
+    if not (apart or mean) and keys.ring_width is None:
         return {}
     if keys.ring_width is None and own is None:
         problem = "is missing: the width of a ring, B; between the rows of a set rings"
@@ -473,7 +529,7 @@ def _limits(keys: FitKeys, row, sizes) -> dict[str, Any]:
         name = getattr(keys, seat)
         if name is None:
             # Sign as a deviation: a small housing is tight.
-            own = sign * getattr(keys, f"{seat}_interference")
+            own = sign * (getattr(keys, f"{seat}_interference") or 0.0)
             found[seat], found[ring] = Limits(own, own), exact
             continue
         if isinstance(row, TaperedRollerBearing):
@@ -485,19 +541,22 @@ def _limits(keys: FitKeys, row, sizes) -> dict[str, Any]:
     return found
 
 
-def _clearance(keys: FitKeys, own: Table, bore, catalogue) -> Limits | None:
+def _clearance(keys: FitKeys, own: Table, bore, catalogue, taper) -> Limits | None:
     """Return the limits of a clearance class; `None`: clearance given as a number."""
     table, name, drawn = keys.table, keys.clearance, own.keys_given()
     # A line that only restates the catalogue is not a change.
     changed = drawn if catalogue is None else catalogue.overridden
-    stated = [key for key in (CLEARANCE, "contact_angle") if key in changed]
+    kind = catalogue.entry.type if catalogue else drawn["type"]
+    linked = [CLEARANCE] if kind in CLEARED_ROLLERS else [CLEARANCE, "contact_angle"]
+    stated = [key for key in linked if key in changed]
     if name is None and catalogue is not None and not stated:
         name = catalogue.entry.clearance_class
     if name is None:
         return None
-    find = catalogue.entry.class_limits if catalogue else class_limits(drawn["type"])
+    find = class_limits(kind, "K" if taper else "")
     if find is None:
-        problem = "is for bearings with classes of radial clearance, not of this type;"
+        bore = "this type with a tapered bore" if taper else "this type"
+        problem = f"is for bearings with classes of radial clearance, not of {bore};"
         raise table.error("clearance", f"{problem} give its own clearance or angle")
     for key in stated:
         problem = f"stands beside `bearing.{key}`; one follows from the other"

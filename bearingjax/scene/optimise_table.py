@@ -47,6 +47,7 @@ OF_FITS = (
     "housing_interference",
     "shaft_bore",
     "housing_diameter",
+    "drive_up",
 )
 """Numbers of a [fit] that may be variables."""
 

@@ -105,6 +105,9 @@ from .rating import fatigue_load_limit as fatigue_load_limit
 from .rating import rated_axially as rated_axially
 from .rating import ratings as ratings
 from .rating import static_capacity as static_capacity
+from .reference_speed import heat_area as heat_area
+from .reference_speed import reference_factors as reference_factors
+from .reference_speed import reference_speed as reference_speed
 from .refine import Refined as Refined
 from .refine import refine as refine
 from .refined_life import refined_lamina_loads as refined_lamina_loads

@@ -6,6 +6,8 @@ set of alike rows is rated as one bearing of several rows. The formulas are made
 steel; they take the numbers of a design and no catalogue.
 """
 
+from typing import Any
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -79,7 +81,7 @@ def ratings(
         TypeError: If a rating is no number, or it is no bearing.
         ValueError: If a rating is not positive, or the rows of a set are unlike.
     """
-    rows, is_thrust = _alike(bearing)
+    parts = _parts(bearing)
     names = ("dynamic_capacity", "static_capacity", "fatigue_load_limit")
     given = (dynamic_capacity, static_capacity, fatigue_load_limit)
     for name, value in zip(names, given, strict=True):
@@ -87,10 +89,12 @@ def ratings(
             positive("ratings", name, as_real(value), "N")
     sources = [DYNAMIC_FROM_GEOMETRY, STATIC_FROM_GEOMETRY, LIMIT_FROM_STATIC]
     sources = [s if g is None else GIVEN for s, g in zip(sources, given, strict=True)]
-    c, c0 = _capacities(rows, is_thrust)
+    c, c0 = _combined(parts)
     c = c if dynamic_capacity is None else dynamic_capacity
     c0 = as_real(c0 if static_capacity is None else static_capacity)
-    limit = _limit(rows.row, c0) if fatigue_load_limit is None else fatigue_load_limit
+    limit = fatigue_load_limit
+    if limit is None:
+        limit = _limit(_outermost(parts), c0)
     return Ratings(c, c0, limit, rated_axially(bearing), *sources)
 
 
@@ -104,8 +108,10 @@ def dynamic_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
     to 7 % of balls, 12 to 14 % of cylindrical rollers. Grooves closer than 0.52 (outer
     ring 0.53, thrust bearings 0.54) do not raise it. Several rows: C_1 i^0.7 of balls,
     C_1 i^(7/9) of rollers, 5 % less for deep groove pairs; of an axial rating only rows
-    that face the same way count, of two unequal sides the weaker. A four-point bearing
-    is rated as two rows, like the factors of its equivalent load (`arc_rows`).
+    that face the same way count, of two unequal sides the weaker. Rows of cylindrical
+    thrust rollers on several circles, facing the same way, may be unlike: C = Σ Z L
+    (Σ (Z L/C_k)^(9/2))^(-2/9). A four-point bearing is rated as two rows, like the
+    factors of its equivalent load (`arc_rows`).
 
     Args:
         bearing: Any bearing, or a set of alike ones. The contact angle is zero for deep
@@ -119,9 +125,9 @@ def dynamic_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
         ValueError: If the rows of a set are unlike.
 
     Valid:  steel, D cos α/D_pw up to 0.4 (rollers 0.3), no truncated contacts.
-    Source: ISO 281:2007, clauses 5 to 9; f_c by its formulas, ISO/TR 1281-1.
+    Source: ISO 281:2007, clauses 5 to 10; f_c by its formulas, ISO/TR 1281-1.
     """
-    return _capacities(*_alike(bearing))[0]
+    return _combined(_parts(bearing))[0]
 
 
 def static_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
@@ -145,7 +151,7 @@ def static_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
     Valid:  steel of 207 GPa; balls of ceramics press harder.
     Source: ISO 76:2006; f_0 of balls from its definition by exact Hertz contact.
     """
-    return _capacities(*_alike(bearing))[1]
+    return _combined(_parts(bearing))[1]
 
 
 def fatigue_load_limit(
@@ -181,7 +187,8 @@ def fatigue_load_limit(
     Source: ISO 281:2007, annex B: B.3.2.2 ("static"), B.3.2.1 ("contact"; here by
         exact Hertz contact).
     """
-    rows, is_thrust = _alike(bearing)
+    parts = _parts(bearing)
+    rows, is_thrust = parts[0]
     if method not in ("static", "contact"):
         raise ValueError(
             f"fatigue_load_limit: `method` is {method!r}; it must be 'static' or"
@@ -195,10 +202,10 @@ def fatigue_load_limit(
             )
         return _contact_limit(rows, is_thrust)
     if static_capacity is None:
-        return _limit(rows.row, _capacities(rows, is_thrust)[1])
+        return _limit(_outermost(parts), _combined(parts)[1])
     value = as_real(static_capacity)
     positive("fatigue_load_limit", "static_capacity", value, "N")
-    return _limit(rows.row, value)
+    return _limit(_outermost(parts), value)
 
 
 def rated_axially(bearing: AbstractBearing | BearingSet) -> Flag:
@@ -212,7 +219,7 @@ def rated_axially(bearing: AbstractBearing | BearingSet) -> Flag:
 
     Source: ISO 281:2007, definition of thrust bearings.
     """
-    rows, is_thrust = _alike(bearing)
+    rows, is_thrust = _parts(bearing)[0]
     return is_axial(is_thrust, rows.row.contact_angle)
 
 
@@ -227,6 +234,28 @@ def is_axial(is_thrust: bool, angle: Scalar) -> Flag:
 
 
 _capacities = eqx.filter_jit(by_row.capacities)
+
+
+def _combined(parts: list[tuple[Rows, bool]]) -> tuple[Scalar, Scalar]:
+    """C and C0 of alike rows, or of unlike rows of thrust rollers."""
+    if len(parts) == 1:
+        return _capacities(*parts[0])
+    c, c0 = (jnp.stack(x) for x in zip(*(_capacities(*p) for p in parts), strict=True))
+    each: list[Any] = [rows.row for rows, _ in parts]
+    weight = jnp.stack([row.count * row.length for row in each])
+    tired = jnp.sum((weight / c) ** 4.5)
+    return jnp.sum(weight) * tired ** (-2 / 9), jnp.sum(c0)
+
+
+def _outermost(parts: list[tuple[Rows, bool]]) -> BallRow | RollerRow:
+    """The row of the largest pitch diameter, as far as these are known."""
+    if len(parts) == 1:
+        return parts[0][0].row
+    return max((rows.row for rows, _ in parts), key=lambda r: _known(r.pitch_diameter))
+
+
+def _known(number) -> float:
+    return 0.0 if is_traced(number) else float(number)
 
 
 @program(quick=True)
@@ -330,6 +359,18 @@ def _kind(bearing, several) -> by_row.BallKind | None:
     elif isinstance(bearing, DeepGrooveBallBearing) and several:
         kind = by_row.RADIAL_CONTACT_ROWS
     return jax.tree.map(as_real, kind)
+
+
+def _parts(bearing) -> list[tuple[Rows, bool]]:
+    """Alike rows and whether they are of a thrust bearing; of cylindrical thrust
+    rollers on several circles each row."""
+    if isinstance(bearing, BearingSet):
+        rows = rows_of(bearing)
+        flat = all(isinstance(r.bearing, CylindricalThrustRollerBearing) for r in rows)
+        unlike = any(not _same(rows[0].bearing, row.bearing) for row in rows[1:])
+        if flat and unlike and len({row.mirrored for row in rows}) == 1:
+            return [_alike(row.bearing) for row in rows]
+    return [_alike(bearing)]
 
 
 def _alike(bearing) -> tuple[Rows, bool]:

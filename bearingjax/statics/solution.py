@@ -192,11 +192,18 @@ def message(solution: Solution, moving_ring: str) -> str:
             " beyond what numbers resolve. Check the load and its unit; the contact"
             f" pressure is {1e-9 * float(solution.roller_pressure.max()):.3g} GPa."
         )
-    cure = (
-        "check load, clearance, preload and dimensions, or raise the step limit"
-        " (`max_steps` of solve_load)"
-    )
-    if not isinstance(solution.element.equilibrium, TrustRegionNewton):
+    cure, newton = "check load, clearance, preload and dimensions", TrustRegionNewton
+    usual = isinstance(solution.element.equilibrium, newton)
+    if residual < _BALANCED:
+        more = "raise their step limit (`equilibrium=TrustRegionNewton(max_steps=...)`)"
+        if not usual:
+            more = "use TrustRegionNewton() for them"
+        return (
+            f"Step limit of the rolling elements: the rings balance to {residual:.1e}"
+            f" of the load, rolling elements only to {local:.1e}: {cure}, or {more}."
+        )
+    cure += ", or raise the step limit (`max_steps` of solve_load)"
+    if not usual:
         cure += ", or use TrustRegionNewton() for the rolling elements"
     return (
         f"Step limit reached after {int(stats.iterations)} steps, relative residual"

@@ -22,6 +22,7 @@ from bearingjax.design import (
     clearance_range,
     fit_state,
     limits,
+    needed_drive_up,
     outside_limits,
     smoothing,
 )
@@ -235,6 +236,9 @@ def test_slopes_are_those_of_differences():
         housing_interference=40 * MICRON,
         housing=ALUMINIUM,
         shaft_smoothing=1 * MICRON,
+        ring_width=0.015,
+        bore_taper=1 / 30,
+        drive_up=0.2e-3,
     )
     warm = FitConditions(30.0, 25.0, 22.0, 12.0, 8.0, 1500.0, 900.0)
     numbers, tree = jax.tree.flatten((design, warm))
@@ -356,6 +360,73 @@ def test_slopes_of_a_range():
     slope = jax.grad(middle)(0.015)
     difference = (middle(0.015 + 1e-6) - middle(0.015 - 1e-6)) / 2e-6
     np.testing.assert_allclose(slope, difference, rtol=DIFFERENCE)
+
+
+def driven(travel, taper=1 / 12, **changes):
+    """The mounting with a tapered bore."""
+    changes = {"shaft_interference": 0.0, **changes}
+    return mounting(bore_taper=taper, drive_up=travel, **changes)
+
+
+@pytest.mark.parametrize("taper", [1 / 12, 1 / 30])
+def test_driving_up_is_an_interference(taper):
+    """Of one material the raceway grows by d/F of it, d in the middle of the bore."""
+    np.testing.assert_allclose(
+        state(driven(10e-6 / taper, taper), FitConditions()).radial_clearance,
+        state(mounting(), FitConditions()).radial_clearance,
+        rtol=ROUNDING,
+    )
+    wide = state(driven(10e-6 / taper, taper, ring_width=0.015), FitConditions())
+    mean = 25.0 + 0.5 * taper * 15.0
+    growth = 10 * MICRON * mean / 30.56
+    np.testing.assert_allclose(wide.inner_raceway_growth, growth, rtol=ROUNDING)
+    np.testing.assert_allclose(wide.shaft_interference, 10 * MICRON, rtol=ROUNDING)
+
+
+def test_the_drive_up_of_a_reduction_is_the_inverse():
+    rough = dict(shaft_bore=0.010, shaft_smoothing=2.4 * MICRON, ring_width=0.015)
+    seats = driven(0.0, **rough)
+    travel = needed_drive_up(seats, 7 * MICRON)
+    found = state(replace(seats, drive_up=travel), FitConditions())
+    np.testing.assert_allclose(taken(found), 7 * MICRON, rtol=1e-9)
+    slope = jax.grad(
+        lambda s: state(replace(seats, drive_up=s), FitConditions()).radial_clearance
+    )(travel)
+    steps = [
+        float(
+            state(replace(seats, drive_up=travel + h), FitConditions()).radial_clearance
+        )
+        for h in (-1e-5, 1e-5)
+    ]
+    np.testing.assert_allclose(slope, (steps[1] - steps[0]) / 2e-5, rtol=DIFFERENCE)
+    # The slope of the inverse is the inverse slope.
+    back = jax.grad(lambda x: needed_drive_up(seats, x))(7 * MICRON)
+    np.testing.assert_allclose(-slope * back, 1.0, rtol=ROUNDING)
+
+
+def test_bores_that_cannot_be_driven_up():
+    with pytest.raises(
+        ValueError, match="`drive_up` is 0.0001 m; it must be 0 m: a cy"
+    ):
+        mounting(drive_up=1e-4)
+    with pytest.raises(
+        ValueError, match="`drive_up` is 0.01 m; it must be below 0.003"
+    ):
+        driven(0.01)
+    with pytest.raises(
+        ValueError, match="`bore_taper` is 12; it must be at least 0 an"
+    ):
+        driven(1e-4, taper=12.0)
+    with pytest.raises(
+        ValueError, match="`bore_taper`.*mean bore is below the raceway"
+    ):
+        driven(0.0, taper=0.2, ring_width=0.06)
+    with pytest.raises(ValueError, match="needed_drive_up: `bore_taper` is 0"):
+        needed_drive_up(mounting(), 1e-6)
+    with pytest.raises(
+        ValueError, match="`reduction` is -1e-06 m; it must be at least"
+    ):
+        needed_drive_up(driven(0.0), -1e-6)
 
 
 def test_what_is_not_allowed(untyped):

@@ -1,9 +1,11 @@
 """Limits of ISO 286, ISO 492 and ISO 5753-1 against second prints of them.
 
 Shafts, housings and bearings: tables of fits of SKF and of Longxi Bearing. Clearances:
-of deep groove ball bearings Yongchang, of cylindrical roller bearings AHR.
+of deep groove ball bearings Yongchang, of cylindrical roller bearings AHR, of spherical
+roller bearings NSK.
 """
 
+from functools import partial
 from string import ascii_letters
 
 import numpy as np
@@ -17,10 +19,13 @@ from bearingjax.design import (
     limits,
     outside_limits,
     roller_clearance,
+    spherical_roller_clearance,
     standard_tolerance,
+    toroidal_roller_clearance,
 )
 
 MICRON = 1e-6
+_SPHERICAL_K = partial(spherical_roller_clearance, tapered=True)
 
 # Diameter in mm, lower and upper deviation in µm.
 PUBLISHED = {
@@ -144,6 +149,15 @@ def test_bearings_that_are_not_known():
         (roller_clearance, 120, (15, 55, 50, 90, 85, 125, 125, 165)),
         (roller_clearance, 315, (55, 130, 130, 205, 200, 275, 275, 350)),
         (roller_clearance, 500, (110, 220, 220, 330, 330, 440, 440, 550)),
+        (spherical_roller_clearance, 30, (15, 25, 25, 40, 40, 55, 55, 75, 75, 95)),
+        (spherical_roller_clearance, 50, (20, 35, 35, 55, 55, 75, 75, 100, 100, 125)),
+        (spherical_roller_clearance, 100, (35, 60, 60, 100, 100, 135, 135, 180)),
+        (spherical_roller_clearance, 200, (70, 130, 130, 200, 200, 260, 260, 340)),
+        (spherical_roller_clearance, 400, (130, 220, 220, 340, 340, 450, 450, 600)),
+        (_SPHERICAL_K, 40, (25, 35, 35, 50, 50, 65, 65, 85, 85, 105)),
+        (_SPHERICAL_K, 100, (55, 80, 80, 110, 110, 140, 140, 180, 180, 230)),
+        (_SPHERICAL_K, 225, (120, 180, 180, 250, 250, 320, 320, 410, 410, 520)),
+        (_SPHERICAL_K, 500, (260, 370, 370, 490, 490, 630, 630, 790, 790, 1000)),
     ],
 )
 def test_clearances(find, bore, published):
@@ -161,9 +175,19 @@ def test_diameters_at_an_end_in_single_precision():
         assert ball_clearance("CN", single) == ball_clearance("CN", double)
 
 
-@pytest.mark.parametrize("find", [ball_clearance, roller_clearance])
-def test_classes_follow_each_other(find):
-    for bore in np.linspace(0.007, 0.5, 90):
+@pytest.mark.parametrize(
+    "find, least",
+    [
+        (ball_clearance, 0.007),
+        (roller_clearance, 0.007),
+        (spherical_roller_clearance, 0.019),
+        (_SPHERICAL_K, 0.025),
+        (toroidal_roller_clearance, 0.019),
+        (partial(toroidal_roller_clearance, tapered=True), 0.019),
+    ],
+)
+def test_classes_follow_each_other(find, least):
+    for bore in np.linspace(least, 0.5, 90):
         rows = np.array([find(name, bore) for name in CLEARANCE_CLASSES])
         assert (np.diff(rows, axis=0) > 0).all() and (np.diff(rows) > 0).all()
 
@@ -177,3 +201,5 @@ def test_clearances_that_are_not_known():
         ball_clearance("CN", 0.002)
     with pytest.raises(ValueError, match="`bore` is 0.6 m"):
         roller_clearance("CN", 0.6)
+    with pytest.raises(ValueError, match="`bore` is 0.02 m.*above 0.024 m"):
+        _SPHERICAL_K("CN", 0.02)

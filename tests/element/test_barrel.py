@@ -294,6 +294,30 @@ def test_toroidal_bearing_needs_its_outer_radius():
         toroidal(outer_raceway_radius=None)
 
 
+def test_pitch_diameter_of_a_sphere_is_traceable():
+    """A float of plain numbers; slopes are those of differences."""
+    sizes = dict(
+        contact_angle=0.87,
+        roller_diameter=0.022,
+        roller_profile_radius=0.10,
+        profile_offset=2e-3,
+    )
+    pitch = bj.design.pitch_on_sphere(outer_raceway_radius=0.104, **sizes)
+    assert isinstance(pitch, float)
+
+    def pitch_of(radius, angle):
+        given = {**sizes, "contact_angle": angle, "outer_raceway_radius": radius}
+        return bj.design.pitch_on_sphere(**given)
+
+    slopes = jax.jit(jax.grad(pitch_of, (0, 1)))(0.104, 0.87)
+    steps = [(1e-7, 0.0), (0.0, 1e-6)]
+    for slope, (a, b) in zip(slopes, steps, strict=True):
+        ends = [pitch_of(0.104 + s * a, 0.87 + s * b) for s in (-1, 1)]
+        assert float(slope) == pytest.approx(
+            (ends[1] - ends[0]) / (2 * (a + b)), rel=1e-7
+        )
+
+
 def test_slices_of_a_contact_between_arcs():
     """Their loads add up to the given one, and fall with the drop of the arcs."""
     radii, half = (0.078085, 0.0805), 0.5 * 0.0185

@@ -88,6 +88,7 @@ def designs():
     row = bj.design.SelfAligningBallRow(
         12, 0.0385, 0.0072, inner_osculation=0.53, row_offset=0.0037
     )
+    arcs = dict(roller_profile_radius=0.08, inner_raceway_radius=0.083)
     pitch, diameter, half = 0.060, 0.0099, 2.0 * _DEG
     axis = float(np.arcsin(np.tan(half) * pitch / diameter))
     return {
@@ -130,6 +131,40 @@ def designs():
                 roller_half_angle=half,
                 ribs=bj.Ribs(inner_minus=bj.Rib(0.1, 1e-3)),
             ),
+        ),
+        "spherical_roller": (
+            (0.1, 0.18, 0.046),
+            9.1 * _DEG,
+            bj.BearingSet.self_aligning(
+                bj.SphericalRollerRow(
+                    18, 0.1412, 0.0216, 0.0168, **arcs, contact_angle=9.1 * _DEG
+                )
+            ),
+        ),
+        "toroidal_roller": (
+            (0.26, 0.4, 0.104),
+            None,
+            bj.ToroidalRollerBearing(
+                26, 0.335, 0.0357, 0.0781, roller_profile_radius=0.54,
+                outer_raceway_radius=0.56, inner_raceway_radius=0.56,
+            ),
+        ),
+        "spherical_thrust_roller": (
+            (0.06, 0.13, 0.042),
+            51.5 * _DEG,
+            bj.SphericalThrustRollerBearing(
+                14, 0.0975, 0.0190, 0.0235, **arcs, contact_angle=51.5 * _DEG
+            ),
+        ),
+        "cylindrical_thrust_roller": (
+            (0.06, 0.095, 0.026),
+            None,
+            bj.CylindricalThrustRollerBearing(18, 0.0775, 0.011, 0.0107),
+        ),
+        "crossed_roller": (
+            (0.25, 0.31, 0.025),
+            None,
+            bj.BearingSet.crossed(bj.CrossedRollerRow(72, 0.2775, 0.0093, 0.0074)),
         ),
     }  # fmt: skip
 

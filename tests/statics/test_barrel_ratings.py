@@ -574,3 +574,28 @@ def test_damage_has_the_derivatives_of_differences(name):
 
 
 RIBS = bj.Ribs(inner_minus=bj.Rib(0.3, 2e-3))
+
+
+def test_thrust_rollers_on_two_circles():
+    """The rating of the set by hand; alike rows on one circle as ever (i^(7/9))."""
+    inner = bj.CylindricalThrustRollerBearing(20, 0.078, 0.009, 0.008)
+    outer = bj.CylindricalThrustRollerBearing(26, 0.098, 0.009, 0.008)
+    both = bj.BearingSet((bj.design.SetRow(inner), bj.design.SetRow(outer)))
+    c = [float(bj.dynamic_capacity(row)) for row in (inner, outer)]
+    weights = np.array([20 * 8.0, 26 * 8.0])
+    wanted = weights.sum() * np.sum((weights / np.array(c)) ** 4.5) ** (-2 / 9)
+    assert float(bj.dynamic_capacity(both)) == pytest.approx(wanted, rel=ROUNDING)
+    assert max(c) < wanted < sum(c)
+    c0 = [float(bj.static_capacity(row)) for row in (inner, outer)]
+    assert float(bj.static_capacity(both)) == pytest.approx(sum(c0), rel=ROUNDING)
+    rated = bj.statics.ratings(both)
+    assert bool(rated.axial)
+    assert float(rated.fatigue_load_limit) == pytest.approx(sum(c0) / 8.2, rel=ROUNDING)
+    # The formula for unlike rows is that for alike ones where they are alike.
+    nearly = eqx.tree_at(lambda row: row.roller_length, inner, 0.008 * (1 + 1e-7))
+    pair = bj.BearingSet((bj.design.SetRow(inner), bj.design.SetRow(nearly, 0.02)))
+    two = float(bj.dynamic_capacity(pair))
+    assert two == pytest.approx(2 ** (7 / 9) * c[0], rel=1e-6)
+    turned = bj.design.SetRow(outer, 0.05, mirrored=True)
+    with pytest.raises(ValueError, match="row 1 of the set is another bearing"):
+        bj.dynamic_capacity(bj.BearingSet((bj.design.SetRow(inner), turned)))

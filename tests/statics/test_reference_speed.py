@@ -1,0 +1,102 @@
+"""Thermal reference speed against worked numbers and a printed one."""
+
+import jax
+import numpy as np
+import pytest
+from tolerances import DIFFERENCE
+
+import bearingjax as bj
+from bearingjax.statics import heat_area, reference_factors, reference_speed
+
+RPM = 30.0 / np.pi
+
+# d, D, B [m], C0 [N], f0r, f1r, speed [rpm]; of a cylindrical thrust bearing the last.
+WORKED = {
+    "22220": (0.1, 0.18, 0.046, 475e3, (4.0, 0.00019), 3259.797),
+    "6205": (0.025, 0.052, 0.015, 7800.0, (2.0, 0.0002), 14420.531),
+    "81212": (0.06, 0.095, 0.026, 300e3, (4.0, 0.0015), 1762.272),
+}
+
+
+@pytest.mark.parametrize("name", WORKED)
+def test_worked_speeds(name):
+    bore, outside, width, static, factors, wanted = WORKED[name]
+    flat = name.startswith("8")
+    area = heat_area(bore, outside, width, flat=flat)
+    mean = 0.5 * (bore + outside)
+    found = float(reference_speed(mean, area, static, factors, thrust=flat))
+    assert found * RPM == pytest.approx(wanted, rel=1e-6)
+
+
+def test_a_printed_speed():
+    """Schaeffler's 22220-E1-XL-K: 3150 rpm."""
+    factors = reference_factors("spherical_roller", "22")
+    assert factors is not None and reference_factors("needle_roller", "49") is None
+    speed = reference_speed(0.14, heat_area(0.1, 0.18, 0.046), 475e3, factors)
+    assert float(speed) * RPM == pytest.approx(3150.0, rel=0.05)
+
+
+def test_friction_balances_the_heat_of_a_large_bearing():
+    """Above 50 000 mm² the flow falls; the equation as ISO 15312 writes it, in mm."""
+    bore, outside, width, static = 0.2, 0.36, 0.098, 1.93e6
+    area = heat_area(bore, outside, width)
+    speed = float(reference_speed(0.28, area, static, (4.0, 0.00019))) * RPM
+    drag = 1e-7 * 4.0 * (12.0 * speed) ** (2 / 3) * 280.0**3
+    friction = np.pi * speed / 30e3 * (drag + 0.00019 * 0.05 * static * 280.0)
+    surface = 1e6 * area
+    heat = 0.016 * (surface / 5e4) ** -0.34 * surface
+    assert surface > 5e4 and friction == pytest.approx(heat, rel=1e-9)
+
+
+def test_slopes():
+    start = np.array([0.14, 0.0405, 475e3, 4.0, 0.00019])
+
+    def speed(x):
+        return reference_speed(x[0], x[1], x[2], (x[3], x[4]))
+
+    slopes = jax.jit(jax.grad(speed))(start)
+    for k, slope in enumerate(slopes):
+        step = 1e-5 * start[k] * np.eye(5)[k]
+        ends = [float(speed(start + sign * step)) for sign in (-1, 1)]
+        difference = (ends[1] - ends[0]) / (2e-5 * start[k])
+        np.testing.assert_allclose(slope, difference, rtol=10 * DIFFERENCE)
+
+
+def test_speeds_of_the_catalogue():
+    known = bj.catalogue_entry("22220").thermal_speed
+    assert known is not None
+    factors = reference_factors("spherical_roller", "22")
+    assert factors is not None
+    own = reference_speed(0.14, heat_area(0.1, 0.18, 0.046), 490e3, factors)
+    assert known == pytest.approx(float(own), rel=1e-12)
+    # A surface by its washers, another by its outside; none where no factors are.
+    assert bj.catalogue_entry("29412").thermal_speed == pytest.approx(
+        float(
+            reference_speed(
+                0.095,
+                0.25 * np.pi * (0.13**2 + 0.1122**2 - 0.0855**2 - 0.06**2),
+                915e3,
+                (5.0, 0.0005),
+                thrust=True,
+            )
+        ),
+        rel=1e-12,
+    )
+    for name in ("NU 215", "NU 2205", "6205", "7205B", "30205", "81102"):
+        assert bj.catalogue_entry(name).thermal_speed is not None
+    for name in ("NU 305", "6005", "32010 X", "C 3052", "RB 25025", "QJ 211"):
+        assert bj.catalogue_entry(name).thermal_speed is None
+
+
+@pytest.mark.parametrize(
+    "wrong, wanted",
+    [
+        (dict(area=-1.0), "reference_speed: `area` is -1 m²; it must be above 0"),
+        (dict(static_capacity=0.0), "`static_capacity` is 0 N; it must be above 0"),
+        (dict(factors=(0.0, 1e-4)), "`f0r` is 0"),
+    ],
+)
+def test_what_is_refused(wrong, wanted):
+    given = dict(mean_diameter=0.1, area=0.02, static_capacity=1e5, factors=(2.0, 2e-4))
+    with pytest.raises(ValueError, match=wanted):
+        reference_speed(**{**given, **wrong})
