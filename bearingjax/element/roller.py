@@ -206,8 +206,9 @@ class RollerSeeking(Seeking):
             normal = rates.T @ rates + 1e-12 * jnp.eye(3, dtype=x.dtype)
             return x - solve(normal, rates.T @ off, symmetric=True)
 
-        steps = 1 if element.geometry.is_linear else _TO_EVEN
-        return lax.fori_loop(0, steps, step, midway)
+        if element.geometry.is_linear:
+            return step(0, midway)
+        return lax.fori_loop(0, _TO_EVEN, step, midway)
 
     def _on_unknowns(self):
         """Generalised force on x: the tilt unknown is θ·L/2."""

@@ -279,12 +279,12 @@ class _Arc(eqx.Module):
         e = k * f - n
         # Parts along e and across it. The divisions end a kernel: products XLA would
         # repeat wherever they are used.
-        (n, n1), (g, g1), (f, f1), (c, c1), (m, m1), (x, x1), (y, y1) = (
-            (dot(e, v) / distance, _cross(e, v) / distance)
-            for v in (n, g, f, c, m, jnp.asarray([1.0, 0.0]), jnp.asarray([0.0, 1.0]))
+        (n, n1), (g, g1), (f, f1), (c, c1), (m, m1) = (
+            (dot(e, v) / distance, _cross(e, v) / distance) for v in (n, g, f, c, m)
         )
+        z, r = e / distance
         # What the ring moves turns as c, the roller as m.
-        along, across = jnp.stack([x, y, -c1, m1]), jnp.stack([x1, y1, c, -m])
+        along, across = jnp.stack([z, r, -c1, m1]), jnp.stack([-r, z, c, -m])
         of_ring, of_own = jnp.asarray([[0, 0, 1, 0], [0, 0, 0, 1]], u.dtype)
         # e turns and grows; against the generator it leans.
         turn = (k * across - n * of_ring) / distance
