@@ -166,7 +166,8 @@ class LineContact(AbstractLineContact):
         raceway_profile: Profile of the raceway.
         arc_radii: Radii of the arcs of roller and raceway from which the profiles are
             measured, that of the raceway concave [m]; `None`: straight generators.
-        exact: Whether arcs keep their shape when they move, `arc_approach`. Static.
+        exact: Whether arcs keep their shape when they move: a and b are then those of
+            `_Arc`. Static.
 
     Traced: all fields but `exact`.
     """
@@ -190,12 +191,16 @@ class LineContact(AbstractLineContact):
     def drop(self, xi: Float[Array, "..."]) -> Float[Array, "..."]:
         """Material removed from both bodies at ξ [m]."""
         s = 0.5 * self.length * xi
-        drop = self.roller_profile.drop(
-            s, self.length, self.diameter
-        ) + self.raceway_profile.drop(s, self.length, self.diameter)
+        roller, raceway = self.profiles(s)
+        drop = roller + raceway
         if self.arc_radii is None:
             return drop
         return drop + between_arcs(s, self.arc_radii)
+
+    def profiles(self, s: Float[Array, "..."]) -> tuple[Array, Array]:
+        """Drop of the profiles of roller and raceway at a position s [m]."""
+        size = self.length, self.diameter
+        return self.roller_profile.drop(s, *size), self.raceway_profile.drop(s, *size)
 
     def approach(
         self, a: Scalar, b: Scalar, xi: Float[Array, "..."]
@@ -203,12 +208,9 @@ class LineContact(AbstractLineContact):
         """Approach at ξ, negative where the bodies are apart [m]."""
         if not self.exact:
             return a + b * xi - self.drop(xi)
-        assert self.arc_radii is not None
-        s, (roller, raceway) = 0.5 * self.length * xi, self.arc_radii
-        size = self.length, self.diameter
-        lost = self.roller_profile.drop(s, *size) + sagitta(s, roller)
-        met = arc_approach(a, b, s, 0.5 * self.length, lost, raceway)
-        return met - self.raceway_profile.drop(s, *size)
+        arc = _Arc.of(self, a, b)
+        beyond = arc.first + arc.end(self) * xi - _hidden((self, arc.lift), xi)
+        return arc.met(beyond, _points(self, xi)[2])[0]
 
     def kinks(self) -> tuple[Scalar, ...]:
         """Interior positions ξ where a derivative of the drop jumps, ascending."""
@@ -366,70 +368,103 @@ def _offset(line, xi):
     return line.drop(xi)
 
 
-def arc_approach(
-    a: Scalar,
-    b: Scalar,
-    position: Float[Array, "..."],
-    half_length: Scalar,
-    drop: Float[Array, "..."],
-    radius: Scalar,
-) -> Float[Array, "..."]:
-    """Approach of the points of a roller to a concave arc that keeps its shape [m].
+class _Arc(NamedTuple):
+    """A concave raceway that keeps its shape, as the points of a roller see it.
 
-    The point at s lies by `drop` below the tangent to the roller in its middle. The
-    centre of the arc stands from the middle by R + a, turned from the normal by the
-    angle τ with b = -sin τ L/2. Then the approach is |P - A| - R; to first order it is
-    a + b 2s/L - drop + s²/(2R).
+    The point at s lies by d below the tangent to the roller in its middle, and the
+    profile of the raceway by ρ beyond its arc of radius R = 1/κ. The centre of the arc
+    stands from the middle by R + a, turned from the normal by τ with b = -sin τ L/2.
+    With u = 1 + κ ρ the distance of the point from the centre is R sqrt(u² + 2 κ g),
 
-    Args:
-        a: Approach in the middle of the roller [m].
-        b: Minus the sine of the angle times half the length [m].
-        position: s [m].
-        half_length: L/2 [m].
-        drop: Drop of the roller there [m].
-        radius: R [m]; infinite of a straight raceway.
+        g = first + slope s - hidden,
+        hidden = lift d + ρ (1 + u)/2 - κ (s² + d²)/2,
+
+    and its approach 2 g/(u + sqrt(u² + 2 κ g)), to first order a + b ξ - d + s² κ/2 -
+    ρ; without a difference of large numbers, and for κ = 0.
+
+    Attributes:
+        curvature: κ [1/m].
+        grown: 1 + κ a [1].
+        sine, cosine: b/(L/2) and cos τ [1].
+        first: a + κ a²/2 [m].
     """
-    curvature, sine = 1.0 / radius, b / half_length
-    cosine = jnp.sqrt(1.0 - sine * sine)
-    # (|P - A|² - R²)/R: no difference of large numbers.
-    far = a * (2.0 + a * curvature) + curvature * (position**2 + drop**2)
-    far = far + 2.0 * (1.0 + a * curvature) * (sine * position - drop * cosine)
-    return far / (1.0 + jnp.sqrt(1.0 + curvature * far))
+
+    curvature: Scalar
+    grown: Scalar
+    sine: Scalar
+    cosine: Scalar
+    first: Scalar
+
+    @classmethod
+    def of(cls, line: LineContact, a: Scalar, b: Scalar) -> "_Arc":
+        assert line.arc_radii is not None
+        curvature, sine = 1.0 / line.arc_radii[1], 2.0 * b / line.length
+        grown, cosine = 1.0 + curvature * a, jnp.sqrt(1.0 - sine * sine)
+        return cls(curvature, grown, sine, cosine, 0.5 * a * (1.0 + grown))
+
+    @property
+    def lift(self) -> Scalar:
+        return self.grown * self.cosine
+
+    def end(self, line: LineContact) -> Scalar:
+        """Slope times L/2 [m]."""
+        return 0.5 * line.length * self.grown * self.sine
+
+    def met(self, beyond: Array, raceway: Array) -> tuple[Array, Array]:
+        """Approach [m] and sqrt(u² + 2 κ g) from g and ρ."""
+        up = 1.0 + self.curvature * raceway
+        distance = jnp.sqrt(up * up + 2.0 * self.curvature * beyond)
+        return 2.0 * beyond / (up + distance), distance
 
 
-def _remainder(args, xi):
-    line, a, b = args
-    return a + b * xi - line.approach(a, b, xi)
+def _points(line, xi):
+    """s, d and ρ of `_Arc` at ξ [m]."""
+    s = 0.5 * line.length * xi
+    roller, raceway = line.profiles(s)
+    return s, roller + sagitta(s, line.arc_radii[0]), raceway
+
+
+def _hidden(args, xi):
+    line, lift = args
+    (s, lost, raceway), curvature = _points(line, xi), 1.0 / line.arc_radii[1]
+    more = raceway * (1.0 + 0.5 * curvature * raceway)
+    return lift * lost + more - 0.5 * curvature * (s * s + lost * lost)
 
 
 def _exact_integrals(line, quadrature, a, b) -> Response:
     """∫ φ ds and its derivatives, of an approach that is not affine in a and b."""
-    args, arcs = (line, a, b), line.arcs
+    arc, arcs, half_length = _Arc.of(line, a, b), line.arcs, 0.5 * line.length
+    args = line, arc.lift
     table = quadrature.table(
-        partial(_remainder, args), line.kinks(), line.length.dtype, arcs
+        partial(_hidden, args), line.kinks(), line.length.dtype, arcs
     )
-    nodes = quadrature.nodes(_remainder, args, table, a, b, arcs)
+    nodes = quadrature.nodes(_hidden, args, table, arc.first, arc.end(line), arcs)
     tau, weight = (jnp.asarray(x, a.dtype) for x in quadrature.reference())
     xi = nodes.middle[:, None] + nodes.half[:, None] * tau[None]
-
-    def rates(at):
-        rate = jax.jacfwd(lambda at: line.approach(at[0], at[1], xi))(at)
-        return rate, rate
-
-    bend, rate = jax.jacfwd(rates, has_aux=True)(jnp.stack([a, b]))
-    energy, load, stiffness = line.densities(nodes.argument)
-    scale = 0.5 * line.length * line.constant * nodes.half[:, None] * weight[None]
-    load, stiffness = (
-        f * scale * x for f, x in zip(line.factors[1:], (load, stiffness), strict=True)
+    s, lost, raceway = _points(line, xi)
+    x, distance = arc.met(nodes.argument, raceway)
+    scale = half_length * line.constant * nodes.half[:, None] * weight[None]
+    energy, load, stiffness = (
+        factor * density * scale
+        for factor, density in zip(line.factors, line.densities(x), strict=True)
     )
-
-    def second(i, k):
-        return jnp.sum(stiffness * rate[..., i] * rate[..., k] + load * bend[..., i, k])
-
+    # Derivatives of g by a and b, and of the approach.
+    k, lean = arc.curvature, arc.sine / arc.cosine
+    by_a = (arc.grown + k * (arc.sine * s - arc.cosine * lost)) / distance
+    by_b = arc.grown / half_length * (s + lean * lost) / distance
+    load, push = load / distance, load
+    stiffness = stiffness - k * load
+    bent = arc.grown * (1.0 + lean**2) / (arc.cosine * half_length**2)
     return Response(
-        line.factors[0] * jnp.sum(scale * energy),
-        jnp.stack([jnp.sum(load * rate[..., k]) for k in range(2)]),
-        jnp.stack([second(0, 0), second(0, 1), second(1, 1)]),
+        jnp.sum(energy),
+        jnp.stack([jnp.sum(push * by_a), jnp.sum(push * by_b)]),
+        jnp.stack(
+            [
+                jnp.sum(stiffness * by_a * by_a + k * load),
+                jnp.sum(stiffness * by_a * by_b + k / arc.grown * push * by_b),
+                jnp.sum(stiffness * by_b * by_b + bent * lost * load),
+            ]
+        ),
     )
 
 

@@ -132,7 +132,7 @@ class Finite(AbstractKinematics):
         return True
 
     def roller(self, constants):
-        return FiniteRoller(constants)
+        return FiniteRoller.of(constants)
 
     def ball(self, part):
         bearing: Any = part.bearing

@@ -5,11 +5,12 @@ from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
+from jax import lax
 from jaxtyping import Array, Float
 
 from ..contact.hertz import EXPONENT
 from ..contact.line_contact import expansion
-from ..numerics.expansion import Expansion
+from ..numerics.expansion import Expansion, composed
 from ..numerics.linear import norm, solve
 from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature
@@ -17,13 +18,17 @@ from .constants import ContactConstants
 from .energy import roller_energy
 from .frame import section_matrix
 from .roller_geometry import AbstractRollerGeometry, Approaches
-from .rolling_element import AbstractRollingElement
+from .rolling_element import AbstractRollingElement, RingMotion, Unknowns
 from .seeking import Seeking
 
 _N, _D = EXPONENT
 
 _TURNED = 0.5
 """Tilt of a roller against its rings beyond which it has left them [rad]."""
+
+
+_TO_EVEN = 2
+"""Steps of Newton's method to where a barrel lies even, to round-off at usual tilts."""
 
 
 class Roller(AbstractRollingElement):
@@ -58,21 +63,31 @@ class Roller(AbstractRollingElement):
         return dataclasses.replace(self, constants=constants, geometry=geometry)
 
     def coordinates(self, rings, x):
-        return self.geometry.approaches(rings, x)
+        return self.geometry.coordinates(rings, x)
+
+    def approaches(self, rings: RingMotion, x: Unknowns) -> Approaches:
+        """Approaches of all contacts; arguments as in `coordinates`."""
+        at = self.coordinates(rings, x)
+        return at if self.geometry.is_linear else self.geometry.expansion(at).value
 
     def respond(self, coordinates):
-        raceway = _raceways(self.constants, self.quadrature, coordinates.raceway)
+        at, met = coordinates, None
+        if not self.geometry.is_linear:
+            met = self.geometry.expansion(coordinates)
+            at = met.value
+        raceway = _raceways(self.constants, self.quadrature, at.raceway)
         load = raceway.gradient[:, 0]
         rib = Expansion(None, None, None)
-        if coordinates.rib is not None:
-            rib = _ribs(self.constants.ribs, coordinates.rib)
+        if at.rib is not None:
+            rib = _ribs(self.constants.ribs, at.rib)
             load = jnp.concatenate([load, rib.gradient[:, 0]])
-        return Expansion(
+        found = Expansion(
             value=Approaches(raceway.value, rib.value),
             gradient=Approaches(raceway.gradient, rib.gradient),
             hessian=Approaches(raceway.hessian, rib.hessian),
             beside=load,
         )
+        return found if met is None else composed(found, met)
 
     def motion(self, rings, x):
         return self.constants.from_axes @ self.constants.motion(rings, x)
@@ -139,7 +154,7 @@ class RollerSeeking(Seeking):
         protruding = any(line.protruding for line in element.constants.lines)
         if element.body_force is not None or protruding:
             return None
-        at = element.coordinates(rings, self.midpoint(rings))
+        at = element.approaches(rings, self.midpoint(rings))
         # No profile stands out: nowhere along a raceway is the approach larger.
         open_ = jnp.all(at.raceway[:, 0] + jnp.abs(at.raceway[:, 1]) <= 0)
         return open_ if at.rib is None else open_ & jnp.all(at.rib <= 0)
@@ -152,18 +167,14 @@ class RollerSeeking(Seeking):
         # or as near to that as the inner one leaves it, a slow one would creep along
         # its crown for hundreds of steps.
 
-        def raceways(x):
-            return element.coordinates(rings, x).raceway
-
-        there = raceways(midway)
-        rates = jax.jacfwd(raceways)(midway)[0, :, 1:]
+        there, rates = element.geometry.on_raceways(rings, midway)
         seat = jnp.concatenate(
             [
                 jnp.zeros((1,), midway.dtype),
-                solve(rates, -there[0], symmetric=False),
+                solve(rates[0, :, 1:], -there[0], symmetric=False),
             ]
         )
-        inner = raceways(midway + seat)[1]
+        inner = element.geometry.on_raceways(rings, midway + seat)[0][1]
         places = jnp.linspace(-1.0, 1.0, 9, dtype=midway.dtype)
         drop = element.constants.lines[1].drop(places)
         before, after = (
@@ -186,14 +197,18 @@ class RollerSeeking(Seeking):
         if element.constants.arc_radii is None or element.constants.ribs is not None:
             return midway
 
-        def uneven(x):
-            at = element.coordinates(rings, x).raceway
-            return jnp.stack([at[0, 1], at[1, 1], at[0, 0] - at[1, 0]])
+        def uneven(both):
+            return jnp.stack([both[0, 1], both[1, 1], both[0, 0] - both[1, 0]])
 
-        # Least squares: straight raceways say nothing of a shift along them.
-        rates = jax.jacfwd(uneven)(midway)
-        normal = rates.T @ rates + 1e-12 * jnp.eye(3, dtype=midway.dtype)
-        return midway - solve(normal, rates.T @ uneven(midway), symmetric=True)
+        def step(_, x):
+            off, rates = map(uneven, element.geometry.on_raceways(rings, x))
+            # Least squares: straight raceways say nothing of a shift along them.
+            normal = rates.T @ rates + 1e-12 * jnp.eye(3, dtype=x.dtype)
+            return x - solve(normal, rates.T @ off, symmetric=True)
+
+        if element.geometry.is_linear:
+            return step(0, midway)
+        return lax.fori_loop(0, _TO_EVEN, step, midway)
 
     def _on_unknowns(self):
         """Generalised force on x: the tilt unknown is θ·L/2."""

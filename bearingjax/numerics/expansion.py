@@ -169,6 +169,33 @@ def _is_zero(x):
     return isinstance(x, SymbolicZero)
 
 
+def composed(outer: Expansion, inner: Expansion) -> Expansion:
+    """Expansion of functions of functions, by the chain rule.
+
+    Args:
+        outer: Functions of (..., k).
+        inner: Those k as functions of (..., m), with one more axis in all arrays.
+    """
+
+    # Sums over an axis: what they are of, XLA does not work out anew for each use.
+    def first(slope, rate):
+        return jnp.sum(slope[..., None] * rate, axis=-2)
+
+    def second(slope, bend, rate, curved):
+        turned = jnp.sum(bend[..., None] * rate[..., None, :, :], axis=-2)
+        terms = slope[..., None, None] * curved
+        terms = terms + rate[..., :, None] * turned[..., None, :]
+        return jnp.sum(terms, axis=-3)
+
+    rates = inner.gradient
+    return Expansion(
+        outer.value,
+        jax.tree.map(first, outer.gradient, rates),
+        jax.tree.map(second, outer.gradient, outer.hessian, rates, inner.hessian),
+        outer.beside,
+    )
+
+
 def by_autodiff(function: Callable[..., Any], u: Any, *beside: Any) -> Expansion:
     """Expansion of functions side by side, by automatic differentiation.
 

@@ -180,4 +180,4 @@ def approaches(row: RowResults) -> Float[Array, "roller 2 2"]:
     Returns:
         (roller, raceway, 2) [m]: a in the middle, a + b at +L/2.
     """
-    return row.each(lambda roller, *at: roller.coordinates(*at).raceway)
+    return row.each(lambda roller, *at: roller.approaches(*at).raceway)
