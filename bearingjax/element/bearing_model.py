@@ -286,14 +286,16 @@ class BearingModel(eqx.Module):
         return self._second(*self._at(q, solved))[0]
 
     @eqx.filter_jit
-    def evaluate(self, q: Ring, solved: Solved | None = None) -> Evaluated:
+    def evaluate(
+        self, q: Ring, solved: Solved | None = None, least: Scalar | float = 0.0
+    ) -> Evaluated:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
-        Args: as in `energy`.
+        Args: as in `energy` and `settled`.
         """
         q, solved = self._at(q, solved)
         stiffness, energy, force = self._second(q, solved)
-        result, steps, residual = self.settled(solved)
+        result, steps, residual = self.settled(solved, least)
         return Evaluated(
             energy=energy,
             force=force,
@@ -341,11 +343,23 @@ class BearingModel(eqx.Module):
         ]
         return self.in_order(found)
 
-    def settled(self, solved: Solved) -> tuple[Int[Array, ""], Int[Array, ""], Scalar]:
-        """Worst `Result` code, most steps and largest residual of the elements."""
+    def settled(
+        self, solved: Solved, least: Scalar | float = 0.0
+    ) -> tuple[Int[Array, ""], Int[Array, ""], Scalar]:
+        """Worst `Result` code, most steps and largest residual of the elements.
+
+        Args:
+            solved: The elements.
+            least: Load below which none is meant, for idle elements (`accept_small`)
+                [N].
+        """
         loads = [s.energies.beside.contact_load for s in solved.groups]
         largest = jnp.max(jnp.stack([jnp.max(load) for load in loads]))
-        states = [accept_small(s.state, largest) for s in solved.groups]
+        largest = jnp.maximum(largest, least)
+        states = [
+            accept_small(s.state, largest, group.rows.element.seeking.negligible)
+            for group, s in zip(self.groups, solved.groups, strict=True)
+        ]
         codes = [s.result.reshape(-1) for s in states]
         # The balance of a row with its spring has a code too.
         springs = [

@@ -405,7 +405,9 @@ def near_by(placed: Placed, rings: Rings, beside: Beside) -> Near:
     return stop(Near(jnp.where(held, off, jnp.nan), follow, rings))
 
 
-def accept_small(state: LocalState, load: Scalar) -> LocalState:
+def accept_small(
+    state: LocalState, load: Scalar, negligible: float = 1e-12
+) -> LocalState:
     """Count rolling elements as converged if their imbalance affects no result.
 
     A ball in the unloaded half, with no more than a slow orbit's centrifugal force to
@@ -414,9 +416,10 @@ def accept_small(state: LocalState, load: Scalar) -> LocalState:
     Args:
         state: Solved elements, leading axis element.
         load: Largest contact load of the bearing [N].
+        negligible: Imbalance over it that does not matter [1].
     """
     late = state.result == int(Result.STEP_LIMIT)
-    idle = late & (state.unbalanced <= 1e-12 * load)
+    idle = late & (state.unbalanced <= negligible * load)
     return state._replace(
         result=jnp.where(idle, int(Result.CONVERGED), state.result),
         residual=jnp.where(idle, 0.0, state.residual),

@@ -136,6 +136,11 @@ class RollerSeeking(Seeking):
         return self.element.constants.lines[0].pressed(approach)
 
     @property
+    def negligible(self):
+        # Idle barrels of slow bearings creep along their arcs, held by next to nothing.
+        return super().negligible if self.element.constants.arc_radii is None else 1e-7
+
+    @property
     def may_be_ejected(self):
         return not self.element.geometry.is_linear or super().may_be_ejected
 

@@ -105,6 +105,12 @@ class Seeking(eqx.Module):
         return step
 
     @property
+    def negligible(self) -> float:
+        """Imbalance of an idle element, over the largest contact load of the bearing,
+        that matters to no result [1]. Static."""
+        return 1e-12
+
+    @property
     def may_be_ejected(self) -> bool:
         """Whether `is_ejected` needs to be evaluated. Static."""
         return self.inertia_size() is not None

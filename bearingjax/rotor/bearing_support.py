@@ -14,6 +14,7 @@ from ..element.inertia import Speed
 from ..numerics.result import Result
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
+from ..statics.warning_sizes import stiffness_scale
 from .parts import (
     DAMPING_UNITS,
     AbstractSupport,
@@ -24,6 +25,8 @@ from .parts import (
 from .shaft import STATION_FREEDOMS
 
 _N_RING = len(FREEDOMS)
+_NO_LOAD = 1e-6
+"""Load over E* D that counts as none when idle rolling elements are judged [m]."""
 _INNER = slice(_N_RING, _N_RING + len(STATION_FREEDOMS))
 """(ux uy uz gx gy) of the inner ring among the freedoms of both rings."""
 _TURN = 2 * _N_RING - 1
@@ -132,7 +135,9 @@ class BearingSupport(AbstractSupport):
         """Return `AbstractSupport.pushed` from one solve of the rolling elements."""
         sense, _ = self._sense(motion.dtype)
         model, rings = self._model(motion, speed)
-        found = model.evaluate(rings, model.solve(rings))
+        # On its way to the loads of the machine a bearing bears nothing at first.
+        least = _NO_LOAD * stiffness_scale(self.element.bearing)
+        found = model.evaluate(rings, model.solve(rings), least)
         solved = jnp.where(found.result == Result.CONVERGED, 1.0, jnp.nan)
         stiffness = sense[:, None] * found.stiffness[_INNER, _INNER] * sense[None, :]
         return sense * found.force[_INNER] * solved, stiffness * solved, self.damping

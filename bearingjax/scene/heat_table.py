@@ -7,6 +7,7 @@ import numpy as np
 
 from ..shafts import HeatNetwork, ThermalPaths
 from ..statics.friction_skf import skf_series
+from ..statics.reference_speed import heat_area
 from .oil_table import series_of
 from .read import Scene
 from .schema import Keys, read_keys, scene_key
@@ -89,7 +90,7 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
     usual, series, diameters = None, None, None
     if scene.catalogue is not None:
         entry = scene.catalogue.entry
-        area = np.pi * entry.width * (entry.outside_diameter + entry.bore)
+        area = heat_area(entry.bore, entry.outside_diameter, entry.width)
         usual = float(0.5 * _FLOW * area)
         series = series_of(entry.designation, known)
         diameters = entry.bore, entry.outside_diameter

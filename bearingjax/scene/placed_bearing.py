@@ -3,12 +3,17 @@
 import contextlib
 import dataclasses
 import re
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from ..rotor import Shaft
 from .bearing_table import BALLS, BESIDE
-from .catalogue_entry import catalogue_entry
+from .catalogue_entry import FromCatalogue, catalogue_entry
+from .fit_table import Fits
 from .quantity import SceneError
 from .read import Scene, scene_of
 from .table import Table
@@ -17,6 +22,8 @@ _CONTROL = ("raceway_control", "friction_coefficient")
 """Keys of `BESIDE` that stand in [operating] of a bearing alone."""
 _AT_REST = "constant_angle"
 """Kinematics that know no speed."""
+_SAME = 1e-3
+"""Difference of diameters over the bore above which shafts count as different [1]."""
 _COMMON = ("life", "lubricant")
 """Tables of the machine that a bearing may have for itself."""
 
@@ -96,6 +103,47 @@ def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
     operating = inputs.get("operating", {})
     chosen = {key: operating[key] for key in BESIDE if key in operating}
     return {**inputs["bearing"], **beside, **chosen}
+
+
+def check_seat(
+    name: str,
+    fits: Fits | None,
+    catalogue: FromCatalogue | None,
+    shaft: Shaft,
+    station: int,
+) -> None:
+    """Warn if the shaft of a bearing or its fit differs from that at its station.
+
+    Args:
+        name: Name of the bearing.
+        fits, catalogue: As in `Scene`.
+        shaft: The shaft.
+        station: Its station with the bearing.
+    """
+    beside = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
+    diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
+    there = diameters[:, beside].T
+    if fits is not None:
+        seat = fits.mounting
+        wanted = np.array([float(seat.bore), float(seat.shaft_bore)])
+        has = (
+            f"its fit has a shaft of {1e3 * wanted[0]:.5g} mm with a bore of"
+            f" {1e3 * wanted[1]:.5g} mm (`shaft_bore`)"
+        )
+        sizes = " or ".join(f"{1e3 * a:.5g} and {1e3 * b:.5g}" for a, b in there)
+    elif catalogue is not None:
+        entry = catalogue.entry
+        wanted, there = np.array([entry.bore]), there[:, :1]
+        has = f"{entry.designation} has a bore of {1e3 * entry.bore:.5g} mm"
+        sizes = " or ".join(f"{1e3 * size:.5g}" for size in dict.fromkeys(there[:, 0]))
+    else:
+        return
+    if (np.abs(there - wanted) < _SAME * wanted[0]).all(axis=1).any():
+        return
+    warnings.warn(
+        f"{name}: {has}; at station {station} the shaft has {sizes} mm",
+        stacklevel=2,
+    )
 
 
 def _scene(data: dict[str, Any], name: str, path: Path, own: Any) -> Scene:

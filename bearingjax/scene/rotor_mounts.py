@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from ..design import AbstractBallBearing
 from ..rotor import Housing, Shaft
 from ..rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
@@ -15,7 +13,7 @@ from ..statics import restrained_freedoms
 from ..statics.installed import Installed
 from .catalogue_entry import FromCatalogue
 from .fit_table import Fits, fit_warnings, installed, turning
-from .placed_bearing import echoed, placed_bearing
+from .placed_bearing import check_seat, echoed, placed_bearing
 from .quantity import SceneError
 from .read import Scene, scene_of
 from .rotor_scene import Mount
@@ -25,8 +23,6 @@ from .schema_text import number_schema, object_schema
 from .table import Table, not_among
 
 LAWS = {"fixed_angle": FixedAngle, "moving_angle": MovingAngle, "cubic": CubicExpansion}
-_SAME = 1e-3
-"""Difference of diameters over the bore above which shafts count as different [1]."""
 
 _OF_BEARING: Any = {
     "needs": ("bearing",),
@@ -198,7 +194,7 @@ def read_mounts(
     mounts = []
     for keys in holds:
         bearing = _bearing(keys, tables, named, speed, path)
-        _check_seat(bearing, shaft, keys.station)
+        check_seat(bearing.name, bearing.fits, bearing.catalogue, shaft, keys.station)
         mounts.append(_mount(keys, bearing))
     for name in named:
         if name not in [keys.bearing for keys in holds]:
@@ -219,34 +215,6 @@ def _in_rotor(scene: Scene, speed: float) -> _Bearing:
     fits, taken = turning(scene.fits, speed), scene.catalogue
     running = installed(scene.element, scene.preload_force, fits, taken)
     return _Bearing(scene.name, running, fits, taken, scene)
-
-
-def _check_seat(bearing: _Bearing, shaft: Shaft, station: int) -> None:
-    """Warn if the shaft of a bearing or its fit differs from that at the station."""
-    beside = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
-    diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
-    there = diameters[:, beside].T
-    if bearing.fits is not None:
-        seat = bearing.fits.mounting
-        wanted = np.array([float(seat.bore), float(seat.shaft_bore)])
-        has = (
-            f"its fit has a shaft of {1e3 * wanted[0]:.5g} mm with a bore of"
-            f" {1e3 * wanted[1]:.5g} mm (`shaft_bore`)"
-        )
-        sizes = " or ".join(f"{1e3 * a:.5g} and {1e3 * b:.5g}" for a, b in there)
-    elif bearing.catalogue is not None:
-        entry = bearing.catalogue.entry
-        wanted, there = np.array([entry.bore]), there[:, :1]
-        has = f"{entry.designation} has a bore of {1e3 * entry.bore:.5g} mm"
-        sizes = " or ".join(f"{1e3 * size:.5g}" for size in dict.fromkeys(there[:, 0]))
-    else:
-        return
-    if (np.abs(there - wanted) < _SAME * wanted[0]).all(axis=1).any():
-        return
-    warnings.warn(
-        f"{bearing.name}: {has}; at station {station} the shaft has {sizes} mm",
-        stacklevel=2,
-    )
 
 
 def _bearing(

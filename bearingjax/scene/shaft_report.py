@@ -116,6 +116,10 @@ def _wheels(run: ShaftRun) -> Section:
         None if width is None else abs(apart) * float(width)
         for width, apart in zip(widths, run.solution.misalignment, strict=True)
     ]
+    angles = [
+        float(apart) if np.any(mesh.line) else None
+        for mesh, apart in zip(meshes, run.solution.misalignment, strict=True)
+    ]
     force = np.array([mesh.force for mesh in meshes])
     columns = [
         Column("wheel", [mesh.wheel for mesh in meshes]),
@@ -125,7 +129,7 @@ def _wheels(run: ShaftRun) -> Section:
             Column(f"F{axis}", force[:, k], "N", ".1f", NEWTONS)
             for k, axis in enumerate("xyz")
         ),
-        Column("misalignment", run.solution.misalignment, "rad", ".1f", _MICRO),
+        Column("misalignment", angles, "rad", ".1f", _MICRO),
     ]
     if any(value is not None for value in across):
         columns.append(Column("over the face", across, "m", ".2f"))

@@ -7,6 +7,7 @@ from typing import Any
 import jax
 import numpy as np
 
+from ..design import radial_clearance, rows_of
 from ..numerics.programs import called
 from ..numerics.result import Result
 from ..shafts import (
@@ -65,11 +66,15 @@ class InPlace:
 
     @property
     def clearance(self) -> float | None:
-        """Radial clearance in operation [m]; `None` of bearings without fits."""
-        if self.scene is None or self.scene.fits is None:
+        """Radial clearance in operation [m], of the drawing without fits; `None` of
+        springs and thrust bearings."""
+        if self.scene is None:
             return None
-        facts = fit_facts(self.scene.fits, self.scene.element.bearing)
-        return float(facts.operating.radial_clearance)
+        bearing = self.scene.element.bearing
+        if self.scene.fits is None:
+            row = rows_of(bearing)[0].bearing
+            return None if row.is_thrust else float(radial_clearance(row))
+        return float(fit_facts(self.scene.fits, bearing).operating.radial_clearance)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -223,10 +228,10 @@ def _in_place(task: ShaftScene, found: SystemSolution) -> Iterator[InPlace]:
         if scene is None or solution is None or conditions is None:
             yield InPlace(seat.name, None, None, None, None)
             continue
-        speed, turning_now = jax.device_get(speed_of(system, k, found.power.speed))
+        speed = jax.device_get(speed_of(system, k, found.power.speed)[0])
         scene = dataclasses.replace(
             scene,
-            speed=speed if turning_now else None,
+            speed=None if system.inertia is None else speed,
             fits=turning(scene.fits, float(speed.inner)),
         )
         try:

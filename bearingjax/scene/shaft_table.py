@@ -30,7 +30,7 @@ from .cases_table import CasesKeys, Varied
 from .files import read_matrix
 from .heat_table import read_heat
 from .life_table import life_conditions
-from .placed_bearing import placed_bearing
+from .placed_bearing import check_seat, placed_bearing
 from .quantity import SceneError, to_si
 from .read import Scene
 from .rotor_mounts import SpringKeys
@@ -433,6 +433,11 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
             housing,
             pull,
         )
+    for seat, scene in zip(made, alone.values(), strict=True):
+        if scene is not None:
+            index, station = whole.station(seat)
+            given = scene.fits, scene.catalogue, whole.beam(index), station
+            check_seat(seat.name, *given)
     heat, times = read_heat(top, own, alone)
     if heat is not None and (drive is None or float(drive.speed) == 0.0):
         raise top.error("heat", "needs a `speed` of the drive; at rest nothing warms")

@@ -1,5 +1,6 @@
 """Lives of all bearings of a system of shafts, under one load case or many."""
 
+import copy
 from collections.abc import Sequence
 from typing import Any
 
@@ -88,8 +89,12 @@ def solve_duty(
             f"solve_duty: {len(systems)} systems and {len(conditions)} conditions; give"
             " one case at least, and both for each."
         )
-    known: dict[Any, Any] = {}
-    whole = [adjusted(system, known) for system in systems]
+    # One structure: what is fast in one case feels the speed in all.
+    known = [system.inertia for system in systems]
+    fast = None if all(one is None for one in known) else any(known)
+    systems = [_feeling(system, fast) for system in systems]
+    offsets: dict[Any, Any] = {}
+    whole = [adjusted(system, offsets) for system in systems]
     found = _map(_state, whole)
     lives: list[tuple[Any, Any]] = []
     first = systems[0]
@@ -121,6 +126,15 @@ def solve_duty(
             for name in names
         },
     )
+
+
+def _feeling(system: ShaftSystem, inertia: bool | None) -> ShaftSystem:
+    """Return a system whose rolling elements feel the speed, or do not."""
+    if system.inertia == inertia:
+        return system
+    other = copy.copy(system)
+    object.__setattr__(other, "inertia", inertia)
+    return other
 
 
 def _map(function: Any, given: Sequence[Any], *static: Any) -> Any:
@@ -160,9 +174,9 @@ def _state(system: ShaftSystem) -> dict[str, Any]:
     return {**kept, "speed": found.power.speed, "loss": found.power.loss}
 
 
-def _rated(given: Any, turning: bool) -> tuple[Scalar, dict[str, Any]]:
+def _rated(given: Any, inertia: bool | None) -> tuple[Scalar, dict[str, Any]]:
     installed, motion, speed, conditions = given
-    solution = in_place(installed, motion, speed, turning, 101)
+    solution = in_place(installed, motion, speed, inertia, 101)
     life = life_of(solution.element, solution, conditions, speed=speed)
     lives = {name: getattr(life, name) for name in LIVES}
     lives = {name: value for name, value in lives.items() if value is not None}

@@ -248,14 +248,8 @@ def _support(system, seat: Seat, power, growth):
     offset = seat.axial_offset + sign * growth
     along = jnp.zeros(N_STATION, growth.dtype).at[2].set(offset)
     return BearingSupport(
-        station, element, along, turned=seat.turned, inertia=_turns(system)
+        station, element, along, turned=seat.turned, inertia=bool(system.inertia)
     )
-
-
-def _turns(system) -> bool:
-    """Whether rolling elements have inertia: unless the drive is known to stand."""
-    drive = system.drive
-    return drive is not None and (is_traced(drive.speed) or float(drive.speed) != 0.0)
 
 
 def axial_growth(system: ShaftSystem) -> Float[Array, " bearing"]:
@@ -529,8 +523,8 @@ def bearing_solutions(
 
 def speed_of(
     system: ShaftSystem, index: int, speeds: Float[Array | np.ndarray, " shaft"]
-) -> tuple[Speed, bool]:
-    """Return the ring speeds of a bearing, and whether its elements feel them.
+) -> tuple[Speed, bool | None]:
+    """Return the ring speeds of a bearing, and `inertia` of the system.
 
     Args:
         system: The system.
@@ -539,7 +533,7 @@ def speed_of(
     """
     seat = system.seats[index]
     turns = speeds[system.station(seat)[0]]
-    return Speed(inner=-turns if seat.turned else turns), _turns(system)
+    return Speed(inner=-turns if seat.turned else turns), system.inertia
 
 
 @program(quick=True)
@@ -547,7 +541,7 @@ def in_place(
     installed: Installed,
     motion: Float[Array | np.ndarray, "5"],
     speed: Speed,
-    turning: bool,
+    inertia: bool | None,
     points: int,
 ) -> Solution:
     """Return the solution of a bearing whose inner ring is held by its shaft.
@@ -556,12 +550,13 @@ def in_place(
         installed: The bearing.
         motion: Of its inner ring, in its axes [m, rad].
         speed: Ring speeds, for its fits.
-        turning: Whether rolling elements feel them. Static.
+        inertia: Whether rolling elements feel them; `None` at rest. Static.
         points: Positions along the rollers at which loads are reported. Static.
     """
     rings = jnp.zeros(2 * _RING, motion.dtype).at[_RING : _RING + N_STATION].set(motion)
     element = installed.at(speed, throw=False)
-    return solution_at(element, rings, speed if turning else None, points)
+    known = None if inertia is None else speed
+    return solution_at(element, rings, known, points, bool(inertia))
 
 
 def unsolved(system: ShaftSystem, found: SystemSolution, place: Any) -> str:

@@ -509,8 +509,8 @@ def heat_made(
         if seat.installed is None or path is None:
             made += [jnp.zeros_like(rises[0])] * 2
             continue
-        speed, turning = speed_of(warm, k, solution.power.speed)
-        found = in_place(seat.installed, solution.motion[k], speed, turning, 2)
+        speed, inertia = speed_of(warm, k, solution.power.speed)
+        found = in_place(seat.installed, solution.motion[k], speed, inertia, 2)
         oil = network.ambient + 0.5 * (rises[2 * k] + rises[2 * k + 1])
         viscosity = path.lubricant.kinematic_viscosity(oil)
         given = found, viscosity, path.supply

@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..design import pitch_radius
 from ..design.checks import check, concrete, is_traced
 from ..numerics.types import as_real
 from ..numerics.units import unit
@@ -27,6 +28,8 @@ from .parts import (
 _APART = 0.06
 """Largest distance between centre distance and that of the pitch circles, over it [1]:
 profile shifts do not take gears farther."""
+_FAST = 10.0 * 2.0 * np.pi / 60.0
+"""Speed times pitch diameter from which inertia counts, 10 000 mm/min [m rad/s]."""
 _ACROSS = 1e-6
 """Sine of the angle between two axes from which they are not parallel [1]."""
 
@@ -117,8 +120,11 @@ class ShaftSystem(eqx.Module):
         housing: Stiffness of the housing; `None`: rigid.
         gravity: Acceleration of free fall in global axes (3,) [m/s²].
         plans: Order of the stations on each shaft, from `ShaftLine.plan`.
+        inertia: Whether rolling elements feel the speed: from a speed times pitch
+            diameter of 10 000 mm/min on. Below, their centrifugal loads are under a
+            millionth of the static rating. `None`: at rest.
 
-    Traced: all numbers. Static: names, plans. A changed copy is made by
+    Traced: all numbers. Static: names, plans, inertia. A changed copy is made by
     `equinox.tree_at`, or with `jax.vmap` over changed leaves.
 
     Raises:
@@ -136,6 +142,7 @@ class ShaftSystem(eqx.Module):
     housing: HousingStiffness | None
     gravity: Float[Array, "3"] = eqx.field(metadata=unit(3 * ("m/s²",)))
     plans: tuple[Plan, ...] = eqx.field(static=True)
+    inertia: bool | None = eqx.field(static=True)
 
     def __init__(
         self,
@@ -158,9 +165,30 @@ class ShaftSystem(eqx.Module):
             shaft.plan({p.name: p.position for p in self.on(shaft.name)})
             for shaft in self.shafts
         )
+        self.inertia = self._is_fast()
         for wheel in self.wheels:
             if wheel.mates_with is not None:
                 self._check_mesh(wheel, self.wheel(wheel.mates_with))
+
+    def _is_fast(self) -> bool | None:
+        """Whether a bearing turns fast enough for inertia; `None` at rest."""
+        if self.drive is None:
+            return None
+        if is_traced(self.drive.speed):
+            return True
+        if float(self.drive.speed) == 0.0:
+            return None
+        sizes = [
+            2.0 * float(pitch_radius(seat.installed.drawing.bearing))
+            for seat in self.seats
+            if seat.installed is not None
+        ]
+        # Shafts behind gears may be faster than the drive.
+        step = max((wheel.radius for wheel in self.wheels), default=1.0) / min(
+            (wheel.radius for wheel in self.wheels), default=1.0
+        )
+        fastest = abs(float(self.drive.speed)) * max(1.0, float(step))
+        return fastest * max(sizes, default=0.0) >= _FAST
 
     def _check_kinds(self):
         kinds = {

@@ -93,7 +93,11 @@ def solution_of(
 
 @program(quick=True)
 def solution_at(
-    element: BearingElement, q: Ring, speed: Speed | None, points: int
+    element: BearingElement,
+    q: Ring,
+    speed: Speed | None,
+    points: int,
+    inertia: bool = True,
 ) -> Solution:
     """Solution of a bearing whose rings are held where they are given.
 
@@ -102,8 +106,9 @@ def solution_at(
         q: Ring freedoms [m, rad].
         speed: Ring speeds, or `None`.
         points: Positions along the rollers at which loads are reported. Static.
+        inertia: Whether rolling elements feel the speed. Static.
     """
-    model = element.model(speed)
+    model = element.model(speed if inertia else None)
     fields, found = describe(element, model, q, points, model.solve(q))
     nothing = jnp.zeros_like(q[0])
     return solution_kind(element.choices)(
