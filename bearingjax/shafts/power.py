@@ -6,6 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ..design.checks import concrete
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar, as_real
 from .line import ShaftLine
@@ -170,7 +171,7 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
     zero = as_real(0.0)
     speed = [r * (zero if drive is None else drive.speed) for r in ratio]
     # Unknown torques: of each pair that on its first wheel, and one that closes.
-    rows = [[zero] * (len(pairs) + 1) for _ in names]
+    pair_of: list[tuple[int, int, int, Scalar]] = []
     known = [zero for _ in names]
     torques: list[Any] = []
     free: list[tuple[str, int]] = []
@@ -186,11 +187,9 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
         shaft = names.index(one.wheel.shaft)
         if other is not None:
             mate = names.index(other.wheel.shaft)
-            eta = one.wheel.efficiency * other.wheel.efficiency
-            # Power comes from the side of the drive.
-            share = 1.0 / eta if away[shaft] > away[mate] else eta
-            rows[shaft][k] = rows[shaft][k] + 1.0
-            rows[mate][k] = rows[mate][k] - ratio[shaft] / ratio[mate] * share
+            pair_of.append(
+                (k, shaft, mate, one.wheel.efficiency * other.wheel.efficiency)
+            )
             torques.append(None)
         elif drive is not None and drive.into == one.wheel.name:
             torques.append(torque_of(drive, speed[shaft]))
@@ -212,23 +211,35 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
         shaft = names.index(load.shaft)
         known[shaft] = known[shaft] + load.moment @ system.shafts[shaft].frame[2]
     output = _closing(system, names, free, away, order)
-    rows[output[1]][-1] = rows[output[1]][-1] + 1.0
-    coupled = [k for k, pair in enumerate(pairs) if pair[1] is not None]
-    matrix = jnp.stack([jnp.stack([row[k] for k in (*coupled, -1)]) for row in rows])
-    found = solve_any(matrix, -jnp.stack(known))
+
+    def balanced(shares: list[Scalar]) -> Array:
+        matrix = jnp.zeros((len(names), len(pair_of) + 1)).at[output[1], -1].set(1.0)
+        for k, (_, shaft, mate, _) in enumerate(pair_of):
+            back = ratio[shaft] / ratio[mate] * shares[k]
+            matrix = matrix.at[shaft, k].add(1.0).at[mate, k].add(-back)
+        return solve_any(matrix, -jnp.stack(known))
+
+    shares = [as_real(1.0) for _ in pair_of]
+    if any(concrete(eta) != [1.0] for *_, eta in pair_of):
+        # Power is lost in the direction in which it flows, known without the losses.
+        sense, lossless = jnp.where(speed[root] < 0, -1.0, 1.0), balanced(shares)
+        shares = [
+            jnp.where(torque * ratio[shaft] * sense > 0, 1.0 / eta, eta)
+            for torque, (_, shaft, _, eta) in zip(lossless, pair_of, strict=False)
+        ]
+    found = balanced(shares)
     closing = found[-1]
-    for k, value in zip(coupled, found[:-1], strict=True):
+    for (k, *_), value in zip(pair_of, found[:-1], strict=True):
         torques[k] = value
+    share_of = {k: share for (k, *_), share in zip(pair_of, shares, strict=True)}
     torques = [closing if t is None else t for t in torques]
     meshes: list[Mesh] = []
     loss = zero
-    for (one, other), torque in zip(pairs, torques, strict=True):
+    for k, ((one, other), torque) in enumerate(zip(pairs, torques, strict=True)):
         meshes.append(_mesh(system, one, torque))
         if other is not None:
             a, b = names.index(one.wheel.shaft), names.index(other.wheel.shaft)
-            eta = one.wheel.efficiency * other.wheel.efficiency
-            share = 1.0 / eta if away[a] > away[b] else eta
-            back = -torque * ratio[a] / ratio[b] * share
+            back = -torque * ratio[a] / ratio[b] * share_of[k]
             meshes.append(_mesh(system, other, back))
             loss = loss - torque * speed[a] - back * speed[b]
     every = [torque_of(c, speed[names.index(c.shaft)]) for c in system.couplings]
@@ -321,6 +332,12 @@ def _closing(system, names, free, away, order) -> tuple[str | None, int]:
     last = [k for k in ends if not _feeds(system, names, k, away)]
     if not ends:
         return None, order[0]
+    known = {
+        names.index(part.shaft)
+        for part in (*system.wheels, *system.couplings)
+        if part.torque is not None or part.power is not None
+    }
+    last = [k for k in last if k not in known] or last[:1]
     if len(last) > 1:
         outputs = ", ".join(names[k] for k in last)
         raise ValueError(

@@ -161,6 +161,15 @@ def test_losses():
         np.testing.assert_allclose(flow.loss, 0.03 * 5000.0, rtol=1e-12)
         out = -float(flow.output * flow.speed[1])
         np.testing.assert_allclose(out, 0.97 * 5000.0, rtol=1e-12)
+        # A brake in place of the drive takes what the mesh leaves of the power that
+        # comes from the other shaft.
+        for speed in (100.0, -100.0):
+            brake = Drive("a", speed, power=-5000.0)
+            braked = ShaftSystem(system.shafts, system.seats, brake, [one, two])
+            flow = power_flow(braked)
+            given = 5000.0 / 0.97
+            np.testing.assert_allclose(flow.output * flow.speed[1], given, rtol=1e-12)
+            np.testing.assert_allclose(flow.loss, given - 5000.0, rtol=1e-12)
 
 
 def test_idler_and_belt():
@@ -224,6 +233,9 @@ def test_power_that_divides():
         power_flow(fork())
     flow = power_flow(fork(Coupling("x", "b", power=-500.0), Coupling("y", "c")))
     np.testing.assert_allclose(flow.coupling, [10.0, 20.0], rtol=1e-12)
+    flow = power_flow(fork(Coupling("x", "b", power=-500.0)))
+    assert flow.output_shaft == "c"
+    np.testing.assert_allclose(flow.output, 20.0, rtol=1e-12)
     with pytest.raises(ValueError, match="torques of x, y are not given"):
         power_flow(fork(Coupling("x", "b"), Coupling("y", "c")))
 
