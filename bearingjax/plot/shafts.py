@@ -61,8 +61,9 @@ def shaft_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
         ax = figure.add_subplot(spec, projection="polar")
         load_zone(bearing.solution, ax)
         ax.set_title(f"Bearing {bearing.name}")
-        if place + 1 < _ACROSS and k + 1 < len(shown) and ax.get_legend():
-            ax.get_legend().remove()
+        legend = ax.get_legend()
+        if place + 1 < _ACROSS and k + 1 < len(shown) and legend is not None:
+            legend.remove()
     head(figure, title or "Shafts")
     return figure
 

@@ -304,8 +304,8 @@ def system_state(
     found = searched(stop(whole), stop(max_length(system)))
     solved = found.result == Result.CONVERGED
 
-    def there(*given):
-        return _described(*given, found)
+    def there(*given: Any) -> SystemSolution:
+        return _described(found, *given)
 
     given = system, rotors, points, whole, power
     return unless_failed(there, given, solved), stop(whole).motion(found.x)
@@ -366,7 +366,7 @@ def _coupled(system, rotors, points, power) -> Condensed:
     more = jnp.zeros((len(order), N_STATION, n_more), rows.dtype)
     for row, k in enumerate(order):
         seat = system.seats[k]
-        if seat.name in seats:
+        if housing is not None and seat.name in seats:
             frame = system.shaft(seat.shaft).frame
             first = seats.index(seat.name) * housing.freedoms
             more = more.at[row, :3, first : first + 3].set(-frame)
@@ -394,7 +394,7 @@ def _seats(system, index) -> list[int]:
     return [k for k, s in enumerate(system.seats) if system.station(s)[0] == index]
 
 
-def _described(system, rotors, points, whole, power, found) -> SystemSolution:
+def _described(found, system, rotors, points, whole, power) -> SystemSolution:
     y, force, stiffness, _ = at_equilibrium(found, whole)
     motion, relative = whole.motion(y), whole.rows @ y
     shafts, tilts, first = [], [], 0

@@ -80,11 +80,6 @@ class AbstractWheel(AbstractPlaced):
         efficiency: Power out over power in, with its mate [1].
     """
 
-    mates_with: eqx.AbstractVar[str | None]
-    torque: eqx.AbstractVar[Scalar | None]
-    power: eqx.AbstractVar[Scalar | None]
-    efficiency: eqx.AbstractVar[Scalar]
-
 
 class Gear(AbstractWheel):
     """An external involute gear: spur, helical, or bevel.

@@ -68,7 +68,7 @@ class PowerFlow(eqx.Module):
     meshes: tuple[Mesh, ...]
     coupling: Float[Array, " coupling"]
     drive: Scalar
-    output: Scalar | None
+    output: Any
     output_shaft: str | None = eqx.field(static=True)
     loss: Scalar
 
@@ -104,17 +104,17 @@ def _alone(wheel: Any, shaft: ShaftLine) -> Contact:
     return Contact(wheel, None, shaft.around(angle), wheel.radius)
 
 
-def _between(one, other, shaft, far) -> tuple[Contact, Contact]:
+def _between(one: Any, other: Any, shaft: Any, far: Any) -> tuple[Contact, Contact]:
     """Return both contacts of a pair."""
     z, known = shaft.frame[2], shaft.origin is not None and far.origin is not None
     if isinstance(one, Gear) and one.pitch_angle is not None:
         outward = [
-            -APEXES[g.apex] * s.frame[2] for g, s in ((one, shaft), (other, far))
+            -APEXES[str(g.apex)] * s.frame[2] for g, s in ((one, shaft), (other, far))
         ]
         radial = [_unit(_across(b, a)) for a, b in (outward, outward[::-1])]
         radii = one.radius, other.radius
     elif known:
-        apart = _across(far.origin - shaft.origin, z)
+        apart = _across(jnp.subtract(far.origin, shaft.origin), z)
         distance = jnp.sqrt(apart @ apart)
         radial = [apart / distance, -apart / distance]
         share = distance / (one.radius + other.radius)
@@ -128,11 +128,8 @@ def _between(one, other, shaft, far) -> tuple[Contact, Contact]:
                 f"ShaftSystem: `{name}` of {one.name} and {other.name} are missing, and"
                 " so is the origin of a shaft; give one or the other."
             )
-        ways = [
-            None if angle is None else s.around(angle)
-            for angle, s in zip(angles, (shaft, far), strict=True)
-        ]
-        first = ways[0] if ways[0] is not None else -ways[1]
+        here = angles[0] is not None
+        first = shaft.around(angles[0]) if here else -far.around(angles[1])
         radial, radii = [first, -first], (one.radius, other.radius)
     given = [getattr(wheel, "direction", None) for wheel in (one, other)]
     radial = [

@@ -16,7 +16,6 @@ from ..rotor import Shaft
 from .line import Plan, ShaftLine
 from .parts import (
     AbstractPlaced,
-    AbstractWheel,
     Coupling,
     Drive,
     Gear,
@@ -266,7 +265,8 @@ class ShaftSystem(eqx.Module):
                     " follows; leave out its `torque` or `power`."
                 )
         shafts = [self.shaft(w.shaft) for w in (one, other)]
-        across = np.cross(*(np.asarray(s.frame[2]) for s in shafts))
+        first, second = (np.asarray(s.frame[2]) for s in shafts)
+        across = np.cross(first, second)
         parallel = np.linalg.norm(across) < _ACROSS
         if isinstance(one, Pulley):
             if not parallel:
@@ -328,12 +328,19 @@ class ShaftSystem(eqx.Module):
                 f" {1e3 * distance:.6g} mm apart, their pitch circles touch at"
                 f" {1e3 * usual:.6g} mm."
             )
+        far = np.asarray(shafts[1].frame[2]) * float(other.position)
+        along = float((apart + far) @ z) - float(one.position)
+        if abs(along) > _APART * usual:
+            raise ValueError(
+                f"ShaftSystem: {one.name} and {other.name} are {1e3 * along:.6g} mm"
+                " apart along their shafts; gears that mesh are in one plane."
+            )
 
     def shaft(self, name: str) -> ShaftLine:
         """Return a shaft by its name."""
         return next(shaft for shaft in self.shafts if shaft.name == name)
 
-    def wheel(self, name: str) -> AbstractWheel:
+    def wheel(self, name: str) -> Gear | Pulley:
         """Return a wheel by its name."""
         return next(wheel for wheel in self.wheels if wheel.name == name)
 

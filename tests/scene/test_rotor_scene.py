@@ -2,6 +2,7 @@
 
 import dataclasses
 from types import SimpleNamespace
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -445,7 +446,7 @@ def test_lives_of_the_bearings():
     (ball, life), (roller, _) = parts.found["lives"]
     assert [ball.name, roller.name] == ["locating", "free"]
     load = np.append(parts.found["settled"].support_load[0], 0.0)
-    element = rotor.supports[0].element
+    element: Any = getattr(rotor.supports[0], "element")  # noqa: B009
     alone = bj.solve_load(element, load)
     scene = task.mounts[0].scene
     viscosity = scene.oil.lubricant.kinematic_viscosity(jnp.asarray(333.15))
@@ -456,6 +457,7 @@ def test_lives_of_the_bearings():
         contamination=0.5,
         speed=bj.Speed(jnp.asarray(task.speed)),
     )
-    np.testing.assert_allclose(life.life_hours, wanted.life_hours, rtol=1e-6)
+    hours: Any = wanted.life_hours
+    np.testing.assert_allclose(life.life_hours, hours, rtol=1e-6)
     echo = task.inputs
     assert echo["life"]["contamination"] == 0.5 and "lubricant" in echo

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -139,7 +140,7 @@ def test_lives_are_those_of_the_bearings_alone(solved):
     """Each bearing under its load alone, with its tilt held, has the same life."""
     for bearing in solved.bearings:
         solution = bearing.solution
-        held = dict(
+        held: Any = dict(
             zip("ux uy uz gx gy".split(), solution.displacement[6:11], strict=True)
         )
         again = bj.solve_load(
@@ -272,6 +273,7 @@ WRONG = {
     "gear.pinion.efficiency=1.2": "`efficiency` is 1.2",
     "gear.pinion.shaft=out": "sit on one shaft",
     "shaft.out.position=['150 mm','0 mm','0 mm']": "150 mm apart, their pitch circles",
+    "gear.wheel.position=150 mm": "50 mm apart along their shafts",
     "shaft.out.axis=x": "the shafts of pinion and wheel are not parallel",
     "shaft.out.axis=[0, 0, 0]": "`shaft.out.axis`: has no direction",
     "shaft.out.position=['1 mm']": "has 1 numbers; it must have three",

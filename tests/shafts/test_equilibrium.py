@@ -131,8 +131,9 @@ def test_springs_by_hand():
         for n, w in zip(AT.values(), wanted, strict=True)
     ]
     before = [(float(p), np.asarray(f), np.asarray(m)) for p, f, m in acting if p < cut]
-    shear = -sum(f for _, f, _ in before)
-    bent = -sum(m + np.cross([0, 0, p - z[k]], f) for p, f, m in before)
+    shear = -np.sum([f for _, f, _ in before], axis=0)
+    turned = [m + np.cross([0, 0, p - z[k]], f) for p, f, m in before]
+    bent = -np.sum(turned, axis=0)
     np.testing.assert_allclose(state.shear[k], shear, rtol=1e-9)
     np.testing.assert_allclose(state.moment[k], bent[:2], rtol=1e-9, atol=1e-9)
     for end in (0, -1):

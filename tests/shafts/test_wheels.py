@@ -132,6 +132,7 @@ def test_working_pitch_circles():
     radius = distance * 23 / 91
     np.testing.assert_allclose(np.linalg.norm(mesh.place), radius, rtol=1e-12)
     across = force[:2]
+    assert isinstance(gear, Gear)
     base = float(gear.base_radius)
     np.testing.assert_allclose(np.linalg.norm(across), abs(float(mesh.torque)) / base)
     lead = np.tan(np.deg2rad(15.0)) / float(gear.radius)
