@@ -114,7 +114,8 @@ def _between(one: Any, other: Any, shaft: Any, far: Any) -> tuple[Contact, Conta
         radial = [_unit(_across(b, a)) for a, b in (outward, outward[::-1])]
         radii = one.radius, other.radius
     elif known:
-        apart = _across(jnp.subtract(far.origin, shaft.origin), z)
+        first, second = (as_real(s.origin) for s in (shaft, far))
+        apart = _across(second - first, z)
         distance = jnp.sqrt(apart @ apart)
         radial = [apart / distance, -apart / distance]
         share = distance / (one.radius + other.radius)
