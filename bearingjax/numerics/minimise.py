@@ -338,7 +338,9 @@ class TrustRegionNewton(AbstractMinimiser):
         # of the value can hide it.
         end = dot(new.gradient, p)
         change = jnp.where(jnp.isnan(actual), end, jnp.minimum(actual, end))
-        accept = first | searching | (change <= 1e-4 * slope)
+        # What has no value there is too far away.
+        known = jnp.isfinite(new_size)
+        accept = first | (searching & known) | (change <= 1e-4 * slope)
         accept = accept | (new_size <= 0.5 * size)
         good = (change <= 0.7 * predicted) | (new_size <= 0.25 * size)
         longer = jnp.maximum(state.radius, 6.0 * length)
@@ -346,7 +348,7 @@ class TrustRegionNewton(AbstractMinimiser):
         # A step too long has met a stiff contact: Newton along the step, from its
         # far end, says where.
         stiff = jnp.maximum(quadratic(new.hessian, p), tiny)
-        shorter = jnp.clip(1.0 - end / stiff, 0.1, 0.9)
+        shorter = jnp.where(known, jnp.clip(1.0 - end / stiff, 0.1, 0.9), 0.1)
         radius = jnp.where(accept, grown, shorter * length)
         if problem.direction is not None:
             fall = -dot(new.gradient, problem.direction)

@@ -35,6 +35,7 @@ from ..rotor.statics import at_equilibrium, searched, softest
 from ..statics.installed import Installed
 from ..statics.load_result import solution_at
 from ..statics.solution import Solution
+from ..statics.support import axial_senses
 from .parts import Seat
 from .power import PowerFlow, power_flow
 from .system import ShaftSystem
@@ -42,6 +43,8 @@ from .system import ShaftSystem
 _RING = len(FREEDOMS)
 _TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0])
 """Signs of (ux uy uz gx gy) from a half turn about x."""
+_SLID = 1e-3
+"""Way along a shaft over its length from which it has slid off its bearings [1]."""
 
 
 class ShaftState(eqx.Module):
@@ -301,7 +304,7 @@ def system_state(
         rotors.append(Rotor(beam, (), here, rigid=line.rigid))
         points.append(_points(system, power, index, beam))
     whole = _coupled(system, rotors, points, power)
-    found = searched(stop(whole), stop(max_length(system)))
+    found = _named(system, searched(stop(whole), stop(max_length(system))), whole)
     solved = found.result == Result.CONVERGED
 
     def there(*given: Any) -> SystemSolution:
@@ -309,6 +312,39 @@ def system_state(
 
     given = system, rotors, points, whole, power
     return unless_failed(there, given, solved), stop(whole).motion(found.x)
+
+
+def _named(system, found, whole):
+    """Return the end of a search; of a shaft that slid off its bearings in a direction
+    in which none holds it, `NO_LOAD_PATH` in place of `STEP_LIMIT`: the search may end
+    before it is far."""
+    motion, first = stop(whole).motion(found.x), 0
+    away = jnp.asarray(False)
+    for index, line in enumerate(system.shafts):
+        count = N_STATION * (sum(system.plans[index].divisions) + 1)
+        along, first = motion[first + 2 : first + count : N_STATION], first + count
+        for sense in {1, -1} - _held(system, index):
+            slid = jnp.min(sense * along) > _SLID * jnp.sum(stop(line.length))
+            away = away | slid
+    away = away & (found.result == Result.STEP_LIMIT)
+    code = jnp.asarray(int(Result.NO_LOAD_PATH), found.result.dtype)
+    return found._replace(result=jnp.where(away, code, found.result))
+
+
+def _held(system, index) -> set[int]:
+    """Return the senses along a shaft in which a bearing holds it."""
+    held: set[int] = set()
+    for k in _seats(system, index):
+        seat = system.seats[k]
+        if seat.floating:
+            continue
+        if seat.installed is None:
+            loose = not is_traced(seat.stiffness) and not float(seat.stiffness[2])
+            held |= set() if loose else {1, -1}
+            continue
+        sense = -1 if seat.turned else 1
+        held |= {sense * one for one in axial_senses(seat.installed.drawing.bearing)}
+    return held
 
 
 def max_length(system: ShaftSystem) -> Scalar:

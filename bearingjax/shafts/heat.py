@@ -38,8 +38,8 @@ _HOTTEST = 300.0
 _STEPS = 100
 _TOLERANCE = 1e-10
 """Heat out of balance over the heat that is made [1]."""
-_GROWTH = 4.0
-"""Factor by which the steps in time grow as the balance is approached [1]."""
+_LEAST, _GROWTH = 1.5, 4.0
+"""Factors by which the steps in time grow as the balance is approached [1]."""
 
 
 class ThermalPaths(eqx.Module):
@@ -238,7 +238,11 @@ def steady_rises(
         slope, left, made = state(rise)
         size = jnp.max(jnp.abs(left))
         new = jnp.where(size > 0, size / jnp.maximum(made, 1e-30), 0.0)
-        grown = jnp.where(steps > 0, jnp.clip(residual / new, 0.5, _GROWTH), 1.0) * time
+        # Nodes of little capacity settle first; the others need steps that grow.
+        nearer = residual / new
+        least = jnp.where(nearer < 1.0, 0.5, _LEAST)
+        factor = jnp.clip(nearer, least, _GROWTH)
+        grown = jnp.where(steps > 0, factor, 1.0) * time
         # A step past the growth of what is not stable would lead anywhere.
         fastest = jnp.max(jnp.real(eigvals(slope / still[2][:, None])))
         limit = 0.5 / jnp.where(fastest > 0, fastest, 1.0)
