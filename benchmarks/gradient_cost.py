@@ -38,6 +38,20 @@ gradient over value, stiffness: 1.66 (at most 1.3): MISSED
 least error, stiffness: 3.92e-10 (at most 1e-06): met
 
 AMD EPYC, 2 cores, load average 1.5; devices: 1 cpu; jax 0.10.1
+
+Last run, `--sets`, on one core beside other work:
+
+                    time, µs               compile, s      least
+of                 value gradient  ratio   valuegradient   error  at step
+cylinders            627      947   1.51    18.2    23.4   8e-10    3e-03
+barrels, linear     1401     2254   1.61     8.9    36.5   9e-10    1e-04
+barrels, exact      2453     4665   1.90    14.2    64.4   9e-10    1e-04
+
+with respect to 22 numbers of the design
+barrels, linear, times the cylinders (time, compile):     2.24    2.38    0.49    1.56
+barrels, exact, times the cylinders (time, compile):     3.91    4.93    0.78    2.75
+
+(the first compile traces what the others find traced)
 """
 
 import argparse
