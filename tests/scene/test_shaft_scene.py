@@ -17,12 +17,13 @@ power = "12 kW"
 
 [shaft.in]
 position = ["0 mm", "0 mm", "0 mm"]
-segments = [{ length = "260 mm", outer_diameter = "45 mm" }]
+segments = [{ length = "260 mm", outer_diameter = "40 mm" }]
 
 [shaft.out]
 position = ["189.472 mm", "0 mm", "0 mm"]
 segments = [
-    { length = "200 mm", outer_diameter = "50 mm" },
+    { length = "60 mm", outer_diameter = "40 mm" },
+    { length = "140 mm", outer_diameter = "50 mm" },
     { length = "100 mm", outer_diameter = "40 mm" },
 ]
 
@@ -46,7 +47,7 @@ hand = "left"
 
 [load.pull]
 shaft = "out"
-station = 2
+station = 3
 Fy = "-500 N"
 
 [bearings.A]
@@ -317,3 +318,18 @@ def test_other_commands_say_whose_scene_it_is(run, path):
     done = run("solve", path)
     assert done.status == 2
     assert "`bearingjax shaft gears` solves it" in done.err
+
+
+def test_new_scene(run, tmp_path):
+    """`new shaft` prints a commented scene that reads."""
+    done = run("new", "shaft")
+    assert done.status == 0 and done.out.count("#") > 8
+    (tmp_path / "mine.toml").write_text(done.out, "utf-8")
+    assert len(read_shafts(tmp_path / "mine.toml").system.seats) == 4
+
+
+def test_seat_on_a_shaft_of_another_size(path):
+    """A bearing whose bore is not the diameter of its shaft is named."""
+    settings = ["shaft.in.segments.0.outer_diameter=47 mm"]
+    warnings = read_shafts(path, settings).warnings
+    assert any("6308 has a bore of 40 mm; at station" in text for text in warnings)
