@@ -28,6 +28,8 @@ from .statics_words import unsettled, warn_of
 
 _FIRST_STEP = 1e-5
 """First bound of the steps [m]."""
+_NOTHING = 1e-9
+"""Force that counts as none where no load acts [N]."""
 _FREE = 1e-9
 """Stiffness over the largest below which a motion counts as free [1]."""
 _SOLVER = TrustRegionNewton(
@@ -145,6 +147,8 @@ def searched(parts: Condensed, length) -> Minimum:
     """
     load = parts.force
     size = jnp.linalg.norm(load)
+    # Without load what is left is round-off of the forces inside the bearings.
+    idle = jnp.where(size > 0, 0.0, _NOTHING).astype(load.dtype)
 
     def function(y, _, __):
         supported = parts.of_supports(y)
@@ -159,7 +163,7 @@ def searched(parts: Condensed, length) -> Minimum:
             gradient=left + load,
             hessian=slope,
             scale=cancels,
-            noise=jnp.finfo(y.dtype).eps * (cancels + softness),
+            noise=jnp.finfo(y.dtype).eps * (cancels + softness) + idle,
             memory=supported,
         )
 

@@ -176,9 +176,13 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
     duty = None
     if task.cases and not problem:
         say("load cases")
-        duty = solve_duty(
-            [case.system for case in task.cases], [case.lives for case in task.cases]
-        )
+        try:
+            duty = solve_duty(
+                [case.system for case in task.cases],
+                [case.lives for case in task.cases],
+            )
+        except ValueError as error:
+            raise SceneError(f"{task.name}: {error}") from error
         failed = np.flatnonzero(duty.result != Result.CONVERGED)
         if failed.size:
             label = Result(int(duty.result[failed[0]])).label

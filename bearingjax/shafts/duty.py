@@ -17,7 +17,15 @@ from ..numerics.types import Scalar
 from ..numerics.units import unit
 from ..statics.life import LifeConditions, life_of
 from ..statics.reference_life import BALLS, exponents_of
-from .equilibrium import adjusted, in_place, speed_of, system_state
+from .equilibrium import (
+    adjusted,
+    check_torques,
+    in_place,
+    speed_of,
+    system_state,
+    torques_left,
+)
+from .power import power_flow
 from .system import ShaftSystem
 
 BATCH = 64
@@ -82,7 +90,8 @@ def solve_duty(
         DutyResult; nothing is raised for a failed case, read `result`.
 
     Raises:
-        ValueError: If there are no cases, or they differ in structure.
+        ValueError: If there are no cases, they differ in structure, or the torques of
+            one do not balance.
     """
     if not systems or len(systems) != len(conditions):
         raise ValueError(
@@ -96,6 +105,7 @@ def solve_duty(
     offsets: dict[Any, Any] = {}
     whole = [adjusted(system, offsets) for system in systems]
     found = _map(_state, whole)
+    _check_balances(systems, found)
     lives: list[tuple[Any, Any]] = []
     first = systems[0]
     for k, seat in enumerate(first.seats):
@@ -110,7 +120,7 @@ def solve_duty(
                 systems, found["motion"][:, k], speeds, conditions, strict=True
             )
         ]
-        lives.append(_map(_rated, given, speed_of(first, k, found["speed"][0])[1]))
+        lives.append(_map(_rated, given, fast))
     names = [n for n in LIVES if any(n in life[1] for life in lives)]
     never = np.full(len(systems), np.nan)
     return DutyResult(
@@ -135,6 +145,18 @@ def _feeling(system: ShaftSystem, inertia: bool | None) -> ShaftSystem:
     other = copy.copy(system)
     object.__setattr__(other, "inertia", inertia)
     return other
+
+
+def _check_balances(systems: Sequence[ShaftSystem], found: dict[str, Any]) -> None:
+    """Raise if given torques do not balance in a case, which is named."""
+    shaft = power_flow(systems[0]).output_shaft
+    if shaft is None:
+        return
+    for k, system in enumerate(systems):
+        try:
+            check_torques(system, shaft, found["left"][k], found["most"][k])
+        except ValueError as error:
+            raise ValueError(f"{error} (case {k})") from error
 
 
 def _map(function: Any, given: Sequence[Any], *static: Any) -> Any:
@@ -171,7 +193,10 @@ def _state(system: ShaftSystem) -> dict[str, Any]:
     found, _ = system_state(system)
     names = "load displacement misalignment motion result".split()
     kept = {name: getattr(found, name) for name in names}
-    return {**kept, "speed": found.power.speed, "loss": found.power.loss}
+    left, most = torques_left(found.power)
+    left = jnp.zeros_like(most) if left is None else left
+    more = {"loss": found.power.loss, "left": left, "most": most}
+    return {**kept, "speed": found.power.speed, **more}
 
 
 def _rated(given: Any, inertia: bool | None) -> tuple[Scalar, dict[str, Any]]:

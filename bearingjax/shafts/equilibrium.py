@@ -157,26 +157,45 @@ def searched_system(
         ValueError, SolveError: As `solve_system`, but for a failed search.
     """
     found, place = system_state(adjusted(system))
-    _check_torques(system, found.power)
+    check_torques(system, found.power.output_shaft, *torques_left(found.power))
     return found, place
 
 
-def _check_torques(system, power) -> None:
-    """Raise if given torques leave some on a shaft end that nothing names."""
-    name, left = power.output_shaft, power.output
+def torques_left(power: PowerFlow) -> tuple[Any, Any]:
+    """Return the torque on a shaft end that nothing names, and the largest of all.
+
+    Args:
+        power: Torques of a system.
+
+    Returns:
+        Two torques [N m]; the first `None` if there is no such end.
+    """
+    every = [jnp.abs(mesh.torque) for mesh in power.meshes]
+    every += [jnp.abs(one) for one in power.coupling]
+    none = jnp.zeros((), jnp.result_type(float))
+    return power.output, jnp.max(jnp.stack(every or [none]))
+
+
+def check_torques(system: ShaftSystem, shaft: Any, left: Any, most: Any) -> None:
+    """Raise if given torques leave some on a shaft end that nothing names.
+
+    Args:
+        system: The system.
+        shaft: Name of the shaft with that end.
+        left, most: From `torques_left`.
+
+    Raises:
+        ValueError: If they do not balance.
+    """
     given = [*(w for w in system.wheels if w.torque is not None or w.power is not None)]
     given += [c for c in system.couplings]
-    beside = [part.name for part in given if part.shaft == name]
+    beside = [part.name for part in given if part.shaft == shaft]
     if left is None or not beside or is_traced(left):
         return
-    most = max(
-        float(jnp.max(jnp.abs(jnp.stack([m.torque for m in power.meshes] or [left])))),
-        float(jnp.max(jnp.abs(power.coupling))) if len(power.coupling) else 0.0,
-    )
-    if abs(float(left)) > 1e-6 * most:
+    if abs(float(left)) > 1e-6 * float(most):
         raise ValueError(
             f"ShaftSystem: the torques do not balance: {float(left):.6g} N m are left"
-            f" on shaft {name} beside {', '.join(beside)}; leave out one of the"
+            f" on shaft {shaft} beside {', '.join(beside)}; leave out one of the"
             " torques, which then follows from the others."
         )
 
