@@ -282,3 +282,23 @@ def test_inverse_update_ends_on_a_quadratic():
     # Round-off of three steps, times the condition of the matrix.
     np.testing.assert_allclose(x, middle, atol=1e-11)
     np.testing.assert_allclose(inverse @ hessian, np.eye(N), atol=1e-10)
+
+
+def barrier(x):
+    """A logarithmic barrier at 1, against a force of 2: the minimum is at ½."""
+    room = jnp.where(jnp.max(x) < 1.0, 1.0 - x, jnp.nan)
+    value = -jnp.sum(jnp.log(room)) - 2.0 * jnp.sum(x)
+    return value, 1.0 / room - 2.0, jnp.diag(room**-2)
+
+
+@pytest.mark.parametrize("direction", [None, jnp.ones(N) / np.sqrt(N)])
+def test_retreats_from_where_there_is_no_value(direction):
+    """A step beyond the edge of what is known is taken back, and is not the end."""
+    found = NEWTON.minimise(
+        evaluated(barrier),
+        jnp.full(N, -20.0),
+        jnp.asarray(100.0),
+        direction=direction,
+    )
+    assert int(found.result) == Result.CONVERGED
+    np.testing.assert_allclose(found.x, 0.5, rtol=1e-10)

@@ -9,6 +9,7 @@ from systems import ELEMENT, STIFF, ball, springs, stage, three_bearings
 
 import bearingjax as bj
 from bearingjax.shafts import (
+    Drive,
     HousingStiffness,
     Seat,
     ShaftLine,
@@ -254,6 +255,26 @@ def test_nothing_holds_the_shaft():
     load = ShaftLoad("p", "s", 0.12, (0.0, -2000.0, 900.0))
     with pytest.raises(bj.SolveError, match="takes up the load along uz of shaft s"):
         solve_system(ShaftSystem(line, seats, loads=load))
+
+
+@pytest.mark.parametrize("axial", [-900.0, 100.0])
+def test_tapers_that_face_one_way(axial):
+    """Nothing holds them against a pull, or against what their radial loads press them
+    apart with."""
+    taper = bj.Installed(bj.BearingElement(bj.load_bearing("30206")))
+    line = ShaftLine("s", [0.3], [0.04])
+    seats = [Seat(n, "s", z, taper) for n, z in (("A", 0.05), ("B", 0.25))]
+    load = ShaftLoad("p", "s", 0.12, (0.0, -2000.0, axial))
+    with pytest.raises(bj.SolveError, match="takes up the load along uz of shaft s"):
+        solve_system(ShaftSystem(line, seats, loads=load))
+
+
+def test_nothing_acts():
+    """A turning shaft in loose bearings without load and weight is in balance."""
+    line = ShaftLine("s", [0.3], [0.04])
+    seats = [ball(n, "s", z) for n, z in (("A", 0.05), ("B", 0.25))]
+    found = solve_system(ShaftSystem(line, seats, Drive("s", 500.0)))
+    assert np.abs(found.load).max() < 1e-9
 
 
 def test_places_of_gears_and_bearings():

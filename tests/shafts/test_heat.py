@@ -50,6 +50,20 @@ def test_linear_case(growth):
     )
 
 
+def test_a_node_that_settles_fast():
+    """Steps in time grow even if one node settles a thousand times faster."""
+
+    def made(rises, _):
+        return jnp.stack([5.0 + 0.1 * rises[0], 5.0 + 0.0 * rises[1], 0.0 * rises[0]])
+
+    conductance = jnp.diag(jnp.array([2.0, 1.0, 1.0]))
+    capacity = jnp.array([1000.0, 500.0, 0.1])
+    rises, slowest, *_, solved = steady_rises(made, 0.0, conductance, capacity)
+    assert bool(solved)
+    np.testing.assert_allclose(rises, [5.0 / 1.9, 5.0, 0.0], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(slowest, 1.9e-3, rtol=1e-9)
+
+
 def test_derivative_of_the_linear_case():
     slope = jax.grad(lambda g: steady(g)[0][0])(jnp.asarray(3.0))
     np.testing.assert_allclose(slope, 0.5 * 5.0 / 0.5**2, rtol=1e-9)
