@@ -193,7 +193,7 @@ def read_mounts(
     }
     mounts = []
     for keys in holds:
-        bearing = _bearing(keys, tables, named, speed, path)
+        bearing = _bearing(keys, top, named, speed, path)
         check_seat(bearing.name, bearing.fits, bearing.catalogue, shaft, keys.station)
         mounts.append(_mount(keys, bearing))
     for name in named:
@@ -218,9 +218,9 @@ def _in_rotor(scene: Scene, speed: float) -> _Bearing:
 
 
 def _bearing(
-    keys: MountKeys, tables: Table, named: dict[str, _Bearing], speed: float, path: Path
+    keys: MountKeys, top: Table, named: dict[str, _Bearing], speed: float, path: Path
 ) -> _Bearing:
-    table, name = keys.table, keys.bearing
+    table, tables, name = keys.table, top.table("bearings"), keys.bearing
     if name is None:
         return _Bearing("springs", None)
     if name in named:
@@ -238,8 +238,11 @@ def _bearing(
     # In the echo it becomes one of [bearings.NAME].
     own = name if scene.name in named else scene.name
     table.fill("bearing", own)
-    tables.fill(own, echoed(scene.inputs))
-    found = _in_rotor(scene, speed)
+    inputs = echoed(scene.inputs)
+    tables.fill(own, inputs)
+    inside = Table(inputs, path.name, f"bearings.{own}")
+    placed = placed_bearing(top, inside, scene.name, path, speed=speed)
+    found = _in_rotor(placed, speed)
     if found.fits is not None:
         for text in fit_warnings(found.fits, scene.element.bearing):
             warnings.warn(f"{scene.name}: {text}", stacklevel=2)

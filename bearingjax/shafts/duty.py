@@ -12,6 +12,7 @@ from jax import lax
 from jaxtyping import Array, Float, Int
 
 from ..design import rows_of
+from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.programs import program
 from ..numerics.types import Scalar
 from ..numerics.units import unit
@@ -58,10 +59,10 @@ class DutyResult(eqx.Module):
     """
 
     load: Float[Array | np.ndarray, "case bearing 6"] = eqx.field(
-        metadata=unit(6 * ("N",))
+        metadata=unit(LOAD_UNITS)
     )
     displacement: Float[Array | np.ndarray, "case bearing 6"] = eqx.field(
-        metadata=unit(6 * ("m",))
+        metadata=unit(MOTION_UNITS)
     )
     misalignment: Float[Array | np.ndarray, "case mesh"] = eqx.field(
         metadata=unit("rad")

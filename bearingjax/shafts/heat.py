@@ -52,13 +52,14 @@ class ThermalPaths(eqx.Module):
         shaft_share: Rise of the shaft below the bearing over that of the inner ring,
             above the ambience [1].
         housing_share: Rise of the seat over that of the outer ring [1].
-        inner_capacity, outer_capacity: Heat capacities of the rings with what goes with
-            them [J/K]; they count in time only.
+        inner_capacity: Heat capacity of the inner ring with the shaft below it, which
+            counts in time only [J/K].
+        outer_capacity: Heat capacity of the outer ring with its seat, likewise [J/K].
         lubricant: The oil.
         supply: As in `friction_torque`.
         skf: Whether friction is that of SKF's model, else of Palmgren's.
-        series, diameters: Of SKF's model, as in `skf_friction_torque`; bore and outside
-            diameter (2,) [m].
+        series: Of SKF's model, as in `skf_friction_torque`.
+        diameters: Bore and outside diameter for SKF's model (2,) [m].
 
     Traced: all numbers. Static: supply, skf, series.
     """
@@ -168,7 +169,8 @@ class ThermalState(eqx.Module):
     """Temperatures of a system in equilibrium with its friction.
 
     Attributes:
-        inner_ring, outer_ring: Of each bearing (bearing,) [K].
+        inner_ring: Temperature of each inner ring (bearing,) [K].
+        outer_ring: Temperature of each outer ring (bearing,) [K].
         housing: Of housing and oil [K]; the ambience without a node of its own.
         friction: Power lost in each bearing (bearing,) [W].
         system: The system with these temperatures.

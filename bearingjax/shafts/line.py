@@ -54,7 +54,9 @@ class ShaftLine(eqx.Module):
 
     Attributes:
         name: Name, unique in the system.
-        length, outer_diameter, bore: Of each segment (segment,) [m].
+        length: Of each segment (segment,) [m].
+        outer_diameter: Of each segment (segment,) [m].
+        bore: Of each segment, 0 of a solid one (segment,) [m].
         material: Of all segments, or a tuple with one for each.
         axis: Direction of the shaft in global axes (3,) [1].
         origin: Start of the first segment in global axes (3,) [m]; `None`: not known,

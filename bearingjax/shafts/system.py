@@ -45,7 +45,7 @@ class HousingStiffness(eqx.Module):
         seats: Names of the bearings, in the order of the matrix.
         matrix: Force and moment over displacement and rotation of all seats in global
             axes, seat by seat (ux uy uz), or (ux uy uz gx gy gz), as a finite element
-            program reduces it (n, n) [N/m, N, N m].
+            program reduces it (n, n), of rotations in N and N m [N/m].
     """
 
     seats: tuple[str, ...] = eqx.field(static=True, converter=tuple)
