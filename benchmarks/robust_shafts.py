@@ -20,6 +20,7 @@ import argparse
 import json
 import time
 from collections import Counter
+from typing import Any
 
 import jax
 
@@ -118,7 +119,7 @@ def line(draw, name, length=0.3, **more):
 
 def opposed(draw, turned=(False, True), kind=taper, sources=True, **more):
     """One shaft in two bearings, with a bevel gear and a belt."""
-    adjust = [{}, {}]
+    adjust: list[dict[str, Any]] = [{}, {}]
     if kind is taper and not draw.rests:
         for one in adjust:
             one["axial_offset"] = draw.within(-40e-6, 20e-6)
@@ -137,12 +138,13 @@ def opposed(draw, turned=(False, True), kind=taper, sources=True, **more):
     if sources:
         wheels = [
             shafts.Gear(
-                "bevel", "s", 0.29, 24, 3e-3, draw.within(0.01, 0.6), "left",
+                "bevel", "s", 0.29, teeth=24, normal_module=3e-3,
+                helix_angle=draw.within(0.01, 0.6), hand="left",
                 mesh_angle=draw.within(-3, 3), pitch_angle=draw.within(0.1, 1.4),
                 apex="+z", efficiency=draw.within(0.9, 1.0),
             ),
             shafts.Pulley(
-                "belt", "s", 0.01, 0.08, draw.within(1.0, 4.0),
+                "belt", "s", 0.01, diameter=0.08, force_ratio=draw.within(1.0, 4.0),
                 direction=draw.within(-3, 3),
             ),
         ]  # fmt: skip
@@ -160,10 +162,19 @@ def opposed(draw, turned=(False, True), kind=taper, sources=True, **more):
 def stage(draw):
     """Two shafts, a helical stage, axially held by one bearing each; one overhung."""
     helix, eta = draw.within(0.01, 0.6), draw.within(0.85, 1.0)
-    gear = {"helix_angle": helix, "efficiency": eta}
-    pinion = shafts.Gear("pinion", "in", 0.1, 23, 3e-3, hand="right", **gear)
+    gear: dict[str, Any] = {"helix_angle": helix, "efficiency": eta}
+    pinion = shafts.Gear(
+        "pinion", "in", 0.1, teeth=23, normal_module=3e-3, hand="right", **gear
+    )
     wheel = shafts.Gear(
-        "wheel", "out", 0.12, 60, 3e-3, hand="left", mates_with="pinion", **gear
+        "wheel",
+        "out",
+        0.12,
+        teeth=60,
+        normal_module=3e-3,
+        hand="left",
+        mates_with="pinion",
+        **gear,
     )
     angle = draw.within(-3, 3)
     apart = float(pinion.radius + wheel.radius) * draw.within(0.98, 1.04)
@@ -189,10 +200,18 @@ def three(draw):
     """Three shafts: a spur stage, then a belt; one shaft in three bearings."""
     eta = draw.within(0.85, 1.0)
     wheels = [
-        shafts.Gear("g1", "a", 0.1, 20, 4e-3, efficiency=eta),
-        shafts.Gear("g2", "b", 0.1, 40, 4e-3, mates_with="g1"),
-        shafts.Pulley("p1", "b", 0.28, 0.1, draw.within(1.0, 4.0)),
-        shafts.Pulley("p2", "c", 0.02, 0.2, 2.0, mates_with="p1", efficiency=eta),
+        shafts.Gear("g1", "a", 0.1, teeth=20, normal_module=4e-3, efficiency=eta),
+        shafts.Gear("g2", "b", 0.1, teeth=40, normal_module=4e-3, mates_with="g1"),
+        shafts.Pulley("p1", "b", 0.28, diameter=0.1, force_ratio=draw.within(1.0, 4.0)),
+        shafts.Pulley(
+            "p2",
+            "c",
+            0.02,
+            diameter=0.2,
+            force_ratio=2.0,
+            mates_with="p1",
+            efficiency=eta,
+        ),
     ]
     places = {"a": (0.0, 0.0), "b": (0.12, 0.0), "c": (0.3, 0.3)}
     lines = [line(draw, n, origin=(*at, 0.0)) for n, at in places.items()]

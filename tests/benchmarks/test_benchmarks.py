@@ -81,6 +81,8 @@ PLAIN = (
     "gradient_cost.py",
     "robust_sweep.py",
     "robust_halfspace.py",
+    "robust_shafts.py",
+    "shaft_system.py",
     "paper_mi_xia.py",
     "peers_halfspace.py",
     "error_vs_time_halfspace.py",

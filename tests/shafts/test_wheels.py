@@ -14,6 +14,7 @@ from bearingjax.shafts import (
     ShaftLoad,
     ShaftSystem,
     power_flow,
+    solve_duty,
     solve_system,
 )
 
@@ -250,6 +251,21 @@ def test_torques_that_do_not_balance():
         ValueError, match="do not balance: 43.239. N m are left on shaft"
     ):
         solve_system(wrong)
+
+
+def test_torques_of_every_case_balance():
+    system = published()
+
+    def case(torque):
+        wheel = Gear("G3", "A1", 0.2785, 24, 4e-3, mesh_angle=0.0, torque=torque)
+        drive = Drive("G2", -104.0, torque=-140.0)
+        wheels = [system.wheels[0], wheel]
+        return ShaftSystem(system.shafts, system.seats, drive, wheels)
+
+    given = [(None, None)] * 2
+    solve_duty([case(140.0), case(140.0)], given)
+    with pytest.raises(ValueError, match=r"do not balance: 40 N m .* \(case 1\)"):
+        solve_duty([case(140.0), case(100.0)], given)
 
 
 def test_torque_has_derivatives():
