@@ -191,7 +191,7 @@ def _shaft_scene() -> dict[str, Any]:
     for key, (kind, words) in PARTS.items():
         here = dict(place) if key != "coupling" else {"shaft": place["shaft"]}
         texts = attribute_texts(kind)
-        more = {
+        more: dict[str, Any] = {
             word: {"enum": [*choices]} if choices else {"type": "string"}
             for word, choices in words.items()
         }
@@ -205,12 +205,12 @@ def _shaft_scene() -> dict[str, Any]:
             loads = dict(zip(LOADS, map(number_schema, units), strict=True))
             tables[key] = _by_name(object_schema(here | loads, [], _first(kind)))
             continue
-        found = class_schema(kind, **here | more)
+        found = class_schema(kind, **{**here, **more})
         must = [k for k in found["required"] if k not in place]
         must += ["teeth"] if key == "gear" else []
         tables[key] = _by_name({**found, "required": must})
-    heat = class_schema(ThermalPaths) | {"required": []}
-    del heat["properties"]["diameters"]
+    heat: dict[str, Any] = class_schema(ThermalPaths) | {"required": []}
+    heat["properties"].pop("diameters")
     beside = {
         **place,
         "preload": {

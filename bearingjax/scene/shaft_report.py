@@ -47,7 +47,7 @@ def shaft_page(run: ShaftRun) -> Report:
         scene, solution, life = bearing.scene, bearing.solution, bearing.life
         if scene is None or solution is None or life is None:
             continue
-        told = life_section(scene, solution, life) + fits_section(scene)
+        told: list[Part] = [*life_section(scene, solution, life), *fits_section(scene)]
         if scene.oil is not None:
             told += oil_report(scene.oil, solution, scene.catalogue)
         sections[f"Bearing {bearing.name}"] = told
@@ -180,7 +180,7 @@ def _temperatures(run: ShaftRun) -> Section:
         Column("bearing", [seat.name for seat in run.task.system.seats]),
         Column("inner ring", celsius[0], ["°C"] * len(celsius[0]), ".1f"),
         Column("outer ring", celsius[1], ["°C"] * len(celsius[1]), ".1f"),
-        Column("friction", state.friction, "W", ".4g"),
+        Column("friction", np.asarray(state.friction), "W", ".4g"),
     ]
     told: list[Part] = [Grid(columns, "in equilibrium with friction")]
     if run.task.heat is not None and run.task.heat.housing is not None:
