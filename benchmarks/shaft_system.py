@@ -17,6 +17,23 @@ under three torques, with a penalty where the flanks of the teeth stand more tha
 µrad askew; projected on bounds.
 
 Run: python benchmarks/shaft_system.py [--design] [--smoke] [--json]
+
+Last run:
+
+1000 cases: 44.3 s, with lives 77.4 s (first call 319 s); SciPy, extrapolated 588 s,
+  13.3 times; it failed 0 of 20; loads differ by 1.9e-11
+1 shaft on 2 bearings, 24 beam elements: 3.94 ms a case, first call 26.6 s
+2 shafts on 4 bearings, 48 beam elements: 6.84 ms a case, first call 27.9 s
+4 shafts on 8 bearings, 96 beam elements: 8.51 ms a case, first call 38.8 s
+1 shaft on 2 bearings, 101 beam elements: 5.63 ms a case, first call 16.9 s
+before: A 40, B 240, C 30, D 270 mm; clearance of balls 10, of rollers 10 um; straight
+  length of rollers 6 mm; lives 50164, 1.8e7, 131527, 1.6e8 h, all together 38442 h;
+  flanks askew by -61.9, -42.2, -31.6 urad
+after: A 25, B 223, C 10, D 298 mm (A and C at their bounds); clearance of balls 15.2,
+  of rollers 16.8 um; straight length of rollers 4.8 mm; lives 65753, 6.0e6, 162112,
+  1.2e8 h, all together 49422 h; flanks askew by -21.7, 12.4, 29.9 urad; 267 s
+gradient against differences: 3.37e-07 (at most 1e-06): met
+AMD EPYC, 2 cores, load average 4 to 8; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
