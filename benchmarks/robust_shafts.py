@@ -14,6 +14,16 @@ leaves and is lost, and the force of each bearing against its own solution. A sy
 that nothing holds must be called so.
 
 Run: python benchmarks/robust_shafts.py [--count 20] [--seed S] [--smoke] [--json]
+
+Last run, seed 0:
+
+opposed tapers: 20 in balance; helical stage: 20; three shafts: 20; tapers one way: 3,
+  17 held by nothing; both floating: 12, 8 held by nothing
+worst errors: forces 2.1e-10, moments 9.5e-11, torques 4.8e-16, power 2.0e-16, bearings
+  against their own solutions 1.0e-14; at most 132 steps; 180 s with compiling
+silent: 0 (at most 0): met; called unheld though held: 0: met; wrong: 0: met
+seed 1: as well but for one of the opposed tapers, `non_finite`
+AMD EPYC, 2 cores, load average 5.1; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
