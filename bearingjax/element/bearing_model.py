@@ -357,8 +357,8 @@ class BearingModel(eqx.Module):
         largest = jnp.max(jnp.stack([jnp.max(load) for load in loads]))
         largest = jnp.maximum(largest, least)
         states = [
-            accept_small(s.state, largest, group.rows.element.seeking.negligible)
-            for group, s in zip(self.groups, solved.groups, strict=True)
+            accept_small(s.state, largest, group.rows.element.seeking.passed(load))
+            for group, s, load in zip(self.groups, solved.groups, loads, strict=True)
         ]
         codes = [s.result.reshape(-1) for s in states]
         # The balance of a row with its spring has a code too.

@@ -30,6 +30,10 @@ from .rolling_element import AbstractRollingElement, Unknowns
 Rings = Float[Array, " r"]
 
 
+_IDLE = 1e-7
+"""Load over the largest of the bearing below which an element is idle [1]."""
+
+
 class LocalState(NamedTuple):
     """Equilibrium position of a rolling element, and statistics of the solve.
 
@@ -406,20 +410,23 @@ def near_by(placed: Placed, rings: Rings, beside: Beside) -> Near:
 
 
 def accept_small(
-    state: LocalState, load: Scalar, negligible: float = 1e-12
+    state: LocalState, load: Scalar, passed: Float[Array, "*element"] | None = None
 ) -> LocalState:
     """Count rolling elements as converged if their imbalance affects no result.
 
-    A ball in the unloaded half, with no more than a slow orbit's centrifugal force to
-    seat it, may need more steps than there are; it does not matter.
+    A ball or roller in the unloaded half, with no more than a slow orbit's centrifugal
+    force to seat it, may need more steps than there are; it does not matter.
 
     Args:
         state: Solved elements, leading axis element.
         load: Largest contact load of the bearing [N].
-        negligible: Imbalance over it that does not matter [1].
+        passed: Load that each element passes from ring to ring, if that is known [N].
     """
     late = state.result == int(Result.STEP_LIMIT)
-    idle = late & (state.unbalanced <= negligible * load)
+    idle = state.unbalanced <= 1e-12 * load
+    if passed is not None:
+        idle = idle | (jnp.maximum(state.unbalanced, passed) <= _IDLE * load)
+    idle = late & idle
     return state._replace(
         result=jnp.where(idle, int(Result.CONVERGED), state.result),
         residual=jnp.where(idle, 0.0, state.residual),

@@ -135,10 +135,8 @@ class RollerSeeking(Seeking):
     def pressed(self, approach):
         return self.element.constants.lines[0].pressed(approach)
 
-    @property
-    def negligible(self):
-        # Idle barrels of slow bearings creep along their arcs, held by next to nothing.
-        return super().negligible if self.element.constants.arc_radii is None else 1e-7
+    def passed(self, load):
+        return jnp.min(load[..., :2], axis=-1)
 
     @property
     def may_be_ejected(self):

@@ -104,11 +104,13 @@ class Seeking(eqx.Module):
         """
         return step
 
-    @property
-    def negligible(self) -> float:
-        """Imbalance of an idle element, over the largest contact load of the bearing,
-        that matters to no result [1]. Static."""
-        return 1e-12
+    def passed(self, load: Float[Array, "*element contact"]) -> Any:
+        """Load that elements pass from ring to ring (…,) [N]; `None`: not known.
+
+        Args:
+            load: Of their contacts [N].
+        """
+        return None
 
     @property
     def may_be_ejected(self) -> bool:

@@ -27,6 +27,8 @@ from ..shafts.heat import overheated
 from ..statics.life import Life, life_of
 from ..statics.solution import Solution
 from ..statics.support import axial_senses
+from ..statics.warning import counted
+from .bearing_run import with_set_preload
 from .fit_report import fit_as_dict
 from .fit_table import fit_facts, turning
 from .life_report import life_as_dict, solved_warnings
@@ -164,36 +166,37 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
             task = _warm(task, state)
     except ValueError as error:
         raise SceneError(f"{task.name}: {error}") from error
-    found = jax.device_get(found)
-    bearings: tuple[InPlace, ...] = ()
-    if not problem:
+    found, bearings = jax.device_get(found), ()
+    duty, warming, solved = None, None, not problem
+    if task.cases and solved:
+        say("load cases")
+        duty, problem = _duty(task)
+    if solved:
         say("bearings")
-        bearings = tuple(_in_place(task, found))
-    warming = None
+        speeds = found.power.speed[None] if duty is None else duty.speed
+        bearings = tuple(_in_place(task, found, speeds))
     if task.heat is not None and task.times is not None:
         say("warming up")
         warming = np.asarray(warm_up(system, task.heat, task.times))
-    duty = None
-    if task.cases and not problem:
-        say("load cases")
-        try:
-            duty = solve_duty(
-                [case.system for case in task.cases],
-                [case.lives for case in task.cases],
-            )
-        except ValueError as error:
-            raise SceneError(f"{task.name}: {error}") from error
-        failed = np.flatnonzero(duty.result != Result.CONVERGED)
-        if failed.size:
-            label = Result(int(duty.result[failed[0]])).label
-            problem = (
-                f"{failed.size} of {len(task.cases)} cases not solved (case"
-                f" {failed[0]}: {label})"
-            )
     state = jax.device_get(state)
     run = ShaftRun(task, found, bearings, state, warming, duty, problem, ())
     odd = dict.fromkeys((*task.warnings, *_warnings(run)))
     return dataclasses.replace(run, warnings=tuple(odd))
+
+
+def _duty(task: ShaftScene) -> tuple[DutyResult, str]:
+    """Solve the load cases; return them, and which were not solved, in words."""
+    systems, lives = zip(*((c.system, c.lives) for c in task.cases), strict=True)
+    try:
+        duty = solve_duty(systems, lives)
+    except ValueError as error:
+        raise SceneError(f"{task.name}: {error}") from error
+    failed = np.flatnonzero(duty.result != Result.CONVERGED)
+    if not failed.size:
+        return duty, ""
+    label = Result(int(duty.result[failed[0]])).label
+    many = f"{failed.size} of {len(task.cases)} cases not solved"
+    return duty, f"{many} (case {failed[0]}: {label})"
 
 
 def _warm(task: ShaftScene, state: ThermalState) -> ShaftScene:
@@ -223,8 +226,16 @@ def _warm(task: ShaftScene, state: ThermalState) -> ShaftScene:
     )
 
 
-def _in_place(task: ShaftScene, found: SystemSolution) -> Iterator[InPlace]:
-    """Yield each bearing in the equilibrium, with life, friction and films."""
+def _in_place(
+    task: ShaftScene, found: SystemSolution, speeds: np.ndarray
+) -> Iterator[InPlace]:
+    """Yield each bearing in the equilibrium, with life, friction and films.
+
+    Args:
+        task: The scene, warm.
+        found: Its equilibrium.
+        speeds: Of the shafts in all cases (case, shaft) [rad/s].
+    """
     system = task.system
     solutions = bearing_solutions(system, found)
     for k, (seat, scene) in enumerate(zip(system.seats, task.bearings, strict=True)):
@@ -245,7 +256,8 @@ def _in_place(task: ShaftScene, found: SystemSolution) -> Iterator[InPlace]:
         oil = None
         if scene.oil is not None:
             oil = oil_facts(scene.oil, solution, scene.catalogue)
-        yield InPlace(seat.name, with_speed_told(scene), solution, life, oil)
+        scene = with_speed_told(scene, speeds[:, system.station(seat)[0]])
+        yield InPlace(seat.name, with_set_preload(scene), solution, life, oil)
 
 
 def _warnings(run: ShaftRun) -> Iterator[str]:
@@ -258,30 +270,45 @@ def _warnings(run: ShaftRun) -> Iterator[str]:
             f"nothing holds {moving(system, found.free)}: it stays where it is; locate"
             " the shaft by a bearing"
         )
-    most = float(np.abs(found.load).max())
+    loads = found.load[None] if run.duty is None else run.duty.load
+    most = np.abs(loads[..., :3]).max(axis=(1, 2))
     for k, (seat, bearing) in enumerate(zip(system.seats, run.bearings, strict=True)):
         if bearing.scene is None or bearing.solution is None:
             continue
-        for text in solved_warnings(bearing.scene, bearing.solution, bearing.life):
+        # With cases each kind once, with the worst case.
+        told = (
+            solved_warnings(bearing.scene, bearing.solution, bearing.life)
+            if run.duty is None
+            else [*bearing.scene.warnings, *counted(run.duty.warned[k])]
+        )
+        for text in told:
             yield f"{bearing.name}: {text}"
-        load = float(np.abs(found.load[k, :3]).max())
-        if load <= _LOST * most:
-            yield f"{bearing.name}: it bears nothing; its ring may skid"
+        idle = np.flatnonzero(np.abs(loads[:, k, :3]).max(axis=1) <= _LOST * most)
+        if idle.size:
+            yield f"{bearing.name}: it bears nothing{_where(run, idle)}; it may skid"
         if seat.preload is not None:
-            kept = _axial(system, k, found)
-            if kept < 0.05 * float(seat.preload):
+            kept = np.array([_axial(system, k, load) for load in loads[:, k]])
+            lost = np.flatnonzero(kept < 0.05 * float(seat.preload))
+            if lost.size:
                 yield (
                     f"{bearing.name}: adjusted with {float(seat.preload):.5g} N, it"
-                    f" keeps an axial load of {max(kept, 0.0):.4g} N: the preload is"
-                    " lost to loads or heat"
+                    f" keeps an axial load of {max(kept.min(), 0.0):.4g} N"
+                    f"{_where(run, lost)}: the preload is lost to loads or heat"
                 )
     yield from _over_determined(run)
 
 
-def _axial(system: ShaftSystem, index: int, found: SystemSolution) -> float:
-    """Return the axial load of a bearing along its own z [N]."""
+def _where(run: ShaftRun, cases: np.ndarray) -> str:
+    """Say in how many cases something is so; nothing of a single one."""
+    if run.duty is None:
+        return ""
+    return f" in {len(cases)} of {len(run.task.cases)} cases (case {cases[0]})"
+
+
+def _axial(system: ShaftSystem, index: int, load: np.ndarray) -> float:
+    """Return the axial part of a load on a bearing, along its own z [N]."""
     seat = system.seats[index]
-    along = np.asarray(system.shaft(seat.shaft).frame[2]) @ found.load[index, :3]
+    along = np.asarray(system.shaft(seat.shaft).frame[2]) @ load[:3]
     return float(-along if seat.turned else along)
 
 
@@ -409,7 +436,7 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
         "load": found.load[k].tolist(),
         "displacement": moved.tolist(),
         "tilt": (frame[:2] @ moved[3:]).tolist(),
-        "axial_load": _axial(run.task.system, k, found),
+        "axial_load": _axial(run.task.system, k, found.load[k]),
         "stiffness": found.stiffness[k].tolist(),
     }
     scene, solution, life = bearing.scene, bearing.solution, bearing.life

@@ -17,7 +17,9 @@ from ..numerics.programs import program
 from ..numerics.types import Scalar
 from ..numerics.units import unit
 from ..statics.life import LifeConditions, life_of
+from ..statics.life_warning import life_sizes
 from ..statics.reference_life import BALLS, exponents_of
+from ..statics.warning import sizes
 from .equilibrium import (
     adjusted,
     check_torques,
@@ -55,7 +57,9 @@ class DutyResult(eqx.Module):
         loss: Power lost in meshes (case,) [W].
         result: `Result` code (case,).
         peak_pressure: Largest contact pressure (case, bearing) [Pa]; NaN of springs.
-        lives: Numbers of `LIVES` by name (case, bearing); infinite of springs.
+        lives: Numbers of `LIVES` by name (case, bearing); NaN of springs.
+        warned: For each bearing the size of every kind of warning about its solution
+            and its life that can arise, by name (case,); empty of springs.
     """
 
     load: Float[Array | np.ndarray, "case bearing 6"] = eqx.field(
@@ -74,6 +78,7 @@ class DutyResult(eqx.Module):
         metadata=unit("Pa")
     )
     lives: dict[str, Float[Array | np.ndarray, "case bearing"]]
+    warned: tuple[dict[str, Float[Array | np.ndarray, " case"]], ...]
 
 
 def solve_duty(
@@ -99,20 +104,18 @@ def solve_duty(
             f"solve_duty: {len(systems)} systems and {len(conditions)} conditions; give"
             " one case at least, and both for each."
         )
-    # One structure: what is fast in one case feels the speed in all.
-    known = [system.inertia for system in systems]
-    fast = None if all(one is None for one in known) else any(known)
-    systems = [_feeling(system, fast) for system in systems]
+    systems = _alike(systems)
+    fast = systems[0].inertia
     offsets: dict[Any, Any] = {}
     whole = [adjusted(system, offsets) for system in systems]
     found = _map(_state, whole)
     _check_balances(systems, found)
-    lives: list[tuple[Any, Any]] = []
+    lives: list[tuple[Any, Any, Any]] = []
     first = systems[0]
     for k, seat in enumerate(first.seats):
         if seat.installed is None:
             none = np.full(len(systems), np.nan)
-            lives.append((none, dict.fromkeys(LIVES, none)))
+            lives.append((none, dict.fromkeys(LIVES, none), {}))
             continue
         speeds = [speed_of(first, k, speed)[0] for speed in np.asarray(found["speed"])]
         given = [
@@ -136,16 +139,28 @@ def solve_duty(
             name: np.stack([life[1].get(name, never) for life in lives], axis=1)
             for name in names
         },
+        warned=tuple(life[2] for life in lives),
     )
 
 
-def _feeling(system: ShaftSystem, inertia: bool | None) -> ShaftSystem:
-    """Return a system whose rolling elements feel the speed, or do not."""
-    if system.inertia == inertia:
-        return system
-    other = copy.copy(system)
-    object.__setattr__(other, "inertia", inertia)
-    return other
+def _alike(systems: Sequence[ShaftSystem]) -> list[ShaftSystem]:
+    """Return systems of one structure: what is fast in one case feels the speed in all,
+    and shafts are divided as in the first case."""
+    known = [system.inertia for system in systems]
+    fast = None if all(one is None for one in known) else any(known)
+    first, found = systems[0], []
+    for k, system in enumerate(systems):
+        for plan, own in zip(first.plans, system.plans, strict=True):
+            if own._replace(divisions=plan.divisions) != plan:
+                raise ValueError(
+                    f"solve_duty: in case {k} parts stand in another order on their"
+                    " shafts than in the first."
+                )
+        other = copy.copy(system)
+        object.__setattr__(other, "inertia", fast)
+        object.__setattr__(other, "plans", first.plans)
+        found.append(other)
+    return found
 
 
 def _check_balances(systems: Sequence[ShaftSystem], found: dict[str, Any]) -> None:
@@ -200,13 +215,16 @@ def _state(system: ShaftSystem) -> dict[str, Any]:
     return {**kept, "speed": found.power.speed, **more}
 
 
-def _rated(given: Any, inertia: bool | None) -> tuple[Scalar, dict[str, Any]]:
+def _rated(
+    given: Any, inertia: bool | None
+) -> tuple[Scalar, dict[str, Any], dict[str, Any]]:
     installed, motion, speed, conditions = given
     solution = in_place(installed, motion, speed, inertia, 101)
     life = life_of(solution.element, solution, conditions, speed=speed)
     lives = {name: getattr(life, name) for name in LIVES}
     lives = {name: value for name, value in lives.items() if value is not None}
-    return jnp.max(solution.roller_pressure), lives
+    doubts = life_sizes(solution.element.bearing, life.ratings, vars(life))
+    return jnp.max(solution.roller_pressure), lives, sizes(solution) | doubts
 
 
 def bearing_hours(

@@ -77,8 +77,24 @@ class AbstractWheel(AbstractPlaced):
         torque: By which a mate outside the system acts on the shaft, about its local z
             [N m]; `None`: from the balance of torques, of one wheel at most.
         power: The same as power into the shaft, negative out of it [W].
-        efficiency: Power out over power in, with its mate [1].
+        efficiency: Power out over power in, with its mate [1]. Their forces are still
+            opposite: those of the mate that gives the power.
     """
+
+    mates_with: str | None = eqx.field(static=True, default=None, kw_only=True)
+    torque: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("N m"), default=None, kw_only=True
+    )
+    power: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("W"), default=None, kw_only=True
+    )
+    efficiency: Scalar = eqx.field(
+        converter=as_real, metadata=unit("1"), default=1.0, kw_only=True
+    )
+
+    def __check_init__(self):
+        in_range(self, "efficiency", 0.0, 1.0 + 1e-12)
+        _one_source(self)
 
 
 class Gear(AbstractWheel):
@@ -125,21 +141,12 @@ class Gear(AbstractWheel):
     face_width: Scalar | None = eqx.field(
         converter=as_real, metadata=unit("m"), default=None
     )
-    mates_with: str | None = eqx.field(static=True, default=None)
-    torque: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("N m"), default=None
-    )
-    power: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("W"), default=None
-    )
-    efficiency: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1.0)
 
     def __check_init__(self):
         whole(self, "teeth", self.teeth)
         positive(self, "normal_module")
         in_range(self, "helix_angle", 0.0, np.deg2rad(60.0), include_low=True)
         in_range(self, "pressure_angle", np.deg2rad(5.0), np.deg2rad(45.0))
-        in_range(self, "efficiency", 0.0, 1.0 + 1e-12)
         if self.face_width is not None:
             positive(self, "face_width")
         if self.hand not in HANDS:
@@ -164,7 +171,6 @@ class Gear(AbstractWheel):
                     f"Gear: `apex` of {self.name} is {self.apex!r}; it must be '+z' or"
                     " '-z', the side of the shaft on which the apex lies."
                 )
-        _one_source(self)
 
     @property
     def radius(self) -> Scalar:
@@ -226,20 +232,10 @@ class Pulley(AbstractWheel):
     direction: Scalar | None = eqx.field(
         converter=as_real, metadata=unit("rad"), default=None
     )
-    mates_with: str | None = eqx.field(static=True, default=None)
-    torque: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("N m"), default=None
-    )
-    power: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("W"), default=None
-    )
-    efficiency: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1.0)
 
     def __check_init__(self):
         positive(self, "diameter")
         positive(self, "force_ratio")
-        in_range(self, "efficiency", 0.0, 1.0 + 1e-12)
-        _one_source(self)
 
     @property
     def radius(self) -> Scalar:

@@ -6,7 +6,6 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design.checks import concrete
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar, as_real
 from .line import ShaftLine
@@ -217,14 +216,13 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
             matrix = matrix.at[shaft, k].add(1.0).at[mate, k].add(-back)
         return solve_any(matrix, -jnp.stack(known))
 
-    shares = [as_real(1.0) for _ in pair_of]
-    if any(concrete(eta) != [1.0] for *_, eta in pair_of):
-        # Power is lost in the direction in which it flows, known without the losses.
-        sense, lossless = jnp.where(speed[root] < 0, -1.0, 1.0), balanced(shares)
-        shares = [
-            jnp.where(torque * ratio[shaft] * sense > 0, 1.0 / eta, eta)
-            for torque, (_, shaft, _, eta) in zip(lossless, pair_of, strict=False)
-        ]
+    # Power is lost in the direction in which it flows, known without the losses.
+    lossless = balanced([as_real(1.0) for _ in pair_of])
+    sense = jnp.where(speed[root] < 0, -1.0, 1.0)
+    shares = [
+        jnp.where(torque * ratio[shaft] * sense > 0, 1.0 / eta, eta)
+        for torque, (_, shaft, _, eta) in zip(lossless, pair_of, strict=False)
+    ]
     found = balanced(shares)
     closing = found[-1]
     for (k, *_), value in zip(pair_of, found[:-1], strict=True):
@@ -234,12 +232,19 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
     meshes: list[Mesh] = []
     loss = zero
     for k, ((one, other), torque) in enumerate(zip(pairs, torques, strict=True)):
-        meshes.append(_mesh(system, one, torque))
+        push = torque / one.radius
         if other is not None:
             a, b = names.index(one.wheel.shaft), names.index(other.wheel.shaft)
             back = -torque * ratio[a] / ratio[b] * share_of[k]
-            meshes.append(_mesh(system, other, back))
             loss = loss - torque * speed[a] - back * speed[b]
+            # Both feel one force, that of the wheel which gives the power.
+            most = jnp.maximum(jnp.abs(push), jnp.abs(back) / other.radius)
+            push = jnp.where(torque < 0, -most, most)
+            meshes.append(_mesh(system, one, torque, push))
+            push = jnp.where(back < 0, -most, most)
+            meshes.append(_mesh(system, other, back, push))
+        else:
+            meshes.append(_mesh(system, one, torque, push))
     every = [torque_of(c, speed[names.index(c.shaft)]) for c in system.couplings]
     every = [closing if t is None else t for t in every]
     named = output[0] is not None
@@ -356,15 +361,16 @@ def _feeds(system, names, shaft, away) -> bool:
     return False
 
 
-def _mesh(system: ShaftSystem, contact: Contact, torque) -> Mesh:
+def _mesh(system: ShaftSystem, contact: Contact, torque, push) -> Mesh:
+    """Return a mesh with the torque on its wheel and the tangential force there."""
     wheel = contact.wheel
     axis = system.shaft(wheel.shaft).frame[2]
     mate = None if contact.mate is None else contact.mate.name
     if isinstance(wheel, Pulley):
-        pull = wheel.force_ratio * jnp.abs(torque) / contact.radius * contact.radial
+        pull = wheel.force_ratio * jnp.abs(push) * contact.radial
         nothing = jnp.zeros_like(pull)
         return Mesh(wheel.name, mate, torque, pull, nothing, nothing)
-    sign = jnp.where(torque < 0, -1.0, 1.0)
-    push, line = wheel.push(axis, contact.radial, contact.radius, sign)
-    force = torque / contact.radius * push
-    return Mesh(wheel.name, mate, torque, force, contact.radius * contact.radial, line)
+    sign = jnp.where(push < 0, -1.0, 1.0)
+    way, line = wheel.push(axis, contact.radial, contact.radius, sign)
+    place = contact.radius * contact.radial
+    return Mesh(wheel.name, mate, torque, push * way, place, line)

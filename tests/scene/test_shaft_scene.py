@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from typing import Any
 
 import numpy as np
@@ -197,6 +198,10 @@ hours = "0 h"
     wanted = 1.0 / (np.array([100.0, 10.0]) / 110.0 @ damage)
     np.testing.assert_allclose(found.hours, wanted, rtol=1e-6)
     assert "under all 3 cases" in str(shaft_report(found))
+    # What is odd in one case is told, with the case, as a sweep tells it.
+    light = [text for text in found.warnings if "light_load" in text]
+    assert len(light) == 4
+    assert all(re.search(r"in \d of 3 cases, worst case \d", text) for text in light)
     out, table = tmp_path / "c.json", tmp_path / "c.csv"
     done = run("shaft", scene, "--json", out, "--table", table)
     assert done.status == 0, done.err
@@ -204,6 +209,24 @@ hours = "0 h"
     assert told["cases"]["hours"] == [100.0, 10.0, 0.0]
     rows = list(csv.DictReader(table.read_text("utf-8").splitlines()))
     assert len(rows) == 12 and rows[4]["drive.power"] == "-20 kW"
+
+
+def test_cases_over_positions(tmp_path):
+    """Positions may vary as long as the order of the parts stays."""
+    scene = tmp_path / "p.toml"
+    values = '["30 mm", "55 mm"]'
+    scene.write_text(
+        f"{SCENE}[cases.grid]\n" + f'"bearings.A.position" = {values}\n', "utf-8"
+    )
+    found = run_shafts(read_shafts(scene))
+    assert found.converged and found.duty is not None
+    alone = run_shafts(
+        read_shafts(scene, ["cases.grid={'bearings.A.position'=['55 mm']}"])
+    )
+    np.testing.assert_allclose(found.duty.load[1], alone.solution.load, atol=1e-4)
+    with pytest.raises(SceneError, match="in case 1 parts stand in another order"):
+        beyond = "cases.grid={'bearings.A.position'=['30 mm', '150 mm']}"
+        run_shafts(read_shafts(scene, [beyond]))
 
 
 def test_housing_file(path, solved, tmp_path):

@@ -163,6 +163,12 @@ def test_losses():
         np.testing.assert_allclose(flow.loss, 0.03 * 5000.0, rtol=1e-12)
         out = -float(flow.output * flow.speed[1])
         np.testing.assert_allclose(out, 0.97 * 5000.0, rtol=1e-12)
+        # One force acts on both, that of the torque which drives.
+        forces = {m.wheel: np.asarray(m.force) for m in flow.meshes}
+        np.testing.assert_allclose(forces["one"], -forces["two"], rtol=1e-12)
+        along = np.cross([0.0, 0.0, 1.0], [np.cos(0.3), np.sin(0.3), 0.0])
+        tangential = abs(forces["one"] @ along)
+        np.testing.assert_allclose(tangential, 50.0 / one.radius, rtol=1e-12)
         # A brake in place of the drive takes what the mesh leaves of the power that
         # comes from the other shaft.
         for speed in (100.0, -100.0):
