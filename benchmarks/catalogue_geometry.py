@@ -95,7 +95,7 @@ ROWS = {
     "cylindrical_thrust_roller": (1.0, 1, True),
     "crossed_roller": (1.1, 2, False),
 }
-"""What rollers are rated by: b_m, rows, whether axially."""
+"""Factors by which rollers are rated: b_m, rows, whether axially."""
 
 FILLED = 0.87
 """Share of their circle that barrel rollers fill: 0.83 of a 22317 (Harris), 0.90 of a

@@ -43,7 +43,7 @@ from timing import machine, verdict  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 from bearingjax import shafts  # noqa: E402
-from bearingjax.shafts.equilibrium import adjusted  # noqa: E402
+from bearingjax.shafts.seats import adjusted  # noqa: E402
 
 BALANCED = 1e-6
 NOTHING = 1e-3

@@ -130,7 +130,7 @@ def varied(system, torque, speed, force):
 
 
 class Peer:
-    """The same stage in NumPy, its bearings called as black boxes."""
+    """Stage in NumPy, the same one, its bearings called as black boxes."""
 
     def __init__(self, system):
         self.system = system
@@ -360,7 +360,7 @@ def numbers(system, x):
 
 
 def aim(system, x):
-    """What is made least: minus the logarithm of the life, and a penalty."""
+    """Objective: minus the logarithm of the life, and a penalty."""
     _, life, apart = numbers(system, x)
     beyond = jnp.maximum(jnp.abs(apart) / ALLOWED - 1.0, 0.0)
     return -jnp.log(life) + 20.0 * jnp.sum(beyond**2)

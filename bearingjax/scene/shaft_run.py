@@ -22,8 +22,10 @@ from ..shafts import (
     system_life,
     warm_up,
 )
-from ..shafts.equilibrium import moving, searched_system, speed_of, unsolved
+from ..shafts.equilibrium import searched_system, unsolved
 from ..shafts.heat import overheated
+from ..shafts.seats import speed_of
+from ..shafts.state import moving
 from ..statics.life import Life, life_of
 from ..statics.solution import Solution
 from ..statics.support import axial_senses
@@ -174,7 +176,7 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
     if solved:
         say("bearings")
         speeds = found.power.speed[None] if duty is None else duty.speed
-        bearings = tuple(_in_place(task, found, speeds))
+        bearings = tuple(_in_place(task, found, np.asarray(speeds)))
     if task.heat is not None and task.times is not None:
         say("warming up")
         warming = np.asarray(warm_up(system, task.heat, task.times))
@@ -436,7 +438,7 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
         "load": found.load[k].tolist(),
         "displacement": moved.tolist(),
         "tilt": (frame[:2] @ moved[3:]).tolist(),
-        "axial_load": _axial(run.task.system, k, found.load[k]),
+        "axial_load": _axial(run.task.system, k, np.asarray(found.load[k])),
         "stiffness": found.stiffness[k].tolist(),
     }
     scene, solution, life = bearing.scene, bearing.solution, bearing.life

@@ -28,9 +28,6 @@ from .duty import DutyResult as DutyResult
 from .duty import bearing_hours as bearing_hours
 from .duty import solve_duty as solve_duty
 from .duty import system_life as system_life
-from .equilibrium import ShaftState as ShaftState
-from .equilibrium import SystemSolution as SystemSolution
-from .equilibrium import bearing_solutions as bearing_solutions
 from .equilibrium import solve_system as solve_system
 from .heat import HeatNetwork as HeatNetwork
 from .heat import ThermalPaths as ThermalPaths
@@ -47,5 +44,8 @@ from .parts import Seat as Seat
 from .parts import ShaftLoad as ShaftLoad
 from .power import PowerFlow as PowerFlow
 from .power import power_flow as power_flow
+from .seats import bearing_solutions as bearing_solutions
+from .state import ShaftState as ShaftState
+from .state import SystemSolution as SystemSolution
 from .system import HousingStiffness as HousingStiffness
 from .system import ShaftSystem as ShaftSystem

@@ -20,15 +20,9 @@ from ..statics.life import LifeConditions, life_of
 from ..statics.life_warning import life_sizes
 from ..statics.reference_life import BALLS, exponents_of
 from ..statics.warning import sizes
-from .equilibrium import (
-    adjusted,
-    check_torques,
-    in_place,
-    speed_of,
-    system_state,
-    torques_left,
-)
+from .equilibrium import check_torques, system_state, torques_left
 from .power import power_flow
+from .seats import adjusted, in_place, speed_of
 from .system import ShaftSystem
 
 BATCH = 64
@@ -78,7 +72,7 @@ class DutyResult(eqx.Module):
         metadata=unit("Pa")
     )
     lives: dict[str, Float[Array | np.ndarray, "case bearing"]]
-    warned: tuple[dict[str, Float[Array | np.ndarray, " case"]], ...]
+    warned: tuple[dict[str, Any], ...]
 
 
 def solve_duty(

@@ -30,7 +30,9 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.friction import friction_torque
 from ..statics.friction_skf import skf_friction_torque
-from .equilibrium import SystemSolution, adjusted, in_place, speed_of, system_state
+from .equilibrium import system_state
+from .seats import adjusted, in_place, speed_of
+from .state import SystemSolution
 from .system import ShaftSystem
 
 _HOTTEST = 300.0

@@ -349,6 +349,15 @@ class ShaftSystem(eqx.Module):
         placed = *self.seats, *self.wheels, *self.loads
         return [part for part in placed if part.shaft == shaft]
 
+    def seats_on(self, index: int) -> list[int]:
+        """Return the numbers of the bearings on a shaft.
+
+        Args:
+            index: Number of the shaft.
+        """
+        name = self.shafts[index].name
+        return [k for k, seat in enumerate(self.seats) if seat.shaft == name]
+
     def beam(self, index: int) -> Shaft:
         """Return the beam of a shaft.
 

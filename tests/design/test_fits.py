@@ -370,7 +370,7 @@ def driven(travel, taper=1 / 12, **changes):
 
 @pytest.mark.parametrize("taper", [1 / 12, 1 / 30])
 def test_driving_up_is_an_interference(taper):
-    """Of one material the raceway grows by d/F of it, d in the middle of the bore."""
+    """The raceway grows by d/F of the drive-up's interference, d in mid-bore."""
     np.testing.assert_allclose(
         state(driven(10e-6 / taper, taper), FitConditions()).radial_clearance,
         state(mounting(), FitConditions()).radial_clearance,

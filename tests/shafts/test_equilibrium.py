@@ -18,7 +18,7 @@ from bearingjax.shafts import (
     bearing_solutions,
     solve_system,
 )
-from bearingjax.shafts.equilibrium import axial_growth
+from bearingjax.shafts.seats import axial_growth
 
 LOAD = [
     ShaftLoad("p", "s", 0.12, (300.0, -2000.0, 700.0), (10.0, -25.0, 0.0)),
@@ -193,7 +193,7 @@ def test_self_aligning_bearing_is_a_hinge():
 
 
 def test_soft_housing_shares_the_load():
-    """Of three springs in a line, a housing in series softens the middle one."""
+    """A housing in series softens the middle one of three springs in a line."""
     line = ShaftLine("s", [0.4], [0.05], rigid=True)
     k = np.array([1e8, 1e8, 1e8, 0.0, 0.0])
     seats = [springs(n, "s", z, k) for n, z in (("A", 0.1), ("B", 0.2), ("C", 0.3))]

@@ -578,3 +578,22 @@ def test_small_robustness_run():
         assert row.get("failed", 0) == 0 and row.get("silently_wrong", 0) == 0, row
         if "named_uz" in row:
             assert row["named_uz"] == row["uncarried_loads"], row
+
+
+@pytest.mark.parametrize("speed", [0.05, 0.45, 3.7])
+def test_slow_taper(speed):
+    """Idle rollers of a slow bearing, seated by next to nothing, do not fail the solve;
+    it is that of the bearing at rest, but for inertia, some 1e-5 N at 0.45 rad/s."""
+    element = bj.BearingElement(bj.load_bearing("30206"))
+    load, held = [0.0, -900.0, 300.0, 0.0, 0.0, 0.0], {"gx": 0.0, "gy": 0.0}
+    turning = bj.Speed(jnp.asarray(speed))
+    slow = bj.solve_load(element, load, prescribed=held, speed=turning, points=2)
+    rest = bj.solve_load(element, load, prescribed=held, points=2)
+    idle = np.asarray(rest.roller_load).min(axis=1) == 0
+    assert 2 < idle.sum() < 15
+    np.testing.assert_allclose(
+        slow.displacement[6:9],
+        rest.displacement[6:9],
+        rtol=1e-7 * max(1.0, speed / 0.45) ** 2,
+        atol=1e-12,
+    )
