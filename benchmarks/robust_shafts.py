@@ -320,6 +320,10 @@ def checked(system, found, own):
             most = max(most, abs(float(mesh.torque)))
             if place.any():
                 own_torque = np.cross(place, force) @ z
+                if mesh.mate is not None and float(mesh.torque) * speed > 0:
+                    # The force is that of the mate, which gives the power.
+                    mate = system.wheel(mesh.mate)
+                    own_torque *= float(wheel.efficiency * mate.efficiency)
                 scale = max(np.abs(force).max() * np.abs(place).max(), 1e-300)
                 larger("torque", abs(own_torque - float(mesh.torque)), scale)
         for load in system.loads:

@@ -17,9 +17,7 @@ from ..numerics.implicit import stop, unless_failed
 from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
-from ..rotor import (
-    Rotor,
-)
+from ..rotor import Rotor
 from ..rotor.condensed import Condensed, condensed
 from ..rotor.loads import accelerated
 from ..rotor.rotor import N_STATION

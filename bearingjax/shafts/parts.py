@@ -77,8 +77,8 @@ class AbstractWheel(AbstractPlaced):
         torque: By which a mate outside the system acts on the shaft, about its local z
             [N m]; `None`: from the balance of torques, of one wheel at most.
         power: The same as power into the shaft, negative out of it [W].
-        efficiency: Power out over power in, with its mate [1]. Their forces are still
-            opposite: those of the mate that gives the power.
+        efficiency: Power out over power in [1]; a pair has the product of both. Each
+            mate bears the force of that which gives the power.
     """
 
     mates_with: str | None = eqx.field(static=True, default=None, kw_only=True)

@@ -219,15 +219,20 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
     # Power is lost in the direction in which it flows, known without the losses.
     lossless = balanced([as_real(1.0) for _ in pair_of])
     sense = jnp.where(speed[root] < 0, -1.0, 1.0)
+    # Whether a pair feeds its first shaft.
+    feeds = [
+        torque * ratio[shaft] * sense > 0
+        for torque, (_, shaft, _, _) in zip(lossless, pair_of, strict=False)
+    ]
     shares = [
-        jnp.where(torque * ratio[shaft] * sense > 0, 1.0 / eta, eta)
-        for torque, (_, shaft, _, eta) in zip(lossless, pair_of, strict=False)
+        jnp.where(fed, 1.0 / eta, eta)
+        for fed, (*_, eta) in zip(feeds, pair_of, strict=True)
     ]
     found = balanced(shares)
     closing = found[-1]
     for (k, *_), value in zip(pair_of, found[:-1], strict=True):
         torques[k] = value
-    share_of = {k: share for (k, *_), share in zip(pair_of, shares, strict=True)}
+    flow_of = {k: flow for (k, *_), *flow in zip(pair_of, feeds, shares, strict=True)}
     torques = [closing if t is None else t for t in torques]
     meshes: list[Mesh] = []
     loss = zero
@@ -235,14 +240,14 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
         push = torque / one.radius
         if other is not None:
             a, b = names.index(one.wheel.shaft), names.index(other.wheel.shaft)
-            back = -torque * ratio[a] / ratio[b] * share_of[k]
+            fed, share = flow_of[k]
+            back = -torque * ratio[a] / ratio[b] * share
             loss = loss - torque * speed[a] - back * speed[b]
             # Both feel one force, that of the wheel which gives the power.
-            most = jnp.maximum(jnp.abs(push), jnp.abs(back) / other.radius)
-            push = jnp.where(torque < 0, -most, most)
-            meshes.append(_mesh(system, one, torque, push))
-            push = jnp.where(back < 0, -most, most)
-            meshes.append(_mesh(system, other, back, push))
+            size = jnp.abs(jnp.where(fed, back / other.radius, push))
+            for contact, value in ((one, torque), (other, back)):
+                push = jnp.where(value < 0, -size, size)
+                meshes.append(_mesh(system, contact, value, push))
         else:
             meshes.append(_mesh(system, one, torque, push))
     every = [torque_of(c, speed[names.index(c.shaft)]) for c in system.couplings]

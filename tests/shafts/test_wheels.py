@@ -1,6 +1,8 @@
 """Forces of gears and belts, speeds and torques of the shafts that they couple."""
 
+import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from systems import springs, stage
@@ -178,6 +180,22 @@ def test_losses():
             given = 5000.0 / 0.97
             np.testing.assert_allclose(flow.output * flow.speed[1], given, rtol=1e-12)
             np.testing.assert_allclose(flow.loss, given - 5000.0, rtol=1e-12)
+
+
+def test_derivative_by_efficiency():
+    """At the default, no loss, the force of the driver's power P follows from it alone,
+    and that of a power P taken by a brake is P / eta."""
+    system = pair({"mesh_angle": 0.3}, {"mesh_angle": None})
+
+    def force(efficiency, power):
+        drive = Drive("a", 100.0, power=power)
+        every = eqx.tree_at(lambda s: s.wheels[0].efficiency, system, efficiency)
+        every = eqx.tree_at(lambda s: s.drive, every, drive)
+        return jnp.linalg.norm(power_flow(every).meshes[0].force)
+
+    for power, exponent in ((5000.0, 0.0), (-5000.0, -1.0)):
+        value, slope = jax.value_and_grad(force)(1.0, power)
+        np.testing.assert_allclose(slope, exponent * value, atol=1e-9 * value)
 
 
 def test_idler_and_belt():
