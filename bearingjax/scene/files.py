@@ -186,8 +186,8 @@ def read_matrix(path: Path) -> np.ndarray:
         elif path.suffix == ".mtx":
             from scipy.io import mmread
 
-            found = mmread(path)
-            found = found.toarray() if hasattr(found, "toarray") else found
+            read: Any = mmread(path)
+            found = read.toarray() if hasattr(read, "toarray") else read
         else:
             text = path.read_text(encoding="utf-8-sig").replace(",", " ")
             found = np.loadtxt(text.splitlines(), ndmin=2)
