@@ -49,6 +49,8 @@ BALANCED = 1e-6
 NOTHING = 1e-3
 """Force below which errors are not measured by what acts [N]."""
 G = 9.80665
+_FORWARD = "s", "in", "a"
+"""Shafts that turn the same way as the drive."""
 
 
 def ball(clearance):
@@ -320,7 +322,9 @@ def checked(system, found, own):
             most = max(most, abs(float(mesh.torque)))
             if place.any():
                 own_torque = np.cross(place, force) @ z
-                if mesh.mate is not None and float(mesh.torque) * speed > 0:
+                # At rest power flows as if the drive began to turn forwards.
+                sense = speed or (1.0 if shaft.name in _FORWARD else -1.0)
+                if mesh.mate is not None and float(mesh.torque) * sense > 0:
                     # The force is that of the mate, which gives the power.
                     mate = system.wheel(mesh.mate)
                     own_torque *= float(wheel.efficiency * mate.efficiency)

@@ -76,8 +76,10 @@ class Column:
             return str(value)
         if np.isinf(value):
             return "infinite"
-        number = factor * float(value) + 0.0  # no minus before a zero
+        number = factor * float(value)
         told = f"{number:{self.format}}"
+        if float(told) == 0.0:
+            told = told.replace("-0", "0", 1)  # no minus before what rounds to zero
         return f"{number:.0f}" if "e+0" in told and abs(number) < _WHOLE else told
 
 

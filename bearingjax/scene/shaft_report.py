@@ -88,7 +88,8 @@ def _head(run: ShaftRun) -> list[Part]:
 def _shafts(run: ShaftRun) -> Grid:
     states = run.solution.shafts
     bent = [np.linalg.norm(s.displacement[:, :2], axis=1).max() for s in states]
-    moment = [np.linalg.norm(s.moment, axis=1).max() for s in states]
+    # Rounded to 1 µN m, so that a shaft without load does not tell round-off.
+    moment = [np.linalg.norm(s.moment, axis=1).max().round(6) for s in states]
     where = [s.position[np.linalg.norm(s.moment, axis=1).argmax()] for s in states]
     return Grid(
         [
@@ -182,7 +183,8 @@ def _temperatures(run: ShaftRun) -> Section:
         Column("outer ring", celsius[1], ["°C"] * len(celsius[1]), ".1f"),
         Column("friction", np.asarray(state.friction), "W", ".4g"),
     ]
-    told: list[Part] = [Grid(columns, "in equilibrium with friction")]
+    of = "" if run.duty is None else ", in the first case"
+    told: list[Part] = [Grid(columns, f"in equilibrium with friction{of}")]
     if run.task.heat is not None and run.task.heat.housing is not None:
         told.append(f"housing and oil: {float(state.housing) - 273.15:.1f} °C")
     if float(state.slowest) > 0:
@@ -225,6 +227,9 @@ def _lives(run: ShaftRun) -> Section:
             Column("least C0/P0", safety, "1", ".3g", (1.0, "")),
             Column("most pressure", most, "Pa", ".3f", (1e-9, "GPa")),
         ]
+        if run.rings is not None:
+            warm = np.nanmax(run.rings, axis=(0, 2)) - 273.15
+            rows.append(Column("warmest ring", warm, ["°C"] * len(warm), ".1f"))
         title = f"under all {len(run.task.cases)} cases, one after the other"
     else:
         known = [b.life for b in run.bearings]

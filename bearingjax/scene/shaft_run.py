@@ -24,7 +24,7 @@ from ..shafts import (
 )
 from ..shafts.equilibrium import searched_system, unsolved
 from ..shafts.heat import overheated
-from ..shafts.seats import speed_of
+from ..shafts.seats import adjusted, speed_of
 from ..shafts.state import moving
 from ..statics.life import Life, life_of
 from ..statics.solution import Solution
@@ -89,9 +89,13 @@ class ShaftRun:
         task: The scene.
         solution: Equilibrium, in NumPy; of several cases that of the first.
         bearings: Each bearing in it; empty if it was not solved.
-        thermal: Temperatures, in NumPy; `None` without [heat].
-        warming: Temperatures over `task.times`, as of `warm_up` (time, node) [K].
+        thermal: Temperatures, in NumPy, of several cases those of the first; `None`
+            without [heat].
+        warming: Temperatures over `task.times`, as of `warm_up` (time, node) [K], of
+            several cases in the first.
         duty: All cases, in NumPy; `None` without [cases].
+        rings: Temperatures of inner and outer rings in all cases (case, bearing, 2)
+            [K]; `None` without [heat] or [cases].
         problem: Why it was not solved, in words; empty if it was.
         warnings: Warnings of doubtful results.
     """
@@ -102,6 +106,7 @@ class ShaftRun:
     thermal: ThermalState | None
     warming: np.ndarray | None
     duty: DutyResult | None
+    rings: np.ndarray | None
     problem: str
     warnings: tuple[str, ...]
 
@@ -151,7 +156,7 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
         SceneError: For torques that do not balance.
     """
     say = told or (lambda name: None)
-    system = task.system
+    system, cases = task.system, task.cases
     state, problem = None, ""
     try:
         if task.heat is None:
@@ -169,10 +174,10 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
     except ValueError as error:
         raise SceneError(f"{task.name}: {error}") from error
     found, bearings = jax.device_get(found), ()
-    duty, warming, solved = None, None, not problem
-    if task.cases and solved:
+    duty, rings, warming, solved = None, None, None, not problem
+    if cases and solved:
         say("load cases")
-        duty, problem = _duty(task)
+        duty, rings, problem = _duty(task)
     if solved:
         say("bearings")
         speeds = found.power.speed[None] if duty is None else duty.speed
@@ -181,24 +186,56 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
         say("warming up")
         warming = np.asarray(warm_up(system, task.heat, task.times))
     state = jax.device_get(state)
-    run = ShaftRun(task, found, bearings, state, warming, duty, problem, ())
+    run = ShaftRun(task, found, bearings, state, warming, duty, rings, problem, ())
     odd = dict.fromkeys((*task.warnings, *_warnings(run)))
     return dataclasses.replace(run, warnings=tuple(odd))
 
 
-def _duty(task: ShaftScene) -> tuple[DutyResult, str]:
-    """Solve the load cases; return them, and which were not solved, in words."""
-    systems, lives = zip(*((c.system, c.lives) for c in task.cases), strict=True)
+def _duty(task: ShaftScene) -> tuple[DutyResult, np.ndarray | None, str]:
+    """Solve the load cases, each warm if there is heat.
+
+    Returns:
+        The cases, temperatures of the rings, and what was not solved, in words.
+    """
+    cases, states = task.cases, []
     try:
+        if task.heat is not None:
+            offsets: dict[Any, Any] = {}
+            cold = (
+                dataclasses.replace(case, system=adjusted(case.system, offsets))
+                for case in cases
+            )
+            states = [
+                (case, jax.device_get(solve_heat(case.system, case.heat, throw=False)))
+                for case in cold
+                if case.heat is not None
+            ]
+            cases = [_warm(case, state) for case, state in states]
+        systems, lives = zip(*((c.system, c.lives) for c in cases), strict=True)
         duty = solve_duty(systems, lives)
     except ValueError as error:
         raise SceneError(f"{task.name}: {error}") from error
+    rings = None
+    if states:
+        rings = np.array([[s.inner_ring, s.outer_ring] for _, s in states])
+        rings = rings.transpose(0, 2, 1)
+        hot = np.array([int(s.result) for _, s in states])
+        lost = hot != Result.CONVERGED
+        duty = jax.tree.map(
+            lambda x: np.where(lost.reshape(-1, *[1] * (x.ndim - 1)), np.nan, x)
+            if x.dtype.kind == "f"
+            else x,
+            duty,
+        )
+        duty = dataclasses.replace(duty, result=np.where(lost, hot, duty.result))
     failed = np.flatnonzero(duty.result != Result.CONVERGED)
     if not failed.size:
-        return duty, ""
+        return duty, rings, ""
     label = Result(int(duty.result[failed[0]])).label
-    many = f"{failed.size} of {len(task.cases)} cases not solved"
-    return duty, f"{many} (case {failed[0]}: {label})"
+    if states and lost[failed[0]]:
+        label = overheated(states[failed[0]][1])
+    many = f"{failed.size} of {len(cases)} cases not solved"
+    return duty, rings, f"{many} (case {failed[0]}: {label})"
 
 
 def _warm(task: ShaftScene, state: ThermalState) -> ShaftScene:
@@ -515,10 +552,18 @@ def _cases(run: ShaftRun, duty: DutyResult) -> dict[str, Any]:
                 "load": duty.load[:, k].tolist(),
                 "peak_pressure": _plain(duty.peak_pressure[:, k]),
                 **{key: _plain(of[:, k]) for key, of in duty.lives.items()},
+                **{key: _plain(of[:, k]) for key, of in _warmth(run).items()},
             }
             for k, name in enumerate(names)
         },
     }
+
+
+def _warmth(run: ShaftRun) -> dict[str, np.ndarray]:
+    """Return temperatures of the rings in all cases by name (case, bearing) [K]."""
+    if run.rings is None:
+        return {}
+    return {"inner_ring": run.rings[..., 0], "outer_ring": run.rings[..., 1]}
 
 
 def _plain(values: Any) -> list[float | None]:
@@ -566,10 +611,12 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
         load = run.duty.load.reshape(-1, 6)
         pressure = run.duty.peak_pressure.ravel()
         lives = {key: of.ravel() for key, of in run.duty.lives.items()}
+        lives |= {key: of.ravel() for key, of in _warmth(run).items()}
     for k, (name, unit) in enumerate(zip(forces, units, strict=True)):
         found[f"{name} [{unit}]"] = load[:, k]
     found["peak_pressure [Pa]"] = np.asarray(pressure, float)
     for key, values in lives.items():
         unit = {"life_hours": " [h]", "static_safety": "", "damage": " [1/rev]"}
+        unit |= dict.fromkeys(("inner_ring", "outer_ring"), " [K]")
         found[key + unit.get(key, " [rev]")] = np.asarray(values, float)
     return {name: np.asarray(values) for name, values in found.items()}

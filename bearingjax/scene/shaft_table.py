@@ -338,9 +338,6 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     alone = {key: value for key, value in data.items() if key != "cases"}
     if not columns:
         return _read(alone, path, known)
-    if "heat" in data:
-        problem = "does not go with [heat]; give each case its temperatures"
-        raise SceneError(f"{path.name}: `cases`: {problem}")
     count = columns[0].index.size
     if count > _MOST_CASES:
         problem = f"{count} cases are too many; at most {_MOST_CASES}"
@@ -374,7 +371,9 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     )
 
 
-_VARYING = "drive load bearings gear belt coupling shaft life lubricant system".split()
+_VARYING = (
+    "drive load bearings gear belt coupling shaft life lubricant system heat".split()
+)
 _ALLOWED = ", ".join(_VARYING)
 
 

@@ -93,7 +93,9 @@ class AbstractWheel(AbstractPlaced):
     )
 
     def __check_init__(self):
-        in_range(self, "efficiency", 0.0, 1.0 + 1e-12)
+        positive(self, "efficiency")
+        if not is_traced(self.efficiency):
+            check(self, "efficiency", self.efficiency <= 1.0, "above 0 and at most 1")
         _one_source(self)
 
 

@@ -167,7 +167,7 @@ def _free_tilt_words(size, where):
 
 
 def _prescribed_tilt_words(size, where):
-    return f"prescribed tilt of {where or f'{size:.3g} times what makers allow for'}"
+    return f"tilt of {where or f'{size:.3g} times what makers allow for'}"
 
 
 def _radial_words(size, where):
