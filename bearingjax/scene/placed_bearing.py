@@ -82,7 +82,7 @@ def placed_bearing(
         data["life"].pop("edge_stress", None)
     mark = repr(data)
     if mark not in known:
-        known[mark] = _scene(data, name, path, own)
+        known[mark] = _scene(data, name, path, own, (*inside, *beside))
     scene = known[mark]
     for key, value in echoed(scene.inputs).items():
         table.fill(key, value)
@@ -146,17 +146,21 @@ def check_seat(
     )
 
 
-def _scene(data: dict[str, Any], name: str, path: Path, own: Any) -> Scene:
-    # The message names tables of a bearing alone: [bearing], `fit.bore`.
+def _scene(
+    data: dict[str, Any], name: str, path: Path, own: Any, beside: tuple[str, ...]
+) -> Scene:
+    # The message names tables of a bearing alone: [bearing], `fit.bore`; not hints.
     tables = [key for key in (*BESIDE, *_COMMON) if key in own]
-    pattern = rf"(?<=[`\[])({'|'.join(['bearing', *tables])})(?=[.`\]])"
+    pattern = (
+        rf"(?<!did you mean `)(?<=[`\[])({'|'.join(['bearing', *tables])})(?=[.`\]])"
+    )
 
     def renamed(match: re.Match) -> str:
         inside = "" if match[1] == "bearing" else f".{match[1]}"
         return f"bearings.{name}{inside}"
 
     try:
-        return dataclasses.replace(scene_of(data, path), name=name)
+        return dataclasses.replace(scene_of(data, path, beside=beside), name=name)
     except SceneError as error:
         raise SceneError(re.sub(pattern, renamed, str(error))) from error
 

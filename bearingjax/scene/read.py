@@ -168,7 +168,12 @@ def with_speed_told(scene: Scene, turns: Any = None) -> Scene:
     return dataclasses.replace(scene, warnings=(*scene.warnings, *told))
 
 
-def scene_of(data: dict[str, Any], path: Path, varied: Iterable[str] = ()) -> Scene:
+def scene_of(
+    data: dict[str, Any],
+    path: Path,
+    varied: Iterable[str] = (),
+    beside: Iterable[str] = (),
+) -> Scene:
     """Build the scene of parsed data.
 
     Args:
@@ -176,6 +181,7 @@ def scene_of(data: dict[str, Any], path: Path, varied: Iterable[str] = ()) -> Sc
         path: Path of the file, for messages.
         varied: Keys varied by its cases: these count as given, even where equal to
             the catalogue.
+        beside: Keys that may stand in the table of the bearing and are read elsewhere.
 
     Raises:
         SceneError: As `read_scene`.
@@ -187,6 +193,7 @@ def scene_of(data: dict[str, Any], path: Path, varied: Iterable[str] = ()) -> Sc
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         table = top.table("bearing", required=True)
+        table.know(*beside)
         bearing, preload = read_bearing(table, top)
     found = designated(table)
     catalogue = None if found is None else found[1].varied(varied)

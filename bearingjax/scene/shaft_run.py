@@ -222,9 +222,11 @@ def _duty(task: ShaftScene) -> tuple[DutyResult, np.ndarray | None, str]:
         hot = np.array([int(s.result) for _, s in states])
         lost = hot != Result.CONVERGED
         duty = jax.tree.map(
-            lambda x: np.where(lost.reshape(-1, *[1] * (x.ndim - 1)), np.nan, x)
-            if x.dtype.kind == "f"
-            else x,
+            lambda x: (
+                np.where(lost.reshape(-1, *[1] * (x.ndim - 1)), np.nan, x)
+                if x.dtype.kind == "f"
+                else x
+            ),
             duty,
         )
         duty = dataclasses.replace(duty, result=np.where(lost, hot, duty.result))

@@ -46,6 +46,10 @@ class Table:
         still be read."""
         return tuple(self._data)
 
+    def know(self, *keys: str) -> None:
+        """Name keys in messages that are read elsewhere."""
+        self._known.extend(keys)
+
     def error(self, key: str, problem: object) -> SceneError:
         """Return an error that names file and key."""
         return SceneError(f"{self._file}: `{self._full(key)}`: {problem}")

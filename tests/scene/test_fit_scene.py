@@ -925,8 +925,8 @@ WRONG_OF_ROTORS = {
         "`bearings.own.contacts`: unknown key (did you mean `contact`?)",
     ),
     "key of a bearing alone": (
-        "bearings.own.life={}",
-        "`bearings.own.life`: unknown key",
+        "bearings.own.operating={}",
+        "`bearings.own.operating`: unknown key",
     ),
     "wrong fit of another file": (
         "rotor.bearings.0.bearing=thrust.toml",

@@ -13,7 +13,7 @@ from tolerances import PUBLISHED, ROUNDING
 
 import bearingjax as bj
 from bearingjax.design import rows_of
-from bearingjax.scene import shipped_scenes
+from bearingjax.scene import read_shafts, shipped_scenes
 from bearingjax.scene.report import design_sections
 
 DEG = np.pi / 180.0
@@ -52,6 +52,13 @@ ROTORS = {  # for `read_rotor`
     "rotor_spindle",
 }
 
+SHAFTS = {  # for `read_shafts`
+    "shaft_fan",
+    "shaft_gearbox",
+    "shaft_spindle",
+    "shaft_wind_turbine",
+}
+
 NOISE = {  # for `read_noise`, in the tests of the command
     "noise_cylindrical",
     "noise_deep_groove",
@@ -80,7 +87,15 @@ def read_text(folder, text, settings=()):
 
 
 def test_shipped_scenes_are_these():
-    assert set(shipped_scenes()) == {*SHIPPED, CONTACT, *ROTORS, *NOISE}
+    assert set(shipped_scenes()) == {*SHIPPED, CONTACT, *ROTORS, *SHAFTS, *NOISE}
+
+
+@pytest.mark.parametrize("name", sorted(SHAFTS))
+def test_shipped_shafts_read(name):
+    task = read_shafts(name)
+    assert task.name == name and task.warnings == ()
+    assert (task.heat is not None) == (name == "shaft_spindle")
+    assert all(scene is not None for scene in task.bearings)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
