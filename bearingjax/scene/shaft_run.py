@@ -210,7 +210,10 @@ def _duty(task: ShaftScene) -> tuple[DutyResult, np.ndarray | None, str]:
                 for case in cold
                 if case.heat is not None
             ]
-            cases = [_warm(case, state) for case, state in states]
+            cases = [
+                _warm(case, state) if state.result == Result.CONVERGED else case
+                for case, state in states
+            ]
         systems, lives = zip(*((c.system, c.lives) for c in cases), strict=True)
         duty = solve_duty(systems, lives)
     except ValueError as error:

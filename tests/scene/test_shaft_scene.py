@@ -10,6 +10,7 @@ import pytest
 
 import bearingjax as bj
 from bearingjax.scene import SceneError, read_shafts, run_shafts, shaft_report
+from bearingjax.scene.shaft_run import shaft_columns
 
 SCENE = """
 [drive]
@@ -227,6 +228,86 @@ def test_cases_over_positions(tmp_path):
     with pytest.raises(SceneError, match="in case 1 parts stand in another order"):
         beyond = "cases.grid={'bearings.A.position'=['30 mm', '150 mm']}"
         run_shafts(read_shafts(scene, [beyond]))
+
+
+WARM = """
+[drive]
+speed = "6000 rpm"
+
+[shaft.s]
+segments = [{ length = "260 mm", outer_diameter = "40 mm" }]
+
+[load.pull]
+shaft = "s"
+position = "150 mm"
+Fy = "-900 N"
+Fz = "300 N"
+
+[bearings.A]
+shaft = "s"
+position = "40 mm"
+designation = "7208 B"
+preload = "400 N"
+fit = { shaft_interference = "8 um", housing_interference = "-5 um", housing_diameter = "120 mm" }
+
+[bearings.B]
+shaft = "s"
+position = "240 mm"
+designation = "7208 B"
+turned = true
+preload = "400 N"
+
+[lubricant]
+name = "ISO VG 32"
+temperature = "40 °C"
+
+[life]
+contamination = "oil bath -/17/14"
+
+[heat]
+ambient = "22 °C"
+"""  # noqa: E501
+
+
+@pytest.mark.slow
+def test_cases_with_heat(tmp_path):
+    """Each case has its own temperatures, and its life the viscosity there; one that
+    runs away has no numbers."""
+    scene, name = tmp_path / "warm.toml", "bearings.A.heat.outer"
+    scene.write_text(f'{WARM}[cases]\nfile = "cases.csv"\n', "utf-8")
+    rows = (
+        f"drive.speed,heat.ambient,{name},bearings.A.heat.inner,hours [h]",
+        "3000 rpm,22 °C,2 W/K,2 W/K,10",
+        "4000 rpm,30 °C,4 W/K,2 W/K,20",
+        "6000 rpm,22 °C,1e-3 W/K,1e-3 W/K,20",
+    )
+    scene.with_name("cases.csv").write_text("\n".join(rows), "utf-8")
+    found = run_shafts(read_shafts(scene))
+    assert found.duty is not None and found.rings is not None
+    assert re.match(r"1 of 3 cases not solved \(case 2: .* no thermal", found.problem)
+    assert np.isnan(found.rings[2]).all() and np.isnan(found.duty.load[2]).all()
+    alone = tmp_path / "alone.toml"
+    alone.write_text(WARM, "utf-8")
+    inner = "bearings.A.heat.inner=2 W/K"
+    for k, settings in enumerate(
+        (
+            ["drive.speed=3000 rpm", f"{name}=2 W/K"],
+            ["drive.speed=4000 rpm", "heat.ambient=30 °C", f"{name}=4 W/K"],
+        )
+    ):
+        own = run_shafts(read_shafts(alone, [*settings, inner]))
+        assert own.thermal is not None
+        rings = np.stack([own.thermal.inner_ring, own.thermal.outer_ring], axis=1)
+        np.testing.assert_allclose(found.rings[k], rings, rtol=1e-10)
+        load = own.solution.load
+        np.testing.assert_allclose(found.duty.load[k], load, rtol=1e-6, atol=1e-5)
+        lives = [bearing.life.modified_rating_life for bearing in own.bearings]
+        given = found.duty.lives["modified_rating_life"][k]
+        np.testing.assert_allclose(given, lives, rtol=1e-6)
+    columns = shaft_columns(found)
+    np.testing.assert_array_equal(
+        columns["inner_ring [K]"], found.rings[..., 0].ravel()
+    )
 
 
 def test_housing_file(path, solved, tmp_path):
