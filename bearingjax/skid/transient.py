@@ -128,8 +128,9 @@ def simulate(
         SolveError: If the end is not reached, and `throw` is set.
 
     Fails: codes of the load solve; `STEP_LIMIT`; `NO_LOAD_PATH` if a load over time
-        pulls the ring out of the bearing; `NON_FINITE` where steps shrink to nothing,
-        as next to rates that are not numbers.
+        pulls the ring out of the bearing; `NON_FINITE` where steps shrink to 1e-14 of
+        the duration, as next to rates that are not numbers, or where a film is as stiff
+        as a Newtonian glass: spins settle in it within 1e-15 s.
     """
     _check(axis, derivatives, places, duration, tolerance, max_steps, n_times)
     table, zero = as_table(speed), jnp.zeros_like(as_real(duration))

@@ -1,5 +1,7 @@
 """Octaves and third-octaves: where their edges are, and what a record has in them."""
 
+from types import SimpleNamespace
+
 import jax
 import numpy as np
 import pytest
@@ -19,6 +21,7 @@ from bearingjax.noise import (
 )
 from bearingjax.noise.bands import LEAST_SHIFT, leakage
 from bearingjax.noise.reference_levels import OCTAVES
+from bearingjax.noise.warning import _total
 
 SHAFT = 25.0
 
@@ -165,6 +168,19 @@ def test_bands_beside_a_strong_line_are_held_where_its_skirt_ends():
     np.testing.assert_allclose(changed[1], 10 * np.log10(5 / 6), atol=1e-3)
     assert changed[0] > 30.0
     np.testing.assert_allclose(need[:2], 25.0 - bands.upper[0], rtol=1e-3)
+
+
+@pytest.mark.parametrize("turns, told", [(1, "0.79 dB below"), (8, None)])
+def test_a_total_that_the_window_changes_is_told(turns, told, untyped):
+    """One period of a sine keeps 5/6 of its power under Hann's window, more of them
+    keep all."""
+    time = turns / SHAFT * np.arange(turns * 64) / (turns * 64)
+    y = np.sin(2 * np.pi * SHAFT * time)[:, None] * np.ones(3)
+    found = spectrum(y, turns / SHAFT, SHAFT, window=Hann())
+    record = SimpleNamespace(acceleration=y, contact_load=np.ones((1, 1, 2)))
+    texts = list(_total(SimpleNamespace(mass=1.0), record, found))
+    assert len(texts) == (told is not None)
+    assert all(f"the total level is {told} that of the record" in t for t in texts)
 
 
 def test_derivatives_of_bands():

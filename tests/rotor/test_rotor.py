@@ -95,6 +95,12 @@ def test_a_disc_from_its_size_and_a_tilt_of_its_axis():
     assert not still.any()
 
 
+def test_a_disc_that_no_body_can_be_is_told():
+    with pytest.warns(UserWarning, match="is above twice `diametral_inertia`"):
+        bj.rotor.Disc(0, 6.0, 0.0201, 0.01)
+    bj.rotor.Disc(0, 6.0, 0.02, 0.01)  # flat
+
+
 def test_a_housing_is_in_series():
     """A rigid rotor of mass m on k, on a housing of mass h on kh: two masses."""
     k, kh, h = 3e7, 5e7, 20.0

@@ -364,6 +364,13 @@ def test_unbalance_at_a_speed_of_its_own_is_odd():
             ["bearings.locating={designation='6207'}"],
             "locating: 6207 has a bore of 35 mm; at station 0 the shaft has 40 mm",
         ),
+        (
+            [
+                "rotor.discs.0={station=1, mass='6 kg', polar_inertia='0.03 kg m^2',"
+                " diametral_inertia='0.01 kg m^2'}"
+            ],
+            "`polar_inertia` (0.03 kg m²) is above twice `diametral_inertia`",
+        ),
     ),
 )
 def test_what_does_not_go_together_is_odd(settings, words):

@@ -355,6 +355,19 @@ def test_what_is_doubtful(end):
     assert "slip up to 100 %: nothing is pressed between" in " ".join(
         skid_warnings(model, loose, state)
     )
+    # What carries slips less than what has lost its load.
+    share = np.full_like(found.orbit_speed, 0.7)
+    share[0] = 0.4
+    unlike = eqx.tree_at(
+        lambda f: (f.contact_load, f.orbit_speed),
+        found,
+        (
+            found.contact_load * np.where(share > 0.5, 1.0, 0.0)[:, None] ** [0, 1],
+            share * found.rolling_orbit_speed,
+        ),
+    )
+    texts = " ".join(skid_warnings(model, unlike, state))
+    assert "slip up to 60 %, of what both raceways press 30 %" in texts
     assert "range of its law in all of the contacts" in told(outside_fluid_range=True)
     rigid = told(regime=int(Regime.ISOVISCOUS_RIGID))
     assert "films of all of the contacts are isoviscous and rigid" in rigid

@@ -416,6 +416,11 @@ def test_what_is_assumed_of_an_oil_is_said():
     )
 
 
+def test_a_supply_that_changes_nothing_is_told():
+    (told,) = read_skid("skid_axial", ["lubricant.supply=grease"]).warnings
+    assert told.startswith("`lubricant.supply` 'grease' counts for the friction torque")
+
+
 @pytest.mark.parametrize(
     "written, law",
     [

@@ -349,6 +349,14 @@ def test_a_motion_without_numbers_says_so(prepared):
     assert np.all(np.isnan(found.slip[1:]))
 
 
+def test_a_newtonian_glass_says_so():
+    """At 0 °C and above 1 GPa spins settle within 1e-15 s: no step is small enough."""
+    heavy = np.array([400.0, 0.0, 600.0, 0.0, 0.0, 0.0])
+    cold = eqx.tree_at(lambda m: m.temperature, FEW, jnp.asarray(273.15))
+    with pytest.raises(SolveError, match="non_finite .*behind the first.* Newtonian"):
+        run(heavy, model=cold)
+
+
 def test_names_of_settings():
     with pytest.raises(ValueError, match="`axis` is 'flat'; it must be vertical or"):
         run(axis="flat")

@@ -800,8 +800,10 @@ def test_a_search_tells_of_its_lives_what_life_tells():
     for k, text in ((1, heavy), (2, light), (0, moment)):
         one = jax.tree.map(lambda leaf, k=k: leaf[k], solutions)
         life = bj.rating_life(element, one)
-        (alone,) = life_warnings(element.bearing, life.ratings, vars(life))
-        assert text.partition(": ")[2][:15] == alone[:15]
+        found = life_sizes(element.bearing, life.ratings, vars(life))
+        (alone,) = counted({name: np.atleast_1d(x) for name, x in found.items()})
+        words, _, case = alone.partition(", in 1 of 1 cases, worst case ")
+        assert text == f"{words}, in 1 of 3 cases, worst case {k}" and case == "0"
 
 
 def test_rows_in_tandem_share_the_axial_load_on_which_factors_depend():
