@@ -264,6 +264,28 @@ def test_toroidal_bearing_loses_clearance_as_two_arcs():
     assert float(turned.energy) == pytest.approx(float(centred.energy), rel=1e-9)
 
 
+@pytest.mark.parametrize("travel, tilt", [(6.5e-3, 0.0), (0.0, 5e-3), (3e-3, 2e-3)])
+def test_clearance_that_travel_and_tilt_take(travel, tilt):
+    """Two opposite rollers, in a clearance a little above and below it."""
+    pair = toroidal(2, first_azimuth=0.0, radial_internal_clearance=0.0)
+    # A taller bearing, so that a tilt takes clearance: R_I > A0.
+    pair = dataclasses.replace(pair, pitch_diameter=1.5)
+    apart, arm = 0.42 + 0.42 - 0.0195, 0.5 * (1.5 - 0.0195) + 0.42
+    across = travel + np.array([-1.0, 1.0]) * arm * np.sin(tilt)
+    needed = apart - arm * (1.0 - np.cos(tilt)) - np.sqrt(apart**2 - across**2)
+    lost = float(pair.lost_clearance(travel, tilt))
+    assert lost == pytest.approx(needed.sum(), rel=1e-9)
+    middle = 0.5 * (needed[1] - needed[0])
+    q = jnp.zeros(12).at[8].set(travel).at[10].set(tilt).at[6].set(middle)
+    for part, touches in ((1.001, False), (0.999, True)):
+        loose = dataclasses.replace(pair, radial_internal_clearance=part * lost)
+        got, _ = evaluate(element(loose, line_law=LAW), q)
+        load = float(np.abs(np.asarray(got.force[6:9])).max() + got.stiffness[6, 6])
+        assert (load > 1.0) is touches
+    if tilt == 0.0:
+        assert float(pair.free_travel(lost)) == pytest.approx(travel, rel=1e-9)
+
+
 def test_warning_of_travel_along_the_rollers():
     """The warning states about the share of the axial force that is left out."""
     aligning, load = srb_of_the_case(), [0.0, -40000.0, 0.0, 0.0, 0.0, 0.0]
