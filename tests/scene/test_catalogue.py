@@ -176,7 +176,7 @@ def test_tilt_factors_of_toroidal_bearings():
     assert float(travel) == pytest.approx(12.7e-3, abs=0.05e-3)
     tilt = np.deg2rad(0.3)
     k1_b = entry.printed["tilt_factor"] * entry.width * 180.0 / np.pi
-    edge = entry.printed["axial_travel"]
+    edge = to_si(entry.printed["axial_travel"], "length")
     assert edge - k1_b * tilt == pytest.approx(15.5e-3, abs=0.05e-3)
     assert edge - arm_of(entry) * tilt == pytest.approx(15.5e-3, rel=0.01)
 
