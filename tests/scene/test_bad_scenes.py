@@ -1192,7 +1192,7 @@ TYPED = [
     ),
     (
         *("spherical_thrust", "bearing.profile_offset=14 mm"),
-        "[bearing]: SphericalThrustRollerBearing: `profile_offset` is 0.014 m; it must",
+        "[bearing]: SphericalThrustRollerBearing: `profile_offset` is 0.014 m; it",
     ),
     (
         *("spherical_thrust", "bearing.outer_raceway_radius=150 mm"),
@@ -1206,7 +1206,7 @@ TYPED = [
     ),
     (
         *("tapered_thrust", "bearing.roller_axis_angle=30 deg"),
-        "[bearing]: TaperedThrustRollerBearing: `roller_half_angle` is 0.116937 rad; it",
+        "[bearing]: TaperedThrustRollerBearing: `roller_half_angle` is 0.116937 rad;",
     ),
     (
         *("tapered_thrust", "bearing.radial_internal_clearance=5 um"),
