@@ -22,13 +22,7 @@ from bearingjax.noise import (
 )
 from bearingjax.noise.warning import _short_waves
 from bearingjax.numerics import Result
-from bearingjax.scene import (
-    noise_as_dict,
-    noise_run,
-    read_noise,
-    run_noise,
-    shipped_scenes,
-)
+from bearingjax.scene import noise_as_dict, noise_run, read_noise, run_noise
 
 # Seven balls, one turn: what all tests here share is compiled once.
 SCENE = """
@@ -324,39 +318,3 @@ def test_random_bearings_need_to_know_how_they_scatter(run, scene):
     assert done.status == 2 and "`vibration.tolerance`: is missing" in done.err
     done = run("noise", scene, "--monte-carlo", 0)
     assert done.status == 2 and "--monte-carlo is 0; it must be at least 1" in done.err
-
-
-@pytest.mark.slow
-def test_form_errors_of_spherical_rollers(run, tmp_path):
-    """By exact kinematics: lines are named after the waves and their row."""
-    out, path = tmp_path / "a.json", tmp_path / "fan.toml"
-    text = shipped_scenes()["spherical_roller"].read_text("utf-8")
-    path.write_text(
-        f"""{text}
-[vibration]
-mass = "40 kg"
-retardation = "10 us"
-turns = 1
-samples = 128
-
-[[deviations.waves]]
-part = "elements"
-row = 0
-order = 2
-amplitude = "2 um"
-
-[[deviations.waves]]
-part = "outer raceway"
-row = 1
-order = 3
-amplitude = "6 um"
-""",
-        encoding="utf-8",
-    )
-    done = run("noise", path, "--json", out)
-    assert done.status == 0, done.err
-    found = read(out)
-    assert found["result"] == "converged"
-    assert np.all(np.isfinite(found["acceleration"]))
-    lines = found["lines"]
-    assert any("row 0, order 2" in str(line["causes"]) for line in lines[:4])
