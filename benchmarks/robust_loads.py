@@ -7,7 +7,7 @@ nothing can carry (a taper pulled apart, axial load on an NU), each of which mus
 named. Every answer is checked by the residual of a fresh evaluation: at most 1e-8 of
 the load, or 1e-13 of the forces that cancel in it.
 
-Run: python benchmarks/robust_loads.py [--count 700] [--smoke]
+Run: python benchmarks/robust_loads.py [--count 700] [--only spherical toroidal]
 """
 
 import argparse
@@ -175,8 +175,12 @@ def main():
     )
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--smoke", action="store_true", help="three loads per decade")
+    parser.add_argument(
+        "--only", nargs="+", choices=list(designs()), help="under loads they carry"
+    )
     args = parser.parse_args()
-    for row in run(3 if args.smoke else args.count, args.seed):
+    beyond = {} if args.only is None else {"beyond": ()}
+    for row in run(3 if args.smoke else args.count, args.seed, args.only, **beyond):
         print(json.dumps(row), flush=True)
 
 

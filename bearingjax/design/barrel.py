@@ -11,6 +11,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .bearing import AbstractRollerBearing, TaperedRollerBearing
 from .checks import check, concrete, in_range, is_traced, number, positive
+from .profile import sagitta
 
 _FAR = 0.01
 """Distance of the centre of the outer sphere from the axis, over its radius, above
@@ -180,12 +181,60 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
 
     Rings that are moved along the axis by s lose radial clearance by
     s²/(r_o + r_i - D), and nothing holds them axially but that, as `Finite` kinematics
-    see it.
+    see it: `lost_clearance`, `free_travel`.
 
     Attributes are those of `AbstractBarrelBearing`.
 
     Traced: all fields but `n_rollers`.
     """
+
+    @property
+    def _centres(self):
+        """Distance of the centres of both arcs when rollers touch both raceways, and
+        that of the inner one from the axis [m]."""
+        _, outer, inner = self.arc_radii
+        middle = 0.5 * (self.pitch_diameter - self.roller_diameter) - self.gap
+        return outer + inner - self.roller_diameter, middle + inner
+
+    def lost_clearance(
+        self, travel: Scalar | float, tilt: Scalar | float = 0.0
+    ) -> Scalar:
+        """Radial internal clearance that axial travel and tilt of the rings take [m].
+
+        A tilt moves the arc of the inner raceway along the axis by its centre's
+        distance from the axis times the tilt, at opposite rollers in opposite
+        directions, and lowers it.
+
+        Args:
+            travel: Axial displacement of the rings against each other from where their
+                raceways stand opposite [m].
+            tilt: Of ring against ring [rad].
+
+        Returns:
+            Diametral, in the plane of the tilt; below zero where the tilt gives more
+            than it takes [m]. Differentiable.
+
+        Source: two arcs whose centres are r_o + r_i - D apart. SKF prints
+            k2 s²/B, where B/k2 is that distance, and for the axial displacement that a
+            tilt α amounts to k1 B α, where k1 B is the distance from the axis.
+        """
+        apart, arm = self._centres
+        aside = arm * jnp.sin(tilt)
+        lowered = 2.0 * arm * jnp.sin(0.5 * tilt) ** 2
+        taken = [sagitta(s, apart) - lowered for s in (travel + aside, travel - aside)]
+        return taken[0] + taken[1]
+
+    def free_travel(self, clearance: Scalar | float) -> Scalar:
+        """Axial travel of untilted rings that takes a radial internal clearance [m].
+
+        Args:
+            clearance: Radial internal clearance, diametral, at least zero [m].
+
+        Returns:
+            To either side: where `lost_clearance` is `clearance`. Differentiable.
+        """
+        apart, _ = self._centres
+        return jnp.sqrt(clearance * (apart - 0.25 * clearance))
 
     @property
     def holds_axially(self) -> bool:

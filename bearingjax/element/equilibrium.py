@@ -292,7 +292,7 @@ def _problem(given: _Given, shapes) -> Problem:
         d = derivatives(element, rings, x, known, of_own=True)
         scale = _load(element, known)
         # Round-off of positions, and what is small against the tether's own force.
-        noise = eps * trace(d.hessian) + 1e-6 * element.tether
+        noise = eps * seeking.spread * trace(d.hessian) + 1e-6 * element.tether
         noise = _size(element, x, magnitude) * noise
         # A loose element need not be placed: its solve is over.
         loose = is_loose(element, x - given.centre, magnitude, scale, d.gradient)

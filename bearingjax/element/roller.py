@@ -132,6 +132,14 @@ class RollerSeeking(Seeking):
         t, m, tilt = jnp.abs(rings.between)
         return t + m + tilt * self.element.constants.half_length
 
+    @property
+    def spread(self):
+        c = self.element.constants
+        if self.element.geometry.is_linear:
+            return 1.0
+        # Exact motions are those of points that turn about O.
+        return 1.0 + c.pitch_radius / c.half_length
+
     def pressed(self, approach):
         return self.element.constants.lines[0].pressed(approach)
 

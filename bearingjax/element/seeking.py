@@ -36,6 +36,12 @@ class Seeking(eqx.Module):
         """Relative displacement of the rings in the element's section [m]."""
         return jnp.sum(jnp.abs(rings.between[: self.element.n_displacements]))
 
+    @property
+    def spread(self) -> Scalar | float:
+        """Displacements from which contact coordinates are differences, over those of
+        the element [1]: contact coordinates round by as much more."""
+        return 1.0
+
     def pressed(self, approach: Scalar) -> Scalar:
         """Approximate load of one raceway contact pressed by `approach` [N].
 

@@ -156,8 +156,9 @@ def message(solution: Solution, moving_ring: str) -> str:
             return (
                 "No load path for a rolling element: it leaves its raceway, because"
                 " nothing holds it (a turning roller without a rib, along its axis; a"
-                " ball of a thrust bearing, out of its groove). Add the rib or axial"
-                " load, or lower the speed."
+                " ball of a thrust bearing, out of its groove; a barrel roller that far"
+                " too much load or tilt turns over). Add the rib or axial load, or"
+                " lower the speed; check the load and its unit."
             )
         freedom = FREEDOMS[int(solution.unrestrained)]
         if freedom in solution.held:

@@ -20,6 +20,8 @@ BALLS = balls(7, bj.DeepGrooveBallBearing, radial_internal_clearance=10e-6)
 TAPER = taper(5)
 # Neither lever nor profile of these sees the diameter.
 ROLLERS = bj.CylindricalRollerBearing(6, 0.065, 0.010, 0.010)
+ARCS = dict(roller_profile_radius=0.0745, inner_raceway_radius=0.0767)
+BARRELS = bj.SphericalRollerRow(5, 0.13, 0.0215, 0.0185, contact_angle=0.17, **ARCS)
 Q = jnp.array([1e-6, 2e-6, 0, 1e-5, 0, 0, 22e-6, -5e-6, 18e-6, 0, 2e-5, 0])
 
 
@@ -37,8 +39,9 @@ def none_of(bearing):
         bj.BearingElement(BALLS),
         bj.BearingElement(BALLS, kinematics=bj.element.Finite()),
         bj.BearingElement(TAPER, quadrature=bj.numerics.Midpoint(20)),
+        bj.BearingElement(BARRELS),
     ],
-    ids=["balls", "balls, finite", "rollers"],
+    ids=["balls", "balls, finite", "rollers", "barrels, finite"],
 )
 def test_a_wave_of_order_one_is_a_ring_that_has_moved(element):
     bearing = element.bearing
@@ -82,7 +85,32 @@ def test_raised_on_both_raceways_is_a_larger_element(bearing):
     assert np.max(np.abs(forces[0] - plain)) > 1e-3 * size
 
 
-@pytest.mark.parametrize("bearing", [BALLS, TAPER], ids=["balls", "rollers"])
+@pytest.mark.parametrize("exact", [False, True])
+def test_raised_raceways_of_barrels_leave_less_clearance(exact):
+    kinematics = bj.element.Finite() if exact else bj.element.Linearised()
+    bearing = bj.ToroidalRollerBearing(
+        *(7, 0.140, 0.0195, 0.030),
+        roller_profile_radius=0.4074,
+        outer_raceway_radius=0.42,
+        inner_raceway_radius=0.42,
+        radial_internal_clearance=10e-6,
+    )
+    deviation = none_of(bearing)
+    deviation[:, :, RAISED] = 1.5e-6
+    tighter = dataclasses.replace(bearing, radial_internal_clearance=4e-6)
+    forces = [
+        np.asarray(bj.BearingElement(b, kinematics=kinematics).force(Q))
+        for b in (tighter, deviating(bearing, deviation), bearing)
+    ]
+    size = np.max(np.abs(forces[0]))
+    np.testing.assert_allclose(*forces[:2], rtol=0, atol=SOLVER * size)
+    assert np.max(np.abs(forces[0] - forces[2])) > 1e-2 * size
+
+
+BY_EACH = {"balls": BALLS, "rollers": TAPER, "barrels": BARRELS}
+
+
+@pytest.mark.parametrize("bearing", BY_EACH.values(), ids=BY_EACH)
 def test_derivative_by_each_deviation(bearing):
     choice = {} if bearing is BALLS else {"quadrature": bj.numerics.Midpoint(20)}
     rng = np.random.default_rng(3)

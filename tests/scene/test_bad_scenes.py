@@ -1130,6 +1130,104 @@ def test_wrong_barrels_thrust_and_crossed_rollers(kind, setting, message):
     assert str(caught.value).startswith(f"{kind}_roller.toml: {message}")
 
 
+TYPES = {
+    "toroidal": """
+        pitch_diameter = "140 mm"
+        roller_diameter = "19.5 mm"
+        roller_length = "30 mm"
+        roller_profile_radius = "407.4 mm"
+        outer_raceway_radius = "420 mm"
+        inner_raceway_radius = "420 mm"
+        """,
+    "spherical_thrust": """
+        pitch_diameter = "120 mm"
+        roller_diameter = "22 mm"
+        roller_length = "26 mm"
+        contact_angle = "50 deg"
+        roller_profile_radius = "100 mm"
+        inner_raceway_radius = "104 mm"
+        profile_offset = "2 mm"
+        """,
+    "tapered_thrust": """
+        pitch_diameter = "120 mm"
+        roller_diameter = "14 mm"
+        roller_length = "20 mm"
+        roller_axis_angle = "83 deg"
+        roller_half_angle = "6.7 deg"
+        """,
+}
+
+TYPED = [
+    (
+        *("toroidal", "bearing.outer_raceway_radius=400 mm"),
+        "[bearing]: ToroidalRollerBearing: `outer_raceway_radius` is 0.4 m; it must be"
+        " at least `roller_profile_radius`, 0.4074 m",
+    ),
+    (
+        *("toroidal", "bearing.outer_raceway_radius=-420 mm"),
+        "[bearing]: ToroidalRollerBearing: `outer_raceway_radius` is -0.42 m; it must",
+    ),
+    (
+        *("toroidal", "bearing.roller_profile_radius=14 mm"),
+        "[bearing]: ToroidalRollerBearing: `roller_profile_radius` is 0.014 m; it must"
+        " be above half the roller length, 0.015 m",
+    ),
+    (
+        *("toroidal", "bearing.n_rollers=30"),
+        "[bearing]: ToroidalRollerBearing: `n_rollers` is 30 rollers; it must be low",
+    ),
+    (
+        "toroidal",
+        "bearing.contact_angle=10 deg",
+        "`bearing.contact_angle`: unknown key",
+    ),
+    ("toroidal", "bearing.staggered=true", "`bearing.staggered`: unknown key"),
+    (
+        *("spherical_thrust", "bearing.contact_angle=0 deg"),
+        "[bearing]: SphericalThrustRollerBearing: `contact_angle` is 0 rad; it must be",
+    ),
+    (
+        *("spherical_thrust", "bearing.radial_internal_clearance=10 um"),
+        "[bearing]: SphericalThrustRollerBearing: `radial_internal_clearance` is 1e-05",
+    ),
+    (
+        *("spherical_thrust", "bearing.profile_offset=14 mm"),
+        "[bearing]: SphericalThrustRollerBearing: `profile_offset` is 0.014 m; it",
+    ),
+    (
+        *("spherical_thrust", "bearing.outer_raceway_radius=150 mm"),
+        "[bearing]: SphericalThrustRollerBearing: `outer_raceway_radius` is 0.15 m; it"
+        " must be 0.104603 m to 1 %, which puts the centre of the sphere on the axis",
+    ),
+    (
+        *("tapered_thrust", "bearing.roller_axis_angle=85 deg"),
+        "[bearing]: TaperedThrustRollerBearing: `roller_half_angle` is 0.116937 rad; it"
+        " must be above 45° and at most 90° with `roller_axis_angle` added",
+    ),
+    (
+        *("tapered_thrust", "bearing.roller_axis_angle=30 deg"),
+        "[bearing]: TaperedThrustRollerBearing: `roller_half_angle` is 0.116937 rad;",
+    ),
+    (
+        *("tapered_thrust", "bearing.radial_internal_clearance=5 um"),
+        "[bearing]: TaperedThrustRollerBearing: `radial_internal_clearance` is 5e-06 m",
+    ),
+]
+
+
+@pytest.mark.parametrize("kind, setting, message", TYPED)
+def test_wrong_toroidal_and_thrust_bearings(tmp_path, kind, setting, message):
+    path = a_file(
+        tmp_path,
+        f'[bearing]\ntype = "{kind}_roller"\nn_rollers = 14\n'
+        f'{TYPES[kind]}\n[operating]\nload = {{ Fx = "0 N" }}\n',
+    )
+    read_scene(path)
+    with pytest.raises(SceneError) as caught:
+        read_scene(path, [setting])
+    assert str(caught.value).split(": ", 1)[1].startswith(message)
+
+
 @pytest.mark.parametrize("kind", ["spherical", "crossed"])
 def test_bearings_of_two_rows_are_in_no_set(kind):
     told = f"`set`: a {kind} roller bearing has both its rows already"

@@ -157,23 +157,28 @@ def test_orders_of_a_22220():
 
 def test_tilt_factors_of_toroidal_bearings():
     """Radii fitted to k2 give k1, the shift of the inner arc as the ring tilts."""
+
+    def arm_of(entry):
+        arc = length(entry, "inner_raceway_radius")
+        sizes = length(entry, "pitch_diameter"), length(entry, "roller_diameter")
+        return 0.5 * (sizes[0] - sizes[1]) + arc
+
     for entry in (e for e in ENTRIES if e.type == "toroidal_roller"):
-        arc, pitch = (
-            length(entry, "inner_raceway_radius"),
-            length(entry, "pitch_diameter"),
-        )
-        arm = 0.5 * (pitch - length(entry, "roller_diameter")) + arc
         printed = entry.printed["tilt_factor"] * entry.width * 180.0 / np.pi
-        assert arm == pytest.approx(printed, rel=0.04)
+        assert arm_of(entry) == pytest.approx(printed, rel=0.04)
     # Examples that SKF prints of a C 3052: travel of 6.5 mm costs 0.039 mm of radial
-    # clearance, 0.15 mm are gone after 12.7 mm.
-    row: Any = bj.catalogue_entry("C 3052").bearing
-    apart = float(row.outer_raceway_radius + row.inner_raceway_radius)
-    apart -= float(row.roller_diameter)
-    lost = 2.0 * (apart - np.sqrt(apart**2 - 6.5e-3**2))
-    assert lost == pytest.approx(0.039e-3, abs=0.5e-6)
-    travel = np.sqrt(apart**2 - (apart - 0.5 * 0.15e-3) ** 2)
-    assert travel == pytest.approx(12.7e-3, abs=0.05e-3)
+    # clearance, 0.15 mm are gone after 12.7 mm; 0.3° leave 15.5 mm of the travel of
+    # 19.3 mm at which rollers reach the edge.
+    entry: Any = bj.catalogue_entry("C 3052")
+    lost = entry.bearing.lost_clearance(6.5e-3)
+    assert float(lost) == pytest.approx(0.039e-3, abs=0.5e-6)
+    travel = entry.bearing.free_travel(0.15e-3)
+    assert float(travel) == pytest.approx(12.7e-3, abs=0.05e-3)
+    tilt = np.deg2rad(0.3)
+    k1_b = entry.printed["tilt_factor"] * entry.width * 180.0 / np.pi
+    edge = to_si(entry.printed["axial_travel"], "length")
+    assert edge - k1_b * tilt == pytest.approx(15.5e-3, abs=0.05e-3)
+    assert edge - arm_of(entry) * tilt == pytest.approx(15.5e-3, rel=0.01)
 
 
 @pytest.mark.slow

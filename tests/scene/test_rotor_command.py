@@ -5,6 +5,7 @@ import dataclasses
 import json
 import warnings
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -78,6 +79,35 @@ def command(*given, scene="rotor_paper_12"):
 
 def read(path):
     return json.loads(path.read_text(encoding="utf-8"))
+
+
+@pytest.mark.slow
+def test_spherical_rollers_locate_a_rotor(run, tmp_path):
+    """By their exact kinematics: at rest what the bearing alone bears there."""
+    out, path = tmp_path / "a.json", tmp_path / "fan.toml"
+    text = shipped_scenes()["rotor_flexible"].read_text("utf-8")
+    text = text[: text.index("[rotor.campbell]")]
+    before, after = text.index("[bearings.locating]"), text.index("[bearings.free]")
+    own = '[bearings.locating]\ndesignation = "22208 E"\n\n'
+    path.write_text(text[:before] + own + text[after:], encoding="utf-8")
+    done = run("rotor", path, "--set", "rotor.modes=5", "--json", out)
+    assert done.status == 0, done.err
+    found = read(out)
+    static, station = found["static"], 0
+    element = bj.BearingElement(bj.catalogue_entry("22208 E").bearing)
+    assert isinstance(element.kinematics, bj.element.Finite)
+    q = np.zeros(12)
+    q[6:11] = static["displacement"][station]
+    alone = jax.jit(lambda q: element.model().evaluate(q))(q)
+    force = np.asarray(alone.force)[6:11]
+    load = np.array(static["load"])[station]
+    assert np.abs(load[:3]).max() > 50.0
+    assert np.abs(force[:3] - load[:3]).max() < 1e-6 * np.abs(load).max()
+    stiffness = np.asarray(alone.stiffness)[6:9, 6:9]
+    got = np.array(static["stiffness"])[station][:3, :3]
+    assert np.abs(got - stiffness).max() < 1e-5 * np.abs(stiffness).max()
+    # Nothing but round-off resists the slope of the shaft.
+    assert np.abs(load[3:]).max() < 1e-6 * 0.03 * np.abs(load[:3]).max()
 
 
 @pytest.mark.slow

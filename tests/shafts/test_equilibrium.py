@@ -180,8 +180,12 @@ def test_stiff_surroundings():
     np.testing.assert_allclose(own[:2], lever + held, rtol=1e-9)
 
 
-def test_self_aligning_bearing_is_a_hinge():
-    hinge = bj.Installed(bj.BearingElement(bj.load_bearing("1206")))
+@pytest.mark.parametrize("name", ["1206", "22206 E"])
+def test_self_aligning_bearing_is_a_hinge(name):
+    """Balls, and barrel rollers by their exact kinematics."""
+    element = bj.BearingElement(bj.load_bearing(name))
+    assert isinstance(element.kinematics, bj.element.Finite) or name == "1206"
+    hinge = bj.Installed(element)
     line = ShaftLine("s", [0.4], [0.03])
     seats = [Seat("A", "s", 0.02, hinge), springs("B", "s", 0.38)]
     load = ShaftLoad("p", "s", 0.2, (0.0, -3000.0, 0.0))
