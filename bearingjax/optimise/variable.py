@@ -9,7 +9,6 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
 
 from .system import Design
 
@@ -105,22 +104,24 @@ class Variable:
         return start
 
 
-def design_numbers(design: Any, entries: bool = False) -> dict[str, Array]:
+def design_numbers(design: Any, entries: bool = False) -> dict[str, Any]:
     """Every single real number of a design, by its dotted path.
 
     Args:
         design: An element, bearing or part.
-        entries: Whether those of vectors are listed too, "shafts.0.outer_diameter.1".
+        entries: Whether those of vectors are listed too, "shafts.0.outer_diameter.1";
+            the design is then concrete.
     """
     leaves, _ = jax.tree_util.tree_flatten_with_path(design)
-    found: dict[str, Array] = {}
+    found: dict[str, Any] = {}
     for keys, leaf in leaves:
         if not jnp.issubdtype(jnp.result_type(leaf), jnp.floating):
             continue
         if jnp.shape(leaf) == ():
             found[dotted(keys)] = leaf
         elif entries and jnp.ndim(leaf) == 1:
-            found |= {f"{dotted(keys)}.{k}": one for k, one in enumerate(leaf)}
+            head, values = dotted(keys), np.asarray(leaf)
+            found |= {f"{head}.{k}": one for k, one in enumerate(values)}
     return found
 
 

@@ -25,7 +25,6 @@ from .heat_table import friction_of
 from .life_table import life_conditions
 from .optimise_table import (
     BoundKeys,
-    Optimisation,
     SearchKeys,
     bound_key,
     check_present,
@@ -102,13 +101,14 @@ class ShaftOptimisation:
     inputs: dict[str, Any] = dataclasses.field(repr=False)
 
 
-def read_optimisation(
-    source: str | Path, settings: Iterable[str] = ()
-) -> Optimisation | ShaftOptimisation:
+def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     """Read a scene with [optimise], of a bearing or of a system of shafts.
 
     Args:
         source, settings: As in `read_scene`.
+
+    Returns:
+        `Optimisation`, or `ShaftOptimisation`.
 
     Raises:
         SceneError: One line that names file, key, fault and what is allowed.
@@ -134,11 +134,11 @@ def read_optimisation(
     # Ratings of the catalogue hold for no other inside.
     changed = {
         seat.name: [
-            f"bearing.{key.removeprefix(f'bearings.{seat.name}.')}"
-            for key in free.keys()
-            if key.startswith(f"bearings.{seat.name}.")
+            key
+            for key in ({} if alone is None else installed_numbers(alone))
+            if key.replace("bearing.", f"bearings.{seat.name}.", 1) in free.keys()
         ]
-        for seat in scene.system.seats
+        for seat, alone in zip(scene.system.seats, scene.bearings, strict=True)
     }
     each = scene.cases or (scene,)
     hours = [one.hours for one in each]

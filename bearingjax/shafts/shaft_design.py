@@ -240,10 +240,10 @@ class PowerOf(AbstractMeasure):
     measure: AbstractMeasure
     power: int = eqx.field(static=True)
 
-    def __call__(self, element, cases, solution):
+    def __call__(self, element: Any, cases, solution):
         return self.measure(element, cases, solution) ** self.power
 
-    def exact(self, element, cases, solution):
+    def exact(self, element: Any, cases, solution):
         return self.measure.exact(element, cases, solution) ** self.power
 
     @property
@@ -277,7 +277,7 @@ class SystemLife(AbstractMeasure):
     The damage of the cases is added up. As an objective it is made largest.
     """
 
-    def __call__(self, element, cases, solution):
+    def __call__(self, element: Any, cases, solution):
         return system_life(element.system, element.hours(cases, solution))
 
     @property
@@ -370,11 +370,11 @@ class Worst(AbstractSmooth):
                 pairs.setdefault(frozenset(pair), k)
         return pairs.values()
 
-    def __call__(self, element, cases, solution):
+    def __call__(self, element: Any, cases, solution):
         of = smooth_minimum if self._power < 0 else smooth_maximum
         return of(self.samples(element, cases, solution), self.exponent)
 
-    def exact(self, element, cases, solution):
+    def exact(self, element: Any, cases, solution):
         of = jnp.min if self._power < 0 else jnp.max
         return of(self.samples(element, cases, solution))
 
@@ -402,7 +402,7 @@ class PowerLoss(AbstractMeasure):
     The design needs the oils of its bearings.
     """
 
-    def __call__(self, element, cases, solution):
+    def __call__(self, element: Any, cases, solution):
         if solution.friction is None:
             raise ValueError(
                 "PowerLoss: the design has no `oils`, so that the friction of its"
@@ -423,7 +423,7 @@ class PowerLoss(AbstractMeasure):
 class ShaftMass(AbstractMeasure):
     """Mass of the shafts, without wheels and bearings [kg]."""
 
-    def __call__(self, element, cases, solution):
+    def __call__(self, element: Any, cases, solution):
         system = element.system
         beams = (system.beam(k) for k in range(len(system.shafts)))
         return sum(jnp.sum(beam.element_masses()) for beam in beams)
