@@ -37,7 +37,8 @@ class BearingOil(eqx.Module):
     Attributes:
         lubricant: The oil.
         temperature: Its temperature [K].
-        supply, skf, series, diameters: As in `ThermalPaths`.
+        supply, skf, series: As in `ThermalPaths`.
+        diameters: Bore and outside diameter for SKF's model (2,) [m].
     """
 
     lubricant: Lubricant
