@@ -9,8 +9,8 @@ def add(commands):
     command = commands.add_parser(
         "optimise",
         help="the free numbers of a design that make a measure least",
-        description="Optimise the bearing of a scene file, as its [optimise] says, over"
-        " its [cases].",
+        description="Optimise the bearing, or the shafts on their bearings, of a scene"
+        " file, as its [optimise] says, over its [cases].",
         epilog="Exit status: 0 optimised, 2 bad input, 3 not solved or not converged.",
     )
     add_scene(command)
@@ -21,10 +21,11 @@ def add(commands):
 
 
 def run(options, tools: Tools) -> Outcome:
-    """Optimise the bearing of a scene."""
+    """Optimise the bearing, or the system of shafts, of a scene."""
     from ..numerics import SolveError
     from ..optimise.system import element_of
     from ..scene import (
+        Scene,
         optimisation_as_dict,
         optimisation_report,
         read_optimisation,
@@ -44,7 +45,8 @@ def run(options, tools: Tools) -> Outcome:
 
     solved = found.converged
     best = scene_of_design(task, found.element)
-    if solved:
+    alone = isinstance(best, Scene)
+    if solved and alone:
         best = with_set_preload(best)
 
     def draw():
@@ -63,6 +65,6 @@ def run(options, tools: Tools) -> Outcome:
         lambda: optimisation_as_dict(task, found, best),
         optimisation_report(task, found, best) if solved else None,
         pictures={"Before and after": draw} if solved else {},
-        drawing=draw_bearing,
+        drawing=draw_bearing if alone else None,
         problems=[] if solved else [f"{found.result}: {found.message}"],
     )

@@ -25,7 +25,8 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
 
     Args:
         owner: Class of the field, or an instance.
-        path: Name of the field; dotted, "rows.0.position", of a part of an instance.
+        path: Name of the field; dotted, "rows.0.position", of a part of an instance;
+            a number at the end is the entry of an array.
         index: Which entry of an array.
 
     Returns:
@@ -36,6 +37,9 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
         KeyError, AttributeError: If there is no such field.
     """
     *parts, name = path.split(".")
+    if name.isdecimal():
+        *parts, name = parts
+        index = (int(path.rpartition(".")[2]),)
     for part in parts:
         owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
     fields = {field.name: field for field in dataclasses.fields(owner)}

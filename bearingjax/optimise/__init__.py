@@ -18,8 +18,8 @@ off the ends with `EdgeLoad`. Designs that do not solve are rejected and listed 
 `best.rejected`. `best.converged` says that the first-order conditions of a minimum
 hold, with exact gradients (`best.optimality`, at most `tolerance`; of "nelder-mead" at
 most its root), whatever the method says. Warnings about the best design are in
-`best.after.warnings`. Balls and rollers that may skid: see `bearingjax.skid`.
-Worked: the notebook roller_bearing.
+`best.after.warnings`. Balls and rollers that may skid: see `bearingjax.skid`; shafts on
+several bearings: `bearingjax.shafts.ShaftDesign`. Worked: the notebook roller_bearing.
 
 `estimate_geometry(bore, outside_diameter, width, kind, C, C0)` makes a design of a
 bearing of which only the catalogue data are known: the rolling elements that best fit

@@ -17,7 +17,15 @@ from ..statics.warning import warnings as warnings_of
 from .constraint import Constraint
 from .life import OfLife
 from .measure import exact_of, least_size_of
-from .system import AbstractSystem, Design, failure, loads_of, ready, solved_case
+from .system import (
+    AbstractSystem,
+    Design,
+    failure,
+    has_loads,
+    loads_of,
+    ready,
+    solved_case,
+)
 from .trials import Trial
 from .variable import Variable, with_values
 
@@ -53,7 +61,9 @@ class Outcome(NamedTuple):
     @property
     def warnings(self) -> list[str]:
         """A sentence for each kind of warning: in how many cases, and the worst."""
-        return [*warnings_of(loads_of(self.solution)), *self.doubts()]
+        found = self.solution
+        told = warnings_of(loads_of(found)) if has_loads(found) else []
+        return [*told, *self.doubts()]
 
 
 class Bound(NamedTuple):
@@ -77,7 +87,7 @@ class Problem:
     def __init__(
         self,
         element: Design,
-        cases: Cases,
+        cases: Any,
         variables: Sequence[Variable],
         objective: Measure,
         constraints: Sequence[Constraint],

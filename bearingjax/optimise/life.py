@@ -147,6 +147,10 @@ class Damage(OfLife):
         return 1.0 / value
 
     @property
+    def maximised(self):
+        return True
+
+    @property
     def label(self):
         return "damage"
 

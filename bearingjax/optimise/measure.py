@@ -20,7 +20,6 @@ from ..design.checks import check, number
 from ..element.frame import FREEDOMS, RINGS, STIFFNESS_UNITS
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit, unit_of
-from ..statics.cases import Cases
 from ..statics.solution import RollerSolution, Solution
 from .smooth import EXPONENT, smooth_maximum, smooth_minimum
 from .system import Design, loads_of
@@ -30,7 +29,7 @@ class AbstractMeasure(eqx.Module):
     """One number of a design over its cases."""
 
     @abc.abstractmethod
-    def __call__(self, element: Design, cases: Cases, solution: Any) -> Scalar:
+    def __call__(self, element: Design, cases: Any, solution: Any) -> Scalar:
         """The measure, smooth in the design.
 
         Args:
@@ -39,7 +38,7 @@ class AbstractMeasure(eqx.Module):
             solution: Solution of the cases, leading axis case.
         """
 
-    def exact(self, element: Design, cases: Cases, solution: Any) -> Scalar:
+    def exact(self, element: Design, cases: Any, solution: Any) -> Scalar:
         """The measure with the true maximum or minimum in place of the smooth one.
 
         Args:
@@ -61,6 +60,11 @@ class AbstractMeasure(eqx.Module):
     def told(self, value: Any) -> Any:
         """Convert a value of this measure to that of `as_told`."""
         return value
+
+    @property
+    def maximised(self) -> bool:
+        """Whether it is made least so that what reports show becomes largest."""
+        return False
 
     @property
     def least_size(self) -> float:
@@ -326,7 +330,7 @@ def label_of(measure: Any) -> str:
     return getattr(measure, "__name__", type(measure).__name__)
 
 
-def exact_of(measure: Any, element: Design, cases: Cases, solution: Any) -> Scalar:
+def exact_of(measure: Any, element: Design, cases: Any, solution: Any) -> Scalar:
     """`exact` of a measure; for a plain function its value.
 
     Args:
@@ -346,7 +350,7 @@ def least_size_of(measure: Any) -> float:
     return measure.least_size if isinstance(measure, AbstractMeasure) else 0.0
 
 
-def hour_weights(cases: Cases) -> Float[Array, " case"]:
+def hour_weights(cases: Any) -> Float[Array, " case"]:
     """Share of each case in all hours; equal shares if the cases have no hours.
 
     Args:

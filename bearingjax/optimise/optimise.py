@@ -18,7 +18,7 @@ from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem
 from .measure import AbstractMeasure, label_of
 from .search import METHODS, Ending, search, takes_gradients
-from .system import Design, check_design
+from .system import AbstractSystem, Design, check_design
 from .trials import Trial, Trials, optimality
 from .variable import Variable, check_variables
 
@@ -70,6 +70,7 @@ class Optimised:
             are kept), "step_limit", "stalled" (the method could not go on), or
             "infeasible" (no design was found that keeps the constraints).
         message: The same in words.
+        cases: The operating cases.
     """
 
     element: Any
@@ -87,6 +88,7 @@ class Optimised:
     optimality: float
     result: str
     message: str
+    cases: Any
 
     @property
     def converged(self) -> bool:
@@ -96,7 +98,7 @@ class Optimised:
 
 def optimise(
     element: Design,
-    cases: Cases,
+    cases: Any,
     variables: Sequence[Variable],
     objective: Measure,
     constraints: Sequence[Constraint] = (),
@@ -125,8 +127,9 @@ def optimise(
 
     Args:
         element: The design to start from: an element, or a system, such as
-            `bearingjax.skid.SkiddingBearing`, whose balls may slip.
-        cases: Operating cases, all of this design.
+            `bearingjax.skid.SkiddingBearing`, whose balls may slip, or
+            `bearingjax.shafts.ShaftDesign`.
+        cases: Operating cases, all of this design; of a `ShaftDesign` `ShaftCases`.
         variables: The design variables.
         objective: The measure to be minimised, such as `PeakPressure()`, or any
             smooth function (element, cases, solution) -> scalar. Of a `RatingLife` its
@@ -165,11 +168,14 @@ def optimise(
     if isinstance(objective, AbstractMeasure):
         objective = objective.as_objective
     method = _check_method(method, constraints)
-    _check_call(cases, objective, constraints, max_steps, tolerance)
+    kind = element.of_cases if isinstance(element, AbstractSystem) else Cases
+    _check_cases(cases, kind)
+    _check_call(objective, constraints, max_steps, tolerance)
     check_design("optimise", element, cases)
     options = SolveOptions(free, fixed_ring, points, solve_tolerance)
     options.check("optimise", "solve_tolerance")
-    check_held("optimise", cases.load, cases.prescribed, options.free)
+    if isinstance(cases, Cases):
+        check_held("optimise", cases.load, cases.prescribed, options.free)
     start = check_variables(element, variables)
     problem = Problem(element, cases, variables, objective, constraints, options, build)
     slopes = takes_gradients(method)
@@ -227,6 +233,7 @@ def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimise
         optimality(best, tolerance),
         result,
         text,
+        problem.cases,
     )
 
 
@@ -326,13 +333,17 @@ def _check_method(method, constraints):
     return method
 
 
-def _check_call(cases, objective, constraints, max_steps, tolerance):
-    if not isinstance(cases, Cases):
+def _check_cases(cases, kind):
+    if not isinstance(cases, kind):
         raise TypeError(
-            f"optimise: `cases` is a {type(cases).__name__}; it must be a Cases."
+            f"optimise: `cases` is a {type(cases).__name__}; it must be a"
+            f" {kind.__name__}."
         )
-    if cases.design is not None:
+    if isinstance(cases, Cases) and cases.design is not None:
         raise ValueError("optimise: `cases` have several designs; give one element.")
+
+
+def _check_call(objective, constraints, max_steps, tolerance):
     if not callable(objective):
         raise TypeError(
             f"optimise: `objective` is a {type(objective).__name__}; it must be a"

@@ -1,8 +1,9 @@
-"""Designs to be optimised: a bearing alone, on its seats, or with more, such as oil."""
+"""Designs to be optimised: a bearing alone, on its seats, or with more, such as oil;
+or a machine with several bearings."""
 
 import abc
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import equinox as eqx
 
@@ -14,7 +15,16 @@ from ..statics.solution import Solution, message
 
 
 class AbstractSystem(eqx.Module):
-    """A bearing with all else that its cases need, with its own solve of a case."""
+    """A bearing with all else that its cases need, with its own solve of a case.
+
+    A system with several bearings has operating cases of its own kind, with `count` and
+    `hours`; its solved cases have no `solution`, and its measures are its own.
+
+    Attributes:
+        of_cases: Class of its operating cases.
+    """
+
+    of_cases: ClassVar[type] = Cases
 
     @property
     @abc.abstractmethod
@@ -41,8 +51,8 @@ class AbstractSystem(eqx.Module):
             options: Settings of the load solve.
 
         Returns:
-            A Module with the load solve as `solution` and the `Result` code of the
-            whole solve as `result`.
+            A Module with the load solve of the bearing as `solution`, if there is one
+            bearing, and the `Result` code of the whole solve as `result`.
         """
 
     @abc.abstractmethod
@@ -84,7 +94,7 @@ def check_design(owner: str, design: Any, cases: Any) -> None:
         check_element(owner, design)
 
 
-def solved_case(design: Design, case: Cases, options: SolveOptions) -> Any:
+def solved_case(design: Design, case: Any, options: SolveOptions) -> Any:
     """Solve one case of a design; for an element the load solve.
 
     An installed bearing is mounted at the speeds of the case, if it has any.
@@ -127,8 +137,27 @@ def loads_of(solved: Any) -> Any:
 
     Args:
         solved: From `solved_case`; of one or of many cases.
+
+    Raises:
+        TypeError: For those of a system of several bearings.
     """
-    return solved if isinstance(solved, Solution) else solved.solution
+    if isinstance(solved, Solution):
+        return solved
+    if not has_loads(solved):
+        raise TypeError(
+            "optimise: a measure of one bearing was asked of a system of several; take"
+            " those of the system, such as `bearingjax.shafts.Worst`."
+        )
+    return solved.solution
+
+
+def has_loads(solved: Any) -> bool:
+    """Whether solved cases are of one bearing.
+
+    Args:
+        solved: As in `loads_of`.
+    """
+    return isinstance(solved, Solution) or hasattr(solved, "solution")
 
 
 def failure(design: Design, solved: Any) -> str:
@@ -138,7 +167,10 @@ def failure(design: Design, solved: Any) -> str:
         design: The design.
         solved: From `solved_case`, concrete.
     """
-    loads = loads_of(solved)
-    if not isinstance(design, AbstractSystem) or int(loads.result):
+    loads = loads_of(solved) if has_loads(solved) else None
+    if loads is not None and (
+        not isinstance(design, AbstractSystem) or int(loads.result)
+    ):
         return message(loads, loads.moving_ring)
+    assert isinstance(design, AbstractSystem)
     return design.message(solved)

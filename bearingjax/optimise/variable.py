@@ -8,7 +8,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array
+import numpy as np
 
 from .system import Design
 
@@ -20,7 +20,8 @@ class Variable:
     Attributes:
         path: Its dotted path in the element, "bearing.roller_profile.crown_radius"; in
             a set "bearing.rows.0.bearing.…"; in a system from there,
-            "model.element.bearing.…". Several paths share one value.
+            "model.element.bearing.…"; a number at the end is the entry of a vector.
+            Several paths share one value.
         lower: Least value [SI].
         upper: Largest value [SI].
         start: First value [SI]; `None`: that of the design.
@@ -87,9 +88,10 @@ class Variable:
             ValueError: If the path does not lead to a number, or the number of the
                 design lies outside the bounds.
         """
-        there = design_numbers(element)
+        there = design_numbers(element, entries=True)
         for path in self.path:
             if path not in there:
+                there = design_numbers(element)
                 raise ValueError(
                     f"Variable: `path` is {path!r}, where the design has no"
                     f" number{_suggest(path, there)}; there are"
@@ -102,21 +104,33 @@ class Variable:
         return start
 
 
-def design_numbers(design: Any) -> dict[str, Array]:
+def design_numbers(design: Any, entries: bool = False) -> dict[str, Any]:
     """Every single real number of a design, by its dotted path.
 
     Args:
         design: An element, bearing or part.
+        entries: Whether those of vectors are listed too, "shafts.0.outer_diameter.1";
+            the design is then concrete.
     """
     leaves, _ = jax.tree_util.tree_flatten_with_path(design)
-    return {
-        _path(keys): leaf
-        for keys, leaf in leaves
-        if jnp.shape(leaf) == () and jnp.issubdtype(jnp.result_type(leaf), jnp.floating)
-    }
+    found: dict[str, Any] = {}
+    for keys, leaf in leaves:
+        if not jnp.issubdtype(jnp.result_type(leaf), jnp.floating):
+            continue
+        if jnp.shape(leaf) == ():
+            found[dotted(keys)] = leaf
+        elif entries and jnp.ndim(leaf) == 1:
+            head, values = dotted(keys), np.asarray(leaf)
+            found |= {f"{head}.{k}": one for k, one in enumerate(values)}
+    return found
 
 
-def _path(keys) -> str:
+def dotted(keys: Any) -> str:
+    """Dotted path of a leaf.
+
+    Args:
+        keys: As of `jax.tree_util.tree_flatten_with_path`.
+    """
     names = [str(getattr(k, "name", getattr(k, "idx", k))) for k in keys]
     # Laws have the paths of the keywords of BearingElement.
     return ".".join(name for name in names if name != "choices")
@@ -138,12 +152,18 @@ def changed(design: Any, values: Mapping[str, Any]) -> Any:
     for path, value in values.items():
         head, _, rest = path.partition(".")
         inner.setdefault(head, {})[rest] = value
+    if isinstance(design, jax.Array | np.ndarray):
+        for k, value in values.items():
+            design = jnp.asarray(design).at[int(k)].set(value)
+        return design
     if isinstance(design, tuple):
         parts = enumerate(design)
         return tuple(
             changed(p, inner[str(k)]) if str(k) in inner else p for k, p in parts
         )
     parts = {k: changed(getattr(design, k), v) for k, v in inner.items()}
+    if hasattr(design, "with_parts"):
+        return design.with_parts(**parts)
     return dataclasses.replace(design, **parts)
 
 

@@ -12,6 +12,7 @@ from ..optimise.life import Damage
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, label_of
 from ..optimise.optimise import Optimised
 from ..optimise.system import element_of, loads_of
+from ..shafts import ShaftDesign
 from .profiles import arc_gaps
 from .style import (
     COLOURS,
@@ -43,7 +44,8 @@ def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
     pressure along the roller with the highest pressure, of the case where that was
     before; bottom left the peak pressure of every case, or its life where lives are
     made largest; bottom right the objective over the steps of the search. Balls have no
-    profile and no pressure along it.
+    profile and no pressure along it. Of a system of shafts bottom left the life, or the
+    peak pressure, of each bearing.
 
     Args:
         found: From `optimise`.
@@ -52,10 +54,12 @@ def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
     Returns:
         The figure, 12 by 8.4 inches; of balls 12 by 4.6.
     """
-    found = _of_bearings(found)
-    rollers = isinstance(
-        rows_of(found.element.bearing)[0].bearing, AbstractRollerBearing
-    )
+    shafts = isinstance(found.element, ShaftDesign)
+    rollers = False
+    if not shafts:
+        found = _of_bearings(found)
+        first = rows_of(found.element.bearing)[0].bearing
+        rollers = isinstance(first, AbstractRollerBearing)
     names = "pa;ch" if rollers else "ch"
     height = 8.4 if rollers else 4.6
     figure = pyplot().figure(figsize=(12.0, height))
@@ -65,7 +69,10 @@ def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
         case, roller, raceway = worst(found.before.solution)
         _profiles(found, roller, raceway, axes["p"])
         _pressures(found, case, axes["a"])
-    _cases(found, axes["c"])
+    if shafts:
+        _each_bearing(found, axes["c"])
+    else:
+        _cases(found, axes["c"])
     _history(found, axes["h"])
     for ax in axes.values():
         ax.grid(color="0.9")
@@ -190,6 +197,25 @@ def _cases(found, ax):
     else:
         ax.set_ylabel("peak pressure [MPa]")
         ax.set_title("Peak pressure of the cases")
+    ax.legend(fontsize=SMALL, ncols=2, loc="upper right")
+
+
+def _each_bearing(found, ax):
+    """Plot the life [h] of each bearing of a system of shafts under all cases."""
+    names = [seat.name for seat in found.element.system.seats]
+    for side, shift in (("before", -0.2), ("after", 0.2)):
+        design = found.initial if side == "before" else found.element
+        hours = np.asarray(design.hours(found.cases, getattr(found, side).solution))
+        values = np.where(np.isfinite(hours), hours, np.nan)
+        places = np.arange(len(names)) + shift
+        bars = ax.bar(places, values, 0.38, color=_SIDES[side][0], label=side)
+        if len(names) <= 8:
+            ax.bar_label(bars, fmt=_life_label, fontsize=SMALL, padding=2)
+    ax.set_xticks(np.arange(len(names)), names)
+    ax.set_yscale("log")
+    ax.margins(y=0.25)
+    ax.set_ylabel("rating life [h]")
+    ax.set_title("Life of each bearing under all cases")
     ax.legend(fontsize=SMALL, ncols=2, loc="upper right")
 
 

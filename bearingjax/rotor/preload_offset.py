@@ -4,11 +4,14 @@ import jax.numpy as jnp
 
 from ..design.checks import positive
 from ..element.bearing_element import BearingElement, check_element
+from ..numerics.result import Result
 from ..numerics.types import Scalar, as_real
 from ..statics.load import solve_load
 
 
-def preload_offset(element: BearingElement, force: Scalar | float) -> Scalar:
+def preload_offset(
+    element: BearingElement, force: Scalar | float, *, throw: bool = True
+) -> Scalar:
     """Return the axial displacement of the inner ring of one bearing under a force [m].
 
     It is the `offset` along z of a `BearingSupport`: the force is that of the bearing
@@ -18,15 +21,19 @@ def preload_offset(element: BearingElement, force: Scalar | float) -> Scalar:
     Args:
         element: The bearing, or a set.
         force: Along +z on the inner ring [N].
+        throw: Raise if the bearing does not hold the force; otherwise the displacement
+            is NaN. Static.
 
     Returns:
         Displacement along z, differentiable with respect to design and force.
 
     Raises:
-        SolveError: If the bearing does not hold the force.
+        SolveError: If the bearing does not hold the force and `throw`.
     """
     check_element("preload_offset", element)
     pushing = as_real(force)
     positive("preload_offset", "force", pushing, "N")
     load = jnp.zeros(6, pushing.dtype).at[2].set(pushing)
-    return solve_load(element, load, free=["uz"]).displacement[8]
+    found = solve_load(element, load, free=["uz"], throw=throw)
+    held = found.result == Result.CONVERGED
+    return jnp.where(held, found.displacement[8], jnp.nan)

@@ -60,7 +60,6 @@ from .optimise_report import optimisation_as_dict as optimisation_as_dict
 from .optimise_report import optimisation_report as optimisation_report
 from .optimise_report import unsolved_start_as_dict as unsolved_start_as_dict
 from .optimise_table import Optimisation as Optimisation
-from .optimise_table import read_optimisation as read_optimisation
 from .output import as_dict as as_dict
 from .output import fits_as_dict as fits_as_dict
 from .output import solved_as_dict as solved_as_dict
@@ -85,6 +84,8 @@ from .rotor_run import run_rotor as run_rotor
 from .rotor_scene import RotorScene as RotorScene
 from .rotor_table import read_rotor as read_rotor
 from .scene_file import shipped_scenes as shipped_scenes
+from .shaft_optimise import ShaftOptimisation as ShaftOptimisation
+from .shaft_optimise import read_optimisation as read_optimisation
 from .shaft_report import shaft_page as shaft_page
 from .shaft_report import shaft_report as shaft_report
 from .shaft_run import ShaftRun as ShaftRun

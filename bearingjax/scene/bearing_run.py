@@ -15,6 +15,7 @@ from .optimise_table import Optimisation
 from .quantity import SceneError
 from .read import Scene
 from .set_preload import preload_warnings, set_preload
+from .shaft_optimise import ShaftOptimisation
 
 
 def run_scene(scene: Scene) -> Solution:
@@ -82,8 +83,10 @@ def _solved(element, load, prescribed, free, fixed_ring, speed, points, toleranc
     )
 
 
-def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
-    """Optimise the bearing of a scene.
+def run_optimisation(
+    task: Optimisation | ShaftOptimisation, progress: bool = False
+) -> Optimised:
+    """Optimise the bearing, or the system of shafts, of a scene.
 
     Args:
         task: From `read_optimisation`.
@@ -96,10 +99,20 @@ def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
         SolveError: If the design of the scene does not solve.
         SceneError: For choices that contradict each other.
     """
-    scene = task.scene
+    name, more = task.scene.name, {}
+    if isinstance(task, ShaftOptimisation):
+        design = task.design
+    else:
+        scene, design = task.scene, task.scene.installed
+        more = {
+            "points": scene.points,
+            "free": scene.free,
+            "fixed_ring": scene.fixed_ring,
+            "solve_tolerance": scene.tolerance,
+        }
     try:
         found = optimise(
-            scene.installed,
+            design,
             task.cases,
             task.variables,
             task.objective,
@@ -107,15 +120,12 @@ def run_optimisation(task: Optimisation, progress: bool = False) -> Optimised:
             task.method,
             max_steps=task.max_steps,
             tolerance=task.tolerance,
-            points=scene.points,
-            free=scene.free,
-            fixed_ring=scene.fixed_ring,
-            solve_tolerance=scene.tolerance,
             progress=progress,
+            **more,
         )
     except ValueError as error:
-        raise SceneError(f"{scene.name}: {error}") from error
-    return _judged(task, found)
+        raise SceneError(f"{name}: {error}") from error
+    return found if isinstance(task, ShaftOptimisation) else _judged(task, found)
 
 
 def _judged(task: Optimisation, found: Optimised) -> Optimised:

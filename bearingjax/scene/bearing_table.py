@@ -178,6 +178,8 @@ def _single(table: Table) -> AbstractBearing:
         if meant:
             problem = "unknown key (did you mean `designation`?)"
             raise table.error(meant[0], problem)
+        problem = "is missing; give it, or a `type` with all sizes, one of"
+        raise table.error("designation", f"{problem} {', '.join((*ROLLERS, *BALLS))}")
     if found is not None:
         table.skip("designation")
         table = table.completed(found[0])

@@ -2,13 +2,14 @@
 
 import dataclasses
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from ..shafts import HeatNetwork, ThermalPaths
 from ..statics.friction_skf import skf_series
 from ..statics.reference_speed import heat_area
-from .oil_table import series_of
+from .oil_table import Oil, series_of
 from .read import Scene
 from .schema import Keys, read_keys, scene_key
 from .table import Table
@@ -86,25 +87,36 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
     if scene.oil is None:
         problem = "is missing; [heat] needs the oil that makes the friction"
         raise table.error("lubricant", problem)
-    known = skf_series(scene.element.bearing)
-    usual, series, diameters = None, None, None
+    usual = None
     if scene.catalogue is not None:
         entry = scene.catalogue.entry
         area = heat_area(entry.bore, entry.outside_diameter, entry.width)
         usual = float(0.5 * _FLOW * area)
-        series = series_of(entry.designation, known)
-        diameters = entry.bore, entry.outside_diameter
     for name in _CONDUCTANCES:
         if name not in heat and usual is None:
             problem = "is missing; without a `designation` the area of its seats is not"
             raise heat.error(name, f"{problem} known")
         given[name] = heat.quantity(name, "thermal conductance", usual)
     with heat.building():
-        return ThermalPaths(
-            **given,
-            lubricant=scene.oil.lubricant,
-            supply=scene.oil.supply,
-            skf=bool(known),
-            series=series,
-            diameters=diameters,
-        )
+        return ThermalPaths(**given, **friction_of(scene, scene.oil))
+
+
+def friction_of(scene: Scene, oil: Oil) -> dict[str, Any]:
+    """Return what `friction_power` needs to know of a bearing, by field name.
+
+    Args:
+        scene: The bearing.
+        oil: Its oil.
+    """
+    known, series, diameters = skf_series(scene.element.bearing), None, None
+    if scene.catalogue is not None:
+        entry = scene.catalogue.entry
+        series = series_of(entry.designation, known)
+        diameters = entry.bore, entry.outside_diameter
+    return {
+        "lubricant": oil.lubricant,
+        "supply": oil.supply,
+        "skf": bool(known),
+        "series": series,
+        "diameters": diameters,
+    }

@@ -12,10 +12,10 @@ from ..numerics.types import as_array
 from ..statics.installed import Installed
 from .fit_table import Fits, fit_warnings
 from .optimise_table import Optimisation
-from .read import Scene
+from .shaft_optimise import ShaftOptimisation
 
 
-def scene_of_design(task: Optimisation, design: Installed) -> Scene:
+def scene_of_design(task: Optimisation | ShaftOptimisation, design: Any) -> Any:
     """Return the scene with its design replaced.
 
     Args:
@@ -24,8 +24,11 @@ def scene_of_design(task: Optimisation, design: Installed) -> Scene:
 
     Returns:
         Scene with the bearing, preload, seats and temperatures of the design, at the
-        highest speed of the cases, and the warnings of these seats.
+        highest speed of the cases, and the warnings of these seats; of a system of
+        shafts, with its system.
     """
+    if isinstance(task, ShaftOptimisation):
+        return dataclasses.replace(task.scene, system=design.system)
     force = None if design.preload is None else float(design.preload)
     scene = dataclasses.replace(task.scene, element=design.drawing, preload_force=force)
     if scene.fits is None:

@@ -9,18 +9,18 @@ from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
 from .optimise_design import scene_of_design
-from .optimise_table import WARMTH, Optimisation
+from .optimise_table import Optimisation
 from .output import fits_as_dict
 from .read import Scene
 from .report import fits_section
 from .report_model import Column, Grid, Report
+from .shaft_optimise import ShaftOptimisation
 
+Task = Optimisation | ShaftOptimisation
 _STIFFNESSES = {"N/m": (1e-6, "kN/mm"), "N m": (1e-3, "N m/mrad")}
 
 
-def optimisation_report(
-    task: Optimisation, found: Optimised, best: Scene | None = None
-) -> Report:
+def optimisation_report(task: Task, found: Optimised, best: Any = None) -> Report:
     """Return the readable report of the design before and after.
 
     Args:
@@ -29,7 +29,7 @@ def optimisation_report(
         best: Scene of the best design; `None`: from `scene_of_design`.
     """
     best = scene_of_design(task, found.element) if best is None else best
-    cases = len(found.after.solution.result)
+    cases = found.cases.count
     plural = "s" * (cases != 1)
     head = (
         f"{task.scene.name}: optimised over {cases} operating case{plural} in"
@@ -44,11 +44,60 @@ def optimisation_report(
         "Search": [head],
         "Variables": [_variables(found)],
         "Measures": [_measures(found)],
-        "Peak pressures": [_pressures(found)],
-        "Fits of the best design": fits_section(best),
+        **_details(found, best),
         "Solution": [f"converged: {found.message}; {left}"],
     }
     return Report(sections, warned)
+
+
+def _details(found, best) -> dict[str, Any]:
+    """Return the sections of the bearings."""
+    if isinstance(best, Scene):
+        return {
+            "Peak pressures": [_pressures(found)],
+            "Fits of the best design": fits_section(best),
+        }
+    facts = bearing_facts(found)
+    names = [seat.name for seat in best.system.seats]
+    columns = [Column("bearing", names)]
+    for key, (word, unit, form) in _SHOWN_FACTS.items():
+        for side in ("before", "after"):
+            head = f"{word} before" if side == "before" else "after"
+            columns.append(Column(head, facts[key][side], unit, form))
+    return {"Bearings": [Grid(columns)]}
+
+
+_SHOWN_FACTS = {
+    "rating_life": ("life", "h", ".5g"),
+    "peak_pressure": ("peak pressure", "Pa", ".1f"),
+    "static_safety": ("least C0/P0", "", ".3g"),
+}
+"""Facts of `bearing_facts` in reports: word, SI unit and format."""
+
+
+def bearing_facts(found: Optimised) -> dict[str, dict[str, np.ndarray]]:
+    """Return the worst numbers of each bearing of a system of shafts, before and after.
+
+    Args:
+        found: The result, of a `ShaftDesign`.
+
+    Returns:
+        rating_life [h], peak_pressure [Pa], static_safety [1] by name, each before and
+        after (bearing,); NaN of springs.
+    """
+    facts: dict[str, dict[str, np.ndarray]] = {}
+    for side in ("before", "after"):
+        design: Any = found.initial if side == "before" else found.element
+        solved = getattr(found, side).solution
+        sprung = np.full(len(design.system.seats), np.nan)
+        sprung[design.bearings] = 0.0
+        for key, values in (
+            ("rating_life", design.hours(found.cases, solved)),
+            ("peak_pressure", np.max(solved.peak_pressure, axis=0)),
+            ("static_safety", np.min(solved.lives["static_safety"], axis=0)),
+        ):
+            facts.setdefault(key, {})[side] = np.asarray(values) + sprung
+    return facts
 
 
 def _warned_before(task, found) -> list[str]:
@@ -59,7 +108,7 @@ def _warned_before(task, found) -> list[str]:
 
 
 def optimisation_as_dict(
-    task: Optimisation, found: Optimised, best: Scene | None = None
+    task: Task, found: Optimised, best: Any = None
 ) -> dict[str, Any]:
     """Return an optimised scene as plain numbers and lists, in SI.
 
@@ -74,7 +123,8 @@ def optimisation_as_dict(
         `Optimisation`: the file can be read as a scene), version; with fits `fit`, as
         in `fits_as_dict`, of the best design; if converged also variables, objective,
         constraints and peak_pressure, and rating_life (before, after) if it is
-        maximised.
+        maximised; of a system of shafts bearings in place of peak_pressure: the numbers
+        of `bearing_facts` by the names of the bearings.
     """
     from .. import __version__
 
@@ -85,7 +135,7 @@ def optimisation_as_dict(
         if np.isfinite(values).all()
     }
     return {
-        **(_numbers(found) if found.converged else {}),
+        **(_numbers(found, best) if found.converged else {}),
         "result": found.result,
         "message": found.message,
         "optimality": found.optimality if np.isfinite(found.optimality) else None,
@@ -93,7 +143,7 @@ def optimisation_as_dict(
         "evaluations": found.n_evaluations,
         "gradients": found.n_gradients,
         "rejected": list(found.rejected),
-        **fits_as_dict(best),
+        **(fits_as_dict(best) if isinstance(best, Scene) else {}),
         "warnings": [*best.warnings, *found.after.warnings],
         "warnings_before": _warned_before(task, found),
         "inputs": task.inputs,
@@ -101,7 +151,7 @@ def optimisation_as_dict(
     }
 
 
-def unsolved_start_as_dict(task: Optimisation, error: Exception) -> dict[str, Any]:
+def unsolved_start_as_dict(task: Task, error: Exception) -> dict[str, Any]:
     """Return the output of a task whose first design does not solve.
 
     Args:
@@ -122,7 +172,7 @@ def unsolved_start_as_dict(task: Optimisation, error: Exception) -> dict[str, An
     }
 
 
-def _numbers(found):
+def _numbers(found, best):
     before, after = found.before, found.after
     variables = [
         {
@@ -153,10 +203,30 @@ def _numbers(found):
         "objective": {"measure": label_of(found.objective), **sides(0)},
         **_shown(found),
         "constraints": constraints,
-        "peak_pressure": {
-            "before": _peaks(before).tolist(),
-            "after": _peaks(after).tolist(),
-        },
+        **_bearings(found, best),
+    }
+
+
+def _finite(value: Any) -> float | None:
+    """Return a number of the JSON; `None` if it is not finite."""
+    return float(value) if np.isfinite(value) else None
+
+
+def _bearings(found, best):
+    if isinstance(best, Scene):
+        sides = {"before": found.before, "after": found.after}
+        return {
+            "peak_pressure": {k: _peaks(side).tolist() for k, side in sides.items()}
+        }
+    facts = bearing_facts(found)
+    return {
+        "bearings": {
+            seat.name: {
+                key: {side: _finite(values[k]) for side, values in pair.items()}
+                for key, pair in facts.items()
+            }
+            for k, seat in enumerate(best.system.seats)
+        }
     }
 
 
@@ -167,8 +237,8 @@ def _shown(found):
     if measure is found.objective:
         return {}
     ends = {"before": before, "after": after}
-    finite = {k: float(x) if np.isfinite(x) else None for k, x in ends.items()}
-    return {label_of(measure).replace(" ", "_"): finite}
+    told = {k: _finite(x) for k, x in ends.items()}
+    return {label_of(measure).replace(" ", "_"): told}
 
 
 def _measured(outcome: Outcome):
@@ -188,9 +258,10 @@ def _variables(found):
     for v, first, last in zip(
         found.variables, found.before.values, found.after.values, strict=True
     ):
-        scale, unit = display_unit(unit_of(found.element, v.path[0]), v.upper)
+        own = unit_of(found.element, v.path[0])
+        scale, unit = display_unit(own, v.upper)
         zero = 0.0
-        if v.name in WARMTH:
+        if own == "K":
             zero, unit = CELSIUS, "°C"
         low, high, before, after = (
             scale * (x - zero) for x in (v.lower, v.upper, first, last)
@@ -212,7 +283,8 @@ def _measures(found):
     for k, (measure, values) in enumerate(zip(measures, pairs, strict=True)):
         shown, (first, last) = _told(measure, values)
         scale, unit = _unit(shown)
-        made = "made least" if shown is measure else "made largest"
+        largest = isinstance(measure, AbstractMeasure) and measure.maximised
+        made = "made largest" if largest else "made least"
         kept = made if k == 0 else _kept(found, k - 1, scale)
         exact, smooth = ([scale * side[i] for side in (first, last)] for i in (1, 0))
         rows.append((label_of(shown), *exact, unit, kept))

@@ -1,7 +1,7 @@
 """The [optimise] table of a scene: variables, objective and constraints."""
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -100,46 +100,65 @@ def _freedom(of: str) -> Any:
     )
 
 
+def bound_key(end: str, bare: str = "") -> Any:
+    """Return a bound of a measure as a key.
+
+    Args:
+        end: Which one, in words.
+        bare: Measure whose bound is a bare number; empty: none.
+    """
+    about = f"{end} bound, in the unit of the measure"
+    if not bare:
+        return scene_key(about, default=None, reader=_later, json=_QUANTITY)
+    both = {"anyOf": [_QUANTITY, {"type": "number"}]}
+    about = f"{about}; of `{bare}` a bare number"
+    return scene_key(about, default=None, reader=_later, json=both)
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class ConstraintKeys(Keys):
+class BoundKeys(Keys):
     """[[optimise.constraints]]: a bound on a measure."""
 
-    measure: str = scene_key("what is bounded", choices=OBJECTIVES)
-    freedom: str | None = _freedom("measure")
-    at_least: Any = scene_key(
-        "lower bound, in the unit of the measure",
-        default=None,
-        reader=_later,
-        json=_QUANTITY,
-    )
-    at_most: Any = scene_key(
-        "upper bound, in the unit of the measure",
-        default=None,
-        reader=_later,
-        json=_QUANTITY,
-    )
+    measure: str
+    at_least: Any
+    at_most: Any
 
     def check(self) -> None:
         if self.at_least is None and self.at_most is None:
             problem = "give `at_least`, `at_most` or both"
             raise self.table.error("measure", problem)
 
+    def bound(self, measure: Any, kind: str) -> Constraint:
+        """Build the constraint.
+
+        Args:
+            measure: What is bounded.
+            kind: Kind of its quantity; empty for a pure number.
+        """
+        table = self.table
+        ends = [
+            table.quantity(key, kind, None) if kind else table.number(key, None)
+            for key in ("at_least", "at_most")
+        ]
+        with table.building():
+            return Constraint(measure, *ends)
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class OptimiseKeys(Keys):
-    """[optimise]: what is free, what is made least, and what is kept."""
+class ConstraintKeys(BoundKeys):
+    """[[optimise.constraints]]: a bound on a measure."""
 
-    objective: str = scene_key(
-        "what is made least; a life in hours is made largest", choices=OBJECTIVES
-    )
-    freedom: str | None = _freedom("objective")
-    target: Any = scene_key(
-        "stiffness that is wanted, with its unit",
-        default=None,
-        only={"objective": ("stiffness",)},
-        reader=_later,
-        json=_QUANTITY,
-    )
+    measure: str = scene_key("what is bounded", choices=OBJECTIVES)
+    at_least: Any = bound_key("lower")
+    at_most: Any = bound_key("upper")
+    freedom: str | None = _freedom("measure")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SearchKeys(Keys):
+    """[optimise]: what is free, and how the best is sought."""
+
+    objective: str
     exponent: float = scene_key(
         "of the norm that stands for a maximum over rolling elements and cases",
         default=EXPONENT,
@@ -149,9 +168,7 @@ class OptimiseKeys(Keys):
         reader=lambda table, name: table.table(name),
         json={"type": "object", "additionalProperties": {"type": "object"}},
     )
-    constraints: tuple[ConstraintKeys, ...] = scene_key(
-        "bounds on measures", default=()
-    )
+    constraints: tuple[Any, ...]
     method: str | None = scene_key(
         "search", choices=METHODS, otherwise="by the constraints and variables"
     )
@@ -166,8 +183,30 @@ class OptimiseKeys(Keys):
             raise self.table.error("method", f"{problem} out")
 
 
-def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optimisation:
-    """Read a scene with [optimise].
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class OptimiseKeys(SearchKeys):
+    """[optimise]: what is free, what is made least, and what is kept."""
+
+    objective: str = scene_key(
+        "what is made least; a life in hours is made largest", choices=OBJECTIVES
+    )
+    freedom: str | None = _freedom("objective")
+    target: Any = scene_key(
+        "stiffness that is wanted, with its unit",
+        default=None,
+        only={"objective": ("stiffness",)},
+        reader=_later,
+        json=_QUANTITY,
+    )
+    constraints: tuple[ConstraintKeys, ...] = scene_key(
+        "bounds on measures", default=()
+    )
+
+
+def read_bearing_optimisation(
+    source: str | Path, settings: Iterable[str] = ()
+) -> Optimisation:
+    """Read the scene of a bearing with [optimise].
 
     Args:
         source, settings: As in `read_scene`.
@@ -178,11 +217,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
     settings = tuple(settings)
     path = find_scene(source)
     data = parse_bearing(path, settings)
-    if "optimise" not in data:
-        raise SceneError(
-            f"{path.name}: `optimise` is missing; it must be a table that names"
-            " `objective` and `variables`"
-        )
+    check_present(data, path)
     begun = _begun(data)
     if begun:
         settings = (*settings, *(f"{key}={value}" for key, value in begun.items()))
@@ -205,6 +240,20 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Optim
     table.finish()
     inputs = {**inputs, "optimise": table.echo()}
     return dataclasses.replace(task, inputs=inputs)
+
+
+def check_present(data: dict[str, Any], path: Path) -> None:
+    """Raise SceneError unless a scene has [optimise].
+
+    Args:
+        data: The scene.
+        path: Its path.
+    """
+    if "optimise" not in data:
+        raise SceneError(
+            f"{path.name}: `optimise` is missing; it must be a table that names"
+            " `objective` and `variables`"
+        )
 
 
 def _begun(data: dict[str, Any]) -> dict[str, Any]:
@@ -283,10 +332,13 @@ def scene_numbers(element: BearingElement[Any]) -> dict[str, tuple[str, ...]]:
     return found
 
 
-def _variables(
-    table: Table, fit: Table, scene: Scene, begun: set[str]
-) -> tuple[Variable, ...]:
-    design = scene.installed
+def installed_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """Return the numbers of a bearing in its place by their scene key, with their paths
+    in `Scene.installed`.
+
+    Args:
+        scene: The bearing.
+    """
     numbers = {
         key: tuple(f"drawing.{path}" for path in paths)
         for key, paths in scene_numbers(scene.element).items()
@@ -296,19 +348,46 @@ def _variables(
     if scene.fits is not None:
         numbers |= {f"fit.{name}": (f"mounting.{name}",) for name in OF_FITS}
         numbers |= {key: (f"conditions.{part}",) for key, part in WARMTH.items()}
+    return numbers
+
+
+def _variables(
+    table: Table, fit: Table, scene: Scene, begun: set[str]
+) -> tuple[Variable, ...]:
+    unknown = {} if scene.fits is None else scene.fits.unknown
+    for key in table.keys():
+        if (warm := WARMTH.get(key)) in unknown:
+            raise no_expansion(fit, warm, unknown[warm])
+    return read_variables(table, scene.installed, installed_numbers(scene), begun)
+
+
+def read_variables(
+    table: Table,
+    design: Any,
+    numbers: dict[str, tuple[str, ...]],
+    begun: Collection[str] = (),
+) -> tuple[Variable, ...]:
+    """Read the free numbers of a design.
+
+    Args:
+        table: `[optimise.variables]`.
+        design: The design.
+        numbers: Its numbers by their scene key, with their paths in it.
+        begun: Keys that start in the middle of their range unless a start is given.
+
+    Raises:
+        SceneError: For what is missing, unknown or not allowed.
+    """
     variables = []
     for key in table.keys():
         if key not in numbers:
             raise table.error(key, _no_number(key, table, numbers))
-        warm = WARMTH.get(key)
-        if warm is not None and scene.fits is not None and warm in scene.fits.unknown:
-            raise no_expansion(fit, warm, scene.fits.unknown[warm])
         part = table.table(key)
-        if warm is not None:
+        unit = unit_of(design, numbers[key][0])
+        if unit == "K":
             low, high = (read_temperature(part, word) for word in ("from", "to"))
             start = read_temperature(part, "start", None)
         else:
-            unit = unit_of(design, numbers[key][0])
             low, high = (part.real(word, unit) for word in ("from", "to"))
             start = part.real("start", unit, None)
             if start is None and key in begun:
@@ -321,10 +400,16 @@ def _variables(
 
 
 def _no_number(key, table, numbers):
-    if key == "bearing":
+    if isinstance(table.raw(key), Mapping) and "from" not in table.raw(key):
         example = next(iter(numbers))
         return f'write the dotted key in quotes, such as "{example}" = {{from, to}}'
-    return not_among(key, tuple(numbers))
+    near, head = tuple(numbers), key
+    while "." in head:
+        head = head.rpartition(".")[0]
+        if beside := [name for name in numbers if name.startswith(f"{head}.")]:
+            near = tuple(beside)
+            break
+    return not_among(key, near)
 
 
 def _life(scene: Scene, cases: Cases, varied: Iterable[str]) -> RatingLife | None:
@@ -359,10 +444,7 @@ class _Measured(NamedTuple):
     def constraint(self, keys: ConstraintKeys) -> Constraint:
         """Build a bound on a measure."""
         measure = self._measure(keys, "measure")
-        kind, table = _kind_of(measure), keys.table
-        ends = [table.quantity(key, kind, None) for key in ("at_least", "at_most")]
-        with table.building():
-            return Constraint(measure, *ends)
+        return keys.bound(measure, _kind_of(measure))
 
     def _measure(self, keys: OptimiseKeys | ConstraintKeys, key: str) -> Any:
         kind = getattr(keys, key)

@@ -54,6 +54,7 @@ from .schema_text import (
     object_schema,
     table_schema,
 )
+from .shaft_optimise import ShaftOptimiseKeys
 from .shaft_table import (
     PARTS,
     DriveKeys,
@@ -174,7 +175,7 @@ def _by_name(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def _shaft_scene() -> dict[str, Any]:
-    """Schema of a system of shafts: `shaft`."""
+    """Schema of a system of shafts: `shaft`, `optimise`."""
     place = {
         "shaft": {"type": "string", "description": "name of its shaft"},
         "position": {
@@ -236,6 +237,7 @@ def _shaft_scene() -> dict[str, Any]:
         "housing": table_schema(HousingKeys),
         "system": table_schema(SystemKeys),
         "heat": table_schema(HeatKeys),
+        "optimise": table_schema(ShaftOptimiseKeys),
         "life": _ref("life"),
         "lubricant": _ref("lubricant"),
         "output": _ref("output"),

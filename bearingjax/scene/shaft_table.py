@@ -335,7 +335,8 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         columns = read_keys(CasesKeys, Table(data, path.name).table("cases")).columns(
             path
         )
-    alone = {key: value for key, value in data.items() if key != "cases"}
+    beside = ("cases", "optimise")
+    alone = {key: value for key, value in data.items() if key not in beside}
     if not columns:
         return _read(alone, path, known)
     count = columns[0].index.size
@@ -349,7 +350,8 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         hours = values.pop("hours", None)
         for key, value in values.items():
             if key.partition(".")[0] not in _VARYING:
-                problem = f"cannot vary; what can: hours, and keys of {_ALLOWED}"
+                problem = "cannot vary; what can: `hours`, and whole keys such as"
+                problem = f'{problem} "drive.power", in quotes, of {_ALLOWED}'
                 raise SceneError(f"{path.name}: `cases.{key}`: {problem}")
             assign(changed, key, value, path.name)
         try:

@@ -11,11 +11,11 @@ from .contact_table import read_contact
 from .life_run import run_life
 from .noise_run import run_noise
 from .noise_table import read_noise
-from .optimise_table import read_optimisation
 from .read import read_scene
 from .rotor_run import run_rotor
 from .rotor_table import read_rotor
 from .scene_file import find_scene, parse_scene
+from .shaft_optimise import read_optimisation
 from .shaft_run import run_shafts
 from .shaft_table import read_shafts
 from .skid_run import run_skid
@@ -48,7 +48,8 @@ STUDIES = {
     "sweep": Study(frozenset({"cases"}), read_cases, run_cases),
     "solve": Study(frozenset(), read_scene, run_scene),
 }
-"""Studies by command; a scene belongs to the first whose tables it has."""
+"""Studies by command; a scene belongs to the first whose tables it has, one of shafts
+with [optimise] to that."""
 
 
 def study_of(source: str | Path, settings: Iterable[str] = ()) -> str:
@@ -61,6 +62,8 @@ def study_of(source: str | Path, settings: Iterable[str] = ()) -> str:
         SceneError: If there is no such scene, or it cannot be read.
     """
     data = parse_scene(find_scene(source), settings)
+    if {"shaft", "optimise"} <= data.keys():
+        return "optimise"
     return next(name for name, study in STUDIES.items() if study.tables <= data.keys())
 
 
@@ -72,7 +75,8 @@ def run(source: str | Path, settings: Iterable[str] = ()) -> Any:
         settings: Changes to it, "key=value", as in `--set`.
 
     Returns:
-        By the tables of the scene: `ShaftRun` of [shaft.NAME], `RotorRun` of [rotor],
+        By the tables of the scene: `ShaftRun` of [shaft.NAME], `Optimised` if it has
+        [optimise] too, `RotorRun` of [rotor],
         a list of `Compared` of [roller], `NoiseRun` of [vibration], `SkidRun` of
         [dynamics], `Optimised` of [optimise], `LifeRun` of [cases] and [life], `Sweep`
         of [cases], else the

@@ -330,6 +330,7 @@ class Table:
             # A misspelt key is more likely than a missing one.
             strange = [k for k in self._data if k not in self._asked]
             close = difflib.get_close_matches(key, strange, 1, 0.7)
+            close = close or [k for k in strange if k in key]
             hint = f" (`{close[0]}` is there instead)" if close else ""
             raise self.error(key, f"is missing{hint}; it must be {wanted}")
         return default

@@ -19,6 +19,10 @@ their damage and `system_life` is the life that all bearings reach together.
 friction, or says that they run away (`runaway_speed` from which speed), and `warm_up`
 follows them in time.
 
+`bearingjax.optimise` takes a `ShaftDesign` with its `load_cases`, any number of the
+system as `Variable`, and the measures `SystemLife`, `Worst` (life, static safety,
+pressure, tilt, misalignment), `PowerLoss`, `ShaftMass`.
+
 The frame, the signs of torques and the force of a gear are described in `shafts.line`
 and `shafts.parts`. Left out: torsion, loops of meshes (planetary gears), stiffness of
 teeth, friction of floating rings, heat along the shaft from one bearing to the next.
@@ -45,6 +49,14 @@ from .parts import ShaftLoad as ShaftLoad
 from .power import PowerFlow as PowerFlow
 from .power import power_flow as power_flow
 from .seats import bearing_solutions as bearing_solutions
+from .shaft_design import BearingOil as BearingOil
+from .shaft_design import PowerLoss as PowerLoss
+from .shaft_design import ShaftCases as ShaftCases
+from .shaft_design import ShaftDesign as ShaftDesign
+from .shaft_design import ShaftMass as ShaftMass
+from .shaft_design import SystemLife as SystemLife
+from .shaft_design import Worst as Worst
+from .shaft_design import load_cases as load_cases
 from .state import ShaftState as ShaftState
 from .state import SystemSolution as SystemSolution
 from .system import HousingStiffness as HousingStiffness

@@ -13,12 +13,14 @@ from jaxtyping import Array, Float, Int
 
 from ..design import rows_of
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
+from ..element.inertia import Speed
 from ..numerics.programs import program
 from ..numerics.types import Scalar
 from ..numerics.units import unit
 from ..statics.life import LifeConditions, life_of
 from ..statics.life_warning import life_sizes
 from ..statics.reference_life import BALLS, exponents_of
+from ..statics.solution import Solution
 from ..statics.warning import sizes
 from .equilibrium import check_torques, system_state, torques_left
 from .power import power_flow
@@ -41,7 +43,8 @@ LIVES = (
 
 
 class DutyResult(eqx.Module):
-    """Load cases of a system of shafts. Numbers of failed cases are NaN.
+    """Load cases of a system of shafts, or one, without its axis. Numbers of failed
+    cases are NaN.
 
     Attributes:
         load: On each inner ring in global axes (case, bearing, 6) [N, N m].
@@ -52,27 +55,31 @@ class DutyResult(eqx.Module):
         result: `Result` code (case,).
         peak_pressure: Largest contact pressure (case, bearing) [Pa]; NaN of springs.
         lives: Numbers of `LIVES` by name (case, bearing); NaN of springs.
+        friction: Power lost in each bearing (case, bearing) [W]; `None`: not asked for.
         warned: For each bearing the size of every kind of warning about its solution
             and its life that can arise, by name (case,); empty of springs.
     """
 
-    load: Float[Array | np.ndarray, "case bearing 6"] = eqx.field(
+    load: Float[Array | np.ndarray, "*case bearing 6"] = eqx.field(
         metadata=unit(LOAD_UNITS)
     )
-    displacement: Float[Array | np.ndarray, "case bearing 6"] = eqx.field(
+    displacement: Float[Array | np.ndarray, "*case bearing 6"] = eqx.field(
         metadata=unit(MOTION_UNITS)
     )
-    misalignment: Float[Array | np.ndarray, "case mesh"] = eqx.field(
+    misalignment: Float[Array | np.ndarray, "*case mesh"] = eqx.field(
         metadata=unit("rad")
     )
-    speed: Float[Array | np.ndarray, "case shaft"] = eqx.field(metadata=unit("rad/s"))
-    loss: Float[Array | np.ndarray, " case"] = eqx.field(metadata=unit("W"))
-    result: Int[Array | np.ndarray, " case"]
-    peak_pressure: Float[Array | np.ndarray, "case bearing"] = eqx.field(
+    speed: Float[Array | np.ndarray, "*case shaft"] = eqx.field(metadata=unit("rad/s"))
+    loss: Float[Array | np.ndarray, "*case"] = eqx.field(metadata=unit("W"))
+    result: Int[Array | np.ndarray, "*case"]
+    peak_pressure: Float[Array | np.ndarray, "*case bearing"] = eqx.field(
         metadata=unit("Pa")
     )
-    lives: dict[str, Float[Array | np.ndarray, "case bearing"]]
+    lives: dict[str, Float[Array | np.ndarray, "*case bearing"]]
     warned: tuple[dict[str, Any], ...]
+    friction: Float[Array | np.ndarray, "*case bearing"] | None = eqx.field(
+        metadata=unit("W"), default=None
+    )
 
 
 def solve_duty(
@@ -98,11 +105,11 @@ def solve_duty(
             f"solve_duty: {len(systems)} systems and {len(conditions)} conditions; give"
             " one case at least, and both for each."
         )
-    systems = _alike(systems)
+    systems = alike(systems)
     fast = systems[0].inertia
     offsets: dict[Any, Any] = {}
     whole = [adjusted(system, offsets) for system in systems]
-    found = _map(_state, whole)
+    found = _map(state_of, whole)
     _check_balances(systems, found)
     lives: list[tuple[Any, Any, Any]] = []
     first = systems[0]
@@ -137,9 +144,16 @@ def solve_duty(
     )
 
 
-def _alike(systems: Sequence[ShaftSystem]) -> list[ShaftSystem]:
+def alike(systems: Sequence[ShaftSystem]) -> list[ShaftSystem]:
     """Return systems of one structure: what is fast in one case feels the speed in all,
-    and shafts are divided as in the first case."""
+    and shafts are divided as in the first case.
+
+    Args:
+        systems: The system in each case.
+
+    Raises:
+        ValueError: If parts stand in another order in one of them.
+    """
     known = [system.inertia for system in systems]
     fast = None if all(one is None for one in known) else any(known)
     first, found = systems[0], []
@@ -199,7 +213,12 @@ def _mapped(function, varying, shared, tree, static):
     return lax.map(one, varying, batch_size=BATCH)
 
 
-def _state(system: ShaftSystem) -> dict[str, Any]:
+def state_of(system: ShaftSystem) -> dict[str, Any]:
+    """Return loads, motions, speeds, losses and result of one case by their names.
+
+    Args:
+        system: From `adjusted`.
+    """
     found, _ = system_state(system)
     names = "load displacement misalignment motion result".split()
     kept = {name: getattr(found, name) for name in names}
@@ -213,7 +232,19 @@ def _rated(
     given: Any, inertia: bool | None
 ) -> tuple[Scalar, dict[str, Any], dict[str, Any]]:
     installed, motion, speed, conditions = given
-    solution = in_place(installed, motion, speed, inertia, 101)
+    return rated(in_place(installed, motion, speed, inertia, 101), speed, conditions)
+
+
+def rated(
+    solution: Solution, speed: Speed, conditions: LifeConditions
+) -> tuple[Scalar, dict[str, Any], dict[str, Any]]:
+    """Return peak pressure, numbers of `LIVES`, and sizes of warnings of a bearing.
+
+    Args:
+        solution: From `in_place`.
+        speed: Its ring speeds.
+        conditions: Of its life.
+    """
     life = life_of(solution.element, solution, conditions, speed=speed)
     lives = {name: getattr(life, name) for name in LIVES}
     lives = {name: value for name, value in lives.items() if value is not None}

@@ -30,6 +30,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.friction import friction_torque
 from ..statics.friction_skf import skf_friction_torque
+from ..statics.solution import Solution
 from .equilibrium import system_state
 from .seats import adjusted, in_place, speed_of
 from .state import SystemSolution
@@ -500,6 +501,26 @@ def with_temperatures(
     return eqx.tree_at(lambda s: s.seats, system, tuple(seats))
 
 
+def friction_power(oil: Any, solution: Solution, temperature: Any) -> Scalar:
+    """Return the power lost in a bearing [W].
+
+    Args:
+        oil: `ThermalPaths`, or another Module with their lubricant, supply, skf, series
+            and diameters.
+        solution: Of the bearing, turning.
+        temperature: Of its oil [K].
+
+    Raises:
+        ValueError: For bearings without known constants of friction.
+    """
+    viscosity = oil.lubricant.kinematic_viscosity(temperature)
+    given = solution, viscosity, oil.supply
+    if not oil.skf:
+        return friction_torque(*given).power
+    sizes = None if oil.diameters is None else tuple(oil.diameters)
+    return skf_friction_torque(*given, series=oil.series, diameters=sizes).power
+
+
 def heat_made(
     rises: Float[Array, " node"], args: tuple[ShaftSystem, HeatNetwork]
 ) -> Float[Array, " node"]:
@@ -520,15 +541,7 @@ def heat_made(
         speed, inertia = speed_of(warm, k, solution.power.speed)
         found = in_place(seat.installed, solution.motion[k], speed, inertia, 2)
         oil = network.ambient + 0.5 * (rises[2 * k] + rises[2 * k + 1])
-        viscosity = path.lubricant.kinematic_viscosity(oil)
-        given = found, viscosity, path.supply
-        if path.skf:
-            sizes = None if path.diameters is None else tuple(path.diameters)
-            more = {"series": path.series, "diameters": sizes}
-            friction = skf_friction_torque(*given, **more)
-        else:
-            friction = friction_torque(*given)
-        made += [0.5 * friction.power] * 2
+        made += [0.5 * friction_power(path, found, oil)] * 2
     if network.housing is not None:
         made.append(solution.power.loss)
     return jnp.stack(made)

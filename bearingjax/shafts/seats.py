@@ -27,16 +27,20 @@ _RING = len(FREEDOMS)
 
 
 def adjusted(
-    system: ShaftSystem, known: dict[Any, Scalar] | None = None
+    system: ShaftSystem,
+    known: dict[Any, Scalar] | None = None,
+    *,
+    throw: bool = True,
 ) -> ShaftSystem:
     """Return a system whose bearings have their preload as an axial offset.
 
     Args:
         system: The system.
         known: Offsets of bearings met before, which is added to.
+        throw: Raise if a bearing cannot bear its preload; otherwise its offset is NaN.
 
     Raises:
-        SolveError: If a bearing cannot bear its preload.
+        SolveError: If a bearing cannot bear its preload and `throw`.
     """
     known = {} if known is None else known
     seats = []
@@ -47,7 +51,7 @@ def adjusted(
                 key = id(seat.installed), float(seat.preload)
             if key not in known:
                 cold = _as_mounted(seat.installed)
-                known[key] = preload_offset(cold, seat.preload)
+                known[key] = preload_offset(cold, seat.preload, throw=throw)
             seat = eqx.tree_at(
                 lambda s: (s.axial_offset, s.preload),
                 seat,

@@ -1,9 +1,11 @@
 """A system of shafts: wheels that couple them, bearings that hold them, a housing."""
 
+import copy
 from collections.abc import Iterable
 from typing import Any
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -36,6 +38,11 @@ _ACROSS = 1e-6
 def _all(parts: Any) -> tuple:
     """Converter: one part, or several, as a tuple."""
     return tuple(parts) if isinstance(parts, Iterable) else (parts,)
+
+
+def _order(plan: Plan) -> str:
+    """Stations of a shaft in words."""
+    return ", ".join(s if isinstance(s, str) else f"end {s}" for s in plan.stations)
 
 
 class HousingStiffness(eqx.Module):
@@ -335,6 +342,33 @@ class ShaftSystem(eqx.Module):
                 f"ShaftSystem: {one.name} and {other.name} are {1e3 * along:.6g} mm"
                 " apart along their shafts; gears that mesh are in one plane."
             )
+
+    def with_parts(self, **parts: Any) -> "ShaftSystem":
+        """Return the system with other numbers in some of its fields.
+
+        Args:
+            **parts: New values of fields, of the same structure; traced ones pass
+                unchecked.
+
+        Raises:
+            ValueError: If the system does not allow them, or a part has passed another
+                one or the end of a segment.
+        """
+        if not any(map(is_traced, jax.tree.leaves((self, parts)))):
+            names = "shafts seats drive wheels couplings loads housing gravity".split()
+            given = {name: getattr(self, name) for name in names}
+            plans = ShaftSystem(**given | parts).plans
+            for line, old, new in zip(self.shafts, self.plans, plans, strict=True):
+                if new._replace(divisions=old.divisions) != old:
+                    raise ValueError(
+                        f"ShaftSystem: on shaft {line.name} stand {_order(new)} in"
+                        f" place of {_order(old)}; no part may pass another one or a"
+                        " step of the shaft."
+                    )
+        other = copy.copy(self)
+        for name, value in parts.items():
+            object.__setattr__(other, name, value)
+        return other
 
     def shaft(self, name: str) -> ShaftLine:
         """Return a shaft by its name."""

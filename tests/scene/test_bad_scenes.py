@@ -861,7 +861,8 @@ TEXTS = {
     "nothing at all": ("", "`bearing`: is missing; it must be a table"),
     "no type": (
         without("type"),
-        f"`bearing.type`: is missing; it must be one of {KNOWN_BEARINGS}",
+        "`bearing.designation`: is missing; give it, or a `type` with all sizes, one of"
+        f" {KNOWN_BEARINGS}",
     ),
     "no count": (
         without("n_rollers"),

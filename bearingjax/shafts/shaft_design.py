@@ -1,0 +1,438 @@
+"""Systems of shafts in design: `bearingjax.optimise` over their load cases.
+
+design, cases = load_cases([ShaftDesign(system, conditions)])
+free = [Variable("system.seats.0.position", 0.03, 0.06)]
+best = bj.optimise.optimise(design, cases, free, SystemLife())
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, ClassVar
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ..lubrication import Lubricant
+from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
+from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
+from ..optimise.smooth import EXPONENT, smooth_maximum, smooth_minimum
+from ..optimise.system import AbstractSystem
+from ..optimise.variable import dotted
+from ..statics.life import LifeConditions
+from ..statics.warning import counted
+from .duty import LIVES, DutyResult, alike, bearing_hours, rated, state_of, system_life
+from .heat import friction_power
+from .parts import Gear
+from .power import power_flow
+from .seats import adjusted, in_place, speed_of
+from .system import ShaftSystem
+
+
+class BearingOil(eqx.Module):
+    """Oil of a bearing, for its friction.
+
+    Attributes:
+        lubricant: The oil.
+        temperature: Its temperature [K].
+        supply, skf, series: As in `ThermalPaths`.
+        diameters: Bore and outside diameter for SKF's model (2,) [m].
+    """
+
+    lubricant: Lubricant
+    temperature: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+    supply: str = eqx.field(static=True, default="oil_bath")
+    skf: bool = eqx.field(static=True, default=False)
+    series: str | None = eqx.field(static=True, default=None)
+    diameters: Float[Array, "2"] | None = eqx.field(
+        converter=as_real, metadata=unit(2 * ("m",)), default=None
+    )
+
+
+class ShaftCases(eqx.Module):
+    """Load cases of a `ShaftDesign`, from `load_cases`.
+
+    Attributes:
+        hours: Time in each case (case,) [h]; equal if it is not known.
+        values: Numbers that differ from case to case, leading axis case.
+        places: Which numbers of the design these are, in the order of its leaves.
+
+    Traced: hours, values. Static: places.
+    """
+
+    hours: Float[Array | np.ndarray, " case"] = eqx.field(metadata=unit("h"))
+    values: tuple[Any, ...]
+    places: tuple[int, ...] = eqx.field(static=True)
+
+    @property
+    def count(self) -> int:
+        """Number of cases."""
+        return self.hours.shape[0]
+
+    def paths(self, design: "ShaftDesign") -> set[str]:
+        """Return the dotted paths of the numbers that differ from case to case.
+
+        Args:
+            design: From `load_cases`.
+        """
+        leaves, _ = jax.tree_util.tree_flatten_with_path(design)
+        return {dotted(leaves[place][0]) for place in self.places}
+
+
+class ShaftDesign(AbstractSystem):
+    """A system of shafts with the lives of its bearings, for `bearingjax.optimise`.
+
+    Any number may be a variable: "system.seats.0.position", "system.seats.1.preload",
+    "system.seats.0.installed.drawing.bearing.radial_internal_clearance",
+    "system.shafts.0.outer_diameter.1". Parts may not pass each other or the steps of
+    their shaft: such designs are rejected.
+
+    Attributes:
+        system: The system.
+        lives: Conditions of the life of each bearing; `None` of springs.
+        oils: Oil of each bearing, `None` of springs; without them (`None`) the friction
+            of bearings is not known.
+
+    Traced: all numbers.
+
+    Raises:
+        ValueError: If they are not as many as the bearings.
+    """
+
+    of_cases: ClassVar[type] = ShaftCases
+
+    system: ShaftSystem
+    lives: tuple[LifeConditions | None, ...] = eqx.field(converter=tuple)
+    oils: tuple[BearingOil | None, ...] | None = None
+
+    def __check_init__(self):
+        for name in ("lives", "oils"):
+            found = getattr(self, name)
+            count = len(self.system.seats)
+            if found is not None and len(found) != count:
+                raise ValueError(
+                    f"ShaftDesign: `{name}` are {len(found)} of {count} bearings; give"
+                    " one for each, `None` of springs."
+                )
+
+    @property
+    def element(self):
+        raise TypeError("ShaftDesign: it has several bearings, `system.seats`.")
+
+    def check(self, cases):
+        pass
+
+    def solve_case(self, case: Any, options: Any) -> DutyResult:
+        leaves, tree = jax.tree.flatten(self)
+        for place, value in zip(case.places, case.values, strict=True):
+            leaves[place] = value
+        return jax.tree.unflatten(tree, leaves).solved()
+
+    def solved(self) -> DutyResult:
+        """Solve this design; nothing is raised for a failed solve.
+
+        Returns:
+            The numbers of one case, without the case axis; of springs zeros.
+        """
+        system = adjusted(self.system, throw=False)
+        found = state_of(system)
+        zero = jnp.zeros((), jnp.result_type(float))
+        lives: dict[str, list[Any]] = {}
+        pressures, powers, warned = [], [], []
+        for k, (seat, conditions) in enumerate(
+            zip(system.seats, self.lives, strict=True)
+        ):
+            peak, numbers, doubts, power = zero, {}, {}, zero
+            if seat.installed is not None and conditions is not None:
+                speed, inertia = speed_of(system, k, found["speed"])
+                given = seat.installed, found["motion"][k], speed, inertia, 101
+                solution = in_place(*given)
+                peak, numbers, doubts = rated(solution, speed, conditions)
+                oil = None if self.oils is None else self.oils[k]
+                if oil is not None:
+                    power = friction_power(oil, solution, oil.temperature)
+            pressures.append(peak)
+            powers.append(power)
+            warned.append(doubts)
+            for name in LIVES:
+                lives.setdefault(name, []).append(numbers.get(name, zero))
+        names = "load displacement misalignment speed loss result".split()
+        return DutyResult(
+            **{name: found[name] for name in names},
+            peak_pressure=jnp.stack(pressures),
+            lives={name: jnp.stack(values) for name, values in lives.items()},
+            warned=tuple(warned),
+            friction=None if self.oils is None else jnp.stack(powers),
+        )
+
+    def message(self, solved):
+        return "the shafts find no equilibrium on their bearings"
+
+    def warnings(self, cases, solved):
+        found = []
+        for seat, sizes in zip(self.system.seats, solved.warned, strict=True):
+            told = counted(jax.device_get(sizes))
+            found += [f"{seat.name}: {text}" for text in told]
+        return found
+
+    def hours(self, cases: ShaftCases, solved: Any) -> Float[Array, " bearing"]:
+        """Life of each bearing under all cases (bearing,) [h]; infinite of springs.
+
+        Args:
+            cases: The load cases.
+            solved: Their solutions, leading axis case.
+        """
+        of = np.array([self.system.station(seat)[0] for seat in self.system.seats])
+        return bearing_hours(solved.lives["damage"], solved.speed[:, of], cases.hours)
+
+    @property
+    def bearings(self) -> list[int]:
+        """Numbers of the seats that hold a bearing, not springs."""
+        seats = enumerate(self.system.seats)
+        return [k for k, seat in seats if seat.installed is not None]
+
+
+def load_cases(
+    designs: Sequence[ShaftDesign], hours: Any = None
+) -> tuple[ShaftDesign, ShaftCases]:
+    """Return the design of the first case, and what differs in the others.
+
+    Args:
+        designs: The design in each case: one structure, other numbers.
+        hours: Time in each case (case,) [h]; `None`: the same in all.
+
+    Raises:
+        ValueError: If there are none, they differ in structure, or the hours are not
+            one for each.
+    """
+    if not designs or (hours is not None and len(hours) != len(designs)):
+        raise ValueError(
+            f"load_cases: {len(designs)} designs and"
+            f" {'no' if hours is None else len(hours)} hours; give one design at least,"
+            " and hours for each or none."
+        )
+    systems = alike([design.system for design in designs])
+    whole = [
+        eqx.tree_at(lambda d: d.system, design, system)
+        for design, system in zip(designs, systems, strict=True)
+    ]
+    if any(jax.tree.structure(w) != jax.tree.structure(whole[0]) for w in whole):
+        raise ValueError("load_cases: the cases differ in more than numbers.")
+    columns = zip(*map(jax.tree.leaves, whole), strict=True)
+    varying = {
+        k: np.stack([np.asarray(x) for x in column])
+        for k, column in enumerate(columns)
+        if any(not np.array_equal(x, column[0]) for x in column[1:])
+    }
+    times = np.ones(len(designs)) if hours is None else np.asarray(hours, float)
+    return whole[0], ShaftCases(times, tuple(varying.values()), tuple(varying))
+
+
+class PowerOf(AbstractMeasure):
+    """A measure to a power, which is made least in its place.
+
+    Attributes:
+        measure: The measure.
+        power: Such as -1 of a life, or 2 of what may change its sign. Static.
+    """
+
+    measure: AbstractMeasure
+    power: int = eqx.field(static=True)
+
+    def __call__(self, element: Any, cases, solution):
+        return self.measure(element, cases, solution) ** self.power
+
+    def exact(self, element: Any, cases, solution):
+        return self.measure.exact(element, cases, solution) ** self.power
+
+    @property
+    def as_told(self):
+        return self.measure
+
+    def told(self, value):
+        return value ** (1.0 / self.power)
+
+    @property
+    def maximised(self):
+        return self.power < 0
+
+    @property
+    def least_size(self):
+        # Of angles: a microradian. Divided by less round-off would look like a slope.
+        return 0.0 if self.maximised else 1e-12
+
+    @property
+    def label(self):
+        return f"{self.measure.label} to the power {self.power}"
+
+    @property
+    def unit(self):
+        return ""
+
+
+class SystemLife(AbstractMeasure):
+    """Life that all bearings reach together, `system_life` [h].
+
+    The damage of the cases is added up. As an objective it is made largest.
+    """
+
+    def __call__(self, element: Any, cases, solution):
+        return system_life(element.system, element.hours(cases, solution))
+
+    @property
+    def as_objective(self):
+        return PowerOf(self, -1)
+
+    @property
+    def label(self):
+        return "system life"
+
+    @property
+    def unit(self):
+        return "h"
+
+
+_WORST = {
+    "rating_life": ("h", -1),
+    "static_safety": ("", -1),
+    "peak_pressure": ("Pa", 1),
+    "tilt": ("rad", 1),
+    "misalignment": ("rad", 2),
+}
+"""What `Worst` compares: SI unit, and the power that is made least in its place; those
+with -1 are worst where they are least."""
+
+
+class Worst(AbstractSmooth):
+    """A number of the bearing, or mesh, and the case in which it is worst.
+
+    Attributes:
+        kind: Of bearings "rating_life" [h], of all cases together, or "static_safety",
+            the least; "peak_pressure" [Pa] or "tilt" [rad] of inner against outer ring,
+            the largest; of gears "misalignment" [rad], the largest. As an objective the
+            first two are made largest, and of the last one the square least.
+        of: Name of the bearing, or of one of the gears; `None`: of all.
+        exponent: Exponent of the smooth maximum or minimum.
+
+    Static: all.
+    """
+
+    kind: str = eqx.field(static=True)
+    of: str | None = eqx.field(static=True, default=None)
+    exponent: float = eqx.field(static=True, default=EXPONENT)
+
+    def __check_init__(self):
+        super().__check_init__()
+        if self.kind not in _WORST:
+            kinds = ", ".join(_WORST)
+            raise ValueError(
+                f"Worst: `kind` is {self.kind!r}; it must be one of {kinds}."
+            )
+
+    def samples(self, element: ShaftDesign, cases: ShaftCases, solution: Any) -> Array:
+        """The numbers of which it is the worst (sample,).
+
+        Args:
+            element, cases, solution: As in `__call__`.
+
+        Raises:
+            ValueError: If the system has no such bearing or gear.
+        """
+        at = np.array([*self._chosen(element)])
+        if not at.size:
+            part = "gear" if self.kind == "misalignment" else "bearing"
+            name = "" if self.of is None else f" {self.of!r}"
+            raise ValueError(f"Worst: the system has no {part}{name}.")
+        if self.kind == "rating_life":
+            return element.hours(cases, solution)[at]
+        if self.kind == "misalignment":
+            return jnp.abs(solution.misalignment[:, at]).reshape(-1)
+        if self.kind == "tilt":
+            turned = solution.displacement[:, at, 3:].reshape(-1, 3)
+            square = jnp.sum(turned**2, axis=1)
+            none = square == 0.0
+            return jnp.where(none, 0.0, jnp.sqrt(jnp.where(none, 1.0, square)))
+        pressures = self.kind == "peak_pressure"
+        found = solution.peak_pressure if pressures else solution.lives[self.kind]
+        return found[:, at].reshape(-1)
+
+    def _chosen(self, element: ShaftDesign) -> Iterable[int]:
+        """Return the numbers of the bearings, or meshes, that count."""
+        system, of = element.system, element.bearings
+        if self.kind != "misalignment":
+            return [k for k in of if self.of in (None, system.seats[k].name)]
+        # Both mates have the same.
+        pairs: dict[Any, int] = {}
+        for k, mesh in enumerate(power_flow(system).meshes):
+            pair = mesh.wheel, mesh.mate
+            if isinstance(system.wheel(mesh.wheel), Gear) and self.of in (None, *pair):
+                pairs.setdefault(frozenset(pair), k)
+        return pairs.values()
+
+    def __call__(self, element: Any, cases, solution):
+        of = smooth_minimum if self._power < 0 else smooth_maximum
+        return of(self.samples(element, cases, solution), self.exponent)
+
+    def exact(self, element: Any, cases, solution):
+        of = jnp.min if self._power < 0 else jnp.max
+        return of(self.samples(element, cases, solution))
+
+    @property
+    def _power(self):
+        return _WORST[self.kind][1]
+
+    @property
+    def as_objective(self):
+        return self if self._power == 1 else PowerOf(self, self._power)
+
+    @property
+    def label(self):
+        of = f" of {self.of}" if self.of else ""
+        return f"{self.kind.replace('_', ' ')}{of}"
+
+    @property
+    def unit(self):
+        return _WORST[self.kind][0]
+
+
+class PowerLoss(AbstractMeasure):
+    """Mean power lost in bearings and meshes over the hours of the cases [W].
+
+    The design needs the oils of its bearings.
+    """
+
+    def __call__(self, element: Any, cases, solution):
+        if solution.friction is None:
+            raise ValueError(
+                "PowerLoss: the design has no `oils`, so that the friction of its"
+                " bearings is not known."
+            )
+        lost = jnp.sum(solution.friction, axis=1) + solution.loss
+        return jnp.sum(hour_weights(cases) * lost)
+
+    @property
+    def label(self):
+        return "power loss"
+
+    @property
+    def unit(self):
+        return "W"
+
+
+class ShaftMass(AbstractMeasure):
+    """Mass of the shafts, without wheels and bearings [kg]."""
+
+    def __call__(self, element: Any, cases, solution):
+        system = element.system
+        beams = (system.beam(k) for k in range(len(system.shafts)))
+        return sum(jnp.sum(beam.element_masses()) for beam in beams)
+
+    @property
+    def label(self):
+        return "mass of the shafts"
+
+    @property
+    def unit(self):
+        return "kg"

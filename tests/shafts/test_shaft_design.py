@@ -1,0 +1,174 @@
+"""Systems of shafts in design: gradients, load cases, measures, bad input."""
+
+import copy
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from systems import ball, springs, stage
+from tolerances import DIFFERENCE, SOLVER
+
+import bearingjax as bj
+from bearingjax.lubrication import iso_vg
+from bearingjax.optimise import Constraint, PeakPressure, Variable, optimise
+from bearingjax.optimise.design_problem import Problem
+from bearingjax.shafts import (
+    BearingOil,
+    PowerLoss,
+    ShaftDesign,
+    ShaftMass,
+    SystemLife,
+    Worst,
+    load_cases,
+    solve_duty,
+    system_life,
+)
+from bearingjax.shafts.duty import bearing_hours
+from bearingjax.statics.life import LifeConditions
+from bearingjax.statics.options import SolveOptions
+
+POWERS, HOURS = (12e3, 22e3, 30e3), (500.0, 300.0, 50.0)
+OIL = BearingOil(iso_vg(220.0), 340.0)
+CLEARANCE = "system.seats.1.installed.drawing.bearing.radial_internal_clearance"
+FREE = (
+    Variable("system.seats.0.position", 0.03, 0.055),
+    Variable(CLEARANCE, 0.0, 30e-6),
+    Variable("system.shafts.0.outer_diameter.1", 0.045, 0.055),
+    Variable([f"system.wheels.{k}.helix_angle" for k in (0, 1)], 0.2, 0.3),
+)
+MEASURES = (
+    Worst("rating_life"),
+    Worst("rating_life", "B"),
+    Worst("static_safety"),
+    Worst("peak_pressure"),
+    Worst("tilt"),
+    Worst("misalignment"),
+    PowerLoss(),
+    ShaftMass(),
+)
+
+
+def seats(name, shaft, position):
+    """Ball bearings of the pinion, springs of the wheel."""
+    return (ball if shaft == "in" else springs)(name, shaft, position)
+
+
+def powered(power):
+    system = eqx.tree_at(lambda s: s.drive.power, stage(seats), jnp.asarray(power))
+    bearings, none = (LifeConditions(),) * 2, (None,) * 2
+    return ShaftDesign(system, bearings + none, (OIL,) * 2 + none)
+
+
+@pytest.fixture(scope="module")
+def problem():
+    """All measures: the first made least, the others bounded; over three powers."""
+    design, cases = load_cases([powered(p) for p in POWERS], HOURS)
+    bounds = [Constraint(m, lower=0.0) for m in MEASURES]
+    life = SystemLife().as_objective
+    return Problem(design, cases, FREE, life, bounds, SolveOptions())
+
+
+@pytest.mark.slow
+def test_gradients(problem):
+    """Of every measure by positions, clearances, diameters and a helix, against
+    differences of fourth order."""
+    start = problem.scaled([v.start_in(problem.element) for v in FREE])
+
+    def values(unit):
+        found = problem.run(jnp.asarray(unit), True)
+        assert not np.any(found.solution.result)
+        return np.asarray(found.measures), np.asarray(found.jacobian)
+
+    own = values(start)[1]
+    for k in range(len(FREE)):
+        step = 2e-3 * np.eye(len(FREE))[k]
+        ends = [values(start + s * step)[0] for s in (-2, -1, 1, 2)]
+        wanted = (ends[0] - 8 * ends[1] + 8 * ends[2] - ends[3]) / (12 * 2e-3)
+        size = np.abs(own).max(axis=1)
+        np.testing.assert_array_less(np.abs(own[:, k] - wanted), DIFFERENCE * size)
+
+
+@pytest.mark.slow
+def test_measures(problem):
+    """Are those of `solve_duty`, with the powers given one by one."""
+    designs = [powered(p) for p in POWERS]
+    duty = solve_duty([d.system for d in designs], [d.lives for d in designs])
+    start = problem.scaled([v.start_in(problem.element) for v in FREE])
+    found = problem.run(jnp.asarray(start), True)
+    system = designs[0].system
+    hours = bearing_hours(
+        duty.lives["damage"][:, :2], duty.speed[:, [0, 0]], np.array(HOURS)
+    )
+    exact = np.asarray(found.exact)
+    tilt = np.linalg.norm(duty.displacement[..., 3:], axis=-1)
+    beams = [system.beam(k) for k in range(2)]
+    wanted = [
+        1.0 / system_life(system, np.append(hours, [np.inf, np.inf])),
+        hours.min(),
+        hours[1],
+        duty.lives["static_safety"][:, :2].min(),
+        duty.peak_pressure[:, :2].max(),
+        tilt[:, :2].max(),
+        np.abs(duty.misalignment).max(),
+        exact[7],
+        sum(float(jnp.sum(beam.element_masses())) for beam in beams),
+    ]
+    np.testing.assert_allclose(exact, wanted, rtol=SOLVER)
+    smooth = np.asarray(found.measures)
+    np.testing.assert_allclose(smooth, exact, rtol=12.0 ** (1 / 64) - 1.0)
+
+
+@pytest.mark.slow
+def test_case_without_equilibrium(problem):
+    """Is told with its number; its design is rejected."""
+    other, power = copy.copy(problem), problem.cases.values[0]
+    lost = power.at[1].set(jnp.nan)
+    other.cases = eqx.tree_at(lambda c: c.values, problem.cases, (lost,))
+    start = problem.scaled([v.start_in(problem.element) for v in FREE])
+    trial = other.evaluate(start, True)
+    assert trial.fault.startswith("case 1: non_finite: the shafts find no equilibrium")
+
+
+@pytest.mark.parametrize(
+    ("variable", "wanted"),
+    [
+        (Variable("system.seats.0.position", 0.03, 0.07), "step of the shaft"),
+        (Variable("system.seats.1.position", 0.09, 0.25), "no part may pass"),
+        (Variable("system.shafts.0.outer_diameter.7", 0.04, 0.05), "no number"),
+        (Variable("system.wheels.0.helix_angle", 0.1, 0.3), "meshing gears have"),
+    ],
+)
+def test_bounds_that_no_design_allows(problem, variable, wanted):
+    with pytest.raises(ValueError, match=wanted):
+        optimise(problem.element, problem.cases, [variable], SystemLife())
+
+
+def test_wrong_calls(problem):
+    design, cases, free = problem.element, problem.cases, FREE[:1]
+    with pytest.raises(TypeError, match="it must be a ShaftCases"):
+        optimise(design, bj.Cases(np.zeros((1, 6))), free, SystemLife())
+    with pytest.raises(TypeError, match="one bearing was asked of a system"):
+        optimise(design, cases, free, PeakPressure())
+    with pytest.raises(ValueError, match="no bearing 'C'"):
+        optimise(design, cases, free, Worst("rating_life", "C"))
+    with pytest.raises(ValueError, match="no gear 'A'"):
+        optimise(design, cases, free, Worst("misalignment", "A"))
+    dry = ShaftDesign(design.system, design.lives)
+    with pytest.raises(ValueError, match="has no `oils`"):
+        optimise(dry, cases, free, PowerLoss())
+    with pytest.raises(ValueError, match="`kind` is 'load'"):
+        Worst("load")
+    with pytest.raises(ValueError, match="one for each"):
+        ShaftDesign(design.system, design.lives[:2])
+    with pytest.raises(ValueError, match="hours for each or none"):
+        load_cases([design], [1.0, 2.0])
+
+
+def test_parts_keep_their_order():
+    """Other numbers of a system need no new order; its checks run."""
+    system = stage(seats)
+    moved = eqx.tree_at(lambda s: s.position, system.seats[0], jnp.asarray(0.05))
+    other = system.with_parts(seats=(moved, *system.seats[1:]))
+    assert float(other.beam(0).nodes[other.beam(0).node(1)]) == pytest.approx(0.05)
+    assert other.plans == system.plans
