@@ -301,7 +301,7 @@ def test_cases_with_heat(tmp_path):
         np.testing.assert_allclose(found.rings[k], rings, rtol=1e-10)
         load = own.solution.load
         np.testing.assert_allclose(found.duty.load[k], load, rtol=1e-6, atol=1e-5)
-        lives = [bearing.life.modified_rating_life for bearing in own.bearings]
+        lives = np.array([b.life.modified_rating_life for b in own.bearings], float)
         given = found.duty.lives["modified_rating_life"][k]
         np.testing.assert_allclose(given, lives, rtol=1e-6)
     columns = shaft_columns(found)
