@@ -321,7 +321,7 @@ class TaperedRollerBearing(AbstractRollerBearing):
         outer, roller, inner = _apexes(axis, half, pitch, diameter, math)
         if max(abs(outer - roller), abs(inner - roller)) > 0.01 * abs(roller):
             warnings.warn(
-                "TaperedRollerBearing: the apexes of outer raceway, roller axis and"
+                f"{type(self).__name__}: the apexes of outer raceway, roller axis and"
                 f" inner raceway lie at z = {1e3 * outer:.4g}, {1e3 * roller:.4g} and"
                 f" {1e3 * inner:.4g} mm; they differ by more than 1 %, so the rollers"
                 " cannot roll without sliding.",
