@@ -37,11 +37,12 @@ def smooth_minimum(values: Float[Array, "..."], exponent: float = EXPONENT) -> S
     """Norm of order -p of numbers > 0: min/count^(1/exponent) ≤ result ≤ min.
 
     Args:
-        values: Numbers [any unit]; if one is not above 0, the result is the minimum.
+        values: Numbers [any unit]; if one is not above 0, or all are infinite, the
+            result is the minimum.
         exponent: p, above 1. Static.
     """
     low = jax.lax.stop_gradient(jnp.min(values))
-    none = low <= 0
+    none = (low <= 0) | jnp.isinf(low)
     share = low / jnp.where(none, 1.0, values)
     total = jnp.where(none, 1.0, jnp.sum(share**exponent))
     return jnp.where(none, jnp.min(values), low * total ** (-1.0 / exponent))

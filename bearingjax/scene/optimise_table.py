@@ -55,13 +55,11 @@ WARMTH = {f"temperature.{part}": part for part in PARTS}
 """Temperatures that may be variables in addition to a [fit]."""
 
 
-@dataclasses.dataclass(frozen=True)
-class Optimisation:
-    """Optimisation task of a scene, as in `optimise`.
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SearchTask:
+    """Search that [optimise] asks for, of a bearing or of shafts, as in `optimise`.
 
     Attributes:
-        scene: The scene without [optimise].
-        cases: Its operating cases; without [cases] the one of [operating].
         variables: The variables, named as in the scene.
         objective: Measure to be minimised.
         constraints: Bounds on measures.
@@ -71,8 +69,6 @@ class Optimisation:
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 
-    scene: Scene
-    cases: Cases
     variables: tuple[Variable, ...]
     objective: Any
     constraints: tuple[Constraint, ...]
@@ -80,6 +76,19 @@ class Optimisation:
     max_steps: int
     tolerance: float
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Optimisation(SearchTask):
+    """Optimisation task of the scene of a bearing.
+
+    Attributes:
+        scene: The scene without [optimise].
+        cases: Its operating cases; without [cases] the one of [operating].
+    """
+
+    scene: Scene
+    cases: Cases
 
 
 OF_FREEDOM = ("displacement", "stiffness")
@@ -294,14 +303,14 @@ def _optimisation(
     objective = measured.objective(keys)
     table.table("variables", required=True)
     return Optimisation(
-        scene,
-        cases,
-        _variables(keys.variables, top.table("fit"), scene, begun),
-        objective,
-        tuple(measured.constraint(one) for one in keys.constraints),
-        keys.method,
-        keys.max_steps,
-        keys.tolerance,
+        scene=scene,
+        cases=cases,
+        variables=_variables(keys.variables, top.table("fit"), scene, begun),
+        objective=objective,
+        constraints=tuple(measured.constraint(one) for one in keys.constraints),
+        method=keys.method,
+        max_steps=keys.max_steps,
+        tolerance=keys.tolerance,
     )
 
 

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..optimise.constraint import Constraint
-from ..optimise.variable import Variable, design_numbers
+from ..optimise.variable import design_numbers
 from ..shafts import (
     BearingOil,
     Gear,
@@ -26,6 +25,7 @@ from .life_table import life_conditions
 from .optimise_table import (
     BoundKeys,
     SearchKeys,
+    SearchTask,
     bound_key,
     check_present,
     installed_numbers,
@@ -77,28 +77,19 @@ class ShaftOptimiseKeys(SearchKeys):
     )
 
 
-@dataclasses.dataclass(frozen=True)
-class ShaftOptimisation:
-    """Optimisation task of a system of shafts, as in `optimise`.
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class ShaftOptimisation(SearchTask):
+    """Optimisation task of the scene of a system of shafts.
 
     Attributes:
         scene: The scene without [optimise].
         design: The system with the lives of its bearings, in the first case.
         cases: Its load cases; without [cases] one.
-        variables, objective, constraints, method, max_steps, tolerance, inputs: As in
-            `Optimisation`.
     """
 
     scene: ShaftScene
     design: ShaftDesign
     cases: ShaftCases
-    variables: tuple[Variable, ...]
-    objective: Any
-    constraints: tuple[Constraint, ...]
-    method: str | None
-    max_steps: int
-    tolerance: float
-    inputs: dict[str, Any] = dataclasses.field(repr=False)
 
 
 def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
@@ -165,16 +156,16 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     )
     top.finish()
     return ShaftOptimisation(
-        scene,
-        design,
-        cases,
-        variables,
-        measures[0],
-        constraints,
-        keys.method,
-        keys.max_steps,
-        keys.tolerance,
-        {**scene.inputs, "optimise": table.echo()},
+        scene=scene,
+        design=design,
+        cases=cases,
+        variables=variables,
+        objective=measures[0],
+        constraints=constraints,
+        method=keys.method,
+        max_steps=keys.max_steps,
+        tolerance=keys.tolerance,
+        inputs={**scene.inputs, "optimise": table.echo()},
     )
 
 
@@ -183,7 +174,7 @@ def _design(
 ) -> ShaftDesign:
     """Return the design of one case, with oils if the friction is wanted."""
     lives, oils = [], []
-    turning = bool(scene.system.inertia is not None)
+    turning = scene.system.inertia is not None
     for seat, alone in zip(scene.system.seats, scene.bearings, strict=True):
         oil = None if alone is None else alone.oil
         if alone is None:

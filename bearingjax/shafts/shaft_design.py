@@ -301,8 +301,8 @@ _WORST = {
     "tilt": ("rad", 1),
     "misalignment": ("rad", 2),
 }
-"""What `Worst` compares: SI unit, and the power that is made least in its place; those
-with -1 are worst where they are least."""
+"""Kinds of `Worst`: SI unit, and the power that is made least in its place; those with
+-1 are worst where they are least."""
 
 
 class Worst(AbstractSmooth):

@@ -152,6 +152,12 @@ def test_smooth_maximum_of_nothing_and_of_nan():
     assert value == 0 and np.all(slope == 0)
     assert np.isnan(smooth_maximum(jnp.array([1.0, jnp.nan])))
     assert np.isnan(smooth_minimum(jnp.array([1.0, jnp.nan])))
+    # Bearings without load have infinite lives.
+    idle = jnp.array([2.0, jnp.inf])
+    assert smooth_minimum(idle) == 2.0
+    assert jnp.isinf(smooth_minimum(jnp.full(2, jnp.inf)))
+    for lives in (idle, jnp.full(2, jnp.inf)):
+        assert jnp.isfinite(jax.grad(smooth_minimum)(lives)).all()
     assert smooth_minimum(jnp.array([2.0, -3.0])) == -3.0
 
 

@@ -71,8 +71,8 @@ def problem():
 
 @pytest.mark.slow
 def test_gradients(problem):
-    """Of every measure by positions, clearances, diameters and a helix, against
-    differences of fourth order."""
+    """Derivatives of every measure by positions, clearances, diameters and a helix
+    equal differences of fourth order."""
     start = problem.scaled([v.start_in(problem.element) for v in FREE])
 
     def values(unit):
