@@ -12,7 +12,6 @@ from ..numerics.programs import called
 from ..numerics.result import Result
 from ..shafts import (
     DutyResult,
-    ShaftSystem,
     SystemSolution,
     ThermalState,
     bearing_hours,
@@ -22,13 +21,13 @@ from ..shafts import (
     system_life,
     warm_up,
 )
+from ..shafts.doubts import axial_load, load_doubts
 from ..shafts.equilibrium import searched_system, unsolved
 from ..shafts.heat import overheated
 from ..shafts.seats import adjusted, speed_of
 from ..shafts.state import moving
 from ..statics.life import Life, life_of
 from ..statics.solution import Solution
-from ..statics.support import axial_senses
 from ..statics.warning import counted
 from .bearing_run import with_set_preload
 from .fit_report import fit_as_dict
@@ -39,9 +38,6 @@ from .oil_table import OilFacts, oil_as_dict, oil_facts
 from .quantity import SceneError
 from .read import Scene, with_speed_told
 from .shaft_table import ShaftScene
-
-_LOST = 1e-9
-"""Axial load over the radial one, or the largest of all, that counts as none [1]."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -315,8 +311,7 @@ def _warnings(run: ShaftRun) -> Iterator[str]:
             " the shaft by a bearing"
         )
     loads = found.load[None] if run.duty is None else run.duty.load
-    most = np.abs(loads[..., :3]).max(axis=(1, 2))
-    for k, (seat, bearing) in enumerate(zip(system.seats, run.bearings, strict=True)):
+    for k, bearing in enumerate(run.bearings):
         if bearing.scene is None or bearing.solution is None:
             continue
         # With cases each kind once, with the worst case.
@@ -327,53 +322,7 @@ def _warnings(run: ShaftRun) -> Iterator[str]:
         )
         for text in told:
             yield f"{bearing.name}: {text}"
-        idle = np.flatnonzero(np.abs(loads[:, k, :3]).max(axis=1) <= _LOST * most)
-        if idle.size:
-            yield f"{bearing.name}: it bears nothing{_where(run, idle)}; it may skid"
-        if seat.preload is not None:
-            kept = np.array([_axial(system, k, load) for load in loads[:, k]])
-            lost = np.flatnonzero(kept < 0.05 * float(seat.preload))
-            if lost.size:
-                yield (
-                    f"{bearing.name}: adjusted with {float(seat.preload):.5g} N, it"
-                    f" keeps an axial load of {max(kept.min(), 0.0):.4g} N"
-                    f"{_where(run, lost)}: the preload is lost to loads or heat"
-                )
-    yield from _over_determined(run)
-
-
-def _where(run: ShaftRun, cases: np.ndarray) -> str:
-    """Say in how many cases something is so; nothing of a single one."""
-    if run.duty is None:
-        return ""
-    return f" in {len(cases)} of {len(run.task.cases)} cases (case {cases[0]})"
-
-
-def _axial(system: ShaftSystem, index: int, load: np.ndarray) -> float:
-    """Return the axial part of a load on a bearing, along its own z [N]."""
-    seat = system.seats[index]
-    along = np.asarray(system.shaft(seat.shaft).frame[2]) @ load[:3]
-    return float(-along if seat.turned else along)
-
-
-def _over_determined(run: ShaftRun) -> Iterator[str]:
-    """Yield a warning for each shaft that several bearings hold both ways."""
-    system = run.task.system
-    for shaft in system.shafts:
-        both = [
-            seat.name
-            for seat in system.seats
-            if seat.shaft == shaft.name
-            and seat.installed is not None
-            and not seat.floating
-            and len(axial_senses(seat.installed.drawing.bearing)) == 2
-        ]
-        if len(both) > 1:
-            yield (
-                f"shaft {shaft.name} is located by {' and '.join(both)}: warmth and"
-                " tolerances of the distance press them against each other; let all but"
-                " one float (`floating`)"
-            )
+    yield from load_doubts(system, loads)
 
 
 def shafts_as_dict(run: ShaftRun) -> dict[str, Any]:
@@ -480,7 +429,7 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
         "load": found.load[k].tolist(),
         "displacement": moved.tolist(),
         "tilt": (frame[:2] @ moved[3:]).tolist(),
-        "axial_load": _axial(run.task.system, k, np.asarray(found.load[k])),
+        "axial_load": axial_load(run.task.system, k, np.asarray(found.load[k])),
         "stiffness": found.stiffness[k].tolist(),
     }
     scene, solution, life = bearing.scene, bearing.solution, bearing.life

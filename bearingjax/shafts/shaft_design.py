@@ -23,6 +23,7 @@ from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted
 from ..statics.life import LifeConditions
 from ..statics.warning import counted
+from .doubts import load_doubts
 from .duty import LIVES, DutyResult, alike, bearing_hours, rated, state_of, system_life
 from .heat import friction_power
 from .parts import Gear
@@ -175,7 +176,7 @@ class ShaftDesign(AbstractSystem):
         for seat, sizes in zip(self.system.seats, solved.warned, strict=True):
             told = counted(jax.device_get(sizes))
             found += [f"{seat.name}: {text}" for text in told]
-        return found
+        return [*found, *load_doubts(self.system, solved.load)]
 
     def hours(self, cases: ShaftCases, solved: Any) -> Float[Array, " bearing"]:
         """Life of each bearing under all cases (bearing,) [h]; infinite of springs.

@@ -1,6 +1,7 @@
 """Systems of shafts in design: gradients, load cases, measures, bad input."""
 
 import copy
+from types import SimpleNamespace
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -172,3 +173,27 @@ def test_parts_keep_their_order():
     other = system.with_parts(seats=(moved, *system.seats[1:]))
     assert float(other.beam(0).nodes[other.beam(0).node(1)]) == pytest.approx(0.05)
     assert other.plans == system.plans
+
+
+def test_warnings_are_those_of_the_system_too():
+    """Idle bearings, lost preloads and shafts located twice, as `shaft` tells them."""
+    design = powered(12e3)
+    system = eqx.tree_at(
+        lambda s: s.seats[0].preload,
+        design.system,
+        jnp.asarray(100.0),
+        is_leaf=lambda leaf: leaf is None,
+    )
+    design = eqx.tree_at(lambda d: d.system, design, system)
+    load = np.zeros((2, 4, 6))
+    load[:, 0, 2] = 200.0  # along the shaft
+    load[1, :2, :3] = [[500.0, 0.0, 2.0], [500.0, 0.0, 0.0]]
+    solved = SimpleNamespace(warned=({},) * 4, load=load)
+    told = design.warnings(None, solved)
+    assert len(told) == 3
+    assert "B: it bears nothing in 1 of 2 cases (case 0); it may skid" in told
+    (lost,) = (text for text in told if text.startswith("A: adjusted with 100 N"))
+    assert "keeps an axial load of 2 N in 1 of 2 cases (case 1)" in lost
+    (twice,) = (text for text in told if text.startswith("shaft in is located by A"))
+    load[0, 1, 0], load[1, 0, 2] = 300.0, 200.0
+    assert design.warnings(None, solved) == [twice]
