@@ -111,11 +111,14 @@ static const Sum *solve_load(
     Sum *new, int *taken, int *converged)
 {
     const double r = d->n.pitch_radius, play = fmax(2.0 * d->n.gap, 0.0);
-    const double pressing = 2.0 * d->n.half_length * d->n.constant * pow(play, 10.0 / 9);
-    const double first_radius = 1e-7 * r + play;
+    const double stiff = 2.0 * d->n.half_length * d->n.constant;
+    const double pressing = stiff * pow(play, 10.0 / 9);
     double pull[FREE], way[FREE], g[FREE], p[FREE], there[FREE], after[FREE];
     for (int i = 0; i < FREE; i++) pull[i] = by[i] * load[FREEDOM[i]];
-    const double size_of_pull = norm(pull);
+    const double size_of_pull = norm(pull), known = 1e-3 * r;
+    const double share = size_of_pull / (stiff * pow(known, 10.0 / 9));
+    const double approach = fmin(known * pow(share, 0.8), 0.1 * r);
+    const double first_radius = 1e-7 * r + play + approach;
     for (int i = 0; i < FREE; i++)
         way[i] = pull[i] / (size_of_pull > 0 ? size_of_pull : 1.0);
     double factor = 1.0, radius = first_radius, goal;

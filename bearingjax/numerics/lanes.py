@@ -37,6 +37,9 @@ SLOTS, IDLE = 64, 16
 """Default number of slots, and how many of them may be idle. The data of the slots
 should fit the cache of a core."""
 
+WIDER = 64
+"""Multiple of the slots on a GPU, whose threads want more problems at a time."""
+
 SMALL = 64
 """Largest size of a leaf that is packed with others."""
 
@@ -182,8 +185,9 @@ def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
     Args:
         loop: Its functions use no traced number except those of `given`.
         given: Pytree; leaves that are not arrays are static.
-        slots: Number of problems of a batch iterated at a time, while others wait. A
-            batch of fewer than two times as many is stepped together by `vmap`.
+        slots: Number of problems of a batch iterated at a time, while others wait;
+            `WIDER` times as many on a GPU. A batch of fewer than two times as many is
+            stepped together by `vmap`.
         idle: Number of slots that may be done before they are refilled, while problems
             wait; at most all. It costs a part of a step, and more with large states.
 
@@ -264,12 +268,19 @@ def _lowered(*leaves, task, **choices):
     return task.program(*leaves, **choices)
 
 
+def _lowered_wide(*leaves, task, **choices):
+    slots, idle = (WIDER * n for n in task.slots)
+    return _lowered(*leaves, task=dataclasses.replace(task, slots=(slots, idle)), **choices)
+
+
 mlir.register_lowering(_lanes, mlir.lower_fun(_lowered))
+for _platform in ("cuda", "rocm"):
+    mlir.register_lowering(_lanes, mlir.lower_fun(_lowered_wide), platform=_platform)
 
 
 def _batched(leaves, axes, *, task, flags, count):
     """One more axis of `vmap` makes more lanes of the same kind."""
-    more = [axis is not batching.not_mapped for axis in axes]
+    more = [axis is not None for axis in axes]
     leaves = [
         jnp.moveaxis(leaf, axis, 0) if new else leaf
         for leaf, axis, new in zip(leaves, axes, more, strict=True)

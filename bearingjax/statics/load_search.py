@@ -100,7 +100,10 @@ def beginning(
         y = y + jnp.where(known, near, 0.0)
         factor = jnp.where(known, 1.0, factor)
     limit = 8.0 * radius + jnp.abs(y[5])
-    step = 1e-7 * radius + play
+    # About the way on which play is taken up and a contact bears the load. Far shorter
+    # ones cost a step for each factor of four, longer ones may turn barrel rollers out
+    # of their raceways under loads beyond all ratings.
+    step = 1e-7 * radius + play + _approach_under(model, size, radius)
     inertia = _largest_inertia(model, size)
     return Beginning(y, step, limit, load, size, inertia, factor)
 
@@ -290,6 +293,16 @@ def _load_for(model: BearingModel, approach: Scalar) -> Scalar:
     """Load of one raceway contact pressed by `approach` [N]."""
     loads = model.of_elements(lambda one: one.seeking.pressed(approach))
     return jnp.max(jnp.stack([jnp.max(load) for load in loads]))
+
+
+def _approach_under(model: BearingModel, size: Scalar, radius: Scalar) -> Scalar:
+    """About the approach of one raceway contact under a load of that size [m].
+
+    Between the powers 2/3 of points and 9/10 of lines; at most a tenth of the radius.
+    """
+    known = 1e-3 * radius
+    approach = known * (size / _load_for(model, known)) ** 0.8
+    return jnp.minimum(approach, 0.1 * radius)
 
 
 def _largest_inertia(model: BearingModel, like: Scalar) -> Scalar:

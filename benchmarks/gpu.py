@@ -1,0 +1,158 @@
+"""What does a GPU buy? Many bearings, load solves and gradients in one call.
+
+A cylindrical roller bearing (NU), 14 crowned rollers, 32 nodes per raceway contact, in
+float64: force and stiffness at random ring motions; displacement under random radial
+loads with moments, from first contact; the sag under such a load and its gradient by
+clearance, roller length and crown radius. The processor runs chunks of 64 cases, the
+GPU all cases at once, or as many as `bearingjax.numerics.lanes.WIDER` lets in at a
+time where iterations differ. Times are those of hot calls, medians of three, results
+left on the device. Errors are relative to the largest result of the processor.
+
+Run: python benchmarks/gpu.py [--device cpu|gpu] [--smoke] [--seconds S]
+
+`--seconds` leaves out the larger batches once so much time is spent.
+"""
+
+import argparse
+import sys
+import time
+
+import jax
+
+jax.config.update("jax_enable_x64", True)
+
+import equinox as eqx  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+from batch_throughput import motions  # noqa: E402
+from load_solve_throughput import middle_loads  # noqa: E402
+from timing import machine, relative, shuffled, timed  # noqa: E402
+
+import bearingjax as bj  # noqa: E402
+
+CHUNK = 64
+COUNTS = {
+    "force and stiffness": (1_000, 10_000, 100_000, 1_000_000),
+    "load solve": (1_000, 10_000, 100_000),
+    "gradient of a load solve": (1_000, 10_000, 100_000),
+}
+SMOKE = 70
+CHECKED = 1_000
+AGREEMENT = 1e-8
+
+
+def bearing():
+    return bj.CylindricalRollerBearing(
+        14, 0.065, 0.010, 0.010,
+        radial_internal_clearance=10e-6, roller_profile=bj.CircularCrown(3.0),
+    )  # fmt: skip
+
+
+def force_and_stiffness(q):
+    e = bj.BearingElement(bearing()).evaluate(q)
+    return jnp.concatenate([e.force, 1e-6 * e.stiffness.reshape(-1)])
+
+
+def displacement(load):
+    return bj.solve_load(bj.BearingElement(bearing()), load, throw=False).displacement
+
+
+NUMBERS = (
+    lambda b: b.radial_internal_clearance,
+    lambda b: b.roller_length,
+    lambda b: b.roller_profile.crown_radius,
+)
+
+
+def sag_and_gradient(load):
+    def sag(values):
+        changed = eqx.tree_at(lambda b: [g(b) for g in NUMBERS], bearing(), values)
+        moved = bj.solve_load(bj.BearingElement(changed), load, throw=False)
+        return jnp.linalg.norm(moved.displacement[6:8])
+
+    value, slopes = jax.value_and_grad(sag)([g(bearing()) for g in NUMBERS])
+    return jnp.stack([value, *slopes])
+
+
+QUESTIONS = {
+    "force and stiffness": (force_and_stiffness, motions),
+    "load solve": (displacement, lambda n: middle_loads(n, arm=1e-3)),
+    "gradient of a load solve": (
+        sag_and_gradient,
+        lambda n: middle_loads(n, arm=1e-3),
+    ),
+}
+
+
+def program(function, device):
+    """Many cases on a device, and seconds of compiling for a number of them."""
+    if device.platform == "cpu":
+        many = jax.jit(lambda given: jax.lax.map(function, given, batch_size=CHUNK))
+    else:
+        many = jax.jit(jax.vmap(function))
+    return lambda given: many(jax.device_put(given, device))
+
+
+def study(name, devices, counts, until):
+    """Rows of a question: batches on every device."""
+    function, make = QUESTIONS[name]
+    want = None
+    for device in devices:
+        many = program(function, device)
+        for count in counts:
+            if time.monotonic() > until and count != counts[0]:
+                break
+            if device.platform == "cpu" and count > max(10_000, counts[0]):
+                continue
+            given = make(count)
+            first, out = timed(lambda many=many, given=given: many(given))
+            calls = {name: lambda many=many, given=given: many(given)}
+            seconds = float(np.median(shuffled(calls, 3, warm=False)[name]))
+            few = np.asarray(many(make(min(CHECKED, counts[0]))))
+            want = few if want is None else want
+            yield {
+                "question": name,
+                "device": device.platform,
+                "cases": count,
+                "us": 1e6 * seconds / count,
+                "compile_s": first - seconds,
+                "failed": int(np.sum(~np.isfinite(np.asarray(out)).all(axis=1))),
+                "error": relative(few, want),
+            }
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--device", choices=("cpu", "gpu"), default="cpu")
+    parser.add_argument("--smoke", action="store_true", help="one small batch each")
+    parser.add_argument("--seconds", type=float, default=1e9)
+    args = parser.parse_args()
+    if args.device == "gpu":
+        jax.config.update("jax_platforms", "cuda,cpu")
+    until = time.monotonic() + args.seconds
+    devices = [jax.devices("cpu")[0]]
+    devices += [jax.devices()[0]] if args.device == "gpu" else []
+    print(
+        f"{'':26}{'device':>7}{'cases':>9}{'µs/case':>10}{'compile, s':>12}"
+        f"{'failed':>8}{'error':>8}"
+    )
+    worst = 0.0
+    for name in QUESTIONS:
+        counts = (SMOKE,) if args.smoke else COUNTS[name]
+        for row in study(name, devices, counts, until):
+            worst = max(worst, row["error"])
+            print(
+                f"{row['question']:26}{row['device']:>7}{row['cases']:9d}"
+                f"{row['us']:10.2f}{row['compile_s']:12.1f}{row['failed']:8d}"
+                f"{row['error']:8.0e}",
+                flush=True,
+            )
+    print(f"\n{machine()}")
+    if worst > AGREEMENT:
+        print("gpu: the devices disagree.", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
