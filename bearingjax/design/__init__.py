@@ -23,6 +23,7 @@ from .bearing import TaperedRollerBearing as TaperedRollerBearing
 from .bearing_set import BearingSet as BearingSet
 from .bearing_set import PreloadSpring as PreloadSpring
 from .bearing_set import SetRow as SetRow
+from .bearing_set import bearings_of as bearings_of
 from .bearing_set import is_self_aligning as is_self_aligning
 from .bearing_set import pitch_radius as pitch_radius
 from .bearing_set import rows_of as rows_of

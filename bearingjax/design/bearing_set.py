@@ -277,9 +277,16 @@ def rows_of(bearing: AbstractBearing | BearingSet) -> tuple[SetRow, ...]:
     return (SetRow(bearing),)
 
 
+def bearings_of(bearing: AbstractBearing | BearingSet) -> tuple[AbstractBearing, ...]:
+    """The single-row bearings of a set, or the bearing itself."""
+    if isinstance(bearing, BearingSet):
+        return tuple(row.bearing for row in bearing.rows)
+    return (bearing,)
+
+
 def is_self_aligning(bearing: AbstractBearing | BearingSet) -> bool:
     """Whether its rings tilt freely, as in a self-aligning bearing."""
-    return all(row.bearing.aligns for row in rows_of(bearing))
+    return all(row.aligns for row in bearings_of(bearing))
 
 
 def shares_rings(bearing: AbstractBearing | BearingSet) -> bool:
@@ -288,7 +295,7 @@ def shares_rings(bearing: AbstractBearing | BearingSet) -> bool:
 
     More than two rows of crossed rollers are several bearings.
     """
-    rows = [row.bearing for row in rows_of(bearing)]
+    rows = list(bearings_of(bearing))
     if all(row.aligns for row in rows):
         return True
     return len(rows) <= 2 and all(isinstance(row, CrossedRollerRow) for row in rows)
@@ -296,7 +303,7 @@ def shares_rings(bearing: AbstractBearing | BearingSet) -> bool:
 
 def pitch_radius(bearing: AbstractBearing | BearingSet) -> Scalar:
     """Largest pitch radius of the rows [m]."""
-    radii = [0.5 * row.bearing.pitch_diameter for row in rows_of(bearing)]
+    radii = [0.5 * row.pitch_diameter for row in bearings_of(bearing)]
     return jnp.max(jnp.stack(radii))
 
 

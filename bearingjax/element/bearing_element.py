@@ -13,6 +13,7 @@ from ..design import (
     AbstractBearing,
     BearingSet,
     SetRow,
+    bearings_of,
     deviation_of,
     rows_of,
 )
@@ -216,7 +217,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 " Speed(inner, outer) in rad/s, or None."
             )
         self._check(speed)
-        designs = jnp.shape(rows_of(self.bearing)[0].bearing.pitch_diameter)
+        designs = jnp.shape(bearings_of(self.bearing)[0].pitch_diameter)
         if designs:
             raise ValueError(
                 f"BearingElement: it holds designs, {designs[0]} of them, and is asked"

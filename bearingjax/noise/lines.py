@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..design import AbstractBearing, BearingSet, rows_of
+from ..design import AbstractBearing, BearingSet, bearings_of
 from ..design.checks import count, non_negative, positive
 from ..element.inertia import Speed
 from .orders import KinematicFrequencies, kinematic_frequencies
@@ -151,7 +151,7 @@ def _single(bearing):
     """Return the rows of a set; anything else unchanged, for later checks."""
     if not isinstance(bearing, BearingSet):
         return [bearing]
-    return [row.bearing for row in rows_of(bearing)]
+    return list(bearings_of(bearing))
 
 
 def _of_all(

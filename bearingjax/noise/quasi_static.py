@@ -14,7 +14,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..design import BearingSet, rows_of
+from ..design import BearingSet, bearings_of
 from ..design.checks import check, count
 from ..design.deviation import with_raceways
 from ..element.bearing_element import BearingElement
@@ -122,7 +122,7 @@ def at_instant(
     met = system.met(system.azimuth(time), time)
 
     def rows(tree):
-        return [row.bearing for row in rows_of(tree)]
+        return list(bearings_of(tree))
 
     now = []
     for k, row in enumerate(rows(bearing)):

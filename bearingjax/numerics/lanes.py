@@ -270,7 +270,9 @@ def _lowered(*leaves, task, **choices):
 
 def _lowered_wide(*leaves, task, **choices):
     slots, idle = (WIDER * n for n in task.slots)
-    return _lowered(*leaves, task=dataclasses.replace(task, slots=(slots, idle)), **choices)
+    return _lowered(
+        *leaves, task=dataclasses.replace(task, slots=(slots, idle)), **choices
+    )
 
 
 mlir.register_lowering(_lanes, mlir.lower_fun(_lowered))

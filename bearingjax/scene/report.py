@@ -15,6 +15,7 @@ from ..design import (
     BearingSet,
     CrossedRollerRow,
     TaperedRollerBearing,
+    bearings_of,
     rows_of,
 )
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
@@ -99,7 +100,7 @@ def bearing_text(
             lines.append(f"ground to a preload of {scene.preload_force:.5g} N{mounted}")
         lines += [] if solution is None else _springs(bearing, solution)
     tell = ball_row if bearing.is_ball else roller_row
-    parts = [row.bearing for row in rows_of(bearing)]
+    parts = list(bearings_of(bearing))
     alike = len({"\n".join(tell(part, "")) for part in parts}) == 1
     if alike:
         own = tell(parts[0], "each row" if lines else scene.name)

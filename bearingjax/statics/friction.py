@@ -27,6 +27,7 @@ from ..design import (
     TaperedRollerBearing,
     TaperedThrustRollerBearing,
     ThrustBallBearing,
+    bearings_of,
     is_self_aligning,
     rows_of,
 )
@@ -190,7 +191,7 @@ def units_of(bearing: AbstractBearing | BearingSet) -> list[Any]:
     """Units that count as one bearing: a row, or both rows of a self-aligning one."""
     if is_self_aligning(bearing):
         return [bearing]
-    return [row.bearing for row in rows_of(bearing)]
+    return list(bearings_of(bearing))
 
 
 def unit_loads(solution: Solution) -> list[tuple[Scalar, Scalar, Any]]:

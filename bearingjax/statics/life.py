@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing, pitch_radius, rows_of
+from ..design import AbstractBallBearing, bearings_of, pitch_radius, rows_of
 from ..design.checks import check, in_range, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
@@ -347,7 +347,7 @@ def life_of(
 
 def _rows_in_words(bearing) -> str:
     """Type and number of elements of every row, in words: the static part."""
-    rows = [row.bearing for row in rows_of(bearing)]
+    rows = list(bearings_of(bearing))
     return " and ".join(f"{type(r).__name__} of {r.n_elements}" for r in rows)
 
 

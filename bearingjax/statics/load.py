@@ -7,6 +7,7 @@ the search for the equilibrium, and the solution with its result code.
 from collections.abc import Sequence
 from typing import Any, TypedDict, Unpack, overload
 
+import jax
 from jaxtyping import Array, Int
 
 from ..design import (
@@ -15,6 +16,7 @@ from ..design import (
     pitch_radius,
     rows_of,
 )
+from ..design.checks import is_traced
 from ..element.bearing_element import BearingElement, check_element
 from ..element.bearing_model import BearingModel
 from ..element.inertia import Speed
@@ -156,13 +158,20 @@ def solve(
         element.bearing, options, load, prescribed, fixed_displacement, start, speed
     )
     options = options.for_dtype(case.load.dtype)
-    return _solve(element, element.model(speed), case, options)
+    # Called as it is, the model is worked out in the one program that is called: to
+    # start another takes half the time of a solve. Within a loop over cases, once.
+    known = any(is_traced(leaf) for leaf in jax.tree.leaves(case))
+    return _solve(element, element.model(speed) if known else None, case, options)
 
 
 @program
 def _solve(
-    element: BearingElement, model: BearingModel, case: LoadCase, options: SolveOptions
+    element: BearingElement,
+    model: BearingModel | None,
+    case: LoadCase,
+    options: SolveOptions,
 ) -> Solution:
+    model = element.model(case.speed) if model is None else model
     balance = balance_of(
         case, pitch_radius(element.bearing), options.moving_ring == "outer"
     )

@@ -7,7 +7,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBearing, BearingSet, pitch_radius, rows_of
+from ..design import AbstractBearing, BearingSet, bearings_of
 from ..design.checks import real_numbers
 from ..element.frame import FREEDOMS, LOADS
 from ..element.inertia import Speed
@@ -69,7 +69,7 @@ def load_case(
         TypeError: For text in place of numbers.
         ValueError: For unknown names, or contradictory choices.
     """
-    dtype = pitch_radius(bearing).dtype
+    dtype = bearings_of(bearing)[0].pitch_diameter.dtype
     forces = _six("load", load, dtype)
     fixed = _six("fixed_displacement", fixed_displacement, dtype)
     prescribed = _named(prescribed)
@@ -84,7 +84,8 @@ def load_case(
             f"solve_load: {', '.join(both)} is both free and prescribed; choose one."
         )
     check_held("solve_load", forces, prescribed, options.free)
-    for k, row in enumerate(rows_of(bearing)):
+    rows = bearing.rows if isinstance(bearing, BearingSet) else ()
+    for k, row in enumerate(rows):
         if row.spring is not None and "uz" not in restrained_freedoms(row.bearing):
             raise ValueError(
                 f"solve_load: row {k} has a spring, but holds no axial load."

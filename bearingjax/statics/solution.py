@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from ..design import AbstractBearing, BearingSet, rows_of
+from ..design import AbstractBearing, BearingSet, bearings_of
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel, Evaluated, Solved
 from ..element.choices import BallChoices, RollerChoices
@@ -274,7 +274,7 @@ def _(choices: RollerChoices, bearing, rows, points):
 
 @contact_results.register
 def _(choices: BallChoices, bearing, rows, points):
-    designs: Any = [row.bearing for row in rows_of(bearing)]
+    designs: Any = list(bearings_of(bearing))
     return ball_results(rows, designs, choices.point_law)
 
 

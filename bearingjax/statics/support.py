@@ -13,6 +13,7 @@ from ..design import (
     CylindricalThrustRollerBearing,
     SphericalThrustRollerBearing,
     ToroidalRollerBearing,
+    bearings_of,
     is_self_aligning,
     rows_of,
 )
@@ -31,7 +32,7 @@ def restrained_freedoms(bearing: AbstractBearing | BearingSet) -> tuple[str, ...
     Args:
         bearing: The design.
     """
-    rows = [row.bearing for row in rows_of(bearing)]
+    rows = list(bearings_of(bearing))
     axial = any(row.holds_axially for row in rows)
     flat = all(isinstance(row, CylindricalThrustRollerBearing) for row in rows)
     tilting = SphericalThrustRollerBearing | ToroidalRollerBearing

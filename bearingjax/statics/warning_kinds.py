@@ -11,6 +11,7 @@ from ..design import (
     AbstractRollerBearing,
     AngularContactBallBearing,
     SphericalThrustRollerBearing,
+    bearings_of,
     is_self_aligning,
     rows_of,
 )
@@ -54,13 +55,13 @@ def _of_rollers(element, speed):
 
 
 def _has_ribs(element, speed):
-    bearings = [row.bearing for row in rows_of(element.bearing)]
+    bearings = list(bearings_of(element.bearing))
     rollers = [b for b in bearings if isinstance(b, AbstractRollerBearing)]
     return any(bearing.ribs.present for bearing in rollers)
 
 
 def _has_shoulder(element, speed):
-    bearings = [row.bearing for row in rows_of(element.bearing)]
+    bearings = list(bearings_of(element.bearing))
     balls = [b for b in bearings if isinstance(b, AbstractBallBearing)]
     shoulders = [s for b in balls for s in (b.outer_shoulder, b.inner_shoulder)]
     return any(shoulder is not None for shoulder in shoulders)
@@ -73,13 +74,13 @@ def _is_linearised(element, speed):
 
 
 def _is_linearised_barrel(element, speed):
-    rows = [row.bearing for row in rows_of(element.bearing)]
+    rows = list(bearings_of(element.bearing))
     barrels = all(isinstance(row, AbstractBarrelBearing) for row in rows)
     return barrels and isinstance(element.kinematics, Linearised)
 
 
 def _is_spherical_thrust(element, speed):
-    rows = [row.bearing for row in rows_of(element.bearing)]
+    rows = list(bearings_of(element.bearing))
     return all(isinstance(row, SphericalThrustRollerBearing) for row in rows)
 
 

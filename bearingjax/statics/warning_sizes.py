@@ -21,6 +21,7 @@ from ..design import (
     SphericalRollerRow,
     SphericalThrustRollerBearing,
     ToroidalRollerBearing,
+    bearings_of,
     is_self_aligning,
     rows_of,
 )
@@ -408,7 +409,7 @@ def usual_tilt(bearing: AbstractBearing | BearingSet) -> float:
 
     None of bearings with a spherical raceway: their rings tilt freely.
     """
-    rows = [row.bearing for row in rows_of(bearing)]
+    rows = list(bearings_of(bearing))
     if all(isinstance(row, SphericalThrustRollerBearing) for row in rows):
         return math.inf
     if is_self_aligning(bearing):

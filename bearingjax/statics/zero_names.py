@@ -1,6 +1,6 @@
 """Names of the numbers of a sweep that are zero in every case."""
 
-from ..design import AbstractRollerBearing, rows_of
+from ..design import AbstractRollerBearing, bearings_of
 from ..design.rib import RIB_NAMES
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
@@ -46,6 +46,6 @@ def zero_names(
 
 
 def _ribs(element: BearingElement) -> set[str]:
-    bearings = [row.bearing for row in rows_of(element.bearing)]
+    bearings = list(bearings_of(element.bearing))
     rollers = [b for b in bearings if isinstance(b, AbstractRollerBearing)]
     return {name for bearing in rollers for name in bearing.ribs.present}
