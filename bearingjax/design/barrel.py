@@ -65,6 +65,8 @@ class AbstractBarrelBearing(AbstractRollerBearing):
         # Infinite radii are straight generators.
         for name in ("roller_profile_radius", "inner_raceway_radius"):
             _radius(self, name)
+        # Before the radius of a sphere, which follows from it.
+        positive(self, "pitch_diameter")
         if self.outer_raceway_radius is not None:
             _radius(self, "outer_raceway_radius")
         elif not isinstance(self, _AbstractSphere):

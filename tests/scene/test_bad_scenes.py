@@ -1184,6 +1184,10 @@ TYPED = [
     ),
     ("toroidal", "bearing.staggered=true", "`bearing.staggered`: unknown key"),
     (
+        *("spherical_thrust", "bearing.pitch_diameter=0 mm"),
+        "[bearing]: SphericalThrustRollerBearing: `pitch_diameter` is 0 m; it must be",
+    ),
+    (
         *("spherical_thrust", "bearing.contact_angle=0 deg"),
         "[bearing]: SphericalThrustRollerBearing: `contact_angle` is 0 rad; it must be",
     ),
