@@ -137,8 +137,13 @@ class RollerSeeking(Seeking):
         c = self.element.constants
         if self.element.geometry.is_linear:
             return 1.0
-        # Exact motions are those of points that turn about O.
-        return 1.0 + c.pitch_radius / c.half_length
+        # Exact motions are those of points that turn about O, or about the centre of
+        # their arc.
+        lever = c.pitch_radius
+        if c.arc_radii is not None:
+            arc = c.arc_radii[0]
+            lever = lever + jnp.where(jnp.isfinite(arc), arc, 0.0)
+        return 1.0 + lever / c.half_length
 
     def pressed(self, approach):
         return self.element.constants.lines[0].pressed(approach)
