@@ -47,8 +47,10 @@ noise noise_deep_groove             77.4    34.1
 """
 
 import argparse
+import importlib.util
 import json
 import os
+import pathlib
 import subprocess
 import sys
 import tempfile
@@ -97,6 +99,7 @@ COMMANDS = (
     "sweep load_map",
     "rotor rotor_spindle",
     "rotor rotor_flexible",
+    "shaft shaft_spindle",
     "skid skid_axial --steady",
     "skid skid_roller --steady",
     "noise noise_deep_groove",
@@ -201,11 +204,20 @@ def library():
     return steps | {"first force and stiffness": np.sum(needed, axis=0)}
 
 
+def last_change(tree):
+    """When a source of the package was last changed."""
+    top = pathlib.Path(tree or importlib.util.find_spec("bearingjax").origin)
+    top = top / "bearingjax" if tree else top.parent
+    return max(path.stat().st_mtime for path in top.rglob("*.py"))
+
+
 def command_line(command, tree):
     """(wall, processor) [s] of a first and a second run with one cache."""
-    given = [COMMAND, *command.split()]
+    given, before = [COMMAND, *command.split()], last_change(tree)
     with tempfile.TemporaryDirectory() as cache:
         times = [run(given, cache, tree)[1] for _ in range(2)]
+    if last_change(tree) != before:
+        sys.exit(f"{command}: sources changed meanwhile; no program is kept over that")
     name = command.split()[0]
     return dict(zip((f"{name}, first", f"{name}, second"), times, strict=True))
 

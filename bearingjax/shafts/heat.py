@@ -223,12 +223,12 @@ def steady_rises(
         conductance and capacity; rate of the slowest disturbance [1/s]; residual [1];
         steps; whether it was found. Rises are those of the last step if it was not.
     """
-    still = stop((args, conductance, capacity))
+    still, *network = stop((args, conductance, capacity))
 
     def evaluated(rise):
-        return _with_slope(lambda rise: (heat(rise, still[0]), ()), rise)
+        return _with_slope(lambda rise: (heat(rise, still), ()), rise)
 
-    found, _ = _searched(evaluated, *still[1:], (), lax.while_loop)
+    found, _ = _searched(evaluated, network, (), lax.while_loop)
 
     def balance(rise, args):
         heat_args, conductance = args
@@ -284,12 +284,12 @@ class _Search(NamedTuple):
         return (self.residual <= _TOLERANCE) & (self.fastest < 0)
 
 
-def _searched(evaluated, conductance, capacity, nothing, while_loop):
+def _searched(evaluated, network, nothing, while_loop):
     """Search the temperatures that a system reaches from the cold.
 
     Args:
         evaluated: Rises -> heat made, its slope, and something else.
-        conductance, capacity: As in `steady_rises`.
+        network: Conductance and capacity as in `steady_rises`.
         nothing: In place of what else is evaluated, before the first step.
         while_loop: `lax.while_loop`, or `_while_loop`.
 
@@ -299,9 +299,9 @@ def _searched(evaluated, conductance, capacity, nothing, while_loop):
 
     def step(carry):
         made, slope, more = evaluated(carry[0].after)
-        return _advanced(carry[0], made, slope, conductance, capacity), more
+        return _advanced(carry[0], made, slope, network), more
 
-    begin = _beginning(conductance, capacity)
+    begin = _beginning(network)
     return while_loop(lambda carry: carry[0].going, step, (begin, nothing))
 
 
@@ -313,7 +313,8 @@ def _while_loop(going, step, carry):
 
 
 @program(quick=True)
-def _beginning(conductance, capacity):
+def _beginning(network):
+    conductance, capacity = network
     zero, none = jnp.zeros_like(capacity), jnp.zeros((), capacity.dtype)
     shortest = jnp.min(capacity / jnp.diagonal(conductance))
     counted = jnp.zeros((), jnp.int32), jnp.ones((), bool)
@@ -321,9 +322,9 @@ def _beginning(conductance, capacity):
 
 
 @program(quick=True)
-def _advanced(state, made, slope, conductance, capacity):
+def _advanced(state, made, slope, network):
     """Return the state after a step, from heat and slope at `state.after`."""
-    rise = state.after
+    rise, (conductance, capacity) = state.after, network
     slope, left = slope - conductance, made - conductance @ rise
     size, total = jnp.max(jnp.abs(left)), jnp.sum(jnp.abs(made))
     new = jnp.where(size > 0, size / jnp.maximum(total, 1e-30), 0.0)
@@ -364,33 +365,34 @@ def rises_over_time(
     def made(rise):
         return heat(rise, args)
 
-    given = conductance, capacity, times, n
-    return _integrated(evaluated, made, *given, lax.scan)
+    return _integrated(evaluated, made, [conductance, capacity], times, n, lax.scan)
 
 
 _GAMMA = 1.0 - np.sqrt(0.5)
 
 
-def _integrated(evaluated, made, conductance, capacity, times, n, scan):
+def _integrated(evaluated, made, network, times, n, scan):
     """Return rises over time (time, node) [K].
 
     Args:
         evaluated: Rises -> heat made, and its slope.
         made: Rises -> heat made.
-        conductance, capacity, times, n: As in `rises_over_time`.
+        network: Conductance and capacity as in `rises_over_time`.
+        times, n: As there.
         scan: `lax.scan`, or `_scan`.
     """
 
     def step(rise, length):
-        given = length, conductance, capacity
-        between, *known = _half_way(rise, *evaluated(rise), *given)
-        return _whole_way(rise, *known, between, made(between), *given)
+        there, slope = evaluated(rise)
+        between, k1, matrix = _half_way(rise, there, slope, length, network)
+        known = rise, k1, matrix, between
+        return _whole_way(known, made(between), length, network)
 
     def interval(rise, length):
         after, _ = scan(step, rise, jnp.full(n, length / n))
         return after, after
 
-    start = jnp.zeros_like(capacity)
+    start = jnp.zeros_like(network[1])
     _, found = scan(interval, start, jnp.diff(times))
     return jnp.concatenate([start[None], found])
 
@@ -405,8 +407,9 @@ def _scan(step, carry, given):
 
 
 @program(quick=True)
-def _half_way(rise, made, slope, length, conductance, capacity):
+def _half_way(rise, made, slope, length, network):
     """Return rises at which heat is wanted once more, and what is known by then."""
+    conductance, capacity = network
     rate = (made - conductance @ rise) / capacity
     eye = jnp.eye(capacity.shape[0], dtype=capacity.dtype)
     matrix = eye - _GAMMA * length * (slope - conductance) / capacity[:, None]
@@ -415,8 +418,9 @@ def _half_way(rise, made, slope, length, conductance, capacity):
 
 
 @program(quick=True)
-def _whole_way(rise, k1, matrix, between, made, length, conductance, capacity):
+def _whole_way(known, made, length, network):
     """Return rises after a step, NaN where they run away, and as they are."""
+    (rise, k1, matrix, between), (conductance, capacity) = known, network
     rate = (made - conductance @ between) / capacity
     k2 = solve_any(matrix, rate - 2.0 * k1)
     after = rise + length * (1.5 * k1 + 0.5 * k2)
@@ -454,8 +458,8 @@ def solve_heat(
         def evaluated(rise):
             return _evaluated(cold, network, rise)
 
-        given = _conductance(network), _capacity(network)
-        found, solution = _searched(evaluated, *given, None, _while_loop)
+        given = [_conductance(network), _capacity(network)]
+        found, solution = _searched(evaluated, given, None, _while_loop)
         rise, slowest, residual = found.rise, -found.fastest, found.residual
         steps, solved, known = found.steps, found.solved, _within(rise)
         if np.any(np.asarray(known) != np.asarray(rise)):
@@ -526,8 +530,8 @@ def warm_up(
     def made(rise):
         return evaluated(rise)[0]
 
-    given = _conductance(network), _capacity(network), times, steps
-    return network.ambient + _integrated(evaluated, made, *given, _scan)
+    given = [_conductance(network), _capacity(network)]
+    return network.ambient + _integrated(evaluated, made, given, times, steps, _scan)
 
 
 def runaway_speed(

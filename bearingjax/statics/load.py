@@ -159,7 +159,7 @@ def solve(
     return _solve(element, element.model(speed), case, options)
 
 
-@program
+@program(quick=True, level=1)
 def _solve(
     element: BearingElement, model: BearingModel, case: LoadCase, options: SolveOptions
 ) -> Solution:
